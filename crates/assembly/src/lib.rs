@@ -1,0 +1,1 @@
+//! Draft to seam-matched, triangulated, placed panels.

@@ -1,0 +1,1 @@
+//! Mannequins: skeleton, ellipsoid primitives, skin.

@@ -1,0 +1,1 @@
+//! Scene, model, state, methods, contact, elastics, merging.

@@ -1,0 +1,298 @@
+//! Indexed triangle meshes: measures, topology and defects.
+
+use crate::{Vec3, tetrahedron_volume, triangle_area};
+use std::collections::HashMap;
+
+/// An indexed triangle mesh. Triangles are counter-clockwise seen from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleMesh {
+    /// Vertex positions [m].
+    pub positions: Vec<Vec3>,
+    /// Corners of each triangle, as indices into `positions`.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// What makes a mesh unusable, with the first place it was found.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshDefect {
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} names vertex {vertex}, but there are only {count}")]
+    MissingVertex {
+        /// Index of the triangle.
+        triangle: usize,
+        /// The vertex it names.
+        vertex: u32,
+        /// Number of vertices.
+        count: usize,
+    },
+    /// A triangle names one vertex twice.
+    #[error("triangle {0} uses one vertex twice")]
+    RepeatedVertex(usize),
+    /// A coordinate is not finite.
+    #[error("vertex {0} has a coordinate that is not finite")]
+    NotFinite(usize),
+}
+
+/// Edges of a mesh and the triangles on them, in order of their vertex pairs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Topology {
+    /// Vertex pairs, smaller index first, sorted.
+    pub edges: Vec<[u32; 2]>,
+    /// Triangles on each edge, in ascending order.
+    pub edge_triangles: Vec<Vec<u32>>,
+}
+
+impl Topology {
+    /// Index of the edge between two vertices.
+    pub fn edge(&self, a: u32, b: u32) -> Option<usize> {
+        self.edges.binary_search(&[a.min(b), a.max(b)]).ok()
+    }
+
+    /// Edges on one triangle only.
+    pub fn boundary(&self) -> impl Iterator<Item = usize> {
+        (0..self.edges.len()).filter(|&e| self.edge_triangles[e].len() == 1)
+    }
+
+    /// Edges on more than two triangles.
+    pub fn non_manifold(&self) -> impl Iterator<Item = usize> {
+        (0..self.edges.len()).filter(|&e| self.edge_triangles[e].len() > 2)
+    }
+}
+
+impl TriangleMesh {
+    /// Positions of a triangle's corners [m].
+    pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        self.triangles[triangle].map(|v| self.positions[v as usize])
+    }
+
+    /// Checks indices and coordinates.
+    ///
+    /// # Errors
+    /// The first defect found.
+    pub fn check(&self) -> Result<(), MeshDefect> {
+        if let Some(at) = self
+            .positions
+            .iter()
+            .position(|p| !p.iter().all(|x| x.is_finite()))
+        {
+            return Err(MeshDefect::NotFinite(at));
+        }
+        for (triangle, corners) in self.triangles.iter().enumerate() {
+            for &vertex in corners {
+                if vertex as usize >= self.positions.len() {
+                    let count = self.positions.len();
+                    return Err(MeshDefect::MissingVertex {
+                        triangle,
+                        vertex,
+                        count,
+                    });
+                }
+            }
+            if corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0] {
+                return Err(MeshDefect::RepeatedVertex(triangle));
+            }
+        }
+        Ok(())
+    }
+
+    /// Surface area [m2].
+    pub fn area(&self) -> f64 {
+        (0..self.triangles.len())
+            .map(|t| triangle_area(self.corners(t)))
+            .sum()
+    }
+
+    /// Signed enclosed volume [m3]: positive when closed and facing outward.
+    pub fn volume(&self) -> f64 {
+        (0..self.triangles.len())
+            .map(|t| tetrahedron_volume(self.corners(t)))
+            .sum()
+    }
+
+    /// Smallest and largest coordinate of all vertices [m]; nothing for an empty mesh.
+    pub fn bounds(&self) -> Option<[Vec3; 2]> {
+        let first = *self.positions.first()?;
+        Some(
+            self.positions
+                .iter()
+                .fold([first, first], |[low, high], p| [low.inf(p), high.sup(p)]),
+        )
+    }
+
+    /// Unit normal of each triangle; zero where a triangle has no area.
+    pub fn face_normals(&self) -> Vec<Vec3> {
+        (0..self.triangles.len())
+            .map(|t| {
+                let [a, b, c] = self.corners(t);
+                (b - a)
+                    .cross(&(c - a))
+                    .try_normalize(0.0)
+                    .unwrap_or_default()
+            })
+            .collect()
+    }
+
+    /// Unit normal of each vertex: face normals weighted by the angle at the vertex
+    /// (Thurmer and Wuthrich 1998); zero where no triangle with area meets it.
+    pub fn vertex_normals(&self) -> Vec<Vec3> {
+        let mut normals = vec![Vec3::zeros(); self.positions.len()];
+        let faces = self.face_normals();
+        for (t, triangle) in self.triangles.iter().enumerate() {
+            let corners = self.corners(t);
+            for k in 0..3 {
+                let u = corners[(k + 1) % 3] - corners[k];
+                let v = corners[(k + 2) % 3] - corners[k];
+                normals[triangle[k] as usize] += faces[t] * u.angle(&v);
+            }
+        }
+        for normal in &mut normals {
+            *normal = normal.try_normalize(0.0).unwrap_or_default();
+        }
+        normals
+    }
+
+    /// The edges and the triangles on them.
+    pub fn topology(&self) -> Topology {
+        let mut uses: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * self.triangles.len());
+        for (t, &[a, b, c]) in self.triangles.iter().enumerate() {
+            for [p, q] in [[a, b], [b, c], [c, a]] {
+                uses.push(([p.min(q), p.max(q)], t as u32));
+            }
+        }
+        uses.sort_unstable();
+        let mut topology = Topology::default();
+        for (edge, triangle) in uses {
+            if topology.edges.last() == Some(&edge) {
+                if let Some(last) = topology.edge_triangles.last_mut() {
+                    last.push(triangle);
+                }
+            } else {
+                topology.edges.push(edge);
+                topology.edge_triangles.push(vec![triangle]);
+            }
+        }
+        topology
+    }
+
+    /// Number of pieces that hang together by shared vertices; lone vertices are not counted.
+    pub fn component_count(&self) -> usize {
+        let mut parent: Vec<u32> = (0..self.positions.len() as u32).collect();
+        fn root(parent: &mut [u32], mut v: u32) -> u32 {
+            while parent[v as usize] != v {
+                parent[v as usize] = parent[parent[v as usize] as usize];
+                v = parent[v as usize];
+            }
+            v
+        }
+        for &[a, b, c] in &self.triangles {
+            let ra = root(&mut parent, a);
+            for other in [b, c] {
+                let ro = root(&mut parent, other);
+                parent[ro as usize] = ra;
+            }
+        }
+        let mut roots: Vec<u32> = self
+            .triangles
+            .iter()
+            .map(|t| root(&mut parent, t[0]))
+            .collect();
+        roots.sort_unstable();
+        roots.dedup();
+        roots.len()
+    }
+
+    /// Vertices minus edges plus triangles, over used vertices: 2 for a closed ball.
+    pub fn euler_characteristic(&self) -> i64 {
+        let mut used = vec![false; self.positions.len()];
+        for &v in self.triangles.iter().flatten() {
+            used[v as usize] = true;
+        }
+        let vertices = used.iter().filter(|&&u| u).count() as i64;
+        vertices - self.topology().edges.len() as i64 + self.triangles.len() as i64
+    }
+
+    /// Whether every edge has exactly two triangles that walk it in opposite directions.
+    pub fn is_closed_and_oriented(&self) -> bool {
+        let mut directed: HashMap<[u32; 2], u32> = HashMap::new();
+        for &[a, b, c] in &self.triangles {
+            for edge in [[a, b], [b, c], [c, a]] {
+                *directed.entry(edge).or_default() += 1;
+            }
+        }
+        !directed.is_empty()
+            && directed
+                .iter()
+                .all(|(&[a, b], &count)| count == 1 && directed.get(&[b, a]) == Some(&1))
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A unit cube with corners at 0 and 1.
+    pub(crate) fn cube() -> TriangleMesh {
+        let positions = (0..8u8)
+            .map(|k| Vec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2)))
+            .collect();
+        let quads = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        let triangles = quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect();
+        TriangleMesh {
+            positions,
+            triangles,
+        }
+    }
+
+    #[test]
+    fn a_cube_is_measured_exactly() {
+        let cube = cube();
+        assert_eq!(cube.check(), Ok(()));
+        assert!((cube.area() - 6.0).abs() < 1e-14);
+        assert!((cube.volume() - 1.0).abs() < 1e-14);
+        assert_eq!(cube.euler_characteristic(), 2);
+        assert_eq!(cube.component_count(), 1);
+        assert!(cube.is_closed_and_oriented());
+        assert_eq!(cube.topology().edges.len(), 18);
+        let corner = cube.vertex_normals()[7];
+        assert!(
+            (corner - Vec3::repeat(1.0 / 3f64.sqrt())).norm() < 1e-14,
+            "{corner:?}"
+        );
+    }
+
+    #[test]
+    fn defects_are_named() {
+        let mut mesh = cube();
+        mesh.triangles[3] = [0, 99, 1];
+        assert_eq!(
+            mesh.check(),
+            Err(MeshDefect::MissingVertex {
+                triangle: 3,
+                vertex: 99,
+                count: 8
+            })
+        );
+        mesh.triangles[3] = [0, 1, 1];
+        assert_eq!(mesh.check(), Err(MeshDefect::RepeatedVertex(3)));
+        mesh.positions[2].y = f64::NAN;
+        assert_eq!(mesh.check(), Err(MeshDefect::NotFinite(2)));
+    }
+
+    #[test]
+    fn an_opened_cube_has_a_boundary() {
+        let mut mesh = cube();
+        mesh.triangles.truncate(10);
+        assert!(!mesh.is_closed_and_oriented());
+        assert_eq!(mesh.topology().boundary().count(), 4);
+    }
+}

@@ -1,0 +1,1 @@
+//! Native formats, importers, exporters.

@@ -1,0 +1,1 @@
+//! Body measurements: names, values, asked or predicted.

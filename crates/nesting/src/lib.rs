@@ -1,0 +1,1 @@
+//! Marker making on plain outlines.

@@ -1,0 +1,236 @@
+//! The draft: a pattern with every formula resolved for one set of measurements. Plain numbers.
+
+use crate::{DartId, EdgeId, FabricId, InternalLineId, NotchId, PanelId, SeamId};
+use toile_geometry::{Curve, Rigid, Vec2};
+
+/// A pattern resolved: pieces of cloth to cut, and how they are sewn.
+#[derive(Clone, Debug, Default)]
+pub struct Draft {
+    /// Name of the pattern.
+    pub name: String,
+    /// Every piece that is cut: folded panels unfolded, one entry per copy.
+    pub pieces: Vec<Piece>,
+    /// Every seam between pieces, darts' seams included.
+    pub seams: Vec<DraftSeam>,
+    /// Fabrics the pieces name.
+    pub fabrics: Vec<Fabric>,
+}
+
+/// One piece of cloth: a copy of a panel. Copy 0 is the panel as drawn; of a mirrored pair the
+/// odd copies are reflected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PieceId {
+    /// The panel it was cut from.
+    pub panel: PanelId,
+    /// Number of the copy, from 0.
+    pub copy: u32,
+}
+
+/// One flat piece of cloth as it is cut and sewn, without seam allowance.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    /// Which panel and copy this is.
+    pub id: PieceId,
+    /// Name to show, unique in the draft.
+    pub name: String,
+    /// The closed outline: each edge ends where the next starts. Its winding decides the right
+    /// side of the cloth: seen from the right side it runs counter-clockwise.
+    pub outline: Vec<PieceEdge>,
+    /// Closed holes, wound against the outline.
+    pub holes: Vec<Vec<PieceEdge>>,
+    /// Lines drawn on the piece that the mesh follows.
+    pub internal_lines: Vec<PieceLine>,
+    /// Marks on the outline.
+    pub notches: Vec<PieceNotch>,
+    /// Direction of the warp in the piece's plane [rad], from +x counter-clockwise.
+    pub grain: f64,
+    /// Index into [`Draft::fabrics`].
+    pub fabric: usize,
+    /// Where on the body the piece belongs.
+    pub worn: Worn,
+    /// Whether the piece is part of the garment (sewn to something, or the only panel), or only
+    /// cut (an extra copy, a facing that no seam names).
+    pub sewn: bool,
+}
+
+/// What edge of the document an edge of a piece came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum EdgeOrigin {
+    /// An edge of the panel, or its reflection in the fold line.
+    Edge {
+        /// The edge.
+        edge: EdgeId,
+        /// Whether it is the reflected half of a folded panel.
+        reflected: bool,
+    },
+    /// A leg of a dart, 0 before the apex and 1 after it along the outline.
+    DartLeg {
+        /// The dart.
+        dart: DartId,
+        /// Whether it is the reflected half of a folded panel.
+        reflected: bool,
+        /// 0 or 1.
+        leg: u8,
+    },
+}
+
+/// One edge of a piece.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PieceEdge {
+    /// Where it came from.
+    pub origin: EdgeOrigin,
+    /// Its curve, in the direction of the outline [m].
+    pub curve: Curve,
+    /// Width of cloth left outside it for the seam [m].
+    pub seam_allowance: f64,
+}
+
+/// A line inside a piece.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PieceLine {
+    /// Which internal line of the panel it is.
+    pub id: InternalLineId,
+    /// Joined curves [m].
+    pub curves: Vec<Curve>,
+}
+
+/// A notch on a piece's outline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PieceNotch {
+    /// Which notch of the panel it is.
+    pub id: NotchId,
+    /// Where on the outline [m].
+    pub point: Vec2,
+    /// Unit direction into the piece.
+    pub inward: Vec2,
+}
+
+/// A stretch of one piece's edge, by fractions of its arc length; `from > to` walks it backwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DraftSpan {
+    /// Index into [`Draft::pieces`].
+    pub piece: usize,
+    /// Index of the edge: outline edges first, then each hole's edges in order.
+    pub edge: usize,
+    /// Arc-length fraction where the span starts.
+    pub from: f64,
+    /// Arc-length fraction where it ends.
+    pub to: f64,
+}
+
+/// Two chains of spans that are sewn together: the start of one to the start of the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DraftSeam {
+    /// The seam of the document, or the seam a dart makes.
+    pub id: SeamOrigin,
+    /// Name to show.
+    pub name: String,
+    /// Both chains, each in walking order.
+    pub sides: [Vec<DraftSpan>; 2],
+    /// Whether the longer side is gathered or eased on purpose, so that its strain is expected.
+    pub gathered: bool,
+    /// Whether right sides lie together before sewing (the usual seam).
+    pub right_sides_together: bool,
+    /// Whether more than two plies may meet here, so that merging may leave a non-manifold edge.
+    pub multi_ply: bool,
+}
+
+/// What a seam of the draft came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum SeamOrigin {
+    /// A seam of the document.
+    Seam(SeamId),
+    /// The closing of a dart on a copy of a panel.
+    Dart {
+        /// The dart.
+        dart: DartId,
+        /// The copy of the panel.
+        copy: u32,
+        /// Whether it is the reflected half of a folded panel.
+        reflected: bool,
+    },
+}
+
+/// The part of the body a piece is worn on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum BodyPart {
+    /// Chest, waist and hips.
+    #[default]
+    Trunk,
+    /// Neck and head (collars, hoods).
+    Head,
+    /// The wearer's left arm (at +x).
+    LeftArm,
+    /// The wearer's right arm (at -x).
+    RightArm,
+    /// The wearer's left leg (at +x).
+    LeftLeg,
+    /// The wearer's right leg (at -x).
+    RightLeg,
+}
+
+/// The side of the body part a piece faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Facing {
+    /// In front of it (+z).
+    #[default]
+    Front,
+    /// Behind it (-z).
+    Back,
+    /// On the wearer's left of it (+x; above an arm).
+    Left,
+    /// On the wearer's right of it (-x; below an arm).
+    Right,
+    /// All round it, closed by a seam with itself at the back (or under the arm, inside the leg).
+    Around,
+    /// Over the top of it: laid on horizontally, as a poncho is.
+    Over,
+}
+
+/// Where a piece goes before it is sewn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Worn {
+    /// Wrapped round a body part by the program.
+    Wrapped {
+        /// The body part.
+        part: BodyPart,
+        /// Which side of it.
+        facing: Facing,
+        /// Height of the piece's reference point above the floor [m] (along the limb from its
+        /// root for arms: distance from the shoulder point); nothing lets the program choose.
+        level: Option<f64>,
+    },
+    /// Placed in space as given: world from piece.
+    Placed(Rigid),
+    /// Nothing is known: the program decides from the seams.
+    Automatic,
+}
+
+/// What a fabric is made of, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fabric {
+    /// The fabric of the document.
+    pub id: FabricId,
+    /// Name to show.
+    pub name: String,
+    /// Mass per area [kg/m2].
+    pub density: f64,
+    /// Thickness [m].
+    pub thickness: f64,
+    /// Stretch stiffness along warp and weft [N/m].
+    pub stretch: [f64; 2],
+    /// Shear stiffness [N/m].
+    pub shear: f64,
+    /// Poisson ratio of warp to weft.
+    pub poisson: f64,
+    /// Bending stiffness along warp, weft and bias [N m].
+    pub bend: [f64; 3],
+    /// Coulomb friction coefficient against skin.
+    pub friction: f64,
+    /// Width of the roll [m].
+    pub width: f64,
+    /// Whether the cloth has a nap, so that all pieces must point one way.
+    pub nap: bool,
+    /// Base colour, sRGB 0..=1.
+    pub colour: [f64; 3],
+}

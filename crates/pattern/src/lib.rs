@@ -1,0 +1,1 @@
+//! The pattern document: panels, seams, formulas, edits, diagnostics.

@@ -1,0 +1,1 @@
+//! CPU rasteriser, colour maps, legends, PNG.

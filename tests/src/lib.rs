@@ -1,0 +1,1 @@
+//! Data-driven suite over the public interfaces, house rules.

@@ -1,0 +1,2 @@
+//! The Toile window.
+fn main() {}
