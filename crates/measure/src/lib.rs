@@ -1,1 +1,12 @@
-//! Body measurements: names, values, asked or predicted.
+//! Body measurements: a catalogue of names with their meaning, and tables of values.
+//!
+//! Values are SI: metres for lengths, radians for angles. Names are snake_case; where GarmentCode
+//! has a name for a measurement, it is used here too, so that its tables read without a map.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod catalogue;
+mod samples;
+mod table;
+
+pub use catalogue::{CATALOGUE, Definition, UnitKind, definition};
+pub use table::{MeasureError, Measured, Measurements, Origin};
