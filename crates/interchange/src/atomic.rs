@@ -1,0 +1,240 @@
+//! Files written whole or not at all.
+//!
+//! The bytes go to a temporary file in the same folder, reach the disk, and only then take the
+//! name: after a crash the name holds either the old file or the new one.
+
+use crate::FileError;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// Writes a file so that nobody ever sees half of it. A file of that name is replaced and keeps
+/// its permissions; a link is followed.
+///
+/// # Errors
+/// The folder is missing or may not be written, the name is not that of an ordinary file, or the
+/// disk is full. The old file is then intact and nothing else is left behind.
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    Staged::new(path, bytes)?.commit()
+}
+
+/// Creates a folder if need be and writes several files into it. All of them are on the disk
+/// under temporary names before the first takes its own.
+///
+/// # Errors
+/// As [`write_atomically`]; if any file cannot be staged, none is replaced.
+pub fn write_all_atomically<Name: AsRef<Path>, Bytes: AsRef<[u8]>>(
+    folder: &Path,
+    files: &[(Name, Bytes)],
+) -> Result<(), FileError> {
+    fs::create_dir_all(folder)
+        .map_err(|error| FileError::from_io("create the folder", folder, &error))?;
+    let staged: Vec<Staged> = files
+        .iter()
+        .map(|(name, bytes)| Staged::new(&folder.join(name), bytes.as_ref()))
+        .collect::<Result<_, _>>()?;
+    staged.into_iter().try_for_each(Staged::commit)
+}
+
+/// A file under a temporary name, complete and on the disk. Dropping it removes it.
+struct Staged {
+    file: NamedTempFile,
+    target: PathBuf,
+}
+
+impl Staged {
+    fn new(path: &Path, bytes: &[u8]) -> Result<Self, FileError> {
+        let target = ordinary_target(path)?;
+        let folder = match target.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+        let failed = |error: io::Error| FileError::from_io("write", path, &error);
+        let mut file = temporary_in(folder).map_err(failed)?;
+        file.write_all(bytes).map_err(failed)?;
+        if let Ok(old) = fs::metadata(&target) {
+            file.as_file()
+                .set_permissions(old.permissions())
+                .map_err(failed)?;
+        }
+        file.as_file().sync_all().map_err(failed)?;
+        Ok(Self { file, target })
+    }
+
+    fn commit(self) -> Result<(), FileError> {
+        let Self { file, target } = self;
+        file.persist(&target)
+            .map_err(|error| FileError::from_io("write", &target, &error.error))?;
+        sync_folder_of(&target);
+        Ok(())
+    }
+}
+
+/// The file a path stands for, links followed; refuses folders and devices.
+fn ordinary_target(path: &Path) -> Result<PathBuf, FileError> {
+    let refuse = |cause: &str, hint| FileError {
+        action: "write",
+        path: path.to_owned(),
+        cause: cause.to_owned(),
+        hint,
+    };
+    if path.file_name().is_none() {
+        return Err(refuse("the path names no file", "add a file name"));
+    }
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => Err(refuse(
+            "a folder has that name",
+            "name a file, not a folder",
+        )),
+        Ok(found) if !found.is_file() => Err(refuse(
+            "it is a device or a pipe, which cannot be replaced whole",
+            "name an ordinary file",
+        )),
+        Ok(_) => fs::canonicalize(path).map_err(|error| FileError::from_io("write", path, &error)),
+        Err(_) => Ok(path.to_owned()),
+    }
+}
+
+/// A new temporary file with the permissions any new file would get.
+fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".toile-").suffix(".partial");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+        builder.tempfile_in(folder)
+    }
+    #[cfg(not(unix))]
+    builder.tempfile_in(folder)
+}
+
+/// Makes the new name itself survive a loss of power, where the system allows it. The file is
+/// already complete, so a refusal loses nothing and is not reported.
+fn sync_folder_of(file: &Path) {
+    let folder = match file.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    if let Ok(handle) = fs::File::open(folder) {
+        let _ = handle.sync_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn writes_and_replaces_without_a_trace() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        write_atomically(&path, b"one").unwrap();
+        write_atomically(&path, b"two, longer").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"two, longer");
+        assert_eq!(names(folder.path()), ["a.json"]);
+    }
+
+    #[test]
+    fn writes_several_files_into_a_new_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let deep = folder.path().join("out/size 38");
+        write_all_atomically(&deep, &[("b.txt", "b".as_bytes()), ("a.txt", b"a")]).unwrap();
+        assert_eq!(names(&deep), ["a.txt", "b.txt"]);
+        assert_eq!(fs::read(deep.join("b.txt")).unwrap(), b"b");
+    }
+
+    #[test]
+    fn one_bad_name_replaces_no_file() {
+        let folder = tempfile::tempdir().unwrap();
+        write_atomically(&folder.path().join("a"), b"old").unwrap();
+        fs::create_dir(folder.path().join("b")).unwrap();
+        let error = write_all_atomically(folder.path(), &[("a", "new"), ("b", "new")]).unwrap_err();
+        assert!(error.to_string().contains("folder"), "{error}");
+        assert_eq!(fs::read(folder.path().join("a")).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["a", "b"]);
+    }
+
+    #[test]
+    fn missing_folder_is_named_with_a_remedy() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("nowhere/a.json");
+        let text = write_atomically(&path, b"x").unwrap_err().to_string();
+        assert!(
+            text.contains("nowhere") && text.contains("check the spelling"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_file_in_place_of_the_folder_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("out");
+        fs::write(&file, b"kept").unwrap();
+        let error = write_all_atomically(&file, &[("a", "b")]).unwrap_err();
+        assert!(error.to_string().contains("rename it"), "{error}");
+        assert_eq!(fs::read(&file).unwrap(), b"kept");
+    }
+
+    #[test]
+    fn paths_without_a_file_name_and_devices_are_refused() {
+        for path in ["/", "..", ""] {
+            let error = write_atomically(Path::new(path), b"x").unwrap_err();
+            assert_eq!(error.hint, "add a file name");
+        }
+        if cfg!(unix) {
+            let error = write_atomically(Path::new("/dev/null"), b"x").unwrap_err();
+            assert!(error.cause.contains("device"), "{error}");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn unwritable_folder_keeps_the_old_file() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        fs::write(&path, b"old").unwrap();
+        fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o555)).unwrap();
+        let outcome = write_atomically(&path, b"new");
+        fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
+        // The administrator may write anywhere: then the file is simply replaced.
+        match outcome {
+            Err(error) => {
+                assert!(error.hint.contains("permissions"), "{error}");
+                assert_eq!(fs::read(&path).unwrap(), b"old");
+            }
+            Ok(()) => assert_eq!(fs::read(&path).unwrap(), b"new"),
+        }
+        assert_eq!(names(folder.path()), ["a"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_followed_and_permissions_are_kept() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let real = folder.path().join("real");
+        let link = folder.path().join("link");
+        fs::write(&real, b"old").unwrap();
+        fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).unwrap();
+        std::os::unix::fs::symlink(&real, &link).unwrap();
+        write_atomically(&link, b"new").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&real).unwrap(), b"new");
+        assert_eq!(
+            fs::metadata(&real).unwrap().permissions().mode() & 0o777,
+            0o640
+        );
+    }
+}

@@ -1,0 +1,78 @@
+//! The two errors of this crate: a file that cannot be handled, and text that cannot be read.
+
+use std::path::{Path, PathBuf};
+
+/// A file that could not be read or written. Says which, why, and what to do.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot {action} {}: {cause}; {hint}", path.display())]
+pub struct FileError {
+    /// What was tried, as in "write".
+    pub action: &'static str,
+    /// The file or folder.
+    pub path: PathBuf,
+    /// What the system answered, or what is wrong with the place.
+    pub cause: String,
+    /// What the person can do.
+    pub hint: &'static str,
+}
+
+impl FileError {
+    /// An error of the operating system, with the remedy that fits its kind.
+    pub fn from_io(action: &'static str, path: &Path, error: &std::io::Error) -> Self {
+        use std::io::ErrorKind;
+        let hint = match error.kind() {
+            ErrorKind::NotFound => "check the spelling of the path",
+            ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+                "choose a folder you may write to, or change its permissions"
+            }
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+                "free some space or choose another disk"
+            }
+            ErrorKind::IsADirectory => "name a file, not a folder",
+            ErrorKind::NotADirectory | ErrorKind::AlreadyExists => {
+                "a file stands where a folder is needed: rename it or choose another folder"
+            }
+            ErrorKind::InvalidData => {
+                "the file is not text in UTF-8: check that it is the right one"
+            }
+            _ => "check the path and the disk, then try again",
+        };
+        Self {
+            action,
+            path: path.to_owned(),
+            cause: error.to_string(),
+            hint,
+        }
+    }
+}
+
+/// Text or bytes that are not what they should be: what is wrong, where, and the remedy.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: {what}; {hint}")]
+pub struct FormatError {
+    /// Where in the input, as in "line 12" or "panels.front.edges\[3\]".
+    pub place: String,
+    /// What is wrong there.
+    pub what: String,
+    /// What the person can do.
+    pub hint: String,
+}
+
+impl FormatError {
+    /// An error at a place.
+    pub fn new(place: impl Into<String>, what: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self {
+            place: place.into(),
+            what: what.into(),
+            hint: hint.into(),
+        }
+    }
+}
+
+/// Reads a whole text file.
+///
+/// # Errors
+/// The file is missing, may not be read, or is not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, FileError> {
+    std::fs::read_to_string(path).map_err(|error| FileError::from_io("read", path, &error))
+}
