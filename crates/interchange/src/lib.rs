@@ -7,6 +7,12 @@
 
 mod atomic;
 mod error;
+mod gltf;
+mod obj;
+mod obj_read;
 
 pub use atomic::{write_all_atomically, write_atomically};
 pub use error::{FileError, FormatError, read_text};
+pub use gltf::{GlbMesh, GlbPrimitive, GlbScene, write_glb};
+pub use obj::{ObjGroup, ObjMesh, write_obj};
+pub use obj_read::read_obj;
