@@ -6,6 +6,13 @@
 
 mod curve;
 mod mesh;
+mod polygon;
+mod polygon_boolean;
+mod polygon_contact;
+mod polygon_hull;
+mod polygon_minkowski;
+mod polygon_simple;
+mod polygon_tree;
 mod predicates;
 mod tree;
 mod triangle;
@@ -13,6 +20,15 @@ mod units;
 
 pub use curve::Curve;
 pub use mesh::{MeshDefect, Topology, TriangleMesh};
+pub use polygon::{Bounds2, Location, Polygon, ring_area};
+pub use polygon_boolean::{
+    Corner, difference, intersection, offset, total_area, union, wound_region,
+};
+pub use polygon_contact::{PreparedPolygon, interiors_overlap};
+pub use polygon_hull::convex_hull;
+pub use polygon_minkowski::{minkowski_sum, no_fit_polygon};
+pub use polygon_simple::{Crossing, CrossingKind, PolygonDefect, crossing_point};
+pub use polygon_tree::{EdgeTree, closest_on_segment, point_segment_distance, segment_distance};
 pub use predicates::{
     orient2d, orient3d, segment_intersects_triangle, segments_cross, triangles_intersect,
 };
