@@ -1,6 +1,7 @@
 //! The draft: a pattern with every formula resolved for one set of measurements. Plain numbers.
 
 use crate::{DartId, EdgeId, FabricId, InternalLineId, NotchId, PanelId, SeamId};
+use serde::{Deserialize, Serialize};
 use toile_geometry::{Curve, Rigid, Vec2};
 
 /// A pattern resolved: pieces of cloth to cut, and how they are sewn.
@@ -63,13 +64,14 @@ pub enum EdgeOrigin {
         /// Whether it is the reflected half of a folded panel.
         reflected: bool,
     },
-    /// A leg of a dart, 0 before the apex and 1 after it along the outline.
+    /// A leg of a dart: 0 before the apex and 1 after it along the outline; round the hole of a
+    /// diamond dart 0 to 3.
     DartLeg {
         /// The dart.
         dart: DartId,
         /// Whether it is the reflected half of a folded panel.
         reflected: bool,
-        /// 0 or 1.
+        /// 0 or 1; 0 to 3 of a diamond.
         leg: u8,
     },
 }
@@ -152,7 +154,8 @@ pub enum SeamOrigin {
 }
 
 /// The part of the body a piece is worn on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum BodyPart {
     /// Chest, waist and hips.
     #[default]
@@ -170,7 +173,8 @@ pub enum BodyPart {
 }
 
 /// The side of the body part a piece faces.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Facing {
     /// In front of it (+z).
     #[default]
@@ -207,7 +211,7 @@ pub enum Worn {
 }
 
 /// What a fabric is made of, in SI units.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fabric {
     /// The fabric of the document.
     pub id: FabricId,

@@ -38,3 +38,67 @@ ids! {
     /// A fabric of the pattern.
     FabricId "fabric ",
 }
+
+/// The next free id of every kind. Counters only ever grow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+pub struct IdCounters {
+    /// Next panel.
+    pub panel: u32,
+    /// Next point.
+    pub point: u32,
+    /// Next edge.
+    pub edge: u32,
+    /// Next internal line.
+    pub internal_line: u32,
+    /// Next dart.
+    pub dart: u32,
+    /// Next notch.
+    pub notch: u32,
+    /// Next seam.
+    pub seam: u32,
+    /// Next fabric.
+    pub fabric: u32,
+}
+
+macro_rules! takers {
+    ($($(#[$doc:meta])* $method:ident $field:ident $name:ident),* $(,)?) => {
+        impl IdCounters {
+            $(
+                $(#[$doc])*
+                pub fn $method(&mut self) -> $name {
+                    let id = $name(self.$field);
+                    self.$field = self.$field.saturating_add(1);
+                    id
+                }
+            )*
+        }
+
+        $(
+            impl $name {
+                /// Makes sure the counters never give this id out again.
+                pub fn reserve(self, counters: &mut IdCounters) {
+                    counters.$field = counters.$field.max(self.0.saturating_add(1));
+                }
+            }
+        )*
+    };
+}
+
+takers! {
+    /// Takes a fresh id.
+    take_panel panel PanelId,
+    /// Takes a fresh id.
+    take_point point PointId,
+    /// Takes a fresh id.
+    take_edge edge EdgeId,
+    /// Takes a fresh id.
+    take_internal_line internal_line InternalLineId,
+    /// Takes a fresh id.
+    take_dart dart DartId,
+    /// Takes a fresh id.
+    take_notch notch NotchId,
+    /// Takes a fresh id.
+    take_seam seam SeamId,
+    /// Takes a fresh id.
+    take_fabric fabric FabricId,
+}

@@ -1,0 +1,186 @@
+//! What is wrong with a pattern: what, where, how bad, and what to do.
+
+use crate::{DartId, EdgeId, FabricId, InternalLineId, NotchId, PanelId, PointId, SeamId};
+use std::fmt;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// Worth knowing.
+    Note,
+    /// The garment can be made, but probably not as meant.
+    Warning,
+    /// The garment cannot be made.
+    Error,
+}
+
+/// What kind of fault it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Code {
+    /// A formula has no value.
+    Formula,
+    /// Formulas or points need each other.
+    Cycle,
+    /// A measurement was not given and is taken from the pattern's base size.
+    BorrowedMeasurement,
+    /// Something refers to a part that is not there.
+    MissingReference,
+    /// Two parts have the same id or name.
+    Duplicate,
+    /// A number is infinite or not a number.
+    NotFinite,
+    /// A number is beyond any garment.
+    TooLarge,
+    /// More parts than the program takes.
+    TooMany,
+    /// An outline has no edges or encloses nothing.
+    EmptyOutline,
+    /// An edge does not start where the one before it ends.
+    OpenOutline,
+    /// An outline crosses or touches itself.
+    SelfCrossing,
+    /// An edge has no length.
+    ZeroLengthEdge,
+    /// A hole is wound like its outline.
+    HoleWinding,
+    /// A hole is not inside its outline.
+    HoleOutside,
+    /// The fold line is not a straight edge of the outline.
+    BadFold,
+    /// An internal line leaves its panel.
+    LineOutside,
+    /// A dart is wider than its edge, or overlaps another.
+    DartTooWide,
+    /// A dart's apex lies outside its panel.
+    DartOutside,
+    /// A notch lies beyond its edge.
+    NotchOffEdge,
+    /// A seam names a span that is not there.
+    MissingSpan,
+    /// A span's fractions are not between 0 and 1, or it has no length.
+    BadSpan,
+    /// The two sides of a seam differ by more than its ease.
+    SeamLength,
+    /// A panel is sewn to nothing.
+    NotSewn,
+    /// A fabric has an impossible property.
+    BadFabric,
+    /// A seam allowance or other length is negative.
+    Negative,
+    /// A mirrored pair is cut an odd number of times.
+    OddPair,
+    /// The file has a field this version does not know.
+    UnknownField,
+    /// The outline is too intricate to be checked within the budget.
+    Unchecked,
+}
+
+/// Where it is.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Place {
+    /// The pattern as a whole.
+    Pattern,
+    /// A named size.
+    Size(String),
+    /// A variable.
+    Variable(String),
+    /// A panel.
+    Panel(PanelId),
+    /// A point of a panel.
+    Point(PanelId, PointId),
+    /// An edge of a panel's outline or hole.
+    Edge(PanelId, EdgeId),
+    /// A hole of a panel, by its index.
+    Hole(PanelId, usize),
+    /// A line inside a panel.
+    InternalLine(PanelId, InternalLineId),
+    /// A dart of a panel.
+    Dart(PanelId, DartId),
+    /// A notch of a panel.
+    Notch(PanelId, NotchId),
+    /// A seam.
+    Seam(SeamId),
+    /// A fabric.
+    Fabric(FabricId),
+    /// A place in the file it was read from.
+    File {
+        /// Path of names and indices from the root, such as `panels.front.points`.
+        path: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+    },
+}
+
+/// One finding.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// What kind of fault it is.
+    pub code: Code,
+    /// Where it is.
+    pub place: Place,
+    /// What is wrong, with the names of the parts.
+    pub message: String,
+    /// What to do about it.
+    pub hint: String,
+}
+
+impl Diagnostic {
+    /// A finding of any severity.
+    pub fn new(
+        severity: Severity,
+        code: Code,
+        place: Place,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> Self {
+        Self {
+            severity,
+            code,
+            place,
+            message: message.into(),
+            hint: hint.into(),
+        }
+    }
+
+    pub(crate) fn error(
+        code: Code,
+        place: Place,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> Self {
+        Self::new(Severity::Error, code, place, message, hint)
+    }
+
+    pub(crate) fn warning(
+        code: Code,
+        place: Place,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> Self {
+        Self::new(Severity::Warning, code, place, message, hint)
+    }
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Note => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        })
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.severity, self.message)?;
+        if let Place::File { path, line, column } = &self.place {
+            write!(f, " (line {line}, column {column}, at {path})")?;
+        }
+        write!(f, "; {}", self.hint)
+    }
+}
