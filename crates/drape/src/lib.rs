@@ -1,1 +1,38 @@
-//! Scene, model, state, methods, contact, elastics, merging.
+//! Simulation of cloth: scene, model, state, materials, laws, contact, elastics, merging, and the
+//! drape to rest. Knows nothing of patterns, bodies, files or windows.
+//!
+//! Four lifetimes: [`Model`] is constant, [`State`] is a complete checkpoint, contacts are
+//! recomputed, [`Workspace`] is private memory sized once.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod cloth;
+mod contacts;
+mod error;
+mod garment;
+pub mod laws;
+mod material;
+mod measure;
+mod merge;
+mod model;
+mod newton;
+mod pcg;
+mod rest;
+mod sew;
+mod sparse;
+mod state;
+mod step;
+
+pub use cloth::Cloth;
+pub use contacts::{Contact, Contacts};
+pub use error::DrapeError;
+pub use garment::{GarmentRun, GarmentSetup, Progress, Stage};
+pub use material::Material;
+pub use measure::{Measures, measure, residual, stretch_per_triangle};
+pub use merge::merge_map;
+pub use model::{ContactSample, ContactSettings, Elastic, ElasticEnd, Model};
+pub use newton::{Inertia, NewtonReport, NewtonSettings, Workspace};
+pub use pcg::PcgLimits;
+pub use rest::{RestRun, RestSettings};
+pub use sew::{SewRun, SewSettings};
+pub use state::State;
+pub use step::{StepSettings, step_in_time};

@@ -1,0 +1,100 @@
+//! A sheet of cloth before it is simulated: where it is, and its shape at rest.
+
+use crate::{DrapeError, Material};
+use toile_geometry::{TriangleMesh, Vec2, Vec3};
+
+/// A deformable surface: positions now, and the rest shape of every triangle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cloth {
+    /// Positions [m].
+    pub positions: Vec<Vec3>,
+    /// Corners of the triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Corners of each triangle in its material plane, warp along the first axis [m]. Two
+    /// triangles need not agree on a shared corner: panels keep their own planes when merged.
+    pub rest: Vec<[Vec2; 3]>,
+    /// Index into `materials` for each triangle.
+    pub material: Vec<u16>,
+    /// The materials used.
+    pub materials: Vec<Material>,
+}
+
+impl Cloth {
+    /// A cloth whose rest shape is the mesh itself: every triangle keeps its own size and shape,
+    /// and lies flat at rest. The warp runs along the mesh's first axis, projected.
+    ///
+    /// # Errors
+    /// Bad indices, coordinates that are not finite, triangles without area.
+    pub fn from_mesh(
+        object: &str,
+        mesh: &TriangleMesh,
+        material: Material,
+    ) -> Result<Self, DrapeError> {
+        let name = || object.to_owned();
+        mesh.check().map_err(|defect| DrapeError::Mesh {
+            object: name(),
+            defect,
+        })?;
+        let mut rest = Vec::with_capacity(mesh.triangles.len());
+        for triangle in 0..mesh.triangles.len() {
+            let [a, b, c] = mesh.corners(triangle);
+            let normal = (b - a).cross(&(c - a));
+            let empty = || DrapeError::EmptyTriangle {
+                object: name(),
+                triangle,
+            };
+            let normal = normal.try_normalize(0.0).ok_or_else(empty)?;
+            let along = if normal.x.abs() < 0.9 {
+                Vec3::x()
+            } else {
+                Vec3::z()
+            };
+            let u = (along - normal * along.dot(&normal)).normalize();
+            let v = normal.cross(&u);
+            rest.push([a, b, c].map(|p| Vec2::new((p - a).dot(&u), (p - a).dot(&v))));
+        }
+        Ok(Self {
+            positions: mesh.positions.clone(),
+            triangles: mesh.triangles.clone(),
+            material: vec![0; rest.len()],
+            materials: vec![material],
+            rest,
+        })
+    }
+
+    /// The surface as it lies now.
+    pub fn mesh(&self) -> TriangleMesh {
+        TriangleMesh {
+            positions: self.positions.clone(),
+            triangles: self.triangles.clone(),
+        }
+    }
+
+    /// Joins vertices that `target` sends to the same place: `target[v]` is the new index of old
+    /// vertex `v`. Positions become the mean of those joined; triangles keep their rest shapes.
+    /// A triangle that loses a corner (two of its own vertices joined) is dropped.
+    pub fn merged(&self, target: &[u32], count: usize) -> Self {
+        let mut sums = vec![(Vec3::zeros(), 0.0); count];
+        for (position, &to) in self.positions.iter().zip(target) {
+            let sum = &mut sums[to as usize];
+            *sum = (sum.0 + position, sum.1 + 1.0);
+        }
+        let mut merged = Self {
+            positions: sums
+                .iter()
+                .map(|&(sum, n)| sum / f64::max(n, 1.0))
+                .collect(),
+            materials: self.materials.clone(),
+            ..Self::default()
+        };
+        for (t, corners) in self.triangles.iter().enumerate() {
+            let corners = corners.map(|v| target[v as usize]);
+            if corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0] {
+                merged.triangles.push(corners);
+                merged.rest.push(self.rest[t]);
+                merged.material.push(self.material[t]);
+            }
+        }
+        merged
+    }
+}

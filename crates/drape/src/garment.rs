@@ -1,0 +1,248 @@
+//! A garment's whole way: sewn, merged, draped to rest. One `advance` is one step, so that a
+//! command line, a window and a test drive it alike.
+
+use crate::measure::{Measures, measure};
+use crate::{
+    Cloth, ContactSettings, DrapeError, Model, RestRun, RestSettings, SewRun, SewSettings, State,
+    Workspace, merge_map,
+};
+use std::sync::Arc;
+use toile_geometry::{SurfaceTree, Vec3};
+
+/// What a garment's drape is made from.
+#[derive(Clone)]
+pub struct GarmentSetup {
+    /// Panels, not yet merged, placed round the body.
+    pub cloth: Cloth,
+    /// Vertex pairs the seams join.
+    pub stitches: Vec<[u32; 2]>,
+    /// Triangles (one flag each) where strain counts: away from gathers.
+    pub counted: Vec<bool>,
+    /// The body and other solid surfaces.
+    pub colliders: Vec<Arc<SurfaceTree>>,
+    /// Contact.
+    pub contact: ContactSettings,
+    /// Acceleration of gravity [m/s2].
+    pub gravity: Vec3,
+    /// Sewing.
+    pub sew: SewSettings,
+    /// The way to rest.
+    pub rest: RestSettings,
+}
+
+/// Where a garment is on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Elastics draw the panels together.
+    Sewing,
+    /// The merged garment settles under gravity.
+    Settling,
+    /// At rest.
+    Finished,
+}
+
+/// How far a garment is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// The stage.
+    pub stage: Stage,
+    /// Steps taken in it.
+    pub step: usize,
+    /// Largest seam gap [m].
+    pub gap: f64,
+    /// Net force over weight.
+    pub residual: f64,
+    /// Rough share of the whole way, 0..=1, never falling.
+    pub share: f64,
+}
+
+/// A garment being sewn and draped.
+pub struct GarmentRun {
+    /// The model of the present stage.
+    pub model: Model,
+    /// The state of the present stage.
+    pub state: State,
+    /// New index of every vertex of the setup's cloth; the identity until merged.
+    pub target: Vec<u32>,
+    workspace: Workspace,
+    setup: GarmentSetup,
+    sew: SewRun,
+    rest: RestRun,
+    stage: Stage,
+    gap_before_merging: f64,
+    refinements: usize,
+    share: f64,
+    warnings: Vec<String>,
+}
+
+/// Rounds of finer contact testing before crossings of the body are left and reported.
+const MOST_REFINEMENTS: usize = 6;
+
+impl GarmentRun {
+    /// Prepares the first step.
+    ///
+    /// # Errors
+    /// Meshes and materials that cannot be simulated.
+    pub fn new(setup: GarmentSetup) -> Result<Self, DrapeError> {
+        let mut model = Model::new("garment", &setup.cloth)?;
+        model.colliders = setup.colliders.clone();
+        model.contact = ContactSettings {
+            friction: false,
+            ..setup.contact
+        };
+        model.gravity = Vec3::zeros();
+        let state = State::at_rest(&model, setup.cloth.positions.clone());
+        let sew = SewRun::new(&mut model, setup.stitches.clone(), setup.sew);
+        let mut run = Self {
+            target: (0..state.positions.len() as u32).collect(),
+            rest: RestRun::new(setup.rest),
+            workspace: Workspace::default(),
+            stage: Stage::Sewing,
+            gap_before_merging: 0.0,
+            refinements: 0,
+            share: 0.0,
+            warnings: Vec::new(),
+            model,
+            state,
+            setup,
+            sew,
+        };
+        if run.setup.stitches.is_empty() {
+            run.merge()?;
+        }
+        Ok(run)
+    }
+
+    /// Where it is.
+    pub fn progress(&self) -> Progress {
+        let sewing = self.stage == Stage::Sewing;
+        Progress {
+            stage: self.stage,
+            step: if sewing {
+                self.sew.steps()
+            } else {
+                self.rest.steps()
+            },
+            gap: if sewing { self.sew.last_gap() } else { 0.0 },
+            residual: self.rest.residual(),
+            share: self.share,
+        }
+    }
+
+    /// Largest seam gap in the step before merging [m].
+    pub fn gap_before_merging(&self) -> f64 {
+        self.gap_before_merging
+    }
+
+    /// Steps of sewing and of settling.
+    pub fn steps(&self) -> [usize; 2] {
+        [self.sew.steps(), self.rest.steps()]
+    }
+
+    /// What went less than well, in plain words.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// Seams that do not close, numbers that leave the finite ones, no progress: always with the
+    /// last good state kept.
+    pub fn advance(&mut self) -> Result<Progress, DrapeError> {
+        match self.stage {
+            Stage::Sewing => {
+                self.sew
+                    .advance(&mut self.model, &mut self.state, &mut self.workspace)?;
+                let start = 0.3;
+                let shown = 0.5 * (1.0 - (self.sew.last_gap() / start).min(1.0));
+                self.share = self.share.max(shown);
+                if self.sew.closed() {
+                    self.gap_before_merging = self.sew.last_gap();
+                    self.merge()?;
+                }
+            }
+            Stage::Settling => self.settle()?,
+            Stage::Finished => {}
+        }
+        Ok(self.progress())
+    }
+
+    fn settle(&mut self) -> Result<(), DrapeError> {
+        self.rest
+            .advance(&self.model, &mut self.state, &mut self.workspace)?;
+        let decades = (1.0 / self.rest.residual().max(1e-9)).log10() / 3.0;
+        self.share = self
+            .share
+            .max((0.5 + 0.5 * decades.clamp(0.0, 1.0)).min(0.99));
+        if !self.rest.finished() {
+            return Ok(());
+        }
+        let offenders = self.body_crossings();
+        if !offenders.is_empty() && self.refinements < MOST_REFINEMENTS {
+            self.refinements += 1;
+            for triangle in offenders {
+                self.model.refine_contact(triangle);
+            }
+            self.state.follow_samples(&self.model);
+            self.rest
+                .go_on(self.setup.rest.residual, self.setup.rest.steps / 4);
+            return Ok(());
+        }
+        if self.rest.residual() > self.setup.rest.residual {
+            self.warnings.push(format!(
+                "the drape stopped after {} steps with net force {:.1e} of the weight, above the {:.1e} asked for",
+                self.rest.steps(),
+                self.rest.residual(),
+                self.setup.rest.residual
+            ));
+        }
+        self.stage = Stage::Finished;
+        self.share = 1.0;
+        Ok(())
+    }
+
+    /// Cloth triangles that cross a solid surface, exactly.
+    fn body_crossings(&self) -> Vec<u32> {
+        let mesh = self.model.mesh(&self.state.positions);
+        let mut crossing: Vec<u32> = Vec::new();
+        for tree in &self.model.colliders {
+            crossing.extend(tree.intersections_with(&mesh).iter().map(|pair| pair[0]));
+        }
+        crossing.sort_unstable();
+        crossing.dedup();
+        crossing
+    }
+
+    /// Joins the stitched vertices; gravity and friction act from here on.
+    fn merge(&mut self) -> Result<(), DrapeError> {
+        let placed = Cloth {
+            positions: self.state.positions.clone(),
+            ..self.setup.cloth.clone()
+        };
+        let pairs = self.setup.stitches.iter().copied();
+        let (target, count) = merge_map(placed.positions.len(), pairs);
+        let merged = placed.merged(&target, count);
+        let mut model = Model::new("garment", &merged)?;
+        model.colliders = self.setup.colliders.clone();
+        model.contact = self.setup.contact;
+        model.gravity = self.setup.gravity;
+        self.state = State::at_rest(&model, merged.positions);
+        self.model = model;
+        self.target = target;
+        self.workspace = Workspace::default();
+        self.stage = Stage::Settling;
+        self.share = self.share.max(0.5);
+        Ok(())
+    }
+
+    /// Measures the present state. Strain counts only where the setup says so.
+    pub fn measure(&mut self) -> Measures {
+        let counted = if self.model.triangles.len() == self.setup.counted.len() {
+            self.setup.counted.clone()
+        } else {
+            Vec::new()
+        };
+        measure(&self.model, &self.state, &mut self.workspace, &counted)
+    }
+}

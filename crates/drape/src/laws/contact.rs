@@ -1,0 +1,162 @@
+//! Contact of a point with a plane: normal push and Coulomb friction.
+
+use nalgebra::Matrix3;
+use toile_geometry::Vec3;
+
+/// The laws of contact: a stiff one-sided spring along the normal, and a tangential spring to an
+/// anchor that gives way at the friction cone (Coulomb friction by return mapping, Wriggers 2006,
+/// section 5.2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactLaw {
+    /// Normal stiffness [N/m].
+    pub normal: f64,
+    /// Tangential stiffness while sticking [N/m].
+    pub tangential: f64,
+    /// Friction coefficient.
+    pub friction: f64,
+}
+
+/// A point near a surface, linearised there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPlane {
+    /// A point of the offset surface [m]: the point is free on the outer side of it.
+    pub origin: Vec3,
+    /// Outward unit normal.
+    pub normal: Vec3,
+    /// Where the point stuck to the surface [m].
+    pub anchor: Vec3,
+    /// Normal force that limits friction [N], taken from the last iteration.
+    pub lagged_normal_force: f64,
+}
+
+impl ContactLaw {
+    /// Energy [J], gradient [N] and a positive semidefinite Hessian [N/m] at a point.
+    ///
+    /// Normal part: k d^2 / 2 for depth d > 0. Tangential part: the Huber function of the slip
+    /// from the anchor with limit mu N, N lagged, so that it has an energy.
+    pub fn evaluate(&self, plane: &ContactPlane, point: Vec3) -> (f64, Vec3, Matrix3<f64>) {
+        let n = plane.normal;
+        let depth = (plane.origin - point).dot(&n);
+        let (mut energy, mut gradient, mut hessian) = (0.0, Vec3::zeros(), Matrix3::zeros());
+        if depth > 0.0 {
+            energy += 0.5 * self.normal * depth * depth;
+            gradient -= n * (self.normal * depth);
+            hessian += n * n.transpose() * self.normal;
+        }
+        let limit = self.friction * plane.lagged_normal_force;
+        if limit > 0.0 {
+            let offset = point - plane.anchor;
+            let slip = offset - n * offset.dot(&n);
+            let length = slip.norm();
+            let tangent = Matrix3::identity() - n * n.transpose();
+            if self.tangential * length <= limit {
+                energy += 0.5 * self.tangential * length * length;
+                gradient += slip * self.tangential;
+                hessian += tangent * self.tangential;
+            } else {
+                energy += limit * length - 0.5 * limit * limit / self.tangential;
+                gradient += slip * (limit / length);
+                hessian += tangent * (limit / length);
+            }
+        }
+        (energy, gradient, hessian)
+    }
+
+    /// Energy alone [J].
+    pub fn energy(&self, plane: &ContactPlane, point: Vec3) -> f64 {
+        let n = plane.normal;
+        let depth = (plane.origin - point).dot(&n).max(0.0);
+        let mut energy = 0.5 * self.normal * depth * depth;
+        let limit = self.friction * plane.lagged_normal_force;
+        if limit > 0.0 {
+            let offset = point - plane.anchor;
+            let length = (offset - n * offset.dot(&n)).norm();
+            energy += if self.tangential * length <= limit {
+                0.5 * self.tangential * length * length
+            } else {
+                limit * length - 0.5 * limit * limit / self.tangential
+            };
+        }
+        energy
+    }
+
+    /// Normal force at a point [N].
+    pub fn normal_force(&self, plane: &ContactPlane, point: Vec3) -> f64 {
+        self.normal * (plane.origin - point).dot(&plane.normal).max(0.0)
+    }
+
+    /// The anchor after a step: it stays while the tangential spring is inside the friction cone
+    /// of `normal_force`, and slides after the point otherwise [m].
+    pub fn slide(&self, plane: &ContactPlane, point: Vec3, normal_force: f64) -> Vec3 {
+        let n = plane.normal;
+        let offset = point - plane.anchor;
+        let slip = offset - n * offset.dot(&n);
+        let length = slip.norm();
+        let reach = self.friction * normal_force / self.tangential;
+        if length <= reach {
+            plane.anchor
+        } else {
+            point - n * offset.dot(&n) - slip * (reach / length)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAW: ContactLaw = ContactLaw {
+        normal: 300.0,
+        tangential: 150.0,
+        friction: 0.4,
+    };
+
+    fn plane() -> ContactPlane {
+        ContactPlane {
+            origin: Vec3::new(0.1, 0.2, 0.3),
+            normal: Vec3::new(0.48, 0.6, 0.64),
+            anchor: Vec3::new(0.101, 0.2, 0.299),
+            lagged_normal_force: 0.3,
+        }
+    }
+
+    #[test]
+    fn gradient_is_the_slope_of_the_energy_stuck_and_sliding() {
+        for offset in [
+            Vec3::new(-1e-4, 0.0, -2e-4),
+            Vec3::new(-4e-3, 2e-3, -1e-3),
+            Vec3::new(0.01, 0.01, 0.0),
+        ] {
+            let point = plane().origin + offset;
+            let (_, gradient, hessian) = LAW.evaluate(&plane(), point);
+            for axis in 0..3 {
+                let step = Vec3::ith(axis, 1e-8);
+                let slope = (LAW.energy(&plane(), point + step)
+                    - LAW.energy(&plane(), point - step))
+                    / 2e-8;
+                assert!(
+                    (slope - gradient[axis]).abs() < 1e-6,
+                    "{slope} {}",
+                    gradient[axis]
+                );
+            }
+            assert!(hessian.symmetric_eigenvalues().min() > -1e-9);
+        }
+    }
+
+    #[test]
+    fn friction_stays_in_its_cone_and_the_anchor_follows() {
+        let plane = plane();
+        let along = Vec3::new(0.02, -0.01, 0.0);
+        let tangent = along - plane.normal * along.dot(&plane.normal);
+        let point = plane.origin + tangent - plane.normal * 1e-3;
+        let force = LAW.normal_force(&plane, point);
+        assert!((force - LAW.normal * (plane.origin - point).dot(&plane.normal)).abs() < 1e-12);
+        let anchor = LAW.slide(&plane, point, force);
+        let offset = point - anchor;
+        let slip = offset - plane.normal * offset.dot(&plane.normal);
+        assert!((slip.norm() * LAW.tangential - LAW.friction * force).abs() < 1e-12);
+        let stuck = LAW.slide(&plane, plane.anchor + plane.normal * 0.01, 1.0);
+        assert_eq!(stuck, plane.anchor);
+    }
+}

@@ -1,0 +1,44 @@
+//! Merging: vertices that seams have drawn together become one.
+
+/// Union-find over `count` vertices joined by pairs. Gives each vertex its new index and the
+/// number of new vertices; new indices follow the order of the smallest old vertex.
+pub fn merge_map(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> (Vec<u32>, usize) {
+    let mut parent: Vec<u32> = (0..count as u32).collect();
+    fn root(parent: &mut [u32], mut v: u32) -> u32 {
+        while parent[v as usize] != v {
+            parent[v as usize] = parent[parent[v as usize] as usize];
+            v = parent[v as usize];
+        }
+        v
+    }
+    for [a, b] in pairs {
+        let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+        // The smaller index stays root, so that order does not depend on the order of pairs.
+        parent[a.max(b) as usize] = a.min(b);
+    }
+    let mut target = vec![0; count];
+    let mut next = 0;
+    for v in 0..count as u32 {
+        let r = root(&mut parent, v);
+        if r == v {
+            target[v as usize] = next;
+            next += 1;
+        } else {
+            target[v as usize] = target[r as usize];
+        }
+    }
+    (target, next as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chains_and_rings_of_pairs_become_one_vertex_each() {
+        let (target, count) = merge_map(7, [[5, 1], [3, 5], [1, 3], [6, 2]]);
+        assert_eq!(count, 4);
+        assert_eq!(target, [0, 1, 2, 1, 3, 1, 2]);
+        assert_eq!(merge_map(3, []).0, [0, 1, 2]);
+    }
+}

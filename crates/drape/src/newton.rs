@@ -1,0 +1,374 @@
+//! One implicit solve: Newton's method on an incremental potential, with a positive semidefinite
+//! Hessian, conjugate gradients and a line search.
+//!
+//! Phi(x) = sum_i w_i/2 |x_i - y_i|^2 + E_membrane + E_bending + E_elastics + E_contact - f_g.x
+//!
+//! With w = m/h^2 and y = x_n + h v_n a minimum of Phi is a step of implicit Euler (Martin et al.
+//! 2011, equation 3). With y = x_n and growing h it is pseudo-transient continuation to rest.
+
+use crate::contacts::Contacts;
+use crate::pcg::{Pcg, PcgLimits};
+use crate::sparse::dot;
+use crate::{ElasticEnd, Model, State};
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+use toile_geometry::Vec3;
+
+/// What holds vertices to where inertia would take them.
+pub struct Inertia<'a> {
+    /// Weight of each vertex [N/m].
+    pub weight: &'a [f64],
+    /// Where it is drawn to [m].
+    pub target: &'a [Vec3],
+}
+
+/// How a solve goes about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewtonSettings {
+    /// Newton iterations at the most.
+    pub iterations: usize,
+    /// Stop when the gradient's norm is below this [N].
+    pub tolerance: f64,
+    /// Longest move of any vertex in one iteration [m].
+    pub longest_move: f64,
+    /// Limits of the linear solver.
+    pub linear: PcgLimits,
+}
+
+/// How a solve went.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NewtonReport {
+    /// Iterations taken.
+    pub iterations: usize,
+    /// Conjugate-gradient iterations taken in all.
+    pub linear_iterations: usize,
+    /// Norm of the gradient when the last iteration started [N].
+    pub gradient: f64,
+    /// Longest move of any vertex in the last iteration [m].
+    pub moved: f64,
+    /// Share of the last Newton step that the line search took.
+    pub fraction: f64,
+    /// Whether every number stayed finite and the potential could be lowered.
+    pub sound: bool,
+}
+
+/// Private memory of a solve, sized once for a model.
+#[derive(Default)]
+pub struct Workspace {
+    pub(crate) contacts: Contacts,
+    gradient: Vec<Vec3>,
+    direction: Vec<Vec3>,
+    trial: Vec<Vec3>,
+    corner_gradients: Vec<[Vec3; 3]>,
+    elements: Vec<[Matrix3<f64>; 6]>,
+    diagonal: Vec<Matrix3<f64>>,
+    blocks: Vec<Matrix3<f64>>,
+    secants: Vec<f64>,
+    pcg: Pcg,
+}
+
+/// Elements handled by one task.
+const CHUNK: usize = 256;
+
+/// Sufficient decrease asked of the line search (Armijo's constant; Nocedal and Wright 2006, 3.1).
+const DECREASE: f64 = 1e-4;
+
+/// Halvings before the line search gives up: the step is then below a thousandth.
+const HALVINGS: usize = 12;
+
+impl Workspace {
+    fn fit(&mut self, model: &Model) {
+        let n = model.vertex_count();
+        self.gradient.resize(n, Vec3::zeros());
+        self.direction.resize(n, Vec3::zeros());
+        self.trial.resize(n, Vec3::zeros());
+        self.diagonal.resize(n, Matrix3::zeros());
+        self.corner_gradients
+            .resize(model.triangles.len(), [Vec3::zeros(); 3]);
+        self.elements
+            .resize(model.triangles.len(), [Matrix3::zeros(); 6]);
+        self.blocks
+            .resize(model.pattern.block_count(), Matrix3::zeros());
+        self.secants.resize(model.elastics.len(), 0.0);
+    }
+
+    /// Net force on every vertex at the state's positions, inertia left out, zero at pins [N].
+    /// Contact and friction (inside its cone) are part of it.
+    pub fn net_force(&mut self, model: &Model, state: &State) -> &[Vec3] {
+        self.fit(model);
+        self.contacts.refresh(model, state, &state.positions);
+        self.fill_gradient(model, &state.positions, None);
+        for g in &mut self.gradient {
+            *g = -*g;
+        }
+        &self.gradient
+    }
+
+    /// Lowers the potential from the state's positions and leaves the result there. Velocities,
+    /// anchors and time are left to the caller.
+    pub fn solve(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        inertia: &Inertia,
+        settings: &NewtonSettings,
+    ) -> NewtonReport {
+        self.fit(model);
+        let mut report = NewtonReport {
+            sound: true,
+            fraction: 1.0,
+            ..NewtonReport::default()
+        };
+        for _ in 0..settings.iterations {
+            self.contacts.refresh(model, state, &state.positions);
+            self.fill_gradient(model, &state.positions, Some(inertia));
+            report.gradient = dot(&self.gradient, &self.gradient).sqrt();
+            if !report.gradient.is_finite() {
+                report.sound = false;
+                return report;
+            }
+            if report.gradient <= settings.tolerance {
+                break;
+            }
+            self.fill_hessian(model, &state.positions, inertia);
+            report.iterations += 1;
+            report.linear_iterations += self.solve_linear(model, settings.linear);
+            self.limit_moves(settings.longest_move);
+            let fraction = self.line_search(model, &state.positions, inertia);
+            report.fraction = fraction;
+            if fraction == 0.0 {
+                report.sound = false;
+                return report;
+            }
+            std::mem::swap(&mut state.positions, &mut self.trial);
+            let longest = self
+                .direction
+                .iter()
+                .map(Vec3::norm_squared)
+                .fold(0.0, f64::max)
+                .sqrt();
+            report.moved = longest * fraction;
+        }
+        report
+    }
+
+    /// Potential at some positions, with the contact planes as they are [J].
+    fn potential(&self, model: &Model, x: &[Vec3], inertia: &Inertia) -> f64 {
+        let elements: Vec<f64> = model
+            .triangles
+            .par_chunks(CHUNK)
+            .enumerate()
+            .map(|(chunk, triangles)| {
+                let mut energy = 0.0;
+                for (k, corners) in triangles.iter().enumerate() {
+                    let t = chunk * CHUNK + k;
+                    let stiffness = model.stiffness[model.material[t] as usize];
+                    energy += model.elements[t].energy(stiffness, corners.map(|v| x[v as usize]));
+                }
+                energy
+            })
+            .collect();
+        let vertices: Vec<f64> = (0..x.len().div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let mut energy = 0.0;
+                for v in chunk * CHUNK..((chunk + 1) * CHUNK).min(x.len()) {
+                    let bend = model.bending.row_times(v, x);
+                    let off = x[v] - inertia.target[v];
+                    energy += 0.5 * x[v].dot(&bend) + 0.5 * inertia.weight[v] * off.norm_squared()
+                        - model.mass[v] * model.gravity.dot(&x[v]);
+                }
+                energy
+            })
+            .collect();
+        let mut energy = elements.iter().sum::<f64>() + vertices.iter().sum::<f64>();
+        for elastic in &model.elastics {
+            energy += elastic.law.energy(elastic_gap(elastic.from, elastic.to, x));
+        }
+        for contact in &self.contacts.active {
+            let place = model.samples[contact.sample as usize].place(x);
+            energy += contact.law.energy(&contact.plane, place);
+        }
+        energy
+    }
+
+    /// Gradient of the potential at `x`; zero at pins.
+    fn fill_gradient(&mut self, model: &Model, x: &[Vec3], inertia: Option<&Inertia>) {
+        self.corner_gradients
+            .par_chunks_mut(CHUNK)
+            .enumerate()
+            .for_each(|(chunk, out)| {
+                for (k, out) in out.iter_mut().enumerate() {
+                    let t = chunk * CHUNK + k;
+                    let stiffness = model.stiffness[model.material[t] as usize];
+                    let corners = model.triangles[t].map(|v| x[v as usize]);
+                    *out = model.elements[t].gradient(stiffness, corners).1;
+                }
+            });
+        for (secant, elastic) in self.secants.iter_mut().zip(&model.elastics) {
+            *secant = elastic.law.secant(elastic_gap(elastic.from, elastic.to, x));
+        }
+        let (corner_gradients, secants) = (&self.corner_gradients, &self.secants);
+        self.gradient
+            .par_chunks_mut(CHUNK)
+            .enumerate()
+            .for_each(|(chunk, out)| {
+                for (k, out) in out.iter_mut().enumerate() {
+                    let v = chunk * CHUNK + k;
+                    let mut g = model.bending.row_times(v, x) - model.gravity * model.mass[v];
+                    let uses = model.corner_start[v] as usize..model.corner_start[v + 1] as usize;
+                    for &corner in &model.corners[uses] {
+                        g += corner_gradients[corner as usize / 3][corner as usize % 3];
+                    }
+                    for (e, other) in elastics_of(model, v) {
+                        g += (x[v] - end_place(other, x)) * secants[e];
+                    }
+                    if let Some(inertia) = inertia {
+                        g += (x[v] - inertia.target[v]) * inertia.weight[v];
+                    }
+                    *out = g;
+                }
+            });
+        for contact in &self.contacts.active {
+            let sample = &model.samples[contact.sample as usize];
+            let (_, gradient, _) = contact.law.evaluate(&contact.plane, sample.place(x));
+            for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
+                self.gradient[v as usize] += gradient * w;
+            }
+        }
+        for (g, &pinned) in self.gradient.iter_mut().zip(&model.pinned) {
+            if pinned {
+                *g = Vec3::zeros();
+            }
+        }
+    }
+
+    /// A positive semidefinite Hessian of the potential at `x`, but for the bending part, which is
+    /// constant and stays in the model.
+    fn fill_hessian(&mut self, model: &Model, x: &[Vec3], inertia: &Inertia) {
+        self.elements
+            .par_chunks_mut(CHUNK)
+            .enumerate()
+            .for_each(|(chunk, out)| {
+                for (k, out) in out.iter_mut().enumerate() {
+                    let t = chunk * CHUNK + k;
+                    let stiffness = model.stiffness[model.material[t] as usize];
+                    *out = model.elements[t]
+                        .hessian(stiffness, model.triangles[t].map(|v| x[v as usize]));
+                }
+            });
+        for (v, d) in self.diagonal.iter_mut().enumerate() {
+            let pull: f64 = elastics_of(model, v).map(|(e, _)| self.secants[e]).sum();
+            *d = Matrix3::identity() * (inertia.weight[v] + pull);
+        }
+        for contact in &self.contacts.active {
+            let sample = &model.samples[contact.sample as usize];
+            let (_, _, hessian) = contact.law.evaluate(&contact.plane, sample.place(x));
+            match sample.triangle {
+                None => self.diagonal[sample.vertices[0] as usize] += hessian,
+                Some(t) => {
+                    let w = sample.weights;
+                    let pairs = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+                    for (block, (i, j)) in self.elements[t as usize].iter_mut().zip(pairs) {
+                        *block += hessian * (w[i] * w[j]);
+                    }
+                }
+            }
+        }
+        model
+            .pattern
+            .gather(&self.elements, &self.diagonal, &mut self.blocks);
+    }
+
+    /// Solves for the Newton direction; returns the iterations taken.
+    fn solve_linear(&mut self, model: &Model, limits: PcgLimits) -> usize {
+        let (blocks, secants) = (&self.blocks, &self.secants);
+        let apply = |row: usize, p: &[Vec3]| {
+            let mut sum = model.pattern.row_times(row, blocks, p) + model.bending.row_times(row, p);
+            for (e, other) in elastics_of(model, row) {
+                if let ElasticEnd::Vertex(other) = other {
+                    sum -= p[other as usize] * secants[e];
+                }
+            }
+            sum
+        };
+        let diagonal = |row: usize| {
+            model.pattern.diagonal_block(row, blocks)
+                + Matrix3::identity() * model.bending.diagonal(row)
+        };
+        for g in &mut self.gradient {
+            *g = -*g;
+        }
+        self.pcg.solve(
+            &self.gradient,
+            &model.pinned,
+            apply,
+            diagonal,
+            limits,
+            &mut self.direction,
+        )
+    }
+
+    /// Shortens the whole direction so that no vertex moves farther than `longest` [m].
+    fn limit_moves(&mut self, longest: f64) {
+        let most = self
+            .direction
+            .iter()
+            .map(Vec3::norm_squared)
+            .fold(0.0, f64::max)
+            .sqrt();
+        if most > longest {
+            let scale = longest / most;
+            for d in &mut self.direction {
+                *d *= scale;
+            }
+        }
+    }
+
+    /// Halves the direction until the potential falls enough; the new positions are in `trial`.
+    /// Returns the share taken, 0 when none lowers the potential.
+    fn line_search(&mut self, model: &Model, x: &[Vec3], inertia: &Inertia) -> f64 {
+        let start = self.potential(model, x, inertia);
+        // `gradient` holds its negative after the linear solve.
+        let slope = -dot(&self.gradient, &self.direction);
+        let mut fraction = 1.0;
+        for _ in 0..HALVINGS {
+            for ((trial, x), d) in self.trial.iter_mut().zip(x).zip(&self.direction) {
+                *trial = x + d * fraction;
+            }
+            let energy = self.potential(model, &self.trial, inertia);
+            // Below rounding of the potential itself nothing can be told apart: take the step.
+            let noise = 1e-13 * start.abs().max(1.0);
+            if energy <= start + DECREASE * fraction * slope + noise {
+                return fraction;
+            }
+            fraction *= 0.5;
+        }
+        0.0
+    }
+}
+
+/// Elastics at a vertex with their other end.
+fn elastics_of(model: &Model, v: usize) -> impl Iterator<Item = (usize, ElasticEnd)> + '_ {
+    let uses = model.elastic_start[v] as usize..model.elastic_start[v + 1] as usize;
+    model.elastic_uses[uses].iter().map(move |&e| {
+        let elastic = &model.elastics[e as usize];
+        let other = if elastic.from as usize == v {
+            elastic.to
+        } else {
+            ElasticEnd::Vertex(elastic.from)
+        };
+        (e as usize, other)
+    })
+}
+
+fn end_place(end: ElasticEnd, x: &[Vec3]) -> Vec3 {
+    match end {
+        ElasticEnd::Vertex(v) => x[v as usize],
+        ElasticEnd::Point(p) => p,
+    }
+}
+
+fn elastic_gap(from: u32, to: ElasticEnd, x: &[Vec3]) -> Vec3 {
+    x[from as usize] - end_place(to, x)
+}

@@ -1,0 +1,154 @@
+//! The way to rest: pseudo-transient continuation (Kelley and Keyes 1998). Each step is one
+//! Newton iteration held back by inertia m/h^2 towards where the cloth is; h grows while all goes
+//! well and shrinks when the line search has to cut the step, so far from rest it creeps safely
+//! and near rest it is Newton's method.
+
+use crate::{DrapeError, Inertia, Model, NewtonSettings, PcgLimits, State, Workspace};
+use toile_geometry::Vec3;
+
+/// When the way to rest ends, and how fast it may go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RestSettings {
+    /// Stop when net force over weight is below this.
+    pub residual: f64,
+    /// Steps at the most.
+    pub steps: usize,
+    /// Longest move of a vertex in one step [m].
+    pub longest_move: f64,
+}
+
+impl Default for RestSettings {
+    /// To 5e-3, within 400 steps of at most 15 mm.
+    fn default() -> Self {
+        Self {
+            residual: 5e-3,
+            steps: 400,
+            longest_move: 0.015,
+        }
+    }
+}
+
+/// A drape on its way to rest.
+#[derive(Clone, Debug)]
+pub struct RestRun {
+    settings: RestSettings,
+    pseudo_step: f64,
+    steps: usize,
+    residual: f64,
+    linear_iterations: usize,
+}
+
+/// First pseudo time step [s]: a drop of 4 mm under gravity.
+const FIRST_STEP: f64 = 0.02;
+/// Bounds of the pseudo time step [s]: at the upper one inertia is 1e-6 of gravity over a metre.
+const SHORTEST_STEP: f64 = 1e-6;
+const LONGEST_STEP: f64 = 100.0;
+
+impl RestRun {
+    /// A new way to rest.
+    pub fn new(settings: RestSettings) -> Self {
+        Self {
+            settings,
+            pseudo_step: FIRST_STEP,
+            steps: 0,
+            residual: f64::INFINITY,
+            linear_iterations: 0,
+        }
+    }
+
+    /// Residual after the last step.
+    pub fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    /// Steps taken.
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Conjugate-gradient iterations taken in all.
+    pub fn linear_iterations(&self) -> usize {
+        self.linear_iterations
+    }
+
+    /// Whether the residual asked for is reached or the steps are used up.
+    pub fn finished(&self) -> bool {
+        self.residual <= self.settings.residual || self.steps >= self.settings.steps
+    }
+
+    /// Asks for a smaller residual with as many steps again.
+    pub fn go_on(&mut self, residual: f64, more_steps: usize) {
+        self.settings.residual = residual;
+        self.settings.steps = self.steps + more_steps;
+        self.residual = f64::INFINITY;
+    }
+
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// When numbers stop being finite or no step lowers the potential any more although the
+    /// residual is not reached; the state is then the last good one.
+    pub fn advance(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        workspace: &mut Workspace,
+    ) -> Result<(), DrapeError> {
+        let start = state.clone();
+        loop {
+            let h = self.pseudo_step;
+            let weight: Vec<f64> = model.mass.iter().map(|m| m / (h * h)).collect();
+            let inertia = Inertia {
+                weight: &weight,
+                target: &start.positions,
+            };
+            // Far from rest a rough direction is enough (Eisenstat and Walker 1996).
+            let forcing = (0.3 * self.residual.min(1.0)).clamp(1e-3, 0.1);
+            let newton = NewtonSettings {
+                iterations: 1,
+                tolerance: 0.0,
+                longest_move: self.settings.longest_move,
+                linear: PcgLimits {
+                    tolerance: forcing,
+                    iterations: 600,
+                },
+            };
+            let report = workspace.solve(model, state, &inertia, &newton);
+            self.linear_iterations += report.linear_iterations;
+            if report.sound && state.first_not_finite().is_none() {
+                workspace.contacts.refresh(model, state, &state.positions);
+                workspace.contacts.settle(model, state);
+                self.adapt(report.fraction, report.moved);
+                break;
+            }
+            let vertex = state.first_not_finite();
+            state.clone_from(&start);
+            self.pseudo_step *= 0.5;
+            if self.pseudo_step < SHORTEST_STEP {
+                let stage = "drape to rest";
+                return Err(match vertex {
+                    Some(vertex) => DrapeError::NotFinite { stage, vertex },
+                    None => DrapeError::NoProgress {
+                        stage,
+                        residual: self.residual,
+                    },
+                });
+            }
+        }
+        for v in &mut state.velocities {
+            *v = Vec3::zeros();
+        }
+        self.steps += 1;
+        self.residual = crate::measure::residual(model, state, workspace);
+        Ok(())
+    }
+
+    fn adapt(&mut self, fraction: f64, moved: f64) {
+        let free = moved < 0.5 * self.settings.longest_move;
+        if fraction >= 1.0 && free {
+            self.pseudo_step = (self.pseudo_step * 1.5).min(LONGEST_STEP);
+        } else if fraction < 0.3 || moved >= 0.99 * self.settings.longest_move {
+            self.pseudo_step = (self.pseudo_step * 0.7).max(SHORTEST_STEP);
+        }
+    }
+}

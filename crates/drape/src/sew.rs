@@ -1,0 +1,161 @@
+//! Sewing: elastics along the seams draw the panels together round the body until they can be
+//! merged. No gravity and no friction act meanwhile; the motion is damped.
+
+use crate::laws::elastic::ElasticLaw;
+use crate::step::{StepSettings, step_in_time};
+use crate::{DrapeError, Elastic, ElasticEnd, Model, NewtonSettings, PcgLimits, State, Workspace};
+
+/// How panels are drawn together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SewSettings {
+    /// Gap at which the two sides of a seam may be merged [m].
+    pub merge_within: f64,
+    /// Steps at the most.
+    pub steps: usize,
+}
+
+impl Default for SewSettings {
+    /// 1 mm, within 600 steps.
+    fn default() -> Self {
+        Self {
+            merge_within: 1e-3,
+            steps: 600,
+        }
+    }
+}
+
+/// Panels on their way together.
+#[derive(Clone, Debug)]
+pub struct SewRun {
+    settings: SewSettings,
+    stitches: Vec<[u32; 2]>,
+    stiffness: f64,
+    force: f64,
+    steps: usize,
+    gap: f64,
+    best_gap: f64,
+    waited: usize,
+}
+
+/// Step in time while sewing [s].
+const STEP: f64 = 1.0 / 60.0;
+/// Drag while sewing [1/s]: motion dies out in a few tenths of a second.
+const DRAG: f64 = 5.0;
+/// Speed limit while sewing [m/s]: 20 mm a step, less than the body's thinnest half limb.
+const SPEED_LIMIT: f64 = 1.2;
+/// Strain that the pull of a seam may cause in the cloth beside it, at first.
+const PULL_STRAIN: f64 = 0.2;
+/// Steps without progress before the elastics pull harder.
+const PATIENCE: usize = 12;
+
+impl SewRun {
+    /// Prepares a model for sewing: its elastics become the stitches, with a stiffness and a
+    /// largest force that follow from the cloth's own stiffness and the mesh's edge length.
+    pub fn new(model: &mut Model, stitches: Vec<[u32; 2]>, settings: SewSettings) -> Self {
+        let area: f64 = model.elements.iter().map(|e| e.area).sum();
+        let edge = (area / model.elements.len().max(1) as f64 * 2.31).sqrt();
+        let count = 2 * model.materials.len().max(1);
+        let stretch: f64 = model
+            .materials
+            .iter()
+            .map(|m| m.stretch[0] + m.stretch[1])
+            .sum::<f64>()
+            / count as f64;
+        let mut run = Self {
+            settings,
+            stitches,
+            stiffness: 2.0 * stretch,
+            force: PULL_STRAIN * stretch * edge,
+            steps: 0,
+            gap: f64::INFINITY,
+            best_gap: f64::INFINITY,
+            waited: 0,
+        };
+        run.set_elastics(model);
+        run
+    }
+
+    fn set_elastics(&mut self, model: &mut Model) {
+        let law = ElasticLaw {
+            stiffness: self.stiffness,
+            largest_force: self.force,
+        };
+        let elastic = |&[a, b]: &[u32; 2]| Elastic {
+            from: a,
+            to: ElasticEnd::Vertex(b),
+            law,
+        };
+        model.set_elastics(self.stitches.iter().map(elastic).collect());
+    }
+
+    /// Largest gap between two stitched vertices [m].
+    pub fn gap(&self, state: &State) -> f64 {
+        let gap =
+            |&[a, b]: &[u32; 2]| (state.positions[a as usize] - state.positions[b as usize]).norm();
+        self.stitches.iter().map(gap).fold(0.0, f64::max)
+    }
+
+    /// The largest gap after the last step [m].
+    pub fn last_gap(&self) -> f64 {
+        self.gap
+    }
+
+    /// Steps taken.
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Whether every seam is close enough to be merged.
+    pub fn closed(&self) -> bool {
+        self.gap <= self.settings.merge_within
+    }
+
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// When the seams stay open within the steps allowed, or a step fails at every size.
+    pub fn advance(
+        &mut self,
+        model: &mut Model,
+        state: &mut State,
+        workspace: &mut Workspace,
+    ) -> Result<(), DrapeError> {
+        if self.steps >= self.settings.steps {
+            return Err(DrapeError::SeamsOpen {
+                gap_mm: self.gap * 1000.0,
+                steps: self.steps,
+            });
+        }
+        let settings = StepSettings {
+            step: STEP,
+            drag: DRAG,
+            speed_limit: SPEED_LIMIT,
+            newton: NewtonSettings {
+                iterations: 2,
+                tolerance: 0.0,
+                longest_move: 1.2 * SPEED_LIMIT * STEP,
+                linear: PcgLimits {
+                    tolerance: 0.05,
+                    iterations: 150,
+                },
+            },
+        };
+        step_in_time(model, state, workspace, &settings)?;
+        self.steps += 1;
+        self.gap = self.gap(state);
+        if self.gap < 0.97 * self.best_gap {
+            self.best_gap = self.gap;
+            self.waited = 0;
+        } else {
+            self.waited += 1;
+        }
+        if self.waited >= PATIENCE {
+            self.waited = 0;
+            self.best_gap = self.gap;
+            self.force *= 1.5;
+            self.stiffness *= 1.5;
+            self.set_elastics(model);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,56 @@
+//! The state: what changes as a simulation runs; a complete checkpoint.
+
+use crate::Model;
+use toile_geometry::Vec3;
+
+/// Positions, velocities, and what contact remembers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State {
+    /// Positions [m].
+    pub positions: Vec<Vec3>,
+    /// Velocities [m/s].
+    pub velocities: Vec<Vec3>,
+    /// Where each contact sample sticks to a surface [m]; none while it is free.
+    pub anchors: Vec<Option<Vec3>>,
+    /// Normal force on each contact sample in the last step [N].
+    pub normal_forces: Vec<f64>,
+    /// Simulated time [s].
+    pub time: f64,
+}
+
+impl State {
+    /// At rest at some positions.
+    pub fn at_rest(model: &Model, positions: Vec<Vec3>) -> Self {
+        Self {
+            velocities: vec![Vec3::zeros(); positions.len()],
+            positions,
+            anchors: vec![None; model.samples.len()],
+            normal_forces: vec![0.0; model.samples.len()],
+            time: 0.0,
+        }
+    }
+
+    /// Makes room for contact samples added to the model.
+    pub fn follow_samples(&mut self, model: &Model) {
+        self.anchors.resize(model.samples.len(), None);
+        self.normal_forces.resize(model.samples.len(), 0.0);
+    }
+
+    /// First vertex with a position or velocity that is not finite.
+    pub fn first_not_finite(&self) -> Option<usize> {
+        let finite = |v: &Vec3| v.iter().all(|x| x.is_finite());
+        self.positions
+            .iter()
+            .zip(&self.velocities)
+            .position(|(x, v)| !finite(x) || !finite(v))
+    }
+
+    /// Kinetic energy [J].
+    pub fn kinetic_energy(&self, model: &Model) -> f64 {
+        self.velocities
+            .iter()
+            .zip(&model.mass)
+            .map(|(v, m)| 0.5 * m * v.norm_squared())
+            .sum()
+    }
+}

@@ -1,0 +1,138 @@
+//! Steps in time by implicit Euler, with recovery: a failed step is undone and tried with half
+//! the size; if that goes on failing it is an error, never a result.
+
+use crate::{
+    DrapeError, Inertia, Model, NewtonReport, NewtonSettings, PcgLimits, State, Workspace,
+};
+use toile_geometry::Vec3;
+
+/// How a step in time is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepSettings {
+    /// Step [s].
+    pub step: f64,
+    /// Drag per mass [1/s]: a free velocity falls by exp(-drag t).
+    pub drag: f64,
+    /// Largest speed a vertex keeps after a step [m/s].
+    pub speed_limit: f64,
+    /// Newton iterations, tolerance, longest move, linear solver.
+    pub newton: NewtonSettings,
+}
+
+impl Default for StepSettings {
+    /// 1/120 s, no drag, Newton to 1e-6 N.
+    fn default() -> Self {
+        Self {
+            step: 1.0 / 120.0,
+            drag: 0.0,
+            speed_limit: 100.0,
+            newton: NewtonSettings {
+                iterations: 8,
+                tolerance: 1e-6,
+                longest_move: 0.05,
+                linear: PcgLimits {
+                    tolerance: 1e-4,
+                    iterations: 400,
+                },
+            },
+        }
+    }
+}
+
+/// Halvings of a step before it is an error: a thousandth of the step asked for.
+const STEP_HALVINGS: u32 = 10;
+
+/// Advances by `settings.step`, in smaller steps where one fails. Returns the last solve's report
+/// and the number of pieces the step was cut into.
+///
+/// # Errors
+/// The state is left as it was when even the smallest step fails.
+pub fn step_in_time(
+    model: &Model,
+    state: &mut State,
+    workspace: &mut Workspace,
+    settings: &StepSettings,
+) -> Result<(NewtonReport, u32), DrapeError> {
+    let start = state.clone();
+    'halving: for halvings in 0..=STEP_HALVINGS {
+        let pieces = 1u32 << halvings;
+        let mut report = NewtonReport::default();
+        for _ in 0..pieces {
+            let h = settings.step / f64::from(pieces);
+            report = implicit_euler(model, state, workspace, settings, h);
+            if !report.sound || state.first_not_finite().is_some() {
+                if halvings == STEP_HALVINGS {
+                    let vertex = state.first_not_finite();
+                    *state = start;
+                    return Err(failure(model, state, workspace, vertex));
+                }
+                state.clone_from(&start);
+                continue 'halving;
+            }
+        }
+        return Ok((report, pieces));
+    }
+    Err(DrapeError::NoProgress {
+        stage: "step in time",
+        residual: f64::NAN,
+    })
+}
+
+fn failure(
+    model: &Model,
+    state: &State,
+    workspace: &mut Workspace,
+    vertex: Option<usize>,
+) -> DrapeError {
+    let stage = "step in time";
+    match vertex.or_else(|| state.first_not_finite()) {
+        Some(vertex) => DrapeError::NotFinite { stage, vertex },
+        None => DrapeError::NoProgress {
+            stage,
+            residual: crate::measure::residual(model, state, workspace),
+        },
+    }
+}
+
+/// One step: minimise Phi with w = m (1 + drag h) / h^2 and y = x + h v / (1 + drag h); then
+/// v = (x' - x) / h.
+fn implicit_euler(
+    model: &Model,
+    state: &mut State,
+    workspace: &mut Workspace,
+    settings: &StepSettings,
+    h: f64,
+) -> NewtonReport {
+    let slowing = 1.0 + settings.drag * h;
+    let weight: Vec<f64> = model.mass.iter().map(|m| m * slowing / (h * h)).collect();
+    let before = state.positions.clone();
+    let target: Vec<Vec3> = before
+        .iter()
+        .zip(&state.velocities)
+        .zip(&model.pinned)
+        .map(|((x, v), &pinned)| if pinned { *x } else { x + v * (h / slowing) })
+        .collect();
+    let inertia = Inertia {
+        weight: &weight,
+        target: &target,
+    };
+    let report = workspace.solve(model, state, &inertia, &settings.newton);
+    for ((v, x), old) in state
+        .velocities
+        .iter_mut()
+        .zip(&state.positions)
+        .zip(&before)
+    {
+        let velocity = (x - old) / h;
+        let speed = velocity.norm();
+        *v = if speed > settings.speed_limit {
+            velocity * (settings.speed_limit / speed)
+        } else {
+            velocity
+        };
+    }
+    workspace.contacts.refresh(model, state, &state.positions);
+    workspace.contacts.settle(model, state);
+    state.time += h;
+    report
+}
