@@ -1,1 +1,23 @@
-//! Marker making on plain outlines.
+//! Marker making on plain outlines: pieces are laid on a strip of fabric without overlap, on
+//! their grain, in little length. Knows nothing of patterns, files or screens.
+//!
+//! The strip runs along +x: x is the warp (the length of the roll) from 0, y the weft from one
+//! selvedge at 0 to the other at the width. A piece's own grain is turned to lie along +x.
+//!
+//! [`make_marker`] lays the pieces; [`judge`] checks any marker on the original outlines and
+//! shares no code with the placing but the geometry.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod check;
+mod fit;
+mod marker;
+mod order;
+mod place;
+mod referee;
+mod search;
+mod simplify;
+
+pub use check::{ItemProblem, NestingError, Refusal};
+pub use marker::{Allowed, Item, Marker, Mirror, Nap, Placement, Pose, Strip, Unplaced};
+pub use referee::{PENETRATION_LIMIT, Side, Verdict, Violation, judge};
+pub use search::{Control, Progress, Search, make_marker};
