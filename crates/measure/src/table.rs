@@ -43,10 +43,31 @@ pub enum MeasureError {
 }
 
 /// An ordered table of measurements in SI units: metres, and radians for angles.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-#[serde(transparent)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(
+    try_from = "BTreeMap<String, Measured>",
+    into = "BTreeMap<String, Measured>"
+)]
 pub struct Measurements {
     entries: BTreeMap<String, Measured>,
+}
+
+impl TryFrom<BTreeMap<String, Measured>> for Measurements {
+    type Error = MeasureError;
+
+    fn try_from(entries: BTreeMap<String, Measured>) -> Result<Self, MeasureError> {
+        let mut table = Self::new();
+        for (name, measured) in entries {
+            table.set(&name, measured.value, measured.origin)?;
+        }
+        Ok(table)
+    }
+}
+
+impl From<Measurements> for BTreeMap<String, Measured> {
+    fn from(table: Measurements) -> Self {
+        table.entries
+    }
 }
 
 impl Measurements {

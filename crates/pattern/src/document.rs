@@ -52,7 +52,7 @@ pub enum DisplayUnit {
 }
 
 /// A named table of measurements.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Size {
     /// Name, such as `M` or `42`.
     pub name: String,

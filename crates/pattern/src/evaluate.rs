@@ -1,6 +1,7 @@
 //! Evaluates formulas, keeping track of lengths, so that `bust + 2` is refused and `bust + 2cm`
 //! is not.
 
+use crate::Code;
 use crate::formula::{Formula, Function, Operation, Reference};
 use toile_geometry::Vec2;
 
@@ -19,12 +20,17 @@ pub(crate) enum Failure {
     Reported,
     /// A fault of this formula.
     Fault {
+        code: Code,
         column: usize,
         message: String,
         hint: String,
     },
     /// What it names is not there, or is being computed right now.
-    Lookup { message: String, hint: String },
+    Lookup {
+        code: Code,
+        message: String,
+        hint: String,
+    },
 }
 
 /// Where formulas look names up.
@@ -48,12 +54,18 @@ pub(crate) fn evaluate(
     let mut stack: Vec<Quantity> = Vec::new();
     for step in formula.steps() {
         let fault = |(message, hint): (String, &str)| Failure::Fault {
+            code: Code::Formula,
             column: step.column,
             message,
             hint: hint.into(),
         };
         let at_column = |failure| match failure {
-            Failure::Lookup { message, hint } => Failure::Fault {
+            Failure::Lookup {
+                code,
+                message,
+                hint,
+            } => Failure::Fault {
+                code,
                 column: step.column,
                 message,
                 hint,
@@ -268,6 +280,7 @@ mod tests {
                     power: 0,
                 }),
                 _ => Err(Failure::Lookup {
+                    code: Code::MissingReference,
                     message: "unknown".into(),
                     hint: "define it".into(),
                 }),

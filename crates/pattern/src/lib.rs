@@ -1,19 +1,34 @@
 //! The pattern document: panels, seams, formulas, edits, diagnostics.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod apply;
+mod describe;
 mod diagnostic;
+mod difference;
 mod document;
 mod draft;
+mod edit;
 mod evaluate;
+mod fabric;
 mod formula;
 mod ids;
 mod number;
+mod numbers;
+mod panel_edit;
+mod resolve;
+mod resolver;
 mod sewing;
+mod shape;
+mod split;
+mod suggest;
 
 pub use diagnostic::{Code, Diagnostic, Place, Severity};
+pub use difference::difference;
 pub use document::*;
 pub use draft::*;
+pub use edit::{Edit, EditError, PanelEdit};
 pub use formula::{FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError};
 pub use ids::*;
 pub use number::Number;
 pub use sewing::*;
+pub use suggest::nearest;
