@@ -7,6 +7,7 @@
 
 mod cloth;
 mod contacts;
+mod direct;
 mod error;
 mod garment;
 pub mod laws;
@@ -30,7 +31,7 @@ pub use material::Material;
 pub use measure::{Measures, measure, residual, stretch_per_triangle};
 pub use merge::merge_map;
 pub use model::{ContactSample, ContactSettings, Elastic, ElasticEnd, Model};
-pub use newton::{Inertia, NewtonReport, NewtonSettings, Workspace};
+pub use newton::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 pub use pcg::PcgLimits;
 pub use rest::{RestRun, RestSettings};
 pub use sew::{SewRun, SewSettings};

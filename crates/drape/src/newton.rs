@@ -7,6 +7,7 @@
 //! 2011, equation 3). With y = x_n and growing h it is pseudo-transient continuation to rest.
 
 use crate::contacts::Contacts;
+use crate::direct::Direct;
 use crate::pcg::{Pcg, PcgLimits};
 use crate::sparse::dot;
 use crate::{ElasticEnd, Model, State};
@@ -32,7 +33,20 @@ pub struct NewtonSettings {
     /// Longest move of any vertex in one iteration [m].
     pub longest_move: f64,
     /// Limits of the linear solver.
-    pub linear: PcgLimits,
+    pub linear: LinearSolver,
+}
+
+/// How the linear system of a Newton step is solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LinearSolver {
+    /// By conjugate gradients: best while inertia is large.
+    Iterative(PcgLimits),
+    /// By factorisation: best near rest, where the system is ill-conditioned; iterative where the
+    /// matrix cannot be factorised.
+    Direct {
+        /// Limits of the iteration then.
+        otherwise: PcgLimits,
+    },
 }
 
 /// How a solve went.
@@ -65,6 +79,7 @@ pub struct Workspace {
     blocks: Vec<Matrix3<f64>>,
     secants: Vec<f64>,
     pcg: Pcg,
+    direct: Option<Option<Direct>>,
 }
 
 /// Elements handled by one task.
@@ -132,7 +147,7 @@ impl Workspace {
             }
             self.fill_hessian(model, &state.positions, inertia);
             report.iterations += 1;
-            report.linear_iterations += self.solve_linear(model, settings.linear);
+            report.linear_iterations += self.solve_linear(model, &state.positions, settings.linear);
             self.limit_moves(settings.longest_move);
             let fraction = self.line_search(model, &state.positions, inertia);
             report.fraction = fraction;
@@ -281,7 +296,7 @@ impl Workspace {
     }
 
     /// Solves for the Newton direction; returns the iterations taken.
-    fn solve_linear(&mut self, model: &Model, limits: PcgLimits) -> usize {
+    fn solve_linear(&mut self, model: &Model, x: &[Vec3], limits: LinearSolver) -> usize {
         let (blocks, secants) = (&self.blocks, &self.secants);
         let apply = |row: usize, p: &[Vec3]| {
             let mut sum = model.pattern.row_times(row, blocks, p) + model.bending.row_times(row, p);
@@ -299,6 +314,18 @@ impl Workspace {
         for g in &mut self.gradient {
             *g = -*g;
         }
+        let limits = match limits {
+            LinearSolver::Iterative(limits) => limits,
+            LinearSolver::Direct { otherwise } => {
+                let direct = self.direct.get_or_insert_with(|| Direct::new(model, x));
+                if let Some(direct) = direct
+                    && direct.solve(model, blocks, &self.gradient, &mut self.direction)
+                {
+                    return 0;
+                }
+                otherwise
+            }
+        };
         self.pcg.solve(
             &self.gradient,
             &model.pinned,

@@ -3,7 +3,9 @@
 //! well and shrinks when the line search has to cut the step, so far from rest it creeps safely
 //! and near rest it is Newton's method.
 
-use crate::{DrapeError, Inertia, Model, NewtonSettings, PcgLimits, State, Workspace};
+use crate::{
+    DrapeError, Inertia, LinearSolver, Model, NewtonSettings, PcgLimits, State, Workspace,
+};
 use toile_geometry::Vec3;
 
 /// When the way to rest ends, and how fast it may go.
@@ -102,15 +104,15 @@ impl RestRun {
                 weight: &weight,
                 target: &start.positions,
             };
-            // Far from rest a rough direction is enough (Eisenstat and Walker 1996).
-            let forcing = (0.3 * self.residual.min(1.0)).clamp(1e-3, 0.1);
             let newton = NewtonSettings {
                 iterations: 1,
                 tolerance: 0.0,
                 longest_move: self.settings.longest_move,
-                linear: PcgLimits {
-                    tolerance: forcing,
-                    iterations: 600,
+                linear: LinearSolver::Direct {
+                    otherwise: PcgLimits {
+                        tolerance: 1e-3,
+                        iterations: 2000,
+                    },
                 },
             };
             let report = workspace.solve(model, state, &inertia, &newton);
@@ -118,7 +120,9 @@ impl RestRun {
             if report.sound && state.first_not_finite().is_none() {
                 workspace.contacts.refresh(model, state, &state.positions);
                 workspace.contacts.settle(model, state);
-                self.adapt(report.fraction, report.moved);
+                let before = self.residual;
+                self.residual = crate::measure::residual(model, state, workspace);
+                self.adapt(report.fraction, report.moved, before);
                 break;
             }
             let vertex = state.first_not_finite();
@@ -139,13 +143,14 @@ impl RestRun {
             *v = Vec3::zeros();
         }
         self.steps += 1;
-        self.residual = crate::measure::residual(model, state, workspace);
         Ok(())
     }
 
-    fn adapt(&mut self, fraction: f64, moved: f64) {
+    /// Grows the pseudo step while the full step is taken and the residual does not rise; shrinks
+    /// it when the line search or the limit on moves cut the step short.
+    fn adapt(&mut self, fraction: f64, moved: f64, residual_before: f64) {
         let free = moved < 0.5 * self.settings.longest_move;
-        if fraction >= 1.0 && free {
+        if fraction >= 1.0 && free && self.residual < 1.05 * residual_before {
             self.pseudo_step = (self.pseudo_step * 1.5).min(LONGEST_STEP);
         } else if fraction < 0.3 || moved >= 0.99 * self.settings.longest_move {
             self.pseudo_step = (self.pseudo_step * 0.7).max(SHORTEST_STEP);

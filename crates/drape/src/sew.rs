@@ -3,7 +3,10 @@
 
 use crate::laws::elastic::ElasticLaw;
 use crate::step::{StepSettings, step_in_time};
-use crate::{DrapeError, Elastic, ElasticEnd, Model, NewtonSettings, PcgLimits, State, Workspace};
+use crate::{
+    DrapeError, Elastic, ElasticEnd, LinearSolver, Model, NewtonSettings, PcgLimits, State,
+    Workspace,
+};
 
 /// How panels are drawn together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,10 +137,10 @@ impl SewRun {
                 iterations: 2,
                 tolerance: 0.0,
                 longest_move: 1.2 * SPEED_LIMIT * STEP,
-                linear: PcgLimits {
+                linear: LinearSolver::Iterative(PcgLimits {
                     tolerance: 0.05,
                     iterations: 150,
-                },
+                }),
             },
         };
         step_in_time(model, state, workspace, &settings)?;

@@ -66,6 +66,12 @@ impl ScalarMatrix {
         self.diagonal[row]
     }
 
+    /// Columns and values of a row, columns ascending.
+    pub fn row_entries(&self, row: usize) -> (&[u32], &[f64]) {
+        let range = self.row_start[row] as usize..self.row_start[row + 1] as usize;
+        (&self.columns[range.clone()], &self.values[range])
+    }
+
     /// One row times a vector.
     pub fn row_times(&self, row: usize, x: &[Vec3]) -> Vec3 {
         let range = self.row_start[row] as usize..self.row_start[row + 1] as usize;
@@ -148,6 +154,21 @@ impl BlockPattern {
 
     fn row(&self, row: usize) -> std::ops::Range<usize> {
         self.row_start[row] as usize..self.row_start[row + 1] as usize
+    }
+
+    /// Columns of a row, ascending.
+    pub fn row_columns(&self, row: usize) -> &[u32] {
+        &self.columns[self.row(row)]
+    }
+
+    /// Columns and blocks of a row, columns ascending.
+    pub fn row_entries<'a>(
+        &'a self,
+        row: usize,
+        blocks: &'a [Matrix3<f64>],
+    ) -> (&'a [u32], &'a [Matrix3<f64>]) {
+        let range = self.row(row);
+        (&self.columns[range.clone()], &blocks[range])
     }
 
     /// Number of stored blocks.

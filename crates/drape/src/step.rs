@@ -2,7 +2,8 @@
 //! the size; if that goes on failing it is an error, never a result.
 
 use crate::{
-    DrapeError, Inertia, Model, NewtonReport, NewtonSettings, PcgLimits, State, Workspace,
+    DrapeError, Inertia, LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State,
+    Workspace,
 };
 use toile_geometry::Vec3;
 
@@ -30,10 +31,10 @@ impl Default for StepSettings {
                 iterations: 8,
                 tolerance: 1e-6,
                 longest_move: 0.05,
-                linear: PcgLimits {
+                linear: LinearSolver::Iterative(PcgLimits {
                     tolerance: 1e-4,
                     iterations: 400,
-                },
+                }),
             },
         }
     }

@@ -106,7 +106,10 @@ fn setup(n: usize) -> GarmentSetup {
         stitches,
         counted: Vec::new(),
         colliders: vec![Arc::new(body)],
-        contact: ContactSettings::default(),
+        contact: ContactSettings {
+            friction: std::env::var("NOFRIC").is_err(),
+            ..ContactSettings::default()
+        },
         gravity: Vec3::new(0.0, -9.81, 0.0),
         sew: SewSettings::default(),
         rest: RestSettings::default(),

@@ -29,6 +29,10 @@ pub struct ContactPlane {
     pub lagged_normal_force: f64,
 }
 
+/// From this share of the friction limit on a point counts as sliding for the Hessian: a point
+/// that slid in the last step lies just at the limit, and must not be held there as if it stuck.
+const AT_LIMIT: f64 = 0.99;
+
 impl ContactLaw {
     /// Energy [J], gradient [N] and a positive semidefinite Hessian [N/m] at a point.
     ///
@@ -52,11 +56,17 @@ impl ContactLaw {
             if self.tangential * length <= limit {
                 energy += 0.5 * self.tangential * length * length;
                 gradient += slip * self.tangential;
-                hessian += tangent * self.tangential;
             } else {
                 energy += limit * length - 0.5 * limit * limit / self.tangential;
                 gradient += slip * (limit / length);
-                hessian += tangent * (limit / length);
+            }
+            if self.tangential * length <= AT_LIMIT * limit {
+                hessian += tangent * self.tangential;
+            } else {
+                // Friction is constant along the slip, so nothing holds the point back there.
+                let along = slip / length;
+                let across = self.tangential.min(limit / length);
+                hessian += (tangent - along * along.transpose()) * across;
             }
         }
         (energy, gradient, hessian)
