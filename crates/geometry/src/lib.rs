@@ -14,6 +14,7 @@ mod polygon_minkowski;
 mod polygon_simple;
 mod polygon_tree;
 mod predicates;
+mod section;
 mod tree;
 mod triangle;
 mod units;
@@ -32,6 +33,7 @@ pub use polygon_tree::{EdgeTree, closest_on_segment, point_segment_distance, seg
 pub use predicates::{
     orient2d, orient3d, segment_intersects_triangle, segments_cross, triangles_intersect,
 };
+pub use section::{closed_length, horizontal_section};
 pub use tree::{ClosestPoint, SurfaceTree};
 pub use triangle::{Feature, closest_point_on_triangle, tetrahedron_volume, triangle_area};
 pub use units::{Angle, Length, UnitError};

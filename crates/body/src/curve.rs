@@ -1,0 +1,72 @@
+//! Smooth monotone interpolation of numbers over a level.
+
+/// A piecewise cubic through given points that has no overshoot between them: where the data
+/// rise, the curve rises (Fritsch and Carlson 1980; slopes by Fritsch and Butland 1984). Linear
+/// beyond the ends.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Monotone {
+    points: Vec<[f64; 2]>,
+    slopes: Vec<f64>,
+}
+
+impl Monotone {
+    /// Through the points, which must be in ascending order and at least two.
+    pub(crate) fn new(points: Vec<[f64; 2]>) -> Self {
+        debug_assert!(points.len() > 1 && points.windows(2).all(|w| w[0][0] < w[1][0]));
+        let chord: Vec<f64> = points
+            .windows(2)
+            .map(|w| (w[1][1] - w[0][1]) / (w[1][0] - w[0][0]))
+            .collect();
+        let last = points.len() - 1;
+        let slopes = (0..=last)
+            .map(|k| {
+                if k == 0 || k == last {
+                    return chord[k.saturating_sub(1).min(last - 1)];
+                }
+                let (left, right) = (chord[k - 1], chord[k]);
+                if left * right <= 0.0 {
+                    return 0.0;
+                }
+                let (h, g) = (
+                    points[k][0] - points[k - 1][0],
+                    points[k + 1][0] - points[k][0],
+                );
+                3.0 * (h + g) / ((2.0 * g + h) / left + (g + 2.0 * h) / right)
+            })
+            .collect();
+        Self { points, slopes }
+    }
+
+    /// Value at `x`.
+    pub(crate) fn at(&self, x: f64) -> f64 {
+        let last = self.points.len() - 1;
+        if x <= self.points[0][0] {
+            return self.points[0][1] + self.slopes[0] * (x - self.points[0][0]);
+        }
+        if x >= self.points[last][0] {
+            return self.points[last][1] + self.slopes[last] * (x - self.points[last][0]);
+        }
+        let k = self.points.partition_point(|p| p[0] <= x) - 1;
+        let ([x0, y0], [x1, y1]) = (self.points[k], self.points[k + 1]);
+        let h = x1 - x0;
+        let t = (x - x0) / h;
+        let (m0, m1) = (self.slopes[k] * h, self.slopes[k + 1] * h);
+        let (t2, t3) = (t * t, t * t * t);
+        y0 * (2.0 * t3 - 3.0 * t2 + 1.0)
+            + m0 * (t3 - 2.0 * t2 + t)
+            + y1 * (3.0 * t2 - 2.0 * t3)
+            + m1 * (t3 - t2)
+    }
+
+    /// Derivative at `x`.
+    pub(crate) fn slope(&self, x: f64) -> f64 {
+        let step = 1e-6;
+        (self.at(x + step) - self.at(x - step)) / (2.0 * step)
+    }
+}
+
+/// Cubic step: 0 below 0, 1 above 1, level at both ends.
+pub(crate) fn smooth_step(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}

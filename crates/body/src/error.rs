@@ -1,0 +1,53 @@
+//! Why a mannequin could not be made.
+
+/// Why a mannequin could not be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BodyError {
+    /// A measurement the mannequin needs is not in the table.
+    #[error("measurement {name} is missing: add it to the table, for example {example}")]
+    Missing {
+        /// The measurement.
+        name: &'static str,
+        /// A usual value with its unit.
+        example: String,
+    },
+    /// A value no adult body has.
+    #[error("measurement {name} is {value}: give a value from {low} to {high} ({unit})")]
+    OutOfRange {
+        /// The measurement.
+        name: &'static str,
+        /// The value refused [m] or [rad].
+        value: f64,
+        /// Smallest value accepted [m] or [rad].
+        low: f64,
+        /// Largest value accepted [m] or [rad].
+        high: f64,
+        /// `m` or `rad`.
+        unit: &'static str,
+    },
+    /// Two measurements that no single body can have together.
+    #[error("measurements {first} and {second} do not fit together: {remedy}")]
+    Contradiction {
+        /// The first measurement.
+        first: &'static str,
+        /// The second measurement.
+        second: &'static str,
+        /// What to change.
+        remedy: &'static str,
+    },
+    /// The primitives leave a hole where the skin should be.
+    #[error("the primitives of the {part} do not enclose its axis near ({x:.3}, {y:.3}, {z:.3}) m")]
+    Open {
+        /// The part.
+        part: &'static str,
+        /// Place on the axis [m].
+        x: f64,
+        /// Place on the axis [m].
+        y: f64,
+        /// Place on the axis [m].
+        z: f64,
+    },
+    /// A file of another version or with damaged values.
+    #[error("mannequin description: {0}")]
+    Description(String),
+}

@@ -1,0 +1,215 @@
+//! The implicit surface of a body part: a sum of ellipsoidal densities.
+
+use nalgebra::{Matrix3, Rotation3};
+use serde::{Deserialize, Serialize};
+use toile_geometry::Vec3;
+
+/// The density at which the surface of a part lies.
+pub const THRESHOLD: f64 = 0.5;
+
+/// Ratio of the visible radius of a lone primitive to its effective radius: the root of
+/// `(1 - r^2)^2 = 1/2`.
+pub const VISIBLE_RATIO: f64 = 0.541_196_100_146_197;
+
+/// A group of primitives whose densities add up. Densities never add across parts, so that an arm
+/// beside the trunk does not grow a web to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Part {
+    /// From the crotch to the base of the neck.
+    Trunk,
+    /// Neck and head.
+    Head,
+    /// The arm and hand on the wearer's left, +X.
+    LeftArm,
+    /// The arm and hand on the wearer's right, -X.
+    RightArm,
+    /// The leg and foot on the wearer's left, +X.
+    LeftLeg,
+    /// The leg and foot on the wearer's right, -X.
+    RightLeg,
+}
+
+impl Part {
+    /// All parts, in order.
+    pub const ALL: [Part; 6] = [
+        Part::Trunk,
+        Part::Head,
+        Part::LeftArm,
+        Part::RightArm,
+        Part::LeftLeg,
+        Part::RightLeg,
+    ];
+
+    /// The name on screens.
+    pub fn name(self) -> &'static str {
+        match self {
+            Part::Trunk => "trunk",
+            Part::Head => "head",
+            Part::LeftArm => "left arm",
+            Part::RightArm => "right arm",
+            Part::LeftLeg => "left leg",
+            Part::RightLeg => "right leg",
+        }
+    }
+}
+
+/// A blendable ellipsoid: density `(1 - q)^2` inside `q < 1`, with
+/// `q = |S^-1 R^T (x - c)|^2` (Murakami and Ichihara 1987, on an ellipsoid).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Primitive {
+    /// The group it adds up with.
+    pub part: Part,
+    /// Centre c [m].
+    pub centre: [f64; 3],
+    /// Effective semi-axes, the diagonal of S, where the density reaches zero [m].
+    pub radii: [f64; 3],
+    /// Rotation R as axis times angle [rad].
+    pub rotation: [f64; 3],
+}
+
+impl Primitive {
+    /// The rotation R, from the primitive's axes to the body's.
+    pub fn rotation(&self) -> Rotation3<f64> {
+        Rotation3::new(Vec3::from(self.rotation))
+    }
+
+    /// The same primitive on the other side of the plane x = 0.
+    pub fn mirrored(&self) -> Self {
+        let part = match self.part {
+            Part::LeftArm => Part::RightArm,
+            Part::RightArm => Part::LeftArm,
+            Part::LeftLeg => Part::RightLeg,
+            Part::RightLeg => Part::LeftLeg,
+            part => part,
+        };
+        let ([x, y, z], [a, b, c]) = (self.centre, self.rotation);
+        Self {
+            part,
+            centre: [-x, y, z],
+            radii: self.radii,
+            rotation: [a, -b, -c],
+        }
+    }
+
+    /// Whether the primitive is its own mirror image.
+    pub fn is_central(&self) -> bool {
+        self.centre[0] == 0.0 && self.rotation[1] == 0.0 && self.rotation[2] == 0.0
+    }
+}
+
+/// A primitive made ready for evaluation.
+#[derive(Clone, Copy, Debug)]
+struct Density {
+    centre: Vec3,
+    /// S^-1 R^T [1/m].
+    unit_from_body: Matrix3<f64>,
+    /// Square of the largest semi-axis [m2].
+    reach_squared: f64,
+}
+
+/// Every part's field, for evaluation.
+#[derive(Clone, Debug)]
+pub struct Field {
+    parts: [Vec<Density>; 6],
+}
+
+impl Field {
+    /// Makes primitives ready for evaluation.
+    pub fn new(primitives: &[Primitive]) -> Self {
+        let mut parts: [Vec<Density>; 6] = Default::default();
+        for primitive in primitives {
+            let inverse = Matrix3::from_diagonal(&Vec3::from(primitive.radii).map(|r| 1.0 / r));
+            let largest = primitive.radii.iter().copied().fold(0.0, f64::max);
+            parts[primitive.part as usize].push(Density {
+                centre: Vec3::from(primitive.centre),
+                unit_from_body: inverse * primitive.rotation().matrix().transpose(),
+                reach_squared: largest * largest,
+            });
+        }
+        Self { parts }
+    }
+
+    /// Density of one part at a point.
+    pub fn density(&self, part: Part, point: Vec3) -> f64 {
+        let mut sum = 0.0;
+        for density in &self.parts[part as usize] {
+            let offset = point - density.centre;
+            if offset.norm_squared() < density.reach_squared {
+                let q = (density.unit_from_body * offset).norm_squared();
+                if q < 1.0 {
+                    sum += (1.0 - q) * (1.0 - q);
+                }
+            }
+        }
+        sum
+    }
+
+    /// Gradient of one part's density at a point [1/m]:
+    /// `-4 (1 - q) R S^-1 u` summed over its primitives, `u = S^-1 R^T (x - c)`.
+    pub fn gradient(&self, part: Part, point: Vec3) -> Vec3 {
+        let mut sum = Vec3::zeros();
+        for density in &self.parts[part as usize] {
+            let offset = point - density.centre;
+            if offset.norm_squared() < density.reach_squared {
+                let unit = density.unit_from_body * offset;
+                let q = unit.norm_squared();
+                if q < 1.0 {
+                    sum -= density.unit_from_body.tr_mul(&unit) * (4.0 * (1.0 - q));
+                }
+            }
+        }
+        sum
+    }
+
+    /// Largest density of any part at a point: the body is where it is [`THRESHOLD`] or more.
+    pub fn strongest(&self, point: Vec3) -> f64 {
+        Part::ALL
+            .iter()
+            .map(|&part| self.density(part, point))
+            .fold(0.0, f64::max)
+    }
+
+    /// Whether a point lies inside the union of the parts.
+    pub fn contains(&self, point: Vec3) -> bool {
+        Part::ALL
+            .iter()
+            .any(|&part| self.density(part, point) >= THRESHOLD)
+    }
+
+    /// Distance [m] from `origin` along the unit vector `direction` to where the ray first leaves
+    /// the union of some parts, to 1e-9 m; nothing when `origin` is outside or the way is longer
+    /// than 0.6 m.
+    pub fn first_exit(&self, parts: &[Part], origin: Vec3, direction: Vec3) -> Option<f64> {
+        /// No limb is thicker, nor is half a trunk [m].
+        const REACH: f64 = 0.6;
+        /// Step of the march [m]: thinner gaps than this are not seen.
+        const STEP: f64 = 0.004;
+        let inside_at = |distance: f64| {
+            let point = origin + direction * distance;
+            parts
+                .iter()
+                .any(|&part| self.density(part, point) >= THRESHOLD)
+        };
+        if !inside_at(0.0) {
+            return None;
+        }
+        let (mut inside, mut outside) = (0.0, STEP);
+        while inside_at(outside) {
+            inside = outside;
+            outside += STEP;
+            if outside > REACH {
+                return None;
+            }
+        }
+        while outside - inside > 1e-9 {
+            let middle = 0.5 * (inside + outside);
+            if inside_at(middle) {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+        Some(inside)
+    }
+}

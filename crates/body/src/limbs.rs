@@ -1,0 +1,286 @@
+//! The rings of an arm with its hand and of a leg with its foot.
+
+use crate::rings::{CROTCH_POINTS, Half, SPACING, TRANSITION, at_length, follow};
+use crate::{BodyError, Part};
+use std::f64::consts::{FRAC_PI_2, PI};
+use toile_geometry::Vec3;
+
+/// The plane of a ring: rays leave `centre` towards `cos a * first + sin a * second`.
+#[derive(Clone, Copy)]
+struct Frame {
+    centre: Vec3,
+    first: Vec3,
+    second: Vec3,
+}
+
+impl Frame {
+    fn direction(&self, angle: f64) -> Vec3 {
+        self.first * angle.cos() + self.second * angle.sin()
+    }
+
+    /// Angle of a point about the centre [rad].
+    fn angle(&self, point: Vec3) -> f64 {
+        let offset = point - self.centre;
+        offset.dot(&self.second).atan2(offset.dot(&self.first))
+    }
+}
+
+/// Angles of the points of a border, ascending from the first, and the even ones nearest to them.
+fn angles(border: &[Vec3], frame: &Frame) -> (Vec<f64>, Vec<f64>) {
+    let mut actual: Vec<f64> = Vec::with_capacity(border.len());
+    for &point in border {
+        let mut angle = frame.angle(point);
+        if let Some(&before) = actual.last() {
+            while angle < before - PI {
+                angle += 2.0 * PI;
+            }
+        }
+        actual.push(angle);
+    }
+    let step = 2.0 * PI / border.len() as f64;
+    let offset = actual
+        .iter()
+        .enumerate()
+        .map(|(k, a)| a - step * k as f64)
+        .sum::<f64>()
+        / border.len() as f64;
+    let even = (0..border.len())
+        .map(|k| offset + step * k as f64)
+        .collect();
+    (actual, even)
+}
+
+/// Rings over which the angles of a border even out.
+const EVENING: f64 = 9.0;
+
+/// What a limb's rings are cast on.
+struct Limb<'a> {
+    part: Part,
+    /// The limb's own part first, then those it grows from.
+    parts: &'a [Part],
+    /// First ring.
+    border: &'a [u32],
+    /// A point inside the body behind the border.
+    behind: Vec3,
+    frames: Vec<Frame>,
+    /// Direction from the last frame's centre to the tip.
+    tip: Vec3,
+}
+
+impl Half<'_> {
+    /// The left arm, from the border of the armhole to the finger tips.
+    pub(crate) fn arm(&mut self, border: &[u32]) -> Result<(), BodyError> {
+        let j = self.template.joints;
+        let scale = self.template.height / 1.7;
+        let [shoulder, wrist] = [Vec3::from(j.shoulder), Vec3::from(j.wrist)];
+        let along = (wrist - shoulder).normalize();
+        let up = Vec3::z().cross(&along);
+        let points: Vec<Vec3> = border.iter().map(|&v| self.positions[v as usize]).collect();
+        let start = points
+            .iter()
+            .map(|p| (p - shoulder).dot(&along))
+            .fold(f64::NEG_INFINITY, f64::max)
+            + 0.03 * scale;
+        let end = (wrist - shoulder).norm() + 0.175 * scale;
+        let count = ((end - start) / (SPACING * scale)).round() as usize;
+        let frames = (0..count)
+            .map(|k| Frame {
+                centre: shoulder + along * (start + (end - start) * k as f64 / count as f64),
+                first: up,
+                second: Vec3::z(),
+            })
+            .collect();
+        let behind = points.iter().sum::<Vec3>() / points.len() as f64;
+        self.limb(&Limb {
+            part: Part::LeftArm,
+            parts: &[Part::LeftArm, Part::Trunk],
+            border,
+            behind,
+            frames,
+            tip: along,
+        })
+    }
+
+    /// The left leg, from the lowest ring of the trunk to the toes.
+    pub(crate) fn leg(&mut self, bottom: &[u32]) -> Result<(), BodyError> {
+        let border = self.crotch_line(bottom)?;
+        let j = self.template.joints;
+        let scale = self.template.height / 1.7;
+        let [hip, knee, ankle] = [j.hip, j.knee, j.ankle].map(Vec3::from);
+        let path = [hip, knee, ankle];
+        let start_y = self.template.crotch - 0.03 * scale;
+        let start = (hip.y - start_y) / (hip.y - knee.y) * (knee - hip).norm();
+        let turn = ankle.y + 0.025 * scale;
+        let mut frames = Vec::new();
+        let length = (knee - hip).norm() + (ankle - knee).norm();
+        let count = ((length - start) / (SPACING * scale)).round() as usize;
+        for k in 0..=count {
+            let point = at_length(&path, start + (length - start) * k as f64 / count as f64);
+            if point.y > turn {
+                frames.push(self.recentred(Frame {
+                    centre: point,
+                    first: -Vec3::z(),
+                    second: Vec3::x(),
+                }));
+            }
+        }
+        let last = frames.last().map_or(ankle, |f: &Frame| f.centre);
+        frames.extend(self.foot(last));
+        let behind = Vec3::new(
+            frames[0].centre.x,
+            self.template.crotch + 0.015 * scale,
+            frames[0].centre.z,
+        );
+        self.limb(&Limb {
+            part: Part::LeftLeg,
+            parts: &[Part::LeftLeg, Part::Trunk],
+            border: &border,
+            behind,
+            frames,
+            tip: Vec3::z(),
+        })
+    }
+
+    /// Frames of the foot: a fan from the level ring at `ankle` to an upright one over the instep,
+    /// then upright ones to the toes.
+    fn foot(&self, ankle: Vec3) -> Vec<Frame> {
+        let scale = self.template.height / 1.7;
+        let toe = Vec3::from(self.template.joints.toe);
+        let pivot = ankle + Vec3::new(0.0, 0.012, 0.085) * scale;
+        let mut frames = Vec::new();
+        let fan = 7;
+        for k in 1..=fan {
+            let turn = FRAC_PI_2 * k as f64 / fan as f64;
+            let away = -Vec3::z() * turn.cos() - Vec3::y() * turn.sin();
+            let u = k as f64 / fan as f64;
+            let distance = 0.085 * scale * (1.0 - u) + (pivot.y - 0.034 * scale) * u;
+            frames.push(Frame {
+                centre: pivot + away * distance,
+                first: away,
+                second: Vec3::x(),
+            });
+        }
+        let from = pivot - Vec3::y() * (pivot.y - 0.034 * scale);
+        let to = Vec3::new(toe.x, 0.02 * scale, toe.z - 0.03 * scale);
+        let count = ((to.z - from.z) / (SPACING * scale)).round().max(2.0) as usize;
+        for k in 1..=count {
+            let u = k as f64 / count as f64;
+            frames.push(Frame {
+                centre: from + (to - from) * u,
+                first: -Vec3::y(),
+                second: Vec3::x(),
+            });
+        }
+        frames
+    }
+
+    /// The frame with its centre moved to the middle of the leg.
+    fn recentred(&self, frame: Frame) -> Frame {
+        let mut centre = frame.centre;
+        for axis in [Vec3::x(), Vec3::z(), Vec3::x()] {
+            let exit = |d: Vec3| self.field.first_exit(&[Part::LeftLeg], centre, d);
+            if let (Some(ahead), Some(behind)) = (exit(axis), exit(-axis)) {
+                centre += axis * (0.5 * (ahead - behind));
+            }
+        }
+        Frame { centre, ..frame }
+    }
+
+    /// Closes the lowest half ring of the trunk, given from back to front, along the crotch.
+    fn crotch_line(&mut self, bottom: &[u32]) -> Result<Vec<u32>, BodyError> {
+        let front = self.positions[bottom[bottom.len() - 1] as usize];
+        let back = self.positions[bottom[0] as usize];
+        let origin = 0.5 * (front + back);
+        let mut ring = bottom.to_vec();
+        for k in 1..=CROTCH_POINTS {
+            let turn = PI * k as f64 / (CROTCH_POINTS + 1) as f64;
+            // Flattened, so that the points spread along the shallow curve from front to back.
+            let direction = Vec3::new(0.0, -0.35 * turn.sin(), turn.cos()).normalize();
+            let position = self.hit(&[Part::Trunk], origin, direction)?;
+            let vertex = self.add(position, true);
+            self.leg[vertex as usize] = follow(0.0);
+            ring.push(vertex);
+        }
+        Ok(ring)
+    }
+
+    fn limb(&mut self, limb: &Limb) -> Result<(), BodyError> {
+        let points: Vec<Vec3> = limb
+            .border
+            .iter()
+            .map(|&v| self.positions[v as usize])
+            .collect();
+        let first = limb.frames[0];
+        let (actual, even) = angles(
+            &points,
+            &Frame {
+                centre: limb.behind,
+                ..first
+            },
+        );
+        let angles_at = |ring: usize| -> Vec<f64> {
+            let u = crate::curve::smooth_step((ring + TRANSITION) as f64 / EVENING);
+            (0..actual.len())
+                .map(|k| actual[k] + (even[k] - actual[k]) * u)
+                .collect()
+        };
+        let targets = angles_at(0)
+            .into_iter()
+            .map(|angle| self.hit(&[limb.part], first.centre, first.direction(angle)))
+            .collect::<Result<Vec<Vec3>, BodyError>>()?;
+        let mut ring = limb.border.to_vec();
+        let mut number = 0.0;
+        for k in 1..TRANSITION {
+            let u = k as f64 / TRANSITION as f64;
+            let origin = limb.behind + (first.centre - limb.behind) * u;
+            let mut next = Vec::with_capacity(ring.len());
+            for (from, to) in points.iter().zip(&targets) {
+                let guide = from + (to - from) * u;
+                next.push(self.hit(limb.parts, origin, (guide - origin).normalize())?);
+            }
+            number += 1.0;
+            ring = self.ring(limb.part, &ring, &next, number);
+        }
+        for (k, frame) in limb.frames.iter().enumerate() {
+            let mut next = Vec::with_capacity(ring.len());
+            for angle in angles_at(k) {
+                next.push(self.hit(&[limb.part], frame.centre, frame.direction(angle))?);
+            }
+            number += 1.0;
+            ring = self.ring(limb.part, &ring, &next, number);
+        }
+        let last = limb.frames[limb.frames.len() - 1].centre;
+        let tip = self.hit(&[limb.part], last, limb.tip)?;
+        let pole = self.ring_point(limb.part, tip, number + 1.0);
+        for k in 0..ring.len() {
+            self.face(limb.part, [ring[k], ring[(k + 1) % ring.len()], pole]);
+        }
+        Ok(())
+    }
+
+    fn ring(&mut self, part: Part, from: &[u32], points: &[Vec3], number: f64) -> Vec<u32> {
+        let to: Vec<u32> = points
+            .iter()
+            .map(|&p| self.ring_point(part, p, number))
+            .collect();
+        self.band(part, from, &to);
+        to
+    }
+
+    fn ring_point(&mut self, part: Part, mut position: Vec3, number: f64) -> u32 {
+        /// Half the least gap between the legs [m].
+        const GAP: f64 = 0.004;
+        if part == Part::LeftLeg {
+            position.x = position.x.max(GAP);
+            position.y = position.y.max(0.0);
+        }
+        let vertex = self.add(position, false);
+        let follows = follow(number);
+        if part == Part::LeftLeg {
+            self.leg[vertex as usize] = follows;
+        } else {
+            self.arm[vertex as usize] = follows;
+        }
+        vertex
+    }
+}

@@ -1,0 +1,361 @@
+//! The skin of a template: rings cast from the axes of the parts onto their implicit surfaces.
+//!
+//! Only the left half, x >= 0, is cast; the right half is its mirror image. Trunk, neck and head
+//! are one tube of half rings with a hole for the arm; the arm's first ring is the border of that
+//! hole, the leg's first ring is the lowest half ring closed along the crotch. Parts so share
+//! their border points, and the skin is a closed two-manifold by construction.
+
+use crate::curve::smooth_step;
+use crate::template::Template;
+use crate::{BodyError, Field, Part};
+use toile_geometry::{TriangleMesh, Vec3};
+
+/// Steps of a half ring of the trunk, from the front middle round the left to the back middle.
+/// Even, so that one column runs down the side.
+const HALF: usize = 24;
+/// Points of the crotch line between front and back middle.
+pub(crate) const CROTCH_POINTS: usize = 7;
+/// Distance between rings of arms and legs [m].
+pub(crate) const SPACING: f64 = 0.0165;
+/// Rings that lead from a border to the first plane ring of a limb.
+pub(crate) const TRANSITION: usize = 5;
+
+/// A skin before any measurement is applied.
+pub(crate) struct TemplateSkin {
+    pub(crate) mesh: TriangleMesh,
+    /// The part each triangle belongs to.
+    pub(crate) parts: Vec<Part>,
+    /// For each vertex, how far it follows the arm of its side instead of the trunk, 0 to 1.
+    pub(crate) arm: Vec<f64>,
+    /// The same for the leg.
+    pub(crate) leg: Vec<f64>,
+    /// The mirror image of each vertex; itself in the middle.
+    pub(crate) mirror: Vec<u32>,
+}
+
+/// Origin and elevation of the rays of one half ring of the trunk.
+#[derive(Clone, Copy)]
+struct Row {
+    origin: Vec3,
+    /// Angle of the rays above the horizontal [rad].
+    elevation: f64,
+    part: Part,
+}
+
+/// The left half under construction.
+pub(crate) struct Half<'a> {
+    pub(crate) template: &'a Template,
+    pub(crate) field: &'a Field,
+    pub(crate) positions: Vec<Vec3>,
+    middle: Vec<bool>,
+    pub(crate) arm: Vec<f64>,
+    pub(crate) leg: Vec<f64>,
+    triangles: Vec<[u32; 3]>,
+    parts: Vec<Part>,
+}
+
+/// Casts the skin of a template.
+pub(crate) fn cast(template: &Template, field: &Field) -> Result<TemplateSkin, BodyError> {
+    let mut half = Half {
+        template,
+        field,
+        positions: Vec::new(),
+        middle: Vec::new(),
+        arm: Vec::new(),
+        leg: Vec::new(),
+        triangles: Vec::new(),
+        parts: Vec::new(),
+    };
+    let border = half.trunk()?;
+    half.arm(&border.arm)?;
+    half.leg(&border.bottom)?;
+    Ok(half.mirrored())
+}
+
+/// Rings where limbs begin, in the limbs' own order of walking.
+struct Borders {
+    arm: Vec<u32>,
+    bottom: Vec<u32>,
+}
+
+impl Half<'_> {
+    pub(crate) fn add(&mut self, position: Vec3, middle: bool) -> u32 {
+        self.positions.push(position);
+        self.middle.push(middle);
+        self.arm.push(0.0);
+        self.leg.push(0.0);
+        (self.positions.len() - 1) as u32
+    }
+
+    pub(crate) fn face(&mut self, part: Part, corners: [u32; 3]) {
+        self.triangles.push(corners);
+        self.parts.push(part);
+    }
+
+    /// Where a ray from inside first leaves the union of some parts, named for the first of them.
+    pub(crate) fn hit(
+        &self,
+        parts: &[Part],
+        origin: Vec3,
+        direction: Vec3,
+    ) -> Result<Vec3, BodyError> {
+        match self.field.first_exit(parts, origin, direction) {
+            Some(distance) => Ok(origin + direction * distance),
+            None => Err(BodyError::Open {
+                part: parts.first().map_or("body", |part| part.name()),
+                x: origin.x,
+                y: origin.y,
+                z: origin.z,
+            }),
+        }
+    }
+
+    /// Height where the underside of the arm meets the side of the trunk [m].
+    fn armpit(&self) -> f64 {
+        let shoulder = Vec3::from(self.template.joints.shoulder);
+        let step = 0.002;
+        let mut y = shoulder.y - 0.02;
+        let side = |y: f64| {
+            let origin = Vec3::new(0.0, y, shoulder.z);
+            let mut x = 0.06;
+            while self.field.density(Part::Trunk, origin + Vec3::x() * x) >= crate::THRESHOLD {
+                x += step;
+            }
+            origin + Vec3::x() * x
+        };
+        while y > 0.6 * shoulder.y && self.field.density(Part::LeftArm, side(y)) >= crate::THRESHOLD
+        {
+            y -= step;
+        }
+        y
+    }
+
+    /// The rows of the trunk, neck and head from the crotch to below the crown; and the first
+    /// row of the armpit.
+    fn rows(&self) -> (Vec<Row>, usize) {
+        let t = self.template;
+        let scale = t.height / 1.7;
+        let j = t.joints;
+        let armpit = self.armpit();
+        let (pelvis, spine, chest) = (j.pelvis, j.spine, j.chest);
+        let (neck, head) = (Vec3::from(j.neck), Vec3::from(j.head));
+        let row = |origin: Vec3, elevation: f64, part: Part| Row {
+            origin,
+            elevation,
+            part,
+        };
+        let mut rows = Vec::new();
+        // Level rings up to the armpit.
+        let bottom = t.crotch + 0.035 * scale;
+        let base = armpit - 0.02 * scale;
+        let count = ((base - bottom) / (0.016 * scale)).round() as usize;
+        for k in 0..count {
+            let y = bottom + (base - bottom) * k as f64 / count as f64;
+            let z = 0.5
+                * (self.middle_z(pelvis, y) + self.middle_z(spine, y).min(0.02))
+                    .min(chest[2].max(0.02) + 0.02);
+            rows.push(row(Vec3::new(0.0, y, z), 0.0, Part::Trunk));
+        }
+        // A fan over the shoulders, even along the side.
+        let focus = Vec3::new(0.0, base, self.middle_z(chest, base));
+        let tip = Vec3::new(j.shoulder[0] + 0.005, j.shoulder[1] + 0.045 * scale, 0.0);
+        let foot_of_neck = Vec3::new(0.058 * scale, neck.y + 0.008 * scale, 0.0);
+        let path = [Vec3::new(tip.x - 0.01, base, 0.0), tip, foot_of_neck];
+        let armpit_row = rows.len() + 1;
+        let mut elevation = 0.0;
+        for p in along(&path, 0.0145 * scale) {
+            elevation = (p.y - base).atan2(p.x);
+            rows.push(row(focus, elevation, Part::Trunk));
+        }
+        // The neck: from the fan back to level rings.
+        let neck_top = Vec3::new(0.0, head.y - 0.035 * scale, 0.6 * neck.z + 0.4 * head.z);
+        let neck_rows = 5;
+        for k in 1..=neck_rows {
+            let u = k as f64 / neck_rows as f64;
+            let tilt = elevation * (1.0 - u) * (1.0 - 0.4 * u);
+            let target = foot_of_neck.y + (neck_top.y - foot_of_neck.y) * u;
+            let y = (target - 0.055 * scale * tilt.tan()).max(base + 1e-3);
+            let z = focus.z + (neck_top.z - focus.z) * u;
+            rows.push(row(Vec3::new(0.0, y, z), tilt, Part::Head));
+        }
+        // The head: level rings, then a fan to the crown.
+        let centre = Vec3::new(0.0, t.height - 0.095 * scale, head.z - 0.005 * scale);
+        let count = ((centre.y - neck_top.y) / (0.016 * scale)).round().max(1.0) as usize;
+        for k in 1..=count {
+            let u = k as f64 / count as f64;
+            rows.push(row(neck_top + (centre - neck_top) * u, 0.0, Part::Head));
+        }
+        let crown = 9;
+        for k in 1..crown {
+            let up = std::f64::consts::FRAC_PI_2 * k as f64 / crown as f64;
+            rows.push(row(centre, up, Part::Head));
+        }
+        (rows, armpit_row)
+    }
+
+    /// Middle of the front and back surface of the trunk at a height, seen from a joint [m].
+    fn middle_z(&self, joint: [f64; 3], y: f64) -> f64 {
+        let origin = Vec3::new(0.0, y, joint[2]);
+        let front = self.field.first_exit(&[Part::Trunk], origin, Vec3::z());
+        let back = self.field.first_exit(&[Part::Trunk], origin, -Vec3::z());
+        match (front, back) {
+            (Some(f), Some(b)) => joint[2] + 0.5 * (f - b),
+            _ => joint[2],
+        }
+    }
+
+    fn trunk(&mut self) -> Result<Borders, BodyError> {
+        let (rows, armpit_row) = self.rows();
+        let side = HALF / 2;
+        let shoulder = Vec3::from(self.template.joints.shoulder);
+        let scale = self.template.height / 1.7;
+        // The hole for the arm: up to the row that passes over the shoulder joint.
+        let top_angle = (shoulder.y + 0.035 * scale - rows[armpit_row].origin.y).atan2(shoulder.x);
+        let (r0, c0, c1) = (armpit_row, side - 4, side + 4);
+        let r1 = (r0..rows.len())
+            .find(|&t| rows[t].elevation >= top_angle)
+            .unwrap_or(r0 + 6)
+            .max(r0 + 4);
+        let mut grid = vec![[u32::MAX; HALF + 1]; rows.len()];
+        for (t, row) in rows.iter().enumerate() {
+            for i in 0..=HALF {
+                if t > r0 && t < r1 && i > c0 && i < c1 {
+                    continue;
+                }
+                let angle = std::f64::consts::PI * i as f64 / HALF as f64;
+                let middle = i == 0 || i == HALF;
+                let level = Vec3::new(if middle { 0.0 } else { angle.sin() }, 0.0, angle.cos());
+                let (sin, cos) = row.elevation.sin_cos();
+                let direction = (level * cos + Vec3::y() * sin).normalize();
+                let position = self.hit(reachable(row.part), row.origin, direction)?;
+                let vertex = self.add(position, middle);
+                grid[t][i] = vertex;
+                let away = [
+                    r0.saturating_sub(t),
+                    t.saturating_sub(r1),
+                    c0.saturating_sub(i),
+                    i.saturating_sub(c1),
+                ];
+                let away = away.into_iter().max().unwrap_or(0) as f64;
+                self.arm[vertex as usize] = follow(-away);
+                self.leg[vertex as usize] = follow(-(t as f64));
+            }
+        }
+        for t in 0..rows.len() - 1 {
+            for i in 0..HALF {
+                if t >= r0 && t < r1 && i >= c0 && i < c1 {
+                    continue;
+                }
+                let [a, b] = [grid[t][i], grid[t][i + 1]];
+                let [d, c] = [grid[t + 1][i], grid[t + 1][i + 1]];
+                self.quad(rows[t + 1].part, [a, b, c, d]);
+            }
+        }
+        let last = rows.len() - 1;
+        let crown = self.hit(&[Part::Head], rows[last].origin, Vec3::y())?;
+        let pole = self.add(crown, true);
+        for i in 0..HALF {
+            self.face(Part::Head, [grid[last][i], grid[last][i + 1], pole]);
+        }
+        let mut arm: Vec<u32> = (c0..c1).rev().map(|i| grid[r1][i + 1]).collect();
+        arm.extend((r0 + 1..=r1).rev().map(|t| grid[t][c0]));
+        arm.extend((c0..c1).map(|i| grid[r0][i]));
+        arm.extend((r0..r1).map(|t| grid[t][c1]));
+        let bottom = (0..=HALF).rev().map(|i| grid[0][i]).collect();
+        Ok(Borders { arm, bottom })
+    }
+
+    /// Two triangles, split along the shorter diagonal.
+    fn quad(&mut self, part: Part, [a, b, c, d]: [u32; 4]) {
+        let at = |v: u32| self.positions[v as usize];
+        if (at(a) - at(c)).norm() <= (at(b) - at(d)).norm() {
+            self.face(part, [a, b, c]);
+            self.face(part, [a, c, d]);
+        } else {
+            self.face(part, [a, b, d]);
+            self.face(part, [b, c, d]);
+        }
+    }
+
+    /// A band between two rings of the same length, the second one farther out on the limb.
+    pub(crate) fn band(&mut self, part: Part, from: &[u32], to: &[u32]) {
+        let n = from.len();
+        for k in 0..n {
+            let next = (k + 1) % n;
+            self.quad(part, [from[k], from[next], to[next], to[k]]);
+        }
+    }
+
+    fn mirrored(self) -> TemplateSkin {
+        let count = self.positions.len();
+        let mut mirror: Vec<u32> = vec![0; count];
+        let mut mesh = TriangleMesh {
+            positions: self.positions,
+            triangles: self.triangles,
+        };
+        let (mut arm, mut leg, mut parts) = (self.arm, self.leg, self.parts);
+        for v in 0..count {
+            if self.middle[v] {
+                mesh.positions[v].x = 0.0;
+                mirror[v] = v as u32;
+            } else {
+                let p = mesh.positions[v];
+                mirror[v] = mesh.positions.len() as u32;
+                mirror.push(v as u32);
+                mesh.positions.push(Vec3::new(-p.x, p.y, p.z));
+                arm.push(arm[v]);
+                leg.push(leg[v]);
+            }
+        }
+        for t in 0..mesh.triangles.len() {
+            let [a, b, c] = mesh.triangles[t].map(|v| mirror[v as usize]);
+            mesh.triangles.push([a, c, b]);
+            parts.push(match parts[t] {
+                Part::LeftArm => Part::RightArm,
+                Part::LeftLeg => Part::RightLeg,
+                part => part,
+            });
+        }
+        TemplateSkin {
+            mesh,
+            parts,
+            arm,
+            leg,
+            mirror,
+        }
+    }
+}
+
+/// Weight of the limb at a number of rings from its border, negative on the trunk's side.
+pub(crate) fn follow(rings: f64) -> f64 {
+    smooth_step((rings + 4.0) / 9.0)
+}
+
+/// Points about `spacing` apart along a polyline, without the first, with the last.
+fn along(path: &[Vec3], spacing: f64) -> Vec<Vec3> {
+    let length: f64 = path.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+    let count = (length / spacing).round().max(1.0) as usize;
+    (1..=count)
+        .map(|k| at_length(path, length * k as f64 / count as f64))
+        .collect()
+}
+
+/// The point at a length along a polyline [m].
+pub(crate) fn at_length(path: &[Vec3], mut length: f64) -> Vec3 {
+    for w in path.windows(2) {
+        let step = (w[1] - w[0]).norm();
+        if length <= step {
+            return w[0] + (w[1] - w[0]) * (length / step);
+        }
+        length -= step;
+    }
+    path[path.len() - 1]
+}
+
+/// Parts a ray of a row may run through before it leaves the body.
+fn reachable(part: Part) -> &'static [Part] {
+    match part {
+        Part::Head => &[Part::Head, Part::Trunk],
+        _ => &[Part::Trunk, Part::Head, Part::LeftArm, Part::LeftLeg],
+    }
+}

@@ -1,0 +1,131 @@
+//! Template figures: primitives and joints before any measurement is applied.
+
+#[path = "template_man.rs"]
+mod man;
+#[path = "template_mean.rs"]
+mod mean;
+#[path = "template_woman.rs"]
+mod woman;
+
+use crate::{Part, Primitive};
+use serde::{Deserialize, Serialize};
+use toile_geometry::Vec3;
+
+/// Which template a mannequin is grown from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Figure {
+    /// An adult woman.
+    Woman,
+    /// An adult man.
+    Man,
+    /// The mean of both.
+    Mean,
+}
+
+/// Joint centres of the left side and the middle [m].
+pub(crate) struct Joints {
+    pub(crate) shoulder: [f64; 3],
+    pub(crate) elbow: [f64; 3],
+    pub(crate) wrist: [f64; 3],
+    pub(crate) hip: [f64; 3],
+    pub(crate) knee: [f64; 3],
+    pub(crate) ankle: [f64; 3],
+    pub(crate) toe: [f64; 3],
+    pub(crate) pelvis: [f64; 3],
+    pub(crate) spine: [f64; 3],
+    pub(crate) chest: [f64; 3],
+    pub(crate) neck: [f64; 3],
+    pub(crate) head: [f64; 3],
+}
+
+/// A template as it is stored. Rows: centre, effective semi-axes [m], rotation vector [rad]. Rows
+/// of trunk and head off the middle stand for a pair; arm and leg are the left ones.
+pub(crate) struct Table {
+    height: f64,
+    crotch: f64,
+    joints: Joints,
+    trunk: &'static [[f64; 9]],
+    head: &'static [[f64; 9]],
+    arm: &'static [[f64; 9]],
+    leg: &'static [[f64; 9]],
+}
+
+/// A template figure.
+pub(crate) struct Template {
+    /// Floor to crown [m].
+    pub(crate) height: f64,
+    /// Height of the crotch [m].
+    pub(crate) crotch: f64,
+    pub(crate) joints: &'static Joints,
+    /// Primitives of both sides.
+    pub(crate) primitives: Vec<Primitive>,
+}
+
+/// Palm and fingers of the closed hand: distance of the centre from the wrist along the arm, and
+/// effective semi-axes along the arm, across the palm's thickness and its width, all for a stature
+/// of 1.7 m [m].
+const HAND: [[f64; 4]; 3] = [
+    [0.050, 0.085, 0.032, 0.062],
+    [0.100, 0.090, 0.026, 0.058],
+    [0.140, 0.075, 0.023, 0.052],
+];
+
+impl Template {
+    /// The template of a figure.
+    pub(crate) fn of(figure: Figure) -> Self {
+        let table: &'static Table = match figure {
+            Figure::Woman => &woman::TABLE,
+            Figure::Man => &man::TABLE,
+            Figure::Mean => &mean::TABLE,
+        };
+        let mut primitives = Vec::new();
+        let rows = [
+            (Part::Trunk, table.trunk),
+            (Part::Head, table.head),
+            (Part::LeftArm, table.arm),
+            (Part::LeftLeg, table.leg),
+        ];
+        for (part, rows) in rows {
+            primitives.extend(rows.iter().map(|&row| from_row(part, row)));
+        }
+        primitives.extend(hand(table));
+        let mirrored: Vec<Primitive> = primitives
+            .iter()
+            .filter(|p| !p.is_central())
+            .map(Primitive::mirrored)
+            .collect();
+        primitives.extend(mirrored);
+        Self {
+            height: table.height,
+            crotch: table.crotch,
+            joints: &table.joints,
+            primitives,
+        }
+    }
+}
+
+fn from_row(part: Part, row: [f64; 9]) -> Primitive {
+    let [x, y, z, a, b, c, u, v, w] = row;
+    Primitive {
+        part,
+        centre: [x, y, z],
+        radii: [a, b, c],
+        rotation: [u, v, w],
+    }
+}
+
+/// Primitives of the left hand, flat in the plane of the arm and the frontal direction.
+fn hand(table: &Table) -> Vec<Primitive> {
+    let wrist = Vec3::from(table.joints.wrist);
+    let along = (wrist - Vec3::from(table.joints.elbow)).normalize();
+    let scale = table.height / 1.7;
+    HAND.iter()
+        .map(|&[offset, length, thickness, width]| Primitive {
+            part: Part::LeftArm,
+            centre: (wrist + along * (offset * scale)).into(),
+            radii: [length * scale, thickness * scale, width * scale],
+            rotation: [0.0, 0.0, along.y.atan2(along.x)],
+        })
+        .collect()
+}
