@@ -93,6 +93,7 @@ impl NoFit {
 }
 
 type PairKey = (usize, usize);
+type Ring = Arc<Vec<Vec2>>;
 
 /// All shapes of a job with the no-fit polygons found so far; may be shared by threads.
 pub(crate) struct Fit {
@@ -101,7 +102,7 @@ pub(crate) struct Fit {
     gaps: Vec<f64>,
     strip_gap: f64,
     pairs: RwLock<BTreeMap<PairKey, Arc<NoFit>>>,
-    grown: RwLock<BTreeMap<(usize, u64), Arc<Vec<Vec2>>>>,
+    grown: RwLock<BTreeMap<(usize, u64), Ring>>,
 }
 
 impl Fit {
@@ -177,7 +178,7 @@ impl Fit {
     }
 
     /// A shape's ring with the gap round it.
-    fn grown(&self, shape: usize, gap: f64) -> Arc<Vec<Vec2>> {
+    fn grown(&self, shape: usize, gap: f64) -> Ring {
         let key = (shape, gap.to_bits());
         let known = self.grown.read().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = known.get(&key) {

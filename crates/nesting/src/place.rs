@@ -8,6 +8,7 @@ use crate::check::{SNUG, orientations};
 use crate::fit::{Fit, NoFit, Shape};
 use crate::order::Copy;
 use crate::{Item, Placement, Strip};
+use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use toile_geometry::{Bounds2, PreparedPolygon, Vec2};
@@ -42,12 +43,17 @@ pub(crate) struct Layout {
     pub left_over: Vec<Copy>,
     /// Right end of the last piece [m].
     pub reach: f64,
+    /// Sum of the right ends of all pieces [m].
+    pub spread: f64,
+    /// Positions weighed.
+    pub positions: u64,
 }
 
 struct Layer<'a> {
     fit: &'a Fit,
     strip: &'a Strip,
     laid: Vec<Laid>,
+    positions: Cell<u64>,
 }
 
 /// Lays copies in an order. Nothing if it was told to stop.
@@ -61,11 +67,14 @@ pub(crate) fn lay(
         fit,
         strip,
         laid: Vec::with_capacity(order.len()),
+        positions: Cell::new(0),
     };
     let mut layout = Layout {
         placements: Vec::with_capacity(order.len()),
         left_over: Vec::new(),
         reach: strip.end_margin,
+        spread: 0.0,
+        positions: 0,
     };
     for &(item, copy) in order {
         if cancel.load(Ordering::Relaxed) {
@@ -79,7 +88,9 @@ pub(crate) fn lay(
             continue;
         };
         let pose = fit.shapes[shape].pose;
-        layout.reach = layout.reach.max(fit.shapes[shape].bounds.max.x + at.x);
+        let end = fit.shapes[shape].bounds.max.x + at.x;
+        layout.reach = layout.reach.max(end);
+        layout.spread += end;
         layout.placements.push(Placement {
             item,
             copy,
@@ -89,6 +100,7 @@ pub(crate) fn lay(
         });
         layer.add(shape, at);
     }
+    layout.positions = layer.positions.get();
     Some(layout)
 }
 
@@ -174,6 +186,9 @@ impl Layer<'_> {
             room.max.x = room.max.x.min(at.x);
         }
         let mut crossings = crossing_candidates(&around, &room);
+        let edges: usize = around.iter().map(|a| a.nfp.edges.len()).sum();
+        let weighed = edges + corners.len() + crossings.len();
+        self.positions.set(self.positions.get() + weighed as u64);
         first_free(&mut crossings, &mut free)
             .into_iter()
             .chain(found)

@@ -193,10 +193,15 @@ fn check_copies(items: &[Item], marker: &Marker, verdict: &mut Verdict) {
     }
 }
 
+/// What is not a number counts as beyond.
+fn beyond_limit(excess: f64) -> bool {
+    excess.is_nan() || excess > PENETRATION_LIMIT
+}
+
 fn check_inside(strip: &Strip, laid: &[Laid<'_>], marker: &Marker, verdict: &mut Verdict) {
     let reach = laid.iter().map(|(.., p)| p.bounds().max.x);
     verdict.length = reach.fold(strip.end_margin, f64::max) + strip.end_margin;
-    if !((verdict.length - marker.length).abs() <= PENETRATION_LIMIT) {
+    if beyond_limit((verdict.length - marker.length).abs()) {
         verdict.violations.push(Violation::Length {
             stated: marker.length,
             found: verdict.length,
@@ -212,7 +217,7 @@ fn check_inside(strip: &Strip, laid: &[Laid<'_>], marker: &Marker, verdict: &mut
             (Side::Upper, bounds.max.y - (strip.width - strip.selvedge)),
         ];
         for (side, by) in excess {
-            if !(by <= PENETRATION_LIMIT) {
+            if beyond_limit(by) {
                 verdict.violations.push(Violation::Outside {
                     placement: *placement,
                     side,

@@ -1,4 +1,4 @@
-//! Several orders are tried within a budget of markers, not of time; the best one is kept.
+//! Several orders are tried within a budget of positions weighed, not of time; the best one is kept.
 
 use crate::check::{NestingError, check};
 use crate::fit::Fit;
@@ -10,9 +10,9 @@ use std::sync::atomic::AtomicBool;
 /// How hard to search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Search {
-    /// Number of markers laid, at least one is. More take proportionally longer and are seldom
-    /// longer in fabric.
-    pub markers: u32,
+    /// Positions of pieces weighed before the search ends; at least a few whole markers are laid.
+    /// The default takes about a second. Ten times as many shorten the marker by a percent or so.
+    pub positions: u64,
     /// Start of the sequence that shuffles orders; the same seed gives the same marker.
     pub seed: u64,
 }
@@ -20,7 +20,7 @@ pub struct Search {
 impl Default for Search {
     fn default() -> Self {
         Self {
-            markers: 40,
+            positions: 20_000_000,
             seed: 1,
         }
     }
@@ -29,17 +29,17 @@ impl Default for Search {
 /// How far a search has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
+    /// Part of the budget used, 0..=1.
+    pub done: f64,
     /// Markers laid.
-    pub done: u32,
-    /// Markers to lay.
-    pub total: u32,
+    pub markers: u64,
     /// Length of the best so far, end margins included [m].
     pub length: f64,
 }
 
 /// How the outside follows and stops a search.
 pub struct Control<'a> {
-    /// Told after every marker.
+    /// Told after every few markers.
     pub progress: &'a mut dyn FnMut(Progress),
     /// Set from anywhere to stop: the search ends with [`NestingError::Cancelled`].
     pub cancel: &'a AtomicBool,
@@ -74,58 +74,125 @@ pub fn make_marker(
 ) -> Result<Marker, NestingError> {
     check(items, strip)?;
     let fit = Fit::new(items, strip);
-    let job = (items, strip, &fit);
-    let total = search.markers.max(1);
     let mut best: Option<Trial> = None;
     let mut sequence = Sequence(search.seed);
-    for done in 0..total {
-        let (order, preference) = match (starting_order(items, done), &best) {
-            (Some(start), _) => start,
-            (None, Some(best)) => (shuffled(&best.order, &mut sequence), best.preference),
-            (None, None) => (ordered(items, CRITERIA[0]), Preference::ShortestReach),
-        };
-        let layout = lay(job, &order, preference, control.cancel).ok_or(NestingError::Cancelled)?;
-        let trial = Trial {
-            score: score(items, &layout),
-            layout,
-            order,
-            preference,
-        };
-        if best.as_ref().is_none_or(|known| trial.score < known.score) {
-            best = Some(trial);
+    let (mut positions, mut markers) = (0, 0);
+    loop {
+        let batch: Vec<Plan> = (markers..markers + BATCH)
+            .map(|number| plan(items, number, best.as_ref(), &mut sequence))
+            .collect();
+        let trials = lay_batch((items, strip, &fit), batch, control.cancel);
+        for trial in trials {
+            let trial = trial.ok_or(NestingError::Cancelled)?;
+            positions += trial.layout.positions;
+            if best.as_ref().is_none_or(|known| trial.score < known.score) {
+                best = Some(trial);
+            }
         }
-        let length = best
-            .as_ref()
-            .map_or(0.0, |b| b.layout.reach + strip.end_margin);
+        markers += BATCH;
+        let Some(known) = &best else {
+            return Err(NestingError::NoItems);
+        };
+        let most = STARTS + MARKERS_PER_COPY * known.plan.order.len() as u64;
+        let done = (positions as f64 / search.positions.max(1) as f64)
+            .max(markers as f64 / most as f64)
+            .min(1.0);
         (control.progress)(Progress {
-            done: done + 1,
-            total,
-            length,
+            done,
+            markers,
+            length: known.layout.reach + strip.end_margin,
         });
+        if done >= 1.0 {
+            break;
+        }
     }
     let best = best.ok_or(NestingError::NoItems)?;
     Ok(finish(items, strip, best.layout))
 }
 
-struct Trial {
-    score: (f64, f64),
-    layout: Layout,
+/// Markers laid between two looks at the best: they may be laid at the same time, and their number
+/// is fixed so that the number of threads does not matter.
+const BATCH: u64 = 4;
+/// Orders that are always tried first, budget permitting.
+const STARTS: u64 = 2 * CRITERIA.len() as u64;
+/// Shuffles after which a small job is taken to be settled, per copy.
+const MARKERS_PER_COPY: u64 = 60;
+
+/// A marker to lay.
+struct Plan {
     order: Vec<Copy>,
     preference: Preference,
 }
 
-/// The orders that are always tried first.
-fn starting_order(items: &[Item], number: u32) -> Option<(Vec<Copy>, Preference)> {
-    let number = number as usize;
-    let criterion = *CRITERIA.get(number / 2)?;
-    let preference = [Preference::ShortestReach, Preference::EarliestStart][number % 2];
-    Some((ordered(items, criterion), preference))
+/// A marker laid.
+struct Trial {
+    score: (f64, f64, f64),
+    layout: Layout,
+    plan: Plan,
 }
 
-/// Less is better: area left over [m2], then length [m].
-fn score(items: &[Item], layout: &Layout) -> (f64, f64) {
+/// First the orders by size, then shuffles of the best.
+fn plan(items: &[Item], number: u64, best: Option<&Trial>, sequence: &mut Sequence) -> Plan {
+    match best {
+        Some(best) if number >= STARTS => Plan {
+            order: shuffled(&best.plan.order, sequence),
+            preference: best.plan.preference,
+        },
+        _ => Plan {
+            order: ordered(items, CRITERIA[(number / 2) as usize % CRITERIA.len()]),
+            preference: [Preference::ShortestReach, Preference::EarliestStart]
+                [(number % 2) as usize],
+        },
+    }
+}
+
+/// Lays all plans, on as many threads as there are; results in the order of the plans.
+fn lay_batch(
+    job: (&[Item], &Strip, &Fit),
+    plans: Vec<Plan>,
+    cancel: &AtomicBool,
+) -> Vec<Option<Trial>> {
+    let one = |plan: Plan| {
+        let layout = lay(job, &plan.order, plan.preference, cancel)?;
+        Some(Trial {
+            score: score(job.0, &layout),
+            layout,
+            plan,
+        })
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let share = plans.len().div_ceil(threads.max(1)).max(1);
+    let mut shares: Vec<Vec<Plan>> = Vec::new();
+    for plan in plans {
+        match shares.last_mut() {
+            Some(last) if last.len() < share => last.push(plan),
+            _ => shares.push(vec![plan]),
+        }
+    }
+    std::thread::scope(|scope| {
+        let mine = shares.pop().unwrap_or_default();
+        let others: Vec<_> = shares
+            .into_iter()
+            .map(|share| scope.spawn(|| share.into_iter().map(one).collect::<Vec<_>>()))
+            .collect();
+        let last: Vec<Option<Trial>> = mine.into_iter().map(one).collect();
+        let mut all = Vec::new();
+        for other in others {
+            match other.join() {
+                Ok(trials) => all.extend(trials),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        all.extend(last);
+        all
+    })
+}
+
+/// Less is better: area left over [m2], then length [m], then the sum of all right ends [m].
+fn score(items: &[Item], layout: &Layout) -> (f64, f64, f64) {
     let area = |&(item, _): &Copy| items[item].outline.area();
-    (layout.left_over.iter().map(area).sum(), layout.reach)
+    let left_over = layout.left_over.iter().map(area).sum();
+    (left_over, layout.reach, layout.spread)
 }
 
 fn finish(items: &[Item], strip: &Strip, mut layout: Layout) -> Marker {
