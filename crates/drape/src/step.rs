@@ -21,7 +21,7 @@ pub struct StepSettings {
 }
 
 impl Default for StepSettings {
-    /// 1/120 s, no drag, Newton to 1e-6 N.
+    /// 1/120 s, no drag, Newton to 1e-8 N.
     fn default() -> Self {
         Self {
             step: 1.0 / 120.0,
@@ -29,11 +29,11 @@ impl Default for StepSettings {
             speed_limit: 100.0,
             newton: NewtonSettings {
                 iterations: 8,
-                tolerance: 1e-6,
+                tolerance: 1e-8,
                 longest_move: 0.05,
                 linear: LinearSolver::Iterative(PcgLimits {
-                    tolerance: 1e-4,
-                    iterations: 400,
+                    tolerance: 1e-6,
+                    iterations: 1000,
                 }),
             },
         }

@@ -1,0 +1,249 @@
+//! The scene: every object of a simulation in one form, whatever file it came from.
+
+use crate::{Cloth, DrapeError, Material};
+use toile_geometry::{TriangleMesh, Vec3};
+
+/// Objects, elastics, gravity and air: one simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Acceleration of gravity [m/s2].
+    pub gravity: Vec3,
+    /// Drag of the air per mass [1/s]: a free velocity falls by exp(-drag t).
+    pub air_drag: f64,
+    /// Simulated time [s].
+    pub duration: f64,
+    /// Step in time [s].
+    pub step: f64,
+    /// Time between saved frames [s]; nothing saves the last state only.
+    pub frame_step: Option<f64>,
+    /// How the motion is computed.
+    pub method: MethodKind,
+    /// How cloth meets surfaces.
+    pub contact: crate::ContactSettings,
+    /// The objects.
+    pub objects: Vec<SceneObject>,
+    /// Attachment forces between them.
+    pub elastics: Vec<SceneElastic>,
+}
+
+impl Default for Scene {
+    /// Earth's gravity, still air without drag, one second in steps of 1/120 s.
+    fn default() -> Self {
+        Self {
+            gravity: Vec3::new(0.0, -9.81, 0.0),
+            air_drag: 0.0,
+            duration: 1.0,
+            step: 1.0 / 120.0,
+            frame_step: None,
+            method: MethodKind::ImplicitEuler,
+            contact: crate::ContactSettings::default(),
+            objects: Vec::new(),
+            elastics: Vec::new(),
+        }
+    }
+}
+
+/// A time integrator or equilibrium solver.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MethodKind {
+    /// Implicit Euler by full Newton with line search.
+    #[default]
+    ImplicitEuler,
+    /// Straight to rest by pseudo-transient continuation; time does not run.
+    Rest,
+}
+
+impl MethodKind {
+    /// Every method with its name in files.
+    pub const ALL: [(&'static str, Self); 2] = [
+        ("implicit-euler", Self::ImplicitEuler),
+        ("rest", Self::Rest),
+    ];
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        Self::ALL
+            .iter()
+            .find(|(_, kind)| *kind == self)
+            .map_or("", |(name, _)| name)
+    }
+}
+
+/// What moves an object.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ObjectKind {
+    /// Nothing: cloth collides with it.
+    Static,
+    /// The simulation: it is cloth.
+    Deformable {
+        /// What it is made of.
+        material: Material,
+        /// Vertices that do not move.
+        pins: Vec<u32>,
+    },
+}
+
+/// One object, its transform already applied.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneObject {
+    /// Unique name.
+    pub name: String,
+    /// What moves it.
+    pub kind: ObjectKind,
+    /// Its surface [m].
+    pub mesh: TriangleMesh,
+    /// Rest shape of a garment's panels; nothing when the mesh itself is the rest shape.
+    pub cloth: Option<Cloth>,
+}
+
+/// One end of an elastic in a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SceneEnd {
+    /// A vertex of an object.
+    Vertex {
+        /// Index of the object.
+        object: usize,
+        /// The vertex.
+        vertex: u32,
+    },
+    /// A place in space [m].
+    Point(Vec3),
+}
+
+/// An attachment force in a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneElastic {
+    /// The end it starts from.
+    pub from: SceneEnd,
+    /// The end it is drawn to.
+    pub to: SceneEnd,
+    /// Stiffness [N/m].
+    pub stiffness: f64,
+    /// The two vertices become one when closer than this [m]; nothing keeps them apart.
+    pub merge_within: Option<f64>,
+}
+
+/// Steps a scene may take at the most: beyond this the step is surely a mistake.
+const MOST_STEPS: f64 = 1e7;
+
+impl Scene {
+    /// Checks what can be checked before building anything.
+    ///
+    /// # Errors
+    /// The first thing that does not fit, with its place and remedy.
+    pub fn check(&self) -> Result<(), DrapeError> {
+        let refuse = |place: String, what: String, remedy: &str| {
+            Err(DrapeError::Scene {
+                place,
+                what,
+                remedy: remedy.to_owned(),
+            })
+        };
+        for (field, value, least) in [
+            ("duration", self.duration, 0.0),
+            ("step", self.step, f64::MIN_POSITIVE),
+            ("air drag", self.air_drag, 0.0),
+            ("contact offset", self.contact.offset, 0.0),
+            ("contact stiffness", self.contact.stiffness, 0.0),
+        ] {
+            if !value.is_finite() || value < least {
+                return refuse(
+                    field.to_owned(),
+                    format!("{value} is out of range"),
+                    "give a finite number above zero",
+                );
+            }
+        }
+        if self.duration / self.step > MOST_STEPS {
+            return refuse(
+                "step".to_owned(),
+                format!("{} s takes more than 1e7 steps", self.step),
+                "give a longer step or a shorter duration",
+            );
+        }
+        if let Some(frame) = self.frame_step
+            && !(frame.is_finite() && frame > 0.0)
+        {
+            return refuse(
+                "frame step".to_owned(),
+                format!("{frame} is out of range"),
+                "give a number of seconds above zero",
+            );
+        }
+        if !self.gravity.iter().all(|x| x.is_finite()) {
+            return refuse(
+                "gravity".to_owned(),
+                "it is not finite".to_owned(),
+                "give three finite numbers in m/s2",
+            );
+        }
+        self.check_objects()?;
+        for (index, elastic) in self.elastics.iter().enumerate() {
+            let place = format!("elastics[{index}]");
+            if !(elastic.stiffness.is_finite() && elastic.stiffness >= 0.0) {
+                return refuse(
+                    place,
+                    format!("stiffness {} is out of range", elastic.stiffness),
+                    "give a finite number in N/m, zero or above",
+                );
+            }
+            for end in [elastic.from, elastic.to] {
+                if let SceneEnd::Vertex { object, vertex } = end {
+                    let Some(named) = self.objects.get(object) else {
+                        return refuse(
+                            place,
+                            format!("there is no object {object}"),
+                            "name an object of the scene",
+                        );
+                    };
+                    if vertex as usize >= named.mesh.positions.len() {
+                        let what = format!("\"{}\" has no vertex {vertex}", named.name);
+                        return refuse(
+                            place,
+                            what,
+                            "name a vertex below the object's vertex count",
+                        );
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_objects(&self) -> Result<(), DrapeError> {
+        for (index, object) in self.objects.iter().enumerate() {
+            object.mesh.check().map_err(|defect| DrapeError::Mesh {
+                object: object.name.clone(),
+                defect,
+            })?;
+            if self.objects[..index]
+                .iter()
+                .any(|other| other.name == object.name)
+            {
+                return Err(DrapeError::Scene {
+                    place: format!("objects[{index}]"),
+                    what: format!("a second object is called \"{}\"", object.name),
+                    remedy: "give every object its own name".to_owned(),
+                });
+            }
+            let ObjectKind::Deformable { material, pins } = &object.kind else {
+                continue;
+            };
+            material.check(&object.name)?;
+            if let Some(pin) = pins
+                .iter()
+                .find(|&&pin| pin as usize >= object.mesh.positions.len())
+            {
+                return Err(DrapeError::Scene {
+                    place: format!("pins of \"{}\"", object.name),
+                    what: format!("there is no vertex {pin}"),
+                    remedy: format!(
+                        "name vertices from 0 to {}",
+                        object.mesh.positions.len().max(1) - 1
+                    ),
+                });
+            }
+        }
+        Ok(())
+    }
+}

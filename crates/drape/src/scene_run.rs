@@ -1,0 +1,328 @@
+//! Running a scene: all deformable objects in one model, stepped in time or led to rest.
+
+use crate::laws::elastic::ElasticLaw;
+use crate::measure::{Measures, measure};
+use crate::scene::{MethodKind, ObjectKind, Scene, SceneEnd};
+use crate::{
+    Cloth, DrapeError, Elastic, ElasticEnd, Model, RestRun, RestSettings, State, StepSettings,
+    Workspace, merge_map, step_in_time,
+};
+use std::sync::Arc;
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
+
+/// A scene on its way.
+pub struct SceneRun {
+    /// The model of the present structure.
+    pub model: Model,
+    /// The state.
+    pub state: State,
+    scene: Scene,
+    cloth: Cloth,
+    /// First vertex of each object in the cloth as loaded; nothing for solid ones.
+    first: Vec<Option<u32>>,
+    /// Present vertex of every vertex as loaded.
+    target: Vec<u32>,
+    pins: Vec<u32>,
+    /// Elastics still acting, as indices into the scene's.
+    acting: Vec<usize>,
+    workspace: Workspace,
+    rest: RestRun,
+    steps: usize,
+    split_steps: usize,
+}
+
+impl SceneRun {
+    /// Builds the model of a scene.
+    ///
+    /// # Errors
+    /// Whatever [`Scene::check`] and [`Model::new`] refuse, and a scene without cloth.
+    pub fn new(scene: Scene) -> Result<Self, DrapeError> {
+        scene.check()?;
+        let mut cloth = Cloth::default();
+        let (mut first, mut pins) = (Vec::new(), Vec::new());
+        for object in &scene.objects {
+            let ObjectKind::Deformable {
+                material,
+                pins: own,
+            } = &object.kind
+            else {
+                first.push(None);
+                continue;
+            };
+            let start = cloth.positions.len() as u32;
+            first.push(Some(start));
+            pins.extend(own.iter().map(|pin| pin + start));
+            let part = match &object.cloth {
+                Some(part) => part.clone(),
+                None => Cloth::from_mesh(&object.name, &object.mesh, material.clone())?,
+            };
+            append(&mut cloth, part);
+        }
+        if cloth.triangles.is_empty() {
+            return Err(DrapeError::Scene {
+                place: "objects".to_owned(),
+                what: "no deformable object has any triangle".to_owned(),
+                remedy: "add an object of kind \"deformable\"".to_owned(),
+            });
+        }
+        let target = (0..cloth.positions.len() as u32).collect();
+        let acting = (0..scene.elastics.len()).collect();
+        let state = State {
+            positions: cloth.positions.clone(),
+            ..State::default()
+        };
+        let mut run = Self {
+            model: Model::new("scene", &cloth)?,
+            state,
+            rest: RestRun::new(RestSettings {
+                residual: 1e-3,
+                steps: 2000,
+                ..RestSettings::default()
+            }),
+            workspace: Workspace::default(),
+            scene,
+            cloth,
+            first,
+            target,
+            pins,
+            acting,
+            steps: 0,
+            split_steps: 0,
+        };
+        run.state = State::at_rest(&run.model, run.cloth.positions.clone());
+        run.furnish();
+        Ok(run)
+    }
+
+    /// Gives the model its colliders, pins and elastics.
+    fn furnish(&mut self) {
+        let solids = self
+            .scene
+            .objects
+            .iter()
+            .filter(|o| o.kind == ObjectKind::Static);
+        if self.model.colliders.is_empty() {
+            self.model.colliders = solids
+                .map(|o| Arc::new(SurfaceTree::new(o.mesh.clone())))
+                .collect();
+        }
+        self.model.contact = self.scene.contact;
+        self.model.gravity = self.scene.gravity;
+        for &pin in &self.pins {
+            self.model.pinned[self.target[pin as usize] as usize] = true;
+        }
+        let elastics = self
+            .acting
+            .iter()
+            .filter_map(|&e| self.elastic(e))
+            .collect();
+        self.model.set_elastics(elastics);
+    }
+
+    /// A vertex of the present structure, or a place.
+    fn end(&self, end: SceneEnd) -> ElasticEnd {
+        match end {
+            SceneEnd::Point(point) => ElasticEnd::Point(point),
+            SceneEnd::Vertex { object, vertex } => match self.first[object] {
+                Some(first) => ElasticEnd::Vertex(self.target[(first + vertex) as usize]),
+                None => {
+                    ElasticEnd::Point(self.scene.objects[object].mesh.positions[vertex as usize])
+                }
+            },
+        }
+    }
+
+    fn elastic(&self, index: usize) -> Option<Elastic> {
+        let elastic = &self.scene.elastics[index];
+        let law = ElasticLaw {
+            stiffness: elastic.stiffness,
+            largest_force: f64::INFINITY,
+        };
+        match (self.end(elastic.from), self.end(elastic.to)) {
+            (ElasticEnd::Vertex(a), ElasticEnd::Vertex(b)) if a == b => None,
+            (ElasticEnd::Vertex(from), to) | (to, ElasticEnd::Vertex(from)) => {
+                Some(Elastic { from, to, law })
+            }
+            // Two fixed places: nothing moves.
+            _ => None,
+        }
+    }
+
+    /// Whether the duration is over, or rest is reached.
+    pub fn finished(&self) -> bool {
+        match self.scene.method {
+            MethodKind::ImplicitEuler => {
+                self.steps as f64 * self.scene.step >= self.scene.duration - 1e-9 * self.scene.step
+            }
+            MethodKind::Rest => self.rest.finished(),
+        }
+    }
+
+    /// Share of the way, 0..=1.
+    pub fn share(&self) -> f64 {
+        match self.scene.method {
+            MethodKind::ImplicitEuler if self.scene.duration > 0.0 => {
+                (self.steps as f64 * self.scene.step / self.scene.duration).min(1.0)
+            }
+            MethodKind::Rest => {
+                ((1.0 / self.rest.residual().max(1e-3)).log10() / 3.0).clamp(0.0, 1.0)
+            }
+            MethodKind::ImplicitEuler => 1.0,
+        }
+    }
+
+    /// Steps taken.
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Steps that had to be cut into smaller ones.
+    pub fn split_steps(&self) -> usize {
+        self.split_steps
+    }
+
+    /// Takes one step, then merges what elastics have drawn together.
+    ///
+    /// # Errors
+    /// When a step fails at every size; the state is the last good one.
+    pub fn advance(&mut self) -> Result<(), DrapeError> {
+        match self.scene.method {
+            MethodKind::ImplicitEuler => {
+                let settings = StepSettings {
+                    step: self.scene.step,
+                    drag: self.scene.air_drag,
+                    ..StepSettings::default()
+                };
+                let (_, pieces) =
+                    step_in_time(&self.model, &mut self.state, &mut self.workspace, &settings)?;
+                self.split_steps += usize::from(pieces > 1);
+            }
+            MethodKind::Rest => {
+                self.rest
+                    .advance(&self.model, &mut self.state, &mut self.workspace)?;
+            }
+        }
+        self.steps += 1;
+        self.merge_close()
+    }
+
+    /// Merges the ends of elastics that are close enough. Positions and velocities of joined
+    /// vertices become their means, weighted by mass, so momentum is kept.
+    fn merge_close(&mut self) -> Result<(), DrapeError> {
+        let mut pairs = Vec::new();
+        self.acting.retain(|&index| {
+            let elastic = &self.scene.elastics[index];
+            let ends = [elastic.from, elastic.to].map(|end| match end {
+                SceneEnd::Vertex { object, vertex } => {
+                    self.first[object].map(|f| self.target[(f + vertex) as usize])
+                }
+                SceneEnd::Point(_) => None,
+            });
+            let (Some(within), [Some(a), Some(b)]) = (elastic.merge_within, ends) else {
+                return true;
+            };
+            let gap = (self.state.positions[a as usize] - self.state.positions[b as usize]).norm();
+            if gap <= within {
+                pairs.push([a, b]);
+            }
+            gap > within
+        });
+        if pairs.is_empty() {
+            return Ok(());
+        }
+        let (map, count) = merge_map(self.state.positions.len(), pairs);
+        let mut mass = vec![0.0; count];
+        let mut momentum = vec![Vec3::zeros(); count];
+        let mut moment = vec![Vec3::zeros(); count];
+        for (v, &to) in map.iter().enumerate() {
+            mass[to as usize] += self.model.mass[v];
+            momentum[to as usize] += self.state.velocities[v] * self.model.mass[v];
+            moment[to as usize] += self.state.positions[v] * self.model.mass[v];
+        }
+        self.cloth.positions.clone_from(&self.state.positions);
+        let mut merged = self.cloth.merged(&map, count);
+        for (position, (moment, mass)) in merged.positions.iter_mut().zip(moment.iter().zip(&mass))
+        {
+            *position = moment / *mass;
+        }
+        let mut model = Model::new("scene", &merged)?;
+        model.colliders = std::mem::take(&mut self.model.colliders);
+        self.model = model;
+        let time = self.state.time;
+        self.state = State::at_rest(&self.model, merged.positions.clone());
+        self.state.time = time;
+        for (velocity, (momentum, mass)) in self
+            .state
+            .velocities
+            .iter_mut()
+            .zip(momentum.iter().zip(&mass))
+        {
+            *velocity = momentum / *mass;
+        }
+        self.cloth = merged;
+        for target in &mut self.target {
+            *target = map[*target as usize];
+        }
+        self.workspace = Workspace::default();
+        self.furnish();
+        Ok(())
+    }
+
+    /// Surface of every object as it lies now, in the order of the scene.
+    pub fn meshes(&self) -> Vec<TriangleMesh> {
+        self.scene
+            .objects
+            .iter()
+            .zip(&self.first)
+            .map(|(object, first)| match first {
+                None => object.mesh.clone(),
+                Some(first) => TriangleMesh {
+                    positions: (0..object.mesh.positions.len())
+                        .map(|v| self.state.positions[self.target[*first as usize + v] as usize])
+                        .collect(),
+                    triangles: object.mesh.triangles.clone(),
+                },
+            })
+            .collect()
+    }
+
+    /// The scene as it was given.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Largest gap of an elastic that still acts [m].
+    pub fn elastic_gap(&self) -> f64 {
+        self.model
+            .elastics
+            .iter()
+            .map(|elastic| {
+                let other = match elastic.to {
+                    ElasticEnd::Vertex(v) => self.state.positions[v as usize],
+                    ElasticEnd::Point(p) => p,
+                };
+                (self.state.positions[elastic.from as usize] - other).norm()
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// Measures the present state.
+    pub fn measure(&mut self) -> Measures {
+        measure(&self.model, &self.state, &mut self.workspace, &[])
+    }
+}
+
+/// Adds a part's vertices, triangles and materials to a cloth.
+fn append(cloth: &mut Cloth, part: Cloth) {
+    let vertex = cloth.positions.len() as u32;
+    let material = cloth.materials.len() as u16;
+    cloth.positions.extend(part.positions);
+    cloth
+        .triangles
+        .extend(part.triangles.iter().map(|t| t.map(|v| v + vertex)));
+    cloth.rest.extend(part.rest);
+    cloth
+        .material
+        .extend(part.material.iter().map(|m| m + material));
+    cloth.materials.extend(part.materials);
+}
