@@ -63,7 +63,8 @@ fn a_free_sheet_falls_as_implicit_euler_falls() {
     // Implicit Euler after n steps: fallen g h^2 n (n + 1) / 2.
     let expected = 1.0 - 9.81 * 0.01 * 0.01 * 50.0 * 51.0 / 2.0;
     for p in &run.state.positions {
-        assert!((p.y - expected).abs() < 1e-9, "{} {expected}", p.y);
+        // Newton stops at 1e-8 N: h^2 / m of that, 3e-9 m, in each of 50 steps.
+        assert!((p.y - expected).abs() < 1.5e-7, "{} {expected}", p.y);
     }
 }
 
@@ -94,7 +95,8 @@ fn a_hanging_strip_stretches_by_its_weight() {
     let pieces = 1000;
     let expected: f64 = (0..pieces)
         .map(|k| {
-            let load = material.density * 9.81 * 0.5 * (f64::from(k) + 0.5) / f64::from(pieces) / 50.0;
+            let load =
+                material.density * 9.81 * 0.5 * (f64::from(k) + 0.5) / f64::from(pieces) / 50.0;
             let mut stretch = 1.0f64;
             for _ in 0..30 {
                 let excess = stretch * (stretch * stretch - 1.0) / 2.0 - load;
