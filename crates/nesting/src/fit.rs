@@ -78,18 +78,27 @@ impl NoFit {
             return false;
         }
         let mut inside = false;
-        for [a, b] in &self.edges {
+        for &[a, b] in &self.edges {
+            if a.y.max(b.y) < at.y - TOUCH || a.y.min(b.y) > at.y + TOUCH {
+                continue;
+            }
+            if touches(at, [a, b]) {
+                return false;
+            }
             if (a.y <= at.y) != (b.y <= at.y) {
                 let x = a.x + (b.x - a.x) * ((at.y - a.y) / (b.y - a.y));
                 inside ^= x > at.x;
             }
         }
         inside
-            && self
-                .edges
-                .iter()
-                .all(|&edge| point_segment_distance(at, edge) > TOUCH)
     }
+}
+
+/// Whether a point is as near to a segment as [`TOUCH`].
+fn touches(at: Vec2, [a, b]: [Vec2; 2]) -> bool {
+    a.x.max(b.x) >= at.x - TOUCH
+        && a.x.min(b.x) <= at.x + TOUCH
+        && point_segment_distance(at, [a, b]) <= TOUCH
 }
 
 type PairKey = (usize, usize);

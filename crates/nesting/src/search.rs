@@ -20,7 +20,7 @@ pub struct Search {
 impl Default for Search {
     fn default() -> Self {
         Self {
-            positions: 20_000_000,
+            positions: 10_000_000,
             seed: 1,
         }
     }

@@ -1,5 +1,6 @@
 //! Published nesting instances: every marker passes the referee, and the densities are printed.
 //! Skipped, with a word, where the instances are not at hand.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;

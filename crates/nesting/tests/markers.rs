@@ -1,4 +1,5 @@
 //! Markers of all kinds pass the referee; jobs that cannot be done are refused.
+#![allow(clippy::unwrap_used)]
 
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
