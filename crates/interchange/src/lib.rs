@@ -7,12 +7,14 @@
 
 mod atomic;
 mod error;
+mod garmentcode;
 mod gltf;
 mod obj;
 mod obj_read;
 
 pub use atomic::{write_all_atomically, write_atomically};
 pub use error::{FileError, FormatError, read_text};
+pub use garmentcode::{GarmentCodeReading, GarmentCodeWriting, read_garmentcode, write_garmentcode};
 pub use gltf::{GlbMesh, GlbPrimitive, GlbScene, write_glb};
 pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;

@@ -1,0 +1,385 @@
+//! Samples along every edge: the same number on both sides of each seam, whatever their
+//! lengths, with interval lengths that grow gently away from short ones.
+
+use crate::chain::{Matching, Nodes, Sewing};
+use crate::edges::EdgeTable;
+use crate::links::{Links, OrientedLinks};
+use toile_pattern::Draft;
+
+/// How much the interval length may grow per metre walked. Neighbouring intervals then differ
+/// by a third at most, which keeps triangle angles over 25 degrees.
+pub(crate) const GROWTH: f64 = 0.3;
+/// Least interval on the short side of a gathered seam, as a share of the edge length.
+const SMALLEST_GATHERED: f64 = 0.3;
+/// Intervals shorter than this share of the edge length make their neighbours no shorter: one
+/// tiny edge must not fill a whole garment with tiny triangles.
+const SMALLEST_SPREAD: f64 = 0.15;
+
+/// Two vertices to sew: edge and sample on each side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct SampleStitch {
+    pub draft_seam: usize,
+    /// Edge and index of its sample, for both sides.
+    pub samples: [(usize, usize); 2],
+}
+
+/// Samples of all edges and the stitches between them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sampling {
+    /// Arc-length fractions of each edge's samples, both ends included.
+    pub fractions: Vec<Vec<f64>>,
+    /// Stitches, seam by seam in walking order.
+    pub stitches: Vec<SampleStitch>,
+}
+
+/// A stretch between two neighbouring nodes of an edge.
+struct Interval {
+    edge: usize,
+    nodes: [usize; 2],
+    from: f64,
+    to: f64,
+    length: f64,
+}
+
+/// Intervals that are sewn together and so get the same samples.
+struct Class {
+    members: Vec<(usize, bool)>,
+    /// The length its samples are counted for [m].
+    length: f64,
+    /// Wanted interval [m] at equal steps along it.
+    size: Vec<f64>,
+    /// Whether it is sewn to itself end for end, so that its samples must be symmetric.
+    symmetric: bool,
+}
+
+/// Chooses the samples of all edges.
+pub(crate) fn sample(
+    draft: &Draft,
+    table: &EdgeTable,
+    matching: &Matching,
+    spacing: f64,
+) -> Sampling {
+    let nodes = &matching.nodes;
+    let (intervals, first) = intervals(table, nodes);
+    let (mut links, partners) = link_intervals(matching, &first, intervals.len());
+    let gathered = gathered_intervals(draft, &intervals, &partners);
+    let mut classes = classes(table, &intervals, &mut links, &gathered, spacing);
+    let groups = node_groups(table, nodes);
+    grade(&mut classes, &intervals, &groups, spacing);
+    let steps: Vec<Vec<f64>> = classes.iter().map(Class::places).collect();
+    assemble(table, matching, &intervals, (&classes, &steps), &first)
+}
+
+fn intervals(table: &EdgeTable, nodes: &Nodes) -> (Vec<Interval>, Vec<usize>) {
+    let mut intervals = Vec::new();
+    let mut first = Vec::new();
+    for (edge, list) in nodes.on_edge.iter().enumerate() {
+        first.push(intervals.len());
+        for pair in list.windows(2) {
+            let [from, to] = [pair[0], pair[1]].map(|n| nodes.all[n].fraction);
+            intervals.push(Interval {
+                edge,
+                nodes: [pair[0], pair[1]],
+                from,
+                to,
+                length: (to - from) * table.edges[edge].length,
+            });
+        }
+    }
+    (intervals, first)
+}
+
+/// Which intervals two matched stations span on each side: interval and whether it is walked
+/// backwards.
+fn spanned(
+    nodes: &Nodes,
+    first: &[usize],
+    sewing: &Sewing,
+    side: usize,
+) -> Vec<Option<(usize, bool)>> {
+    let mut found = Vec::new();
+    let index_on_edge = |node: usize| {
+        let edge = nodes.all[node].edge;
+        nodes.on_edge[edge].iter().position(|&n| n == node)
+    };
+    for pair in sewing.stations(nodes, side).windows(2) {
+        let (Some(&from), Some(&to)) = (pair[0].nodes.last(), pair[1].nodes.first()) else {
+            found.push(None);
+            continue;
+        };
+        let edge = nodes.all[from].edge;
+        found.push(match (index_on_edge(from), index_on_edge(to)) {
+            (Some(i), Some(j)) if nodes.all[to].edge == edge && i.abs_diff(j) == 1 => {
+                Some((first[edge] + i.min(j), i > j))
+            }
+            _ => None,
+        });
+    }
+    found
+}
+
+/// Two intervals a seam sews together: the seam, both intervals.
+type Partners = Vec<(usize, [usize; 2])>;
+
+fn link_intervals(matching: &Matching, first: &[usize], count: usize) -> (OrientedLinks, Partners) {
+    let mut links = OrientedLinks::new(count);
+    let mut partners = Vec::new();
+    for sewing in &matching.sewings {
+        let sides = [0, 1].map(|side| spanned(&matching.nodes, first, sewing, side));
+        for (a, b) in sides[0].iter().zip(&sides[1]) {
+            if let (&Some((a, a_back)), &Some((b, b_back))) = (a, b) {
+                links.join(a, b, a_back != b_back);
+                partners.push((sewing.seam, [a, b]));
+            }
+        }
+    }
+    (links, partners)
+}
+
+fn gathered_intervals(draft: &Draft, intervals: &[Interval], partners: &Partners) -> Vec<bool> {
+    let mut gathered = vec![false; intervals.len()];
+    for &(seam, pair) in partners {
+        if draft.seams[seam].gathered {
+            for interval in pair {
+                gathered[interval] = true;
+            }
+        }
+    }
+    gathered
+}
+
+fn classes(
+    table: &EdgeTable,
+    intervals: &[Interval],
+    links: &mut OrientedLinks,
+    gathered: &[bool],
+    spacing: f64,
+) -> Vec<Class> {
+    let mut members: Vec<Vec<(usize, bool)>> = vec![Vec::new(); intervals.len()];
+    for interval in 0..intervals.len() {
+        let (root, reversed) = links.root(interval);
+        members[root].push((interval, reversed));
+    }
+    let mut classes = Vec::new();
+    for (root, members) in members.into_iter().enumerate() {
+        if members.is_empty() {
+            continue;
+        }
+        let lengths = members.iter().map(|m| intervals[m.0].length);
+        let longest = lengths.clone().fold(0.0, f64::max);
+        let shortest = lengths.clone().fold(f64::INFINITY, f64::min);
+        let mean = lengths.sum::<f64>() / members.len() as f64;
+        let length = if members.iter().any(|m| gathered[m.0]) {
+            longest.min(shortest / SMALLEST_GATHERED).max(mean)
+        } else {
+            mean
+        };
+        let steps = ((2.0 * longest / spacing).ceil()).clamp(4.0, 8000.0) as usize;
+        let mut size = vec![spacing; steps + 1];
+        for &(m, reversed) in &members {
+            let interval = &intervals[m];
+            for (k, size) in size.iter_mut().enumerate() {
+                let along = k as f64 / steps as f64;
+                let along = if reversed { 1.0 - along } else { along };
+                let fraction = interval.from + along * (interval.to - interval.from);
+                *size = size.min(table.edges[interval.edge].size_at(fraction));
+            }
+        }
+        for size in &mut size {
+            *size = size.min(length.max(1e-9));
+        }
+        classes.push(Class {
+            members,
+            length,
+            size,
+            symmetric: links.is_symmetric(root),
+        });
+    }
+    classes
+}
+
+/// Groups of nodes at the same corner of a piece.
+fn node_groups(table: &EdgeTable, nodes: &Nodes) -> Vec<usize> {
+    let mut links = Links::new(nodes.all.len());
+    for (edge, list) in nodes.on_edge.iter().enumerate() {
+        let next = &nodes.on_edge[table.edges[edge].next];
+        if let (Some(&last), Some(&first)) = (list.last(), next.first()) {
+            links.join(last, first);
+        }
+    }
+    (0..nodes.all.len()).map(|n| links.root(n)).collect()
+}
+
+/// Limits the growth of the wanted interval along each class and round the corners of pieces.
+/// What a member gets is the class's interval times its share of the class's length.
+fn grade(classes: &mut [Class], intervals: &[Interval], groups: &[usize], spacing: f64) {
+    let mut node_size = vec![f64::INFINITY; groups.len()];
+    for _ in 0..100 {
+        let mut changed = false;
+        for class in classes.iter_mut() {
+            let last = class.size.len() - 1;
+            let ends = |reversed: bool| if reversed { [last, 0] } else { [0, last] };
+            for &(m, reversed) in &class.members {
+                let share = intervals[m].length / class.length;
+                for (end, node) in ends(reversed).into_iter().zip(intervals[m].nodes) {
+                    class.size[end] = class.size[end].min(node_size[groups[node]] / share);
+                }
+            }
+            class.limit_growth();
+            for &(m, reversed) in &class.members {
+                let share = intervals[m].length / class.length;
+                for (end, node) in ends(reversed).into_iter().zip(intervals[m].nodes) {
+                    let known = &mut node_size[groups[node]];
+                    let size = (class.size[end] * share).max(SMALLEST_SPREAD * spacing);
+                    if size < *known - 1e-12 {
+                        *known = size;
+                        changed = true;
+                    }
+                }
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+}
+
+impl Class {
+    fn limit_growth(&mut self) {
+        let last = self.size.len() - 1;
+        if self.symmetric {
+            for k in 0..=last / 2 {
+                let least = self.size[k].min(self.size[last - k]);
+                (self.size[k], self.size[last - k]) = (least, least);
+            }
+        }
+        let growth = GROWTH * self.length / last as f64;
+        for k in 1..=last {
+            self.size[k] = self.size[k].min(self.size[k - 1] + growth);
+        }
+        for k in (0..last).rev() {
+            self.size[k] = self.size[k].min(self.size[k + 1] + growth);
+        }
+    }
+
+    /// Fractions of its samples, both ends included: equal steps of the integral of one over
+    /// the wanted interval.
+    fn places(&self) -> Vec<f64> {
+        let last = self.size.len() - 1;
+        let step = self.length / last as f64;
+        let mut total = vec![0.0];
+        for k in 0..last {
+            let density = 0.5 * (1.0 / self.size[k] + 1.0 / self.size[k + 1]);
+            total.push(total[k] + density * step);
+        }
+        let wanted = total[last];
+        let low = wanted.floor().max(1.0);
+        // The count whose intervals are nearest to the wanted ones by ratio.
+        let count = if wanted > (low * (low + 1.0)).sqrt() {
+            low + 1.0
+        } else {
+            low
+        };
+        let mut places = vec![0.0];
+        let mut k = 0;
+        for i in 1..count as usize {
+            let target = wanted * i as f64 / count;
+            while k + 1 < last && total[k + 1] < target {
+                k += 1;
+            }
+            let share = (target - total[k]) / (total[k + 1] - total[k]);
+            places.push((k as f64 + share) / last as f64);
+        }
+        places.push(1.0);
+        if self.symmetric {
+            let mirrored: Vec<f64> = places.iter().rev().map(|p| 1.0 - p).collect();
+            for (place, other) in places.iter_mut().zip(mirrored) {
+                *place = 0.5 * (*place + other);
+            }
+        }
+        places
+    }
+}
+
+fn assemble(
+    table: &EdgeTable,
+    matching: &Matching,
+    intervals: &[Interval],
+    (classes, steps): (&[Class], &[Vec<f64>]),
+    first: &[usize],
+) -> Sampling {
+    let mut class_of = vec![(0, false); intervals.len()];
+    for (c, class) in classes.iter().enumerate() {
+        for &(m, reversed) in &class.members {
+            class_of[m] = (c, reversed);
+        }
+    }
+    let mut fractions: Vec<Vec<f64>> = vec![vec![0.0]; table.edges.len()];
+    // Index of each interval's first sample on its edge.
+    let mut offset = Vec::with_capacity(intervals.len());
+    for (m, interval) in intervals.iter().enumerate() {
+        let list = &mut fractions[interval.edge];
+        offset.push(list.len() - 1);
+        let (c, reversed) = class_of[m];
+        let count = steps[c].len() - 1;
+        for k in 1..=count {
+            let along = if reversed {
+                1.0 - steps[c][count - k]
+            } else {
+                steps[c][k]
+            };
+            list.push(if k == count {
+                interval.to
+            } else {
+                interval.from + along * (interval.to - interval.from)
+            });
+        }
+    }
+    let mut sampling = Sampling {
+        fractions,
+        stitches: Vec::new(),
+    };
+    for sewing in &matching.sewings {
+        stitch(&mut sampling, matching, sewing, first, &|m| {
+            (
+                intervals[m].edge,
+                offset[m],
+                steps[class_of[m].0].len() - 1,
+            )
+        });
+    }
+    sampling
+}
+
+fn stitch(
+    sampling: &mut Sampling,
+    matching: &Matching,
+    sewing: &Sewing,
+    first: &[usize],
+    samples_of: &dyn Fn(usize) -> (usize, usize, usize),
+) {
+    let sides = [0, 1].map(|side| spanned(&matching.nodes, first, sewing, side));
+    let mut previous: Option<[(usize, usize); 2]> = None;
+    for (a, b) in sides[0].iter().zip(&sides[1]) {
+        let (&Some(a), &Some(b)) = (a, b) else {
+            continue;
+        };
+        let walk = |(m, backward): (usize, bool), k: usize| {
+            let (edge, offset, count) = samples_of(m);
+            (edge, offset + if backward { count - k } else { k })
+        };
+        let count = samples_of(a.0).2.min(samples_of(b.0).2);
+        for k in 0..=count {
+            let samples = [walk(a, k), walk(b, k)];
+            // Where a chain passes from one edge to the next, both vertices of the joint are
+            // sewn to the other side, so that merging makes one of all of them.
+            if previous != Some(samples) {
+                sampling.stitches.push(SampleStitch {
+                    draft_seam: sewing.seam,
+                    samples,
+                });
+            }
+            previous = Some(samples);
+        }
+    }
+}

@@ -1,0 +1,326 @@
+//! A specification as a pattern document.
+
+use super::specification::{self, SpecPanel, SpecStitch, Specification};
+use crate::FormatError;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+use toile_geometry::{Curve, Vec2, Vec3};
+use toile_pattern::{
+    Edge, EdgeCurve, EdgeId, Fabric, NAME_LENGTH, Panel, Pattern, Point, PointId, PointPlace, Seam,
+    Span, WornRule,
+};
+
+/// A seam whose sides differ by more than this ratio is gathered on purpose.
+const GATHER_RATIO: f64 = 1.05;
+/// A seam is reported as perhaps twisted when its ends lie this much farther apart in space
+/// than they would the other way round.
+const TWIST_RATIO: f64 = 2.0;
+
+/// What came out of a file.
+#[derive(Clone, Debug)]
+pub struct GarmentCodeReading {
+    /// The pattern.
+    pub pattern: Pattern,
+    /// What was left out or assumed, with its place in the file.
+    pub notes: Vec<FormatError>,
+}
+
+/// Reads a GarmentCode specification.
+///
+/// Coordinates become metres. Panels keep their winding and their place in space: a clockwise
+/// panel is one drawn from its wrong side. A stitch sews the start of one edge to the end of the
+/// other, which puts right sides together and keeps the garment orientable; `right_wrong` sews
+/// start to start. Files of the older kind (curvatures as bare lists, or absolute coordinates)
+/// are wound either way, so there the direction that leaves the ends nearer to each other in
+/// space is taken. Edges of one panel that share a vertex (a dart) keep it. Sides whose lengths
+/// differ by more than 5 % are gathered, smaller differences are ease.
+///
+/// # Errors
+/// Text that is not such a specification, with the path of the place and a remedy.
+pub fn read_garmentcode(text: &str) -> Result<GarmentCodeReading, FormatError> {
+    let specification = specification::read(text)?;
+    let mut builder = Builder::default();
+    builder.notes.clone_from(&specification.notes);
+    let fabric = builder.pattern.ids.take_fabric();
+    builder.pattern.fabrics.push(Arc::new(Fabric {
+        id: fabric,
+        name: "cotton jersey".to_owned(),
+        density: 0.2,
+        thickness: 5e-4,
+        stretch: [600.0, 600.0],
+        shear: 80.0,
+        poisson: 0.3,
+        bend: [1.5e-5; 3],
+        friction: 0.4,
+        width: 1.5,
+        nap: false,
+        colour: [0.45, 0.58, 0.72],
+    }));
+    for panel in &specification.panels {
+        builder.add_panel(panel, fabric);
+    }
+    builder.add_seams(&specification);
+    Ok(GarmentCodeReading {
+        pattern: builder.pattern,
+        notes: builder.notes,
+    })
+}
+
+/// Where an edge of the file went: its id, and whether the document walks it backwards.
+type Place = (EdgeId, bool);
+
+#[derive(Default)]
+struct Builder {
+    pattern: Pattern,
+    notes: Vec<FormatError>,
+    names: BTreeSet<String>,
+    /// For each panel of the file, where its edges went.
+    edges: Vec<Vec<Option<Place>>>,
+}
+
+/// A name a part may have, unique among those taken.
+fn part_name(wanted: &str, taken: &mut BTreeSet<String>) -> String {
+    let clean: String = wanted
+        .chars()
+        .filter(|c| !c.is_control() && *c != '\'')
+        .take(NAME_LENGTH - 8)
+        .collect();
+    let clean = clean.trim();
+    let base = if clean.is_empty() { "unnamed" } else { clean };
+    let mut name = base.to_owned();
+    let mut count = 1;
+    while !taken.insert(name.clone()) {
+        count += 1;
+        name = format!("{base} {count}");
+    }
+    name
+}
+
+impl Builder {
+    fn add_panel(&mut self, source: &SpecPanel, fabric: toile_pattern::FabricId) {
+        let name = part_name(&source.name, &mut self.names);
+        if name != source.name {
+            self.notes.push(FormatError::new(
+                format!("pattern.panels.{}", source.name),
+                format!("the panel is called \"{name}\" here"),
+                "names have 1 to 80 characters and no quotes",
+            ));
+        }
+        let id = self.pattern.ids.take_panel();
+        let mut panel = Panel::new(id, name, fabric);
+        let translation = source.place.translation.vector;
+        panel.worn = WornRule::Placed {
+            translation: translation.into(),
+            rotation: source.place.rotation.coords.into(),
+        };
+        let mut corners: BTreeMap<usize, PointId> = BTreeMap::new();
+        let mut places = vec![None; source.edges.len()];
+        let mut labels = label_counts(source);
+        let outline_turns = turning(source, 0);
+        for (k, walk) in source.loops.iter().enumerate() {
+            let mut walk = walk.clone();
+            if k > 0 && turning(source, k) == outline_turns {
+                walk.reverse();
+                for (_, backwards) in &mut walk {
+                    *backwards = !*backwards;
+                }
+            }
+            let mut contour = Vec::with_capacity(walk.len());
+            for (index, backwards) in walk {
+                let edge = self.add_edge(&mut panel, source, (index, backwards), &mut corners, &mut labels);
+                places[index] = Some((edge.id, backwards));
+                contour.push(edge);
+            }
+            if k == 0 {
+                panel.outline = contour;
+            } else {
+                panel.holes.push(contour);
+            }
+        }
+        self.edges.push(places);
+        self.pattern.panels.push(Arc::new(panel));
+    }
+
+    fn add_edge(
+        &mut self,
+        panel: &mut Panel,
+        source: &SpecPanel,
+        (index, backwards): (usize, bool),
+        corners: &mut BTreeMap<usize, PointId>,
+        labels: &mut BTreeMap<String, usize>,
+    ) -> Edge {
+        let spec = &source.edges[index];
+        let ids = &mut self.pattern.ids;
+        let mut ends = [PointId::default(); 2];
+        for (k, end) in ends.iter_mut().enumerate() {
+            let vertex = spec.ends[k];
+            let at = if k == 0 { spec.curve.start() } else { spec.curve.end() };
+            *end = *corners.entry(vertex).or_insert_with(|| {
+                let id = ids.take_point();
+                panel.points.push(Point {
+                    id,
+                    name: format!("p{vertex}"),
+                    place: PointPlace::at(at.x, at.y),
+                });
+                id
+            });
+        }
+        let mut control = |number: usize, p: Vec2| {
+            let id = ids.take_point();
+            panel.points.push(Point {
+                id,
+                name: format!("e{index}c{number}"),
+                place: PointPlace::at(p.x, p.y),
+            });
+            id
+        };
+        let mut curve = match spec.curve {
+            Curve::Line { .. } => EdgeCurve::Line,
+            Curve::Arc { bulge, .. } => EdgeCurve::Arc {
+                bulge: (if backwards { -bulge } else { bulge }).into(),
+            },
+            Curve::Quadratic { control: p, .. } => EdgeCurve::Quadratic {
+                control: control(1, p),
+            },
+            Curve::Cubic { controls, .. } => EdgeCurve::Cubic {
+                controls: [control(1, controls[0]), control(2, controls[1])],
+            },
+        };
+        if backwards {
+            ends.reverse();
+            if let EdgeCurve::Cubic { controls } = &mut curve {
+                controls.reverse();
+            }
+        }
+        let plain = format!("e{index}");
+        let name = match &spec.label {
+            Some(label) if labels.get(label) == Some(&1) && !is_plain(label) => label.clone(),
+            Some(label) => {
+                self.notes.push(FormatError::new(
+                    format!("pattern.panels.{}.edges[{index}].label", source.name),
+                    format!("the label \"{label}\" is not kept: it is not unique in its panel"),
+                    "name the edge in the pattern",
+                ));
+                plain
+            }
+            None => plain,
+        };
+        Edge {
+            id: ids.take_edge(),
+            name,
+            ends,
+            curve,
+            seam_allowance: None,
+        }
+    }
+
+    fn add_seams(&mut self, specification: &Specification) {
+        let mut uses: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+        for stitch in &specification.stitches {
+            for side in stitch.sides {
+                *uses.entry(side).or_default() += 1;
+            }
+        }
+        let mut names = BTreeSet::new();
+        for stitch in &specification.stitches {
+            let against = self.runs_against(specification, stitch);
+            let mut spans = Vec::new();
+            for (panel, edge) in stitch.sides {
+                let Some((id, backwards)) = self.edges[panel][edge] else {
+                    continue;
+                };
+                let span = Span::whole(self.pattern.panels[panel].id, id);
+                let flip = backwards != (spans.len() == 1 && against);
+                spans.push(if flip { span.reversed() } else { span });
+            }
+            let Ok([first, second]) = <[Span; 2]>::try_from(spans) else {
+                continue;
+            };
+            let lengths = stitch
+                .sides
+                .map(|(panel, edge)| specification.panels[panel].edges[edge].curve.length());
+            let label = |(panel, edge): (usize, usize)| {
+                let name: String = self.pattern.panels[panel].name.chars().take(30).collect();
+                format!("{} e{edge}", name.trim())
+            };
+            let name = format!("{} to {}", label(stitch.sides[0]), label(stitch.sides[1]));
+            let name = part_name(&name, &mut names);
+            let (longer, shorter) = (lengths[0].max(lengths[1]), lengths[0].min(lengths[1]));
+            let mut seam = Seam::new(
+                self.pattern.ids.take_seam(),
+                name,
+                [vec![first], vec![second]],
+            );
+            seam.gathered = longer > GATHER_RATIO * shorter;
+            // Rounded up to whole micrometres, so that the check against it always holds.
+            seam.ease = (((longer - shorter) * 1e6).ceil() * 1e-6 + 1e-6).into();
+            seam.right_sides_together = !stitch.right_wrong;
+            seam.multi_ply = stitch.sides.iter().any(|side| uses[side] > 1);
+            if seam.multi_ply {
+                self.notes.push(FormatError::new(
+                    &stitch.path,
+                    "one of its edges is in another stitch too",
+                    "it is sewn as more than two plies",
+                ));
+            }
+            self.pattern.seams.push(Arc::new(seam));
+        }
+    }
+
+    /// Whether the start of one edge is sewn to the end of the other.
+    fn runs_against(&mut self, specification: &Specification, stitch: &SpecStitch) -> bool {
+        let [a, b] = stitch.sides.map(|(panel, edge)| {
+            let panel = &specification.panels[panel];
+            let curve = &panel.edges[edge].curve;
+            [curve.start(), curve.end()]
+                .map(|p| panel.place.rotation * Vec3::new(p.x, p.y, 0.0) + panel.place.translation.vector)
+        });
+        let [same, against] = [[0, 1], [1, 0]].map(|order| {
+            (a[0] - b[order[0]]).norm() + (a[1] - b[order[1]]).norm()
+        });
+        if stitch.sides[0].0 == stitch.sides[1].0 {
+            let panel = &specification.panels[stitch.sides[0].0];
+            let [e, f] = stitch.sides.map(|(_, edge)| panel.edges[edge].ends);
+            if e[0] == f[0] || e[1] == f[1] {
+                return false;
+            }
+            if e[0] == f[1] || e[1] == f[0] {
+                return true;
+            }
+        }
+        if specification.older {
+            return against <= same;
+        }
+        let rule = !stitch.right_wrong;
+        let (taken, other) = if rule { (against, same) } else { (same, against) };
+        if taken > TWIST_RATIO * other + 0.01 {
+            self.notes.push(FormatError::new(
+                &stitch.path,
+                "its ends are far apart in space: the seam may be twisted",
+                "check \"right_wrong\" and the places of the two panels",
+            ));
+        }
+        rule
+    }
+}
+
+fn is_plain(label: &str) -> bool {
+    let clean = toile_pattern::is_part_name(label);
+    let digits = label.strip_prefix('e').is_some_and(|d| {
+        !d.is_empty() && d.chars().all(|c| c.is_ascii_digit())
+    });
+    !clean || digits
+}
+
+fn label_counts(panel: &SpecPanel) -> BTreeMap<String, usize> {
+    let mut counts = BTreeMap::new();
+    for label in panel.edges.iter().filter_map(|e| e.label.as_ref()) {
+        *counts.entry(label.clone()).or_default() += 1;
+    }
+    counts
+}
+
+/// Whether a loop of a panel turns counter-clockwise.
+fn turning(panel: &SpecPanel, index: usize) -> bool {
+    specification::loop_area(&panel.edges, &panel.loops[index]) > 0.0
+}
