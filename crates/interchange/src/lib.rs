@@ -9,6 +9,8 @@ mod atomic;
 mod error;
 mod garmentcode;
 mod gltf;
+mod marker_json;
+mod marker_svg;
 mod obj;
 mod obj_read;
 
@@ -16,5 +18,10 @@ pub use atomic::{write_all_atomically, write_atomically};
 pub use error::{FileError, FormatError, read_text};
 pub use garmentcode::{GarmentCodeReading, GarmentCodeWriting, read_garmentcode, write_garmentcode};
 pub use gltf::{GlbMesh, GlbPrimitive, GlbScene, write_glb};
+pub use marker_json::{
+    MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, read_marker_json,
+    write_marker_json,
+};
+pub use marker_svg::{MarkerDrawing, MarkerPiece, write_marker_svg};
 pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;

@@ -1,0 +1,367 @@
+//! `marker.json`: a marker as readable, versioned JSON. Lengths in metres, angles in degrees.
+
+use crate::FormatError;
+use serde::{Deserialize, Serialize};
+use toile_geometry::Vec2;
+use toile_nesting::{Item, Marker, Nap, Placement, Strip, Unplaced};
+
+const FORMAT: &str = "toile-marker";
+const VERSION: u32 = 1;
+
+/// The content of a `marker.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MarkerFile {
+    /// What kind of file this is: `toile-marker`.
+    pub format: String,
+    /// Version of the format, from 1.
+    pub version: u32,
+    /// Unit of all lengths: `m`.
+    pub unit: String,
+    /// Name of the marker.
+    pub name: String,
+    /// The fabric.
+    pub fabric: MarkerFabric,
+    /// Fabric used, end margins included [m].
+    pub length: f64,
+    /// Area of the pieces over width times length between the end margins, 0..=1.
+    pub efficiency: f64,
+    /// Area of the pieces over width times length, 0..=1.
+    pub utilisation: f64,
+    /// The pieces laid.
+    pub pieces: Vec<MarkerFilePiece>,
+    /// Copies that found no place.
+    pub unplaced: Vec<MarkerFileUnplaced>,
+}
+
+/// Fabric in a marker file. x runs along the warp, y from the lower selvedge to the upper.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MarkerFabric {
+    /// Full width [m].
+    pub width: f64,
+    /// Unusable edge at either side [m].
+    pub selvedge: f64,
+    /// Free fabric at either end [m].
+    pub end_margin: f64,
+    /// Least distance between pieces [m].
+    pub gap: f64,
+    /// Length at hand [m]; null means as long as it takes.
+    pub max_length: Option<f64>,
+    /// Whether the fabric has a nap, so that all pieces point one way.
+    pub one_way: bool,
+}
+
+/// A piece laid, in a marker file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MarkerFilePiece {
+    /// Name of the piece.
+    pub name: String,
+    /// Number of the item it is a copy of, from 0.
+    pub item: usize,
+    /// Number of the copy, from 0.
+    pub copy: u32,
+    /// Direction of the warp in the piece as drawn, counter-clockwise from +x \[deg\].
+    pub grain: f64,
+    /// Angle from the warp to the piece's grain \[deg\].
+    pub turn: f64,
+    /// Whether it lies face down: turned over across the grain before it is turned.
+    pub face_down: bool,
+    /// Move after turning [m].
+    pub at: [f64; 2],
+    /// Cut outline as laid, to the nearest micrometre [m].
+    pub outline: Vec<[f64; 2]>,
+}
+
+/// A copy that found no place, in a marker file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MarkerFileUnplaced {
+    /// Name of the piece.
+    pub name: String,
+    /// Number of the item it is a copy of, from 0.
+    pub item: usize,
+    /// Number of the copy, from 0.
+    pub copy: u32,
+    /// Why, and what helps.
+    pub reason: String,
+}
+
+impl MarkerFile {
+    /// The file of a marker made from items on a strip. Placements that name no item are left out.
+    pub fn new(name: &str, items: &[Item], strip: &Strip, marker: &Marker) -> Self {
+        let piece = |placement: &Placement| {
+            let item = items.get(placement.item)?;
+            let outline = placement.pose(item).lay(&item.outline).outer;
+            Some(MarkerFilePiece {
+                name: item.name.clone(),
+                item: placement.item,
+                copy: placement.copy,
+                grain: item.grain.to_degrees(),
+                turn: placement.turn.to_degrees(),
+                face_down: placement.mirrored,
+                at: [placement.translation.x, placement.translation.y],
+                outline: outline
+                    .iter()
+                    .map(|p| [micrometres(p.x), micrometres(p.y)])
+                    .collect(),
+            })
+        };
+        let left = |unplaced: &Unplaced| MarkerFileUnplaced {
+            name: items
+                .get(unplaced.item)
+                .map_or_else(String::new, |i| i.name.clone()),
+            item: unplaced.item,
+            copy: unplaced.copy,
+            reason: unplaced.reason.clone(),
+        };
+        Self {
+            format: FORMAT.into(),
+            version: VERSION,
+            unit: "m".into(),
+            name: name.into(),
+            fabric: MarkerFabric {
+                width: strip.width,
+                selvedge: strip.selvedge,
+                end_margin: strip.end_margin,
+                gap: strip.gap,
+                max_length: strip.max_length,
+                one_way: strip.nap == Nap::OneWay,
+            },
+            length: marker.length,
+            efficiency: marker.efficiency,
+            utilisation: marker.utilisation,
+            pieces: marker.placements.iter().filter_map(piece).collect(),
+            unplaced: marker.unplaced.iter().map(left).collect(),
+        }
+    }
+
+    /// The marker in the file.
+    pub fn marker(&self) -> Marker {
+        let placement = |p: &MarkerFilePiece| Placement {
+            item: p.item,
+            copy: p.copy,
+            turn: p.turn.to_radians(),
+            mirrored: p.face_down,
+            translation: Vec2::new(p.at[0], p.at[1]),
+        };
+        let unplaced = |u: &MarkerFileUnplaced| Unplaced {
+            item: u.item,
+            copy: u.copy,
+            reason: u.reason.clone(),
+        };
+        Marker {
+            placements: self.pieces.iter().map(placement).collect(),
+            length: self.length,
+            efficiency: self.efficiency,
+            utilisation: self.utilisation,
+            unplaced: self.unplaced.iter().map(unplaced).collect(),
+        }
+    }
+
+    /// The fabric in the file.
+    pub fn strip(&self) -> Strip {
+        Strip {
+            width: self.fabric.width,
+            selvedge: self.fabric.selvedge,
+            end_margin: self.fabric.end_margin,
+            gap: self.fabric.gap,
+            max_length: self.fabric.max_length,
+            nap: if self.fabric.one_way {
+                Nap::OneWay
+            } else {
+                Nap::None
+            },
+        }
+    }
+}
+
+fn micrometres(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6 + 0.0
+}
+
+/// The text of a marker file, one line a piece. The same marker gives the same bytes.
+///
+/// # Errors
+/// A number is not finite.
+pub fn write_marker_json(file: &MarkerFile) -> Result<String, FormatError> {
+    check_numbers(file)?;
+    let list = |name: &str, lines: Vec<String>| {
+        if lines.is_empty() {
+            format!("  \"{name}\": []")
+        } else {
+            format!("  \"{name}\": [\n    {}\n  ]", lines.join(",\n    "))
+        }
+    };
+    let pieces: Result<_, _> = file.pieces.iter().map(line).collect();
+    let unplaced: Result<_, _> = file.unplaced.iter().map(line).collect();
+    let fields = [
+        format!("  \"format\": {}", line(&file.format)?),
+        format!("  \"version\": {}", line(&file.version)?),
+        format!("  \"unit\": {}", line(&file.unit)?),
+        format!("  \"name\": {}", line(&file.name)?),
+        format!("  \"fabric\": {}", line(&file.fabric)?),
+        format!("  \"length\": {}", line(&file.length)?),
+        format!("  \"efficiency\": {}", line(&file.efficiency)?),
+        format!("  \"utilisation\": {}", line(&file.utilisation)?),
+        list("pieces", pieces?),
+        list("unplaced", unplaced?),
+    ];
+    Ok(format!("{{\n{}\n}}\n", fields.join(",\n")))
+}
+
+fn line<T: Serialize>(value: &T) -> Result<String, FormatError> {
+    serde_json::to_string(value)
+        .map_err(|error| FormatError::new("marker", error.to_string(), "make the marker again"))
+}
+
+fn check_numbers(file: &MarkerFile) -> Result<(), FormatError> {
+    let fabric = &file.fabric;
+    let own = [
+        fabric.width,
+        fabric.selvedge,
+        fabric.end_margin,
+        fabric.gap,
+        fabric.max_length.unwrap_or(0.0),
+        file.length,
+        file.efficiency,
+        file.utilisation,
+    ];
+    let bad = |place: String| {
+        let hint = "check the piece's outline and make the marker again";
+        Err(FormatError::new(place, "a number is not finite", hint))
+    };
+    if !own.iter().all(|x| x.is_finite()) {
+        return bad("marker".into());
+    }
+    for piece in &file.pieces {
+        let numbers = [piece.grain, piece.turn].into_iter().chain(piece.at);
+        let mut all = numbers.chain(piece.outline.iter().flatten().copied());
+        if !all.all(f64::is_finite) {
+            return bad(format!("piece \"{}\"", piece.name));
+        }
+    }
+    Ok(())
+}
+
+/// Reads a marker file.
+///
+/// # Errors
+/// The text is not JSON, not a marker, of a newer version, or has a field that is not known here.
+pub fn read_marker_json(text: &str) -> Result<MarkerFile, FormatError> {
+    #[derive(Deserialize)]
+    struct Head {
+        format: Option<String>,
+        version: Option<u32>,
+        unit: Option<String>,
+    }
+    let broken = |error: serde_json::Error| {
+        let place = format!("line {}, column {}", error.line(), error.column());
+        let what = error.to_string();
+        let what = what.split(" at line ").next().unwrap_or(&what).to_owned();
+        FormatError::new(place, what, "write the marker again with this program")
+    };
+    let head: Head = serde_json::from_str(text).map_err(broken)?;
+    if head.format.as_deref() != Some(FORMAT) {
+        return Err(FormatError::new(
+            "format",
+            format!("this is not a marker: the field is not \"{FORMAT}\""),
+            "choose a marker.json",
+        ));
+    }
+    if head.version != Some(VERSION) {
+        return Err(FormatError::new(
+            "version",
+            format!("only version {VERSION} is known here"),
+            "open it with the program that wrote it, or a newer one",
+        ));
+    }
+    if head.unit.as_deref() != Some("m") {
+        return Err(FormatError::new(
+            "unit",
+            "lengths are not in metres",
+            "write the marker in metres, with unit \"m\"",
+        ));
+    }
+    let file: MarkerFile = serde_json::from_str(text).map_err(broken)?;
+    check_numbers(&file)?;
+    Ok(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toile_geometry::{Bounds2, Polygon};
+    use toile_nesting::{Control, Mirror, Search, judge, make_marker};
+
+    fn job() -> (Vec<Item>, Strip, Marker) {
+        let outline = Polygon::rectangle(Bounds2 {
+            min: Vec2::new(0.1, 0.2),
+            max: Vec2::new(0.7, 0.9),
+        });
+        let mut item = Item::new("back \"left\" & <right>", outline);
+        item.grain = 1.234_567_89;
+        item.quantity = 4;
+        item.allowed.mirror = Mirror::Pairs;
+        let strip = Strip {
+            selvedge: 0.01,
+            gap: 0.003,
+            max_length: Some(1.8),
+            ..Strip::of_width(1.5)
+        };
+        let items = vec![item];
+        let mut control = Control {
+            progress: &mut |_| {},
+            cancel: &std::sync::atomic::AtomicBool::new(false),
+        };
+        let search = Search {
+            positions: 1,
+            seed: 1,
+        };
+        let marker = make_marker(&items, &strip, search, &mut control).unwrap();
+        (items, strip, marker)
+    }
+
+    #[test]
+    fn a_marker_read_back_is_the_marker_and_still_sound() {
+        let (items, strip, marker) = job();
+        let file = MarkerFile::new("shirt", &items, &strip, &marker);
+        let text = write_marker_json(&file).unwrap();
+        assert_eq!(text, write_marker_json(&file).unwrap());
+        let back = read_marker_json(&text).unwrap();
+        assert_eq!(back, file);
+        assert_eq!(back.strip(), strip);
+        let read = back.marker();
+        assert_eq!(read.placements.len() + read.unplaced.len(), 4);
+        assert!(!read.unplaced.is_empty(), "short fabric");
+        assert!(judge(&items, &strip, &read).is_sound());
+        let piece = text
+            .lines()
+            .filter(|l| l.starts_with("    {\"name\""))
+            .count();
+        assert_eq!(piece, 4, "one line a piece");
+    }
+
+    #[test]
+    fn damaged_files_are_refused_with_place_and_remedy() {
+        let (items, strip, marker) = job();
+        let mut file = MarkerFile::new("shirt", &items, &strip, &marker);
+        let text = write_marker_json(&file).unwrap();
+        for (old, new, place) in [
+            ("toile-marker", "toile-scene", "format"),
+            ("\"version\": 1", "\"version\": 9", "version"),
+            ("\"unit\": \"m\"", "\"unit\": \"mm\"", "unit"),
+            ("\"efficiency\"", "\"efficency\"", "line 8"),
+            ("\"width\":1.5", "\"width\":\"wide\"", "line 6"),
+        ] {
+            assert!(text.contains(old), "{old}");
+            let error = read_marker_json(&text.replacen(old, new, 1)).unwrap_err();
+            assert!(error.place.starts_with(place), "{error}");
+        }
+        assert!(read_marker_json(&text[..text.len() / 2]).is_err());
+        assert!(read_marker_json("").is_err());
+        file.pieces[0].at[0] = f64::NAN;
+        assert!(write_marker_json(&file).unwrap_err().place.contains("back"));
+    }
+}
