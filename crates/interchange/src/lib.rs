@@ -11,13 +11,16 @@ mod garmentcode;
 mod gltf;
 mod marker_json;
 mod marker_svg;
+mod native;
 mod obj;
 mod obj_read;
+mod scene;
 
 pub use atomic::{write_all_atomically, write_atomically};
 pub use error::{FileError, FormatError, read_text};
 pub use garmentcode::{GarmentCodeReading, GarmentCodeWriting, read_garmentcode, write_garmentcode};
 pub use gltf::{GlbMesh, GlbPrimitive, GlbScene, write_glb};
+pub use native::{read_pattern, write_pattern};
 pub use marker_json::{
     MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, read_marker_json,
     write_marker_json,
@@ -25,3 +28,4 @@ pub use marker_json::{
 pub use marker_svg::{MarkerDrawing, MarkerPiece, write_marker_svg};
 pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;
+pub use scene::{ElasticFile, EndFile, MaterialFile, ObjectFile, SceneFile, TransformFile, read_scene};

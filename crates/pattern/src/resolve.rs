@@ -3,9 +3,9 @@
 use crate::resolver::{Resolver, Want};
 use crate::shape::{Shape, ShapeEdge, shape};
 use crate::{
-    BodyPart, Code, DartShape, Diagnostic, Draft, DraftSeam, DraftSpan, EdgeId, EdgeOrigin, Facing,
-    Panel, PanelId, Pattern, Piece, PieceEdge, PieceId, PieceLine, PieceNotch, Place, Seam,
-    SeamOrigin, Span, Worn, WornRule,
+    BodyPart, Code, DartShape, Diagnostic, Draft, DraftSeam, DraftSpan, EdgeOrigin, Facing, Panel,
+    PanelId, Pattern, Piece, PieceEdge, PieceId, PieceLine, PieceNotch, Place, Seam, SeamOrigin,
+    Span, Worn, WornRule,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use toile_geometry::{Rigid, Vec3};

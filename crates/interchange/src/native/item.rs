@@ -1,0 +1,274 @@
+//! Typed access to a JSON value that knows where it stands, so that every refusal can say so.
+
+use super::json::{Node, Value};
+use super::units;
+use crate::FormatError;
+use toile_pattern::{
+    Code, Diagnostic, DisplayUnit, Number, Place, Severity, is_part_name, nearest,
+};
+
+/// A value and its path from the root.
+#[derive(Clone)]
+pub struct Item<'a> {
+    pub node: &'a Node,
+    pub path: String,
+}
+
+/// The fields of an object.
+pub struct Object<'a> {
+    pub item: Item<'a>,
+    fields: &'a [(String, Node)],
+}
+
+impl<'a> Item<'a> {
+    pub fn root(node: &'a Node) -> Self {
+        Self {
+            node,
+            path: String::new(),
+        }
+    }
+
+    fn child(&self, node: &'a Node, name: &str) -> Self {
+        let path = if self.path.is_empty() {
+            name.to_owned()
+        } else {
+            format!("{}.{name}", self.path)
+        };
+        Self { node, path }
+    }
+
+    pub fn error(&self, what: impl Into<String>, hint: impl Into<String>) -> FormatError {
+        let at = if self.path.is_empty() {
+            String::new()
+        } else {
+            format!(", at {}", self.path)
+        };
+        let place = format!("line {}, column {}{at}", self.node.line, self.node.column);
+        FormatError::new(place, what, hint)
+    }
+
+    pub fn wrong_kind(&self, wanted: &str, hint: &str) -> FormatError {
+        let what = format!(
+            "{} stands where {wanted} is expected",
+            self.node.value.kind()
+        );
+        self.error(what, hint)
+    }
+
+    pub fn text(&self) -> Result<&'a str, FormatError> {
+        match &self.node.value {
+            Value::Text(text) => Ok(text),
+            _ => Err(self.wrong_kind("a text", "write it in quotes")),
+        }
+    }
+
+    /// A text that may name a part.
+    pub fn name(&self) -> Result<&'a str, FormatError> {
+        let name = self.text()?;
+        self.check_name(name)?;
+        Ok(name)
+    }
+
+    pub fn check_name(&self, name: &str) -> Result<(), FormatError> {
+        if is_part_name(name) {
+            return Ok(());
+        }
+        let shown: String = name.chars().take(40).collect();
+        Err(self.error(
+            format!("{shown:?} cannot be a name"),
+            "use 1 to 80 characters without single quotes, control characters or outer spaces",
+        ))
+    }
+
+    pub fn flag(&self) -> Result<bool, FormatError> {
+        match self.node.value {
+            Value::Flag(flag) => Ok(flag),
+            _ => Err(self.wrong_kind("true or false", "write true or false without quotes")),
+        }
+    }
+
+    pub fn list(&self) -> Result<Vec<Item<'a>>, FormatError> {
+        match &self.node.value {
+            Value::List(items) => Ok(items
+                .iter()
+                .enumerate()
+                .map(|(k, node)| Item {
+                    node,
+                    path: format!("{}[{k}]", self.path),
+                })
+                .collect()),
+            _ => Err(self.wrong_kind("a list", "write it in [ ]")),
+        }
+    }
+
+    /// A list of exactly `N` items.
+    pub fn exactly<const N: usize>(&self) -> Result<[Item<'a>; N], FormatError> {
+        let items = self.list()?;
+        let count = items.len();
+        items.try_into().map_err(|_| {
+            self.error(
+                format!("the list has {count} items"),
+                format!("give it {N}"),
+            )
+        })
+    }
+
+    /// Every field as an item, in the order of the file.
+    pub fn entries(&self) -> Result<Vec<(&'a str, Item<'a>)>, FormatError> {
+        match &self.node.value {
+            Value::Object(fields) => Ok(fields
+                .iter()
+                .map(|(name, node)| (name.as_str(), self.child(node, name)))
+                .collect()),
+            _ => Err(self.wrong_kind("an object", "write it in { }")),
+        }
+    }
+
+    /// The fields, unknown ones noted.
+    pub fn object(
+        &self,
+        known: &[&str],
+        notes: &mut Vec<Diagnostic>,
+    ) -> Result<Object<'a>, FormatError> {
+        let Value::Object(fields) = &self.node.value else {
+            return Err(self.wrong_kind("an object", "write it in { }"));
+        };
+        for (name, node) in fields {
+            if known.contains(&name.as_str()) {
+                continue;
+            }
+            let hint = match nearest(name, known.iter().copied()) {
+                Some(near) => format!("did you mean {near:?}? It is ignored and will not be saved"),
+                None => "it is ignored and will not be saved; remove it, or use a newer version"
+                    .to_owned(),
+            };
+            notes.push(Diagnostic::new(
+                Severity::Warning,
+                Code::UnknownField,
+                Place::File {
+                    path: self.child(node, name).path,
+                    line: node.line,
+                    column: node.column,
+                },
+                format!("the field {name:?} is not known"),
+                hint,
+            ));
+        }
+        Ok(Object {
+            item: self.clone(),
+            fields,
+        })
+    }
+
+    fn not_finite(&self) -> FormatError {
+        self.error(
+            "the number is too large to be finite",
+            "write a smaller one",
+        )
+    }
+
+    fn read_number(
+        &self,
+        wanted: &str,
+        exact_unit: Option<&str>,
+        read: impl Fn(&str) -> Option<f64>,
+    ) -> Result<Number, FormatError> {
+        match &self.node.value {
+            Value::Number(raw) => read(raw)
+                .map(Number::Value)
+                .ok_or_else(|| self.not_finite()),
+            Value::Text(text) => Number::formula(text).map_err(|error| {
+                let what = format!(
+                    "the formula {text:?}, column {}: {}",
+                    error.column, error.message
+                );
+                self.error(what, error.hint)
+            }),
+            Value::Object(fields) => match (&fields[..], exact_unit) {
+                ([(name, node)], Some(unit)) if name == unit => {
+                    self.child(node, name).plain_value().map(Number::Value)
+                }
+                _ => Err(self.wrong_kind(wanted, "write a number, or a formula in quotes")),
+            },
+            _ => Err(self.wrong_kind(wanted, "write a number, or a formula in quotes")),
+        }
+    }
+
+    pub fn length(&self, unit: DisplayUnit) -> Result<Number, FormatError> {
+        self.read_number("a length", Some("m"), |raw| units::read_length(raw, unit))
+    }
+
+    pub fn angle(&self) -> Result<Number, FormatError> {
+        self.read_number("an angle in degrees", Some("rad"), units::read_degrees)
+    }
+
+    pub fn plain(&self) -> Result<Number, FormatError> {
+        self.read_number("a number", None, units::read_plain)
+    }
+
+    /// A number that may not be a formula.
+    pub fn plain_value(&self) -> Result<f64, FormatError> {
+        match &self.node.value {
+            Value::Number(raw) => units::read_plain(raw).ok_or_else(|| self.not_finite()),
+            _ => Err(self.wrong_kind("a number", "write it without quotes")),
+        }
+    }
+
+    /// A length or angle that may not be a formula [m] or [rad].
+    pub fn fixed(&self, number: Number) -> Result<f64, FormatError> {
+        number.value().ok_or_else(|| {
+            self.error(
+                "a formula stands where a number is expected",
+                "write the number; formulas belong in variables and panels",
+            )
+        })
+    }
+
+    pub fn count(&self) -> Result<u32, FormatError> {
+        match &self.node.value {
+            Value::Number(raw) => raw.parse().map_err(|_| {
+                self.error(
+                    format!("{raw} is not a whole number from 0 to {}", u32::MAX),
+                    "write a whole number",
+                )
+            }),
+            _ => Err(self.wrong_kind("a whole number", "write it without quotes")),
+        }
+    }
+
+    /// One of a closed list of words.
+    pub fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, FormatError> {
+        let word = self.text()?;
+        let found = choices.iter().find(|(name, _)| *name == word);
+        found.map(|(_, choice)| *choice).ok_or_else(|| {
+            let names: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
+            self.error(
+                format!("{word:?} is not known here"),
+                format!("use one of {}", names.join(", ")),
+            )
+        })
+    }
+}
+
+impl<'a> Object<'a> {
+    pub fn get(&self, name: &str) -> Option<Item<'a>> {
+        self.fields
+            .iter()
+            .find(|(field, _)| field == name)
+            .map(|(_, node)| self.item.child(node, name))
+    }
+
+    pub fn need(&self, name: &str) -> Result<Item<'a>, FormatError> {
+        self.get(name).ok_or_else(|| {
+            self.item.error(
+                format!("the field {name:?} is missing"),
+                format!("add {name:?}"),
+            )
+        })
+    }
+
+    /// A flag that is off unless it is there.
+    pub fn flag_or(&self, name: &str, default: bool) -> Result<bool, FormatError> {
+        self.get(name).map_or(Ok(default), |item| item.flag())
+    }
+}
