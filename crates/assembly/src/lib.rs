@@ -1,6 +1,7 @@
 //! Draft to seam-matched, triangulated, placed panels.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod assemble;
 mod boundary;
 mod chain;
 mod edges;
@@ -8,16 +9,25 @@ mod error;
 mod garment;
 mod links;
 mod mesh;
+mod outline_curve;
+mod placement;
 mod planar;
 mod quality;
 mod refinement;
+mod role;
+mod rows;
 mod sampling;
+mod sanity;
 mod size_field;
 mod smoothing;
+mod space;
 mod wearer;
+mod wrap;
 
+pub use assemble::{Assembled, AssemblyOptions, assemble};
 pub use error::{AssemblyError, Diagnostic, Severity};
 pub use garment::{Garment, GarmentPanel, Stitch};
 pub use mesh::{PieceMesh, PieceMeshes, mesh_pieces};
 pub use quality::{MeshQuality, combine, smallest_angle};
+pub use sanity::{Sanity, sanity};
 pub use wearer::{Levels, Limb, Wearer};

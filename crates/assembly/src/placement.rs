@@ -1,0 +1,336 @@
+//! Pieces placed round the body: wrapped, laid over or as given, then moved until they are
+//! clear of the skin and of each other.
+
+use crate::mesh::PieceMeshes;
+use crate::role::{Role, roles};
+use crate::rows::{Laid, Row, lay, rows, set_heights, set_shifts, ties};
+use crate::space::{PartFrame, label_skin};
+use crate::wrap::{Fit, Surroundings, lay_over, wrap_row};
+use crate::{Diagnostic, Wearer};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
+use toile_pattern::{BodyPart, Draft, Facing};
+
+/// Distance every vertex keeps from the skin [m].
+pub(crate) const SKIN_CLEARANCE: f64 = 0.005;
+/// Steps of the search for a clear place.
+const CLEAR_STEPS: usize = 60;
+/// Steps of moving rows that cross each other apart.
+const APART_STEPS: usize = 12;
+/// How far a piece placed by its file may be pushed [m].
+const LARGEST_PUSH: f64 = 0.3;
+
+/// Where all vertices go.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Placement {
+    /// Positions of each meshed piece's vertices [m].
+    pub positions: Vec<Vec<Vec3>>,
+}
+
+struct Placer<'a> {
+    draft: &'a Draft,
+    meshes: &'a PieceMeshes,
+    wearer: &'a Wearer<'a>,
+    labels: Vec<BodyPart>,
+    laid: Vec<Laid>,
+    roles: Vec<Role>,
+    positions: Vec<Vec<Vec3>>,
+}
+
+/// Places every meshed piece.
+pub(crate) fn place(
+    draft: &Draft,
+    meshes: &PieceMeshes,
+    wearer: &Wearer,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Placement {
+    let roles = roles(draft, meshes, diagnostics);
+    let turned: Vec<bool> = meshes.pieces.iter().map(is_counter_clockwise).collect();
+    let mut laid = lay(meshes, &turned);
+    let ties = ties(meshes, &laid);
+    set_heights(&mut laid, &roles, &ties, (draft, meshes, wearer));
+    let mut rows = rows(&laid, &roles);
+    for row in &rows {
+        let frame = PartFrame::new(wearer, row.part);
+        set_shifts(&mut laid, &roles, row, &ties, &frame);
+    }
+    // Trunk last, over sleeves: its fronts and backs go round what is placed already.
+    rows.sort_by_key(|row| row.part == BodyPart::Trunk);
+    let mut placer = Placer {
+        draft,
+        meshes,
+        wearer,
+        labels: label_skin(wearer),
+        positions: vec![Vec::new(); laid.len()],
+        laid,
+        roles,
+    };
+    placer.place_given(diagnostics);
+    let mut fits: Vec<Fit> = Vec::new();
+    for row in &rows {
+        let start = Fit {
+            distance: 0.0,
+            lift: 0.0,
+        };
+        fits.push(placer.place_row(row, start));
+    }
+    placer.place_over(diagnostics);
+    placer.part_rows(&rows, &mut fits);
+    Placement {
+        positions: placer.positions,
+    }
+}
+
+fn is_counter_clockwise(mesh: &crate::PieceMesh) -> bool {
+    let twice: f64 = mesh
+        .triangles
+        .iter()
+        .map(|t| {
+            let [a, b, c] = t.map(|v| mesh.points[v as usize]);
+            (b - a).perp(&(c - a))
+        })
+        .sum();
+    twice > 0.0
+}
+
+impl Placer<'_> {
+    fn mesh(&self, k: usize, positions: &[Vec3]) -> TriangleMesh {
+        TriangleMesh {
+            positions: positions.to_vec(),
+            triangles: self.meshes.pieces[k].triangles.clone(),
+        }
+    }
+
+    /// How far inside the wanted distance from the skin a piece comes [m], and how many of its
+    /// triangles cross the skin.
+    fn trouble(&self, k: usize, positions: &[Vec3]) -> (f64, usize) {
+        let skin = self.wearer.skin;
+        let mut depth: f64 = 0.0;
+        for &p in positions {
+            if let Some(closest) = skin.closest_point(p, f64::INFINITY) {
+                depth = depth.max(SKIN_CLEARANCE - closest.signed_distance);
+            }
+        }
+        let crossings = skin.intersections_with(&self.mesh(k, positions)).len();
+        (depth, crossings)
+    }
+
+    /// Places a row, farther out until it is clear of the skin; returns what was needed.
+    fn place_row(&mut self, row: &Row, start: Fit) -> Fit {
+        let placed: Vec<Vec3> = self.positions.iter().flatten().copied().collect();
+        let mut fit = start;
+        let mut best: Option<((usize, f64), Fit, Vec<Vec<Vec3>>)> = None;
+        for step in 0..CLEAR_STEPS {
+            let around = Surroundings {
+                wearer: self.wearer,
+                labels: &self.labels,
+                placed: &placed,
+            };
+            let positions = wrap_row(row, &self.laid, &self.roles, &around, fit);
+            let (mut depth, mut crossings): (f64, usize) = (0.0, 0);
+            for (&k, p) in row.pieces.iter().zip(&positions) {
+                let (d, c) = self.trouble(k, p);
+                depth = depth.max(d);
+                crossings += c;
+            }
+            let score = (crossings, depth);
+            if best.as_ref().is_none_or(|b| score < b.0) {
+                best = Some((score, fit, positions));
+            }
+            if depth <= 0.0 && crossings == 0 {
+                break;
+            }
+            let even = step % 2 == 0;
+            match row.part {
+                // Sleeves slide off the shoulder, collars and hoods rise off it.
+                BodyPart::LeftArm | BodyPart::RightArm if even => fit.lift -= 0.01,
+                BodyPart::Head if even => fit.lift += 0.005,
+                BodyPart::LeftArm | BodyPart::RightArm => fit.distance += 0.002,
+                _ => fit.distance += 0.005,
+            }
+        }
+        let Some((_, fit, positions)) = best else {
+            return start;
+        };
+        for (&k, p) in row.pieces.iter().zip(positions) {
+            self.positions[k] = p;
+        }
+        fit
+    }
+
+    /// Moves rows apart that cross each other: the outer one of two goes farther out.
+    fn part_rows(&mut self, rows: &[Row], fits: &mut [Fit]) {
+        let row_of = |k: usize| rows.iter().position(|r| r.pieces.contains(&k));
+        for _ in 0..APART_STEPS {
+            let pairs = crossing_panels(self.meshes, &self.positions);
+            let mut moved: Vec<usize> = Vec::new();
+            for [a, b] in pairs {
+                let outer = match (row_of(a), row_of(b)) {
+                    (Some(a), Some(b)) => a.max(b),
+                    (Some(only), None) | (None, Some(only)) => only,
+                    (None, None) => continue,
+                };
+                moved.push(outer);
+            }
+            moved.sort_unstable();
+            moved.dedup();
+            if moved.is_empty() {
+                return;
+            }
+            for r in moved {
+                let mut fit = fits[r];
+                fit.distance += 0.01;
+                for &k in &rows[r].pieces {
+                    self.positions[k].clear();
+                }
+                fits[r] = self.place_row(&rows[r], fit);
+            }
+        }
+    }
+
+    /// Puts pieces where their file says, pushed off the skin along their right side.
+    fn place_given(&mut self, diagnostics: &mut Vec<Diagnostic>) {
+        for k in 0..self.roles.len() {
+            let Role::Placed(place) = self.roles[k] else {
+                continue;
+            };
+            let flat = &self.meshes.pieces[k].points;
+            let at = |p: &Vec2| {
+                place.rotation * Vec3::new(p.x, p.y, 0.0) + place.translation.vector
+            };
+            let positions: Vec<Vec3> = flat.iter().map(at).collect();
+            let side = if is_counter_clockwise(&self.meshes.pieces[k]) {
+                1.0
+            } else {
+                -1.0
+            };
+            let direction = self.outward(&positions, place.rotation * Vec3::z() * side);
+            let mut push = 0.0;
+            while push < LARGEST_PUSH {
+                let moved: Vec<Vec3> = positions.iter().map(|p| p + direction * push).collect();
+                let (depth, crossings) = self.trouble(k, &moved);
+                if depth <= 0.0 && crossings == 0 {
+                    break;
+                }
+                push += depth.max(0.01);
+            }
+            let name = &self.draft.pieces[self.meshes.pieces[k].draft_piece].name;
+            if push >= LARGEST_PUSH {
+                diagnostics.push(Diagnostic::warning(
+                    name,
+                    "it crosses the body where it is placed, and no push clears it".to_owned(),
+                    "move it away from the body",
+                ));
+                push = 0.0;
+            } else if push > 0.0 {
+                let millimetres = push * 1000.0;
+                diagnostics.push(Diagnostic::note(
+                    name,
+                    format!("it crosses the body where it is placed: moved out by {millimetres:.0} mm"),
+                    "place it farther from the body",
+                ));
+            }
+            self.positions[k] = positions.iter().map(|p| p + direction * push).collect();
+        }
+    }
+
+    /// A normal turned away from the nearest axis of the body.
+    fn outward(&self, positions: &[Vec3], normal: Vec3) -> Vec3 {
+        let middle = positions.iter().sum::<Vec3>() / positions.len().max(1) as f64;
+        let mut nearest = (f64::INFINITY, Vec3::zeros());
+        for limb in &self.wearer.limbs {
+            for pair in limb.axis.windows(2) {
+                for step in 0..=8 {
+                    let p = pair[0] + (pair[1] - pair[0]) * (f64::from(step) / 8.0);
+                    let distance = (p - middle).norm();
+                    if distance < nearest.0 {
+                        nearest = (distance, p);
+                    }
+                }
+            }
+        }
+        if (middle - nearest.1).dot(&normal) < 0.0 {
+            -normal
+        } else {
+            normal
+        }
+    }
+
+    fn place_over(&mut self, diagnostics: &mut Vec<Diagnostic>) {
+        let mut lift = 0.0;
+        for k in 0..self.roles.len() {
+            let over = matches!(
+                self.roles[k],
+                Role::Wrapped {
+                    facing: Facing::Over,
+                    ..
+                }
+            );
+            if !over {
+                continue;
+            }
+            let mesh = &self.meshes.pieces[k];
+            let largest = mesh.loops[1..].iter().max_by(|a, b| a.len().cmp(&b.len()));
+            let hole: Vec<Vec2> = largest
+                .into_iter()
+                .flatten()
+                .map(|&v| self.laid[k].points[v as usize])
+                .collect();
+            let name = &self.draft.pieces[mesh.draft_piece].name;
+            let (positions, clear) = lay_over(&self.laid[k], &hole, self.wearer, lift);
+            if !clear && !hole.is_empty() {
+                diagnostics.push(Diagnostic::warning(
+                    name,
+                    "its hole clears neither neck nor head: it is laid above the head".to_owned(),
+                    "make the hole larger",
+                ));
+            }
+            self.positions[k] = positions;
+            lift += 0.02;
+        }
+    }
+}
+
+/// Pairs of meshed pieces that cross each other, each once. Triangles that touch in vertices
+/// lying at one place, as sewn edges may, do not count.
+pub(crate) fn crossing_panels(meshes: &PieceMeshes, positions: &[Vec<Vec3>]) -> Vec<[usize; 2]> {
+    let mut pairs: Vec<[usize; 2]> = crossing_triangles(meshes, positions)
+        .into_iter()
+        .map(|(pieces, _)| pieces)
+        .collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+/// Pairs of crossing triangles of different pieces: the pieces, and the triangles in the whole
+/// garment.
+pub(crate) fn crossing_triangles(
+    meshes: &PieceMeshes,
+    positions: &[Vec<Vec3>],
+) -> Vec<([usize; 2], [u32; 2])> {
+    let mut whole = TriangleMesh::default();
+    let mut ends = Vec::new();
+    for (mesh, placed) in meshes.pieces.iter().zip(positions) {
+        let base = whole.positions.len() as u32;
+        if placed.len() == mesh.points.len() {
+            whole.positions.extend(placed);
+            whole
+                .triangles
+                .extend(mesh.triangles.iter().map(|t| t.map(|v| v + base)));
+        }
+        ends.push(whole.triangles.len());
+    }
+    let tree = SurfaceTree::new(whole);
+    let piece_of = |t: u32| ends.partition_point(|&e| e <= t as usize);
+    let touching = |a: u32, b: u32| {
+        let (x, y) = (tree.mesh().corners(a as usize), tree.mesh().corners(b as usize));
+        x.iter().any(|p| y.iter().any(|q| (p - q).norm() < 1e-9))
+    };
+    tree.self_intersections()
+        .into_iter()
+        .filter_map(|[a, b]| {
+            let pieces = [piece_of(a), piece_of(b)];
+            (pieces[0] != pieces[1] && !touching(a, b)).then_some((pieces, [a, b]))
+        })
+        .collect()
+}

@@ -1,0 +1,246 @@
+//! Which part of the body every piece belongs to: as the document says, else from its name,
+//! else from its seams and size.
+
+use crate::Diagnostic;
+use crate::mesh::PieceMeshes;
+use toile_geometry::Rigid;
+use toile_pattern::{BodyPart, Draft, Facing, Piece, Worn};
+
+/// Where a piece goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Role {
+    /// As given.
+    Placed(Rigid),
+    /// Round a body part.
+    Wrapped {
+        part: BodyPart,
+        facing: Facing,
+        level: Option<f64>,
+    },
+}
+
+/// Decides the roles of all meshed pieces.
+pub(crate) fn roles(
+    draft: &Draft,
+    meshes: &PieceMeshes,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Vec<Role> {
+    let mut known: Vec<Option<Role>> = Vec::new();
+    let mut guesses: Vec<Guess> = Vec::new();
+    for mesh in &meshes.pieces {
+        let piece = &draft.pieces[mesh.draft_piece];
+        guesses.push(Guess::from_name(piece));
+        known.push(match piece.worn {
+            Worn::Placed(place) => Some(Role::Placed(place)),
+            Worn::Wrapped {
+                part,
+                facing,
+                level,
+            } => Some(Role::Wrapped {
+                part,
+                facing,
+                level,
+            }),
+            Worn::Automatic => None,
+        });
+    }
+    let guessed: Vec<usize> = (0..known.len()).filter(|&k| known[k].is_none()).collect();
+    if !guessed.is_empty() {
+        let sewn = SewnLengths::new(meshes);
+        let areas: Vec<f64> = meshes.pieces.iter().map(crate::PieceMesh::area).collect();
+        guess(&mut known, &guesses, &sewn, (&areas, draft, meshes));
+        for &k in &guessed {
+            let name = &draft.pieces[meshes.pieces[k].draft_piece].name;
+            if let Some(Role::Wrapped { part, facing, .. }) = known[k] {
+                diagnostics.push(Diagnostic::note(
+                    name,
+                    format!("its place is not given: put on {part:?}, {facing:?}"),
+                    "say where it is worn if that is wrong",
+                ));
+            }
+        }
+    }
+    known
+        .into_iter()
+        .map(|role| {
+            role.unwrap_or(Role::Wrapped {
+                part: BodyPart::Trunk,
+                facing: Facing::Front,
+                level: None,
+            })
+        })
+        .collect()
+}
+
+/// What a piece's name says about its place.
+#[derive(Clone, Copy, Debug, Default)]
+struct Guess {
+    part: Option<BodyPart>,
+    facing: Option<Facing>,
+}
+
+/// Words of a name: runs of letters, split where small letters meet capitals.
+fn words(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut small = false;
+    for c in name.chars() {
+        if !c.is_alphabetic() || (small && c.is_uppercase()) {
+            words.push(String::new());
+        }
+        if c.is_alphabetic()
+            && let Some(word) = words.last_mut()
+        {
+            word.extend(c.to_lowercase());
+        }
+        small = c.is_lowercase();
+    }
+    words.retain(|w| !w.is_empty());
+    words
+}
+
+impl Guess {
+    fn from_name(piece: &Piece) -> Self {
+        let words = words(&piece.name);
+        let has = |list: &[&str]| words.iter().any(|w| list.contains(&w.as_str()));
+        let holds = |list: &[&str]| words.iter().any(|w| list.iter().any(|p| w.contains(p)));
+        let left = if has(&["left", "l"]) {
+            true
+        } else if has(&["right", "r"]) {
+            false
+        } else {
+            piece.id.copy.is_multiple_of(2)
+        };
+        let leg = holds(&["pant", "trouser", "jean", "short", "legging"]) || has(&["leg"]);
+        let part = if leg && !holds(&["waist", "band", "wb"]) {
+            Some(if left { BodyPart::LeftLeg } else { BodyPart::RightLeg })
+        } else if holds(&["sleeve", "cuff"]) || has(&["arm"]) {
+            Some(if left { BodyPart::LeftArm } else { BodyPart::RightArm })
+        } else if holds(&["hood", "collar"]) || has(&["neckband"]) {
+            Some(BodyPart::Head)
+        } else if holds(&[
+            "skirt", "waist", "band", "bodice", "torso", "yoke", "poncho", "cape", "body", "front",
+            "back",
+        ]) || has(&["wb"])
+        {
+            Some(BodyPart::Trunk)
+        } else {
+            None
+        };
+        let facing = if holds(&["front", "ftorso"]) || has(&["f", "fr"]) {
+            Some(Facing::Front)
+        } else if holds(&["back", "btorso"]) || has(&["b", "bk"]) {
+            Some(Facing::Back)
+        } else if holds(&["poncho", "cape"]) {
+            Some(Facing::Over)
+        } else if holds(&["hood"]) || has(&["side"]) {
+            Some(if left { Facing::Left } else { Facing::Right })
+        } else if holds(&["sleeve", "cuff", "collar", "band", "wb"]) {
+            Some(Facing::Around)
+        } else {
+            None
+        };
+        Self { part, facing }
+    }
+}
+
+/// How many stitches join each pair of meshed pieces.
+pub(crate) struct SewnLengths {
+    count: usize,
+    table: Vec<f64>,
+}
+
+impl SewnLengths {
+    pub fn new(meshes: &PieceMeshes) -> Self {
+        let count = meshes.pieces.len();
+        let mut ends = Vec::new();
+        let mut total = 0;
+        for piece in &meshes.pieces {
+            total += piece.points.len();
+            ends.push(total);
+        }
+        let piece_of = |v: u32| ends.partition_point(|&e| e <= v as usize);
+        let mut table = vec![0.0; count * count];
+        for stitch in &meshes.stitches {
+            let [a, b] = stitch.vertices.map(piece_of);
+            table[a * count + b] += 1.0;
+            table[b * count + a] += 1.0;
+        }
+        Self { count, table }
+    }
+
+    pub fn between(&self, a: usize, b: usize) -> f64 {
+        self.table[a * self.count + b]
+    }
+}
+
+fn opposite(facing: Facing) -> Facing {
+    match facing {
+        Facing::Front => Facing::Back,
+        Facing::Back => Facing::Front,
+        Facing::Left => Facing::Right,
+        Facing::Right => Facing::Left,
+        Facing::Around | Facing::Over => facing,
+    }
+}
+
+/// Fills in unknown roles, largest piece first: a part from the name, else from the piece it is
+/// sewn to most; a facing from the name, else opposite to that piece.
+fn guess(
+    known: &mut [Option<Role>],
+    guesses: &[Guess],
+    sewn: &SewnLengths,
+    (areas, draft, meshes): (&[f64], &Draft, &PieceMeshes),
+) {
+    let mut order: Vec<usize> = (0..known.len()).filter(|&k| known[k].is_none()).collect();
+    // Named pieces first: they are what the others lean on.
+    order.sort_by(|&a, &b| {
+        let certainty = |k: usize| {
+            usize::from(guesses[k].part.is_some()) + usize::from(guesses[k].facing.is_some())
+        };
+        certainty(b)
+            .cmp(&certainty(a))
+            .then(areas[b].total_cmp(&areas[a]))
+            .then(a.cmp(&b))
+    });
+    for k in order {
+        let partner = (0..known.len())
+            .filter(|&j| j != k && known[j].is_some() && sewn.between(k, j) > 0.0)
+            .max_by(|&i, &j| sewn.between(k, i).total_cmp(&sewn.between(k, j)).then(j.cmp(&i)))
+            .and_then(|j| match known[j] {
+                Some(Role::Wrapped { part, facing, .. }) => Some((part, facing)),
+                _ => None,
+            });
+        let piece = &draft.pieces[meshes.pieces[k].draft_piece];
+        let alone = meshes.pieces.len() == 1;
+        let part = guesses[k]
+            .part
+            .or(partner.map(|p| p.0))
+            .unwrap_or(BodyPart::Trunk);
+        let facing = guesses[k].facing.unwrap_or_else(|| {
+            if alone && !piece.holes.is_empty() {
+                Facing::Over
+            } else if sewn.between(k, k) > 0.0 && alone {
+                Facing::Around
+            } else {
+                partner.map_or(Facing::Front, |p| opposite(p.1))
+            }
+        });
+        known[k] = Some(Role::Wrapped {
+            part,
+            facing,
+            level: None,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_split_into_words() {
+        assert_eq!(words("left_btorso"), ["left", "btorso"]);
+        assert_eq!(words("skirtFront 2"), ["skirt", "front"]);
+        assert_eq!(words(""), Vec::<String>::new());
+    }
+}

@@ -1,0 +1,335 @@
+//! Pieces laid out flat before they are wrapped: heights and places round the part, so that
+//! sewn edges come near each other.
+
+use crate::links::Links;
+use crate::mesh::PieceMeshes;
+use crate::role::Role;
+use crate::space::PartFrame;
+use crate::{Stitch, Wearer};
+use toile_geometry::Vec2;
+use toile_pattern::{BodyPart, Draft, Facing};
+
+/// Weight that draws a piece to the middle of the side it faces, against one a stitch.
+const FACING_WEIGHT: f64 = 0.5;
+/// Sweeps of the solver for places; garments have few pieces.
+const SWEEPS: usize = 400;
+
+/// A piece seen from its right side, with its offsets on the laid-out part.
+#[derive(Clone, Debug)]
+pub(crate) struct Laid {
+    /// Points of the piece seen from the right side of the cloth [m].
+    pub points: Vec<Vec2>,
+    /// Box of the points [m].
+    pub low: Vec2,
+    pub high: Vec2,
+    /// Added to the second coordinate: height in the part's frame [m].
+    pub rise: f64,
+    /// Added to the first coordinate: distance round the part from its first direction [m].
+    pub shift: f64,
+}
+
+impl Laid {
+    /// Width [m].
+    pub fn width(&self) -> f64 {
+        self.high.x - self.low.x
+    }
+
+    /// Lowest and highest place in the part's frame [m].
+    pub fn span(&self) -> [f64; 2] {
+        [self.low.y + self.rise, self.high.y + self.rise]
+    }
+}
+
+/// Pieces on one part at about the same height.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub part: BodyPart,
+    /// Indices of meshed pieces.
+    pub pieces: Vec<usize>,
+    /// Distance round that the pieces fill [m].
+    pub girth: f64,
+}
+
+/// Turns every piece to its right side and measures it.
+pub(crate) fn lay(meshes: &PieceMeshes, counter_clockwise: &[bool]) -> Vec<Laid> {
+    meshes
+        .pieces
+        .iter()
+        .zip(counter_clockwise)
+        .map(|(mesh, &turned)| {
+            let side = if turned { 1.0 } else { -1.0 };
+            let points: Vec<Vec2> = mesh
+                .points
+                .iter()
+                .map(|p| Vec2::new(side * p.x, p.y))
+                .collect();
+            let first = points.first().copied().unwrap_or_default();
+            let (low, high) = points
+                .iter()
+                .fold((first, first), |(l, h), p| (l.inf(p), h.sup(p)));
+            Laid {
+                points,
+                low,
+                high,
+                rise: 0.0,
+                shift: 0.0,
+            }
+        })
+        .collect()
+}
+
+/// A stitch as pieces and places in them.
+pub(crate) struct Tie {
+    pub pieces: [usize; 2],
+    pub points: [Vec2; 2],
+}
+
+/// Stitches between different pieces.
+pub(crate) fn ties(meshes: &PieceMeshes, laid: &[Laid]) -> Vec<Tie> {
+    let mut starts = vec![0];
+    for piece in laid {
+        starts.push(starts.last().copied().unwrap_or(0) + piece.points.len());
+    }
+    let find = |v: u32| {
+        let piece = starts.partition_point(|&s| s <= v as usize) - 1;
+        (piece, laid[piece].points[v as usize - starts[piece]])
+    };
+    meshes
+        .stitches
+        .iter()
+        .filter_map(|s: &Stitch| {
+            let [(a, p), (b, q)] = s.vertices.map(find);
+            (a != b).then_some(Tie {
+                pieces: [a, b],
+                points: [p, q],
+            })
+        })
+        .collect()
+}
+
+/// Parts that share heights above the floor are laid out together; each arm has its own.
+fn family(part: BodyPart) -> usize {
+    match part {
+        BodyPart::LeftArm => 1,
+        BodyPart::RightArm => 2,
+        _ => 0,
+    }
+}
+
+fn wrapped(role: &Role) -> Option<(BodyPart, Facing, Option<f64>)> {
+    match *role {
+        Role::Wrapped {
+            part,
+            facing,
+            level,
+        } if facing != Facing::Over => Some((part, facing, level)),
+        _ => None,
+    }
+}
+
+/// Sets every wrapped piece's height: sewn edges level with each other, then each connected
+/// group moved to where it hangs.
+pub(crate) fn set_heights(
+    laid: &mut [Laid],
+    roles: &[Role],
+    ties: &[Tie],
+    (draft, meshes, wearer): (&Draft, &PieceMeshes, &Wearer),
+) {
+    let count = laid.len();
+    let mut links = Links::new(count);
+    let mut pulls: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
+    let mut reaches_arm = vec![false; count];
+    for tie in ties {
+        let [a, b] = tie.pieces;
+        let (Some(x), Some(y)) = (wrapped(&roles[a]), wrapped(&roles[b])) else {
+            continue;
+        };
+        if family(x.0) == family(y.0) {
+            links.join(a, b);
+            let difference = tie.points[1].y - tie.points[0].y;
+            pulls[a].push((b, difference));
+            pulls[b].push((a, -difference));
+        } else {
+            reaches_arm[a] = true;
+            reaches_arm[b] = true;
+        }
+    }
+    for _ in 0..SWEEPS {
+        for k in 0..count {
+            if !pulls[k].is_empty() {
+                let sum: f64 = pulls[k].iter().map(|&(j, d)| laid[j].rise + d).sum();
+                laid[k].rise = sum / pulls[k].len() as f64;
+            }
+        }
+    }
+    let groups: Vec<usize> = (0..count).map(|k| links.root(k)).collect();
+    for root in 0..count {
+        let members: Vec<usize> = (0..count)
+            .filter(|&k| groups[k] == root && wrapped(&roles[k]).is_some())
+            .collect();
+        if members.is_empty() {
+            continue;
+        }
+        let lift = group_lift(&members, laid, roles, (draft, meshes, wearer, &reaches_arm));
+        for &k in &members {
+            laid[k].rise += lift;
+        }
+    }
+}
+
+/// How far a group of pieces must rise to hang where it belongs.
+fn group_lift(
+    members: &[usize],
+    laid: &[Laid],
+    roles: &[Role],
+    (draft, meshes, wearer, reaches_arm): (&Draft, &PieceMeshes, &Wearer, &[bool]),
+) -> f64 {
+    let told: Vec<f64> = members
+        .iter()
+        .filter_map(|&k| {
+            let (part, _, level) = wrapped(&roles[k])?;
+            // On an arm the level counts from the shoulder outward, against the frame.
+            let height = if family(part) == 0 { level? } else { -level? };
+            Some(height - laid[k].rise)
+        })
+        .collect();
+    if !told.is_empty() {
+        return told.iter().sum::<f64>() / told.len() as f64;
+    }
+    let part_of = |k: usize| wrapped(&roles[k]).map(|r| r.0);
+    let top_of = |chosen: &dyn Fn(usize) -> bool| {
+        members
+            .iter()
+            .filter(|&&k| chosen(k))
+            .map(|&k| laid[k].span()[1])
+            .fold(f64::NEG_INFINITY, f64::max)
+    };
+    if members.iter().all(|&k| part_of(k).map(family) != Some(0)) {
+        return -top_of(&|_| true);
+    }
+    let levels = &wearer.levels;
+    let trunk = top_of(&|k| part_of(k) == Some(BodyPart::Trunk));
+    let head = members.iter().any(|&k| part_of(k) == Some(BodyPart::Head));
+    let is_top = head
+        || members.iter().any(|&k| reaches_arm[k])
+        || has_shoulder_seam(members, laid, roles, (draft, meshes));
+    if is_top && trunk.is_finite() {
+        levels.neck - trunk
+    } else if is_top {
+        let bottom = members
+            .iter()
+            .map(|&k| laid[k].span()[0])
+            .fold(f64::INFINITY, f64::min);
+        levels.neck - bottom
+    } else {
+        levels.waist + 0.01 - top_of(&|_| true)
+    }
+}
+
+/// Whether a front is sewn to a back along the top of both: what tops have and skirts have not.
+fn has_shoulder_seam(
+    members: &[usize],
+    laid: &[Laid],
+    roles: &[Role],
+    (draft, meshes): (&Draft, &PieceMeshes),
+) -> bool {
+    let mesh_of = |piece: usize| meshes.pieces.iter().position(|m| m.draft_piece == piece);
+    draft.seams.iter().any(|seam| {
+        let ends = [0, 1].map(|side| {
+            let span = seam.sides[side].first()?;
+            let k = mesh_of(span.piece).filter(|k| members.contains(k))?;
+            let vertices = meshes.pieces[k].edge_vertices.get(span.edge)?;
+            let heights = vertices.iter().map(|&v| laid[k].points[v as usize]);
+            let (low, high) = heights.fold(
+                (Vec2::repeat(f64::INFINITY), Vec2::repeat(f64::NEG_INFINITY)),
+                |(l, h), p| (l.inf(&p), h.sup(&p)),
+            );
+            let size = laid[k].high.y - laid[k].low.y;
+            let near_top = low.y > laid[k].high.y - 0.25 * size;
+            let flat = high.x - low.x > high.y - low.y;
+            let narrow = high.x - low.x < 0.45 * laid[k].width();
+            Some((wrapped(&roles[k])?.1, near_top && flat && narrow))
+        });
+        matches!(
+            ends,
+            [Some((Facing::Front, true)), Some((Facing::Back, true))]
+                | [Some((Facing::Back, true)), Some((Facing::Front, true))]
+        )
+    })
+}
+
+/// Groups wrapped pieces of one part whose heights overlap.
+pub(crate) fn rows(laid: &[Laid], roles: &[Role]) -> Vec<Row> {
+    let count = laid.len();
+    let mut links = Links::new(count);
+    for a in 0..count {
+        for b in a + 1..count {
+            let (Some(x), Some(y)) = (wrapped(&roles[a]), wrapped(&roles[b])) else {
+                continue;
+            };
+            let ([al, ah], [bl, bh]) = (laid[a].span(), laid[b].span());
+            let overlap = ah.min(bh) - al.max(bl);
+            if x.0 == y.0 && overlap > 0.4 * (ah - al).min(bh - bl) {
+                links.join(a, b);
+            }
+        }
+    }
+    let mut rows: Vec<Row> = Vec::new();
+    for root in 0..count {
+        let pieces: Vec<usize> = (0..count)
+            .filter(|&k| wrapped(&roles[k]).is_some() && links.root(k) == root)
+            .collect();
+        if let Some((part, ..)) = pieces.first().and_then(|&k| wrapped(&roles[k])) {
+            let girth = pieces.iter().map(|&k| laid[k].width()).sum();
+            rows.push(Row {
+                part,
+                pieces,
+                girth,
+            });
+        }
+    }
+    rows
+}
+
+/// Sets every piece's distance round the part: sewn edges near each other, pieces near the
+/// side they face, on a ring as long as all pieces of the row together.
+pub(crate) fn set_shifts(
+    laid: &mut [Laid],
+    roles: &[Role],
+    row: &Row,
+    ties: &[Tie],
+    frame: &PartFrame,
+) {
+    let girth = row.girth.max(1e-6);
+    let home = |laid: &[Laid], k: usize| {
+        let facing = wrapped(&roles[k]).map_or(Facing::Front, |r| r.1);
+        let quarter = frame.quarter(facing);
+        let turn = if quarter == 3 { -1.0 } else { quarter as f64 };
+        turn * 0.25 * girth - 0.5 * (laid[k].low.x + laid[k].high.x)
+    };
+    for &k in &row.pieces {
+        laid[k].shift = home(laid, k);
+    }
+    let own: Vec<&Tie> = ties
+        .iter()
+        .filter(|t| t.pieces.iter().all(|p| row.pieces.contains(p)))
+        .collect();
+    let nearest = |d: f64| d - girth * (d / girth).round();
+    for _ in 0..SWEEPS {
+        for &k in &row.pieces {
+            let mut sum = FACING_WEIGHT * home(laid, k);
+            let mut weight = FACING_WEIGHT;
+            for tie in &own {
+                for (side, other) in [(0, 1), (1, 0)] {
+                    if tie.pieces[side] == k {
+                        let there = laid[tie.pieces[other]].shift + tie.points[other].x;
+                        let here = laid[k].shift + tie.points[side].x;
+                        sum += laid[k].shift + nearest(there - here);
+                        weight += 1.0;
+                    }
+                }
+            }
+            laid[k].shift = sum / weight;
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! Rows of pieces wrapped round a body part, outside the skin, without stretching them.
+
+use crate::Wearer;
+use crate::outline_curve::{OutlineCurve, convex_hull, perimeter};
+use crate::role::Role;
+use crate::rows::{Laid, Row};
+use crate::space::PartFrame;
+use toile_geometry::{Vec2, Vec3};
+use toile_pattern::{BodyPart, Facing};
+
+/// Distance of cloth from the hull of the skin to start with [m].
+const FIRST_DISTANCE: f64 = 0.012;
+/// Skin this far above and below a row is gone round too [m].
+const BAND: f64 = 0.03;
+/// Distance between neighbouring pieces of a row, as a share of their places' spread.
+const SPREAD: f64 = 1.02;
+/// Distance that pieces of one leg keep from the middle of the body [m].
+const MIDDLE_CLEARANCE: f64 = 0.006;
+
+/// What a row goes round.
+pub(crate) struct Surroundings<'a> {
+    pub wearer: &'a Wearer<'a>,
+    /// Part of each vertex of the skin.
+    pub labels: &'a [BodyPart],
+    /// Points of pieces placed before.
+    pub placed: &'a [Vec3],
+}
+
+/// How a row is wrapped: what the search for a clear place changes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fit {
+    /// Extra distance from the skin [m].
+    pub distance: f64,
+    /// Extra height [m].
+    pub lift: f64,
+}
+
+/// The shape a row is bent to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Bend {
+    /// Once round the part.
+    Ring,
+    /// Before and behind the part: under the arms or between the legs no ring fits.
+    Sides,
+}
+
+fn bend(row: &Row, laid: &[Laid], wearer: &Wearer) -> Bend {
+    match row.part {
+        BodyPart::LeftLeg | BodyPart::RightLeg => Bend::Sides,
+        BodyPart::Trunk => {
+            let top = row.pieces.iter().map(|&k| laid[k].span()[1]);
+            if top.fold(f64::NEG_INFINITY, f64::max) > wearer.levels.chest + BAND {
+                Bend::Sides
+            } else {
+                Bend::Ring
+            }
+        }
+        _ => Bend::Ring,
+    }
+}
+
+fn facing_of(role: &Role) -> Facing {
+    match role {
+        Role::Wrapped { facing, .. } => *facing,
+        Role::Placed(_) => Facing::Front,
+    }
+}
+
+/// Positions of every piece of a row [m], in the order of the row.
+pub(crate) fn wrap_row(
+    row: &Row,
+    laid: &[Laid],
+    roles: &[Role],
+    around: &Surroundings,
+    fit: Fit,
+) -> Vec<Vec<Vec3>> {
+    let frame = PartFrame::new(around.wearer, row.part);
+    let spans = row.pieces.iter().map(|&k| laid[k].span());
+    let band = spans.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], [a, b]| {
+        [l.min(a + fit.lift - BAND), h.max(b + fit.lift + BAND)]
+    });
+    let shape = bend(row, laid, around.wearer);
+    let ring = ring_for(row, around, &frame, band, fit.distance);
+    row.pieces
+        .iter()
+        .map(|&k| {
+            let facing = facing_of(&roles[k]);
+            let quarter = frame.quarter(facing);
+            let sideways = matches!(facing, Facing::Front | Facing::Back);
+            if shape == Bend::Sides && (sideways || row.part != BodyPart::Trunk) {
+                let place = SidePlace {
+                    frame: &frame,
+                    quarter,
+                    band,
+                };
+                wrap_side(row, &laid[k], around, &place, fit)
+            } else {
+                wrap_ring(row, &laid[k], &frame, &ring, fit)
+            }
+        })
+        .collect()
+}
+
+/// Skin a row on a part goes round, between two heights.
+fn obstacles(
+    part: BodyPart,
+    around: &Surroundings,
+    frame: &PartFrame,
+    [low, high]: [f64; 2],
+    keep: impl Fn(Vec3, BodyPart) -> bool,
+) -> Vec<Vec3> {
+    let skin = &around.wearer.skin.mesh().positions;
+    let mut found: Vec<Vec3> = Vec::new();
+    for (&p, &label) in skin.iter().zip(around.labels) {
+        let height = frame.height(p);
+        if height >= low && height <= high && keep(p, label) {
+            found.push(p);
+        }
+    }
+    if matches!(part, BodyPart::Trunk) {
+        let near = |p: &&Vec3| (low..=high).contains(&frame.height(**p));
+        found.extend(around.placed.iter().filter(near));
+    }
+    found
+}
+
+fn ring_for(
+    row: &Row,
+    around: &Surroundings,
+    frame: &PartFrame,
+    band: [f64; 2],
+    distance: f64,
+) -> OutlineCurve {
+    let arm = |l: BodyPart| matches!(l, BodyPart::LeftArm | BodyPart::RightArm);
+    let own = |label: BodyPart| match row.part {
+        BodyPart::Trunk => !arm(label),
+        part => label == part,
+    };
+    let skin_only = Surroundings {
+        placed: &[],
+        ..*around
+    };
+    let points: Vec<Vec2> = obstacles(row.part, &skin_only, frame, band, |_, l| own(l))
+        .into_iter()
+        .map(|p| frame.across(p, 0))
+        .collect();
+    let hull = perimeter(&convex_hull(points.clone()));
+    let wanted = (row.girth * SPREAD + 0.01 - hull) / std::f64::consts::TAU;
+    OutlineCurve::ring(
+        &points,
+        Vec2::zeros(),
+        wanted.max(FIRST_DISTANCE) + distance,
+    )
+}
+
+fn wrap_ring(
+    row: &Row,
+    piece: &Laid,
+    frame: &PartFrame,
+    ring: &OutlineCurve,
+    fit: Fit,
+) -> Vec<Vec3> {
+    let middle = piece.shift + 0.5 * (piece.low.x + piece.high.x);
+    let spread = middle * (ring.length() / row.girth.max(1e-6));
+    piece
+        .points
+        .iter()
+        .map(|p| {
+            let along = spread + (p.x + piece.shift - middle);
+            frame.on_curve(ring, 0, along, p.y + piece.rise + fit.lift)
+        })
+        .collect()
+}
+
+struct SidePlace<'a> {
+    frame: &'a PartFrame,
+    quarter: usize,
+    band: [f64; 2],
+}
+
+/// Wraps a piece over the front or back of the trunk or of a leg.
+fn wrap_side(
+    row: &Row,
+    piece: &Laid,
+    around: &Surroundings,
+    place: &SidePlace,
+    fit: Fit,
+) -> Vec<Vec3> {
+    let frame = place.frame;
+    let turn = if place.quarter == 3 {
+        -1.0
+    } else {
+        place.quarter as f64
+    };
+    let ring_middle = piece.shift + 0.5 * (piece.low.x + piece.high.x);
+    let home = turn * 0.25 * row.girth;
+    let mut middle = ring_middle - home;
+    middle = (middle - row.girth * (middle / row.girth.max(1e-6)).round()) * SPREAD;
+    let half = 0.5 * piece.width();
+    let side = match row.part {
+        BodyPart::LeftLeg => Some(1.0),
+        BodyPart::RightLeg => Some(-1.0),
+        _ => None,
+    };
+    let reach = middle.abs() + half + 0.02;
+    let points: Vec<Vec2> = obstacles(row.part, around, frame, place.band, |p, label| {
+        let arm = matches!(label, BodyPart::LeftArm | BodyPart::RightArm);
+        frame.across(p, place.quarter).x.abs() <= reach && (side.is_none() || !arm)
+    })
+    .into_iter()
+    .map(|p| frame.across(p, place.quarter))
+    .collect();
+    let curve = OutlineCurve::front(&points, 0.0, FIRST_DISTANCE + fit.distance);
+    let bent = |middle: f64| -> Vec<Vec3> {
+        let mean = 0.5 * (piece.low.x + piece.high.x);
+        piece
+            .points
+            .iter()
+            .map(|p| {
+                let along = middle + p.x - mean;
+                frame.on_curve(&curve, place.quarter, along, p.y + piece.rise + fit.lift)
+            })
+            .collect()
+    };
+    let mut positions = bent(middle);
+    if let Some(side) = side {
+        // Mirror twins must not cross in the middle of the body.
+        let outward = if place.quarter == 2 { -side } else { side };
+        for _ in 0..20 {
+            let nearest = positions
+                .iter()
+                .map(|p| side * p.x)
+                .fold(f64::INFINITY, f64::min);
+            if nearest >= MIDDLE_CLEARANCE {
+                break;
+            }
+            middle += outward * (MIDDLE_CLEARANCE - nearest + 1e-3);
+            positions = bent(middle);
+        }
+    }
+    positions
+}
+
+/// Lays a piece flat over the body like a poncho: the hole (else the middle) over the neck, at
+/// the lowest height above the shoulders where the hole clears the skin. Says whether it does.
+pub(crate) fn lay_over(piece: &Laid, hole: &[Vec2], wearer: &Wearer, lift: f64) -> (Vec<Vec3>, bool) {
+    let neck = wearer
+        .limbs
+        .iter()
+        .find(|l| l.part == BodyPart::Head)
+        .and_then(|l| l.axis.first().copied())
+        .unwrap_or_else(|| Vec3::new(0.0, wearer.levels.neck, 0.0));
+    let ring: &[Vec2] = if hole.is_empty() { &piece.points } else { hole };
+    let middle = ring.iter().sum::<Vec2>() / ring.len().max(1) as f64;
+    let at = |p: Vec2, height: f64| {
+        // The top of the piece lies behind the neck, its right side up.
+        Vec3::new(neck.x + p.x - middle.x, height, neck.z - (p.y - middle.y))
+    };
+    let skin = &wearer.skin.mesh().positions;
+    let clears = |height: f64| {
+        let slab = 0.012;
+        skin.iter()
+            .filter(|p| (p.y - height).abs() < slab)
+            .all(|p| {
+                let flat = Vec2::new(p.x - neck.x + middle.x, middle.y - (p.z - neck.z));
+                inside_by(flat, hole, 0.004)
+            })
+    };
+    let mut height = wearer.levels.shoulder + 0.02;
+    let mut clear = false;
+    while height < wearer.levels.crown + 0.05 {
+        if clears(height) {
+            clear = true;
+            break;
+        }
+        height += 0.005;
+    }
+    let place = height + lift;
+    (piece.points.iter().map(|&p| at(p, place)).collect(), clear)
+}
+
+/// Whether a point lies inside a polygon at least `margin` [m] from its corners and edges.
+fn inside_by(p: Vec2, polygon: &[Vec2], margin: f64) -> bool {
+    let mut inside = false;
+    for k in 0..polygon.len() {
+        let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
+        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) {
+            inside = !inside;
+        }
+        let d = b - a;
+        let t = ((p - a).dot(&d) / d.norm_squared().max(1e-18)).clamp(0.0, 1.0);
+        if (a + d * t - p).norm() < margin {
+            return false;
+        }
+    }
+    inside
+}
