@@ -1,0 +1,341 @@
+//! The scene file: JSON for every object of a simulation.
+//!
+//! Lengths are metres, times seconds, everything SI. Meshes, patterns and bodies are named by
+//! path; whoever has them loaded turns a [`SceneFile`] into a scene.
+
+use crate::FormatError;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use toile_drape::{ContactSettings, Material, MethodKind, Scene};
+use toile_geometry::Vec3;
+
+/// A scene as written.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct SceneFile {
+    /// Acceleration of gravity [m/s2].
+    #[serde(default = "earth")]
+    pub gravity: [f64; 3],
+    /// The air.
+    #[serde(default)]
+    pub air: AirFile,
+    /// Simulated time [s].
+    #[serde(default = "one")]
+    pub duration: f64,
+    /// Step in time [s].
+    #[serde(default = "usual_step")]
+    pub step: f64,
+    /// Time between saved frames [s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame_step: Option<f64>,
+    /// How the motion is computed.
+    #[serde(default)]
+    pub method: MethodFile,
+    /// How cloth meets surfaces.
+    #[serde(default)]
+    pub collision: CollisionFile,
+    /// The objects.
+    pub objects: Vec<ObjectFile>,
+    /// Attachment forces.
+    #[serde(default)]
+    pub elastics: Vec<ElasticFile>,
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+type Unknown = BTreeMap<String, Value>;
+
+/// The air of a scene.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct AirFile {
+    /// Drag per mass [1/s].
+    #[serde(default)]
+    pub drag: f64,
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+/// The method of a scene.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct MethodFile {
+    /// Its name.
+    pub name: String,
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+impl Default for MethodFile {
+    fn default() -> Self {
+        Self {
+            name: MethodKind::default().name().to_owned(),
+            unknown: Unknown::new(),
+        }
+    }
+}
+
+/// Contact in a scene.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct CollisionFile {
+    /// Distance kept from surfaces [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset: Option<f64>,
+    /// Pressure per depth [N/m3].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness: Option<f64>,
+    /// Whether friction acts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<bool>,
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+/// One object of a scene.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct ObjectFile {
+    /// Unique name.
+    pub name: String,
+    /// `static`, `animated`, `rigid` or `deformable`.
+    pub kind: String,
+    /// An OBJ file, relative to the scene file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<String>,
+    /// A pattern file: its garment, sewn on the scene's body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pattern: Option<String>,
+    /// `woman`, `man`, `mean`, or a file of measurements: a mannequin.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<String>,
+    /// Where it stands.
+    #[serde(default)]
+    pub transform: TransformFile,
+    /// What a deformable object is made of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<MaterialFile>,
+    /// Vertices that do not move.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pins: Vec<u32>,
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+/// Scaled, then turned, then moved.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct TransformFile {
+    /// Translation [m].
+    #[serde(default)]
+    pub translation: [f64; 3],
+    /// Rotation vector: axis times angle [rad].
+    #[serde(default)]
+    pub rotation: [f64; 3],
+    /// Uniform scale.
+    #[serde(default = "one")]
+    pub scale: f64,
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+impl Default for TransformFile {
+    fn default() -> Self {
+        Self {
+            translation: [0.0; 3],
+            rotation: [0.0; 3],
+            scale: 1.0,
+            unknown: Unknown::new(),
+        }
+    }
+}
+
+impl TransformFile {
+    /// The place a point of the object's own file takes in the scene [m].
+    pub fn apply(&self, point: Vec3) -> Vec3 {
+        nalgebra::Rotation3::from_scaled_axis(Vec3::from(self.rotation)) * (point * self.scale)
+            + Vec3::from(self.translation)
+    }
+}
+
+/// A cloth in a scene; what is left out is that of [`Material::default`].
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct MaterialFile {
+    /// Mass per area [kg/m2].
+    pub density: Option<f64>,
+    /// Thickness [m].
+    pub thickness: Option<f64>,
+    /// Stretch stiffness along warp and weft [N/m].
+    pub stretch: Option<[f64; 2]>,
+    /// Shear stiffness [N/m].
+    pub shear: Option<f64>,
+    /// Poisson ratio.
+    pub poisson: Option<f64>,
+    /// Bending stiffness along warp, weft and bias [N m].
+    pub bend: Option<[f64; 3]>,
+    /// Friction coefficient.
+    pub friction: Option<f64>,
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+impl MaterialFile {
+    /// The material, with defaults where nothing is written.
+    pub fn material(&self) -> Material {
+        let usual = Material::default();
+        Material {
+            density: self.density.unwrap_or(usual.density),
+            thickness: self.thickness.unwrap_or(usual.thickness),
+            stretch: self.stretch.unwrap_or(usual.stretch),
+            shear: self.shear.unwrap_or(usual.shear),
+            poisson: self.poisson.unwrap_or(usual.poisson),
+            bend: self.bend.unwrap_or(usual.bend),
+            friction: self.friction.unwrap_or(usual.friction),
+        }
+    }
+}
+
+/// An elastic between two ends.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct ElasticFile {
+    /// Object and vertex.
+    pub from: EndFile,
+    /// Object and vertex, or a point.
+    pub to: EndFile,
+    /// Stiffness [N/m].
+    pub stiffness: f64,
+    /// Gap at which the ends become one vertex [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub merge_within: Option<f64>,
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+/// One end of an elastic: `["shirt", 12]`, or `[x, y, z]` in metres.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(untagged)]
+pub enum EndFile {
+    /// A vertex of an object.
+    Vertex(String, u32),
+    /// A place [m].
+    Point([f64; 3]),
+}
+
+fn earth() -> [f64; 3] {
+    [0.0, -9.81, 0.0]
+}
+fn one() -> f64 {
+    1.0
+}
+fn usual_step() -> f64 {
+    Scene::default().step
+}
+
+impl SceneFile {
+    /// The method named.
+    ///
+    /// # Errors
+    /// An unknown name; the message lists those that are known.
+    pub fn method(&self) -> Result<MethodKind, FormatError> {
+        let found = MethodKind::ALL
+            .iter()
+            .find(|(name, _)| *name == self.method.name);
+        found.map(|&(_, kind)| kind).ok_or_else(|| {
+            let known: Vec<_> = MethodKind::ALL.iter().map(|(name, _)| *name).collect();
+            FormatError::new(
+                "method.name",
+                format!("\"{}\" is not a method", self.method.name),
+                format!("write one of {}", known.join(", ")),
+            )
+        })
+    }
+
+    /// Contact, with defaults where nothing is written.
+    pub fn contact(&self) -> ContactSettings {
+        let usual = ContactSettings::default();
+        ContactSettings {
+            offset: self.collision.offset.unwrap_or(usual.offset),
+            stiffness: self.collision.stiffness.unwrap_or(usual.stiffness),
+            friction: self.collision.friction.unwrap_or(usual.friction),
+        }
+    }
+
+    /// Paths of the fields that are not known here.
+    fn unknown_fields(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        let mut add = |path: String, unknown: &Unknown| {
+            let dot = if path.is_empty() { "" } else { "." };
+            found.extend(unknown.keys().map(|key| format!("{path}{dot}{key}")));
+        };
+        add(String::new(), &self.unknown);
+        add("air".to_owned(), &self.air.unknown);
+        add("method".to_owned(), &self.method.unknown);
+        add("collision".to_owned(), &self.collision.unknown);
+        for (k, object) in self.objects.iter().enumerate() {
+            add(format!("objects[{k}]"), &object.unknown);
+            add(format!("objects[{k}].transform"), &object.transform.unknown);
+            if let Some(material) = &object.material {
+                add(format!("objects[{k}].material"), &material.unknown);
+            }
+        }
+        for (k, elastic) in self.elastics.iter().enumerate() {
+            add(format!("elastics[{k}]"), &elastic.unknown);
+        }
+        found
+    }
+}
+
+/// Reads a scene file. Beside it come the paths of fields that are not known here.
+///
+/// # Errors
+/// With line and column: text that is not JSON, a field missing or of the wrong kind.
+pub fn read_scene(text: &str) -> Result<(SceneFile, Vec<String>), FormatError> {
+    let file: SceneFile = serde_json::from_str(text).map_err(|error| {
+        let place = format!("line {}, column {}", error.line(), error.column());
+        let what = error.to_string();
+        let what = what
+            .split(" at line ")
+            .next()
+            .unwrap_or_default()
+            .to_owned();
+        FormatError::new(place, what, "see the scene file in docs/FORMATS.md")
+    })?;
+    let unknown = file.unknown_fields();
+    Ok((file, unknown))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FLAG: &str = r#"{ "duration": 2, "colour": "red",
+        "objects": [ { "name": "flag", "kind": "deformable", "mesh": "flag.obj", "pins": [0, 4],
+                       "material": { "density": 0.1, "gloss": 3 },
+                       "transform": { "translation": [0, 1, 0], "scale": 2 } } ],
+        "elastics": [ { "from": ["flag", 2], "to": [0, 1, 0.5], "stiffness": 40 } ] }"#;
+
+    #[test]
+    fn a_scene_is_read_and_unknown_fields_are_named() {
+        let (file, unknown) = read_scene(FLAG).expect("good");
+        assert_eq!(unknown, ["colour", "objects[0].material.gloss"]);
+        assert_eq!(file.method().expect("default"), MethodKind::ImplicitEuler);
+        let flag = &file.objects[0];
+        assert!((flag.material.as_ref().expect("given").material().density - 0.1).abs() < 1e-15);
+        assert_eq!(
+            flag.transform.apply(Vec3::new(1.0, 1.0, 1.0)),
+            Vec3::new(2.0, 3.0, 2.0)
+        );
+        assert!(matches!(&file.elastics[0].from, EndFile::Vertex(name, 2) if name == "flag"));
+        assert!(matches!(file.elastics[0].to, EndFile::Point([_, 1.0, _])));
+    }
+
+    #[test]
+    fn a_broken_scene_says_where() {
+        let error = read_scene("{ \"objects\": [ { \"name\": 3 } ] }").expect_err("wrong type");
+        assert!(error.place.starts_with("line 1"), "{error}");
+        assert!(read_scene("").is_err());
+        let named = FLAG.replace("\"duration\": 2", "\"method\": {\"name\": \"guess\"}");
+        let (file, _) = read_scene(&named).expect("readable");
+        assert!(
+            file.method()
+                .expect_err("unknown")
+                .to_string()
+                .contains("implicit-euler")
+        );
+    }
+}
