@@ -5,6 +5,7 @@
 //! right-handed, Y up.
 
 mod curve;
+mod ellipsoid;
 mod mesh;
 mod polygon;
 mod polygon_boolean;
@@ -20,6 +21,7 @@ mod triangle;
 mod units;
 
 pub use curve::Curve;
+pub use ellipsoid::Ellipsoid;
 pub use mesh::{MeshDefect, Topology, TriangleMesh};
 pub use polygon::{Bounds2, Location, Polygon, ring_area};
 pub use polygon_boolean::{

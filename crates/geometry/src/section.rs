@@ -72,9 +72,8 @@ mod tests {
         // Ramanujan 1914, exact to 1e-9 at this axis ratio.
         let (a, b) = (0.2f64, 0.13f64);
         let h = ((a - b) / (a + b)).powi(2);
-        let exact = std::f64::consts::PI
-            * (a + b)
-            * (1.0 + 3.0 * h / (10.0 + (4.0 - 3.0 * h).sqrt()));
+        let exact =
+            std::f64::consts::PI * (a + b) * (1.0 + 3.0 * h / (10.0 + (4.0 - 3.0 * h).sqrt()));
         assert!((girth(a, b) - exact).abs() < 1e-4);
     }
 
