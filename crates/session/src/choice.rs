@@ -1,0 +1,100 @@
+//! Whom the garment is made for, and how finely.
+
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use std::sync::Arc;
+use toile_body::Figure;
+use toile_measure::Measurements;
+
+/// Whose body the garment is draped on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum BodyChoice {
+    /// As the pattern says: a woman of the pattern's size; an average adult if the pattern has no
+    /// sizes.
+    #[default]
+    OfPattern,
+    /// A sample body: the figure with its average measurements, overlaid with the chosen size.
+    Sample(Figure),
+    /// A body of given measurements.
+    Measured {
+        /// The figure it is grown from.
+        figure: Figure,
+        /// The file they come from.
+        path: PathBuf,
+        /// The measurements [m], [rad].
+        measurements: Arc<Measurements>,
+    },
+}
+
+impl BodyChoice {
+    /// A few words for screens and reports.
+    pub fn words(&self) -> String {
+        match self {
+            Self::OfPattern => "as the pattern says".into(),
+            Self::Sample(figure) => figure_name(*figure).into(),
+            Self::Measured { figure, path, .. } => {
+                format!("{} of {}", figure_name(*figure), path.display())
+            }
+        }
+    }
+}
+
+/// The name of a figure on the command line and on screens.
+pub(crate) fn figure_name(figure: Figure) -> &'static str {
+    match figure {
+        Figure::Woman => "woman",
+        Figure::Man => "man",
+        Figure::Mean => "mean",
+    }
+}
+
+/// The average adult of a figure.
+pub(crate) fn sample_of(figure: Figure) -> Measurements {
+    match figure {
+        Figure::Woman => Measurements::adult_woman(),
+        Figure::Man => Measurements::adult_man(),
+        Figure::Mean => Measurements::adult(),
+    }
+}
+
+/// How finely the garment is meshed and how near to rest it is draped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quality {
+    /// Edges of 25 mm, to a residual of 1e-2: a quick look.
+    Preview,
+    /// Edges of 15 mm, to a residual of 5e-3: good enough to judge the fit.
+    #[default]
+    Fit,
+    /// Edges of 10 mm, to a residual of 1e-3: for the finished picture.
+    Final,
+}
+
+impl Quality {
+    /// Mean edge length of the mesh [m].
+    pub fn edge_length(self) -> f64 {
+        match self {
+            Self::Preview => 0.025,
+            Self::Fit => 0.015,
+            Self::Final => 0.010,
+        }
+    }
+
+    /// Net force over weight at which the drape counts as at rest.
+    pub fn residual(self) -> f64 {
+        match self {
+            Self::Preview => 1e-2,
+            Self::Fit => 5e-3,
+            Self::Final => 1e-3,
+        }
+    }
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Preview => "preview",
+            Self::Fit => "fit",
+            Self::Final => "final",
+        }
+    }
+}

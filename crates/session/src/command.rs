@@ -1,0 +1,107 @@
+//! Commands: everything that can be asked of a session, as data.
+
+use crate::Quality;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use toile_body::Figure;
+use toile_pattern::Edit;
+
+/// One thing to do. The journal is a list of these.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "command")]
+pub enum Command {
+    /// Replaces the project by a pattern read from a file; its format is seen from its content.
+    OpenPattern {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Writes the pattern in the native format.
+    SavePattern {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Changes the pattern. All edits are made or none.
+    Edit {
+        /// What changes.
+        edits: Vec<Edit>,
+        /// The step's name in the history, as in "Move point".
+        label: String,
+        /// Edits of the same drag, one after another, are one step of the history.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        drag: Option<u64>,
+    },
+    /// Takes the last step of the history back.
+    Undo,
+    /// Does the step last taken back again.
+    Redo,
+    /// Chooses the body: a figure with average measurements or those of a file; neither means as
+    /// the pattern says.
+    SetBody {
+        /// The figure; nothing means the mean one for a file.
+        figure: Option<Figure>,
+        /// A file of measurements.
+        measurements: Option<PathBuf>,
+    },
+    /// Chooses a named size of the pattern, or its base size.
+    SetSize {
+        /// Its name.
+        size: Option<String>,
+    },
+    /// Cuts every panel from one fabric, or each from its own.
+    SetFabric {
+        /// Name of a fabric of the pattern, or `jersey` or `poplin`.
+        fabric: Option<String>,
+    },
+    /// Chooses the width of the fabric, or the fabric's own.
+    SetWidth {
+        /// Width of the roll [m].
+        width: Option<f64>,
+    },
+    /// Chooses how finely to mesh and how near to rest to drape.
+    SetQuality {
+        /// The quality.
+        quality: Quality,
+    },
+    /// Looks for faults of the pattern.
+    Check,
+    /// Lays the pieces on fabric.
+    Nest,
+    /// Meshes the pieces and places them round the mannequin.
+    Assemble,
+    /// Sews the garment and drapes it to rest.
+    Drape,
+    /// Writes what has been made of the present project: marker, garment, pictures, report.
+    Export {
+        /// The folder; it is made if need be.
+        dir: PathBuf,
+    },
+}
+
+impl Command {
+    /// Whether it changes the project.
+    pub fn changes_project(&self) -> bool {
+        matches!(
+            self,
+            Self::OpenPattern { .. }
+                | Self::Edit { .. }
+                | Self::Undo
+                | Self::Redo
+                | Self::SetBody { .. }
+                | Self::SetSize { .. }
+                | Self::SetFabric { .. }
+                | Self::SetWidth { .. }
+                | Self::SetQuality { .. }
+        )
+    }
+
+    /// Rough share of the work of making a garment, for progress.
+    pub(crate) fn weight(&self) -> f64 {
+        match self {
+            Self::Drape => 80.0,
+            Self::Nest | Self::Export { .. } => 7.0,
+            Self::Assemble => 4.0,
+            Self::Check | Self::OpenPattern { .. } => 1.0,
+            _ => 0.1,
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Why a command was not done.
+
+use std::path::PathBuf;
+use toile_interchange::{FileError, FormatError};
+
+/// Why a command was not done. The project is unchanged.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionError {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A file is not what it should be.
+    #[error("{}: {error}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong where.
+        error: FormatError,
+    },
+    /// Something made cannot be written in a format.
+    #[error("cannot write {file}: {error}")]
+    Write {
+        /// Name of the file.
+        file: &'static str,
+        /// What is wrong.
+        error: FormatError,
+    },
+    /// The pattern has faults that keep the garment from being made.
+    #[error("{source_name}: {}", faults.join("\n"))]
+    Faults {
+        /// The pattern's file or name.
+        source_name: String,
+        /// Each fault with its place and remedy.
+        faults: Vec<String>,
+    },
+    /// An edit was refused.
+    #[error("{0}")]
+    Edit(#[from] toile_pattern::EditError),
+    /// A choice names something that is not there.
+    #[error("there is no {kind} {name:?}; {hint}")]
+    Unknown {
+        /// What kind of thing, as in "size".
+        kind: &'static str,
+        /// The name given.
+        name: String,
+        /// What there is instead.
+        hint: String,
+    },
+    /// A number given makes no sense.
+    #[error("{what} is {value}; {hint}")]
+    Number {
+        /// What it is.
+        what: &'static str,
+        /// The value given.
+        value: f64,
+        /// What would be right.
+        hint: &'static str,
+    },
+    /// No mannequin can be made.
+    #[error("mannequin: {0}")]
+    Body(#[from] toile_body::BodyError),
+    /// The pieces cannot be meshed or placed.
+    #[error("{0}")]
+    Assembly(#[from] toile_assembly::AssemblyError),
+    /// The pieces cannot be laid.
+    #[error("marker: {0}")]
+    Nesting(toile_nesting::NestingError),
+    /// The garment cannot be sewn or draped.
+    #[error("{0}")]
+    Drape(toile_drape::DrapeError),
+    /// A picture cannot be drawn.
+    #[error("picture: {0}")]
+    Picture(#[from] toile_picture::PictureError),
+    /// A command has nothing to work on.
+    #[error("there is nothing to {action}; {hint}")]
+    Nothing {
+        /// What was asked, as in "undo".
+        action: &'static str,
+        /// What to do first.
+        hint: &'static str,
+    },
+    /// A line of a journal cannot be read.
+    #[error("journal, line {line}: {what}; each line is one command as JSON")]
+    Journal {
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong.
+        what: String,
+    },
+    /// The watcher asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl SessionError {
+    /// Whether what was given is at fault, and not the work on it.
+    pub fn is_bad_input(&self) -> bool {
+        match self {
+            Self::File(error) => error.action == "read",
+            Self::Drape(error) => matches!(
+                error,
+                toile_drape::DrapeError::Mesh { .. }
+                    | toile_drape::DrapeError::EmptyTriangle { .. }
+                    | toile_drape::DrapeError::Material { .. }
+                    | toile_drape::DrapeError::Scene { .. }
+            ),
+            Self::Write { .. } | Self::Picture(_) | Self::Cancelled => false,
+            _ => true,
+        }
+    }
+}
+
+impl From<toile_nesting::NestingError> for SessionError {
+    fn from(error: toile_nesting::NestingError) -> Self {
+        match error {
+            toile_nesting::NestingError::Cancelled => Self::Cancelled,
+            other => Self::Nesting(other),
+        }
+    }
+}
+
+impl From<toile_drape::DrapeError> for SessionError {
+    fn from(error: toile_drape::DrapeError) -> Self {
+        match error {
+            toile_drape::DrapeError::Cancelled => Self::Cancelled,
+            other => Self::Drape(other),
+        }
+    }
+}

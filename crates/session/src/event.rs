@@ -1,0 +1,81 @@
+//! Events: what happened, for whoever asked.
+
+use std::path::PathBuf;
+
+/// Something that happened while a command was done.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Event {
+    /// A pattern was read.
+    PatternOpened,
+    /// The project is another one now.
+    ProjectChanged {
+        /// Its number; it only grows.
+        revision: u64,
+    },
+    /// The pattern was checked.
+    Checked {
+        /// Faults that keep the garment from being made.
+        errors: usize,
+        /// Faults that probably were not meant.
+        warnings: usize,
+    },
+    /// The pieces were laid.
+    Nested(Nested),
+    /// The pieces were meshed and placed.
+    Assembled(Assembled),
+    /// The garment was draped.
+    Draped(Draped),
+    /// Files were written.
+    FilesWritten {
+        /// Where.
+        paths: Vec<PathBuf>,
+    },
+    /// Something is less than well.
+    Warned {
+        /// What, where, and what to do, in plain words.
+        message: String,
+    },
+}
+
+/// A marker in a few numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nested {
+    /// Pieces laid.
+    pub pieces: usize,
+    /// Fabric used [m].
+    pub length: f64,
+    /// Width of the fabric [m].
+    pub width: f64,
+    /// Area of the pieces over area of fabric used, 0..=1.
+    pub efficiency: f64,
+}
+
+/// A garment's mesh in a few numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assembled {
+    /// Pieces of cloth that are sewn.
+    pub panels: usize,
+    /// Vertices before merging.
+    pub vertices: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// Vertex pairs that seams join.
+    pub stitches: usize,
+}
+
+/// A drape in a few numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draped {
+    /// Steps of sewing and of settling.
+    pub steps: [usize; 2],
+    /// Net force over weight.
+    pub residual: f64,
+    /// Largest seam gap in the step before merging [m].
+    pub seam_gap: f64,
+    /// Pieces that hang together after sewing.
+    pub components: usize,
+    /// Pairs of cloth and body triangles that intersect.
+    pub body_intersections: usize,
+    /// Largest stretch along warp and weft.
+    pub strain_max: [f64; 2],
+}

@@ -1,0 +1,66 @@
+//! The one ground state.
+
+use crate::choice::sample_of;
+use crate::{BodyChoice, Quality};
+use std::path::PathBuf;
+use std::sync::Arc;
+use toile_body::Figure;
+use toile_measure::Measurements;
+use toile_pattern::Pattern;
+
+/// Everything a person decides. Cloning is cheap.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Project {
+    /// The pattern.
+    pub pattern: Arc<Pattern>,
+    /// The file it was read from or last saved to.
+    pub source: Option<PathBuf>,
+    /// Whose body it is draped on.
+    pub body: BodyChoice,
+    /// Named size of the pattern; nothing means its base size, or the measured body.
+    pub size: Option<String>,
+    /// Name of a fabric that takes the place of every panel's.
+    pub fabric: Option<String>,
+    /// Width of the fabric [m]; nothing means the fabric's own.
+    pub width: Option<f64>,
+    /// How finely it is meshed and draped.
+    pub quality: Quality,
+}
+
+impl Project {
+    /// The figure the mannequin is grown from.
+    pub fn figure(&self) -> Figure {
+        match &self.body {
+            BodyChoice::OfPattern if self.pattern.sizes.is_empty() => Figure::Mean,
+            BodyChoice::OfPattern => Figure::Woman,
+            BodyChoice::Sample(figure) | BodyChoice::Measured { figure, .. } => *figure,
+        }
+    }
+
+    fn named_size(&self) -> Option<&Measurements> {
+        self.pattern.size(self.size.as_deref()?)
+    }
+
+    /// The measurements of the mannequin [m], [rad]: those of the file; else the figure's averages
+    /// overlaid with the named size, or with the pattern's base size where no body was chosen.
+    pub fn wearer(&self) -> Measurements {
+        let size = match &self.body {
+            BodyChoice::Measured { measurements, .. } => Some(&**measurements),
+            BodyChoice::Sample(_) => self.named_size(),
+            BodyChoice::OfPattern => self
+                .named_size()
+                .or_else(|| self.pattern.base_measurements()),
+        };
+        let sample = sample_of(self.figure());
+        size.map_or_else(|| sample.clone(), |size| sample.overlaid(size))
+    }
+
+    /// The measurements the pattern is drafted to [m], [rad]: the named size; else those of the
+    /// body that was chosen; else the pattern's base size.
+    pub fn drafted_to(&self) -> Measurements {
+        match self.named_size() {
+            Some(size) => size.clone(),
+            None => self.wearer(),
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! The one function that turns draft, fabrics and mannequin into a drape.
+
+use crate::{Quality, SessionError};
+use std::sync::Arc;
+use toile_assembly::{Garment, GarmentPanel, Levels, Limb, Wearer, mesh_pieces};
+use toile_body::{Mannequin, Part};
+use toile_drape::{Cloth, ContactSettings, GarmentSetup, Material, RestSettings, SewSettings};
+use toile_geometry::{SurfaceTree, Vec2, Vec3};
+use toile_pattern::{BodyPart, Draft, Fabric, PieceId, Worn};
+
+/// Acceleration of gravity [m/s2].
+pub(crate) const GRAVITY: f64 = 9.81;
+
+/// A garment ready to be sewn and draped, and what is needed to map the result back to panels.
+#[derive(Clone)]
+pub struct GarmentJob {
+    /// What the drape is made from.
+    pub setup: GarmentSetup,
+    /// The meshed and placed pieces; vertices are the setup's.
+    pub garment: Arc<Garment>,
+    /// Names and colours of the pieces, in the order of the garment's panels.
+    pub panels: Arc<Vec<JobPanel>>,
+}
+
+/// What a picture or a file needs to know of a piece of a garment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JobPanel {
+    /// Which piece it is.
+    pub piece: PieceId,
+    /// Name to show.
+    pub name: String,
+    /// Base colour, sRGB 0..=1.
+    pub colour: [f64; 3],
+}
+
+/// Builds the drape of a garment that was meshed and placed.
+pub(crate) fn job(
+    draft: &Draft,
+    garment: Arc<Garment>,
+    skin: Arc<SurfaceTree>,
+    quality: Quality,
+) -> GarmentJob {
+    let panels = garment
+        .panels
+        .iter()
+        .map(|panel| JobPanel {
+            piece: panel.piece,
+            name: panel.name.clone(),
+            colour: draft
+                .fabrics
+                .get(panel.fabric)
+                .map_or([0.7; 3], |f| f.colour),
+        })
+        .collect();
+    let setup = GarmentSetup {
+        cloth: cloth(draft, &garment),
+        stitches: garment.stitches.iter().map(|s| s.vertices).collect(),
+        counted: counted(draft, &garment, 2.0 * quality.edge_length()),
+        colliders: vec![skin],
+        contact: ContactSettings::default(),
+        gravity: Vec3::new(0.0, -GRAVITY, 0.0),
+        sew: SewSettings::default(),
+        rest: RestSettings {
+            residual: quality.residual(),
+            ..RestSettings::default()
+        },
+    };
+    GarmentJob {
+        setup,
+        garment,
+        panels: Arc::new(panels),
+    }
+}
+
+fn material(fabric: &Fabric) -> Material {
+    Material {
+        density: fabric.density,
+        thickness: fabric.thickness,
+        stretch: fabric.stretch,
+        shear: fabric.shear,
+        poisson: fabric.poisson,
+        bend: fabric.bend,
+        friction: fabric.friction,
+    }
+}
+
+/// The pieces as cloth: each triangle's rest shape is its place in the piece, turned so that the
+/// warp is the first axis.
+fn cloth(draft: &Draft, garment: &Garment) -> Cloth {
+    let mut rest = vec![[Vec2::zeros(); 3]; garment.triangles.len()];
+    let mut material_of = vec![0; garment.triangles.len()];
+    for panel in &garment.panels {
+        let (sine, cosine) = panel.grain.sin_cos();
+        let turned = |p: Vec2| Vec2::new(cosine * p.x + sine * p.y, cosine * p.y - sine * p.x);
+        for t in panel.triangles.clone() {
+            rest[t] = garment.triangles[t].map(|v| turned(garment.flat[v as usize]));
+            material_of[t] = panel.fabric as u16;
+        }
+    }
+    Cloth {
+        positions: garment.positions.clone(),
+        triangles: garment.triangles.clone(),
+        rest,
+        material: material_of,
+        materials: draft.fabrics.iter().map(material).collect(),
+    }
+}
+
+/// Triangles where strain counts: those with every corner at least `reach` [m] from the vertices
+/// of gathered seams, measured in the piece.
+fn counted(draft: &Draft, garment: &Garment, reach: f64) -> Vec<bool> {
+    let mut counted = vec![true; garment.triangles.len()];
+    let gathered: Vec<u32> = garment
+        .stitches
+        .iter()
+        .filter(|stitch| draft.seams[stitch.draft_seam].gathered)
+        .flat_map(|stitch| stitch.vertices)
+        .collect();
+    for panel in &garment.panels {
+        let near: Vec<Vec2> = gathered
+            .iter()
+            .filter(|&&v| panel.vertices.contains(&(v as usize)))
+            .map(|&v| garment.flat[v as usize])
+            .collect();
+        for t in panel.triangles.clone() {
+            counted[t] = garment.triangles[t].iter().all(|&v| {
+                let p = garment.flat[v as usize];
+                near.iter().all(|q| (p - q).norm() >= reach)
+            });
+        }
+    }
+    counted
+}
+
+fn body_part(part: Part) -> BodyPart {
+    match part {
+        Part::Trunk => BodyPart::Trunk,
+        Part::Head => BodyPart::Head,
+        Part::LeftArm => BodyPart::LeftArm,
+        Part::RightArm => BodyPart::RightArm,
+        Part::LeftLeg => BodyPart::LeftLeg,
+        Part::RightLeg => BodyPart::RightLeg,
+    }
+}
+
+/// What placement needs to know of a mannequin.
+pub(crate) fn wearer(mannequin: &Mannequin) -> Wearer<'_> {
+    let levels = mannequin.levels();
+    Wearer {
+        skin: mannequin.skin_tree(),
+        limbs: mannequin
+            .parts()
+            .into_iter()
+            .map(|axis| Limb {
+                part: body_part(axis.part),
+                axis: axis.axis,
+            })
+            .collect(),
+        levels: Levels {
+            crown: levels.crown,
+            neck: levels.neck,
+            shoulder: levels.shoulder,
+            chest: levels.chest,
+            waist: levels.waist,
+            hip: levels.hip,
+            crotch: levels.crotch,
+        },
+    }
+}
+
+/// Meshes the pieces and places them.
+pub(crate) fn assemble(
+    draft: &Draft,
+    _wearer: &Wearer<'_>,
+    edge_length: f64,
+) -> Result<Garment, SessionError> {
+    let meshes = mesh_pieces(draft, edge_length)?;
+    let mut garment = Garment {
+        stitches: meshes.stitches,
+        ..Garment::default()
+    };
+    for mesh in meshes.pieces {
+        let piece = &draft.pieces[mesh.draft_piece];
+        let (vertex, triangle) = (garment.positions.len(), garment.triangles.len());
+        let place = match piece.worn {
+            Worn::Placed(place) => place,
+            _ => toile_geometry::Rigid::identity(),
+        };
+        for p in &mesh.points {
+            garment
+                .positions
+                .push((place * nalgebra::Point3::new(p.x, p.y, 0.0)).coords);
+        }
+        garment.flat.extend(&mesh.points);
+        garment
+            .triangles
+            .extend(mesh.triangles.iter().map(|t| t.map(|v| v + vertex as u32)));
+        garment.panels.push(GarmentPanel {
+            piece: piece.id,
+            draft_piece: mesh.draft_piece,
+            name: piece.name.clone(),
+            vertices: vertex..garment.positions.len(),
+            triangles: triangle..garment.triangles.len(),
+            grain: piece.grain,
+            fabric: piece.fabric,
+        });
+    }
+    Ok(garment)
+}
