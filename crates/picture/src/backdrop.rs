@@ -1,7 +1,7 @@
 //! What is behind the surfaces: a vertical gradient, and shadows where the ground is.
 
 use crate::colour::{Rgb, linear_from_srgb, mix};
-use crate::prepare::Floor;
+use crate::floor::Floor;
 use toile_geometry::Vec3;
 
 /// A background of two colours.
@@ -39,20 +39,20 @@ impl Backdrop {
         linear_from_srgb(mix(self.top, self.bottom, height))
     }
 
-    /// Linear light at a height of the picture, 0 at the top, along a line of sight.
-    pub(crate) fn light(
+    /// How much light the shadow on the ground leaves along a line of sight, at a place from 0 to 1
+    /// to the right. Shadows end softly at the sides, where another picture may follow.
+    pub(crate) fn on_floor(
         &self,
-        height: f64,
+        across: f64,
         (start, direction): (Vec3, Vec3),
-        floor: Option<&Floor>,
-    ) -> [f64; 3] {
-        let colour = self.plain(height);
-        let Some(floor) = floor else { return colour };
+        floor: &Floor,
+    ) -> f64 {
         if self.shadow == 0.0 || direction.y > -1e-6 || start.y < floor.height {
-            return colour;
+            return 1.0;
         }
         let hit = start + direction * ((floor.height - start.y) / direction.y);
-        let light = 1.0 - self.shadow * (1.0 - floor.light(hit));
-        colour.map(|c| c * light)
+        let inward = (across.min(1.0 - across) / 0.15).clamp(0.0, 1.0);
+        let dark = self.shadow * inward * inward * (3.0 - 2.0 * inward);
+        1.0 - dark * (1.0 - floor.light(hit))
     }
 }

@@ -38,19 +38,6 @@ pub(crate) fn linear_from_oklab([lightness, a, b]: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// OKLab of an sRGB colour (Ottosson 2020).
-pub(crate) fn oklab_from_srgb(colour: Rgb) -> [f64; 3] {
-    let [r, g, b] = linear_from_srgb(colour);
-    let l = (0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b).cbrt();
-    let m = (0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b).cbrt();
-    let s = (0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b).cbrt();
-    [
-        0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
-        1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,
-        0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766_0 * s,
-    ]
-}
-
 /// Part of the way from one colour to another.
 pub(crate) fn mix(from: [f64; 3], to: [f64; 3], part: f64) -> [f64; 3] {
     [0, 1, 2].map(|k| from[k] + (to[k] - from[k]) * part)
@@ -62,8 +49,21 @@ pub(crate) fn byte(value: f64) -> u8 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+
+    /// OKLab of an sRGB colour (Ottosson 2020).
+    pub(crate) fn oklab_from_srgb(colour: Rgb) -> [f64; 3] {
+        let [r, g, b] = linear_from_srgb(colour);
+        let l = (0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b).cbrt();
+        let m = (0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b).cbrt();
+        let s = (0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b).cbrt();
+        [
+            0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
+            1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,
+            0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766_0 * s,
+        ]
+    }
 
     #[test]
     fn conversions_are_inverse() {

@@ -143,7 +143,7 @@ impl ColourScale {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colour::oklab_from_srgb;
+    use crate::colour::tests::oklab_from_srgb;
 
     const MAPS: [ColourMap; 3] = [ColourMap::Depth, ColourMap::Heat, ColourMap::Signed];
 

@@ -50,6 +50,7 @@ impl DepthMap {
         let cells: Vec<[f32; 3]> = local
             .iter()
             .map(|p| {
+                // Cell centres get whole numbers.
                 let x = (p[0] - corner[0]) * cells_per_metre - 0.5;
                 let y = (p[1] - corner[1]) * cells_per_metre - 0.5;
                 [x as f32, y as f32, p[2] as f32]
@@ -63,20 +64,22 @@ impl DepthMap {
 
     /// Raises the cells whose centre a triangle covers.
     fn draw(&mut self, [a, b, c]: [[f32; 3]; 3]) {
+        // All corners lie inside the grid, so that casts round down.
+        let low = |k: usize| a[k].min(b[k]).min(c[k]) as usize + 1;
+        let high = |k: usize| a[k].max(b[k]).max(c[k]) as usize;
+        let (columns, rows) = ([low(0), high(0)], [low(1), high(1)]);
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-        if area.abs() < 1e-12 {
+        if columns[0] > columns[1] || rows[0] > rows[1] || area.abs() < 1e-12 {
             return;
         }
-        let last = (self.size - 1) as f32;
-        let low = |k: usize| a[k].min(b[k]).min(c[k]).ceil().clamp(0.0, last) as usize;
-        let high = |k: usize| a[k].max(b[k]).max(c[k]).floor().clamp(0.0, last) as usize;
+        let inverse = area.recip();
         // Rounding must leave no gap between neighbours.
         let slack = -1e-4_f32;
-        for y in low(1)..=high(1) {
-            for x in low(0)..=high(0) {
+        for y in rows[0]..=rows[1] {
+            for x in columns[0]..=columns[1] {
                 let (px, py) = (x as f32, y as f32);
-                let v = ((px - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (py - a[1])) / area;
-                let w = ((b[0] - a[0]) * (py - a[1]) - (px - a[0]) * (b[1] - a[1])) / area;
+                let v = ((px - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (py - a[1])) * inverse;
+                let w = ((b[0] - a[0]) * (py - a[1]) - (px - a[0]) * (b[1] - a[1])) * inverse;
                 if v >= slack && w >= slack && 1.0 - v - w >= slack {
                     let height = a[2] + v * (b[2] - a[2]) + w * (c[2] - a[2]);
                     let cell = &mut self.heights[y * self.size + x];
@@ -90,28 +93,31 @@ impl DepthMap {
     /// comparisons with fractional ends, so that it changes smoothly with the place (Reeves,
     /// Salesin and Cook 1987). Blockers less than `bias` \[m\] above the point do not count.
     pub(crate) fn light(&self, p: Vec3, bias: f64, reach: usize) -> f64 {
-        let x = (p.dot(&self.axes[0]) - self.corner[0]) * self.cells_per_metre - 0.5;
-        let y = (p.dot(&self.axes[1]) - self.corner[1]) * self.cells_per_metre - 0.5;
+        let x = (p.dot(&self.axes[0]) - self.corner[0]) * self.cells_per_metre;
+        let y = (p.dot(&self.axes[1]) - self.corner[1]) * self.cells_per_metre;
         let height = (p.dot(&self.axes[2]) + bias) as f32;
-        let (column, row) = (x.floor(), y.floor());
-        let (part_x, part_y) = (x - column, y - row);
+        // Far outside there is nothing; inside, casts of positive numbers round down.
+        let outside = |c: f64| c < -8.0 || c > self.size as f64 + 8.0;
+        if outside(x) || outside(y) {
+            return 1.0;
+        }
         let reach = reach as i64;
-        let weight = |offset: i64, part: f64| {
-            if offset == 1 - reach {
-                1.0 - part
-            } else if offset == 1 + reach {
-                part
-            } else {
-                1.0
-            }
+        let (column, row) = ((x + 64.0) as i64 - 64, (y + 64.0) as i64 - 64);
+        let (part_x, part_y) = (x - column as f64, y - row as f64);
+        let weight = |offset: i64, part: f64| match offset {
+            o if o == -reach => 1.0 - part,
+            o if o == reach => part,
+            _ => 1.0,
         };
         let mut sum = 0.0;
-        for j in 1 - reach..=1 + reach {
-            for i in 1 - reach..=1 + reach {
-                if self.height(column as i64 + i, row as i64 + j) <= height {
-                    sum += weight(i, part_x) * weight(j, part_y);
+        for j in -reach..=reach {
+            let mut line = 0.0;
+            for i in -reach..=reach {
+                if self.height(column + i, row + j) <= height {
+                    line += weight(i, part_x);
                 }
             }
+            sum += line * weight(j, part_y);
         }
         sum / (4 * reach * reach) as f64
     }

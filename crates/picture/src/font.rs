@@ -5,7 +5,7 @@ pub(crate) const CAPITAL: f64 = 14.0;
 /// Height of the baseline above the lowest point.
 const BASELINE: f64 = 4.0;
 /// Space after a character.
-const SPACING: f64 = 4.2;
+pub(crate) const SPACING: f64 = 4.2;
 /// Width of a blank.
 const BLANK: f64 = 5.0;
 
@@ -194,7 +194,7 @@ mod tests {
             assert!(!strokes.is_empty(), "{character}");
             for [x, y] in strokes.iter().flatten() {
                 assert!(
-                    (0.0..=14.0).contains(x) && (-4.0..=16.0).contains(y),
+                    (-0.01..=14.01).contains(x) && (-4.01..=16.01).contains(y),
                     "{character}"
                 );
                 assert!(*x < advance);

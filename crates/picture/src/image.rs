@@ -23,7 +23,7 @@ impl Image {
     /// # Errors
     /// No pixels, or more than 64 million.
     pub fn new(width: usize, height: usize, colour: Rgb) -> Result<Self, PictureError> {
-        let count = width.checked_mul(height).unwrap_or(usize::MAX);
+        let count = width.saturating_mul(height);
         if count == 0 || count > LARGEST {
             return Err(PictureError::Size { width, height });
         }
@@ -50,9 +50,9 @@ impl Image {
             return;
         }
         let at = 4 * (y as usize * self.width + x as usize);
-        for k in 0..3 {
-            let old = f64::from(self.pixels[at + k]) / 255.0;
-            self.pixels[at + k] = byte(old + (colour[k] - old) * opacity.clamp(0.0, 1.0));
+        for (part, pixel) in colour.iter().zip(&mut self.pixels[at..at + 3]) {
+            let old = f64::from(*pixel) / 255.0;
+            *pixel = byte(old + (part - old) * opacity.clamp(0.0, 1.0));
         }
         self.pixels[at + 3] = self.pixels[at + 3].max(byte(opacity));
     }

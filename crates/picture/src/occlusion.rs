@@ -12,16 +12,12 @@ const CELLS: usize = 224;
 
 /// The light of a sky that is bright above and half as bright below, which reaches both sides of
 /// each point: along its normal and against it; 1 for a point in the open that faces up.
-pub(crate) fn ambient(
-    points: &[Vec3],
-    normals: &[Vec3],
-    blockers: (&[Vec3], &[[u32; 3]]),
-) -> Vec<[f32; 2]> {
+pub(crate) fn ambient(points: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[f32; 2]> {
     let directions = sphere(DIRECTIONS);
     let reached: Vec<Vec<f32>> = directions
         .par_iter()
         .map(|&towards| {
-            let map = DepthMap::new(blockers.0, blockers.1, towards, CELLS);
+            let map = DepthMap::new(points, triangles, towards, CELLS);
             // A point must not be hidden by the slope of its own surface within a cell.
             let step = 1.5 / map.cells_per_metre;
             points
@@ -69,13 +65,15 @@ mod tests {
 
     #[test]
     fn open_sky_and_closed_box() {
-        let open = ambient(&[Vec3::zeros()], &[Vec3::y()], (&[Vec3::zeros()], &[]));
+        let open = ambient(&[Vec3::zeros()], &[Vec3::y()], &[]);
         assert!(open[0][0] > 0.85 && open[0][1] < 0.7, "{open:?}");
         // A floor far wider than the distance hides everything below.
-        let square = [(-9.0, 9.0), (9.0, 9.0), (9.0, -9.0), (-9.0, -9.0)]
-            .map(|(x, z)| Vec3::new(x, -1.0, z));
-        let floor: (&[Vec3], &[[u32; 3]]) = (&square, &[[0, 1, 2], [0, 2, 3]]);
-        let above = ambient(&[Vec3::zeros()], &[Vec3::y()], floor);
+        let mut points = vec![Vec3::zeros()];
+        points.extend(
+            [(-9.0, 9.0), (9.0, 9.0), (9.0, -9.0), (-9.0, -9.0)]
+                .map(|(x, z)| Vec3::new(x, -1.0, z)),
+        );
+        let above = ambient(&points, &[Vec3::y(); 5], &[[1, 2, 3], [1, 3, 4]]);
         assert!((above[0][0] - open[0][0]).abs() < 1e-6);
         assert!(above[0][1] < 0.1, "{above:?}");
     }

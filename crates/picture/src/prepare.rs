@@ -2,6 +2,7 @@
 
 use crate::PictureError;
 use crate::colour::linear_from_srgb;
+use crate::floor::Floor;
 use crate::occlusion::ambient;
 use crate::scene::{Edges, Finish, Paint, Scene, Surface};
 use toile_geometry::Vec3;
@@ -24,21 +25,9 @@ pub(crate) struct Prepared<'a> {
     /// Bit k is set where the edge opposite corner k carries a line.
     pub lined: Vec<u8>,
     pub floor: Option<Floor>,
+    /// Linear light of each surface's plain colour and of its lines.
+    linear: Vec<[[f64; 3]; 2]>,
 }
-
-/// The ground under the scene and how much sky it sees.
-pub(crate) struct Floor {
-    /// Its height \[m\].
-    pub height: f64,
-    corner: [f64; 2],
-    /// Distance of grid points \[m\].
-    step: f64,
-    /// Light of the sky on each grid point, 1 in the open.
-    light: Vec<f64>,
-}
-
-/// Grid points of the ground a side.
-const GRID: usize = 80;
 
 impl<'a> Prepared<'a> {
     pub(crate) fn new(scene: &'a Scene) -> Result<Self, PictureError> {
@@ -53,6 +42,7 @@ impl<'a> Prepared<'a> {
             first: Vec::new(),
             lined: Vec::new(),
             floor: None,
+            linear: Vec::new(),
         };
         for (s, surface) in scene.surfaces.iter().enumerate() {
             all.first.push([all.positions.len(), all.triangles.len()]);
@@ -67,40 +57,18 @@ impl<'a> Prepared<'a> {
                 .extend(surface.mesh.triangles.iter().map(|t| t.map(|v| v + base)));
             all.owner.resize(all.triangles.len(), s as u32);
             all.lined.extend(lined_edges(surface));
+            let plain = match surface.paint {
+                Paint::Plain(colour) => colour,
+                _ => [0.0; 3],
+            };
+            all.linear
+                .push([plain, surface.lines.colour].map(linear_from_srgb));
         }
-        all.add_ambient();
+        all.ambient = ambient(&all.positions, &all.normals, &all.triangles);
+        all.floor = scene
+            .bounds()
+            .map(|bounds| Floor::under(bounds, &all.positions, &all.triangles));
         Ok(all)
-    }
-
-    fn add_ambient(&mut self) {
-        let Some([low, high]) = self.scene.bounds() else {
-            return;
-        };
-        let reach = 0.6 * (high - low).norm().max(1e-3);
-        let middle = 0.5 * (low + high);
-        let corner = [middle.x - reach, middle.z - reach];
-        let step = 2.0 * reach / (GRID - 1) as f64;
-        let grid = (0..GRID * GRID).map(|k| {
-            let (i, j) = (k % GRID, k / GRID);
-            Vec3::new(
-                corner[0] + step * i as f64,
-                low.y,
-                corner[1] + step * j as f64,
-            )
-        });
-        let points: Vec<Vec3> = self.positions.iter().copied().chain(grid).collect();
-        let mut normals = self.normals.clone();
-        normals.resize(points.len(), Vec3::y());
-        let mut light = ambient(&points, &normals, (&self.positions, &self.triangles));
-        let ground = light.split_off(self.positions.len());
-        let open = ground.iter().map(|l| l[0]).fold(1e-6, f32::max);
-        self.floor = Some(Floor {
-            height: low.y,
-            corner,
-            step,
-            light: ground.iter().map(|l| f64::from(l[0] / open)).collect(),
-        });
-        self.ambient = light;
     }
 
     /// Colour in linear light of a place on a triangle, given its weights of the corners.
@@ -108,8 +76,8 @@ impl<'a> Prepared<'a> {
         let s = self.owner[triangle] as usize;
         let [first_vertex, first_triangle] = self.first[s];
         let own = triangle - first_triangle;
-        linear_from_srgb(match &self.scene.surfaces[s].paint {
-            Paint::Plain(colour) => *colour,
+        let srgb = match &self.scene.surfaces[s].paint {
+            Paint::Plain(_) => return self.linear[s][0],
             Paint::PerTriangle(colours) => colours[own],
             Paint::TriangleScalar(values, scale) => scale.colour(values[own]),
             Paint::VertexScalar(values, scale) => {
@@ -119,7 +87,13 @@ impl<'a> Prepared<'a> {
                     .sum();
                 scale.colour(value)
             }
-        })
+        };
+        linear_from_srgb(srgb)
+    }
+
+    /// Colour in linear light of the lines on a triangle.
+    pub(crate) fn line_colour(&self, triangle: usize) -> [f64; 3] {
+        self.linear[self.owner[triangle] as usize][1]
     }
 
     /// Whether the colour is a measured value, which light must not hide.
@@ -133,33 +107,6 @@ impl<'a> Prepared<'a> {
     pub(crate) fn finish(&self, triangle: usize) -> Finish {
         self.scene.surfaces[self.owner[triangle] as usize].finish
     }
-}
-
-impl Floor {
-    /// Light of the sky on the ground, 1 in the open and far away.
-    pub(crate) fn light(&self, p: Vec3) -> f64 {
-        let u = (p.x - self.corner[0]) / self.step;
-        let v = (p.z - self.corner[1]) / self.step;
-        let last = (GRID - 1) as f64;
-        if !((0.0..last).contains(&u) && (0.0..last).contains(&v)) {
-            return 1.0;
-        }
-        let (i, j) = (u as usize, v as usize);
-        let at = |i: usize, j: usize| self.light[j * GRID + i];
-        let (a, b) = (smooth(u - i as f64), smooth(v - j as f64));
-        let near = at(i, j) * (1.0 - a) + at(i + 1, j) * a;
-        let far = at(i, j + 1) * (1.0 - a) + at(i + 1, j + 1) * a;
-        let light = near * (1.0 - b) + far * b;
-        // Nothing of the grid's border shows.
-        let from_middle = (2.0 * u / last - 1.0).hypot(2.0 * v / last - 1.0);
-        let fade = ((1.0 - from_middle) / 0.4).clamp(0.0, 1.0);
-        1.0 - (1.0 - light) * smooth(fade)
-    }
-}
-
-/// From 0 to 1 without a kink at the ends.
-fn smooth(t: f64) -> f64 {
-    t * t * (3.0 - 2.0 * t)
 }
 
 /// For each triangle, the edges that carry a line.

@@ -151,6 +151,9 @@ pub(crate) fn render(
         backdrop,
         flats: &flats,
         lamps: Lamps::new(prepared, camera),
+        rows: (0..size[1])
+            .map(|y| backdrop.plain((y as f64 + 0.5) / size[1] as f64))
+            .collect(),
     };
     let tiles: Vec<Vec<u8>> = bins
         .par_iter()
@@ -181,6 +184,8 @@ struct Painter<'a> {
     backdrop: &'a Backdrop,
     flats: &'a [Option<Flat>],
     lamps: Lamps<'a>,
+    /// Linear light of the backdrop in each row.
+    rows: Vec<[f64; 3]>,
 }
 
 impl Painter<'_> {
@@ -225,12 +230,18 @@ impl Painter<'_> {
                         continue;
                     }
                     let base = ((y - from[1]) * TILE + x - from[0]) * SAMPLES;
-                    for (k, offset) in OFFSETS.iter().enumerate() {
-                        let (sx, sy) = (px + offset[0], py + offset[1]);
-                        let near = flat.near.at(sx, sy) as f32;
-                        let inside = flat.edges_at(sx, sy).iter().all(|&e| e >= 0.0);
-                        if inside && near > nearest[base + k] {
-                            nearest[base + k] = near;
+                    let mut near = [0.0_f32; SAMPLES];
+                    let mut least = [0.0_f64; SAMPLES];
+                    for k in 0..SAMPLES {
+                        let (sx, sy) = (px + OFFSETS[k][0], py + OFFSETS[k][1]);
+                        let [a, b, c] = flat.edges_at(sx, sy);
+                        least[k] = if a < b { a } else { b };
+                        least[k] = if c < least[k] { c } else { least[k] };
+                        near[k] = flat.near.at(sx, sy) as f32;
+                    }
+                    for k in 0..SAMPLES {
+                        if least[k] >= 0.0 && near[k] > nearest[base + k] {
+                            nearest[base + k] = near[k];
                             triangles[base + k] = t;
                         }
                     }
@@ -295,12 +306,13 @@ impl Painter<'_> {
     }
 
     fn behind(&self, [x, y]: [f64; 2]) -> [f64; 3] {
-        let floor = self.prepared.floor.as_ref();
-        self.backdrop.light(
-            y / self.size[1] as f64,
-            self.camera.ray(x, y, self.size),
-            floor,
-        )
+        let plain = self.rows[(y as usize).min(self.size[1] - 1)];
+        let Some(floor) = &self.prepared.floor else {
+            return plain;
+        };
+        let ray = self.camera.ray(x, y, self.size);
+        let light = self.backdrop.on_floor(x / self.size[0] as f64, ray, floor);
+        plain.map(|c| c * light)
     }
 }
 

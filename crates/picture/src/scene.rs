@@ -41,6 +41,22 @@ impl Surface {
             framed: true,
         }
     }
+
+    /// Places of all corners of triangles \[m\]: vertices without a triangle show nowhere.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = Vec3> {
+        let positions = &self.mesh.positions;
+        self.mesh
+            .triangles
+            .iter()
+            .flatten()
+            .filter_map(|&v| positions.get(v as usize).copied())
+    }
+
+    fn bounds(&self) -> Option<[Vec3; 2]> {
+        self.corners()
+            .map(|p| [p, p])
+            .reduce(|a, b| [a[0].inf(&b[0]), a[1].sup(&b[1])])
+    }
 }
 
 /// Where a surface's colours come from.
@@ -97,7 +113,7 @@ impl Scene {
         self.surfaces
             .iter()
             .filter(|s| s.framed || !any)
-            .filter_map(|s| s.mesh.bounds())
+            .filter_map(Surface::bounds)
             .reduce(|a, b| [a[0].inf(&b[0]), a[1].sup(&b[1])])
     }
 
@@ -105,7 +121,7 @@ impl Scene {
     pub fn bounds(&self) -> Option<[Vec3; 2]> {
         self.surfaces
             .iter()
-            .filter_map(|s| s.mesh.bounds())
+            .filter_map(Surface::bounds)
             .reduce(|a, b| [a[0].inf(&b[0]), a[1].sup(&b[1])])
     }
 

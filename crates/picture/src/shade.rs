@@ -10,15 +10,17 @@ use toile_geometry::Vec3;
 /// Cells a side of the key lamp's shadow map.
 const SHADOW_CELLS: usize = 1024;
 /// Brightness of the key lamp.
-const KEY: f64 = 0.72;
+const KEY: f64 = 0.86;
 /// Brightness of the fill lamp.
-const FILL: f64 = 0.20;
+const FILL: f64 = 0.17;
 /// Brightness of the rim lamp.
 const RIM: f64 = 0.30;
 /// Brightness of the sky.
-const SKY: f64 = 0.52;
+const SKY: f64 = 0.44;
 /// How much darker the wrong side of cloth is.
-const WRONG_SIDE: f64 = 0.66;
+const WRONG_SIDE: f64 = 0.74;
+/// How much light cloth lets through from its other side.
+const THROUGH: f64 = 0.60;
 /// How much of the light and shade a measured colour keeps.
 const SCALAR_SHADE: f64 = 0.5;
 
@@ -49,7 +51,7 @@ impl<'a> Lamps<'a> {
         let direction = |right: f64, up: f64, back: f64| {
             (right * camera.right + up * camera.up - back * camera.forward).normalize()
         };
-        let key = direction(-0.62, 0.62, 0.80);
+        let key = direction(-0.74, 0.62, 0.66);
         Self {
             prepared,
             key,
@@ -80,10 +82,16 @@ impl<'a> Lamps<'a> {
             normal = (normal + (0.02 - facing) * place.to_eye).normalize();
         }
         let side = usize::from(!place.right_side);
-        let sky: f64 = (0..3)
-            .map(|k| place.weights[k] * f64::from(all.ambient[corners[k] as usize][side]))
-            .sum();
+        let sky_on = |side: usize| -> f64 {
+            (0..3)
+                .map(|k| place.weights[k] * f64::from(all.ambient[corners[k] as usize][side]))
+                .sum()
+        };
         let finish = all.finish(place.triangle);
+        let sky = match finish {
+            Finish::Cloth => sky_on(side).max(THROUGH * sky_on(1 - side)),
+            Finish::Smooth => sky_on(side),
+        };
         let light = self.light(blend(&all.positions), normal, place, (sky, finish));
         let mut colour = all.colour(place.triangle, place.weights);
         let scalar = all.is_scalar(place.triangle);
@@ -92,7 +100,7 @@ impl<'a> Lamps<'a> {
         }
         let lines = &all.scene.surfaces[all.owner[place.triangle] as usize].lines;
         if place.line > 0.0 {
-            let ink = crate::colour::linear_from_srgb(lines.colour);
+            let ink = all.line_colour(place.triangle);
             colour = mix(colour, ink, place.line * lines.opacity);
         }
         let (diffuse, sheen) = light;
@@ -127,7 +135,7 @@ impl<'a> Lamps<'a> {
             Finish::Cloth => 0.10 * grazing.powi(4) * sky,
             Finish::Smooth => 0.04 * grazing.powi(5) * sky,
         };
-        (SKY * sky.powf(1.25) + key + fill + rim, sheen)
+        (SKY * sky * sky.sqrt().sqrt() + key + fill + rim, sheen)
     }
 }
 

@@ -54,6 +54,9 @@ impl Sheet {
     }
 }
 
+/// Angle of the cameras above the horizon \[rad\].
+const RISE: f64 = 0.05;
+/// Colour of captions.
 const SOFT: Rgb = [0.42, 0.41, 0.40];
 
 /// Draws a scene from one camera.
@@ -134,7 +137,8 @@ fn views(scene: &Scene, sheet: &Sheet, margins: [f64; 2]) -> Result<Image, Pictu
         let size = [pane.width, sheet.height];
         let mut part = raster::render(&prepared, &pane.camera, size, &sheet.backdrop)?;
         let end = sheet.height as f64 - margins[1];
-        fade(&mut part, &sheet.backdrop, end, 5.0 * letters);
+        let rows = 5.0 * letters;
+        fade(&mut part, &sheet.backdrop, [margins[0], rows], [end, rows]);
         let middle = 0.5 * pane.width as f64;
         part.write([middle, end + 2.2 * letters], pane.view.name(), &style);
         image.place(&part, pane.left, 0);
@@ -142,12 +146,22 @@ fn views(scene: &Scene, sheet: &Sheet, margins: [f64; 2]) -> Result<Image, Pictu
     Ok(image)
 }
 
-/// Lets what hangs into the lower margin disappear into the background over some rows.
-fn fade(image: &mut Image, backdrop: &Backdrop, end: f64, rows: f64) {
-    for y in (end - rows).max(0.0) as usize..image.height {
-        let part = ((y as f64 + 0.5 - (end - rows)) / rows).clamp(0.0, 1.0);
-        let height = (y as f64 + 0.5) / image.height as f64;
-        let colour = crate::colour::srgb_from_linear(backdrop.plain(height));
+/// Lets what hangs into the margins disappear into the background: above a first row over a
+/// number of rows, and likewise below a last one.
+fn fade(image: &mut Image, backdrop: &Backdrop, top: [f64; 2], bottom: [f64; 2]) {
+    for y in 0..image.height {
+        let row = y as f64 + 0.5;
+        let above = if top[0] > 0.0 {
+            (top[0] + top[1] - row) / top[1]
+        } else {
+            0.0
+        };
+        let below = (row - (bottom[0] - bottom[1])) / bottom[1];
+        let part = above.max(below).clamp(0.0, 1.0);
+        if part == 0.0 {
+            continue;
+        }
+        let colour = crate::colour::srgb_from_linear(backdrop.plain(row / image.height as f64));
         for x in 0..image.width {
             image.blend(x as i64, y as i64, colour, part * part * (3.0 - 2.0 * part));
         }
@@ -161,60 +175,129 @@ struct Pane {
     width: usize,
 }
 
-/// Lays the views side by side at the largest common scale.
-fn panes(scene: &Scene, sheet: &Sheet, margins: [f64; 2]) -> Result<Vec<Pane>, PictureError> {
-    let [low, high] = framed_heights(scene)?;
-    let bounds = scene.bounds().ok_or(PictureError::Empty)?;
-    let mut middle = 0.5 * (bounds[0] + bounds[1]);
-    middle.y = 0.5 * (low + high);
-    let distance = 3.5 * (high - low).max(0.3 * (bounds[1] - bounds[0]).norm());
-    let cameras: Vec<(View, Camera)> = sheet
-        .views
-        .iter()
-        .map(|&view| {
+/// Cameras with what each of them must show, and the largest scale at which it all fits.
+struct Layout {
+    cameras: Vec<(View, Camera)>,
+    /// Left, right, bottom and top of each view \[tangent\].
+    extents: Vec<[f64; 4]>,
+    /// Lowest and highest of all views \[tangent\].
+    heights: [f64; 2],
+    /// Distance of the cameras \[m\].
+    distance: f64,
+    /// Pixels a unit of tangent.
+    scale: f64,
+}
+
+/// Pixels left free of figures between the views.
+fn gap(sheet: &Sheet) -> f64 {
+    0.03 * sheet.height as f64
+}
+
+/// Pixels across and down that figures may fill.
+fn room(sheet: &Sheet, margins: [f64; 2]) -> [f64; 2] {
+    let across = sheet.width as f64 - gap(sheet) * (sheet.views.len() + 1) as f64;
+    let down = sheet.height as f64 - margins[0] - margins[1];
+    [across.max(1.0), down.max(1.0)]
+}
+
+impl Layout {
+    /// Shows what lies between two heights \[m\].
+    fn new(
+        scene: &Scene,
+        sheet: &Sheet,
+        [across, down]: [f64; 2],
+        [low, high]: [f64; 2],
+    ) -> Result<Self, PictureError> {
+        let bounds = scene.bounds().ok_or(PictureError::Empty)?;
+        let mut middle = 0.5 * (bounds[0] + bounds[1]);
+        middle.y = 0.5 * (low + high);
+        let distance = 3.5 * (high - low).max(0.3 * (bounds[1] - bounds[0]).norm());
+        let place = |&view: &View| {
             let projection = Projection::Perspective;
             (
                 view,
-                Camera::around(middle, distance, view.turn(), 0.05, projection),
+                Camera::around(middle, distance, view.turn(), RISE, projection),
             )
+        };
+        let cameras: Vec<(View, Camera)> = sheet.views.iter().map(place).collect();
+        let extents: Vec<[f64; 4]> = cameras
+            .iter()
+            .map(|(_, camera)| extent(scene, camera, [low, high]))
+            .collect();
+        let bottom = extents.iter().map(|e| e[2]).fold(f64::INFINITY, f64::min);
+        let top = extents
+            .iter()
+            .map(|e| e[3])
+            .fold(f64::NEG_INFINITY, f64::max);
+        let total: f64 = extents.iter().map(|e| e[1] - e[0]).sum();
+        let scale = (0.95 * down / (top - bottom)).min(across / total);
+        if !scale.is_finite() {
+            return Err(PictureError::Empty);
+        }
+        Ok(Self {
+            cameras,
+            extents,
+            heights: [bottom, top],
+            distance,
+            scale,
         })
-        .collect();
-    let extents: Vec<[f64; 4]> = cameras
-        .iter()
-        .map(|(_, camera)| extent(scene, camera, [low, high]))
-        .collect();
-    let bottom = extents.iter().map(|e| e[2]).fold(f64::INFINITY, f64::min);
-    let top = extents
-        .iter()
-        .map(|e| e[3])
-        .fold(f64::NEG_INFINITY, f64::max);
-    let total: f64 = extents.iter().map(|e| e[1] - e[0]).sum();
-    let free = (sheet.height as f64 - margins[0] - margins[1]).max(1.0);
-    let gap = 0.03 * sheet.height as f64;
-    let across = (sheet.width as f64 - gap * (extents.len() + 1) as f64).max(1.0);
-    // Pixels a unit of tangent.
-    let scale = (0.95 * free / (top - bottom)).min(across / total);
-    if !scale.is_finite() {
-        return Err(PictureError::Empty);
     }
-    let spare = (across - scale * total) / extents.len() as f64;
-    let mut edge = 0.5 * gap;
+}
+
+/// Lays the views side by side at the largest common scale. All of the scene is shown unless
+/// that makes what is framed much smaller.
+fn panes(scene: &Scene, sheet: &Sheet, margins: [f64; 2]) -> Result<Vec<Pane>, PictureError> {
+    let room = room(sheet, margins);
+    let [low, high] = framed_heights(scene)?;
+    let bounds = scene.bounds().ok_or(PictureError::Empty)?;
+    let (lowest, highest) = (bounds[0].y, bounds[1].y);
+    let close = Layout::new(scene, sheet, room, [low, high])?;
+    let whole = Layout::new(scene, sheet, room, [lowest, highest])?;
+    let layout = if whole.scale / whole.distance >= 0.85 * close.scale / close.distance {
+        whole
+    } else {
+        // Height that is left over shows more of what is below, then of what is above.
+        let [bottom, top] = close.heights;
+        let left_over = (0.95 * room[1] / close.scale - (top - bottom)) * close.distance;
+        let down = left_over.clamp(0.0, (low - lowest).max(0.0));
+        let up = (left_over - down).clamp(0.0, (highest - high).max(0.0));
+        Layout::new(scene, sheet, room, [low - down, high + up])?
+    };
+    Ok(place_panes(&layout, sheet, margins))
+}
+
+fn place_panes(layout: &Layout, sheet: &Sheet, margins: [f64; 2]) -> Vec<Pane> {
+    let [across, down] = room(sheet, margins);
+    let Layout {
+        extents,
+        scale,
+        heights: [bottom, top],
+        ..
+    } = layout;
+    let count = extents.len();
+    let total: f64 = extents.iter().map(|e| e[1] - e[0]).sum();
+    let spare = (across - scale * total) / count as f64;
+    let mut edge = 0.5 * gap(sheet);
     let mut left = 0;
     let mut panes = Vec::new();
-    for (k, (&(view, mut camera), e)) in cameras.iter().zip(&extents).enumerate() {
-        edge += scale * (e[1] - e[0]) + gap + spare;
-        let end = if k + 1 == extents.len() {
+    for (k, (&(view, mut camera), e)) in layout.cameras.iter().zip(extents).enumerate() {
+        edge += scale * (e[1] - e[0]) + gap(sheet) + spare;
+        let end = if k + 1 == count {
             sheet.width
         } else {
-            (edge.round() as usize).clamp(left + 1, sheet.width)
+            (edge.round() as usize).clamp(left + 1, sheet.width.max(left + 1))
         };
-        let width = (end - left).max(1);
+        let width = end.saturating_sub(left).max(1);
         let half = 0.5 * width as f64 / scale;
         let centre = 0.5 * (e[0] + e[1]);
-        // The framed heights lie in the middle of the rows that are free.
-        let up = 0.5 * (bottom + top) + (margins[0] + 0.5 * free) / scale;
-        let down = up - sheet.height as f64 / scale;
-        camera.window = [centre - half, centre + half, down, up];
+        // The shown heights lie in the middle of the rows that are free.
+        let up = 0.5 * (bottom + top) + (margins[0] + 0.5 * down) / scale;
+        camera.window = [
+            centre - half,
+            centre + half,
+            up - sheet.height as f64 / scale,
+            up,
+        ];
         panes.push(Pane {
             view,
             camera,
@@ -223,7 +306,7 @@ fn panes(scene: &Scene, sheet: &Sheet, margins: [f64; 2]) -> Result<Vec<Pane>, P
         });
         left = end;
     }
-    Ok(panes)
+    panes
 }
 
 /// Lowest and highest place the picture must hold \[m\]: that of the framed surfaces, widened to
@@ -261,9 +344,9 @@ fn extent(scene: &Scene, camera: &Camera, [low, high]: [f64; 2]) -> [f64; 4] {
             extent[3] = extent[3].max(y);
         }
     };
-    for p in scene.surfaces.iter().flat_map(|s| &s.mesh.positions) {
+    for p in scene.surfaces.iter().flat_map(|s| s.corners()) {
         if (low..=high).contains(&p.y) {
-            add(*p);
+            add(p);
         }
     }
     extent

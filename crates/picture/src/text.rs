@@ -1,7 +1,7 @@
 //! Words on an image.
 
 use crate::colour::Rgb;
-use crate::font::{CAPITAL, glyph};
+use crate::font::{CAPITAL, SPACING, glyph};
 use crate::image::Image;
 use crate::ink::Ink;
 
@@ -44,7 +44,7 @@ impl TextStyle {
 /// Width of a line of text \[pixel\].
 pub fn text_width(text: &str, height: f64) -> f64 {
     let units: f64 = text.chars().map(|c| glyph(c).1).sum();
-    units * height / CAPITAL
+    (units - SPACING).max(0.0) * height / CAPITAL
 }
 
 impl Image {
@@ -67,7 +67,8 @@ impl Image {
                     .iter()
                     .map(|p| [x + unit * p[0], at[1] - unit * p[1]])
                     .collect();
-                ink.path(&points, 0.5 * style.weight * style.height);
+                let dot = if points.len() == 1 { 1.3 } else { 1.0 };
+                ink.path(&points, 0.5 * dot * style.weight * style.height);
             }
             x += unit * advance;
         }
