@@ -21,7 +21,7 @@ impl Default for Backdrop {
         Self {
             top: [0.957, 0.953, 0.945],
             bottom: [0.878, 0.871, 0.859],
-            shadow: 0.8,
+            shadow: 1.0,
         }
     }
 }

@@ -25,8 +25,8 @@ const GRID: usize = 200;
 /// both grow with the scene. The last number is the darkness of the layer's shadow.
 const LAYERS: [[f64; 3]; 4] = [
     [0.03, 0.012, 0.60],
-    [0.14, 0.045, 0.36],
-    [0.50, 0.130, 0.26],
+    [0.14, 0.045, 0.42],
+    [0.50, 0.130, 0.30],
     [f64::INFINITY, 0.260, 0.24],
 ];
 

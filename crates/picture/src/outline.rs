@@ -136,53 +136,66 @@ fn draw(image: &mut Image, outline: &Outline, at: impl Fn(&Vec2) -> [f64; 2], le
         align: Align::Middle,
         ..TextStyle::plain(letters)
     };
-    if let Some(ring) = rings
+    let lines: Vec<Vec<[f64; 2]>> = outline
+        .lines
         .iter()
-        .max_by(|a, b| area_of(a).total_cmp(&area_of(b)))
-    {
-        let middle = centroid(ring);
-        image.write(
-            [middle[0], middle[1] + 0.5 * letters],
-            &outline.name,
-            &style,
-        );
-    }
-}
-
-fn area_of(ring: &[[f64; 2]]) -> f64 {
-    signed_area(ring).abs()
-}
-
-fn signed_area(ring: &[[f64; 2]]) -> f64 {
-    let next = ring.iter().cycle().skip(1);
-    let twice: f64 = ring
-        .iter()
-        .zip(next)
-        .map(|(a, b)| a[0] * b[1] - b[0] * a[1])
-        .sum();
-    0.5 * twice
-}
-
-/// Centre of gravity of a ring; the mean of its points if it has no area.
-fn centroid(ring: &[[f64; 2]]) -> [f64; 2] {
-    let count = ring.len().max(1) as f64;
-    let mean = [0, 1].map(|k| ring.iter().map(|p| p[k]).sum::<f64>() / count);
-    let local: Vec<[f64; 2]> = ring
-        .iter()
-        .map(|p| [p[0] - mean[0], p[1] - mean[1]])
+        .map(|line| line.iter().map(&at).collect())
         .collect();
-    let area = signed_area(&local);
-    if area.abs() < 1e-9 {
-        return mean;
+    let wide = text_width(&outline.name, letters) / letters;
+    let [x, y] = free_place(&rings, &lines, wide.max(1.0));
+    image.write([x, y + 0.5 * letters], &outline.name, &style);
+}
+
+/// The place inside rings that is farthest from their edges and from lines, by a search over a
+/// grid, for words `wide` times as wide as high: distances across count that much less.
+fn free_place(rings: &[Vec<[f64; 2]>], lines: &[Vec<[f64; 2]>], wide: f64) -> [f64; 2] {
+    const CELLS: usize = 28;
+    let points = || rings.iter().flatten();
+    let low = [0, 1].map(|k| points().map(|p| p[k]).fold(f64::INFINITY, f64::min));
+    let high = [0, 1].map(|k| points().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max));
+    let middle = [0, 1].map(|k| 0.5 * (low[k] + high[k]));
+    let closed = || {
+        rings
+            .iter()
+            .flat_map(|r| r.iter().zip(r.iter().cycle().skip(1)))
+    };
+    let open = || lines.iter().flat_map(|l| l.iter().zip(l.iter().skip(1)));
+    let clear = |x: f64, y: f64| {
+        let flat = |p: &[f64; 2]| [(p[0] - x) / wide, p[1] - y];
+        closed()
+            .chain(open())
+            .map(|(a, b)| distance_to(flat(a), flat(b)))
+            .fold(f64::INFINITY, f64::min)
+    };
+    let (mut best, mut widest) = (middle, f64::NEG_INFINITY);
+    for j in 0..CELLS {
+        let y = low[1] + (high[1] - low[1]) * (j as f64 + 0.5) / CELLS as f64;
+        let crossed = crossings(rings, y);
+        for i in 0..CELLS {
+            let x = low[0] + (high[0] - low[0]) * (i as f64 + 0.5) / CELLS as f64;
+            if crossed.partition_point(|&c| c < x).is_multiple_of(2) {
+                continue;
+            }
+            // Of places equally free, the one nearest the middle.
+            let score = clear(x, y) - 0.02 * (x - middle[0]).hypot(y - middle[1]);
+            if score > widest {
+                (widest, best) = (score, [x, y]);
+            }
+        }
     }
-    let next = local.iter().cycle().skip(1);
-    let mut sum = [0.0; 2];
-    for (a, b) in local.iter().zip(next) {
-        let cross = a[0] * b[1] - b[0] * a[1];
-        sum[0] += (a[0] + b[0]) * cross;
-        sum[1] += (a[1] + b[1]) * cross;
-    }
-    [0, 1].map(|k| mean[k] + sum[k] / (6.0 * area))
+    best
+}
+
+/// Distance of a segment from the origin.
+fn distance_to(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    let squared = d[0] * d[0] + d[1] * d[1];
+    let t = if squared > 0.0 {
+        (-(a[0] * d[0] + a[1] * d[1]) / squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (a[0] + t * d[0]).hypot(a[1] + t * d[1])
 }
 
 /// A bar of a round length at the lower left.
@@ -274,6 +287,16 @@ fn add_span(cover: &mut [f64], from: f64, to: f64, weight: f64) {
 mod tests {
     use super::*;
 
+    fn area_of(ring: &[[f64; 2]]) -> f64 {
+        let next = ring.iter().cycle().skip(1);
+        let twice: f64 = ring
+            .iter()
+            .zip(next)
+            .map(|(a, b)| a[0] * b[1] - b[0] * a[1])
+            .sum();
+        0.5 * twice.abs()
+    }
+
     fn ring(corners: &[(f64, f64)]) -> Vec<Vec2> {
         corners.iter().map(|&(x, y)| Vec2::new(x, y)).collect()
     }
@@ -335,19 +358,22 @@ mod tests {
     }
 
     #[test]
-    fn a_name_stands_in_the_middle_of_gravity() {
-        let l_shape = [
+    fn a_name_stands_inside_and_clear_of_lines() {
+        let bent = vec![
             [0.0, 0.0],
-            [4.0, 0.0],
-            [4.0, 1.0],
-            [1.0, 1.0],
-            [1.0, 4.0],
-            [0.0, 4.0],
+            [90.0, 0.0],
+            [90.0, 30.0],
+            [30.0, 30.0],
+            [30.0, 90.0],
+            [0.0, 90.0],
         ];
-        let middle = centroid(&l_shape);
-        let wanted = (4.0 * 2.0 + 3.0 * 0.5) / 7.0;
-        assert!((middle[0] - wanted).abs() < 1e-12 && (middle[1] - wanted).abs() < 1e-12);
-        assert_eq!(centroid(&[[1.0, 1.0], [3.0, 3.0]]), [2.0, 2.0]);
+        let [x, y] = free_place(std::slice::from_ref(&bent), &[], 1.0);
+        assert!(x < 30.0 || y < 30.0, "{x} {y}");
+        let line = vec![[15.0, 0.0], [15.0, 90.0]];
+        let [x, y] = free_place(&[bent], &[line], 1.0);
+        assert!(y < 30.0 && (x - 15.0).abs() > 10.0, "{x} {y}");
+        let flat = vec![[1.0, 1.0], [3.0, 1.0], [2.0, 1.0]];
+        assert_eq!(free_place(&[flat], &[], 1.0), [2.0, 1.0]);
     }
 
     #[test]

@@ -95,13 +95,13 @@ pub fn drape_picture(scene: &Scene, sheet: &Sheet) -> Result<Image, PictureError
 pub fn fit_picture(scene: &Scene, legend: &Legend, sheet: &Sheet) -> Result<Image, PictureError> {
     legend.check()?;
     let letters = sheet.letters();
-    let key = Legend::height(letters) + 2.0 * letters;
+    let key = Legend::height(letters) + letters;
     let top = if sheet.title.is_empty() {
         0.0
     } else {
         3.5 * letters
     };
-    let mut image = views(scene, sheet, [top, key + 3.5 * letters])?;
+    let mut image = views(scene, sheet, [top, key + 4.5 * letters])?;
     write_title(&mut image, sheet);
     let width = (0.6 * sheet.width as f64)
         .max(30.0 * letters)
