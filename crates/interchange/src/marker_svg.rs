@@ -284,7 +284,7 @@ fn write_piece(text: &mut String, piece: &MarkerPiece, width: f64) {
         width,
     };
     let laid = piece.cut.mapped(|p| page.at(p));
-    let (middle, room) = roomiest_point(&laid);
+    let spot = roomiest_spot(&laid);
     let name = escape(&piece.name);
     let _ = writeln!(
         text,
@@ -312,9 +312,9 @@ fn write_piece(text: &mut String, piece: &MarkerPiece, width: f64) {
     stroke("line", &lines, "stroke=\"#888888\" stroke-width=\"0.5\"");
     let notches: String = piece.notches.iter().map(|n| page.path(n, "")).collect();
     stroke("notch", &notches, "stroke=\"#111111\" stroke-width=\"0.8\"");
-    let size = (room * 0.3).clamp(4.0, 22.0);
+    let size = (spot.room * 0.3).clamp(4.0, 22.0);
     let grain = piece.grain.map_or_else(
-        || grain_through(&piece.pose, middle, room),
+        || grain_through(&piece.pose, &spot),
         |ends| ends.map(|p| page.at(p)),
     );
     stroke(
@@ -322,16 +322,16 @@ fn write_piece(text: &mut String, piece: &MarkerPiece, width: f64) {
         &arrow(grain, size),
         "stroke=\"#1f4e9e\" stroke-width=\"1\"",
     );
-    write_label(text, piece, (middle, room, size));
+    write_label(text, piece, &spot, size);
     text.push_str("</g>\n");
 }
 
 /// A grain line just above the label.
-fn grain_through(pose: &Pose, middle: Vec2, room: f64) -> [Vec2; 2] {
+fn grain_through(pose: &Pose, spot: &Spot) -> [Vec2; 2] {
     // The piece's grain lies at the turn from the warp; y is down on the page.
     let (sin, cos) = pose.turn.sin_cos();
-    let along = Vec2::new(cos, -sin) * (room * 0.75);
-    let centre = middle - Vec2::new(0.0, room * 0.15);
+    let along = Vec2::new(cos, -sin) * (spot.room * 0.75);
+    let centre = spot.at - Vec2::new(0.0, spot.room * 0.2);
     [centre - along, centre + along]
 }
 
@@ -357,31 +357,52 @@ fn arrow([tail, head]: [Vec2; 2], size: f64) -> String {
     )
 }
 
-fn write_label(text: &mut String, piece: &MarkerPiece, (middle, room, size): (Vec2, f64, f64)) {
+/// Where the words of a piece go [mm].
+struct Spot {
+    at: Vec2,
+    /// Distance to the outline.
+    room: f64,
+    /// Free length through the point along the page's x and y.
+    runs: [f64; 2],
+}
+
+fn write_label(text: &mut String, piece: &MarkerPiece, spot: &Spot, size: f64) {
     // A letter is about 0.55 of its height wide.
     let letters = piece.name.chars().count().max(1) as f64;
-    let fitted = size.min(2.0 * room * 1.3 / (0.55 * letters)).max(3.0);
+    let fitted = |run: f64| size.min(0.85 * run / (0.55 * letters)).max(3.0);
+    let upright = fitted(spot.runs[0]) < 0.6 * size && spot.runs[1] > 1.5 * spot.runs[0];
+    let size = fitted(spot.runs[usize::from(upright)]);
+    let turn = if upright {
+        format!(
+            " transform=\"rotate(-90 {} {})\"",
+            number(spot.at.x),
+            number(spot.at.y)
+        )
+    } else {
+        String::new()
+    };
     let mut line = |offset: f64, size: f64, words: &str| {
         let _ = writeln!(
             text,
-            "<text x=\"{}\" y=\"{}\" font-size=\"{}\" text-anchor=\"middle\" fill=\"#111111\" stroke=\"none\">{}</text>",
-            number(middle.x),
-            number(middle.y + offset),
+            "<text x=\"{}\" y=\"{}\" font-size=\"{}\" text-anchor=\"middle\" fill=\"#111111\" stroke=\"none\"{turn}>{}</text>",
+            number(spot.at.x),
+            number(spot.at.y + offset),
             number(size),
             escape(words)
         );
     };
-    line(room * 0.05 + fitted, fitted, &piece.name);
+    line(spot.room * 0.05 + size, size, &piece.name);
     if piece.pose.mirrored {
-        line(room * 0.05 + 1.9 * fitted, fitted * 0.7, "face down");
+        line(spot.room * 0.05 + 1.9 * size, size * 0.7, "face down");
     }
 }
 
-/// The point of a grid that lies furthest inside, and its distance to the outline.
-fn roomiest_point(polygon: &Polygon) -> (Vec2, f64) {
+/// The point of a grid that lies far inside and near the middle.
+fn roomiest_spot(polygon: &Polygon) -> Spot {
     const CELLS: u32 = 24;
     let bounds = polygon.bounds();
-    let mut best = (bounds.centre(), 0.0);
+    let centre = bounds.centre();
+    let mut best = (0.0, centre, 0.0);
     for k in 0..CELLS * CELLS {
         let cell = Vec2::new(f64::from(k % CELLS) + 0.5, f64::from(k / CELLS) + 0.5);
         let point = bounds.min + bounds.size().component_mul(&cell) / f64::from(CELLS);
@@ -392,9 +413,29 @@ fn roomiest_point(polygon: &Polygon) -> (Vec2, f64) {
             .edges()
             .map(|edge| point_segment_distance(point, edge))
             .fold(f64::INFINITY, f64::min);
-        if room > best.1 {
-            best = (point, room);
+        let score = room / (1.0 + (point - centre).norm() / bounds.size().norm());
+        if score > best.0 {
+            best = (score, point, room);
         }
     }
-    best
+    let (_, at, room) = best;
+    Spot {
+        at,
+        room,
+        runs: [0, 1].map(|axis| free_run(polygon, at, axis)),
+    }
+}
+
+/// Twice the way from a point to the nearer side of the outline along an axis.
+fn free_run(polygon: &Polygon, at: Vec2, axis: usize) -> f64 {
+    let other = 1 - axis;
+    let crossed = |[a, b]: [Vec2; 2]| {
+        let spans = (a[other] <= at[other]) != (b[other] <= at[other]);
+        let share = (at[other] - a[other]) / (b[other] - a[other]);
+        spans.then(|| (a[axis] + (b[axis] - a[axis]) * share - at[axis]).abs())
+    };
+    2.0 * polygon
+        .edges()
+        .filter_map(crossed)
+        .fold(f64::INFINITY, f64::min)
 }

@@ -234,7 +234,8 @@ fn impossible_pieces_are_refused_by_name() {
         .holes
         .push(box_of(0.1, 0.1).translated(Vec2::new(1.0, 0.0)).outer);
     let good = || item(box_of(0.1, 0.1));
-    let cases: Vec<(Item, fn(&ItemProblem) -> bool)> = vec![
+    type Expected = fn(&ItemProblem) -> bool;
+    let cases: Vec<(Item, Expected)> = vec![
         (item(bow), |p| matches!(p, ItemProblem::Crosses(_))),
         (item(nan), |p| matches!(p, ItemProblem::NotFinite(_))),
         (item(Polygon::default()), |p| *p == ItemProblem::Empty),
@@ -363,6 +364,77 @@ fn impossible_fabric_and_empty_jobs_are_refused() {
             .to_string()
             .contains("nap")
     );
+}
+
+/// Forty different pieces of two hundred to three hundred points, as smooth as drafted curves.
+fn many_smooth_pieces() -> Vec<Item> {
+    let piece = |k: u32| {
+        let count = 200 + (k * 37) % 100;
+        let [a, b, c] = [3, 5, 7].map(|m| f64::from((k * m) % 11) / 11.0);
+        let point = |n: u32| {
+            let angle = std::f64::consts::TAU * f64::from(n) / f64::from(count);
+            let waves =
+                1.0 + 0.25 * a * (2.0 * angle + 6.0 * b).cos() + 0.2 * c * (3.0 * angle).sin();
+            Vec2::new(angle.cos() * (1.0 + a), angle.sin()) * (waves * (0.05 + 0.15 * b))
+        };
+        Item {
+            grain: b,
+            ..Item::new(
+                format!("piece {k}"),
+                Polygon::new((0..count).map(point).collect()),
+            )
+        }
+    };
+    (0..40).map(piece).collect()
+}
+
+#[test]
+fn forty_different_smooth_pieces_are_laid_soundly() {
+    let items = many_smooth_pieces();
+    let strip = Strip {
+        gap: 0.003,
+        ..Strip::of_width(1.5)
+    };
+    let marker = make(&items, &strip, 1).unwrap();
+    sound(&items, &strip, &marker);
+    assert!(marker.efficiency > 0.7, "{}", marker.efficiency);
+}
+
+#[test]
+fn outlines_that_touch_themselves_are_laid() {
+    // A ring closed at one point, and a dart whose legs meet at the edge.
+    let pinched = polygon(&[
+        (0.0, 0.0),
+        (0.4, 0.0),
+        (0.4, 0.4),
+        (0.2, 0.4),
+        (0.3, 0.2),
+        (0.1, 0.2),
+        (0.2, 0.4),
+        (0.0, 0.4),
+    ]);
+    let dart = polygon(&[
+        (0.0, 0.0),
+        (0.2, 0.0),
+        (0.2, 0.2),
+        (0.201, 0.0),
+        (0.4, 0.0),
+        (0.4, 0.3),
+        (0.0, 0.3),
+    ]);
+    let items = [pinched, dart].map(|p| Item {
+        quantity: 3,
+        ..Item::new("odd", p)
+    });
+    for gap in [0.0, 0.004] {
+        let strip = Strip {
+            gap,
+            ..Strip::of_width(0.9)
+        };
+        let marker = make(&items, &strip, 1).unwrap();
+        sound(&items, &strip, &marker);
+        assert!(marker.unplaced.is_empty());
+    }
 }
 
 fn star() -> impl Strategy<Value = Polygon> {
