@@ -214,6 +214,9 @@ impl Pattern {
 
     fn put_panel(&mut self, at: usize, panel: Panel) -> Result<(), EditError> {
         self.replaceable(&panel)?;
+        if self.fabric(panel.fabric).is_none() {
+            return Err(EditError::Missing(panel.fabric.to_string()));
+        }
         panel.reserve_ids(&mut self.ids);
         self.panels.retain(|known| known.id != panel.id);
         self.panels
@@ -224,9 +227,6 @@ impl Pattern {
     /// Whether the panel may stand in this pattern.
     pub(crate) fn replaceable(&self, panel: &Panel) -> Result<(), EditError> {
         panel.validate()?;
-        if self.fabric(panel.fabric).is_none() {
-            return Err(EditError::Missing(panel.fabric.to_string()));
-        }
         let others = || self.panels.iter().filter(|known| known.id != panel.id);
         if others().any(|known| known.name == panel.name) {
             return Err(EditError::Taken(format!("panel {:?}", panel.name)));

@@ -2,6 +2,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod apply;
+mod check;
 mod describe;
 mod diagnostic;
 mod difference;
@@ -15,13 +16,16 @@ mod ids;
 mod number;
 mod numbers;
 mod panel_edit;
+mod place;
 mod resolve;
 mod resolver;
+mod segments;
 mod sewing;
 mod shape;
 mod split;
 mod suggest;
 
+pub use check::check_draft;
 pub use diagnostic::{Code, Diagnostic, Place, Severity};
 pub use difference::difference;
 pub use document::*;

@@ -57,6 +57,9 @@ impl Pattern {
                 let join = crate::split::join(&mut panel, point, at)?;
                 self.rejoin(&join, id)?;
             }
+            PanelEdit::SetFabric(fabric) if self.fabric(fabric).is_none() => {
+                return Err(missing(&fabric));
+            }
             simple => panel.change(simple)?,
         }
         self.replaceable(&panel)?;

@@ -5,6 +5,7 @@ use crate::{
     Along, Code, Dart, DartId, DartShape, DartTip, Diagnostic, Edge, EdgeId, EdgeOrigin,
     InternalLineId, NotchId, Panel, Place,
 };
+use std::collections::{BTreeMap, BTreeSet};
 use toile_geometry::{Curve, Vec2};
 
 /// A piece of cloth before it has a place in a draft.
@@ -359,13 +360,12 @@ impl Shaper<'_, '_> {
             };
             let Some(at) = at else { continue };
             if !(-1e-9..=length + 1e-9).contains(&at) {
-                let said = format!("notch {:?} lies beyond its edge", notch.name);
-                self.error(
+                self.resolver.diagnostics.push(Diagnostic::warning(
                     Code::NotchOffEdge,
                     place,
-                    &said,
+                    format!("{what} lies beyond its edge and is left out"),
                     "use a fraction from 0 to 1, or a distance within the edge",
-                );
+                ));
                 continue;
             }
             let t = curve.parameter_at_length(at);
@@ -389,15 +389,22 @@ impl Shaper<'_, '_> {
             return outline;
         }
         self.report_astray(&outline);
+        let mut darts: BTreeMap<EdgeId, Vec<&Dart>> = BTreeMap::new();
+        for dart in &panel.darts {
+            if let DartShape::Edge { edge, .. } = dart.shape {
+                darts.entry(edge).or_default().push(dart);
+            }
+        }
         let mut result = Vec::with_capacity(outline.len());
         for edge in outline {
             let EdgeOrigin::Edge { edge: id, .. } = edge.origin else {
                 continue;
             };
-            let mut mouths: Vec<Mouth> = panel
-                .darts
-                .iter()
-                .filter_map(|dart| self.mouth(dart, id, &edge.curve))
+            let mut mouths: Vec<Mouth> = darts
+                .get(&id)
+                .into_iter()
+                .flatten()
+                .filter_map(|dart| self.mouth(dart, &edge.curve))
                 .collect();
             mouths.sort_by(|a, b| a.from.total_cmp(&b.from).then(a.dart.cmp(&b.dart)));
             self.cut(edge, &mouths, &mut result);
@@ -407,6 +414,7 @@ impl Shaper<'_, '_> {
 
     /// Reports darts whose edge is not in the outline.
     fn report_astray(&mut self, outline: &[ShapeEdge]) {
+        let known: BTreeSet<EdgeOrigin> = outline.iter().map(|piece| piece.origin).collect();
         for dart in &self.panel.darts {
             let DartShape::Edge { edge, .. } = dart.shape else {
                 continue;
@@ -415,7 +423,7 @@ impl Shaper<'_, '_> {
                 edge,
                 reflected: false,
             };
-            if !outline.iter().any(|piece| piece.origin == origin) {
+            if !known.contains(&origin) {
                 let said = format!("dart {:?}: its edge is not in the outline", dart.name);
                 self.error(
                     Code::MissingReference,
@@ -427,19 +435,10 @@ impl Shaper<'_, '_> {
         }
     }
 
-    fn mouth(&mut self, dart: &Dart, on: EdgeId, curve: &Curve) -> Option<Mouth> {
-        let DartShape::Edge {
-            edge,
-            at,
-            width,
-            tip,
-        } = &dart.shape
-        else {
+    fn mouth(&mut self, dart: &Dart, curve: &Curve) -> Option<Mouth> {
+        let DartShape::Edge { at, width, tip, .. } = &dart.shape else {
             return None;
         };
-        if *edge != on {
-            return None;
-        }
         let place = Place::Dart(self.panel.id, dart.id);
         let what = self.words(&format!("dart {:?}", dart.name));
         let at = self.resolver.number(at, Want::Plain, &place, &what)?;

@@ -4,27 +4,39 @@ use super::json::Value;
 use super::words::{FACINGS, PARTS, word};
 use super::write::{Fields, Writer, distinct, list, plain_value, text};
 use crate::FormatError;
+use std::collections::BTreeMap;
 use toile_pattern::{
     Along, Cut, Dart, DartShape, DartTip, Edge, EdgeCurve, EdgeId, InternalLine, Number, Panel,
     PointId, PointPlace, WornRule,
 };
 
 /// Names of one panel's parts.
-struct Names<'a>(&'a Panel);
+struct Names<'a> {
+    panel: &'a Panel,
+    points: BTreeMap<PointId, &'a str>,
+    edges: BTreeMap<EdgeId, &'a str>,
+}
 
-impl Names<'_> {
+impl<'a> Names<'a> {
+    fn new(panel: &'a Panel) -> Self {
+        Self {
+            panel,
+            points: panel.points.iter().map(|p| (p.id, &*p.name)).collect(),
+            edges: panel.edges().map(|e| (e.id, &*e.name)).collect(),
+        }
+    }
+
     fn missing(&self, what: String) -> FormatError {
         FormatError::new(
-            format!("panels.{}", self.0.name),
+            format!("panels.{}", self.panel.name),
             format!("{what} is named but not there"),
             "remove what names it, or add it",
         )
     }
 
     fn point(&self, id: PointId) -> Result<Value, FormatError> {
-        let point = self.0.point(id);
-        let point = point.ok_or_else(|| self.missing(id.to_string()))?;
-        Ok(text(&point.name))
+        let name = self.points.get(&id);
+        Ok(text(name.ok_or_else(|| self.missing(id.to_string()))?))
     }
 
     fn points(&self, ids: &[PointId]) -> Result<Value, FormatError> {
@@ -33,9 +45,8 @@ impl Names<'_> {
     }
 
     fn edge(&self, id: EdgeId) -> Result<Value, FormatError> {
-        let edge = self.0.edge(id);
-        let edge = edge.ok_or_else(|| self.missing(id.to_string()))?;
-        Ok(text(&edge.name))
+        let name = self.edges.get(&id);
+        Ok(text(name.ok_or_else(|| self.missing(id.to_string()))?))
     }
 }
 
@@ -47,7 +58,7 @@ pub fn panel(writer: &mut Writer<'_>, panel: &Panel) -> Result<Value, FormatErro
     distinct(&path, panel.internal_lines.iter().map(|l| &*l.name))?;
     distinct(&path, panel.darts.iter().map(|d| &*d.name))?;
     distinct(&path, panel.notches.iter().map(|n| &*n.name))?;
-    let names = Names(panel);
+    let names = Names::new(panel);
     let mut fields = Fields::default();
     fields.put_if("id", writer.panel_id(panel.id));
     let fabric = writer.pattern.fabric(panel.fabric);
@@ -100,7 +111,7 @@ fn parts(
     names: &Names<'_>,
     fields: &mut Fields,
 ) -> Result<(), FormatError> {
-    let panel = names.0;
+    let panel = names.panel;
     let mut lines = Fields::default();
     for item in &panel.internal_lines {
         lines.put(&item.name, line(writer, names, item)?);
@@ -255,7 +266,7 @@ fn put_curve(
     match curve {
         EdgeCurve::Line => {}
         EdgeCurve::Arc { bulge } => {
-            let path = format!("panels.{}", names.0.name);
+            let path = format!("panels.{}", names.panel.name);
             fields.put("bulge", writer.plain(bulge, &path)?);
         }
         EdgeCurve::Quadratic { control } => fields.put("quadratic", names.point(*control)?),
@@ -276,7 +287,7 @@ fn edges(writer: &mut Writer<'_>, names: &Names<'_>, edges: &[Edge]) -> Result<V
         }
         put_curve(writer, names, &edge.curve, &mut fields)?;
         if let Some(allowance) = &edge.seam_allowance {
-            let path = format!("panels.{}, edge {:?}", names.0.name, edge.name);
+            let path = format!("panels.{}, edge {:?}", names.panel.name, edge.name);
             fields.put("seam_allowance", writer.length(allowance, &path)?);
         }
         items.push(fields.done());
@@ -318,7 +329,7 @@ fn line(
 }
 
 fn dart(writer: &mut Writer<'_>, names: &Names<'_>, dart: &Dart) -> Result<Value, FormatError> {
-    let path = format!("panels.{}.darts.{}", names.0.name, dart.name);
+    let path = format!("panels.{}.darts.{}", names.panel.name, dart.name);
     let mut fields = Fields::default();
     fields.put_if("id", writer.dart_id(dart.id));
     match &dart.shape {

@@ -1,0 +1,448 @@
+//! Checks that a draft can be cut and sewn.
+
+use crate::resolve::resolve;
+use crate::segments::Segments;
+use crate::{
+    Code, Diagnostic, Draft, DraftSeam, DraftSpan, EdgeOrigin, Fabric, Pattern, Piece, PieceEdge,
+    PieceLine, Place, SeamOrigin,
+};
+use toile_geometry::Vec2;
+use toile_measure::Measurements;
+
+/// Ends of neighbouring edges may be this far apart [m]: rounding, not a gap.
+const GAP: f64 = 1e-6;
+/// An edge shorter than this has no length [m].
+const SHORTEST: f64 = 1e-6;
+/// How closely curves are followed [m].
+const FLATNESS: f64 = 5e-5;
+/// Sides of a seam may differ by this without ease [m]: less than a stitch.
+const SEAM_TOLERANCE: f64 = 5e-4;
+/// An internal line may leave its panel by this [m].
+const LINE_TOLERANCE: f64 = 1e-5;
+/// Crossings of one piece that are reported.
+const CROSSINGS: usize = 5;
+/// Points of one internal line that are looked at.
+const LINE_SAMPLES: usize = 500;
+
+impl Pattern {
+    /// Everything that is wrong with the pattern for a table of measurements: what keeps it from
+    /// being drafted, then what keeps the draft from being cut and sewn.
+    pub fn check(&self, measurements: &Measurements) -> Vec<Diagnostic> {
+        let resolution = resolve(self, measurements);
+        let mut diagnostics = resolution.diagnostics;
+        check_pieces(&resolution.draft, Some(self), &mut diagnostics);
+        for (seam, ease) in resolution.draft.seams.iter().zip(&resolution.eases) {
+            check_seam(&resolution.draft, seam, *ease, &mut diagnostics);
+        }
+        diagnostics
+    }
+}
+
+/// Everything that keeps a draft from being cut and sewn, lengths of seams apart: a draft does not
+/// know their ease.
+pub fn check_draft(draft: &Draft) -> Vec<Diagnostic> {
+    let mut diagnostics = Vec::new();
+    check_pieces(draft, None, &mut diagnostics);
+    for seam in &draft.seams {
+        if side_lengths(draft, seam).is_none() {
+            diagnostics.push(missing_span(seam));
+        }
+    }
+    diagnostics
+}
+
+fn check_pieces(draft: &Draft, pattern: Option<&Pattern>, diagnostics: &mut Vec<Diagnostic>) {
+    for fabric in &draft.fabrics {
+        check_fabric(fabric, diagnostics);
+    }
+    for piece in &draft.pieces {
+        if piece.id.copy == 0 {
+            PieceCheck {
+                piece,
+                pattern,
+                diagnostics,
+            }
+            .run();
+        }
+        if !piece.sewn && draft.pieces.len() > 1 {
+            diagnostics.push(Diagnostic::warning(
+                Code::NotSewn,
+                Place::Panel(piece.id.panel),
+                format!("piece {:?} is sewn to nothing", piece.name),
+                "sew it to another piece, or remove it",
+            ));
+        }
+    }
+}
+
+/// Length of a span [m]; nothing if it is not there.
+fn span_length(draft: &Draft, span: &DraftSpan) -> Option<f64> {
+    let piece = draft.pieces.get(span.piece)?;
+    let mut edges = piece.outline.iter().chain(piece.holes.iter().flatten());
+    let edge = edges.nth(span.edge)?;
+    Some(edge.curve.length() * (span.to - span.from).abs())
+}
+
+/// Length of both sides [m]; nothing if a span is not there.
+fn side_lengths(draft: &Draft, seam: &DraftSeam) -> Option<[f64; 2]> {
+    let length = |side: &[DraftSpan]| side.iter().map(|s| span_length(draft, s)).sum();
+    let first: Option<f64> = length(&seam.sides[0]);
+    let second: Option<f64> = length(&seam.sides[1]);
+    Some([first?, second?])
+}
+
+fn seam_place(seam: &DraftSeam, draft: &Draft) -> Place {
+    match seam.id {
+        SeamOrigin::Seam(id) => Place::Seam(id),
+        SeamOrigin::Dart { dart, .. } => {
+            let span = seam.sides.iter().flatten().next();
+            match span.and_then(|span| draft.pieces.get(span.piece)) {
+                Some(piece) => Place::Dart(piece.id.panel, dart),
+                None => Place::Pattern,
+            }
+        }
+    }
+}
+
+fn missing_span(seam: &DraftSeam) -> Diagnostic {
+    Diagnostic::error(
+        Code::MissingSpan,
+        Place::Pattern,
+        format!(
+            "seam {:?} names a piece or an edge that is not there",
+            seam.name
+        ),
+        "remove the seam or name an edge of the draft",
+    )
+}
+
+fn check_seam(draft: &Draft, seam: &DraftSeam, ease: f64, diagnostics: &mut Vec<Diagnostic>) {
+    let Some([first, second]) = side_lengths(draft, seam) else {
+        diagnostics.push(missing_span(seam));
+        return;
+    };
+    let place = seam_place(seam, draft);
+    if ease < 0.0 {
+        diagnostics.push(Diagnostic::warning(
+            Code::Negative,
+            place.clone(),
+            format!("seam {:?}: its ease is negative", seam.name),
+            "give the largest difference of its sides, zero or more",
+        ));
+    }
+    let difference = (first - second).abs();
+    if seam.gathered || difference <= ease.max(0.0) + SEAM_TOLERANCE {
+        return;
+    }
+    let hint = match seam.id {
+        SeamOrigin::Seam(_) => "make the sides equal, allow more ease, or gather the longer side",
+        SeamOrigin::Dart { .. } => "move the apex so that both legs are equally long",
+    };
+    diagnostics.push(Diagnostic::warning(
+        Code::SeamLength,
+        place,
+        format!(
+            "seam {:?}: its sides are {:.1} mm and {:.1} mm long, {:.1} mm apart where {:.1} mm \
+             are allowed",
+            seam.name,
+            first * 1000.0,
+            second * 1000.0,
+            difference * 1000.0,
+            ease * 1000.0
+        ),
+        hint,
+    ));
+}
+
+fn check_fabric(fabric: &Fabric, diagnostics: &mut Vec<Diagnostic>) {
+    let positive = [
+        ("density", fabric.density),
+        ("thickness", fabric.thickness),
+        ("warp stretch stiffness", fabric.stretch[0]),
+        ("weft stretch stiffness", fabric.stretch[1]),
+        ("shear stiffness", fabric.shear),
+        ("warp bending stiffness", fabric.bend[0]),
+        ("weft bending stiffness", fabric.bend[1]),
+        ("bias bending stiffness", fabric.bend[2]),
+        ("width", fabric.width),
+    ];
+    let mut report = |what: String, hint: &str| {
+        diagnostics.push(Diagnostic::error(
+            Code::BadFabric,
+            Place::Fabric(fabric.id),
+            format!("fabric {:?}: {what}", fabric.name),
+            hint,
+        ));
+    };
+    for (name, value) in positive {
+        if !(value.is_finite() && value > 0.0) {
+            report(format!("its {name} is {value}"), "give a number above zero");
+        }
+    }
+    if !(fabric.friction.is_finite() && fabric.friction >= 0.0) {
+        report(
+            format!("its friction is {}", fabric.friction),
+            "give zero or more, usually 0.3 to 0.5",
+        );
+    }
+    if !(fabric.poisson.is_finite() && (-0.9..=0.9).contains(&fabric.poisson)) {
+        report(
+            format!("its Poisson ratio is {}", fabric.poisson),
+            "give a number between -0.9 and 0.9, usually 0.2 to 0.3",
+        );
+    }
+    if !fabric.colour.iter().all(|c| (0.0..=1.0).contains(c)) {
+        report(
+            "its colour is not between 0 and 1".into(),
+            "give red, green and blue from 0 to 1",
+        );
+    }
+}
+
+/// Twice the area a loop encloses [m2], positive counter-clockwise.
+fn swept(edges: &[PieceEdge]) -> f64 {
+    edges.iter().map(|edge| edge.curve.swept_area()).sum()
+}
+
+struct PieceCheck<'a> {
+    piece: &'a Piece,
+    pattern: Option<&'a Pattern>,
+    diagnostics: &'a mut Vec<Diagnostic>,
+}
+
+impl PieceCheck<'_> {
+    fn error(&mut self, code: Code, place: Place, what: &str, hint: &str) {
+        let message = format!("panel {:?}: {what}", self.piece.name);
+        self.diagnostics
+            .push(Diagnostic::error(code, place, message, hint));
+    }
+
+    fn edge_place(&self, edge: &PieceEdge) -> Place {
+        let panel = self.piece.id.panel;
+        match edge.origin {
+            EdgeOrigin::Edge { edge, .. } => Place::Edge(panel, edge),
+            EdgeOrigin::DartLeg { dart, .. } => Place::Dart(panel, dart),
+        }
+    }
+
+    /// An edge in words.
+    fn edge_words(&self, edge: &PieceEdge) -> String {
+        let panel = self.pattern.and_then(|p| p.panel(self.piece.id.panel));
+        let (words, reflected) = match edge.origin {
+            EdgeOrigin::Edge { edge, reflected } => {
+                let name = panel.and_then(|panel| panel.edge(edge));
+                let words = name.map_or_else(|| edge.to_string(), |e| format!("{:?}", e.name));
+                (format!("edge {words}"), reflected)
+            }
+            EdgeOrigin::DartLeg {
+                dart, reflected, ..
+            } => {
+                let found = panel.and_then(|panel| panel.darts.iter().find(|d| d.id == dart));
+                let words = found.map_or_else(|| dart.to_string(), |d| format!("{:?}", d.name));
+                (format!("dart {words}"), reflected)
+            }
+        };
+        if reflected {
+            format!("{words} (mirrored)")
+        } else {
+            words
+        }
+    }
+
+    fn run(&mut self) {
+        let piece = self.piece;
+        let panel = Place::Panel(piece.id.panel);
+        if piece.outline.is_empty() {
+            let hint = "draw its outline or remove the panel";
+            self.error(Code::EmptyOutline, panel, "it has no outline", hint);
+            return;
+        }
+        let loops: Vec<&[PieceEdge]> = std::iter::once(&piece.outline)
+            .chain(&piece.holes)
+            .map(Vec::as_slice)
+            .collect();
+        if !self.check_finite(&loops) {
+            return;
+        }
+        let mut closed = true;
+        for edges in &loops {
+            closed &= self.check_loop(edges);
+        }
+        let outline_area = swept(&piece.outline);
+        if closed && outline_area.abs() < 1e-8 {
+            let hint = "draw an outline that encloses some cloth";
+            self.error(
+                Code::EmptyOutline,
+                panel,
+                "its outline encloses nothing",
+                hint,
+            );
+            return;
+        }
+        let points: Vec<Vec<(Vec2, usize)>> = flattened(&loops);
+        let segments = Segments::new(&points);
+        self.check_crossings(&loops, &segments);
+        let outer = Segments::new(&points[..1]);
+        for (k, hole) in piece.holes.iter().enumerate() {
+            self.check_hole(k, hole, outline_area, &outer);
+        }
+        for line in &piece.internal_lines {
+            self.check_line(line, &segments);
+        }
+    }
+
+    fn check_finite(&mut self, loops: &[&[PieceEdge]]) -> bool {
+        let bad = loops
+            .iter()
+            .flat_map(|edges| edges.iter())
+            .find(|edge| !edge.curve.is_finite() || !edge.seam_allowance.is_finite());
+        if let Some(edge) = bad {
+            let words = format!("{} has a number that is not finite", self.edge_words(edge));
+            let place = self.edge_place(edge);
+            self.error(Code::NotFinite, place, &words, "give finite numbers");
+        }
+        bad.is_none()
+    }
+
+    /// Checks that each edge has a length and starts where the one before it ends.
+    fn check_loop(&mut self, edges: &[PieceEdge]) -> bool {
+        let mut closed = true;
+        for (k, edge) in edges.iter().enumerate() {
+            let next = &edges[(k + 1) % edges.len()];
+            let gap = (next.curve.start() - edge.curve.end()).norm();
+            if gap > GAP {
+                closed = false;
+                let words = format!(
+                    "the outline is open: {} ends {:.1} mm from where {} starts",
+                    self.edge_words(edge),
+                    gap * 1000.0,
+                    self.edge_words(next)
+                );
+                let place = self.edge_place(next);
+                let hint = "let both edges use the same point";
+                self.error(Code::OpenOutline, place, &words, hint);
+            }
+            if edge.curve.length() < SHORTEST {
+                let words = format!("{} has no length", self.edge_words(edge));
+                let place = self.edge_place(edge);
+                let hint = "move one of its ends, or remove the corner";
+                self.error(Code::ZeroLengthEdge, place, &words, hint);
+            }
+            if edge.seam_allowance < 0.0 {
+                let words = format!("{} has a negative seam allowance", self.edge_words(edge));
+                let place = self.edge_place(edge);
+                self.error(Code::Negative, place, &words, "give zero or more");
+            }
+        }
+        closed
+    }
+
+    fn check_crossings(&mut self, loops: &[&[PieceEdge]], segments: &Segments) {
+        let edges: Vec<&PieceEdge> = loops.iter().flat_map(|edges| edges.iter()).collect();
+        let crossings = segments.crossings(CROSSINGS);
+        for ([a, b], point) in crossings.found {
+            let is_dart = |k: usize| matches!(edges[k].origin, EdgeOrigin::DartLeg { .. });
+            let (code, hint) = if is_dart(a) || is_dart(b) {
+                (
+                    Code::DartOutside,
+                    "make the dart shorter, narrower, or move it",
+                )
+            } else {
+                (
+                    Code::SelfCrossing,
+                    "move a point so that the edges stay apart",
+                )
+            };
+            let place = self.edge_place(edges[if is_dart(b) { b } else { a }]);
+            let words = format!(
+                "{} and {} cross or touch near x = {:.1} cm, y = {:.1} cm",
+                self.edge_words(edges[a]),
+                self.edge_words(edges[b]),
+                point.x * 100.0,
+                point.y * 100.0
+            );
+            self.error(code, place, &words, hint);
+        }
+        if !crossings.complete {
+            self.diagnostics.push(Diagnostic::warning(
+                Code::Unchecked,
+                Place::Panel(self.piece.id.panel),
+                format!(
+                    "panel {:?}: the outline is too intricate to look for all crossings",
+                    self.piece.name
+                ),
+                "draw it with fewer edges",
+            ));
+        }
+    }
+
+    fn check_hole(&mut self, k: usize, hole: &[PieceEdge], outline: f64, outer: &Segments) {
+        let place = Place::Hole(self.piece.id.panel, k);
+        let area = swept(hole);
+        if hole.is_empty() || area.abs() < 1e-10 {
+            let words = format!("hole {} encloses nothing", k + 1);
+            let hint = "draw it larger or remove it";
+            self.error(Code::EmptyOutline, place, &words, hint);
+            return;
+        }
+        if (area > 0.0) == (outline > 0.0) {
+            let words = format!("hole {} is wound like the outline", k + 1);
+            let hint = "list its edges the other way round";
+            self.error(Code::HoleWinding, place.clone(), &words, hint);
+        }
+        if !outer.holds(hole[0].curve.start(), 0.0) {
+            let words = format!("hole {} is not inside the outline", k + 1);
+            let hint = "move it inside, or remove it";
+            self.error(Code::HoleOutside, place, &words, hint);
+        }
+    }
+
+    fn check_line(&mut self, line: &PieceLine, segments: &Segments) {
+        let place = Place::InternalLine(self.piece.id.panel, line.id);
+        let panel = self.pattern.and_then(|p| p.panel(self.piece.id.panel));
+        let found = panel.and_then(|p| p.internal_lines.iter().find(|l| l.id == line.id));
+        let name = found.map_or_else(|| line.id.to_string(), |l| format!("{:?}", l.name));
+        if !line.curves.iter().all(|curve| curve.is_finite()) {
+            let words = format!("internal line {name} has a number that is not finite");
+            self.error(Code::NotFinite, place, &words, "give finite numbers");
+            return;
+        }
+        let length: f64 = line.curves.iter().map(|curve| curve.length()).sum();
+        for curve in &line.curves {
+            let share = curve.length() / length.max(1e-9);
+            let count = ((curve.length() / 0.005).ceil()).min(share * LINE_SAMPLES as f64);
+            let count = (count as usize).max(2);
+            let samples = (0..=count).map(|k| curve.point(k as f64 / count as f64));
+            let outside = samples
+                .into_iter()
+                .find(|point| !segments.holds(*point, LINE_TOLERANCE));
+            if let Some(point) = outside {
+                let words = format!(
+                    "internal line {name} is outside the panel at x = {:.1} cm, y = {:.1} cm",
+                    point.x * 100.0,
+                    point.y * 100.0
+                );
+                let hint = "move its points inside the panel";
+                self.error(Code::LineOutside, place, &words, hint);
+                return;
+            }
+        }
+    }
+}
+
+/// Loops as points, each with the index of its edge through all loops.
+fn flattened(loops: &[&[PieceEdge]]) -> Vec<Vec<(Vec2, usize)>> {
+    let mut edge = 0;
+    let mut result = Vec::with_capacity(loops.len());
+    for edges in loops {
+        let mut points = Vec::new();
+        for piece in *edges {
+            let mut curve = piece.curve.flatten(FLATNESS);
+            curve.pop();
+            points.extend(curve.into_iter().map(|point| (point, edge)));
+            edge += 1;
+        }
+        result.push(points);
+    }
+    result
+}
