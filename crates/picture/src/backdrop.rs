@@ -51,7 +51,7 @@ impl Backdrop {
             return 1.0;
         }
         let hit = start + direction * ((floor.height - start.y) / direction.y);
-        let inward = (across.min(1.0 - across) / 0.15).clamp(0.0, 1.0);
+        let inward = (across.min(1.0 - across) / 0.25).clamp(0.0, 1.0);
         let dark = self.shadow * inward * inward * (3.0 - 2.0 * inward);
         1.0 - dark * (1.0 - floor.light(hit))
     }

@@ -27,7 +27,7 @@ const LAYERS: [[f64; 3]; 4] = [
     [0.03, 0.012, 0.60],
     [0.14, 0.045, 0.42],
     [0.50, 0.130, 0.30],
-    [f64::INFINITY, 0.260, 0.24],
+    [f64::INFINITY, 0.200, 0.15],
 ];
 
 impl Floor {
@@ -152,7 +152,7 @@ mod tests {
         let light = |floor: &Floor, x: f64| floor.light(Vec3::new(x, 0.0, 0.0));
         let (near, far) = (floor_under(0.01), floor_under(0.9));
         assert!(light(&near, 0.0) < 0.5 && light(&far, 0.0) > light(&near, 0.0));
-        assert!(light(&near, 0.32) > 0.999 && light(&far, 0.32) < 0.95);
+        assert!(light(&near, 0.32) > 0.999 && light(&far, 0.32) < 0.97);
         assert_eq!(light(&near, 50.0), 1.0);
     }
 

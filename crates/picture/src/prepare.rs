@@ -25,8 +25,11 @@ pub(crate) struct Prepared<'a> {
     /// Bit k is set where the edge opposite corner k carries a line.
     pub lined: Vec<u8>,
     pub floor: Option<Floor>,
-    /// Linear light of each surface's plain colour and of its lines.
-    linear: Vec<[[f64; 3]; 2]>,
+    /// Linear light of each surface: one colour for all, one a triangle, or none where it must
+    /// be found from the vertices.
+    paint: Vec<Vec<[f64; 3]>>,
+    /// Linear light of each surface's lines.
+    line: Vec<[f64; 3]>,
 }
 
 impl<'a> Prepared<'a> {
@@ -42,7 +45,8 @@ impl<'a> Prepared<'a> {
             first: Vec::new(),
             lined: Vec::new(),
             floor: None,
-            linear: Vec::new(),
+            paint: Vec::new(),
+            line: Vec::new(),
         };
         for (s, surface) in scene.surfaces.iter().enumerate() {
             all.first.push([all.positions.len(), all.triangles.len()]);
@@ -57,12 +61,8 @@ impl<'a> Prepared<'a> {
                 .extend(surface.mesh.triangles.iter().map(|t| t.map(|v| v + base)));
             all.owner.resize(all.triangles.len(), s as u32);
             all.lined.extend(lined_edges(surface));
-            let plain = match surface.paint {
-                Paint::Plain(colour) => colour,
-                _ => [0.0; 3],
-            };
-            all.linear
-                .push([plain, surface.lines.colour].map(linear_from_srgb));
+            all.paint.push(linear_paint(&surface.paint));
+            all.line.push(linear_from_srgb(surface.lines.colour));
         }
         all.ambient = ambient(&all.positions, &all.normals, &all.triangles);
         all.floor = scene
@@ -76,24 +76,20 @@ impl<'a> Prepared<'a> {
         let s = self.owner[triangle] as usize;
         let [first_vertex, first_triangle] = self.first[s];
         let own = triangle - first_triangle;
-        let srgb = match &self.scene.surfaces[s].paint {
-            Paint::Plain(_) => return self.linear[s][0],
-            Paint::PerTriangle(colours) => colours[own],
-            Paint::TriangleScalar(values, scale) => scale.colour(values[own]),
-            Paint::VertexScalar(values, scale) => {
-                let corners = self.triangles[triangle];
-                let value = (0..3)
-                    .map(|k| weights[k] * values[corners[k] as usize - first_vertex])
-                    .sum();
-                scale.colour(value)
-            }
-        };
-        linear_from_srgb(srgb)
+        if let Paint::VertexScalar(values, scale) = &self.scene.surfaces[s].paint {
+            let corners = self.triangles[triangle];
+            let value = (0..3)
+                .map(|k| weights[k] * values[corners[k] as usize - first_vertex])
+                .sum();
+            return linear_from_srgb(scale.colour(value));
+        }
+        let paint = &self.paint[s];
+        paint[own.min(paint.len() - 1)]
     }
 
     /// Colour in linear light of the lines on a triangle.
     pub(crate) fn line_colour(&self, triangle: usize) -> [f64; 3] {
-        self.linear[self.owner[triangle] as usize][1]
+        self.line[self.owner[triangle] as usize]
     }
 
     /// Whether the colour is a measured value, which light must not hide.
@@ -106,6 +102,19 @@ impl<'a> Prepared<'a> {
 
     pub(crate) fn finish(&self, triangle: usize) -> Finish {
         self.scene.surfaces[self.owner[triangle] as usize].finish
+    }
+}
+
+/// What can be said of a surface's colours before any place on it is asked for.
+fn linear_paint(paint: &Paint) -> Vec<[f64; 3]> {
+    match paint {
+        Paint::Plain(colour) => vec![linear_from_srgb(*colour)],
+        Paint::PerTriangle(colours) => colours.iter().map(|c| linear_from_srgb(*c)).collect(),
+        Paint::TriangleScalar(values, scale) => values
+            .iter()
+            .map(|v| linear_from_srgb(scale.colour(*v)))
+            .collect(),
+        Paint::VertexScalar(..) => Vec::new(),
     }
 }
 
