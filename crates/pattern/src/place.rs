@@ -3,7 +3,9 @@
 
 use crate::apply::impossible;
 use crate::resolver::Resolver;
-use crate::{Edit, EditError, Formula, Number, PanelEdit, PanelId, Pattern, PointId, PointPlace};
+use crate::{
+    EdgeId, Edit, EditError, Formula, Number, PanelEdit, PanelId, Pattern, PointId, PointPlace,
+};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use toile_geometry::{Curve, Vec2};
@@ -59,6 +61,17 @@ impl Pattern {
             panel,
             edit: PanelEdit::MovePoint { point, place },
         })
+    }
+
+    /// The edit that divides an edge at its place nearest to a point [m].
+    pub fn split_edit_near(
+        &self,
+        measurements: &Measurements,
+        (panel, edge): (PanelId, EdgeId),
+        near: Vec2,
+    ) -> Result<Edit, EditError> {
+        let curve = self.drawn(measurements, panel, edge)?;
+        self.split_edit(measurements, (panel, edge), nearest_share(&curve, near))
     }
 }
 
@@ -254,7 +267,7 @@ fn term<'a>(text: &'a str, unit: &str) -> Option<(&'a str, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Edge, EdgeCurve, EdgeId, FabricId, Panel, Point};
+    use crate::{Edge, EdgeCurve, FabricId, Panel, Point};
     use std::sync::Arc;
 
     /// A square of 10 cm whose first corner has formulas, with one point of each construction.
@@ -371,6 +384,18 @@ mod tests {
         assert_eq!(text(&pattern), "(2cm - 2cm) - 1.25cm");
         moved(&mut pattern, 0, Vec2::zeros());
         assert_eq!(text(&pattern), "2cm - 2cm");
+    }
+
+    #[test]
+    fn an_edge_is_divided_where_it_is_nearest() {
+        let mut pattern = pattern();
+        let none = Measurements::new();
+        let near = Vec2::new(0.09, 0.027);
+        let edit = pattern.split_edit_near(&none, (PanelId(0), EdgeId(1)), near);
+        pattern.apply(edit.unwrap()).unwrap();
+        let corner = pattern.panels[0].outline[1].ends[1];
+        let at = pattern.point_places(&none)[&(PanelId(0), corner)];
+        assert!((at - Vec2::new(0.1, 0.027)).norm() < 1e-9);
     }
 
     #[test]

@@ -56,6 +56,8 @@ pub(crate) struct Resolver<'a> {
     panels: Vec<PanelIndex<'a>>,
     borrowed: BTreeSet<String>,
     trail: Vec<String>,
+    /// Edges whose curve is being computed.
+    drawing: BTreeSet<(usize, EdgeId)>,
     /// Everything found on the way.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -72,6 +74,7 @@ impl<'a> Resolver<'a> {
             panels: Vec::with_capacity(pattern.panels.len()),
             borrowed: BTreeSet::new(),
             trail: Vec::new(),
+            drawing: BTreeSet::new(),
             diagnostics: Vec::new(),
         };
         for (k, variable) in pattern.variables.iter().enumerate() {
@@ -385,7 +388,16 @@ impl<'a> Resolver<'a> {
                 "choose an edge of this panel",
             ));
         };
-        self.curve(panel, edge.ends, &edge.curve)
+        let name = format!("{}.{}", self.panels[panel].panel.name, edge.name);
+        if self.drawing.contains(&(panel, id)) {
+            return Err(self.cycle(&name));
+        }
+        self.enter(name)?;
+        self.drawing.insert((panel, id));
+        let result = self.curve(panel, edge.ends, &edge.curve);
+        self.drawing.remove(&(panel, id));
+        self.trail.pop();
+        result
     }
 
     /// The curve between two points [m].

@@ -1,0 +1,234 @@
+//! Random patterns and damaged files: nothing panics, what is written is read back the same, and
+//! every refusal names a place and a remedy.
+#![allow(clippy::unwrap_used)]
+
+mod random_pattern;
+
+use proptest::prelude::*;
+use random_pattern::{Dice, random_pattern};
+use toile_interchange::{read_pattern, write_pattern};
+use toile_measure::Measurements;
+
+const SHIPPED: [(&str, &str); 4] = [
+    (
+        "t-shirt",
+        include_str!("../../../patterns/t-shirt.toile.json"),
+    ),
+    (
+        "gathered-skirt",
+        include_str!("../../../patterns/gathered-skirt.toile.json"),
+    ),
+    (
+        "trousers",
+        include_str!("../../../patterns/trousers.toile.json"),
+    ),
+    (
+        "poncho",
+        include_str!("../../../patterns/poncho.toile.json"),
+    ),
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1000) })]
+
+    #[test]
+    fn random_patterns_are_resolved_checked_written_and_read(seed in any::<u64>()) {
+        let pattern = random_pattern(&mut Dice::new(seed));
+        let body = Measurements::adult();
+        let (draft, found) = pattern.resolve(&body);
+        for diagnostic in found.iter().chain(&pattern.check(&body)) {
+            prop_assert!(!diagnostic.message.is_empty() && !diagnostic.hint.is_empty());
+            prop_assert!(!pattern.describe(&diagnostic.place).is_empty());
+        }
+        for piece in &draft.pieces {
+            let mut edges = piece.outline.iter().chain(piece.holes.iter().flatten());
+            prop_assert!(edges.all(|edge| edge.curve.is_finite()));
+        }
+        for span in draft.seams.iter().flat_map(|seam| seam.sides.iter().flatten()) {
+            let piece = &draft.pieces[span.piece];
+            let holes: usize = piece.holes.iter().map(Vec::len).sum();
+            prop_assert!(span.edge < piece.outline.len() + holes);
+            prop_assert!((0.0..=1.0).contains(&span.from) && (0.0..=1.0).contains(&span.to));
+        }
+        match write_pattern(&pattern) {
+            Ok(text) => {
+                let (again, notes) = read_pattern(&text).unwrap();
+                prop_assert_eq!(&again, &pattern);
+                prop_assert!(notes.is_empty());
+                prop_assert_eq!(write_pattern(&again).unwrap(), text.clone());
+                serde_json::from_str::<serde_json::Value>(&text).unwrap();
+            }
+            Err(error) => prop_assert!(!error.place.is_empty() && !error.hint.is_empty()),
+        }
+    }
+}
+
+/// Makes the text worse in one of many ways.
+fn damage(text: &str, dice: &mut Dice) -> String {
+    let mut bytes = text.as_bytes().to_vec();
+    let at = dice.below(bytes.len());
+    match dice.below(9) {
+        0 => bytes.truncate(at),
+        1 => {
+            for _ in 0..=dice.below(8) {
+                let k = dice.below(bytes.len());
+                bytes[k] ^= 1 << dice.below(8);
+            }
+        }
+        2 => return swapped(text, dice, r#""NaN""#),
+        3 => return swapped(text, dice, "NaN"),
+        4 => return swapped(text, dice, "1e999"),
+        5 => return swapped(text, dice, &"[".repeat(10_000)),
+        6 => {
+            let values = [
+                "null", "true", "-1", "{}", "[]", "\"\"", "1e300", "0", "[[[1]]]",
+            ];
+            let value = values[dice.below(values.len())];
+            return swapped(text, dice, value);
+        }
+        7 => {
+            let end = (at + 1 + dice.below(200)).min(bytes.len());
+            bytes.drain(at..end);
+        }
+        _ => {
+            let formulas = [
+                "\"((((\"",
+                "\"bust / 0\"",
+                "\"sqrt(-1)\"",
+                "\"bust + 1\"",
+                "\"elephant\"",
+                "\"length(front.nothing)\"",
+                "\"neck_half * neck_half * neck_half\"",
+            ];
+            let formula = formulas[dice.below(formulas.len())];
+            return swapped(text, dice, formula);
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// Puts something else in the place of one value.
+fn swapped(text: &str, dice: &mut Dice, value: &str) -> String {
+    let starts: Vec<usize> = text.match_indices(": ").map(|(at, _)| at + 2).collect();
+    let start = starts[dice.below(starts.len())];
+    let length = text[start..].find([',', '}', '\n']).unwrap_or(0);
+    format!("{}{value}{}", &text[..start], &text[start + length..])
+}
+
+#[test]
+fn damaged_files_are_read_or_refused_with_place_and_remedy() {
+    let mut dice = Dice::new(2026);
+    let mut refused = 0;
+    for case in 0..2000 {
+        let (name, text) = SHIPPED[case % SHIPPED.len()];
+        let mut bad = damage(text, &mut dice);
+        if case % 3 == 0 {
+            bad = damage(&format!("{bad}\"a\": 1,\n"), &mut dice);
+        }
+        match read_pattern(&bad) {
+            Ok((pattern, notes)) => {
+                for note in notes.iter().chain(&pattern.check(&Measurements::adult())) {
+                    assert!(!note.message.is_empty() && !note.hint.is_empty());
+                }
+                let text = write_pattern(&pattern).unwrap();
+                assert_eq!(read_pattern(&text).unwrap().0, pattern);
+            }
+            Err(error) => {
+                refused += 1;
+                assert!(error.place.starts_with("line "), "{name}: {error}");
+                assert!(!error.what.is_empty() && !error.hint.is_empty(), "{error}");
+                assert!(error.to_string().len() < 1000, "{error}");
+            }
+        }
+    }
+    assert!(refused > 800, "only {refused} of 2000 were refused");
+}
+
+#[test]
+fn shipped_files_are_in_the_form_the_writer_gives_them() {
+    for (name, text) in SHIPPED {
+        let (pattern, notes) = read_pattern(text).unwrap();
+        assert!(notes.is_empty(), "{name}: {notes:?}");
+        assert_eq!(write_pattern(&pattern).unwrap(), text, "{name}");
+    }
+}
+
+#[test]
+fn no_prefix_of_a_file_is_taken_for_the_whole() {
+    let (_, text) = SHIPPED[0];
+    let text = text.trim_end();
+    for end in (0..text.len())
+        .step_by(7)
+        .filter(|end| text.is_char_boundary(*end))
+    {
+        assert!(read_pattern(&text[..end]).is_err(), "{end} bytes were read");
+    }
+}
+
+#[test]
+fn unknown_fields_are_reported_with_their_path() {
+    let (_, text) = SHIPPED[0];
+    let more = text.replacen("\"fold\"", "\"colour of thread\": 3, \"fold\"", 1);
+    let (pattern, notes) = read_pattern(&more).unwrap();
+    assert_eq!(pattern, read_pattern(text).unwrap().0);
+    assert_eq!(notes.len(), 1);
+    let said = notes[0].to_string();
+    assert!(said.contains("panels.front.colour of thread"), "{said}");
+    assert!(said.contains("line "), "{said}");
+}
+
+#[test]
+fn refusals_say_what_was_meant() {
+    for (field, from, to, says) in [
+        (
+            "point",
+            "\"from\": \"hem_side\"",
+            "\"from\": \"hem_sied\"",
+            "hem_side",
+        ),
+        (
+            "edge",
+            "\"front.shoulder\"",
+            "\"front.sholder\"",
+            "shoulder",
+        ),
+        ("panel", "\"front.shoulder\"", "\"frnt.shoulder\"", "front"),
+        (
+            "fabric",
+            "\"fabric\": \"jersey\"",
+            "\"fabric\": \"jersy\"",
+            "jersey",
+        ),
+        (
+            "word",
+            "\"facing\": \"front\"",
+            "\"facing\": \"forward\"",
+            "use one of front",
+        ),
+        ("version", "\"toile\": 1", "\"toile\": 9", "newer program"),
+        (
+            "kind",
+            "\"kind\": \"pattern\"",
+            "\"kind\": \"scene\"",
+            "kind \"pattern\"",
+        ),
+        (
+            "unit",
+            "\"unit\": \"cm\"",
+            "\"unit\": \"furlong\"",
+            "mm, cm, m, in",
+        ),
+        (
+            "formula",
+            "\"waist_line + ",
+            "\"waist_line + * ",
+            "write a number",
+        ),
+    ] {
+        let (_, text) = SHIPPED[0];
+        assert!(text.contains(from), "{field}");
+        let error = read_pattern(&text.replacen(from, to, 1)).unwrap_err();
+        assert!(error.hint.contains(says), "{field}: {error}");
+        assert!(error.place.contains("line "), "{field}: {error}");
+    }
+}
