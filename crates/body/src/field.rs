@@ -183,33 +183,45 @@ impl Field {
     pub fn first_exit(&self, parts: &[Part], origin: Vec3, direction: Vec3) -> Option<f64> {
         /// No limb is thicker, nor is half a trunk [m].
         const REACH: f64 = 0.6;
-        /// Step of the march [m]: thinner gaps than this are not seen.
-        const STEP: f64 = 0.004;
-        let inside_at = |distance: f64| {
-            let point = origin + direction * distance;
-            parts
-                .iter()
-                .any(|&part| self.density(part, point) >= THRESHOLD)
-        };
-        if !inside_at(0.0) {
-            return None;
-        }
-        let (mut inside, mut outside) = (0.0, STEP);
-        while inside_at(outside) {
-            inside = outside;
-            outside += STEP;
-            if outside > REACH {
+        let inside = |distance: f64| self.in_any(parts, origin + direction * distance);
+        let mut distance = 0.0;
+        while inside(distance) {
+            distance += STEP;
+            if distance > REACH {
                 return None;
             }
         }
-        while outside - inside > 1e-9 {
-            let middle = 0.5 * (inside + outside);
-            if inside_at(middle) {
-                inside = middle;
-            } else {
-                outside = middle;
-            }
-        }
-        Some(inside)
+        (distance > 0.0).then(|| bisected(inside, [distance - STEP, distance]))
     }
+
+    /// Distance [m] along a ray to where it last leaves one part on its way of `reach` [m], to
+    /// 1e-9 m: hollows inside are passed over. Nothing when the part is not met.
+    pub fn last_exit(&self, part: Part, [origin, direction]: [Vec3; 2], reach: f64) -> Option<f64> {
+        let inside = |distance: f64| self.in_any(&[part], origin + direction * distance);
+        let count = (reach / STEP).ceil() as usize;
+        let last = (0..count).rev().find(|&k| inside(k as f64 * STEP))? as f64;
+        Some(bisected(inside, [last * STEP, (last + 1.0) * STEP]))
+    }
+
+    fn in_any(&self, parts: &[Part], point: Vec3) -> bool {
+        parts
+            .iter()
+            .any(|&part| self.density(part, point) >= THRESHOLD)
+    }
+}
+
+/// Step of a march along a ray [m]: thinner gaps than this are not seen.
+const STEP: f64 = 0.004;
+
+/// The change from inside to outside between two distances [m], to 1e-9 m.
+fn bisected(inside: impl Fn(f64) -> bool, [mut low, mut high]: [f64; 2]) -> f64 {
+    while high - low > 1e-9 {
+        let middle = 0.5 * (low + high);
+        if inside(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
 }

@@ -1,6 +1,6 @@
 //! Named points of a body, its axes and its levels.
 
-use crate::marks::{middle_depth, neck_side};
+use crate::marks::middle_depth;
 use crate::solve::Grown;
 use crate::tape::ridge;
 use crate::warp::{Follow, Warp};
@@ -96,7 +96,7 @@ impl Landmarks {
         let window = [q.bust_level(), q.nape() + 0.02 * q.height];
         let fallback = Vec3::new(0.5 * q.shoulder_width, q.nape(), 0.0);
         let tip = ridge(mesh, 0.5 * q.shoulder_width, window).unwrap_or(fallback);
-        let neck = neck_side(mesh, tip, window).unwrap_or(tip);
+        let neck = warp.apply(grown.marks.neck_side, Follow::default());
         let bust = trunk_section(q.bust_level())
             .into_iter()
             .filter(|p| p.x >= 0.0)

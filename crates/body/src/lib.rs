@@ -2,6 +2,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod curve;
+mod describe;
 mod error;
 mod field;
 mod gaps;
@@ -16,6 +17,7 @@ mod tape;
 mod template;
 mod warp;
 
+pub use describe::Description;
 pub use error::BodyError;
 pub use field::{Field, Part, Primitive, THRESHOLD, VISIBLE_RATIO};
 pub use gaps::Gap;

@@ -25,33 +25,20 @@ impl Frame {
     }
 }
 
-/// Angles of the points of a border, ascending from the first, and the even ones nearest to them.
-fn angles(border: &[Vec3], frame: &Frame) -> (Vec<f64>, Vec<f64>) {
-    let mut actual: Vec<f64> = Vec::with_capacity(border.len());
-    for &point in border {
-        let mut angle = frame.angle(point);
-        if let Some(&before) = actual.last() {
-            while angle < before - PI {
-                angle += 2.0 * PI;
-            }
-        }
-        actual.push(angle);
-    }
+/// Even angles all round, as near as they come to those of the points of a border.
+fn even_angles(border: &[Vec3], frame: &Frame) -> Vec<f64> {
     let step = 2.0 * PI / border.len() as f64;
-    let offset = actual
+    // Mean of the differences to even angles, as directions, so that nothing wraps.
+    let (sin, cos) = border
         .iter()
         .enumerate()
-        .map(|(k, a)| a - step * k as f64)
-        .sum::<f64>()
-        / border.len() as f64;
-    let even = (0..border.len())
+        .map(|(k, &point)| (frame.angle(point) - step * k as f64).sin_cos())
+        .fold((0.0, 0.0), |sum, (sin, cos)| (sum.0 + sin, sum.1 + cos));
+    let offset = sin.atan2(cos);
+    (0..border.len())
         .map(|k| offset + step * k as f64)
-        .collect();
-    (actual, even)
+        .collect()
 }
-
-/// Rings over which the angles of a border even out.
-const EVENING: f64 = 9.0;
 
 /// What a limb's rings are cast on.
 struct Limb<'a> {
@@ -81,7 +68,7 @@ impl Half<'_> {
             .map(|p| (p - shoulder).dot(&along))
             .fold(f64::NEG_INFINITY, f64::max)
             + 0.03 * scale;
-        let end = (wrist - shoulder).norm() + 0.175 * scale;
+        let end = (wrist - shoulder).norm() + 0.165 * scale;
         let count = ((end - start) / (SPACING * scale)).round() as usize;
         let frames = (0..count)
             .map(|k| Frame {
@@ -146,7 +133,7 @@ impl Half<'_> {
     fn foot(&self, ankle: Vec3) -> Vec<Frame> {
         let scale = self.template.height / 1.7;
         let toe = Vec3::from(self.template.joints.toe);
-        let pivot = ankle + Vec3::new(0.0, 0.012, 0.085) * scale;
+        let pivot = ankle + Vec3::new(0.0, 0.0, 0.085) * scale;
         let mut frames = Vec::new();
         let fan = 7;
         for k in 1..=fan {
@@ -211,22 +198,16 @@ impl Half<'_> {
             .map(|&v| self.positions[v as usize])
             .collect();
         let first = limb.frames[0];
-        let (actual, even) = angles(
+        let even = even_angles(
             &points,
             &Frame {
                 centre: limb.behind,
                 ..first
             },
         );
-        let angles_at = |ring: usize| -> Vec<f64> {
-            let u = crate::curve::smooth_step((ring + TRANSITION) as f64 / EVENING);
-            (0..actual.len())
-                .map(|k| actual[k] + (even[k] - actual[k]) * u)
-                .collect()
-        };
-        let targets = angles_at(0)
-            .into_iter()
-            .map(|angle| self.hit(&[limb.part], first.centre, first.direction(angle)))
+        let targets = even
+            .iter()
+            .map(|&angle| self.outermost(limb.part, first.centre, first.direction(angle)))
             .collect::<Result<Vec<Vec3>, BodyError>>()?;
         let mut ring = limb.border.to_vec();
         let mut number = 0.0;
@@ -241,10 +222,10 @@ impl Half<'_> {
             number += 1.0;
             ring = self.ring(limb.part, &ring, &next, number);
         }
-        for (k, frame) in limb.frames.iter().enumerate() {
+        for frame in &limb.frames {
             let mut next = Vec::with_capacity(ring.len());
-            for angle in angles_at(k) {
-                next.push(self.hit(&[limb.part], frame.centre, frame.direction(angle))?);
+            for &angle in &even {
+                next.push(self.outermost(limb.part, frame.centre, frame.direction(angle))?);
             }
             number += 1.0;
             ring = self.ring(limb.part, &ring, &next, number);
@@ -256,6 +237,18 @@ impl Half<'_> {
             self.face(limb.part, [ring[k], ring[(k + 1) % ring.len()], pole]);
         }
         Ok(())
+    }
+
+    /// Where a ray from a limb's axis last leaves the limb.
+    fn outermost(&self, part: Part, origin: Vec3, direction: Vec3) -> Result<Vec3, BodyError> {
+        /// Beyond any arm's and any leg's radius, short of the next limb, for a stature of
+        /// 1.7 m [m].
+        const REACH: [f64; 2] = [0.11, 0.17];
+        let reach = REACH[usize::from(part == Part::LeftLeg)] * self.template.height / 1.7;
+        match self.field.last_exit(part, [origin, direction], reach) {
+            Some(distance) => Ok(origin + direction * distance),
+            None => self.hit(&[part], origin, direction),
+        }
     }
 
     fn ring(&mut self, part: Part, from: &[u32], points: &[Vec3], number: f64) -> Vec<u32> {

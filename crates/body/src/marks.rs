@@ -10,9 +10,6 @@ use toile_geometry::{TriangleMesh, Vec3, horizontal_section};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Marks {
     pub(crate) crotch: f64,
-    pub(crate) hips: f64,
-    pub(crate) waist: f64,
-    pub(crate) underbust: f64,
     pub(crate) bust: f64,
     /// Where the neck meets the shoulder, left.
     pub(crate) neck_side: Vec3,
@@ -34,8 +31,6 @@ impl Marks {
         let tape = |y: f64| girth(&skin.mesh, &skin.parts, Part::Trunk, y);
         let crotch = crotch(skin);
         let shoulder = template.joints.shoulder;
-        let hips = extreme([crotch + 0.03 * h, crotch + 0.09 * h], tape);
-        let waist = extreme([hips + 0.07 * h, hips + 0.2 * h], |y| -tape(y));
         let bust = extreme([shoulder[1] - 0.10 * h, shoulder[1] - 0.045 * h], tape);
         let open = BodyError::Open {
             part: "shoulder",
@@ -52,13 +47,16 @@ impl Marks {
         };
         Ok(Self {
             crotch,
-            hips,
-            waist,
-            underbust: bust - UNDERBUST * h,
             bust,
             neck_side,
             tip,
-            depth: (middle(hips) + middle(waist) + middle(bust)) / 3.0,
+            depth: (0..=4)
+                .map(|k| {
+                    0.2 * middle(
+                        crotch + 0.05 * h + (bust - crotch - 0.05 * h) * 0.25 * f64::from(k),
+                    )
+                })
+                .sum(),
         })
     }
 }
@@ -95,20 +93,20 @@ fn extreme([low, high]: [f64; 2], value: impl Fn(f64) -> f64) -> f64 {
     best[1]
 }
 
-/// Walks up the shoulder's ridge from its end to where it turns steeper than 45 degrees.
-pub(crate) fn neck_side(mesh: &TriangleMesh, tip: Vec3, window: [f64; 2]) -> Option<Vec3> {
+/// Where the shoulder becomes the steep side of the neck: walking inward along the ridge from the
+/// middle of the shoulder, the first place where it rises by more than 35 degrees over 6 mm.
+fn neck_side(mesh: &TriangleMesh, tip: Vec3, window: [f64; 2]) -> Option<Vec3> {
     let step = 0.002;
-    let mut here = tip;
-    for k in 1.. {
-        let x = tip.x - step * f64::from(k);
+    let steep = 35f64.to_radians().tan() * 3.0 * step;
+    for k in 0.. {
+        let x = 0.75 * tip.x - step * f64::from(k);
         if x < 0.03 {
             return None;
         }
-        let next = ridge(mesh, x, window)?;
-        if next.y - here.y > step {
+        let here = ridge(mesh, x, window)?;
+        if ridge(mesh, x - 3.0 * step, window)?.y - here.y > steep {
             return Some(here);
         }
-        here = next;
     }
     None
 }

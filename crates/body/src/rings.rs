@@ -20,6 +20,10 @@ pub(crate) const SPACING: f64 = 0.0165;
 /// Rings that lead from a border to the first plane ring of a limb.
 pub(crate) const TRANSITION: usize = 5;
 
+/// A distance from the axis that lies outside the neck and under the shoulder's slope, for a
+/// stature of 1.7 m [m]: the rays of shoulders and neck cross beyond it.
+const NECK_RADIUS: f64 = 0.082;
+
 /// A skin before any measurement is applied.
 pub(crate) struct TemplateSkin {
     pub(crate) mesh: TriangleMesh,
@@ -130,9 +134,8 @@ impl Half<'_> {
         y
     }
 
-    /// The rows of the trunk, neck and head from the crotch to below the crown; and the first
-    /// row of the armpit.
-    fn rows(&self) -> (Vec<Row>, usize) {
+    /// The rows of the trunk, neck and head from the crotch to below the crown.
+    fn rows(&self) -> Vec<Row> {
         let t = self.template;
         let scale = t.height / 1.7;
         let j = t.joints;
@@ -159,9 +162,8 @@ impl Half<'_> {
         // A fan over the shoulders, even along the side.
         let focus = Vec3::new(0.0, base, self.middle_z(chest, base));
         let tip = Vec3::new(j.shoulder[0] + 0.005, j.shoulder[1] + 0.045 * scale, 0.0);
-        let foot_of_neck = Vec3::new(0.058 * scale, neck.y + 0.008 * scale, 0.0);
+        let foot_of_neck = Vec3::new(NECK_RADIUS * scale, neck.y - 0.002 * scale, 0.0);
         let path = [Vec3::new(tip.x - 0.01, base, 0.0), tip, foot_of_neck];
-        let armpit_row = rows.len() + 1;
         let mut elevation = 0.0;
         for p in along(&path, 0.0145 * scale) {
             elevation = (p.y - base).atan2(p.x);
@@ -169,28 +171,28 @@ impl Half<'_> {
         }
         // The neck: from the fan back to level rings.
         let neck_top = Vec3::new(0.0, head.y - 0.035 * scale, 0.6 * neck.z + 0.4 * head.z);
-        let neck_rows = 5;
+        let neck_rows = 6;
+        let straight = foot_of_neck.y + 0.45 * (neck_top.y - foot_of_neck.y);
         for k in 1..=neck_rows {
             let u = k as f64 / neck_rows as f64;
             let tilt = elevation * (1.0 - u) * (1.0 - 0.4 * u);
-            let target = foot_of_neck.y + (neck_top.y - foot_of_neck.y) * u;
-            let y = (target - 0.055 * scale * tilt.tan()).max(base + 1e-3);
-            let z = focus.z + (neck_top.z - focus.z) * u;
+            let target = foot_of_neck.y + (straight - foot_of_neck.y) * u;
+            let y = (target - NECK_RADIUS * scale * tilt.tan()).max(base + 1e-3);
+            let z = focus.z + (neck_top.z - focus.z) * 0.45 * u;
             rows.push(row(Vec3::new(0.0, y, z), tilt, Part::Head));
         }
         // The head: level rings, then a fan to the crown.
         let centre = Vec3::new(0.0, t.height - 0.095 * scale, head.z - 0.005 * scale);
-        let count = ((centre.y - neck_top.y) / (0.016 * scale)).round().max(1.0) as usize;
-        for k in 1..=count {
-            let u = k as f64 / count as f64;
-            rows.push(row(neck_top + (centre - neck_top) * u, 0.0, Part::Head));
+        let above = Vec3::new(0.0, straight, focus.z + (neck_top.z - focus.z) * 0.45);
+        for p in along(&[above, neck_top, centre], 0.016 * scale) {
+            rows.push(row(p, 0.0, Part::Head));
         }
         let crown = 9;
         for k in 1..crown {
             let up = std::f64::consts::FRAC_PI_2 * k as f64 / crown as f64;
             rows.push(row(centre, up, Part::Head));
         }
-        (rows, armpit_row)
+        rows
     }
 
     /// Middle of the front and back surface of the trunk at a height, seen from a joint [m].
@@ -204,8 +206,27 @@ impl Half<'_> {
         }
     }
 
+    /// The last row whose point at the side lies below the arm.
+    fn armpit_row(&self, rows: &[Row]) -> Result<usize, BodyError> {
+        for (t, row) in rows.iter().enumerate() {
+            let (sin, cos) = row.elevation.sin_cos();
+            let point = self.hit(&[Part::Trunk], row.origin, Vec3::new(cos, sin, 0.0))?;
+            if self.field.density(Part::LeftArm, point) >= crate::THRESHOLD {
+                return Ok(t.saturating_sub(1));
+            }
+        }
+        let [x, y, z] = self.template.joints.shoulder;
+        Err(BodyError::Open {
+            part: Part::LeftArm.name(),
+            x,
+            y,
+            z,
+        })
+    }
+
     fn trunk(&mut self) -> Result<Borders, BodyError> {
-        let (rows, armpit_row) = self.rows();
+        let rows = self.rows();
+        let armpit_row = self.armpit_row(&rows)?;
         let side = HALF / 2;
         let shoulder = Vec3::from(self.template.joints.shoulder);
         let scale = self.template.height / 1.7;
@@ -356,6 +377,6 @@ pub(crate) fn at_length(path: &[Vec3], mut length: f64) -> Vec3 {
 fn reachable(part: Part) -> &'static [Part] {
     match part {
         Part::Head => &[Part::Head, Part::Trunk],
-        _ => &[Part::Trunk, Part::Head, Part::LeftArm, Part::LeftLeg],
+        _ => &[Part::Trunk],
     }
 }

@@ -10,7 +10,7 @@ use crate::{BodyError, Part};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// Height of the neck's side below the nape, over stature.
-pub(crate) const NECK_SIDE_DROP: f64 = 0.012;
+pub(crate) const NECK_SIDE_DROP: f64 = 0.008;
 /// Depth below the crotch at which the thigh is measured, over stature.
 pub(crate) const THIGH_DROP: f64 = 0.012;
 
@@ -112,22 +112,25 @@ impl Grown<'_> {
             [t.joints.ankle[1], t.joints.ankle[1] * global],
             [t.joints.knee[1], t.joints.knee[1] * crotch / m.crotch],
             [m.crotch, crotch],
-            [m.hips, q.hip_level()],
-            [m.waist, q.waist_level()],
-            [m.underbust, q.bust_level() - UNDERBUST * q.height],
             [m.bust, q.bust_level()],
             [m.tip.y, tip_level],
             [m.neck_side.y, neck_level],
             [t.height, q.height],
         ];
+        // Between crotch and bust heights are stretched evenly, so the levels follow.
+        let stretch = (m.bust - m.crotch) / (q.bust_level() - crotch);
+        let on_template = |level: f64| m.crotch + (level - crotch) * stretch;
+        let hips = on_template(q.hip_level());
+        let waist = on_template(q.waist_level());
+        let underbust = on_template(q.bust_level() - UNDERBUST * q.height);
         let head = (q.height - neck_level) / (t.height - m.neck_side.y);
         let chin = m.neck_side.y + 0.35 * (t.height - m.neck_side.y);
         let girths = |tip: f64, neck: f64| {
             vec![
                 [m.crotch, s.hips],
-                [m.hips, s.hips],
-                [m.waist, s.waist],
-                [m.underbust, s.underbust],
+                [hips, s.hips],
+                [waist, s.waist],
+                [underbust, s.underbust],
                 [m.bust, s.bust],
                 [m.tip.y, tip],
                 [m.neck_side.y, neck],
@@ -145,7 +148,7 @@ impl Grown<'_> {
                 [t.joints.ankle[1], global],
                 [t.joints.knee[1], 0.5 * (global + s.thigh)],
                 [m.crotch - THIGH_DROP * t.height, s.thigh],
-                [m.hips, s.thigh],
+                [hips, s.thigh],
             ],
             arm: vec![
                 [0.0, global],

@@ -9,7 +9,6 @@ mod woman;
 
 use crate::{Part, Primitive};
 use serde::{Deserialize, Serialize};
-use toile_geometry::Vec3;
 
 /// Which template a mannequin is grown from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -62,15 +61,6 @@ pub(crate) struct Template {
     pub(crate) primitives: Vec<Primitive>,
 }
 
-/// Palm and fingers of the closed hand: distance of the centre from the wrist along the arm, and
-/// effective semi-axes along the arm, across the palm's thickness and its width, all for a stature
-/// of 1.7 m [m].
-const HAND: [[f64; 4]; 3] = [
-    [0.050, 0.085, 0.032, 0.062],
-    [0.100, 0.090, 0.026, 0.058],
-    [0.140, 0.075, 0.023, 0.052],
-];
-
 impl Template {
     /// The template of a figure.
     pub(crate) fn of(figure: Figure) -> Self {
@@ -89,18 +79,11 @@ impl Template {
         for (part, rows) in rows {
             primitives.extend(rows.iter().map(|&row| from_row(part, row)));
         }
-        primitives.extend(hand(table));
-        let mirrored: Vec<Primitive> = primitives
-            .iter()
-            .filter(|p| !p.is_central())
-            .map(Primitive::mirrored)
-            .collect();
-        primitives.extend(mirrored);
         Self {
             height: table.height,
             crotch: table.crotch,
             joints: &table.joints,
-            primitives,
+            primitives: crate::describe::both_sides(primitives),
         }
     }
 }
@@ -113,19 +96,4 @@ fn from_row(part: Part, row: [f64; 9]) -> Primitive {
         radii: [a, b, c],
         rotation: [u, v, w],
     }
-}
-
-/// Primitives of the left hand, flat in the plane of the arm and the frontal direction.
-fn hand(table: &Table) -> Vec<Primitive> {
-    let wrist = Vec3::from(table.joints.wrist);
-    let along = (wrist - Vec3::from(table.joints.elbow)).normalize();
-    let scale = table.height / 1.7;
-    HAND.iter()
-        .map(|&[offset, length, thickness, width]| Primitive {
-            part: Part::LeftArm,
-            centre: (wrist + along * (offset * scale)).into(),
-            radii: [length * scale, thickness * scale, width * scale],
-            rotation: [0.0, 0.0, along.y.atan2(along.x)],
-        })
-        .collect()
 }

@@ -1,0 +1,336 @@
+//! Whole mannequins: closed skin, measurements, symmetry, inside tests, refusals.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::path::PathBuf;
+use toile_body::{BodyError, Description, Figure, Mannequin, Part};
+use toile_geometry::Vec3;
+use toile_measure::{Measurements, Origin};
+
+fn built_in() -> [(Figure, Measurements); 3] {
+    [
+        (Figure::Woman, Measurements::adult_woman()),
+        (Figure::Man, Measurements::adult_man()),
+        (Figure::Mean, Measurements::adult()),
+    ]
+}
+
+/// GarmentCode's tables where the shared data are present.
+fn yaml_tables() -> Vec<(Figure, Measurements)> {
+    let Some(folder) = shared() else {
+        println!("skipped: no shared data folder");
+        return Vec::new();
+    };
+    let figures = [
+        (Figure::Woman, "mean_female"),
+        (Figure::Man, "mean_male"),
+        (Figure::Mean, "mean_all"),
+    ];
+    let read = |name: &str| {
+        let file = folder.join("garmentcode").join(format!("{name}.yaml"));
+        let text = std::fs::read_to_string(file).ok()?;
+        let mut table = Measurements::new();
+        for line in text.lines().skip(1) {
+            let (name, value) = line.split_once(':')?;
+            let (name, value) = (name.trim(), value.trim().parse::<f64>().ok()?);
+            let angle = name.ends_with("_angle") || name.ends_with("_incl");
+            let angle = angle || name == "hip_inclination";
+            let si = if angle {
+                value.to_radians()
+            } else {
+                value / 100.0
+            };
+            table.set(name, si, Origin::Asked).ok()?;
+        }
+        Some(table)
+    };
+    figures
+        .iter()
+        .filter_map(|&(figure, name)| Some((figure, read(name)?)))
+        .collect()
+}
+
+fn shared() -> Option<PathBuf> {
+    if let Ok(path) = std::env::var("TOILE_SHARED") {
+        return Some(PathBuf::from(path).join("data"));
+    }
+    let start = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    start
+        .ancestors()
+        .map(|folder| folder.join("shared/data"))
+        .find(|folder| folder.is_dir())
+}
+
+fn check(figure: Figure, table: &Measurements) {
+    let body = Mannequin::new(table, figure).unwrap();
+    let skin = body.skin();
+    assert_eq!(skin.check(), Ok(()));
+    assert!(skin.is_closed_and_oriented(), "{figure:?}");
+    assert_eq!(skin.euler_characteristic(), 2);
+    assert_eq!(skin.component_count(), 1);
+    let crossing = body.skin_tree().self_intersections();
+    assert!(
+        crossing.is_empty(),
+        "{figure:?}: {} pairs cross",
+        crossing.len()
+    );
+    assert!(
+        (0.04..0.2).contains(&skin.volume()),
+        "outward, and a body's size"
+    );
+    for gap in body.measure() {
+        let limit = match gap.name {
+            "shoulder_incl" => 0.03,
+            "arm_pose_angle" => 1e-6,
+            "height" | "head_l" | "crotch_hip_diff" | "arm_length" => 2e-3,
+            _ => 5e-4,
+        };
+        assert!(gap.gap().abs() < limit, "{figure:?} {gap:?}");
+    }
+    let [low, high] = skin.bounds().unwrap();
+    assert_eq!(low.x, -high.x, "left and right are exact mirror images");
+    assert!(
+        low.y >= 0.0 && low.y < 1e-9,
+        "stands on the floor: {}",
+        low.y
+    );
+}
+
+#[test]
+fn built_in_bodies_are_closed_and_have_their_measurements() {
+    for (figure, table) in built_in() {
+        check(figure, &table);
+    }
+}
+
+#[test]
+fn bodies_for_published_tables_have_their_measurements() {
+    for (figure, table) in yaml_tables() {
+        check(figure, &table);
+    }
+}
+
+#[test]
+fn other_sizes_stay_closed_and_free_of_crossings() {
+    for (figure, table) in built_in() {
+        for (girth, length) in [(0.9, 1.0), (1.12, 1.0), (1.0, 0.93), (1.05, 1.06)] {
+            let mut sized = table.clone();
+            for name in ["bust", "underbust", "waist", "hips", "leg_circ", "wrist"] {
+                sized
+                    .set(name, table.get(name).unwrap() * girth, Origin::Asked)
+                    .unwrap();
+            }
+            for name in [
+                "height",
+                "head_l",
+                "waist_line",
+                "hips_line",
+                "vert_bust_line",
+            ] {
+                sized
+                    .set(name, table.get(name).unwrap() * length, Origin::Asked)
+                    .unwrap();
+            }
+            check(figure, &sized);
+        }
+    }
+}
+
+#[test]
+fn every_vertex_has_its_mirror_image() {
+    let body = Mannequin::new(&Measurements::adult(), Figure::Mean).unwrap();
+    let key = |p: &Vec3| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits()];
+    let mut all: Vec<_> = body.skin().positions.iter().map(key).collect();
+    let mirrored = body
+        .skin()
+        .positions
+        .iter()
+        .map(|p| Vec3::new(0.0 - p.x, p.y, p.z));
+    let mut other: Vec<_> = mirrored.map(|p| key(&p)).collect();
+    all.sort_unstable();
+    other.sort_unstable();
+    assert_eq!(all, other);
+}
+
+#[test]
+fn inside_and_closest_point() {
+    let body = Mannequin::new(&Measurements::adult_woman(), Figure::Woman).unwrap();
+    let marks = body.landmarks();
+    for inside in marks
+        .spine
+        .iter()
+        .skip(1)
+        .chain(&marks.elbows)
+        .chain(&marks.knees)
+    {
+        assert!(body.contains(*inside), "{inside:?}");
+        assert!(
+            body.field().contains(*inside),
+            "{inside:?} in the implicit surface"
+        );
+    }
+    let out = [
+        Vec3::new(0.0, 0.3, 0.0),
+        Vec3::new(0.0, 1.2, 1.0),
+        Vec3::new(0.5, 1.4, 0.0),
+        marks.crown + Vec3::y() * 0.01,
+        Vec3::new(0.3, 0.9, 0.0),
+    ];
+    for outside in out {
+        assert!(!body.contains(outside), "{outside:?}");
+        assert!(
+            !body.field().contains(outside),
+            "{outside:?} in the implicit surface"
+        );
+        let closest = body.closest_point(outside).unwrap();
+        let brute = body
+            .skin()
+            .positions
+            .iter()
+            .map(|p| (p - outside).norm())
+            .fold(f64::INFINITY, f64::min);
+        assert!(closest.signed_distance > 0.0 && closest.signed_distance <= brute + 1e-12);
+    }
+    assert!(body.closest_point(Vec3::repeat(f64::NAN)).is_none());
+    // Along the normals the side changes at the skin.
+    let normals = body.skin_tree().vertex_normals();
+    for v in (0..normals.len()).step_by(97) {
+        let p = body.skin().positions[v];
+        assert!(!body.contains(p + normals[v] * 1e-5), "vertex {v}");
+        assert!(body.contains(p - normals[v] * 1e-5), "vertex {v}");
+    }
+}
+
+#[test]
+fn the_skin_lies_on_the_primitives() {
+    // Only where the maps of the parts are not blended, and up to their linearisation.
+    let body = Mannequin::new(&Measurements::adult_man(), Figure::Man).unwrap();
+    let (skin, field) = (body.skin(), body.field());
+    let mut worst: f64 = 0.0;
+    for (t, part) in body.part_of_triangle().iter().enumerate() {
+        let p = skin.corners(t)[0];
+        let waist = (p.y - body.levels().waist).abs() < 0.1 && *part == Part::Trunk;
+        let shin = (0.2..0.4).contains(&p.y) && *part == Part::LeftLeg;
+        if waist || shin {
+            let slope = field.gradient(*part, p).norm().max(1.0);
+            worst = worst.max((field.density(*part, p) - 0.5).abs() / slope);
+        }
+    }
+    assert!(worst > 0.0 && worst < 0.012, "{worst}");
+}
+
+#[test]
+fn parts_and_levels_are_in_order() {
+    for (figure, table) in built_in() {
+        let body = Mannequin::new(&table, figure).unwrap();
+        let parts = body.parts();
+        assert_eq!(parts.iter().map(|p| p.part).collect::<Vec<_>>(), Part::ALL);
+        for part in &parts {
+            assert!(part.axis.len() >= 3, "{part:?}");
+        }
+        let l = body.levels();
+        let down = [
+            l.crown, l.neck, l.shoulder, l.chest, l.waist, l.hip, l.crotch, 0.0,
+        ];
+        assert!(down.windows(2).all(|w| w[0] > w[1]), "{down:?}");
+        for part in Part::ALL {
+            assert!(body.part_of_triangle().contains(&part));
+            assert!(body.ellipsoids().iter().any(|p| p.part == part));
+        }
+        let arm = &parts[2].axis;
+        let along = arm[2] - arm[0];
+        assert!(
+            along.x > 0.3 && along.y < -0.3 && along.z.abs() < 1e-9,
+            "{along:?}"
+        );
+    }
+}
+
+#[test]
+fn the_same_input_gives_the_same_body() {
+    let make = || Mannequin::new(&Measurements::adult_woman(), Figure::Woman).unwrap();
+    let (a, b) = (make(), make());
+    assert_eq!(a.skin(), b.skin());
+    assert_eq!(a.ellipsoids(), b.ellipsoids());
+}
+
+#[test]
+fn a_description_is_small_and_gives_the_same_body() {
+    let body = Mannequin::new(&Measurements::adult_woman(), Figure::Woman).unwrap();
+    let text = serde_json::to_string(&body.description()).unwrap();
+    assert!(text.len() < 24_000, "{} bytes", text.len());
+    let read: Description = serde_json::from_str(&text).unwrap();
+    let again = Mannequin::from_description(&read).unwrap();
+    assert_eq!(again.skin(), body.skin());
+    let short = Description {
+        primitives: Vec::new(),
+        ..read.clone()
+    };
+    assert!(serde_json::to_string(&short).unwrap().len() < 2_500);
+    assert_eq!(
+        Mannequin::from_description(&short).unwrap().skin(),
+        body.skin()
+    );
+    for spoil in [f64::NAN, 0.0, -1.0, 1e9] {
+        let mut bad = read.clone();
+        bad.primitives[5].radii[1] = spoil;
+        let refused = Mannequin::from_description(&bad);
+        assert!(matches!(refused, Err(BodyError::Description(_))), "{spoil}");
+    }
+    let mut few = read;
+    few.primitives.truncate(3);
+    assert!(matches!(
+        Mannequin::from_description(&few),
+        Err(BodyError::Open { .. })
+    ));
+}
+
+#[test]
+fn bad_measurements_are_named_with_a_remedy() {
+    let refuse = |change: &dyn Fn(&mut Measurements)| -> BodyError {
+        let mut table = Measurements::adult();
+        change(&mut table);
+        match Mannequin::new(&table, Figure::Mean) {
+            Ok(_) => panic!("accepted"),
+            Err(error) => error,
+        }
+    };
+    let set = |name: &'static str, value: f64| {
+        move |t: &mut Measurements| t.set(name, value, Origin::Asked).unwrap()
+    };
+    let missing = refuse(&|t| {
+        t.remove("waist");
+    });
+    assert!(missing.to_string().contains("waist") && missing.to_string().contains("add it"));
+    for (name, value) in [
+        ("waist", 0.0),
+        ("waist", -0.8),
+        ("waist", 84.3),
+        ("height", 172.0),
+        ("height", 1e300),
+        ("shoulder_incl", 21.7),
+        ("arm_pose_angle", 45.0),
+    ] {
+        let error = refuse(&set(name, value));
+        assert!(
+            matches!(error, BodyError::OutOfRange { name: n, .. } if n == name),
+            "{error}"
+        );
+        assert!(error.to_string().contains("give a value from"));
+    }
+    for (name, value) in [
+        ("hips_line", 0.40),
+        ("vert_bust_line", 0.32),
+        ("neck_w", 0.31),
+        ("leg_circ", 0.9),
+    ] {
+        let error = refuse(&set(name, value));
+        assert!(
+            matches!(error, BodyError::Contradiction { .. }),
+            "{name}: {error}"
+        );
+    }
+    assert!(matches!(
+        Mannequin::new(&Measurements::new(), Figure::Woman),
+        Err(BodyError::Missing { name: "height", .. })
+    ));
+}
