@@ -6,7 +6,7 @@ use std::collections::HashMap;
 /// An indexed triangle mesh. Triangles are counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
-    /// Vertex positions [m].
+    /// Vertex positions \[m\].
     pub positions: Vec<Vec3>,
     /// Corners of each triangle, as indices into `positions`.
     pub triangles: Vec<[u32; 3]>,
@@ -60,7 +60,7 @@ impl Topology {
 }
 
 impl TriangleMesh {
-    /// Positions of a triangle's corners [m].
+    /// Positions of a triangle's corners \[m\].
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|v| self.positions[v as usize])
     }
@@ -95,21 +95,21 @@ impl TriangleMesh {
         Ok(())
     }
 
-    /// Surface area [m2].
+    /// Surface area \[m2\].
     pub fn area(&self) -> f64 {
         (0..self.triangles.len())
             .map(|t| triangle_area(self.corners(t)))
             .sum()
     }
 
-    /// Signed enclosed volume [m3]: positive when closed and facing outward.
+    /// Signed enclosed volume \[m3\]: positive when closed and facing outward.
     pub fn volume(&self) -> f64 {
         (0..self.triangles.len())
             .map(|t| tetrahedron_volume(self.corners(t)))
             .sum()
     }
 
-    /// Smallest and largest coordinate of all vertices [m]; nothing for an empty mesh.
+    /// Smallest and largest coordinate of all vertices \[m\]; nothing for an empty mesh.
     pub fn bounds(&self) -> Option<[Vec3; 2]> {
         let first = *self.positions.first()?;
         Some(

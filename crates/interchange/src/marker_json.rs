@@ -22,7 +22,7 @@ pub struct MarkerFile {
     pub name: String,
     /// The fabric.
     pub fabric: MarkerFabric,
-    /// Fabric used, end margins included [m].
+    /// Fabric used, end margins included \[m\].
     pub length: f64,
     /// Area of the pieces over width times length between the end margins, 0..=1.
     pub efficiency: f64,
@@ -38,15 +38,15 @@ pub struct MarkerFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerFabric {
-    /// Full width [m].
+    /// Full width \[m\].
     pub width: f64,
-    /// Unusable edge at either side [m].
+    /// Unusable edge at either side \[m\].
     pub selvedge: f64,
-    /// Free fabric at either end [m].
+    /// Free fabric at either end \[m\].
     pub end_margin: f64,
-    /// Least distance between pieces [m].
+    /// Least distance between pieces \[m\].
     pub gap: f64,
-    /// Length at hand [m]; null means as long as it takes.
+    /// Length at hand \[m\]; null means as long as it takes.
     pub max_length: Option<f64>,
     /// Whether the fabric has a nap, so that all pieces point one way.
     pub one_way: bool,
@@ -68,9 +68,9 @@ pub struct MarkerFilePiece {
     pub turn: f64,
     /// Whether it lies face down: turned over across the grain before it is turned.
     pub face_down: bool,
-    /// Move after turning [m].
+    /// Move after turning \[m\].
     pub at: [f64; 2],
-    /// Cut outline as laid, to the nearest micrometre [m].
+    /// Cut outline as laid, to the nearest micrometre \[m\].
     pub outline: Vec<[f64; 2]>,
 }
 

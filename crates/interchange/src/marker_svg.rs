@@ -8,23 +8,23 @@ use std::fmt::Write as _;
 use toile_geometry::{Polygon, Vec2, point_segment_distance};
 use toile_nesting::{Nap, Pose, Strip};
 
-/// White round the fabric [mm].
+/// White round the fabric \[mm\].
 const BORDER: f64 = 20.0;
-/// Height of the text above the fabric [mm].
+/// Height of the text above the fabric \[mm\].
 const HEADER: f64 = 90.0;
 /// Pale fills, one after another by item.
 const FILLS: [&str; 8] = [
     "#f6d9c8", "#cfe3f2", "#d9ecd0", "#f5e6b8", "#e3d6ee", "#f3d0d8", "#cdeae6", "#e6e0d4",
 ];
 
-/// Everything that is drawn on a marker. All points of a piece are in its own plane [m].
+/// Everything that is drawn on a marker. All points of a piece are in its own plane \[m\].
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarkerDrawing {
     /// Name of the marker.
     pub title: String,
     /// The fabric.
     pub strip: Strip,
-    /// Fabric used, end margins included [m].
+    /// Fabric used, end margins included \[m\].
     pub length: f64,
     /// Area of the pieces over width times length between the end margins, 0..=1.
     pub efficiency: f64,
@@ -41,15 +41,15 @@ pub struct MarkerPiece {
     pub name: String,
     /// Number that pieces of one kind share: they are filled with one colour.
     pub item: usize,
-    /// Line to cut along [m].
+    /// Line to cut along \[m\].
     pub cut: Polygon,
-    /// Line to sew along [m]; without rings where it is not known.
+    /// Line to sew along \[m\]; without rings where it is not known.
     pub sew: Polygon,
-    /// Grain line, from its tail to its head [m]; nothing draws one through the middle.
+    /// Grain line, from its tail to its head \[m\]; nothing draws one through the middle.
     pub grain: Option<[Vec2; 2]>,
-    /// Notches, each a short stroke [m].
+    /// Notches, each a short stroke \[m\].
     pub notches: Vec<[Vec2; 2]>,
-    /// Other lines drawn on the piece [m].
+    /// Other lines drawn on the piece \[m\].
     pub lines: Vec<Vec<Vec2>>,
     /// Marker from piece.
     pub pose: Pose,
@@ -357,7 +357,7 @@ fn arrow([tail, head]: [Vec2; 2], size: f64) -> String {
     )
 }
 
-/// Where the words of a piece go [mm].
+/// Where the words of a piece go \[mm\].
 struct Spot {
     at: Vec2,
     /// Distance to the outline.

@@ -3,7 +3,7 @@
 use crate::{Item, Mirror, Nap, Pose, Strip};
 use toile_geometry::{CrossingKind, PolygonDefect, Vec2};
 
-/// Rounding allowed when a piece is exactly as wide as the fabric [m].
+/// Rounding allowed when a piece is exactly as wide as the fabric \[m\].
 pub(crate) const SNUG: f64 = 1e-9;
 
 /// Why a marker was not made.
@@ -70,11 +70,11 @@ pub enum ItemProblem {
         .needed * 1e3, .usable * 1e3, .fabric * 1e3
     )]
     TooWide {
-        /// Least extent across the fabric in any allowed orientation [m].
+        /// Least extent across the fabric in any allowed orientation \[m\].
         needed: f64,
-        /// Width between the selvedges [m].
+        /// Width between the selvedges \[m\].
         usable: f64,
-        /// Least full width of fabric that takes it [m].
+        /// Least full width of fabric that takes it \[m\].
         fabric: f64,
     },
     /// Too long for the fabric.
@@ -83,9 +83,9 @@ pub enum ItemProblem {
         .needed * 1e3, .usable * 1e3
     )]
     TooLong {
-        /// Least extent along the fabric in an orientation that fits its width [m].
+        /// Least extent along the fabric in an orientation that fits its width \[m\].
         needed: f64,
-        /// Length between the end margins [m].
+        /// Length between the end margins \[m\].
         usable: f64,
     },
 }
@@ -112,7 +112,7 @@ pub(crate) fn orientations(item: &Item, strip: &Strip, copy: u32) -> Vec<(f64, b
     found
 }
 
-/// Extent of an item in an orientation [m].
+/// Extent of an item in an orientation \[m\].
 fn extent(item: &Item, (turn, mirrored): (f64, bool)) -> Vec2 {
     let pose = Pose {
         grain: item.grain,

@@ -14,11 +14,11 @@ use toile_geometry::{
     Bounds2, Polygon, Vec2, minkowski_sum, no_fit_polygon, point_segment_distance,
 };
 
-/// How far outlines may grow when they are simplified [m]: well under the width of a chalk line.
+/// How far outlines may grow when they are simplified \[m\]: well under the width of a chalk line.
 const SIMPLIFY: f64 = 2e-4;
 /// Corners of the polygon round the disc that keeps the gap.
 const DISC_CORNERS: u32 = 16;
-/// Positions nearer to the boundary of a no-fit polygon than this count as touching [m]: over the
+/// Positions nearer to the boundary of a no-fit polygon than this count as touching \[m\]: over the
 /// rounding of the no-fit polygons, and under what the last exact check can still mend.
 pub(crate) const TOUCH: f64 = 5e-8;
 
@@ -144,7 +144,7 @@ impl Fit {
         }
     }
 
-    /// Least distance between two shapes [m].
+    /// Least distance between two shapes \[m\].
     pub fn gap(&self, a: usize, b: usize) -> f64 {
         let own = |s: usize| self.gaps[self.shapes[s].item];
         self.strip_gap.max(own(a)).max(own(b))
@@ -225,7 +225,7 @@ impl Shape {
     }
 }
 
-/// A polygon round a disc of a radius [m].
+/// A polygon round a disc of a radius \[m\].
 fn disc(radius: f64) -> Vec<Vec2> {
     let step = std::f64::consts::TAU / f64::from(DISC_CORNERS);
     let reach = radius / (step / 2.0).cos();

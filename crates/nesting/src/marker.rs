@@ -18,7 +18,7 @@ pub enum Mirror {
 /// The orientations a piece may take on the fabric.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Allowed {
-    /// Angles between the piece's grain and the warp [rad], counter-clockwise.
+    /// Angles between the piece's grain and the warp \[rad\], counter-clockwise.
     pub turns: Vec<f64>,
     /// Whether it may be turned over.
     pub mirror: Mirror,
@@ -52,15 +52,15 @@ impl Allowed {
 pub struct Item {
     /// Name for messages.
     pub name: String,
-    /// Cut outline, curves flattened [m]. Pieces are not laid into each other's holes.
+    /// Cut outline, curves flattened \[m\]. Pieces are not laid into each other's holes.
     pub outline: Polygon,
-    /// Direction of the warp in the outline's plane [rad], counter-clockwise from +x.
+    /// Direction of the warp in the outline's plane \[rad\], counter-clockwise from +x.
     pub grain: f64,
     /// Number of copies.
     pub quantity: u32,
     /// Orientations it may take.
     pub allowed: Allowed,
-    /// Free fabric this piece needs to any other [m]; the strip's gap holds where it is larger.
+    /// Free fabric this piece needs to any other \[m\]; the strip's gap holds where it is larger.
     pub gap: f64,
 }
 
@@ -91,22 +91,22 @@ pub enum Nap {
 /// The fabric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strip {
-    /// Full width, selvedges included [m].
+    /// Full width, selvedges included \[m\].
     pub width: f64,
-    /// Unusable edge at either side [m].
+    /// Unusable edge at either side \[m\].
     pub selvedge: f64,
-    /// Fabric left free at either end [m].
+    /// Fabric left free at either end \[m\].
     pub end_margin: f64,
-    /// Least distance between two pieces [m].
+    /// Least distance between two pieces \[m\].
     pub gap: f64,
-    /// Length at hand, end margins included [m]; nothing means as long as it takes.
+    /// Length at hand, end margins included \[m\]; nothing means as long as it takes.
     pub max_length: Option<f64>,
     /// Nap.
     pub nap: Nap,
 }
 
 impl Strip {
-    /// Fabric of a width [m] without margins, gap or nap.
+    /// Fabric of a width \[m\] without margins, gap or nap.
     pub fn of_width(width: f64) -> Self {
         Self {
             width,
@@ -118,12 +118,12 @@ impl Strip {
         }
     }
 
-    /// Width between the selvedges [m].
+    /// Width between the selvedges \[m\].
     pub fn usable_width(&self) -> f64 {
         self.width - 2.0 * self.selvedge
     }
 
-    /// Least distance two items must keep [m].
+    /// Least distance two items must keep \[m\].
     pub fn gap_between(&self, a: &Item, b: &Item) -> f64 {
         self.gap.max(a.gap).max(b.gap)
     }
@@ -132,13 +132,13 @@ impl Strip {
 /// Marker from piece: grain to +x, then turned over (y changes sign), then turned, then moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Direction of the warp in the piece [rad].
+    /// Direction of the warp in the piece \[rad\].
     pub grain: f64,
-    /// Angle from the warp of the fabric to the piece's grain [rad].
+    /// Angle from the warp of the fabric to the piece's grain \[rad\].
     pub turn: f64,
     /// Whether the piece lies face down.
     pub mirrored: bool,
-    /// Move after turning [m].
+    /// Move after turning \[m\].
     pub translation: Vec2,
 }
 
@@ -167,7 +167,7 @@ impl Pose {
         [turned(cg, flip * sg), turned(-sg, flip * cg)]
     }
 
-    /// Where a point of the piece lies on the marker [m].
+    /// Where a point of the piece lies on the marker \[m\].
     pub fn apply(&self, point: Vec2) -> Vec2 {
         let [x, y] = self.axes();
         x * point.x + y * point.y + self.translation
@@ -187,11 +187,11 @@ pub struct Placement {
     pub item: usize,
     /// Number of the copy, from 0.
     pub copy: u32,
-    /// Angle from the warp to the piece's grain [rad].
+    /// Angle from the warp to the piece's grain \[rad\].
     pub turn: f64,
     /// Whether it lies face down.
     pub mirrored: bool,
-    /// Move after turning [m].
+    /// Move after turning \[m\].
     pub translation: Vec2,
 }
 
@@ -223,7 +223,7 @@ pub struct Unplaced {
 pub struct Marker {
     /// What lies where, by item and copy.
     pub placements: Vec<Placement>,
-    /// Fabric used, end margins included [m].
+    /// Fabric used, end margins included \[m\].
     pub length: f64,
     /// Area of the pieces over width times length between the end margins, 0..=1.
     pub efficiency: f64,

@@ -13,10 +13,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use toile_geometry::{Bounds2, PreparedPolygon, Vec2};
 
-/// Overlap or missing gap the last check lets pass when no small step mends it [m]: a fifth of
+/// Overlap or missing gap the last check lets pass when no small step mends it \[m\]: a fifth of
 /// what the referee allows.
 const FORGIVEN: f64 = 2e-7;
-/// Lengths of the small steps back [m].
+/// Lengths of the small steps back \[m\].
 const STEPS: [f64; 3] = [1e-8, 1e-7, 4e-7];
 
 /// How the best of several orientations is told.
@@ -41,9 +41,9 @@ pub(crate) struct Layout {
     pub placements: Vec<Placement>,
     /// Copies that found no place.
     pub left_over: Vec<Copy>,
-    /// Right end of the last piece [m].
+    /// Right end of the last piece \[m\].
     pub reach: f64,
-    /// Sum of the right ends of all pieces [m].
+    /// Sum of the right ends of all pieces \[m\].
     pub spread: f64,
     /// Positions weighed.
     pub positions: u64,
@@ -221,7 +221,7 @@ impl Layer<'_> {
     }
 
     /// Whether a shape at a move neither overlaps nor comes nearer than its gap, but for
-    /// `forgiven` [m], on the exact outlines.
+    /// `forgiven` \[m\], on the exact outlines.
     fn is_free(&self, shape: usize, at: Vec2, forgiven: f64) -> bool {
         let bounds = self.fit.shapes[shape].bounds.translated(at);
         let near = |laid: &&Laid| {

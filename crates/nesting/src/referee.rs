@@ -6,7 +6,7 @@ use crate::{Item, Marker, Mirror, Nap, Placement, Strip};
 use toile_geometry::{PreparedPolygon, Vec2, intersection, total_area};
 
 /// Deepest overlap of two pieces, nearest they may come below their gap, and furthest they may
-/// stick out, that still counts as sound [m].
+/// stick out, that still counts as sound \[m\].
 pub const PENETRATION_LIMIT: f64 = 1e-6;
 
 /// A side of the usable fabric.
@@ -29,20 +29,20 @@ pub enum Violation {
     Overlap {
         /// The placements.
         pair: [usize; 2],
-        /// Length of the shortest move that ends it [m].
+        /// Length of the shortest move that ends it \[m\].
         depth: f64,
-        /// Fabric used twice [m2].
+        /// Fabric used twice \[m2\].
         area: f64,
-        /// A point of the overlap [m].
+        /// A point of the overlap \[m\].
         at: Vec2,
     },
     /// Two pieces lie nearer than their gap.
     Gap {
         /// The placements.
         pair: [usize; 2],
-        /// Their distance [m].
+        /// Their distance \[m\].
         distance: f64,
-        /// The gap they need [m].
+        /// The gap they need \[m\].
         needed: f64,
     },
     /// A piece sticks out.
@@ -51,14 +51,14 @@ pub enum Violation {
         placement: usize,
         /// Where.
         side: Side,
-        /// By how much [m].
+        /// By how much \[m\].
         by: f64,
     },
     /// A piece lies in an orientation it may not take.
     Orientation {
         /// The placement.
         placement: usize,
-        /// Its turn [rad].
+        /// Its turn \[rad\].
         turn: f64,
         /// Whether it lies face down.
         mirrored: bool,
@@ -79,9 +79,9 @@ pub enum Violation {
     },
     /// The stated length is not the length used.
     Length {
-        /// As stated [m].
+        /// As stated \[m\].
         stated: f64,
-        /// As found, end margins included [m].
+        /// As found, end margins included \[m\].
         found: f64,
     },
 }
@@ -91,13 +91,13 @@ pub enum Violation {
 pub struct Verdict {
     /// Everything that is wrong; empty for a sound marker.
     pub violations: Vec<Violation>,
-    /// Deepest overlap, below the limit too [m].
+    /// Deepest overlap, below the limit too \[m\].
     pub deepest: f64,
-    /// Fabric used twice [m2].
+    /// Fabric used twice \[m2\].
     pub overlap_area: f64,
-    /// Least distance between two pieces [m]; infinite for one piece.
+    /// Least distance between two pieces \[m\]; infinite for one piece.
     pub nearest: f64,
-    /// Fabric used, end margins included [m].
+    /// Fabric used, end margins included \[m\].
     pub length: f64,
 }
 

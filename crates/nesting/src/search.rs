@@ -33,7 +33,7 @@ pub struct Progress {
     pub done: f64,
     /// Markers laid.
     pub markers: u64,
-    /// Length of the best so far, end margins included [m].
+    /// Length of the best so far, end margins included \[m\].
     pub length: f64,
 }
 
@@ -188,7 +188,7 @@ fn lay_batch(
     })
 }
 
-/// Less is better: area left over [m2], then length [m], then the sum of all right ends [m].
+/// Less is better: area left over \[m2\], then length \[m\], then the sum of all right ends \[m\].
 fn score(items: &[Item], layout: &Layout) -> (f64, f64, f64) {
     let area = |&(item, _): &Copy| items[item].outline.area();
     let left_over = layout.left_over.iter().map(area).sum();
