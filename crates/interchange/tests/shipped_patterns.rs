@@ -1,0 +1,173 @@
+//! The patterns that ship: real drafts in every size, without a single finding.
+#![allow(clippy::unwrap_used)]
+
+use toile_interchange::read_pattern;
+use toile_measure::Measurements;
+use toile_pattern::{Draft, DraftSeam, Pattern, Piece, SeamOrigin};
+
+fn shipped(name: &str) -> Pattern {
+    let path = format!(
+        "{}/../../patterns/{name}.toile.json",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let (pattern, notes) = read_pattern(&std::fs::read_to_string(path).unwrap()).unwrap();
+    assert!(notes.is_empty(), "{notes:?}");
+    pattern
+}
+
+/// Every size of a pattern, and three bodies that no size was made for.
+fn drafts(pattern: &Pattern) -> Vec<(String, Measurements, Draft)> {
+    let sizes = pattern
+        .sizes
+        .iter()
+        .map(|size| (size.name.clone(), size.measurements.clone()));
+    let bodies = [
+        ("woman", Measurements::adult_woman()),
+        ("man", Measurements::adult_man()),
+        ("adult", Measurements::adult()),
+    ];
+    let bodies = bodies.map(|(name, table)| (name.to_owned(), table));
+    sizes
+        .chain(bodies)
+        .map(|(name, table)| {
+            let found = pattern.check(&table);
+            assert!(found.is_empty(), "{} {name}: {found:?}", pattern.name);
+            let draft = pattern.resolve(&table).0;
+            (name, table, draft)
+        })
+        .collect()
+}
+
+/// Area of a piece, holes taken out [m2].
+fn area(piece: &Piece) -> f64 {
+    let edges = piece.outline.iter().chain(piece.holes.iter().flatten());
+    edges.map(|edge| edge.curve.swept_area()).sum::<f64>() * 0.5
+}
+
+/// Length of a side of a seam [m].
+fn walked(draft: &Draft, seam: &DraftSeam, side: usize) -> f64 {
+    let length = |span: &toile_pattern::DraftSpan| {
+        let piece = &draft.pieces[span.piece];
+        let mut edges = piece.outline.iter().chain(piece.holes.iter().flatten());
+        edges.nth(span.edge).unwrap().curve.length() * (span.to - span.from).abs()
+    };
+    seam.sides[side].iter().map(length).sum()
+}
+
+fn seam<'a>(draft: &'a Draft, name: &str) -> &'a DraftSeam {
+    draft.seams.iter().find(|seam| seam.name == name).unwrap()
+}
+
+fn total_area(draft: &Draft) -> f64 {
+    draft.pieces.iter().map(area).sum()
+}
+
+fn assert_grows(drafts: &[(String, Measurements, Draft)]) {
+    for pair in drafts[..4].windows(2) {
+        assert!(total_area(&pair[0].2) < total_area(&pair[1].2) * 0.99);
+    }
+}
+
+#[test]
+fn t_shirt_fits_in_every_size() {
+    let pattern = shipped("t-shirt");
+    let drafts = drafts(&pattern);
+    assert_grows(&drafts);
+    for (name, body, draft) in &drafts {
+        assert_eq!(draft.pieces.len(), 4, "front, back and two sleeves");
+        assert!(
+            draft
+                .pieces
+                .iter()
+                .all(|piece| piece.sewn && area(piece) > 0.0)
+        );
+        for side in ["left", "right"] {
+            for half in ["front", "back"] {
+                let armhole = seam(draft, &format!("{side} armhole {half}"));
+                let [body, sleeve] = [0, 1].map(|k| walked(draft, armhole, k));
+                assert!((body - sleeve).abs() < 0.005, "{name}: {body} {sleeve}");
+                assert!((0.17..0.28).contains(&body), "{name}: {body}");
+            }
+        }
+        let chest: f64 = ["front", "back"]
+            .iter()
+            .map(|panel| {
+                let piece = draft.pieces.iter().find(|p| p.name == *panel).unwrap();
+                let xs = piece.outline.iter().map(|edge| edge.curve.start().x);
+                xs.clone().fold(f64::MIN, f64::max) - xs.fold(f64::MAX, f64::min)
+            })
+            .sum();
+        let ease = chest - body.get("bust").unwrap();
+        assert!((0.10..0.16).contains(&ease), "{name}: bust ease {ease} m");
+        assert!((0.6..1.0).contains(&total_area(draft)), "{name}");
+    }
+}
+
+#[test]
+fn skirt_is_gathered_into_a_band_that_fits_the_waist() {
+    let pattern = shipped("gathered-skirt");
+    let drafts = drafts(&pattern);
+    assert_grows(&drafts);
+    for (name, body, draft) in &drafts {
+        let gathers = ["front gathers", "back gathers"].map(|n| seam(draft, n));
+        let mut band = 0.0;
+        for seam in gathers {
+            assert!(seam.gathered);
+            let [skirt, into] = [0, 1].map(|k| walked(draft, seam, k));
+            assert!((1.5..1.8).contains(&(skirt / into)), "{name}");
+            band += into;
+        }
+        let ease = band - body.get("waist").unwrap();
+        assert!((0.01..0.02).contains(&ease), "{name}: {ease}");
+    }
+}
+
+#[test]
+fn trousers_have_matching_seams_and_room_at_the_hips() {
+    let pattern = shipped("trousers");
+    let drafts = drafts(&pattern);
+    assert_grows(&drafts);
+    for (name, body, draft) in &drafts {
+        let darts = draft
+            .seams
+            .iter()
+            .filter(|seam| matches!(seam.id, SeamOrigin::Dart { .. }))
+            .count();
+        assert_eq!(darts, 4, "two darts in each back");
+        for seam in &draft.seams {
+            let [a, b] = [0, 1].map(|k| walked(draft, seam, k));
+            assert!((a - b).abs() < 1e-6, "{name}, {}: {a} {b}", seam.name);
+        }
+        let outseam = walked(draft, seam(draft, "left outseam"), 0);
+        let inseam = walked(draft, seam(draft, "left inseam"), 0);
+        let rise = outseam - inseam;
+        assert!((0.2..0.4).contains(&rise), "{name}: {rise}");
+        let waist: f64 = ["left", "right"]
+            .iter()
+            .flat_map(|side| ["front", "back"].map(|half| format!("{side} waist {half}")))
+            .map(|name| walked(draft, seam(draft, &name), 1))
+            .sum();
+        let ease = waist - body.get("waist").unwrap();
+        assert!((0.015..0.03).contains(&ease), "{name}: waist ease {ease}");
+        let crotch = walked(draft, seam(draft, "front rise"), 0)
+            + walked(draft, seam(draft, "back rise"), 0);
+        assert!((0.6..0.95).contains(&crotch), "{name}: {crotch}");
+    }
+}
+
+#[test]
+fn poncho_is_one_panel_with_a_hole_for_the_neck() {
+    let pattern = shipped("poncho");
+    let drafts = drafts(&pattern);
+    assert_grows(&drafts);
+    for (name, body, draft) in &drafts {
+        let [piece] = &draft.pieces[..] else {
+            panic!("{name}: one piece");
+        };
+        assert!(piece.sewn && piece.holes.len() == 1);
+        let hole: f64 = piece.holes[0].iter().map(|e| e.curve.length()).sum();
+        let neck = body.get("neck_w").unwrap() * std::f64::consts::PI;
+        assert!(hole > neck && hole < neck * 1.6, "{name}: {hole}");
+        assert!(draft.fabrics[0].nap);
+    }
+}
