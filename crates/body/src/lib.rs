@@ -4,6 +4,7 @@
 mod curve;
 mod describe;
 mod error;
+mod fair;
 mod field;
 mod gaps;
 mod landmarks;

@@ -9,6 +9,8 @@ use toile_geometry::{TriangleMesh, Vec3, horizontal_section};
 /// Levels [m] and shoulder places of a template.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Marks {
+    /// Top of the head.
+    pub(crate) crown: f64,
     pub(crate) crotch: f64,
     pub(crate) bust: f64,
     /// Where the neck meets the shoulder, left.
@@ -45,7 +47,9 @@ impl Marks {
             let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
             middle_depth(&horizontal_section(&skin.mesh, trunk, y))
         };
+        let crown = skin.mesh.bounds().map_or(h, |[_, high]| high.y);
         Ok(Self {
+            crown,
             crotch,
             bust,
             neck_side,

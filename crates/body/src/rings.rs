@@ -140,7 +140,6 @@ impl Half<'_> {
         let scale = t.height / 1.7;
         let j = t.joints;
         let armpit = self.armpit();
-        let (pelvis, spine, chest) = (j.pelvis, j.spine, j.chest);
         let (neck, head) = (Vec3::from(j.neck), Vec3::from(j.head));
         let row = |origin: Vec3, elevation: f64, part: Part| Row {
             origin,
@@ -152,15 +151,15 @@ impl Half<'_> {
         let bottom = t.crotch + 0.035 * scale;
         let base = armpit - 0.02 * scale;
         let count = ((base - bottom) / (0.016 * scale)).round() as usize;
+        let focus = Vec3::new(0.0, base, self.middle_z(j.chest, base));
+        let bottom_z = self.middle_z(j.pelvis, bottom);
         for k in 0..count {
-            let y = bottom + (base - bottom) * k as f64 / count as f64;
-            let z = 0.5
-                * (self.middle_z(pelvis, y) + self.middle_z(spine, y).min(0.02))
-                    .min(chest[2].max(0.02) + 0.02);
+            let u = k as f64 / count as f64;
+            let y = bottom + (base - bottom) * u;
+            let z = bottom_z + (focus.z - bottom_z) * u;
             rows.push(row(Vec3::new(0.0, y, z), 0.0, Part::Trunk));
         }
         // A fan over the shoulders, even along the side.
-        let focus = Vec3::new(0.0, base, self.middle_z(chest, base));
         let tip = Vec3::new(j.shoulder[0] + 0.005, j.shoulder[1] + 0.045 * scale, 0.0);
         let foot_of_neck = Vec3::new(NECK_RADIUS * scale, neck.y - 0.002 * scale, 0.0);
         let path = [Vec3::new(tip.x - 0.01, base, 0.0), tip, foot_of_neck];
@@ -336,6 +335,18 @@ impl Half<'_> {
                 Part::LeftLeg => Part::RightLeg,
                 part => part,
             });
+        }
+        // The soles stay flat, the middle stays in the middle, and the right follows the left.
+        crate::fair::fair(&mut mesh, |_, p| p.y <= 0.0);
+        for v in 0..mesh.positions.len() {
+            let image = mirror[v] as usize;
+            if image == v {
+                mesh.positions[v].x = 0.0;
+            } else if image > v {
+                mesh.positions[v].y = mesh.positions[v].y.max(0.0);
+                let p = mesh.positions[v];
+                mesh.positions[image] = Vec3::new(-p.x, p.y, p.z);
+            }
         }
         TemplateSkin {
             mesh,

@@ -26,6 +26,8 @@ struct Scales {
     thigh: f64,
     wrist: f64,
     arm_length: f64,
+    /// Height of the neck's side over the shoulder's end, over what its slope asks for.
+    shoulder_drop: f64,
 }
 
 /// A template with its skin and marks.
@@ -50,9 +52,10 @@ impl Grown<'_> {
             thigh: global,
             wrist: global,
             arm_length: global,
+            shoulder_drop: 1.0,
         };
-        /// Sections interact only through the curves between levels: eight rounds reach 1e-5.
-        const ROUNDS: usize = 8;
+        /// Sections interact only through the curves between levels: twelve rounds reach 1e-5.
+        const ROUNDS: usize = 12;
         for _ in 0..ROUNDS {
             let shape = self.shape(&scales)?;
             let mesh = self.skin_of(&shape);
@@ -81,6 +84,10 @@ impl Grown<'_> {
         let window = [q.bust_level(), q.nape() + 0.02 * q.height];
         if let Some(tip) = ridge(mesh, 0.5 * q.shoulder_width, window) {
             scales.arm_length *= ratio(q.arm_length, (wrist - tip).dot(&along));
+            let neck = warp.apply(self.marks.neck_side, Follow::default());
+            let slope = (neck.y - tip.y) / (neck.x - tip.x).abs();
+            // Half steps: the blend with the arm answers late.
+            scales.shoulder_drop *= ratio(q.shoulder_slope.tan(), slope).clamp(0.5, 2.0).sqrt();
         }
     }
 
@@ -96,8 +103,8 @@ impl Grown<'_> {
         let (m, q, t) = (&self.marks, &self.request, self.template);
         let global = q.height / t.height;
         let neck_level = q.nape() - NECK_SIDE_DROP * q.height;
-        let tip_level =
-            neck_level - 0.5 * (q.shoulder_width - q.neck_width) * q.shoulder_slope.tan();
+        let tip_level = neck_level
+            - s.shoulder_drop * 0.5 * (q.shoulder_width - q.neck_width) * q.shoulder_slope.tan();
         if tip_level < q.bust_level() + 0.03 * q.height {
             return Err(BodyError::Contradiction {
                 first: "shoulder_incl",
@@ -115,7 +122,7 @@ impl Grown<'_> {
             [m.bust, q.bust_level()],
             [m.tip.y, tip_level],
             [m.neck_side.y, neck_level],
-            [t.height, q.height],
+            [m.crown, q.height],
         ];
         // Between crotch and bust heights are stretched evenly, so the levels follow.
         let stretch = (m.bust - m.crotch) / (q.bust_level() - crotch);
@@ -123,8 +130,8 @@ impl Grown<'_> {
         let hips = on_template(q.hip_level());
         let waist = on_template(q.waist_level());
         let underbust = on_template(q.bust_level() - UNDERBUST * q.height);
-        let head = (q.height - neck_level) / (t.height - m.neck_side.y);
-        let chin = m.neck_side.y + 0.35 * (t.height - m.neck_side.y);
+        let head = (q.height - neck_level) / (m.crown - m.neck_side.y);
+        let chin = m.neck_side.y + 0.35 * (m.crown - m.neck_side.y);
         let girths = |tip: f64, neck: f64| {
             vec![
                 [m.crotch, s.hips],
@@ -135,7 +142,7 @@ impl Grown<'_> {
                 [m.tip.y, tip],
                 [m.neck_side.y, neck],
                 [chin, head],
-                [t.height, head],
+                [m.crown, head],
             ]
         };
         let wrist = (Vec3::from(t.joints.wrist) - Vec3::from(t.joints.shoulder)).norm();
