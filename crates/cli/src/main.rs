@@ -1,2 +1,54 @@
-//! The `toile` command.
-fn main() {}
+//! The `toile` command: sewing patterns checked, laid out, sewn and draped.
+//!
+//! Exit status: 0 on success, 2 on bad input, 1 on failure.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+mod arguments;
+mod bar;
+mod output;
+mod session_commands;
+mod tool_commands;
+
+use arguments::{Arguments, Task};
+use clap::Parser;
+use output::{Failure, Output};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let output = Output::new(arguments.json);
+    let outcome = run(arguments.task.unwrap_or_else(sample), &output);
+    match outcome {
+        Ok(report) => {
+            output.finish(report);
+            ExitCode::SUCCESS
+        }
+        Err(failure) => output.fail(&failure),
+    }
+}
+
+/// What is done when nothing is asked for: the sample T-shirt into `out/`.
+fn sample() -> Task {
+    let shipped = Path::new("patterns/t-shirt.toile.json");
+    let pattern = if shipped.is_file() {
+        shipped.to_owned()
+    } else {
+        PathBuf::from(toile_session::SAMPLE)
+    };
+    Task::Make(arguments::Make::of(pattern, "out"))
+}
+
+fn run(task: Task, output: &Output) -> Result<serde_json::Value, Failure> {
+    match task {
+        Task::Make(make) => session_commands::make(&make, output),
+        Task::Drape(drape) => session_commands::drape(&drape, output),
+        Task::Check(check) => session_commands::check(&check, output),
+        Task::Replay(replay) => session_commands::replay(&replay, output),
+        Task::Convert(convert) => tool_commands::convert(&convert, output),
+        Task::Mesh(mesh) => tool_commands::mesh(&mesh, output),
+        Task::Nest(nest) => tool_commands::nest(&nest, output),
+        Task::Body(body) => tool_commands::body(&body, output),
+    }
+}

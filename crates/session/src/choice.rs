@@ -48,6 +48,13 @@ pub(crate) fn figure_name(figure: Figure) -> &'static str {
     }
 }
 
+/// The figure of that name: `woman`, `man` or `mean`.
+pub fn figure_named(name: &str) -> Option<Figure> {
+    [Figure::Woman, Figure::Man, Figure::Mean]
+        .into_iter()
+        .find(|&figure| figure_name(figure) == name)
+}
+
 /// The average adult of a figure.
 pub(crate) fn sample_of(figure: Figure) -> Measurements {
     match figure {

@@ -94,6 +94,19 @@ impl Command {
         )
     }
 
+    /// The stage its time is counted under.
+    pub(crate) fn stage(&self) -> Option<&'static str> {
+        match self {
+            Self::OpenPattern { .. } => Some("open"),
+            Self::Check => Some("check"),
+            Self::Nest => Some("nest"),
+            Self::Assemble => Some("assemble"),
+            Self::Drape => Some("drape"),
+            Self::Export { .. } => Some("export"),
+            _ => None,
+        }
+    }
+
     /// Rough share of the work of making a garment, for progress.
     pub(crate) fn weight(&self) -> f64 {
         match self {

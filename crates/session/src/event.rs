@@ -19,7 +19,7 @@ pub enum Event {
         /// Faults that probably were not meant.
         warnings: usize,
     },
-    /// The pieces were laid.
+    /// The pieces of one fabric were laid.
     Nested(Nested),
     /// The pieces were meshed and placed.
     Assembled(Assembled),
@@ -40,14 +40,20 @@ pub enum Event {
 /// A marker in a few numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nested {
+    /// Name of the fabric.
+    pub fabric: String,
     /// Pieces laid.
     pub pieces: usize,
+    /// Pieces that found no place.
+    pub unplaced: usize,
     /// Fabric used [m].
     pub length: f64,
     /// Width of the fabric [m].
     pub width: f64,
     /// Area of the pieces over area of fabric used, 0..=1.
     pub efficiency: f64,
+    /// Whether the referee found no overlap and nothing outside the fabric.
+    pub sound: bool,
 }
 
 /// A garment's mesh in a few numbers.
@@ -78,4 +84,6 @@ pub struct Draped {
     pub body_intersections: usize,
     /// Largest stretch along warp and weft.
     pub strain_max: [f64; 2],
+    /// Stretch along warp and weft that 99 % of the cloth stays under.
+    pub strain_p99: [f64; 2],
 }

@@ -7,26 +7,43 @@
 
 mod choice;
 mod command;
+mod cut;
 mod derived;
+mod drape;
 mod error;
 mod event;
+mod export;
 mod history;
 mod journal;
+mod laying;
 mod live;
 mod open;
+mod perform;
+mod pictures;
+mod product;
 mod project;
+mod report;
 mod session;
 mod setup;
+mod snapshot;
+mod timing;
+mod tools;
 mod watcher;
 
-pub use choice::{BodyChoice, Quality};
+pub use choice::{BodyChoice, Quality, figure_named};
 pub use command::Command;
 pub use error::SessionError;
 pub use event::{Assembled, Draped, Event, Nested};
 pub use journal::{journal_lines, read_journal};
 pub use live::{LiveFrame, LiveRun};
-pub use open::{Opened, PatternFormat, SAMPLE, open_pattern, read_pattern_text};
+pub use open::{
+    Opened, PatternFormat, SAMPLE, open_measurements, open_pattern, read_pattern_text,
+    read_text_file,
+};
 pub use project::Project;
 pub use session::Session;
 pub use setup::{GarmentJob, JobPanel};
+pub use toile_assembly::Garment;
+pub use toile_drape::Stage;
+pub use tools::{BodyRow, convert, make_body, mesh_panels, nest_patterns};
 pub use watcher::{Silent, Watcher};

@@ -1,14 +1,20 @@
-//! Patterns from files: the format is seen from the content.
+//! Patterns and measurements from files: the format is seen from the content.
 
 use crate::SessionError;
 use std::path::{Path, PathBuf};
-use toile_interchange::{FormatError, read_garmentcode, read_text};
+use toile_interchange::{
+    FormatError, read_garmentcode, read_measurements, read_pattern, read_text,
+};
+use toile_measure::Measurements;
 use toile_pattern::Pattern;
 
 /// The path that stands for the sample pattern inside the program.
 pub const SAMPLE: &str = "sample:t-shirt";
 
-/// Formats of patterns that are read.
+/// The sample pattern.
+const SAMPLE_TEXT: &str = include_str!("../../../patterns/t-shirt.toile.json");
+
+/// Formats of patterns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PatternFormat {
     /// Toile's own.
@@ -25,18 +31,46 @@ pub struct Opened {
     /// What the file was.
     pub format: PatternFormat,
     /// What was left out or assumed, with its place.
-    pub notes: Vec<FormatError>,
+    pub notes: Vec<String>,
 }
 
-/// Reads a pattern file.
+/// Reads a pattern file. A pattern without a name is named after its file.
 ///
 /// # Errors
 /// The file cannot be read, or is not a pattern.
 pub fn open_pattern(path: &Path) -> Result<Opened, SessionError> {
-    read_pattern_text(&read_text(path)?).map_err(|error| SessionError::Format {
+    let text = match path.to_str() {
+        Some(SAMPLE) => SAMPLE_TEXT.to_owned(),
+        _ => read_text(path)?,
+    };
+    let mut opened = read_pattern_text(&text).map_err(|error| SessionError::Format {
         path: PathBuf::from(path),
         error,
-    })
+    })?;
+    if opened.pattern.name.is_empty() {
+        opened.pattern.name = stem(path);
+    }
+    Ok(opened)
+}
+
+/// Reads a whole text file.
+///
+/// # Errors
+/// It is missing, may not be read, or is not text.
+pub fn read_text_file(path: &Path) -> Result<String, SessionError> {
+    Ok(read_text(path)?)
+}
+
+/// A file's name without folder and endings, as a title.
+fn stem(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.split('.').next().unwrap_or_default();
+    let name = name.strip_suffix("_specification").unwrap_or(name);
+    let words: String = name.replace(['_', '-'], " ").chars().take(60).collect();
+    match words.trim() {
+        "" => "pattern".to_owned(),
+        words => words.to_owned(),
+    }
 }
 
 /// Reads a pattern of either format.
@@ -44,10 +78,43 @@ pub fn open_pattern(path: &Path) -> Result<Opened, SessionError> {
 /// # Errors
 /// The text is not a pattern; with its place and a remedy.
 pub fn read_pattern_text(text: &str) -> Result<Opened, FormatError> {
-    let reading = read_garmentcode(text)?;
+    if looks_like_garmentcode(text) {
+        let reading = read_garmentcode(text)?;
+        return Ok(Opened {
+            pattern: reading.pattern,
+            format: PatternFormat::GarmentCode,
+            notes: reading.notes.iter().map(ToString::to_string).collect(),
+        });
+    }
+    let (pattern, notes) = read_pattern(text)?;
     Ok(Opened {
-        pattern: reading.pattern,
-        format: PatternFormat::GarmentCode,
-        notes: reading.notes,
+        pattern,
+        format: PatternFormat::Native,
+        notes: notes.iter().map(ToString::to_string).collect(),
+    })
+}
+
+/// A GarmentCode file has a `pattern` with `panels`; a native one says `toile`.
+fn looks_like_garmentcode(text: &str) -> bool {
+    #[derive(serde::Deserialize)]
+    struct Head {
+        toile: Option<serde::de::IgnoredAny>,
+        pattern: Option<serde::de::IgnoredAny>,
+    }
+    // A damaged native file goes to the native reader, which says where it is damaged.
+    match serde_json::from_str::<Head>(text) {
+        Ok(head) => head.toile.is_none() && head.pattern.is_some(),
+        Err(_) => !text.contains("\"toile\"") && text.contains("\"panels\""),
+    }
+}
+
+/// Reads a table of body measurements, native JSON or GarmentCode YAML.
+///
+/// # Errors
+/// The file cannot be read, or is not such a table.
+pub fn open_measurements(path: &Path) -> Result<Measurements, SessionError> {
+    read_measurements(&read_text(path)?).map_err(|error| SessionError::Format {
+        path: PathBuf::from(path),
+        error,
     })
 }

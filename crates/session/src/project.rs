@@ -1,12 +1,12 @@
 //! The one ground state.
 
 use crate::choice::sample_of;
-use crate::{BodyChoice, Quality};
+use crate::{BodyChoice, Quality, SessionError};
 use std::path::PathBuf;
 use std::sync::Arc;
 use toile_body::Figure;
 use toile_measure::Measurements;
-use toile_pattern::Pattern;
+use toile_pattern::{Diagnostic, Pattern, Severity};
 
 /// Everything a person decides. Cloning is cheap.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,6 +34,57 @@ impl Project {
             BodyChoice::OfPattern if self.pattern.sizes.is_empty() => Figure::Mean,
             BodyChoice::OfPattern => Figure::Woman,
             BodyChoice::Sample(figure) | BodyChoice::Measured { figure, .. } => *figure,
+        }
+    }
+
+    /// Name of the size the pattern is drafted to, if it is one of its own.
+    pub fn size_name(&self) -> Option<&str> {
+        match (&self.size, &self.body) {
+            (Some(size), _) => Some(size),
+            (None, BodyChoice::OfPattern) => {
+                let base = self.pattern.base_size.as_deref();
+                base.or_else(|| self.pattern.sizes.first().map(|size| &*size.name))
+            }
+            (None, _) => None,
+        }
+    }
+
+    /// Refuses a size the pattern does not have.
+    pub(crate) fn check_size(&self) -> Result<(), SessionError> {
+        match &self.size {
+            Some(name) if self.pattern.size(name).is_none() => {
+                let names: Vec<&str> = self.pattern.sizes.iter().map(|s| &*s.name).collect();
+                Err(SessionError::Unknown {
+                    kind: "size",
+                    name: name.clone(),
+                    hint: match names.is_empty() {
+                        true => "the pattern has no table of sizes: leave the size out".into(),
+                        false => format!("choose one of {}", names.join(", ")),
+                    },
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses a pattern with faults that keep the garment from being made.
+    pub(crate) fn refuse_faults(&self, found: &[Diagnostic]) -> Result<(), SessionError> {
+        let errors = found.iter().filter(|d| d.severity == Severity::Error);
+        let faults: Vec<String> = errors.map(ToString::to_string).collect();
+        if faults.is_empty() {
+            return Ok(());
+        }
+        Err(SessionError::Faults {
+            source_name: self.source_name(),
+            faults,
+        })
+    }
+
+    /// The pattern's file, or its name.
+    pub(crate) fn source_name(&self) -> String {
+        match &self.source {
+            Some(path) => path.display().to_string(),
+            None => self.pattern.name.clone(),
         }
     }
 

@@ -1,23 +1,25 @@
 //! The session: the project, what is derived from it, its history and its journal.
 
-use crate::derived::{Derived, fabric_named};
+use crate::derived::Derived;
 use crate::history::History;
-use crate::open::open_pattern;
-use crate::watcher::{Part, tell};
-use crate::{Assembled, BodyChoice, Command, Event, GarmentJob, Project, SessionError, Watcher};
+use crate::timing::Timing;
+use crate::watcher::Part;
+use crate::{Command, Event, GarmentJob, Project, SessionError, Watcher};
 use std::path::Path;
 use std::sync::Arc;
-use toile_body::{Figure, Mannequin};
-use toile_pattern::{Diagnostic, Draft, Edit, Severity};
+use std::time::Instant;
+use toile_body::Mannequin;
+use toile_pattern::{Diagnostic, Draft};
 
 /// The application without a window.
 #[derive(Default)]
 pub struct Session {
-    project: Project,
-    revision: u64,
-    history: History,
-    journal: Vec<Command>,
-    derived: Derived,
+    pub(crate) project: Project,
+    pub(crate) revision: u64,
+    pub(crate) history: History,
+    pub(crate) journal: Vec<Command>,
+    pub(crate) derived: Derived,
+    pub(crate) timing: Timing,
 }
 
 impl Session {
@@ -86,7 +88,14 @@ impl Session {
         command: Command,
         watcher: &mut dyn Watcher,
     ) -> Result<Vec<Event>, SessionError> {
+        let start = Instant::now();
+        if matches!(command, Command::OpenPattern { .. }) {
+            self.timing.restart();
+        }
         let events = self.perform(&command, watcher)?;
+        if let Some(stage) = command.stage() {
+            self.timing.add(stage, start);
+        }
         self.journal.push(command);
         Ok(events)
     }
@@ -112,240 +121,19 @@ impl Session {
         Ok(events)
     }
 
-    /// Does the commands of a journal in a new session.
+    /// Does the commands of a journal in a new session, with everything they write going into one
+    /// folder: the same files with the same bytes, `timing.json` apart.
     ///
     /// # Errors
     /// That of the first command that was not done.
-    pub fn replay(commands: &[Command], watcher: &mut dyn Watcher) -> Result<Self, SessionError> {
-        let mut session = Self::new();
-        session.execute_all(commands, watcher)?;
-        Ok(session)
-    }
-
-    fn perform(
-        &mut self,
-        command: &Command,
+    pub fn replay(
+        commands: &[Command],
+        folder: &Path,
         watcher: &mut dyn Watcher,
-    ) -> Result<Vec<Event>, SessionError> {
-        match command {
-            Command::OpenPattern { path } => self.open(path, watcher),
-            Command::Edit { edits, label, drag } => self.edit(edits, label, *drag),
-            Command::Undo => self.travel(
-                |history, now| history.undo(now),
-                SessionError::Nothing {
-                    action: "undo",
-                    hint: "nothing was changed yet",
-                },
-            ),
-            Command::Redo => self.travel(
-                |history, now| history.redo(now),
-                SessionError::Nothing {
-                    action: "redo",
-                    hint: "nothing was undone since the last change",
-                },
-            ),
-            Command::SetBody {
-                figure,
-                measurements,
-            } => self.set_body(*figure, measurements.as_deref()),
-            Command::SetSize { size } => self.set_size(size.clone()),
-            Command::SetFabric { fabric } => self.set_fabric(fabric.clone()),
-            Command::SetWidth { width } => self.set_width(*width),
-            Command::SetQuality { quality } => {
-                let next = Project {
-                    quality: *quality,
-                    ..self.project.clone()
-                };
-                Ok(self.change(next, "Choose quality", None))
-            }
-            Command::Check => {
-                tell(watcher, "checking", 0.0, "")?;
-                Ok(self.check())
-            }
-            Command::Assemble => self.assemble(watcher),
-            Command::SavePattern { .. }
-            | Command::Nest
-            | Command::Drape
-            | Command::Export { .. } => Err(SessionError::Nothing {
-                action: "do yet",
-                hint: "wait for the next version",
-            }),
-        }
-    }
-
-    /// Puts another project in place of the present one, as a step of the history.
-    fn change(&mut self, next: Project, label: &str, drag: Option<u64>) -> Vec<Event> {
-        if next == self.project {
-            return Vec::new();
-        }
-        let before = std::mem::replace(&mut self.project, next);
-        self.history.record(before, label, drag);
-        self.changed()
-    }
-
-    fn changed(&mut self) -> Vec<Event> {
-        self.revision += 1;
-        self.derived.forget();
-        vec![Event::ProjectChanged {
-            revision: self.revision,
-        }]
-    }
-
-    fn travel(
-        &mut self,
-        step: impl FnOnce(&mut History, &Project) -> Option<Project>,
-        refusal: SessionError,
-    ) -> Result<Vec<Event>, SessionError> {
-        self.project = step(&mut self.history, &self.project).ok_or(refusal)?;
-        Ok(self.changed())
-    }
-
-    fn open(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Result<Vec<Event>, SessionError> {
-        tell(watcher, "reading", 0.0, &path.display().to_string())?;
-        let opened = open_pattern(path)?;
-        self.project = Project {
-            pattern: Arc::new(opened.pattern),
-            source: Some(path.to_owned()),
-            quality: self.project.quality,
-            ..Project::default()
-        };
-        self.history = History::default();
-        let mut events = vec![Event::PatternOpened];
-        events.extend(self.changed());
-        events.extend(opened.notes.iter().map(|note| Event::Warned {
-            message: format!("{}: {note}", path.display()),
-        }));
-        Ok(events)
-    }
-
-    fn edit(
-        &mut self,
-        edits: &[Edit],
-        label: &str,
-        drag: Option<u64>,
-    ) -> Result<Vec<Event>, SessionError> {
-        let mut pattern = (*self.project.pattern).clone();
-        for edit in edits {
-            pattern.apply(edit.clone())?;
-        }
-        let next = Project {
-            pattern: Arc::new(pattern),
-            ..self.project.clone()
-        };
-        Ok(self.change(next, label, drag))
-    }
-
-    fn set_body(
-        &mut self,
-        figure: Option<Figure>,
-        measurements: Option<&Path>,
-    ) -> Result<Vec<Event>, SessionError> {
-        let body = match (figure, measurements) {
-            (None, None) => BodyChoice::OfPattern,
-            (Some(figure), None) => BodyChoice::Sample(figure),
-            (_, Some(path)) => {
-                return Err(SessionError::Unknown {
-                    kind: "measurement file",
-                    name: path.display().to_string(),
-                    hint: "choose woman, man or mean".into(),
-                });
-            }
-        };
-        let next = Project {
-            body,
-            ..self.project.clone()
-        };
-        Ok(self.change(next, "Choose body", None))
-    }
-
-    fn set_size(&mut self, size: Option<String>) -> Result<Vec<Event>, SessionError> {
-        let pattern = &self.project.pattern;
-        if let Some(name) = &size
-            && pattern.size(name).is_none()
-        {
-            let names: Vec<&str> = pattern.sizes.iter().map(|s| &*s.name).collect();
-            return Err(SessionError::Unknown {
-                kind: "size",
-                name: name.clone(),
-                hint: match names.is_empty() {
-                    true => "the pattern has no table of sizes: leave the size out".into(),
-                    false => format!("choose one of {}", names.join(", ")),
-                },
-            });
-        }
-        let next = Project {
-            size,
-            ..self.project.clone()
-        };
-        Ok(self.change(next, "Choose size", None))
-    }
-
-    fn set_fabric(&mut self, fabric: Option<String>) -> Result<Vec<Event>, SessionError> {
-        if let Some(name) = &fabric
-            && fabric_named(&self.project, name).is_none()
-        {
-            let own = self.project.pattern.fabrics.iter().map(|f| &*f.name);
-            let mut names: Vec<&str> = own.chain(["jersey", "poplin"]).collect();
-            names.sort_unstable();
-            names.dedup();
-            return Err(SessionError::Unknown {
-                kind: "fabric",
-                name: name.clone(),
-                hint: format!("choose one of {}", names.join(", ")),
-            });
-        }
-        let next = Project {
-            fabric,
-            ..self.project.clone()
-        };
-        Ok(self.change(next, "Choose fabric", None))
-    }
-
-    fn set_width(&mut self, width: Option<f64>) -> Result<Vec<Event>, SessionError> {
-        if let Some(value) = width
-            && !(0.05..=20.0).contains(&value)
-        {
-            return Err(SessionError::Number {
-                what: "the width of the fabric [m]",
-                value,
-                hint: "give a width from 5 cm to 20 m",
-            });
-        }
-        let next = Project {
-            width,
-            ..self.project.clone()
-        };
-        Ok(self.change(next, "Choose fabric width", None))
-    }
-
-    fn check(&mut self) -> Vec<Event> {
-        let diagnostics = self.diagnostics();
-        let count = |severity| {
-            diagnostics
-                .iter()
-                .filter(|d| d.severity == severity)
-                .count()
-        };
-        let mut events = vec![Event::Checked {
-            errors: count(Severity::Error),
-            warnings: count(Severity::Warning),
-        }];
-        events.extend(diagnostics.iter().map(|diagnostic| Event::Warned {
-            message: diagnostic.to_string(),
-        }));
-        events
-    }
-
-    fn assemble(&mut self, watcher: &mut dyn Watcher) -> Result<Vec<Event>, SessionError> {
-        tell(watcher, "meshing", 0.0, "")?;
-        self.derived.mannequin(&self.project)?;
-        tell(watcher, "meshing", 0.4, "mannequin made")?;
-        let garment = self.derived.garment(&self.project)?;
-        Ok(vec![Event::Assembled(Assembled {
-            panels: garment.panels.len(),
-            vertices: garment.positions.len(),
-            triangles: garment.triangles.len(),
-            stitches: garment.stitches.len(),
-        })])
+    ) -> Result<(Self, Vec<Event>), SessionError> {
+        let mut session = Self::new();
+        let commands = crate::export::redirected(commands, folder);
+        let events = session.execute_all(&commands, watcher)?;
+        Ok((session, events))
     }
 }

@@ -1,12 +1,12 @@
 //! The one function that turns draft, fabrics and mannequin into a drape.
 
-use crate::{Quality, SessionError};
+use crate::Quality;
 use std::sync::Arc;
-use toile_assembly::{Garment, GarmentPanel, Levels, Limb, Wearer, mesh_pieces};
+use toile_assembly::{Garment, Levels, Limb, Wearer};
 use toile_body::{Mannequin, Part};
 use toile_drape::{Cloth, ContactSettings, GarmentSetup, Material, RestSettings, SewSettings};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
-use toile_pattern::{BodyPart, Draft, Fabric, PieceId, Worn};
+use toile_pattern::{BodyPart, Draft, Fabric, PieceId};
 
 /// Acceleration of gravity [m/s2].
 pub(crate) const GRAVITY: f64 = 9.81;
@@ -166,44 +166,4 @@ pub(crate) fn wearer(mannequin: &Mannequin) -> Wearer<'_> {
             crotch: levels.crotch,
         },
     }
-}
-
-/// Meshes the pieces and places them.
-pub(crate) fn assemble(
-    draft: &Draft,
-    _wearer: &Wearer<'_>,
-    edge_length: f64,
-) -> Result<Garment, SessionError> {
-    let meshes = mesh_pieces(draft, edge_length)?;
-    let mut garment = Garment {
-        stitches: meshes.stitches,
-        ..Garment::default()
-    };
-    for mesh in meshes.pieces {
-        let piece = &draft.pieces[mesh.draft_piece];
-        let (vertex, triangle) = (garment.positions.len(), garment.triangles.len());
-        let place = match piece.worn {
-            Worn::Placed(place) => place,
-            _ => toile_geometry::Rigid::identity(),
-        };
-        for p in &mesh.points {
-            garment
-                .positions
-                .push((place * nalgebra::Point3::new(p.x, p.y, 0.0)).coords);
-        }
-        garment.flat.extend(&mesh.points);
-        garment
-            .triangles
-            .extend(mesh.triangles.iter().map(|t| t.map(|v| v + vertex as u32)));
-        garment.panels.push(GarmentPanel {
-            piece: piece.id,
-            draft_piece: mesh.draft_piece,
-            name: piece.name.clone(),
-            vertices: vertex..garment.positions.len(),
-            triangles: triangle..garment.triangles.len(),
-            grain: piece.grain,
-            fabric: piece.fabric,
-        });
-    }
-    Ok(garment)
 }

@@ -1,0 +1,258 @@
+//! What can be asked on the command line.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use toile_geometry::Length;
+use toile_session::{Command, PatternFormat, Quality};
+
+/// Sewing patterns checked, laid out on fabric, sewn round a mannequin, draped and exported.
+///
+/// Without a command it makes the sample T-shirt into the folder `out`. Lengths are written with
+/// their unit: mm, cm, m or in, as in 150cm. Files are in metres, Y up, the mannequin facing +Z.
+///
+/// Exit status: 0 on success, 2 on bad input, 1 on failure.
+#[derive(Debug, Parser)]
+#[command(name = "toile", version)]
+pub struct Arguments {
+    /// Print one machine-readable report (JSON) instead of words.
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// What to do.
+    #[command(subcommand)]
+    pub task: Option<Task>,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Task {
+    /// Check, lay out, sew, drape and export a garment.
+    ///
+    /// Writes marker.svg (true size, mm), marker.json, garment.glb, garment.obj (m), drape.png,
+    /// fit.png (stretch in %), report.json (SI units), timing.json (s) and journal.jsonl.
+    Make(Make),
+    /// Sew, drape and export a garment without laying it out on fabric.
+    Drape(Make),
+    /// List faults of a pattern, each with its place and remedy.
+    ///
+    /// Exit status 2 if the garment cannot be made.
+    Check(Check),
+    /// Lay the pieces of one or more patterns on fabric: marker.svg (true size, mm), marker.json.
+    Nest(Nest),
+    /// Write the triangulated panels as OBJ, in metres, side by side.
+    Mesh(Mesh),
+    /// Make a mannequin as OBJ, in metres, and list its measurements as asked and as got.
+    Body(Body),
+    /// Convert a pattern between formats; lists what could not be carried over.
+    Convert(Convert),
+    /// Do the commands of a journal again; what they write goes into one folder.
+    Replay(Replay),
+}
+
+/// How finely to mesh and drape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum QualityName {
+    /// 25 mm edges, net force under 1e-2 of the weight: a quick look.
+    Preview,
+    /// 15 mm edges, net force under 5e-3 of the weight: to judge the fit.
+    Fit,
+    /// 10 mm edges, net force under 1e-3 of the weight: for the finished picture.
+    Final,
+}
+
+impl From<QualityName> for Quality {
+    fn from(name: QualityName) -> Self {
+        match name {
+            QualityName::Preview => Self::Preview,
+            QualityName::Fit => Self::Fit,
+            QualityName::Final => Self::Final,
+        }
+    }
+}
+
+/// `toile make` and `toile drape`.
+#[derive(Debug, Args)]
+pub struct Make {
+    /// The pattern: native (*.toile.json) or a GarmentCode specification, seen from its content.
+    pub pattern: PathBuf,
+    /// Folder to write into; it is made if need be.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Whose body: woman, man, mean, a file of measurements (native JSON or GarmentCode YAML), or
+    /// FIGURE:FILE. Default: a woman of the pattern's size; mean for a pattern without sizes.
+    #[arg(long, value_name = "BODY")]
+    pub body: Option<String>,
+    /// Named size of the pattern; the mannequin gets that size too. Default: the pattern's base
+    /// size, or the body's own measurements where --body is given.
+    #[arg(long, value_name = "NAME")]
+    pub size: Option<String>,
+    /// Cut every panel from this fabric: one of the pattern's, jersey or poplin. Default: each
+    /// panel's own.
+    #[arg(long, value_name = "NAME")]
+    pub fabric: Option<String>,
+    /// Width of the fabric, as in 150cm. Default: the fabric's own.
+    #[arg(long, value_name = "LENGTH")]
+    pub width: Option<Length>,
+    /// How finely to mesh and how near to rest to drape.
+    #[arg(long, value_enum, default_value = "fit")]
+    pub quality: QualityName,
+}
+
+impl Make {
+    /// A pattern with every default.
+    pub fn of(pattern: PathBuf, out: &str) -> Self {
+        Self {
+            pattern,
+            out: out.into(),
+            body: None,
+            size: None,
+            fabric: None,
+            width: None,
+            quality: QualityName::Fit,
+        }
+    }
+
+    /// The commands that open the pattern and make every choice.
+    pub fn choices(&self) -> Vec<Command> {
+        let mut commands = vec![Command::OpenPattern {
+            path: self.pattern.clone(),
+        }];
+        if let Some(body) = &self.body {
+            commands.push(body_command(body));
+        }
+        if let Some(size) = self.size.clone() {
+            commands.push(Command::SetSize { size: Some(size) });
+        }
+        if let Some(fabric) = self.fabric.clone() {
+            commands.push(Command::SetFabric {
+                fabric: Some(fabric),
+            });
+        }
+        if let Some(width) = self.width {
+            commands.push(Command::SetWidth {
+                width: Some(width.as_metres()),
+            });
+        }
+        commands.push(Command::SetQuality {
+            quality: self.quality.into(),
+        });
+        commands
+    }
+}
+
+/// Reads `woman`, `man`, `mean`, `FILE` or `FIGURE:FILE`.
+pub fn body_command(text: &str) -> Command {
+    let figure = |name: &str| toile_session::figure_named(name);
+    let (before, after) = text.split_once(':').unwrap_or((text, ""));
+    match (figure(before), after) {
+        (Some(figure), "") => Command::SetBody {
+            figure: Some(figure),
+            measurements: None,
+        },
+        (Some(figure), file) => Command::SetBody {
+            figure: Some(figure),
+            measurements: Some(file.into()),
+        },
+        (None, _) => Command::SetBody {
+            figure: None,
+            measurements: Some(text.into()),
+        },
+    }
+}
+
+/// `toile check`.
+#[derive(Debug, Args)]
+pub struct Check {
+    /// The pattern: native or GarmentCode.
+    pub pattern: PathBuf,
+    /// Named size to check. Default: the pattern's base size.
+    #[arg(long, value_name = "NAME")]
+    pub size: Option<String>,
+}
+
+/// `toile nest`.
+#[derive(Debug, Args)]
+pub struct Nest {
+    /// The patterns: native or GarmentCode. Pieces of one fabric share a marker.
+    #[arg(required = true)]
+    pub patterns: Vec<PathBuf>,
+    /// Width of the fabric, as in 150cm. Default: the fabric's own.
+    #[arg(long, value_name = "LENGTH")]
+    pub width: Option<Length>,
+    /// Named size. Default: each pattern's base size.
+    #[arg(long, value_name = "NAME")]
+    pub size: Option<String>,
+    /// Folder to write into; it is made if need be.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+}
+
+/// `toile mesh`.
+#[derive(Debug, Args)]
+pub struct Mesh {
+    /// The pattern: native or GarmentCode.
+    pub pattern: PathBuf,
+    /// Mean edge length of the triangles.
+    #[arg(long, value_name = "LENGTH", default_value = "10mm")]
+    pub edge: Length,
+    /// Named size. Default: the pattern's base size.
+    #[arg(long, value_name = "NAME")]
+    pub size: Option<String>,
+    /// OBJ file to write (m).
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// `toile body`.
+#[derive(Debug, Args)]
+pub struct Body {
+    /// File of measurements: native JSON (cm, degrees) or GarmentCode YAML. Default: the average
+    /// of the figure.
+    #[arg(long, value_name = "FILE")]
+    pub measurements: Option<PathBuf>,
+    /// Figure to grow it from: woman, man or mean.
+    #[arg(long, value_name = "FIGURE", default_value = "mean")]
+    pub figure: String,
+    /// OBJ file to write (m).
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// Formats of patterns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FormatName {
+    /// Toile's own format.
+    Native,
+    /// GarmentCode specification.
+    Garmentcode,
+}
+
+impl From<FormatName> for PatternFormat {
+    fn from(name: FormatName) -> Self {
+        match name {
+            FormatName::Native => Self::Native,
+            FormatName::Garmentcode => Self::GarmentCode,
+        }
+    }
+}
+
+/// `toile convert`.
+#[derive(Debug, Args)]
+pub struct Convert {
+    /// The pattern to read; its format is seen from its content.
+    pub input: PathBuf,
+    /// The file to write.
+    pub output: PathBuf,
+    /// Format to write. Default: native if the name ends in .toile.json, else GarmentCode.
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub to: Option<FormatName>,
+}
+
+/// `toile replay`.
+#[derive(Debug, Args)]
+pub struct Replay {
+    /// The journal (journal.jsonl): one command a line.
+    pub journal: PathBuf,
+    /// Folder to write into; it is made if need be.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+}

@@ -1,0 +1,189 @@
+//! Words for people, or one JSON report for programs.
+
+use serde_json::{Value, json};
+use std::fmt::Display;
+use std::path::Path;
+use std::process::ExitCode;
+use toile_session::{Event, SessionError};
+
+/// Why a command was not done, and its exit status.
+#[derive(Debug)]
+pub struct Failure {
+    message: String,
+    bad_input: bool,
+    report: Option<Value>,
+}
+
+impl Failure {
+    /// Something given is wrong.
+    pub fn bad_input(message: impl Display) -> Self {
+        Self {
+            message: message.to_string(),
+            bad_input: true,
+            report: None,
+        }
+    }
+
+    /// The same with what was found so far.
+    pub fn with_report(self, report: Value) -> Self {
+        Self {
+            report: Some(report),
+            ..self
+        }
+    }
+
+    /// The same with the file it is about, unless it names it already.
+    pub fn about(mut self, file: &Path) -> Self {
+        let file = file.display().to_string();
+        if !self.message.contains(&file) {
+            self.message = format!("{file}: {}", self.message);
+        }
+        self
+    }
+}
+
+impl From<SessionError> for Failure {
+    fn from(error: SessionError) -> Self {
+        Self {
+            bad_input: error.is_bad_input(),
+            message: error.to_string(),
+            report: None,
+        }
+    }
+}
+
+/// Where results go.
+pub struct Output {
+    json: bool,
+}
+
+impl Output {
+    /// Words, or JSON.
+    pub fn new(json: bool) -> Self {
+        Self { json }
+    }
+
+    /// Says something to a person.
+    pub fn say(&self, words: impl Display) {
+        if !self.json {
+            println!("{words}");
+        }
+    }
+
+    /// Warns a person.
+    pub fn warn(&self, words: impl Display) {
+        if !self.json {
+            eprintln!("{words}");
+        }
+    }
+
+    /// Tells what happened in plain words.
+    pub fn tell(&self, events: &[Event]) {
+        for event in events {
+            match event {
+                Event::Warned { message } => self.warn(format!("note: {message}")),
+                other => {
+                    if let Some(words) = words(other) {
+                        self.say(words);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Ends with a report.
+    pub fn finish(&self, report: Value) {
+        if self.json {
+            println!("{:#}", merged(json!({ "ok": true }), report));
+        }
+    }
+
+    /// Ends with a failure.
+    pub fn fail(&self, failure: &Failure) -> ExitCode {
+        for line in failure.message.lines() {
+            eprintln!("error: {line}");
+        }
+        if self.json {
+            let report = failure.report.clone().unwrap_or_else(|| json!({}));
+            let start = json!({ "ok": false, "error": failure.message });
+            println!("{:#}", merged(start, report));
+        }
+        ExitCode::from(if failure.bad_input { 2 } else { 1 })
+    }
+}
+
+fn merged(mut first: Value, second: Value) -> Value {
+    if let (Some(into), Value::Object(from)) = (first.as_object_mut(), second) {
+        into.extend(from);
+    }
+    first
+}
+
+fn words(event: &Event) -> Option<String> {
+    match event {
+        Event::Checked { errors, warnings } => Some(match (errors, warnings) {
+            (0, 0) => "checked: no faults".into(),
+            _ => format!(
+                "checked: {} and {}",
+                count(*errors, "error"),
+                count(*warnings, "warning")
+            ),
+        }),
+        Event::Nested(nested) => Some(format!(
+            "laid out: {} on {}, {:.0} cm wide and {:.1} cm long, {:.1} % used",
+            count(nested.pieces, "piece"),
+            nested.fabric,
+            nested.width * 100.0,
+            nested.length * 100.0,
+            nested.efficiency * 100.0,
+        )),
+        Event::Assembled(mesh) => Some(format!(
+            "meshed: {}, {} triangles, {} stitches",
+            count(mesh.panels, "panel"),
+            mesh.triangles,
+            mesh.stitches
+        )),
+        Event::Draped(drape) => Some(format!(
+            "sewn in {} steps to a gap of {:.2} mm, draped in {} steps to a net force of {:.1e} of the weight; stretch at most {:.1} % along the warp, {:.1} % along the weft",
+            drape.steps[0],
+            drape.seam_gap * 1e3,
+            drape.steps[1],
+            drape.residual,
+            drape.strain_max[0] * 100.0,
+            drape.strain_max[1] * 100.0,
+        )),
+        Event::FilesWritten { paths } => Some(
+            paths
+                .iter()
+                .map(|path| format!("wrote {:<24} {}", path.display().to_string(), meaning(path)))
+                .collect::<Vec<_>>()
+                .join("\n"),
+        ),
+        Event::PatternOpened | Event::ProjectChanged { .. } | Event::Warned { .. } => None,
+    }
+}
+
+/// `1 piece`, `2 pieces`.
+pub fn count(number: usize, noun: &str) -> String {
+    let ending = if number == 1 { "" } else { "s" };
+    format!("{number} {noun}{ending}")
+}
+
+/// What a file is for.
+fn meaning(path: &Path) -> &'static str {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    match &*name {
+        "garment.glb" => "the garment for 3D programs, UVs in metres",
+        "garment.obj" => "the garment as OBJ, a group for each panel",
+        "drape.png" => "the garment worn",
+        "fit.png" => "how much the cloth is stretched",
+        "report.json" => "what was made, in numbers",
+        "timing.json" => "how long it took",
+        "journal.jsonl" => "the commands, for `toile replay`",
+        name if name.starts_with("marker") && name.ends_with(".svg") => {
+            "the pieces on the fabric, at true size"
+        }
+        name if name.starts_with("marker") => "the pieces on the fabric, as data",
+        _ => "",
+    }
+}

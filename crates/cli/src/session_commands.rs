@@ -1,0 +1,118 @@
+//! Commands that run through a session.
+
+use crate::arguments::{Check, Make, Replay};
+use crate::bar::Bar;
+use crate::output::{Failure, Output};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use toile_session::{Command, Event, Session, read_journal, read_text_file};
+
+/// The whole job.
+pub fn make(make: &Make, output: &Output) -> Result<Value, Failure> {
+    let work = [
+        Command::Check,
+        Command::Nest,
+        Command::Assemble,
+        Command::Drape,
+    ];
+    run(make, &work, output)
+}
+
+/// The 3D half alone.
+pub fn drape(make: &Make, output: &Output) -> Result<Value, Failure> {
+    let work = [Command::Check, Command::Assemble, Command::Drape];
+    run(make, &work, output)
+}
+
+fn run(make: &Make, work: &[Command], output: &Output) -> Result<Value, Failure> {
+    let mut commands = make.choices();
+    commands.extend_from_slice(work);
+    commands.push(Command::Export {
+        dir: make.out.clone(),
+    });
+    let mut session = Session::new();
+    let events = session
+        .execute_all(&commands, &mut Bar::new())
+        .map_err(|error| Failure::from(error).about(&make.pattern))?;
+    let project = session.project();
+    output.say(format!(
+        "{}, size {}, {:.0} cm tall",
+        project.pattern.name,
+        project.size_name().unwrap_or("as drawn"),
+        project.wearer().get("height").unwrap_or_default() * 100.0,
+    ));
+    output.tell(&events);
+    Ok(outcome(&events, &make.out))
+}
+
+/// Faults of a pattern.
+pub fn check(check: &Check, output: &Output) -> Result<Value, Failure> {
+    let mut session = Session::new();
+    let mut commands = vec![Command::OpenPattern {
+        path: check.pattern.clone(),
+    }];
+    if let Some(size) = check.size.clone() {
+        commands.push(Command::SetSize { size: Some(size) });
+    }
+    commands.push(Command::Check);
+    let events = session
+        .execute_all(&commands, &mut Bar::new())
+        .map_err(|error| Failure::from(error).about(&check.pattern))?;
+    let diagnostics = session.diagnostics();
+    let place = |place| session.project().pattern.describe(place);
+    let listed: Vec<Value> = diagnostics
+        .iter()
+        .map(|d| {
+            json!({
+                "severity": d.severity.to_string(),
+                "place": place(&d.place),
+                "message": d.message,
+                "hint": d.hint,
+            })
+        })
+        .collect();
+    output.tell(&events);
+    let report = json!({ "diagnostics": listed, "warnings": warnings(&events) });
+    let errors = events
+        .iter()
+        .any(|e| matches!(e, Event::Checked { errors, .. } if *errors > 0));
+    if errors {
+        let message = format!("{}: the garment cannot be made", check.pattern.display());
+        return Err(Failure::bad_input(message).with_report(report));
+    }
+    Ok(report)
+}
+
+/// A journal done again.
+pub fn replay(replay: &Replay, output: &Output) -> Result<Value, Failure> {
+    let about = |error: toile_session::SessionError| Failure::from(error).about(&replay.journal);
+    let text = read_text_file(&replay.journal).map_err(about)?;
+    let commands = read_journal(&text).map_err(about)?;
+    let (_, events) = Session::replay(&commands, &replay.out, &mut Bar::new()).map_err(about)?;
+    output.tell(&events);
+    Ok(outcome(&events, &replay.out))
+}
+
+/// The machine-readable outcome: files, warnings, and the content of `report.json`.
+fn outcome(events: &[Event], folder: &Path) -> Value {
+    let files: Vec<&PathBuf> = events
+        .iter()
+        .filter_map(|event| match event {
+            Event::FilesWritten { paths } => Some(paths),
+            _ => None,
+        })
+        .flatten()
+        .collect();
+    let report = std::fs::read_to_string(folder.join("report.json"))
+        .ok()
+        .and_then(|text| serde_json::from_str::<Value>(&text).ok());
+    json!({ "files": files, "warnings": warnings(events), "report": report })
+}
+
+fn warnings(events: &[Event]) -> Vec<&str> {
+    let warned = events.iter().filter_map(|event| match event {
+        Event::Warned { message } => Some(&**message),
+        _ => None,
+    });
+    warned.collect()
+}

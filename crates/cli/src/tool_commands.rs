@@ -1,0 +1,140 @@
+//! Commands that need no session.
+
+use crate::arguments::{Body, Convert, FormatName, Mesh, Nest};
+use crate::bar::Bar;
+use crate::output::{Failure, Output, count};
+use serde_json::{Value, json};
+use std::sync::Arc;
+use toile_session::{
+    BodyChoice, Event, Project, convert as convert_file, figure_named, make_body, mesh_panels,
+    nest_patterns, open_measurements,
+};
+
+/// A pattern in another format.
+pub fn convert(convert: &Convert, output: &Output) -> Result<Value, Failure> {
+    let native = convert.output.to_string_lossy().ends_with(".toile.json");
+    let format = convert.to.unwrap_or(match native {
+        true => FormatName::Native,
+        false => FormatName::Garmentcode,
+    });
+    let lost = convert_file(&convert.input, &convert.output, format.into())
+        .map_err(|error| Failure::from(error).about(&convert.input))?;
+    for note in &lost {
+        output.say(format!("not carried over or assumed: {note}"));
+    }
+    output.say(format!("wrote {}", convert.output.display()));
+    Ok(json!({ "files": [convert.output], "not_carried_over": lost }))
+}
+
+/// Triangulated panels.
+pub fn mesh(mesh: &Mesh, output: &Output) -> Result<Value, Failure> {
+    let quality = mesh_panels(
+        &mesh.pattern,
+        mesh.size.as_deref(),
+        mesh.edge.as_metres(),
+        &mesh.out,
+    )
+    .map_err(|error| Failure::from(error).about(&mesh.pattern))?;
+    output.say(format!(
+        "{} triangles, edges {:.1} mm on average ({:.1} to {:.1} mm), smallest angle {:.1} degrees away from sharp corners",
+        quality.triangles,
+        quality.mean_edge * 1e3,
+        quality.shortest_edge * 1e3,
+        quality.longest_edge * 1e3,
+        quality.smallest_free_angle.to_degrees(),
+    ));
+    output.say(format!("wrote {}", mesh.out.display()));
+    Ok(json!({
+        "files": [mesh.out],
+        "triangles": quality.triangles,
+        "mean_edge_m": quality.mean_edge,
+        "shortest_edge_m": quality.shortest_edge,
+        "longest_edge_m": quality.longest_edge,
+        "smallest_angle_rad": quality.smallest_angle,
+        "smallest_free_angle_rad": quality.smallest_free_angle,
+        "under_20_degrees": quality.under_20,
+    }))
+}
+
+/// Pieces laid on fabric.
+pub fn nest(nest: &Nest, output: &Output) -> Result<Value, Failure> {
+    let width = nest.width.map(|width| width.as_metres());
+    let size = nest.size.as_deref();
+    let (layings, paths) =
+        nest_patterns(&nest.patterns, size, width, (&nest.out, &mut Bar::new()))?;
+    let listed: Vec<Value> = layings
+        .iter()
+        .map(|laying| {
+            json!({
+                "fabric": laying.fabric,
+                "pieces": laying.pieces,
+                "unplaced": laying.unplaced,
+                "width_m": laying.width,
+                "length_m": laying.length,
+                "efficiency": laying.efficiency,
+                "sound": laying.sound,
+            })
+        })
+        .collect();
+    let report = json!({ "files": paths, "markers": listed });
+    output.tell(&layings.into_iter().map(Event::Nested).collect::<Vec<_>>());
+    output.tell(&[Event::FilesWritten { paths }]);
+    Ok(report)
+}
+
+/// A mannequin.
+pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
+    let figure = figure_named(&body.figure).ok_or_else(|| {
+        Failure::bad_input(format!(
+            "there is no figure {:?}; choose woman, man or mean",
+            body.figure
+        ))
+    })?;
+    let choice = match &body.measurements {
+        None => BodyChoice::Sample(figure),
+        Some(path) => BodyChoice::Measured {
+            figure,
+            path: path.clone(),
+            measurements: Arc::new(open_measurements(path)?),
+        },
+    };
+    let project = Project {
+        body: choice,
+        ..Project::default()
+    };
+    let rows = make_body(&project, &body.out).map_err(|error| {
+        let failure = Failure::from(error);
+        match &body.measurements {
+            Some(path) => failure.about(path),
+            None => failure,
+        }
+    })?;
+    output.say(format!(
+        "{:<20} {:>10} {:>10} {:>8}",
+        "measurement", "asked", "got", "gap"
+    ));
+    for row in &rows {
+        let (scale, unit) = if row.angle {
+            (180.0 / std::f64::consts::PI, "deg")
+        } else {
+            (100.0, "cm")
+        };
+        output.say(format!(
+            "{:<20} {:>10.2} {:>10.2} {:>8.2} {unit}",
+            row.name,
+            row.asked * scale,
+            row.got * scale,
+            (row.got - row.asked) * scale,
+        ));
+    }
+    output.say(format!(
+        "wrote {} ({} compared)",
+        body.out.display(),
+        count(rows.len(), "measurement")
+    ));
+    let listed: Vec<Value> = rows
+        .iter()
+        .map(|row| json!({ "name": row.name, "asked": row.asked, "got": row.got, "unit": if row.angle { "rad" } else { "m" } }))
+        .collect();
+    Ok(json!({ "files": [body.out], "measurements": listed }))
+}

@@ -1,0 +1,138 @@
+//! The drape of a garment as a finished product.
+
+use crate::watcher::tell;
+use crate::{Draped, GarmentJob, SessionError, Watcher};
+use toile_drape::{GarmentRun, Measures, Stage, stretch_per_triangle};
+use toile_geometry::{TriangleMesh, Vec3};
+
+/// A garment sewn and draped.
+pub(crate) struct Drape {
+    /// What it was made from.
+    pub job: GarmentJob,
+    /// The merged garment where it lies.
+    pub mesh: TriangleMesh,
+    /// Vertex of `mesh` for every vertex of the job's garment.
+    pub target: Vec<u32>,
+    /// Triangle of the job's garment for every triangle of `mesh`.
+    pub origin: Vec<u32>,
+    /// Larger stretch of warp and weft of every triangle of `mesh`.
+    pub stretch: Vec<f64>,
+    pub measures: Measures,
+    /// Steps of sewing and of settling.
+    pub steps: [usize; 2],
+    /// Largest seam gap in the step before merging [m].
+    pub seam_gap: f64,
+    pub warnings: Vec<String>,
+}
+
+impl Drape {
+    /// Unit normals of the merged vertices.
+    pub fn normals(&self) -> Vec<Vec3> {
+        self.mesh.vertex_normals()
+    }
+
+    /// Pairs of merged vertices that lie on a seam: edges of the outline of a piece that have cloth
+    /// on both sides now.
+    pub fn seam_edges(&self) -> Vec<[u32; 2]> {
+        let apart = TriangleMesh {
+            positions: self.job.garment.positions.clone(),
+            triangles: self.job.garment.triangles.clone(),
+        };
+        let (before, after) = (apart.topology(), self.mesh.topology());
+        let mut pairs: Vec<[u32; 2]> = before
+            .boundary()
+            .filter_map(|edge| {
+                let [a, b] = before.edges[edge].map(|v| self.target[v as usize]);
+                let merged = after.edge(a, b)?;
+                (after.edge_triangles[merged].len() > 1).then_some([a.min(b), a.max(b)])
+            })
+            .collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
+    /// A few numbers.
+    pub fn summary(&self) -> Draped {
+        Draped {
+            steps: self.steps,
+            residual: self.measures.residual,
+            seam_gap: self.seam_gap,
+            components: self.mesh.component_count(),
+            body_intersections: self.measures.body_intersections,
+            strain_max: self.measures.strain_max,
+            strain_p99: self.measures.strain_p99,
+        }
+    }
+}
+
+/// Sews, merges and drapes a garment to rest.
+pub(crate) fn drape(job: GarmentJob, watcher: &mut dyn Watcher) -> Result<Drape, SessionError> {
+    tell(watcher, "sewing", 0.0, "")?;
+    let mut run = GarmentRun::new(job.setup.clone())?;
+    loop {
+        let progress = run.advance()?;
+        let (stage, detail) = match progress.stage {
+            Stage::Sewing => ("sewing", format!("gap {:.1} mm", progress.gap * 1e3)),
+            Stage::Settling => ("draping", format!("net force {:.1e}", progress.residual)),
+            Stage::Finished => ("measuring", String::new()),
+        };
+        tell(watcher, stage, 0.98 * progress.share, &detail)?;
+        if progress.stage == Stage::Finished {
+            break;
+        }
+    }
+    let measures = run.measure();
+    let mesh = run.model.mesh(&run.state.positions);
+    let origin = (0..job.garment.triangles.len() as u32)
+        .filter(|&t| {
+            let [a, b, c] = job.garment.triangles[t as usize].map(|v| run.target[v as usize]);
+            a != b && b != c && c != a
+        })
+        .collect();
+    let mut warnings = run.warnings().to_vec();
+    warnings.extend(shortcomings(&mesh, &measures));
+    Ok(Drape {
+        stretch: stretch_per_triangle(&run.model, &run.state.positions),
+        steps: run.steps(),
+        seam_gap: run.gap_before_merging(),
+        target: run.target.clone(),
+        job,
+        mesh,
+        origin,
+        measures,
+        warnings,
+    })
+}
+
+/// What a finished garment ought not to have, in plain words.
+fn shortcomings(mesh: &TriangleMesh, measures: &Measures) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let components = mesh.component_count();
+    if components > 1 {
+        warnings.push(format!(
+            "the garment is in {components} parts that no seam joins; sew them together or make them apart"
+        ));
+    }
+    if measures.body_intersections > 0 {
+        warnings.push(format!(
+            "{} pairs of cloth and body triangles cross; the garment is too tight there, or the mesh too coarse: try a larger size or --quality final",
+            measures.body_intersections
+        ));
+    }
+    if measures.self_intersections > 0 {
+        warnings.push(format!(
+            "{} pairs of cloth triangles cross each other: folds of the cloth lie in one another",
+            measures.self_intersections
+        ));
+    }
+    for (name, strain) in ["warp", "weft"].iter().zip(measures.strain_max) {
+        if strain > 0.15 {
+            warnings.push(format!(
+                "the cloth is stretched by {:.0} % along the {name} at the tightest place: see fit.png, and add ease there",
+                strain * 100.0
+            ));
+        }
+    }
+    warnings
+}

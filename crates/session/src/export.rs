@@ -1,0 +1,128 @@
+//! Everything that was made of a project, as files.
+
+use crate::derived::Derived;
+use crate::drape::Drape;
+use crate::laying::Laying;
+use crate::product::{garment_glb, garment_obj};
+use crate::report::Report;
+use crate::watcher::tell;
+use crate::{Command, Project, SessionError, Watcher, pictures};
+use std::path::Path;
+use toile_interchange::{FormatError, write_glb, write_marker_json, write_marker_svg, write_obj};
+
+/// A file to write: its name and its content.
+pub(crate) type File = (String, Vec<u8>);
+
+/// Every file of what has been made: markers, garment, pictures, report.
+pub(crate) fn files(
+    project: &Project,
+    derived: &mut Derived,
+    watcher: &mut dyn Watcher,
+) -> Result<Vec<File>, SessionError> {
+    if derived.layings.is_none() && derived.drape.is_none() {
+        return Err(SessionError::Nothing {
+            action: "export",
+            hint: "lay the pieces out or drape the garment first",
+        });
+    }
+    let (draft, diagnostics) = derived.drafted(project);
+    let mut report = Report::new(project, &draft);
+    report.add_warnings(diagnostics.iter().map(ToString::to_string));
+    let mut files = Vec::new();
+    if let Some(layings) = &derived.layings {
+        tell(watcher, "writing", 0.0, "marker")?;
+        marker_files(&project.pattern.name, layings, &mut files)?;
+        report.add_markers(layings);
+    }
+    if let Some(drape) = derived.drape.clone() {
+        garment_files(project, &drape, &mut files)?;
+        tell(watcher, "writing", 0.2, "pictures")?;
+        let mannequin = derived.mannequin(project)?;
+        let title = picture_title(project);
+        let picture = pictures::drape_png(&drape, mannequin.skin(), &title)?;
+        files.push(("drape.png".into(), picture));
+        tell(watcher, "writing", 0.6, "pictures")?;
+        let picture = pictures::fit_png(&drape, mannequin.skin(), &title)?;
+        files.push(("fit.png".into(), picture));
+        report.add_drape(project, &drape);
+        report.add_warnings(derived.assembly_notes.iter().cloned());
+        report.add_warnings(drape.warnings.iter().cloned());
+    }
+    tell(watcher, "writing", 0.95, "report")?;
+    files.push(("report.json".into(), report.to_json().into_bytes()));
+    Ok(files)
+}
+
+fn picture_title(project: &Project) -> String {
+    match project.size_name() {
+        Some(size) => format!("{}, size {size}", project.pattern.name),
+        None => project.pattern.name.clone(),
+    }
+}
+
+/// The files of markers: `marker.svg` and `marker.json`, numbered from the second fabric on.
+pub(crate) fn marker_files(
+    name: &str,
+    layings: &[Laying],
+    files: &mut Vec<File>,
+) -> Result<(), SessionError> {
+    for (k, laying) in layings.iter().enumerate() {
+        let stem = match k {
+            0 => "marker".to_owned(),
+            k => format!("marker-{}", k + 1),
+        };
+        let svg = write_marker_svg(&laying.drawing(name)).map_err(cannot("marker.svg"))?;
+        let json = write_marker_json(&laying.file(name)).map_err(cannot("marker.json"))?;
+        files.push((format!("{stem}.svg"), svg.into_bytes()));
+        files.push((format!("{stem}.json"), json.into_bytes()));
+    }
+    Ok(())
+}
+
+fn garment_files(
+    project: &Project,
+    drape: &Drape,
+    files: &mut Vec<File>,
+) -> Result<(), SessionError> {
+    let name = &project.pattern.name;
+    let glb = write_glb(&garment_glb(drape, name)).map_err(cannot("garment.glb"))?;
+    let obj = write_obj(&garment_obj(drape)).map_err(cannot("garment.obj"))?;
+    files.push(("garment.glb".into(), glb));
+    files.push(("garment.obj".into(), obj.into_bytes()));
+    Ok(())
+}
+
+pub(crate) fn cannot(file: &'static str) -> impl Fn(FormatError) -> SessionError {
+    move |error| SessionError::Write { file, error }
+}
+
+/// The journal as it is written beside what it made: places to write to are named by the file name
+/// alone, so that the journal does not depend on where it lies.
+pub(crate) fn portable(commands: &[Command]) -> Vec<Command> {
+    commands
+        .iter()
+        .map(|command| match command {
+            Command::Export { .. } => Command::Export { dir: ".".into() },
+            Command::SavePattern { path } => Command::SavePattern {
+                path: path.file_name().map_or_else(|| path.clone(), Into::into),
+            },
+            other => other.clone(),
+        })
+        .collect()
+}
+
+/// The commands with everything that is written going into one folder.
+pub(crate) fn redirected(commands: &[Command], folder: &Path) -> Vec<Command> {
+    portable(commands)
+        .into_iter()
+        .map(|command| match command {
+            Command::Export { .. } => Command::Export {
+                dir: folder.to_owned(),
+            },
+            Command::SavePattern { path } => Command::SavePattern {
+                path: folder.join(path),
+            },
+            other => other,
+        })
+        .collect()
+}

@@ -1,0 +1,295 @@
+//! What each command does.
+
+use crate::derived::fabric_named;
+use crate::export::{files, portable};
+use crate::history::History;
+use crate::open::{open_measurements, open_pattern};
+use crate::watcher::{Part, tell};
+use crate::{
+    Assembled, BodyChoice, Command, Event, Project, Session, SessionError, Watcher, journal_lines,
+};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+use toile_body::Figure;
+use toile_interchange::{write_all_atomically, write_atomically, write_pattern};
+use toile_pattern::{Edit, Severity};
+
+type Outcome = Result<Vec<Event>, SessionError>;
+
+impl Session {
+    pub(crate) fn perform(&mut self, command: &Command, watcher: &mut dyn Watcher) -> Outcome {
+        match command {
+            Command::OpenPattern { path } => self.open(path, watcher),
+            Command::SavePattern { path } => self.save(path, watcher),
+            Command::Edit { edits, label, drag } => self.edit(edits, label, *drag),
+            Command::Undo => self.travel(History::undo, "undo", "nothing was changed yet"),
+            Command::Redo => self.travel(
+                History::redo,
+                "redo",
+                "nothing was undone since the last change",
+            ),
+            Command::SetBody {
+                figure,
+                measurements,
+            } => self.set_body(*figure, measurements.as_deref()),
+            Command::SetSize { size } => self.set_size(size.clone()),
+            Command::SetFabric { fabric } => self.set_fabric(fabric.clone()),
+            Command::SetWidth { width } => self.set_width(*width),
+            Command::SetQuality { quality } => {
+                let next = Project {
+                    quality: *quality,
+                    ..self.project.clone()
+                };
+                Ok(self.change(next, "Choose quality", None))
+            }
+            Command::Check => self.check(watcher),
+            Command::Nest => self.nest(watcher),
+            Command::Assemble => self.assemble(watcher),
+            Command::Drape => self.drape(watcher),
+            Command::Export { dir } => self.export(dir, watcher),
+        }
+    }
+
+    /// Puts another project in place of the present one, as a step of the history.
+    fn change(&mut self, next: Project, label: &str, drag: Option<u64>) -> Vec<Event> {
+        if next == self.project {
+            return Vec::new();
+        }
+        self.history.record(self.project.clone(), label, drag);
+        self.replace(next)
+    }
+
+    fn replace(&mut self, next: Project) -> Vec<Event> {
+        self.derived.follow(&self.project, &next);
+        self.project = next;
+        self.revision += 1;
+        vec![Event::ProjectChanged {
+            revision: self.revision,
+        }]
+    }
+
+    fn travel(
+        &mut self,
+        step: impl FnOnce(&mut History, &Project) -> Option<Project>,
+        action: &'static str,
+        hint: &'static str,
+    ) -> Outcome {
+        let next =
+            step(&mut self.history, &self.project).ok_or(SessionError::Nothing { action, hint })?;
+        Ok(self.replace(next))
+    }
+
+    fn open(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
+        tell(watcher, "reading", 0.0, &path.display().to_string())?;
+        let opened = open_pattern(path)?;
+        let next = Project {
+            pattern: Arc::new(opened.pattern),
+            source: Some(path.to_owned()),
+            quality: self.project.quality,
+            ..Project::default()
+        };
+        self.history = History::default();
+        let mut events = vec![Event::PatternOpened];
+        events.extend(self.replace(next));
+        events.extend(opened.notes.iter().map(|note| Event::Warned {
+            message: format!("{}: {note}", path.display()),
+        }));
+        Ok(events)
+    }
+
+    fn save(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
+        tell(watcher, "writing", 0.0, &path.display().to_string())?;
+        let text = write_pattern(&self.project.pattern).map_err(|error| SessionError::Write {
+            file: "the pattern",
+            error,
+        })?;
+        write_atomically(path, text.as_bytes())?;
+        // Where a pattern is kept is not part of what it is: no step of the history.
+        self.project.source = Some(path.to_owned());
+        Ok(vec![Event::FilesWritten {
+            paths: vec![path.to_owned()],
+        }])
+    }
+
+    fn edit(&mut self, edits: &[Edit], label: &str, drag: Option<u64>) -> Outcome {
+        let mut pattern = (*self.project.pattern).clone();
+        for edit in edits {
+            pattern.apply(edit.clone())?;
+        }
+        let mut next = Project {
+            pattern: Arc::new(pattern),
+            ..self.project.clone()
+        };
+        // A choice of something that is gone would mean nothing.
+        if next.check_size().is_err() {
+            next.size = None;
+        }
+        if next
+            .fabric
+            .as_deref()
+            .is_some_and(|name| fabric_named(&next, name).is_none())
+        {
+            next.fabric = None;
+        }
+        Ok(self.change(next, label, drag))
+    }
+
+    fn set_body(&mut self, figure: Option<Figure>, measurements: Option<&Path>) -> Outcome {
+        let body = match (figure, measurements) {
+            (None, None) => BodyChoice::OfPattern,
+            (Some(figure), None) => BodyChoice::Sample(figure),
+            (figure, Some(path)) => BodyChoice::Measured {
+                figure: figure.unwrap_or(Figure::Mean),
+                path: path.to_owned(),
+                measurements: Arc::new(open_measurements(path)?),
+            },
+        };
+        let next = Project {
+            body,
+            ..self.project.clone()
+        };
+        Ok(self.change(next, "Choose body", None))
+    }
+
+    fn set_size(&mut self, size: Option<String>) -> Outcome {
+        let next = Project {
+            size,
+            ..self.project.clone()
+        };
+        next.check_size()?;
+        Ok(self.change(next, "Choose size", None))
+    }
+
+    fn set_fabric(&mut self, fabric: Option<String>) -> Outcome {
+        if let Some(name) = &fabric
+            && fabric_named(&self.project, name).is_none()
+        {
+            let own = self.project.pattern.fabrics.iter().map(|f| &*f.name);
+            let mut names: Vec<&str> = own.chain(["jersey", "poplin"]).collect();
+            names.sort_unstable();
+            names.dedup();
+            return Err(SessionError::Unknown {
+                kind: "fabric",
+                name: name.clone(),
+                hint: format!("choose one of {}", names.join(", ")),
+            });
+        }
+        let next = Project {
+            fabric,
+            ..self.project.clone()
+        };
+        Ok(self.change(next, "Choose fabric", None))
+    }
+
+    fn set_width(&mut self, width: Option<f64>) -> Outcome {
+        if let Some(value) = width
+            && !(0.05..=20.0).contains(&value)
+        {
+            return Err(SessionError::Number {
+                what: "the width of the fabric [m]",
+                value,
+                hint: "give a width from 5 cm to 20 m",
+            });
+        }
+        let next = Project {
+            width,
+            ..self.project.clone()
+        };
+        Ok(self.change(next, "Choose fabric width", None))
+    }
+
+    fn check(&mut self, watcher: &mut dyn Watcher) -> Outcome {
+        tell(watcher, "checking", 0.0, "")?;
+        let diagnostics = self.diagnostics();
+        let count = |severity| {
+            diagnostics
+                .iter()
+                .filter(|d| d.severity == severity)
+                .count()
+        };
+        let mut events = vec![Event::Checked {
+            errors: count(Severity::Error),
+            warnings: count(Severity::Warning),
+        }];
+        let name = self.project.source_name();
+        events.extend(diagnostics.iter().map(|diagnostic| Event::Warned {
+            message: format!("{name}: {diagnostic}"),
+        }));
+        Ok(events)
+    }
+
+    fn nest(&mut self, watcher: &mut dyn Watcher) -> Outcome {
+        let layings = self.derived.layings(&self.project, watcher)?;
+        let mut events = Vec::new();
+        for laying in layings.iter() {
+            events.push(Event::Nested(laying.summary()));
+            events.extend(laying.marker.unplaced.iter().map(|unplaced| Event::Warned {
+                message: format!(
+                    "piece {:?}: {}",
+                    laying.items[unplaced.item].name, unplaced.reason
+                ),
+            }));
+        }
+        Ok(events)
+    }
+
+    fn assemble(&mut self, watcher: &mut dyn Watcher) -> Outcome {
+        tell(watcher, "making the mannequin", 0.0, "")?;
+        self.derived.mannequin(&self.project)?;
+        tell(watcher, "meshing", 0.5, "")?;
+        let garment = self.derived.garment(&self.project)?;
+        tell(watcher, "meshing", 1.0, "")?;
+        let mut events = vec![Event::Assembled(Assembled {
+            panels: garment.panels.len(),
+            vertices: garment.positions.len(),
+            triangles: garment.triangles.len(),
+            stitches: garment.stitches.len(),
+        })];
+        events.extend(warned(&self.derived.assembly_notes));
+        Ok(events)
+    }
+
+    fn drape(&mut self, watcher: &mut dyn Watcher) -> Outcome {
+        let mut events = Vec::new();
+        let mut from = 0.0;
+        if !self.derived.has_garment() {
+            from = 0.05;
+            events = self.assemble(&mut Part::new(watcher, 0.0, from))?;
+        }
+        let drape = self
+            .derived
+            .drape(&self.project, &mut Part::new(watcher, from, 1.0))?;
+        events.push(Event::Draped(drape.summary()));
+        events.extend(warned(&drape.warnings));
+        Ok(events)
+    }
+
+    fn export(&mut self, dir: &Path, watcher: &mut dyn Watcher) -> Outcome {
+        let start = Instant::now();
+        let mut files = files(&self.project, &mut self.derived, watcher)?;
+        let mut commands = portable(&self.journal);
+        commands.extend(portable(&[Command::Export {
+            dir: dir.to_owned(),
+        }]));
+        files.push((
+            "journal.jsonl".into(),
+            journal_lines(&commands).into_bytes(),
+        ));
+        let mut timing = self.timing.clone();
+        timing.add("export", start);
+        files.push(("timing.json".into(), timing.to_json().into_bytes()));
+        write_all_atomically(dir, &files)?;
+        // The files are on the disk: the wish to stop comes too late.
+        let _ = tell(watcher, "writing", 1.0, "");
+        Ok(vec![Event::FilesWritten {
+            paths: files.iter().map(|(name, _)| dir.join(name)).collect(),
+        }])
+    }
+}
+
+fn warned(notes: &[String]) -> impl Iterator<Item = Event> + '_ {
+    notes.iter().map(|note| Event::Warned {
+        message: note.clone(),
+    })
+}

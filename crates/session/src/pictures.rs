@@ -1,0 +1,106 @@
+//! The two pictures of a drape: the garment worn, and how tight it sits.
+
+use crate::SessionError;
+use crate::drape::Drape;
+use toile_geometry::TriangleMesh;
+use toile_picture::{
+    ColourMap, ColourScale, Edges, Finish, Legend, Lines, Paint, Scene, Sheet, Surface,
+    drape_picture, fit_picture,
+};
+
+/// Stretch at the end of the colours [%].
+const MOST_STRETCH: f64 = 10.0;
+/// Colour of a mannequin.
+const SKIN: [f64; 3] = [0.80, 0.77, 0.74];
+
+fn body(skin: &TriangleMesh) -> Surface {
+    Surface {
+        framed: false,
+        ..Surface::plain(skin.clone(), SKIN, Finish::Smooth)
+    }
+}
+
+fn garment(drape: &Drape, paint: Paint, line: [f64; 3]) -> Surface {
+    Surface {
+        mesh: drape.mesh.clone(),
+        normals: Vec::new(),
+        paint,
+        finish: Finish::Cloth,
+        lines: Lines {
+            edges: Edges::Pairs(drape.seam_edges()),
+            colour: line,
+            width: 1.2,
+            opacity: 0.55,
+        },
+        framed: true,
+    }
+}
+
+/// The garment on the mannequin from all sides, as PNG.
+pub(crate) fn drape_png(
+    drape: &Drape,
+    skin: &TriangleMesh,
+    title: &str,
+) -> Result<Vec<u8>, SessionError> {
+    let mut colours = vec![[0.7; 3]; drape.job.garment.triangles.len()];
+    for (panel, look) in drape.job.garment.panels.iter().zip(drape.job.panels.iter()) {
+        colours[panel.triangles.clone()].fill(look.colour);
+    }
+    let colours: Vec<[f64; 3]> = drape.origin.iter().map(|&t| colours[t as usize]).collect();
+    let mean: [f64; 3] =
+        [0, 1, 2].map(|k| colours.iter().map(|c| c[k]).sum::<f64>() / colours.len().max(1) as f64);
+    let line = mean.map(|c| 0.35 * c);
+    let scene = Scene {
+        surfaces: vec![
+            garment(drape, Paint::PerTriangle(colours), line),
+            body(skin),
+        ],
+    };
+    Ok(drape_picture(&scene, &Sheet::studio(title))?.to_png()?)
+}
+
+/// The stretch of the cloth in colour, with its key, as PNG.
+pub(crate) fn fit_png(
+    drape: &Drape,
+    skin: &TriangleMesh,
+    title: &str,
+) -> Result<Vec<u8>, SessionError> {
+    let scale = ColourScale {
+        map: ColourMap::Heat,
+        low: 0.0,
+        high: MOST_STRETCH,
+        over: Some(ColourScale::OVER),
+    };
+    let values = vertex_stretch(drape);
+    let scene = Scene {
+        surfaces: vec![
+            garment(drape, Paint::VertexScalar(values, scale), [0.25; 3]),
+            body(skin),
+        ],
+    };
+    let legend = Legend {
+        title: "Stretch of the cloth, the larger of warp and weft".into(),
+        unit: "%".into(),
+        scale,
+        ends: ["relaxed".into(), "tight".into()],
+        over: format!("over {MOST_STRETCH} %"),
+    };
+    Ok(fit_picture(&scene, &legend, &Sheet::chart(title))?.to_png()?)
+}
+
+/// Stretch at each merged vertex [%]: the mean of the triangles there by their area; what is
+/// squeezed counts as relaxed.
+fn vertex_stretch(drape: &Drape) -> Vec<f64> {
+    let mut sums = vec![[0.0; 2]; drape.mesh.positions.len()];
+    for (t, triangle) in drape.mesh.triangles.iter().enumerate() {
+        let area = toile_geometry::triangle_area(drape.mesh.corners(t));
+        let stretch = 100.0 * drape.stretch[t].max(0.0);
+        for &v in triangle {
+            sums[v as usize][0] += area * stretch;
+            sums[v as usize][1] += area;
+        }
+    }
+    sums.iter()
+        .map(|[sum, area]| if *area > 0.0 { sum / area } else { 0.0 })
+        .collect()
+}

@@ -1,0 +1,104 @@
+//! A draped garment as glTF and OBJ: one part a panel, each with its own place in the pattern.
+
+use crate::drape::Drape;
+use std::ops::Range;
+use toile_geometry::TriangleMesh;
+use toile_interchange::{GlbMesh, GlbPrimitive, GlbScene, ObjGroup, ObjMesh};
+
+/// The runs of merged triangles that belong to each panel.
+fn panel_triangles(drape: &Drape) -> Vec<Range<usize>> {
+    let mut first = 0;
+    drape
+        .job
+        .garment
+        .panels
+        .iter()
+        .map(|panel| {
+            let end = drape
+                .origin
+                .partition_point(|&t| (t as usize) < panel.triangles.end);
+            let range = first..end;
+            first = end;
+            range
+        })
+        .collect()
+}
+
+/// The garment as one mesh with a primitive for each panel. UVs are the piece's plane [m].
+pub(crate) fn garment_glb(drape: &Drape, name: &str) -> GlbScene {
+    let garment = &drape.job.garment;
+    let normals = drape.normals();
+    let primitives = garment
+        .panels
+        .iter()
+        .zip(panel_triangles(drape))
+        .zip(drape.job.panels.iter())
+        .map(|((panel, triangles), look)| {
+            let merged = |v: usize| drape.target[v] as usize;
+            let first = panel.vertices.start as u32;
+            GlbPrimitive {
+                name: panel.name.clone(),
+                positions: panel
+                    .vertices
+                    .clone()
+                    .map(|v| drape.mesh.positions[merged(v)])
+                    .collect(),
+                normals: panel.vertices.clone().map(|v| normals[merged(v)]).collect(),
+                uvs: Some(
+                    garment.flat[panel.vertices.clone()]
+                        .iter()
+                        .map(|p| [p.x, p.y])
+                        .collect(),
+                ),
+                triangles: drape.origin[triangles]
+                    .iter()
+                    .map(|&t| garment.triangles[t as usize].map(|v| v - first))
+                    .collect(),
+                colour: look.colour,
+            }
+        })
+        .collect();
+    GlbScene {
+        meshes: vec![GlbMesh {
+            name: name.to_owned(),
+            primitives,
+        }],
+    }
+}
+
+/// The garment as one welded mesh with a group for each panel; texture coordinates are the
+/// pieces' planes [m].
+pub(crate) fn garment_obj(drape: &Drape) -> ObjMesh {
+    let garment = &drape.job.garment;
+    let apart: Vec<[u32; 3]> = drape
+        .origin
+        .iter()
+        .map(|&t| garment.triangles[t as usize])
+        .collect();
+    ObjMesh {
+        positions: drape.mesh.positions.clone(),
+        triangles: drape.mesh.triangles.clone(),
+        texture: garment.flat.clone(),
+        texture_triangles: apart,
+        normals: drape.normals(),
+        normal_triangles: drape.mesh.triangles.clone(),
+        groups: garment
+            .panels
+            .iter()
+            .zip(panel_triangles(drape))
+            .map(|(panel, triangles)| ObjGroup {
+                name: panel.name.clone(),
+                triangles,
+            })
+            .collect(),
+    }
+}
+
+/// A body as OBJ.
+pub(crate) fn body_obj(skin: &TriangleMesh) -> ObjMesh {
+    ObjMesh {
+        normals: skin.vertex_normals(),
+        normal_triangles: skin.triangles.clone(),
+        ..ObjMesh::from(skin.clone())
+    }
+}

@@ -1,0 +1,235 @@
+//! `report.json`: what was made, in numbers.
+
+use crate::Project;
+use crate::choice::figure_name;
+use crate::cut::sewn_outline;
+use crate::drape::Drape;
+use crate::laying::Laying;
+use serde::Serialize;
+use toile_pattern::{Draft, DraftSpan};
+
+/// How a garment comes to rest, in words.
+const METHOD: &str = "implicit Newton: damped sewing, then pseudo-transient continuation to rest";
+
+#[derive(Serialize)]
+pub(crate) struct Report {
+    format: &'static str,
+    version: u32,
+    pattern: String,
+    source: Option<String>,
+    size: Option<String>,
+    fabric: Option<String>,
+    body: &'static str,
+    body_height_m: Option<f64>,
+    pieces: Vec<PieceReport>,
+    area_m2: f64,
+    seams: Vec<SeamReport>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    markers: Vec<MarkerReport>,
+    #[serde(flatten)]
+    drape: Option<DrapeReport>,
+    warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct PieceReport {
+    name: String,
+    fabric: String,
+    area_cm2: f64,
+    sewn: bool,
+}
+
+#[derive(Serialize)]
+struct SeamReport {
+    name: String,
+    lengths_m: [f64; 2],
+    gathered: bool,
+}
+
+#[derive(Serialize)]
+struct MarkerReport {
+    fabric: String,
+    pieces: usize,
+    unplaced: usize,
+    width_m: f64,
+    length_m: f64,
+    cut_area_m2: f64,
+    efficiency: f64,
+    utilisation: f64,
+    sound: bool,
+    penetration_max_m: f64,
+}
+
+#[derive(Serialize)]
+struct ByDirection {
+    warp: f64,
+    weft: f64,
+}
+
+#[derive(Serialize)]
+struct Steps {
+    sewing: usize,
+    settling: usize,
+}
+
+#[derive(Serialize)]
+struct DrapeReport {
+    quality: &'static str,
+    edge_length_m: f64,
+    method: &'static str,
+    vertices: usize,
+    triangles: usize,
+    components: usize,
+    non_manifold_edges: usize,
+    steps: Steps,
+    residual: f64,
+    residual_goal: f64,
+    #[serde(rename = "kinetic_energy_J")]
+    kinetic_energy: f64,
+    strain_max: ByDirection,
+    strain_p99: ByDirection,
+    compression_max: ByDirection,
+    shear_max_rad: f64,
+    seam_gap_max_m: f64,
+    body_penetration_max_m: f64,
+    body_intersections: usize,
+    self_intersections: usize,
+}
+
+fn by_direction([warp, weft]: [f64; 2]) -> ByDirection {
+    ByDirection { warp, weft }
+}
+
+impl Report {
+    /// The report on everything made of a project.
+    pub fn new(project: &Project, draft: &Draft) -> Self {
+        let pieces: Vec<PieceReport> = draft
+            .pieces
+            .iter()
+            .map(|piece| PieceReport {
+                name: piece.name.clone(),
+                fabric: draft
+                    .fabrics
+                    .get(piece.fabric)
+                    .map_or_else(String::new, |f| f.name.clone()),
+                area_cm2: 1e4 * piece_area(piece),
+                sewn: piece.sewn,
+            })
+            .collect();
+        let source = project.source.as_deref().and_then(|path| path.file_name());
+        Self {
+            format: "toile-report",
+            version: 1,
+            pattern: project.pattern.name.clone(),
+            source: source.map(|name| name.to_string_lossy().into_owned()),
+            size: project.size_name().map(str::to_owned),
+            fabric: project.fabric.clone(),
+            body: figure_name(project.figure()),
+            body_height_m: project.wearer().get("height"),
+            area_m2: 1e-4 * pieces.iter().map(|p| p.area_cm2).sum::<f64>(),
+            pieces,
+            seams: draft
+                .seams
+                .iter()
+                .map(|seam| SeamReport {
+                    name: seam.name.clone(),
+                    lengths_m: [0, 1].map(|side| {
+                        seam.sides[side]
+                            .iter()
+                            .map(|span| span_length(draft, span))
+                            .sum()
+                    }),
+                    gathered: seam.gathered,
+                })
+                .collect(),
+            markers: Vec::new(),
+            drape: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Adds the markers.
+    pub fn add_markers(&mut self, layings: &[Laying]) {
+        for laying in layings {
+            self.markers.push(MarkerReport {
+                fabric: laying.fabric.clone(),
+                pieces: laying.marker.placements.len(),
+                unplaced: laying.marker.unplaced.len(),
+                width_m: laying.strip.width,
+                length_m: laying.marker.length,
+                cut_area_m2: laying.cut_area(),
+                efficiency: laying.marker.efficiency,
+                utilisation: laying.marker.utilisation,
+                sound: laying.verdict.is_sound(),
+                penetration_max_m: laying.verdict.deepest,
+            });
+        }
+    }
+
+    /// Adds the drape.
+    pub fn add_drape(&mut self, project: &Project, drape: &Drape) {
+        let measures = &drape.measures;
+        self.drape = Some(DrapeReport {
+            quality: project.quality.name(),
+            edge_length_m: project.quality.edge_length(),
+            method: METHOD,
+            vertices: drape.mesh.positions.len(),
+            triangles: drape.mesh.triangles.len(),
+            components: drape.mesh.component_count(),
+            non_manifold_edges: drape.mesh.topology().non_manifold().count(),
+            steps: Steps {
+                sewing: drape.steps[0],
+                settling: drape.steps[1],
+            },
+            residual: measures.residual,
+            residual_goal: project.quality.residual(),
+            kinetic_energy: measures.kinetic_energy,
+            strain_max: by_direction(measures.strain_max),
+            strain_p99: by_direction(measures.strain_p99),
+            compression_max: by_direction(measures.compression_max),
+            shear_max_rad: measures.shear_max,
+            seam_gap_max_m: drape.seam_gap,
+            body_penetration_max_m: measures.penetration_max.max(0.0),
+            body_intersections: measures.body_intersections,
+            self_intersections: measures.self_intersections,
+        });
+    }
+
+    /// Adds what went less than well.
+    pub fn add_warnings(&mut self, warnings: impl IntoIterator<Item = String>) {
+        self.warnings.extend(warnings);
+    }
+
+    /// The file's content.
+    pub fn to_json(&self) -> String {
+        // Plain data: this cannot fail.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+}
+
+/// Area of a piece, holes taken out [m2]. Exact for lines, arcs and Bezier curves.
+fn piece_area(piece: &toile_pattern::Piece) -> f64 {
+    let ring = |edges: &[toile_pattern::PieceEdge]| -> f64 {
+        0.5 * edges
+            .iter()
+            .map(|edge| edge.curve.swept_area())
+            .sum::<f64>()
+    };
+    let outer = ring(&piece.outline).abs();
+    if outer.is_finite() {
+        outer - piece.holes.iter().map(|h| ring(h).abs()).sum::<f64>()
+    } else {
+        sewn_outline(piece).area()
+    }
+}
+
+/// Length of a span [m].
+fn span_length(draft: &Draft, span: &DraftSpan) -> f64 {
+    let Some(piece) = draft.pieces.get(span.piece) else {
+        return 0.0;
+    };
+    let mut edges = piece.outline.iter().chain(piece.holes.iter().flatten());
+    edges.nth(span.edge).map_or(0.0, |edge| {
+        edge.curve.length() * (span.to - span.from).abs()
+    })
+}

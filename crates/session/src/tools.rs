@@ -1,0 +1,158 @@
+//! Single jobs that need no session: conversion, panel meshes, bodies, markers of several patterns.
+
+use crate::export::{cannot, marker_files};
+use crate::laying::lay;
+use crate::open::open_pattern;
+use crate::product::body_obj;
+use crate::{Nested, PatternFormat, Project, SessionError, Watcher};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use toile_assembly::{MeshQuality, combine, mesh_pieces};
+use toile_body::Mannequin;
+use toile_geometry::{Bounds2, Vec2, Vec3};
+use toile_interchange::{
+    ObjGroup, ObjMesh, write_all_atomically, write_atomically, write_garmentcode, write_obj,
+    write_pattern,
+};
+use toile_measure::{UnitKind, definition};
+use toile_pattern::Draft;
+
+/// The project a pattern file makes, in a named size.
+fn project_of(path: &Path, size: Option<&str>) -> Result<(Project, Vec<String>), SessionError> {
+    let opened = open_pattern(path)?;
+    let project = Project {
+        pattern: Arc::new(opened.pattern),
+        source: Some(path.to_owned()),
+        size: size.map(str::to_owned),
+        ..Project::default()
+    };
+    project.check_size()?;
+    Ok((project, opened.notes))
+}
+
+/// The draft of a project, or every fault that keeps it from being made.
+fn sound_draft(project: &Project) -> Result<Draft, SessionError> {
+    let measurements = project.drafted_to();
+    project.refuse_faults(&project.pattern.check(&measurements))?;
+    Ok(project.pattern.resolve(&measurements).0)
+}
+
+/// Converts a pattern between formats. Returns what was left out or assumed on the way in and out.
+///
+/// # Errors
+/// The input cannot be read, or the output cannot be written.
+pub fn convert(from: &Path, to: &Path, format: PatternFormat) -> Result<Vec<String>, SessionError> {
+    let (project, mut notes) = project_of(from, None)?;
+    let text = match format {
+        PatternFormat::Native => write_pattern(&project.pattern).map_err(cannot("the pattern"))?,
+        PatternFormat::GarmentCode => {
+            let draft = sound_draft(&project)?;
+            let writing = write_garmentcode(&draft);
+            notes.extend(writing.lost.iter().map(ToString::to_string));
+            writing.text
+        }
+    };
+    write_atomically(to, text.as_bytes())?;
+    Ok(notes)
+}
+
+/// The triangulated panels of a pattern in a row, as OBJ with a group a panel; texture coordinates
+/// are the panels' own planes [m]. Returns the quality of the triangles.
+///
+/// # Errors
+/// The pattern cannot be read or meshed, or the file cannot be written.
+pub fn mesh_panels(
+    pattern: &Path,
+    size: Option<&str>,
+    edge_length: f64,
+    to: &Path,
+) -> Result<MeshQuality, SessionError> {
+    /// Room between panels [m].
+    const ROOM: f64 = 0.05;
+    let (project, _) = project_of(pattern, size)?;
+    let draft = sound_draft(&project)?;
+    let meshes = mesh_pieces(&draft, edge_length)?;
+    let mut obj = ObjMesh::default();
+    let mut left = 0.0;
+    for mesh in &meshes.pieces {
+        let bounds = Bounds2::of(mesh.points.iter().copied());
+        let shift = Vec2::new(left - bounds.min.x, -bounds.min.y);
+        left += bounds.size().x + ROOM;
+        let (vertex, triangle) = (obj.positions.len() as u32, obj.triangles.len());
+        obj.positions.extend(
+            mesh.points
+                .iter()
+                .map(|p| Vec3::new(p.x + shift.x, p.y + shift.y, 0.0)),
+        );
+        obj.texture.extend(&mesh.points);
+        obj.triangles
+            .extend(mesh.triangles.iter().map(|t| t.map(|v| v + vertex)));
+        obj.groups.push(ObjGroup {
+            name: draft.pieces[mesh.draft_piece].name.clone(),
+            triangles: triangle..obj.triangles.len(),
+        });
+    }
+    obj.texture_triangles = obj.triangles.clone();
+    let text = write_obj(&obj).map_err(cannot("the mesh"))?;
+    write_atomically(to, text.as_bytes())?;
+    let parts: Vec<MeshQuality> = meshes.pieces.iter().map(|mesh| mesh.quality()).collect();
+    Ok(combine(&parts))
+}
+
+/// One measurement of a mannequin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyRow {
+    /// Its name.
+    pub name: &'static str,
+    /// Asked for [m] or [rad].
+    pub asked: f64,
+    /// Taken from the skin [m] or [rad].
+    pub got: f64,
+    /// Whether it is an angle.
+    pub angle: bool,
+}
+
+/// Makes a mannequin and writes its skin as OBJ. Returns every measurement as asked and as got.
+///
+/// # Errors
+/// Measurements no body can have, or the file cannot be written.
+pub fn make_body(project: &Project, to: &Path) -> Result<Vec<BodyRow>, SessionError> {
+    let mannequin = Mannequin::new(&project.wearer(), project.figure())?;
+    let text = write_obj(&body_obj(mannequin.skin())).map_err(cannot("the body"))?;
+    write_atomically(to, text.as_bytes())?;
+    let angle = |name: &str| definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
+    let rows = mannequin.measure().into_iter().map(|gap| BodyRow {
+        name: gap.name,
+        asked: gap.asked,
+        got: gap.got,
+        angle: angle(gap.name),
+    });
+    Ok(rows.collect())
+}
+
+/// Lays the pieces of one or more patterns together and writes the markers. Returns a summary of
+/// each marker and the files written.
+///
+/// # Errors
+/// A pattern cannot be read or laid, or a file cannot be written.
+pub fn nest_patterns(
+    patterns: &[PathBuf],
+    size: Option<&str>,
+    width: Option<f64>,
+    (folder, watcher): (&Path, &mut dyn Watcher),
+) -> Result<(Vec<Nested>, Vec<PathBuf>), SessionError> {
+    let mut drafts = Vec::new();
+    let mut names = Vec::new();
+    for path in patterns {
+        let (project, _) = project_of(path, size)?;
+        drafts.push(sound_draft(&project)?);
+        names.push(project.pattern.name.clone());
+    }
+    let drafts: Vec<&Draft> = drafts.iter().collect();
+    let layings = lay(&drafts, width, watcher)?;
+    let mut files = Vec::new();
+    marker_files(&names.join(" + "), &layings, &mut files)?;
+    write_all_atomically(folder, &files)?;
+    let paths = files.iter().map(|(name, _)| folder.join(name)).collect();
+    Ok((layings.iter().map(|l| l.summary()).collect(), paths))
+}
