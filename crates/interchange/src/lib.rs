@@ -11,6 +11,8 @@ mod garmentcode;
 mod gltf;
 mod marker_json;
 mod marker_svg;
+mod measurements;
+mod measurements_json;
 mod native;
 mod obj;
 mod obj_read;
@@ -20,6 +22,8 @@ pub use atomic::{write_all_atomically, write_atomically};
 pub use error::{FileError, FormatError, read_text};
 pub use garmentcode::{GarmentCodeReading, GarmentCodeWriting, read_garmentcode, write_garmentcode};
 pub use gltf::{GlbMesh, GlbPrimitive, GlbScene, write_glb};
+pub use measurements::read_body_yaml;
+pub use measurements_json::{read_measurements, write_measurements};
 pub use native::{read_pattern, write_pattern};
 pub use marker_json::{
     MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, read_marker_json,
