@@ -100,7 +100,10 @@ impl Boundary {
             if range.len() < 3 || !(area.abs() > 1e-10) {
                 let what = if k == 0 { "outline" } else { "hole" };
                 let reason = format!("the {what} encloses no area");
-                return Err(error(reason, "draw it larger, or ask for a smaller edge length"));
+                return Err(error(
+                    reason,
+                    "draw it larger, or ask for a smaller edge length",
+                ));
             }
         }
         if let Some(at) = self.first_crossing() {
@@ -155,8 +158,7 @@ impl Boundary {
     fn meet(&self, s: [usize; 2], t: [usize; 2]) -> bool {
         let p = |v: usize| self.points[v];
         let folded = |a: usize, joint: usize, c: usize| {
-            orient2d(p(a), p(joint), p(c)) == 0.0
-                && (p(a) - p(joint)).dot(&(p(c) - p(joint))) > 0.0
+            orient2d(p(a), p(joint), p(c)) == 0.0 && (p(a) - p(joint)).dot(&(p(c) - p(joint))) > 0.0
         };
         if s[1] == t[0] {
             folded(s[0], s[1], t[1])

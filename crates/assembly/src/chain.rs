@@ -308,7 +308,10 @@ fn nearest_on_piece(
         }
     }
     let (_, edge, coarse) = best?;
-    let (mut low, mut high) = ((coarse - 1.0 / 64.0).max(0.0), (coarse + 1.0 / 64.0).min(1.0));
+    let (mut low, mut high) = (
+        (coarse - 1.0 / 64.0).max(0.0),
+        (coarse + 1.0 / 64.0).min(1.0),
+    );
     for _ in 0..40 {
         let third = (high - low) / 3.0;
         let distance = |f: f64| (table.edges[edge].point(f) - point).norm();
@@ -431,8 +434,8 @@ impl Sewing {
                 let other = 1 - side;
                 for k in between[0][side] + 1..between[1][side] {
                     let place = |s: usize, w: usize| sides[s][between[w][s]].place;
-                    let along = (sides[side][k].place - place(side, 0))
-                        / (place(side, 1) - place(side, 0));
+                    let along =
+                        (sides[side][k].place - place(side, 0)) / (place(side, 1) - place(side, 0));
                     let target = place(other, 0) + along * (place(other, 1) - place(other, 0));
                     let key = self.new_station(nodes, other, target);
                     let own = sides[side][k].key;
@@ -450,6 +453,9 @@ impl Sewing {
             .position(|s| place < s.end)
             .unwrap_or(stretches.len() - 1);
         let stretch = &stretches[index];
-        (index, nodes.insert(stretch.edge, stretch.fraction_at(place)))
+        (
+            index,
+            nodes.insert(stretch.edge, stretch.fraction_at(place)),
+        )
     }
 }

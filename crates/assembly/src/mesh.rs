@@ -128,7 +128,7 @@ fn stitches(
         let local = edge - table.first[piece];
         pieces[mesh_of[piece]].edge_vertices[local][sample] + first_vertex[piece] as u32
     };
-    sampling
+    let mut stitches: Vec<Stitch> = sampling
         .stitches
         .iter()
         .map(|s| Stitch {
@@ -137,7 +137,10 @@ fn stitches(
             draft_seam: s.draft_seam,
         })
         .filter(|s| s.vertices[0] != s.vertices[1])
-        .collect()
+        .collect();
+    // A joint between two edges of one outline is one vertex, met twice.
+    stitches.dedup();
+    stitches
 }
 
 fn mesh_piece(
@@ -164,11 +167,8 @@ fn mesh_piece(
         fixed: points.len(),
         creases,
     };
-    let crease_segments: Vec<[Vec2; 2]> = frame
-        .creases
-        .iter()
-        .map(|c| c.map(|v| points[v]))
-        .collect();
+    let crease_segments: Vec<[Vec2; 2]> =
+        frame.creases.iter().map(|c| c.map(|v| points[v])).collect();
     let field = SizeField::new(&boundary, &crease_segments, edge_length);
     let seeds = field.lattice(&boundary);
     let planar = refine(points, seeds, &frame, &field).map_err(|e| planar_error(piece, e))?;

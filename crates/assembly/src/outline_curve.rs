@@ -85,7 +85,11 @@ impl OutlineCurve {
             .max_by(|&i, &j| outer[i].y.total_cmp(&outer[j].y))
             .unwrap_or(0);
         let (a, b) = (outer[start], outer[(start + 1) % outer.len()]);
-        let share = if b.x > a.x { (centre.x - a.x) / (b.x - a.x) } else { 0.0 };
+        let share = if b.x > a.x {
+            (centre.x - a.x) / (b.x - a.x)
+        } else {
+            0.0
+        };
         let mut points = vec![a + (b - a) * share.clamp(0.0, 1.0)];
         points.extend((1..=outer.len()).map(|k| outer[(start + k) % outer.len()]));
         points.push(points[0]);

@@ -12,6 +12,8 @@ use toile_pattern::{BodyPart, Draft, Facing};
 
 /// Distance every vertex keeps from the skin [m].
 pub(crate) const SKIN_CLEARANCE: f64 = 0.005;
+/// How far from a vertex the skin is looked for [m].
+const LOOK: f64 = 0.03;
 /// Steps of the search for a clear place.
 const CLEAR_STEPS: usize = 60;
 /// Steps of moving rows that cross each other apart.
@@ -100,15 +102,20 @@ impl Placer<'_> {
         }
     }
 
-    /// How far inside the wanted distance from the skin a piece comes [m], and how many of its
-    /// triangles cross the skin.
+    /// How far inside the wanted distance from the skin a piece comes [m], and, where it keeps
+    /// that distance, how many of its triangles cross the skin all the same.
     fn trouble(&self, k: usize, positions: &[Vec3]) -> (f64, usize) {
         let skin = self.wearer.skin;
         let mut depth: f64 = 0.0;
-        for &p in positions {
-            if let Some(closest) = skin.closest_point(p, f64::INFINITY) {
+        for (i, &p) in positions.iter().enumerate() {
+            // A piece that crosses nothing has all vertices on one side: one look far is enough.
+            let reach = if i == 0 { f64::INFINITY } else { LOOK };
+            if let Some(closest) = skin.closest_point(p, reach) {
                 depth = depth.max(SKIN_CLEARANCE - closest.signed_distance);
             }
+        }
+        if depth > 0.0 {
+            return (depth, 0);
         }
         let crossings = skin.intersections_with(&self.mesh(k, positions)).len();
         (depth, crossings)
@@ -118,7 +125,7 @@ impl Placer<'_> {
     fn place_row(&mut self, row: &Row, start: Fit) -> Fit {
         let placed: Vec<Vec3> = self.positions.iter().flatten().copied().collect();
         let mut fit = start;
-        let mut best: Option<((usize, f64), Fit, Vec<Vec<Vec3>>)> = None;
+        let mut best: Option<((f64, usize), Fit, Vec<Vec<Vec3>>)> = None;
         for step in 0..CLEAR_STEPS {
             let around = Surroundings {
                 wearer: self.wearer,
@@ -132,7 +139,7 @@ impl Placer<'_> {
                 depth = depth.max(d);
                 crossings += c;
             }
-            let score = (crossings, depth);
+            let score = (depth, crossings);
             if best.as_ref().is_none_or(|b| score < b.0) {
                 best = Some((score, fit, positions));
             }
@@ -145,7 +152,7 @@ impl Placer<'_> {
                 BodyPart::LeftArm | BodyPart::RightArm if even => fit.lift -= 0.01,
                 BodyPart::Head if even => fit.lift += 0.005,
                 BodyPart::LeftArm | BodyPart::RightArm => fit.distance += 0.002,
-                _ => fit.distance += 0.005,
+                _ => fit.distance += depth.clamp(0.003, 0.02),
             }
         }
         let Some((_, fit, positions)) = best else {
@@ -194,9 +201,8 @@ impl Placer<'_> {
                 continue;
             };
             let flat = &self.meshes.pieces[k].points;
-            let at = |p: &Vec2| {
-                place.rotation * Vec3::new(p.x, p.y, 0.0) + place.translation.vector
-            };
+            let at =
+                |p: &Vec2| place.rotation * Vec3::new(p.x, p.y, 0.0) + place.translation.vector;
             let positions: Vec<Vec3> = flat.iter().map(at).collect();
             let side = if is_counter_clockwise(&self.meshes.pieces[k]) {
                 1.0
@@ -225,7 +231,9 @@ impl Placer<'_> {
                 let millimetres = push * 1000.0;
                 diagnostics.push(Diagnostic::note(
                     name,
-                    format!("it crosses the body where it is placed: moved out by {millimetres:.0} mm"),
+                    format!(
+                        "it crosses the body where it is placed: moved out by {millimetres:.0} mm"
+                    ),
                     "place it farther from the body",
                 ));
             }
@@ -323,7 +331,10 @@ pub(crate) fn crossing_triangles(
     let tree = SurfaceTree::new(whole);
     let piece_of = |t: u32| ends.partition_point(|&e| e <= t as usize);
     let touching = |a: u32, b: u32| {
-        let (x, y) = (tree.mesh().corners(a as usize), tree.mesh().corners(b as usize));
+        let (x, y) = (
+            tree.mesh().corners(a as usize),
+            tree.mesh().corners(b as usize),
+        );
         x.iter().any(|p| y.iter().any(|q| (p - q).norm() < 1e-9))
     };
     tree.self_intersections()

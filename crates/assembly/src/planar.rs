@@ -148,7 +148,10 @@ impl Planar {
             .collect();
         for t in 0..self.triangles.len() {
             for k in 0..3 {
-                let (a, b) = (self.triangles[t][(k + 1) % 3], self.triangles[t][(k + 2) % 3]);
+                let (a, b) = (
+                    self.triangles[t][(k + 1) % 3],
+                    self.triangles[t][(k + 2) % 3],
+                );
                 self.locked[t][k] =
                     self.neighbours[t][k] == NONE || creases.contains(&[a.min(b), a.max(b)]);
             }

@@ -163,7 +163,10 @@ pub(crate) fn circumcircle(a: Vec2, b: Vec2, c: Vec2) -> Option<(Vec2, f64)> {
     let (uu, vv) = (u.norm_squared(), v.norm_squared());
     let offset = Vec2::new(v.y * uu - u.y * vv, u.x * vv - v.x * uu) / d;
     let centre = a + offset;
-    centre.iter().all(|x| x.is_finite()).then(|| (centre, offset.norm()))
+    centre
+        .iter()
+        .all(|x| x.is_finite())
+        .then(|| (centre, offset.norm()))
 }
 
 /// The triangle that holds a point, found by walking from `start` without crossing a locked

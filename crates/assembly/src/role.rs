@@ -112,9 +112,17 @@ impl Guess {
         };
         let leg = holds(&["pant", "trouser", "jean", "short", "legging"]) || has(&["leg"]);
         let part = if leg && !holds(&["waist", "band", "wb"]) {
-            Some(if left { BodyPart::LeftLeg } else { BodyPart::RightLeg })
+            Some(if left {
+                BodyPart::LeftLeg
+            } else {
+                BodyPart::RightLeg
+            })
         } else if holds(&["sleeve", "cuff"]) || has(&["arm"]) {
-            Some(if left { BodyPart::LeftArm } else { BodyPart::RightArm })
+            Some(if left {
+                BodyPart::LeftArm
+            } else {
+                BodyPart::RightArm
+            })
         } else if holds(&["hood", "collar"]) || has(&["neckband"]) {
             Some(BodyPart::Head)
         } else if holds(&[
@@ -205,7 +213,11 @@ fn guess(
     for k in order {
         let partner = (0..known.len())
             .filter(|&j| j != k && known[j].is_some() && sewn.between(k, j) > 0.0)
-            .max_by(|&i, &j| sewn.between(k, i).total_cmp(&sewn.between(k, j)).then(j.cmp(&i)))
+            .max_by(|&i, &j| {
+                sewn.between(k, i)
+                    .total_cmp(&sewn.between(k, j))
+                    .then(j.cmp(&i))
+            })
             .and_then(|j| match known[j] {
                 Some(Role::Wrapped { part, facing, .. }) => Some((part, facing)),
                 _ => None,

@@ -341,11 +341,7 @@ fn assemble(
     };
     for sewing in &matching.sewings {
         stitch(&mut sampling, matching, sewing, first, &|m| {
-            (
-                intervals[m].edge,
-                offset[m],
-                steps[class_of[m].0].len() - 1,
-            )
+            (intervals[m].edge, offset[m], steps[class_of[m].0].len() - 1)
         });
     }
     sampling

@@ -41,7 +41,11 @@ pub fn sanity(draft: &Draft, garment: &Garment) -> Sanity {
         .collect();
     let mut many_plies = vec![false; garment.flat.len()];
     for stitch in &garment.stitches {
-        if draft.seams.get(stitch.draft_seam).is_some_and(|s| s.multi_ply) {
+        if draft
+            .seams
+            .get(stitch.draft_seam)
+            .is_some_and(|s| s.multi_ply)
+        {
             many_plies[merged[stitch.vertices[0] as usize] as usize] = true;
         }
     }

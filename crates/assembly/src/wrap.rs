@@ -243,7 +243,12 @@ fn wrap_side(
 
 /// Lays a piece flat over the body like a poncho: the hole (else the middle) over the neck, at
 /// the lowest height above the shoulders where the hole clears the skin. Says whether it does.
-pub(crate) fn lay_over(piece: &Laid, hole: &[Vec2], wearer: &Wearer, lift: f64) -> (Vec<Vec3>, bool) {
+pub(crate) fn lay_over(
+    piece: &Laid,
+    hole: &[Vec2],
+    wearer: &Wearer,
+    lift: f64,
+) -> (Vec<Vec3>, bool) {
     let neck = wearer
         .limbs
         .iter()

@@ -45,7 +45,8 @@ pub(super) fn read_curve(
     let kind = curvature.field("type")?;
     let params = curvature.field("params")?;
     curvature.unknown_fields(&["type", "params"], notes);
-    let points = || -> Result<Vec<Vec2>, FormatError> { params.items()?.iter().map(place).collect() };
+    let points =
+        || -> Result<Vec<Vec2>, FormatError> { params.items()?.iter().map(place).collect() };
     match kind.text()? {
         "quadratic" => match points()?[..] {
             [control] => Ok(Curve::Quadratic {
@@ -68,7 +69,13 @@ pub(super) fn read_curve(
         },
         "circle" => {
             let [radius, large, right] = params.numbers::<3>()?;
-            circle([start, end], radius * metres, [large != 0.0, right != 0.0], &params, notes)
+            circle(
+                [start, end],
+                radius * metres,
+                [large != 0.0, right != 0.0],
+                &params,
+                notes,
+            )
         }
         other => Err(kind.error(
             format!("\"{other}\" is not a kind of curve known here"),

@@ -72,7 +72,10 @@ impl<'a> At<'a> {
 
     /// Fields of an object.
     pub fn entries(&self) -> Result<Vec<(&'a str, Self)>, FormatError> {
-        let object = self.value.as_object().ok_or_else(|| self.expected("an object"))?;
+        let object = self
+            .value
+            .as_object()
+            .ok_or_else(|| self.expected("an object"))?;
         Ok(object
             .iter()
             .map(|(name, value)| {
@@ -84,7 +87,10 @@ impl<'a> At<'a> {
 
     /// Elements of a list.
     pub fn items(&self) -> Result<Vec<Self>, FormatError> {
-        let list = self.value.as_array().ok_or_else(|| self.expected("a list"))?;
+        let list = self
+            .value
+            .as_array()
+            .ok_or_else(|| self.expected("a list"))?;
         Ok(list
             .iter()
             .enumerate()

@@ -12,9 +12,9 @@ use toile_pattern::{
 
 /// A seam whose sides differ by more than this ratio is gathered on purpose.
 const GATHER_RATIO: f64 = 1.05;
-/// A seam is reported as perhaps twisted when its ends lie this much farther apart in space
-/// than they would the other way round.
-const TWIST_RATIO: f64 = 2.0;
+/// A seam is reported as perhaps twisted when its edges run against each other in space, the
+/// cosine of the angle between them being less than this.
+const TWIST_COSINE: f64 = -0.7;
 
 /// What came out of a file.
 #[derive(Clone, Debug)]
@@ -127,7 +127,13 @@ impl Builder {
             }
             let mut contour = Vec::with_capacity(walk.len());
             for (index, backwards) in walk {
-                let edge = self.add_edge(&mut panel, source, (index, backwards), &mut corners, &mut labels);
+                let edge = self.add_edge(
+                    &mut panel,
+                    source,
+                    (index, backwards),
+                    &mut corners,
+                    &mut labels,
+                );
                 places[index] = Some((edge.id, backwards));
                 contour.push(edge);
             }
@@ -154,7 +160,11 @@ impl Builder {
         let mut ends = [PointId::default(); 2];
         for (k, end) in ends.iter_mut().enumerate() {
             let vertex = spec.ends[k];
-            let at = if k == 0 { spec.curve.start() } else { spec.curve.end() };
+            let at = if k == 0 {
+                spec.curve.start()
+            } else {
+                spec.curve.end()
+            };
             *end = *corners.entry(vertex).or_insert_with(|| {
                 let id = ids.take_point();
                 panel.points.push(Point {
@@ -272,12 +282,12 @@ impl Builder {
         let [a, b] = stitch.sides.map(|(panel, edge)| {
             let panel = &specification.panels[panel];
             let curve = &panel.edges[edge].curve;
-            [curve.start(), curve.end()]
-                .map(|p| panel.place.rotation * Vec3::new(p.x, p.y, 0.0) + panel.place.translation.vector)
+            [curve.start(), curve.end()].map(|p| {
+                panel.place.rotation * Vec3::new(p.x, p.y, 0.0) + panel.place.translation.vector
+            })
         });
-        let [same, against] = [[0, 1], [1, 0]].map(|order| {
-            (a[0] - b[order[0]]).norm() + (a[1] - b[order[1]]).norm()
-        });
+        let [same, against] =
+            [[0, 1], [1, 0]].map(|order| (a[0] - b[order[0]]).norm() + (a[1] - b[order[1]]).norm());
         if stitch.sides[0].0 == stitch.sides[1].0 {
             let panel = &specification.panels[stitch.sides[0].0];
             let [e, f] = stitch.sides.map(|(_, edge)| panel.edges[edge].ends);
@@ -292,11 +302,12 @@ impl Builder {
             return against <= same;
         }
         let rule = !stitch.right_wrong;
-        let (taken, other) = if rule { (against, same) } else { (same, against) };
-        if taken > TWIST_RATIO * other + 0.01 {
+        let [along, beside] = [a, b].map(|ends| ends[1] - ends[0]);
+        let cosine = along.dot(&beside) / (along.norm() * beside.norm()).max(f64::MIN_POSITIVE);
+        if (if rule { -cosine } else { cosine }) < TWIST_COSINE {
             self.notes.push(FormatError::new(
                 &stitch.path,
-                "its ends are far apart in space: the seam may be twisted",
+                "its edges run against each other in space: the seam may be twisted",
                 "check \"right_wrong\" and the places of the two panels",
             ));
         }
@@ -306,9 +317,9 @@ impl Builder {
 
 fn is_plain(label: &str) -> bool {
     let clean = toile_pattern::is_part_name(label);
-    let digits = label.strip_prefix('e').is_some_and(|d| {
-        !d.is_empty() && d.chars().all(|c| c.is_ascii_digit())
-    });
+    let digits = label
+        .strip_prefix('e')
+        .is_some_and(|d| !d.is_empty() && d.chars().all(|c| c.is_ascii_digit()));
     !clean || digits
 }
 

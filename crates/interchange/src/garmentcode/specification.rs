@@ -57,8 +57,8 @@ struct Settings {
 
 /// Reads the JSON text.
 pub(super) fn read(text: &str) -> Result<Specification, FormatError> {
-    let value: serde_json::Value =
-        serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| {
+    let value: serde_json::Value = serde_json::from_str(text.trim_start_matches('\u{feff}'))
+        .map_err(|error| {
             FormatError::new(
                 format!("line {}, column {}", error.line(), error.column()),
                 format!("this is not JSON: {error}"),
@@ -69,8 +69,14 @@ pub(super) fn read(text: &str) -> Result<Specification, FormatError> {
     let mut specification = Specification::default();
     let notes = &mut specification.notes;
     root.unknown_fields(
-        &["pattern", "parameters", "parameter_order", "properties", "constraints",
-          "constraint_order"],
+        &[
+            "pattern",
+            "parameters",
+            "parameter_order",
+            "properties",
+            "constraints",
+            "constraint_order",
+        ],
         notes,
     );
     for name in ["parameters", "constraints"] {
@@ -117,8 +123,12 @@ fn settings(root: &At, notes: &mut Vec<FormatError>) -> Result<Settings, FormatE
         return Ok(settings);
     };
     properties.unknown_fields(
-        &["curvature_coords", "normalize_panel_translation", "normalized_edge_loops",
-          "units_in_meter"],
+        &[
+            "curvature_coords",
+            "normalize_panel_translation",
+            "normalized_edge_loops",
+            "units_in_meter",
+        ],
         notes,
     );
     if let Some(units) = properties.optional("units_in_meter") {
@@ -165,7 +175,8 @@ fn order_panels(pattern: &At, entries: &mut [(&str, At)]) -> Result<(), FormatEr
 fn is_older(panel: &At) -> bool {
     let edges = panel.value.get("edges").and_then(|e| e.as_array());
     edges.into_iter().flatten().any(|edge| {
-        edge.get("curvature").is_some_and(serde_json::Value::is_array)
+        edge.get("curvature")
+            .is_some_and(serde_json::Value::is_array)
     })
 }
 
@@ -291,8 +302,8 @@ fn read_place(
         }
     }
     let about = |axis: Vec3, degrees: f64| Rigid::rotation(axis * degrees.to_radians());
-    let rotation = about(Vec3::z(), angles[2]) * about(Vec3::y(), angles[1])
-        * about(Vec3::x(), angles[0]);
+    let rotation =
+        about(Vec3::z(), angles[2]) * about(Vec3::y(), angles[1]) * about(Vec3::x(), angles[0]);
     Ok(Rigid::from_parts(translation.into(), rotation.rotation))
 }
 
@@ -318,10 +329,7 @@ fn read_stitches(pattern: &At, specification: &mut Specification) -> Result<(), 
             *side = read_side(part, specification)?;
         }
         if sides[0] == sides[1] {
-            return Err(item.error(
-                "an edge is stitched to itself",
-                "name two different edges",
-            ));
+            return Err(item.error("an edge is stitched to itself", "name two different edges"));
         }
         let mut right_wrong = false;
         for extra in &parts[2..] {

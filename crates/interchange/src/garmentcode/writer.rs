@@ -207,7 +207,11 @@ impl Writer<'_> {
                     let start = curve.start() / UNIT;
                     vertices.push(json!([start.x, start.y]));
                     let here = vertices.len() - 1;
-                    let next = if here + 1 == first + total { first } else { here + 1 };
+                    let next = if here + 1 == first + total {
+                        first
+                    } else {
+                        here + 1
+                    };
                     let mut entry = json!({ "endpoints": [here, next] });
                     if let Some(curvature) = write_curve(&curve, UNIT) {
                         entry["curvature"] = curvature;
@@ -265,12 +269,22 @@ impl Writer<'_> {
         );
         let (turn, offset) = match facing {
             Facing::Front | Facing::Around => (Vec3::zeros(), Vec3::new(0.0, level, 0.25)),
-            Facing::Back => (Vec3::y() * std::f64::consts::PI, Vec3::new(0.0, level, -0.2)),
-            Facing::Left => (Vec3::y() * std::f64::consts::FRAC_PI_2, Vec3::new(0.5, level, 0.0)),
-            Facing::Right => {
-                (Vec3::y() * -std::f64::consts::FRAC_PI_2, Vec3::new(-0.5, level, 0.0))
-            }
-            Facing::Over => (Vec3::x() * -std::f64::consts::FRAC_PI_2, Vec3::new(0.0, 1.6, 0.0)),
+            Facing::Back => (
+                Vec3::y() * std::f64::consts::PI,
+                Vec3::new(0.0, level, -0.2),
+            ),
+            Facing::Left => (
+                Vec3::y() * std::f64::consts::FRAC_PI_2,
+                Vec3::new(0.5, level, 0.0),
+            ),
+            Facing::Right => (
+                Vec3::y() * -std::f64::consts::FRAC_PI_2,
+                Vec3::new(-0.5, level, 0.0),
+            ),
+            Facing::Over => (
+                Vec3::x() * -std::f64::consts::FRAC_PI_2,
+                Vec3::new(0.0, 1.6, 0.0),
+            ),
         };
         Rigid::from_parts(offset.into(), Rigid::rotation(turn).rotation)
     }
@@ -288,7 +302,10 @@ impl Writer<'_> {
             parts
         });
         if a.len() != b.len() || a.is_empty() {
-            self.lose(&seam.name, "the seam cannot be cut into pairs of whole edges");
+            self.lose(
+                &seam.name,
+                "the seam cannot be cut into pairs of whole edges",
+            );
             return Vec::new();
         }
         if seam.gathered {
@@ -297,9 +314,9 @@ impl Writer<'_> {
         a.into_iter()
             .zip(b)
             .map(|((first, first_back), (second, second_back))| {
-                let sides = [first, second].map(|(piece, edge)| {
-                    json!({ "panel": self.draft.pieces[piece].name, "edge": edge })
-                });
+                let sides = [first, second].map(
+                    |(piece, edge)| json!({ "panel": self.draft.pieces[piece].name, "edge": edge }),
+                );
                 let [first, second] = sides;
                 if first_back == second_back {
                     json!([first, second, "right_wrong"])
