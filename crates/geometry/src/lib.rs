@@ -4,6 +4,8 @@
 //! In memory everything is metres, kilograms, seconds, radians and `f64`,
 //! right-handed, Y up.
 
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
 mod curve;
 mod ellipsoid;
 mod mesh;
