@@ -64,51 +64,63 @@ fn variables(from: &Pattern, to: &Pattern, edits: &mut Vec<Edit>) {
 
 /// Fabrics that panels need come before them, those they free go after them, seams last.
 fn parts(from: &Pattern, to: &Pattern, edits: &mut Vec<Edit>) {
-    for (at, fabric) in to.fabrics.iter().enumerate() {
-        if !from.fabrics.get(at).is_some_and(|old| same(old, fabric)) {
-            edits.push(Edit::PutFabric {
-                at,
-                fabric: (**fabric).clone(),
-            });
-        }
+    let old: Vec<_> = from.fabrics.iter().collect();
+    for (at, fabric) in arranged(old, &to.fabrics, |fabric| fabric.id) {
+        edits.push(Edit::PutFabric {
+            at,
+            fabric: (**fabric).clone(),
+        });
     }
-    let removed: Vec<_> = from
+    let (kept, removed): (Vec<_>, Vec<_>) = from
         .panels
         .iter()
-        .filter(|panel| to.panel(panel.id).is_none())
-        .map(|panel| panel.id)
-        .collect();
-    edits.extend(removed.iter().map(|id| Edit::RemovePanel(*id)));
-    let stays = |seam: &&Arc<Seam>| seam.spans().all(|span| !removed.contains(&span.panel));
-    let seams: Vec<_> = from.seams.iter().filter(stays).collect();
-    for (at, panel) in to.panels.iter().enumerate() {
-        let old = from.panels.iter().find(|old| old.id == panel.id);
-        if !old.is_some_and(|old| same(old, panel)) {
-            edits.push(Edit::PutPanel {
-                at,
-                panel: Box::new((**panel).clone()),
-            });
-        }
+        .partition(|panel| to.panel(panel.id).is_some());
+    edits.extend(removed.iter().map(|panel| Edit::RemovePanel(panel.id)));
+    for (at, panel) in arranged(kept, &to.panels, |panel| panel.id) {
+        edits.push(Edit::PutPanel {
+            at,
+            panel: Box::new((**panel).clone()),
+        });
     }
     for fabric in &from.fabrics {
         if to.fabric(fabric.id).is_none() {
             edits.push(Edit::RemoveFabric(fabric.id));
         }
     }
-    for seam in &seams {
-        if to.seam(seam.id).is_none() {
-            edits.push(Edit::RemoveSeam(seam.id));
-        }
+    let stays = |seam: &Seam| {
+        let gone = |id| removed.iter().any(|panel| panel.id == id);
+        !seam.spans().any(|span| gone(span.panel))
+    };
+    let (kept, removed): (Vec<_>, Vec<_>) = from
+        .seams
+        .iter()
+        .filter(|seam| stays(seam))
+        .partition(|seam| to.seam(seam.id).is_some());
+    edits.extend(removed.iter().map(|seam| Edit::RemoveSeam(seam.id)));
+    for (at, seam) in arranged(kept, &to.seams, |seam| seam.id) {
+        edits.push(Edit::PutSeam {
+            at,
+            seam: (**seam).clone(),
+        });
     }
-    for (at, seam) in to.seams.iter().enumerate() {
-        let old = seams.iter().find(|old| old.id == seam.id);
-        if !old.is_some_and(|old| same(old, seam)) {
-            edits.push(Edit::PutSeam {
-                at,
-                seam: (**seam).clone(),
-            });
+}
+
+/// The parts that must be put, and where, so that the list begins with `to` in its order.
+fn arranged<'a, T: PartialEq, I: PartialEq>(
+    mut list: Vec<&'a Arc<T>>,
+    to: &'a [Arc<T>],
+    id: impl Fn(&T) -> I,
+) -> Vec<(usize, &'a Arc<T>)> {
+    let mut puts = Vec::new();
+    for (at, part) in to.iter().enumerate() {
+        if list.get(at).is_some_and(|old| same(old, part)) {
+            continue;
         }
+        list.retain(|old| id(old) != id(part));
+        list.insert(at.min(list.len()), part);
+        puts.push((at, part));
     }
+    puts
 }
 
 fn same<T: PartialEq>(a: &Arc<T>, b: &Arc<T>) -> bool {

@@ -17,6 +17,7 @@ impl Pattern {
         let old_name = panel.name.clone();
         match edit {
             PanelEdit::Rename(name) => {
+                name_allowed(&name)?;
                 self.rewrite(&Mentioned::Panel(old_name.into()), &name)?;
                 panel = (*self.panels[k]).clone();
                 panel.name = name;
@@ -66,6 +67,21 @@ impl Pattern {
         panel.reserve_ids(&mut self.ids);
         self.panels[k] = Arc::new(panel);
         Ok(())
+    }
+}
+
+impl Pattern {
+    /// Counters beyond every id of the pattern, whether or not its own counters know them.
+    pub fn free_ids(&self) -> IdCounters {
+        let mut ids = self.ids;
+        for panel in &self.panels {
+            panel.reserve_ids(&mut ids);
+        }
+        self.seams.iter().for_each(|seam| seam.id.reserve(&mut ids));
+        self.fabrics
+            .iter()
+            .for_each(|fabric| fabric.id.reserve(&mut ids));
+        ids
     }
 }
 

@@ -13,7 +13,8 @@ use toile_measure::Measurements;
 
 /// Parts an edge is searched in for the place nearest to a point.
 const SEARCH_PARTS: usize = 64;
-/// Halvings of the part found: 1 m ends at 1e-10 m.
+/// Halvings of the part found. Distances to the nearest place differ by less than rounding then,
+/// which leaves the place right to about 1e-8 of the length.
 const SEARCH_HALVINGS: usize = 30;
 
 impl Pattern {
@@ -363,9 +364,9 @@ mod tests {
     fn points_on_lines_and_edges_stay_on_them() {
         let mut pattern = pattern();
         let at = moved(&mut pattern, 6, Vec2::new(0.07, 0.5));
-        assert!((at - Vec2::new(0.07, 0.0)).norm() < 1e-9);
+        assert!((at - Vec2::new(0.07, 0.0)).norm() < 1e-7);
         let at = moved(&mut pattern, 7, Vec2::new(0.3, 0.02));
-        assert!((at - Vec2::new(0.1, 0.02)).norm() < 1e-9);
+        assert!((at - Vec2::new(0.1, 0.02)).norm() < 1e-7);
     }
 
     #[test]
@@ -395,7 +396,7 @@ mod tests {
         pattern.apply(edit.unwrap()).unwrap();
         let corner = pattern.panels[0].outline[1].ends[1];
         let at = pattern.point_places(&none)[&(PanelId(0), corner)];
-        assert!((at - Vec2::new(0.1, 0.027)).norm() < 1e-9);
+        assert!((at - Vec2::new(0.1, 0.027)).norm() < 1e-7);
     }
 
     #[test]

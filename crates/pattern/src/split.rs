@@ -69,6 +69,12 @@ impl Part {
             ));
         };
         let id = self.edge;
+        if panel.fold == Some(id) {
+            return Err(impossible(
+                "the fold line is divided",
+                "unfold the panel first, or divide another edge",
+            ));
+        }
         let list = std::iter::once(&mut panel.outline)
             .chain(&mut panel.holes)
             .find(|list| list.iter().any(|edge| edge.id == id));
@@ -110,15 +116,14 @@ impl Part {
                 *at = fraction.into();
             }
         }
-        if panel
-            .points
-            .iter()
-            .any(|p| matches!(p.place, PointPlace::OnEdge { edge, .. } if edge == id))
-        {
-            return Err(EditError::InUse {
-                what: id.to_string(),
-                by: "a point that lies on it".into(),
-            });
+        for point in &mut panel.points {
+            if let PointPlace::OnEdge { edge, at } = &mut point.place
+                && *edge == id
+            {
+                let (found, fraction) = self.locate(fixed(at, "a point")?);
+                *edge = found;
+                *at = fraction.into();
+            }
         }
         Ok(())
     }
@@ -220,6 +225,14 @@ pub(crate) fn join(panel: &mut Panel, point: PointId, at: f64) -> Result<Join, E
             *edge = kept;
         }
     }
+    for point in &mut panel.points {
+        if let PointPlace::OnEdge { edge, at } = &mut point.place
+            && (*edge == kept || *edge == gone.id)
+        {
+            *at = join.locate(*edge, fixed(at, "a point")?).into();
+            *edge = kept;
+        }
+    }
     if panel.user_of(point).is_none() {
         panel.points.retain(|p| p.id != point);
     }
@@ -311,7 +324,7 @@ impl Pattern {
         let curve = self.drawn(measurements, panel, edge)?;
         let t = curve.parameter_at_length(curve.length() * at);
         let halves = [curve.between(0.0, t), curve.between(t, 1.0)];
-        let mut ids = self.ids;
+        let mut ids = self.free_ids();
         let mut points: Vec<Point> = Vec::new();
         let mut add = |place: toile_geometry::Vec2| {
             let id = ids.take_point();
