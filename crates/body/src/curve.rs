@@ -57,16 +57,37 @@ impl Monotone {
             + y1 * (3.0 * t2 - 2.0 * t3)
             + m1 * (t3 - t2)
     }
-
-    /// Derivative at `x`.
-    pub(crate) fn slope(&self, x: f64) -> f64 {
-        let step = 1e-6;
-        (self.at(x + step) - self.at(x - step)) / (2.0 * step)
-    }
 }
 
 /// Cubic step: 0 below 0, 1 above 1, level at both ends.
 pub(crate) fn smooth_step(t: f64) -> f64 {
     let t = t.clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keeps_the_points_and_never_overshoots() {
+        let points = vec![[0.0, 1.0], [0.4, 1.0], [1.0, 3.0], [1.1, 3.2], [2.0, 2.0]];
+        let curve = Monotone::new(points.clone());
+        for [x, y] in &points {
+            assert!((curve.at(*x) - y).abs() < 1e-14);
+        }
+        for w in points.windows(2) {
+            let (low, high) = (w[0][1].min(w[1][1]), w[0][1].max(w[1][1]));
+            for k in 0..=50 {
+                let x = w[0][0] + (w[1][0] - w[0][0]) * f64::from(k) / 50.0;
+                assert!((low - 1e-12..=high + 1e-12).contains(&curve.at(x)), "{x}");
+            }
+        }
+        assert!(
+            (curve.at(-1.0) - 1.0).abs() < 1e-14,
+            "level beyond a level end"
+        );
+        let line = Monotone::new(vec![[0.0, 0.0], [1.0, 2.0], [3.0, 6.0]]);
+        assert!((line.at(0.7) - 1.4).abs() < 1e-14 && (line.at(5.0) - 10.0).abs() < 1e-12);
+    }
 }

@@ -158,8 +158,8 @@ fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
     order.sort_by(|a, b| fit(b).total_cmp(&fit(a)));
     let order = order[0];
     let mut axes = nalgebra::Matrix3::zeros();
-    for k in 0..3 {
-        let column = vectors.column(order[k]);
+    for (k, &from) in order.iter().enumerate() {
+        let column = vectors.column(from);
         let sign = if column.dot(&old.column(k)) < 0.0 {
             -1.0
         } else {

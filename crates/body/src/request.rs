@@ -82,19 +82,20 @@ impl Request {
             remedy,
         };
         let crotch = self.nape() - self.waist_line - self.hips_line - self.crotch_drop;
-        if crotch < 0.3 * self.height {
+        if crotch < 0.36 * self.height {
             return Err(contradiction(
                 "height",
                 "hips_line",
                 "height less head_l, waist_line, hips_line and crotch_hip_diff leaves legs shorter \
-                 than 0.3 of the height: lessen one of them",
+                 than 0.36 of the height: lessen one of them",
             ));
         }
-        if self.bust_depth + 0.08 > self.waist_line {
+        if self.bust_depth + 0.05 * self.height > self.waist_line {
             return Err(contradiction(
                 "vert_bust_line",
                 "waist_line",
-                "the bust level must lie at least 0.08 m above the waist: lessen vert_bust_line",
+                "the bust level must lie above the waist by 0.05 of the height or more: lessen \
+                 vert_bust_line",
             ));
         }
         if self.neck_width + 0.06 > self.shoulder_width {

@@ -46,6 +46,35 @@ struct Row {
     part: Part,
 }
 
+/// The block of the trunk's grid left open for the arm: first and last row and column.
+#[derive(Clone, Copy)]
+struct Hole {
+    rows: [usize; 2],
+    columns: [usize; 2],
+}
+
+impl Hole {
+    /// Whether a vertex lies strictly inside.
+    fn inside(&self, t: usize, i: usize) -> bool {
+        let within = |[low, high]: [usize; 2], at: usize| at > low && at < high;
+        within(self.rows, t) && within(self.columns, i)
+    }
+
+    /// Whether the quad above row `t` and beyond column `i` lies inside.
+    fn covers(&self, t: usize, i: usize) -> bool {
+        let within = |[low, high]: [usize; 2], at: usize| at >= low && at < high;
+        within(self.rows, t) && within(self.columns, i)
+    }
+
+    /// Grid steps from a vertex to the hole's border.
+    fn steps_to(&self, t: usize, i: usize) -> f64 {
+        let beyond = |[low, high]: [usize; 2], at: usize| {
+            low.saturating_sub(at).max(at.saturating_sub(high))
+        };
+        beyond(self.rows, t).max(beyond(self.columns, i)) as f64
+    }
+}
+
 /// The left half under construction.
 pub(crate) struct Half<'a> {
     pub(crate) template: &'a Template,
@@ -225,50 +254,14 @@ impl Half<'_> {
 
     fn trunk(&mut self) -> Result<Borders, BodyError> {
         let rows = self.rows();
-        let armpit_row = self.armpit_row(&rows)?;
-        let side = HALF / 2;
-        let shoulder = Vec3::from(self.template.joints.shoulder);
-        let scale = self.template.height / 1.7;
-        // The hole for the arm: up to the row that passes over the shoulder joint.
-        let top_angle = (shoulder.y + 0.035 * scale - rows[armpit_row].origin.y).atan2(shoulder.x);
-        let (r0, c0, c1) = (armpit_row, side - 4, side + 4);
-        let r1 = (r0..rows.len())
-            .find(|&t| rows[t].elevation >= top_angle)
-            .unwrap_or(r0 + 6)
-            .max(r0 + 4);
-        let mut grid = vec![[u32::MAX; HALF + 1]; rows.len()];
-        for (t, row) in rows.iter().enumerate() {
-            for i in 0..=HALF {
-                if t > r0 && t < r1 && i > c0 && i < c1 {
-                    continue;
-                }
-                let angle = std::f64::consts::PI * i as f64 / HALF as f64;
-                let middle = i == 0 || i == HALF;
-                let level = Vec3::new(if middle { 0.0 } else { angle.sin() }, 0.0, angle.cos());
-                let (sin, cos) = row.elevation.sin_cos();
-                let direction = (level * cos + Vec3::y() * sin).normalize();
-                let position = self.hit(reachable(row.part), row.origin, direction)?;
-                let vertex = self.add(position, middle);
-                grid[t][i] = vertex;
-                let away = [
-                    r0.saturating_sub(t),
-                    t.saturating_sub(r1),
-                    c0.saturating_sub(i),
-                    i.saturating_sub(c1),
-                ];
-                let away = away.into_iter().max().unwrap_or(0) as f64;
-                self.arm[vertex as usize] = follow(-away);
-                self.leg[vertex as usize] = follow(-(t as f64));
-            }
-        }
-        for t in 0..rows.len() - 1 {
+        let hole = self.hole(&rows)?;
+        let grid = self.cast_rows(&rows, hole)?;
+        for (t, (lower, upper)) in grid.iter().zip(&grid[1..]).enumerate() {
             for i in 0..HALF {
-                if t >= r0 && t < r1 && i >= c0 && i < c1 {
-                    continue;
+                if !hole.covers(t, i) {
+                    let corners = [lower[i], lower[i + 1], upper[i + 1], upper[i]];
+                    self.quad(rows[t + 1].part, corners);
                 }
-                let [a, b] = [grid[t][i], grid[t][i + 1]];
-                let [d, c] = [grid[t + 1][i], grid[t + 1][i + 1]];
-                self.quad(rows[t + 1].part, [a, b, c, d]);
             }
         }
         let last = rows.len() - 1;
@@ -277,12 +270,53 @@ impl Half<'_> {
         for i in 0..HALF {
             self.face(Part::Head, [grid[last][i], grid[last][i + 1], pole]);
         }
+        let ([r0, r1], [c0, c1]) = (hole.rows, hole.columns);
         let mut arm: Vec<u32> = (c0..c1).rev().map(|i| grid[r1][i + 1]).collect();
         arm.extend((r0 + 1..=r1).rev().map(|t| grid[t][c0]));
         arm.extend((c0..c1).map(|i| grid[r0][i]));
         arm.extend((r0..r1).map(|t| grid[t][c1]));
-        let bottom = (0..=HALF).rev().map(|i| grid[0][i]).collect();
+        let bottom = grid[0].iter().rev().copied().collect();
         Ok(Borders { arm, bottom })
+    }
+
+    /// The hole for the arm: from below the armpit to the row that passes over the shoulder.
+    fn hole(&self, rows: &[Row]) -> Result<Hole, BodyError> {
+        let scale = self.template.height / 1.7;
+        let shoulder = Vec3::from(self.template.joints.shoulder);
+        let low = self.armpit_row(rows)?;
+        let rise = shoulder.y + 0.035 * scale - rows[low].origin.y;
+        let top = rise.atan2(shoulder.x);
+        let high = (low..rows.len())
+            .find(|&t| rows[t].elevation >= top)
+            .unwrap_or(low)
+            .max(low + 4)
+            .min(rows.len() - 2);
+        Ok(Hole {
+            rows: [low, high],
+            columns: [HALF / 2 - 4, HALF / 2 + 4],
+        })
+    }
+
+    /// The vertices of all rows, but for those inside the hole.
+    fn cast_rows(&mut self, rows: &[Row], hole: Hole) -> Result<Vec<[u32; HALF + 1]>, BodyError> {
+        let mut grid = vec![[u32::MAX; HALF + 1]; rows.len()];
+        for (t, (row, vertices)) in rows.iter().zip(&mut grid).enumerate() {
+            let (sin, cos) = row.elevation.sin_cos();
+            for (i, vertex) in vertices.iter_mut().enumerate() {
+                if hole.inside(t, i) {
+                    continue;
+                }
+                let angle = std::f64::consts::PI * i as f64 / HALF as f64;
+                let middle = i == 0 || i == HALF;
+                let level = Vec3::new(if middle { 0.0 } else { angle.sin() }, 0.0, angle.cos());
+                let direction = (level * cos + Vec3::y() * sin).normalize();
+                let position = self.hit(reachable(row.part), row.origin, direction)?;
+                *vertex = self.add(position, middle);
+                self.arm[*vertex as usize] = follow(-hole.steps_to(t, i));
+                self.leg[*vertex as usize] = follow(-(t as f64));
+            }
+        }
+        Ok(grid)
     }
 
     /// Two triangles, split along the shorter diagonal.
@@ -338,8 +372,8 @@ impl Half<'_> {
         }
         // The soles stay flat, the middle stays in the middle, and the right follows the left.
         crate::fair::fair(&mut mesh, |_, p| p.y <= 0.0);
-        for v in 0..mesh.positions.len() {
-            let image = mirror[v] as usize;
+        for (v, &image) in mirror.iter().enumerate() {
+            let image = image as usize;
             if image == v {
                 mesh.positions[v].x = 0.0;
             } else if image > v {

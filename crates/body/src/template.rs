@@ -32,7 +32,6 @@ pub(crate) struct Joints {
     pub(crate) ankle: [f64; 3],
     pub(crate) toe: [f64; 3],
     pub(crate) pelvis: [f64; 3],
-    pub(crate) spine: [f64; 3],
     pub(crate) chest: [f64; 3],
     pub(crate) neck: [f64; 3],
     pub(crate) head: [f64; 3],

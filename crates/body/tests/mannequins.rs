@@ -1,6 +1,7 @@
 //! Whole mannequins: closed skin, measurements, symmetry, inside tests, refusals.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+use proptest::prelude::*;
 use std::path::PathBuf;
 use toile_body::{BodyError, Description, Figure, Mannequin, Part};
 use toile_geometry::Vec3;
@@ -333,4 +334,54 @@ fn bad_measurements_are_named_with_a_remedy() {
         Mannequin::new(&Measurements::new(), Figure::Woman),
         Err(BodyError::Missing { name: "height", .. })
     ));
+}
+
+/// Every measurement the mannequin reads, with limits well inside those it accepts.
+const WIDE: [(&str, f64, f64); 17] = [
+    ("height", 1.4, 2.1),
+    ("head_l", 0.2, 0.32),
+    ("neck_w", 0.14, 0.24),
+    ("shoulder_w", 0.3, 0.48),
+    ("shoulder_incl", 0.2, 0.55),
+    ("bust", 0.75, 1.3),
+    ("vert_bust_line", 0.16, 0.26),
+    ("underbust", 0.65, 1.2),
+    ("waist", 0.55, 1.25),
+    ("waist_line", 0.32, 0.46),
+    ("hips", 0.8, 1.4),
+    ("hips_line", 0.15, 0.27),
+    ("crotch_hip_diff", 0.06, 0.12),
+    ("leg_circ", 0.45, 0.75),
+    ("arm_length", 0.45, 0.65),
+    ("arm_pose_angle", 0.6, 0.95),
+    ("wrist", 0.13, 0.21),
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn any_table_gives_a_closed_body_or_a_reason(
+        shares in prop::collection::vec(0.0..1.0f64, WIDE.len()),
+        kind in 0..3usize,
+    ) {
+        let mut table = Measurements::new();
+        for ((name, low, high), share) in WIDE.iter().zip(&shares) {
+            table.set(name, low + (high - low) * share, Origin::Asked).unwrap();
+        }
+        let figure = [Figure::Woman, Figure::Man, Figure::Mean][kind];
+        match Mannequin::new(&table, figure) {
+            Ok(body) => {
+                prop_assert_eq!(body.skin().check(), Ok(()));
+                prop_assert!(body.skin().is_closed_and_oriented());
+                prop_assert!(body.skin().volume() > 0.0);
+                prop_assert!(body.measure().iter().all(|g| g.got.is_finite()));
+                for gap in body.measure() {
+                    if ["bust", "underbust", "waist", "hips", "leg_circ"].contains(&gap.name) {
+                        prop_assert!(gap.gap().abs() < 5e-3, "{:?}", gap);
+                    }
+                }
+            }
+            Err(error) => prop_assert!(error.to_string().contains(": "), "{}", error),
+        }
+    }
 }
