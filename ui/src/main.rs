@@ -1,2 +1,48 @@
-//! The Toile window.
-fn main() {}
+//! Opens the window: `toile-ui [FILE]`. Without a file it shows the sample T-shirt.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use toile_ui::ToileApp;
+
+fn main() -> ExitCode {
+    let file = std::env::args_os()
+        .nth(1)
+        .map_or_else(|| PathBuf::from(toile_session::SAMPLE), PathBuf::from);
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Toile")
+            .with_app_id("toile")
+            .with_inner_size([1400.0, 860.0])
+            .with_min_inner_size([760.0, 480.0]),
+        renderer: eframe::Renderer::Wgpu,
+        ..Default::default()
+    };
+    let opened = eframe::run_native(
+        "toile",
+        options,
+        Box::new(move |creation| {
+            let state = creation.wgpu_render_state.as_ref();
+            Ok(Box::new(ToileApp::new(
+                &creation.egui_ctx,
+                state,
+                Some(&file),
+            )))
+        }),
+    );
+    match opened {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            complain(&error.to_string());
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Says on standard error why there is no window.
+#[allow(clippy::print_stderr)]
+fn complain(error: &str) {
+    eprintln!("toile-ui: no window could be opened: {error}");
+    eprintln!(
+        "toile-ui: a graphical display and a graphics driver are needed; `toile make` works without"
+    );
+}

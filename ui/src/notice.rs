@@ -1,0 +1,48 @@
+//! The message of the status line.
+
+/// How a message is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Tone {
+    /// Good to know.
+    #[default]
+    News,
+    /// Probably not as meant.
+    Warning,
+    /// It was not done, and why.
+    Fault,
+}
+
+/// The latest message.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Notice {
+    /// How it is meant.
+    pub tone: Tone,
+    /// What it says; empty for none.
+    pub text: String,
+}
+
+impl Notice {
+    /// Good to know.
+    pub fn news(text: impl Into<String>) -> Self {
+        Self {
+            tone: Tone::News,
+            text: text.into(),
+        }
+    }
+
+    /// Probably not as meant.
+    pub fn warning(text: impl Into<String>) -> Self {
+        Self {
+            tone: Tone::Warning,
+            text: text.into(),
+        }
+    }
+
+    /// It was not done, and why.
+    pub fn fault(text: impl Into<String>) -> Self {
+        Self {
+            tone: Tone::Fault,
+            text: text.into(),
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! Meshes as the 3D view draws them: corners with normals and colours, and seam lines.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use toile_geometry::{Vec3, triangle_area};
+use toile_session::{Garment, GarmentJob, LiveFrame, Stage};
+
+/// One corner as the graphics card takes it: position [m], normal, colour (linear, 0..=1), and
+/// how it is lit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    /// Position [m].
+    pub position: [f32; 3],
+    /// Unit normal.
+    pub normal: [f32; 3],
+    /// Linear colour and [`Finish`] as a number.
+    pub colour: [f32; 4],
+}
+
+/// How a surface is lit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finish {
+    /// Its colour as it is.
+    Plain,
+    /// From outside only.
+    Solid,
+    /// From both sides, the wrong side a little darker.
+    Cloth,
+}
+
+/// Floats of a corner.
+pub const CORNER_FLOATS: usize = 10;
+
+impl Corner {
+    fn new(position: Vec3, normal: Vec3, colour: [f32; 3], finish: Finish) -> Self {
+        let [red, green, blue] = colour;
+        Self {
+            position: position.map(|x| x as f32).into(),
+            normal: normal.map(|x| x as f32).into(),
+            colour: [red, green, blue, finish as u8 as f32],
+        }
+    }
+
+    /// Its numbers in order.
+    pub fn floats(&self) -> [f32; CORNER_FLOATS] {
+        let (p, n, c) = (self.position, self.normal, self.colour);
+        [p[0], p[1], p[2], n[0], n[1], n[2], c[0], c[1], c[2], c[3]]
+    }
+}
+
+/// Linear from sRGB, both 0..=1 (IEC 61966-2-1).
+fn linear(srgb: f64) -> f32 {
+    let linear = match srgb <= 0.04045 {
+        true => srgb / 12.92,
+        false => ((srgb + 0.055) / 1.055).powf(2.4),
+    };
+    linear as f32
+}
+
+/// Colour of the mannequin: unbleached linen, sRGB.
+const LINEN: [f64; 3] = [0.80, 0.765, 0.715];
+/// Radius of the floor [m].
+const FLOOR: f64 = 0.75;
+/// Colour under the feet and at the rim, sRGB; the rim is the background's.
+const FLOOR_COLOURS: [[f64; 3]; 2] = [[0.77, 0.775, 0.78], [0.894, 0.902, 0.906]];
+/// Neighbouring panels of one cloth differ by this much lightness, so that seams are seen.
+const PANEL_SHADES: [f64; 3] = [1.0, 0.93, 1.05];
+
+/// Unit normals of the vertices, weighted by the triangles' areas.
+fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut normals = vec![Vec3::zeros(); positions.len()];
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|v| positions[v as usize]);
+        let normal = (b - a).cross(&(c - a));
+        for vertex in triangle {
+            normals[*vertex as usize] += normal;
+        }
+    }
+    for normal in &mut normals {
+        *normal = normal.try_normalize(1e-30).unwrap_or_else(Vec3::y);
+    }
+    normals
+}
+
+/// The mannequin on its floor.
+pub fn mannequin(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Corner> {
+    let normals = normals(positions, triangles);
+    let colour = LINEN.map(linear);
+    let mut corners: Vec<Corner> = triangles
+        .iter()
+        .flatten()
+        .map(|&v| {
+            Corner::new(
+                positions[v as usize],
+                normals[v as usize],
+                colour,
+                Finish::Solid,
+            )
+        })
+        .collect();
+    corners.extend(floor());
+    corners
+}
+
+/// A disc that fades into the background.
+fn floor() -> Vec<Corner> {
+    let [middle, rim] = FLOOR_COLOURS.map(|colour| colour.map(linear));
+    let count = 64;
+    let at = |k: usize| {
+        let angle = std::f64::consts::TAU * k as f64 / count as f64;
+        Vec3::new(FLOOR * angle.sin(), -0.002, FLOOR * angle.cos())
+    };
+    let corner = |place, colour| Corner::new(place, Vec3::y(), colour, Finish::Plain);
+    (0..count)
+        .flat_map(|k| {
+            [
+                corner(Vec3::new(0.0, -0.002, 0.0), middle),
+                corner(at(k), rim),
+                corner(at(k + 1), rim),
+            ]
+        })
+        .collect()
+}
+
+/// What stays the same while a garment is draped.
+pub struct ClothLook {
+    garment: Arc<Garment>,
+    /// Colour of each triangle, linear.
+    colours: Vec<[f32; 3]>,
+    /// Edges at the rims of panels, by vertices of the job's garment.
+    rims: Vec<[u32; 2]>,
+}
+
+/// A garment ready to be drawn.
+#[derive(Default)]
+pub struct ClothSolid {
+    /// Three corners a triangle.
+    pub corners: Vec<Corner>,
+    /// Two corners a line.
+    pub lines: Vec<Corner>,
+}
+
+impl ClothLook {
+    /// The look of a garment's cloth.
+    pub fn new(job: &GarmentJob) -> Self {
+        let garment = &job.garment;
+        let mut colours = vec![[0.5; 3]; garment.triangles.len()];
+        for (k, panel) in garment.panels.iter().enumerate() {
+            let base = job.panels.get(k).map_or([0.7; 3], |panel| panel.colour);
+            let shade = PANEL_SHADES[k % PANEL_SHADES.len()];
+            let colour = base.map(|c| linear((c * shade).clamp(0.0, 1.0)));
+            colours[panel.triangles.clone()].fill(colour);
+        }
+        let mut sides: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+        for [a, b, c] in &garment.triangles {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                *sides.entry([*from.min(to), *from.max(to)]).or_default() += 1;
+            }
+        }
+        let rims = sides.into_iter().filter(|(_, count)| *count == 1);
+        Self {
+            garment: garment.clone(),
+            colours,
+            rims: rims.map(|(side, _)| side).collect(),
+        }
+    }
+
+    /// The cloth at one moment.
+    pub fn solid(&self, frame: &LiveFrame) -> ClothSolid {
+        let positions = &frame.positions;
+        let merged = |v: u32| frame.target.get(v as usize).copied().unwrap_or(0);
+        let triangles: Vec<[u32; 3]> = self
+            .garment
+            .triangles
+            .iter()
+            .map(|triangle| triangle.map(merged))
+            .collect();
+        let normals = normals(positions, &triangles);
+        let mut solid = ClothSolid::default();
+        for (triangle, colour) in triangles.iter().zip(&self.colours) {
+            let corners = triangle.map(|v| v as usize);
+            if triangle_area(corners.map(|v| positions[v])) <= 0.0 {
+                continue;
+            }
+            solid.corners.extend(
+                corners.map(|v| Corner::new(positions[v], normals[v], *colour, Finish::Cloth)),
+            );
+        }
+        let ink = [0.25, 0.25, 0.27].map(linear);
+        for side in &self.rims {
+            let [a, b] = side.map(merged);
+            if a == b {
+                continue;
+            }
+            solid.lines.extend([a, b].map(|v| {
+                let v = v as usize;
+                Corner::new(positions[v], normals[v], ink, Finish::Plain)
+            }));
+        }
+        solid
+    }
+}
+
+/// The garment before its first step.
+pub fn first_frame(job: &GarmentJob) -> LiveFrame {
+    let garment = &job.garment;
+    LiveFrame {
+        positions: garment.positions.clone(),
+        triangles: Arc::new(garment.triangles.clone()),
+        target: Arc::new((0..garment.positions.len() as u32).collect()),
+        stage: Stage::Sewing,
+        residual: f64::INFINITY,
+        gap: 0.0,
+        step: 0,
+        share: 0.0,
+    }
+}

@@ -1,0 +1,151 @@
+//! The three planes of the pattern view, as three types: a panel's own plane, the table all
+//! panels lie on, and the screen. View state only: nothing here is in the document.
+
+use egui::{Pos2, Rect, Vec2 as ScreenVector};
+use toile_geometry::{Bounds2, Vec2};
+
+/// A point of a panel's own plane [m], Y up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PanelPoint(pub Vec2);
+
+/// A point of the table [m], Y up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TablePoint(pub Vec2);
+
+/// A point of the screen [logical pixels], Y down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScreenPoint(pub Pos2);
+
+/// Where a panel lies on the table: only moved, never turned, so that up stays up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PanelPlace {
+    /// Table point of the panel's origin [m].
+    pub offset: Vec2,
+}
+
+impl PanelPlace {
+    /// From the panel to the table.
+    pub fn table(self, point: PanelPoint) -> TablePoint {
+        TablePoint(point.0 + self.offset)
+    }
+
+    /// From the table to the panel.
+    pub fn panel(self, point: TablePoint) -> PanelPoint {
+        PanelPoint(point.0 - self.offset)
+    }
+}
+
+/// Smallest and largest enlargement [logical pixels per metre]: from a whole marker on the screen
+/// to a millimetre as wide as a finger.
+const SCALES: [f64; 2] = [20.0, 40_000.0];
+/// Empty border when everything is shown [share of the view].
+const BORDER: f64 = 0.06;
+
+/// How the table is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TableCamera {
+    /// Table point in the middle of the view [m].
+    pub centre: Vec2,
+    /// Enlargement [logical pixels per metre].
+    pub scale: f64,
+}
+
+impl Default for TableCamera {
+    fn default() -> Self {
+        Self {
+            centre: Vec2::zeros(),
+            scale: 500.0,
+        }
+    }
+}
+
+impl TableCamera {
+    /// Where a table point is seen.
+    pub fn screen(&self, view: Rect, point: TablePoint) -> ScreenPoint {
+        let from_centre = (point.0 - self.centre) * self.scale;
+        ScreenPoint(view.center() + ScreenVector::new(from_centre.x as f32, -from_centre.y as f32))
+    }
+
+    /// The table point that is seen there.
+    pub fn table(&self, view: Rect, point: ScreenPoint) -> TablePoint {
+        TablePoint(self.centre + self.way(point.0 - view.center()))
+    }
+
+    /// A way on the screen as a way on the table [m].
+    pub fn way(&self, on_screen: ScreenVector) -> Vec2 {
+        Vec2::new(f64::from(on_screen.x), -f64::from(on_screen.y)) / self.scale
+    }
+
+    /// Moves the table along with the pointer.
+    pub fn pan(&mut self, on_screen: ScreenVector) {
+        self.centre -= self.way(on_screen);
+    }
+
+    /// Enlarges by a factor; the table point under `fixed` stays there.
+    pub fn zoom(&mut self, view: Rect, fixed: ScreenPoint, factor: f64) {
+        let before = self.table(view, fixed);
+        self.scale = (self.scale * factor).clamp(SCALES[0], SCALES[1]);
+        let after = self.table(view, fixed);
+        self.centre += before.0 - after.0;
+    }
+
+    /// Shows all of a part of the table.
+    pub fn fit(&mut self, view: Rect, bounds: &Bounds2) {
+        let size = bounds.max - bounds.min;
+        let room = 1.0 - 2.0 * BORDER;
+        let scale = (f64::from(view.width()) * room / size.x.max(1e-3))
+            .min(f64::from(view.height()) * room / size.y.max(1e-3));
+        if scale.is_finite() && scale > 0.0 {
+            self.scale = scale.clamp(SCALES[0], SCALES[1]);
+            self.centre = (bounds.min + bounds.max) * 0.5;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    fn view() -> Rect {
+        Rect::from_min_max(pos2(100.0, 50.0), pos2(900.0, 650.0))
+    }
+
+    #[test]
+    fn screen_and_table_are_inverse_and_up_is_up() {
+        let camera = TableCamera {
+            centre: Vec2::new(0.3, -0.2),
+            scale: 750.0,
+        };
+        let there = TablePoint(Vec2::new(0.41, 0.13));
+        let seen = camera.screen(view(), there);
+        assert!((camera.table(view(), seen).0 - there.0).norm() < 1e-6);
+        let above = camera.screen(view(), TablePoint(there.0 + Vec2::new(0.0, 0.1)));
+        assert!(above.0.y < seen.0.y);
+    }
+
+    #[test]
+    fn zooming_keeps_the_point_under_the_cursor() {
+        let mut camera = TableCamera::default();
+        let cursor = ScreenPoint(pos2(230.0, 410.0));
+        for factor in [1.7, 0.2, 9.0, 1e9, 1e-9] {
+            let before = camera.table(view(), cursor);
+            camera.zoom(view(), cursor, factor);
+            let after = camera.table(view(), cursor);
+            assert!((before.0 - after.0).norm() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn everything_is_seen_after_fitting() {
+        let mut camera = TableCamera::default();
+        let bounds = Bounds2 {
+            min: Vec2::new(-0.4, 1.0),
+            max: Vec2::new(1.6, 1.5),
+        };
+        camera.fit(view(), &bounds);
+        for corner in [bounds.min, bounds.max] {
+            assert!(view().contains(camera.screen(view(), TablePoint(corner)).0));
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! The 3D view: mannequin and garment, seen by an eye that goes round them.
+
+use crate::gpu::{CornerBuffer, StageRenderer};
+use crate::orbit::Orbit;
+use crate::solid::{ClothLook, ClothSolid, Corner, mannequin};
+use crate::theme;
+use eframe::egui_wgpu::RenderState;
+use egui::{Align2, CursorIcon, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use toile_geometry::{TriangleMesh, Vec3};
+use toile_session::{GarmentJob, LiveFrame};
+
+/// The 3D view and its state.
+#[derive(Default)]
+pub struct StageView {
+    /// Where the eye is.
+    pub orbit: Orbit,
+    renderer: Option<StageRenderer>,
+    body: Vec<Corner>,
+    body_bounds: Option<[Vec3; 2]>,
+    body_buffer: CornerBuffer,
+    look: Option<ClothLook>,
+    cloth: ClothSolid,
+    cloth_buffer: CornerBuffer,
+    line_buffer: CornerBuffer,
+    vertices: usize,
+    stale: Stale,
+    wants_fit: bool,
+    drawn: Option<Drawn>,
+}
+
+/// What the graphics card does not have yet.
+#[derive(Clone, Copy, Default)]
+struct Stale {
+    body: bool,
+    cloth: bool,
+}
+
+/// The picture drawn last, and what it was drawn for.
+#[derive(Clone, Copy, PartialEq)]
+struct Drawn {
+    orbit: Orbit,
+    size: [u32; 2],
+    id: egui::TextureId,
+}
+
+impl StageView {
+    /// A view drawn by the window's graphics card; without one it says so in words.
+    pub fn new(state: Option<&RenderState>) -> Self {
+        Self {
+            renderer: state.map(StageRenderer::new),
+            ..Self::default()
+        }
+    }
+
+    /// Shows another mannequin.
+    pub fn set_body(&mut self, skin: &TriangleMesh) {
+        self.body = mannequin(&skin.positions, &skin.triangles);
+        let first = self.body_bounds.is_none();
+        self.body_bounds = skin.bounds();
+        self.stale.body = true;
+        self.wants_fit |= first;
+    }
+
+    /// Shows another garment, from now on at the frames given.
+    pub fn set_garment(&mut self, job: &GarmentJob) {
+        self.look = Some(ClothLook::new(job));
+    }
+
+    /// Shows the garment at one moment.
+    pub fn set_frame(&mut self, frame: &LiveFrame) {
+        if let Some(look) = &self.look {
+            self.cloth = look.solid(frame);
+            self.vertices = frame.positions.len();
+            self.stale.cloth = true;
+        }
+    }
+
+    /// Shows no garment.
+    pub fn clear_garment(&mut self) {
+        self.look = None;
+        self.cloth = ClothSolid::default();
+        self.vertices = 0;
+        self.stale.cloth = true;
+    }
+
+    /// Vertices of the garment that is shown.
+    pub fn vertices(&self) -> usize {
+        self.vertices
+    }
+
+    /// Looks from a side, level: 0 in front, positive toward the wearer's left [rad].
+    pub fn look_from(&mut self, yaw: f64) {
+        self.orbit.yaw = yaw;
+        self.orbit.pitch = 0.05;
+        self.wants_fit = true;
+    }
+
+    /// Draws the view and takes what is done in it.
+    pub fn show(&mut self, ui: &mut Ui, empty: &str) {
+        let view = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(view, Sense::click_and_drag());
+        response.widget_info(|| {
+            let words = match self.vertices {
+                0 => "3D view".to_owned(),
+                count => format!("3D view, garment of {count} vertices"),
+            };
+            WidgetInfo::labeled(Role::Canvas, true, words)
+        });
+        self.navigate(ui, &response);
+        if self.wants_fit
+            && view.height() > 50.0
+            && let Some(bounds) = self.body_bounds
+        {
+            let aspect = f64::from(view.width() / view.height());
+            self.orbit.fit(bounds, aspect);
+            self.wants_fit = false;
+        }
+        ui.painter().rect_filled(view, 0.0, theme::STAGE);
+        let words = match &self.renderer {
+            None => "This computer offers no graphics card or driver for the 3D view",
+            Some(_) if self.body.is_empty() => empty,
+            Some(_) => "",
+        };
+        self.draw(ui, view);
+        if !words.is_empty() {
+            ui.painter().text(
+                view.center(),
+                Align2::CENTER_CENTER,
+                words,
+                theme::font(14.5),
+                theme::INK_SOFT,
+            );
+        }
+    }
+
+    fn navigate(&mut self, ui: &Ui, response: &Response) {
+        let shift = ui.input(|input| input.modifiers.shift);
+        let drag = response.drag_delta();
+        if response.dragged_by(PointerButton::Primary) && !shift {
+            self.orbit.turn(drag);
+        } else if response.dragged() {
+            self.orbit.pan(drag, response.rect.height());
+        }
+        if response.dragged() {
+            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+        }
+        if response.hovered() {
+            let (scroll, pinch) =
+                ui.input(|input| (input.smooth_scroll_delta.y, input.zoom_delta()));
+            self.orbit
+                .zoom(f64::from(scroll / 300.0).exp2() * f64::from(pinch));
+        }
+    }
+
+    fn draw(&mut self, ui: &Ui, view: Rect) {
+        let Some(renderer) = &mut self.renderer else {
+            return;
+        };
+        let pixels = view.size() * ui.ctx().pixels_per_point();
+        let size = [pixels.x, pixels.y].map(|x| x.round().clamp(1.0, 8192.0) as u32);
+        let fresh = !self.stale.body && !self.stale.cloth;
+        let kept = self
+            .drawn
+            .filter(|drawn| fresh && drawn.orbit == self.orbit && drawn.size == size);
+        let id = match kept {
+            Some(drawn) => drawn.id,
+            None => {
+                if self.stale.body {
+                    renderer.upload(&self.body, &mut self.body_buffer);
+                }
+                if self.stale.cloth {
+                    renderer.upload(&self.cloth.corners, &mut self.cloth_buffer);
+                    renderer.upload(&self.cloth.lines, &mut self.line_buffer);
+                }
+                self.stale = Stale::default();
+                let solids = [&self.body_buffer, &self.cloth_buffer];
+                renderer.draw(&self.orbit, size, &solids, &self.line_buffer)
+            }
+        };
+        self.drawn = Some(Drawn {
+            orbit: self.orbit,
+            size,
+            id,
+        });
+        let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+        ui.painter().image(id, view, whole, egui::Color32::WHITE);
+    }
+}
