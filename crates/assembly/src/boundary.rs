@@ -97,7 +97,7 @@ impl Boundary {
         };
         for (k, range) in self.loops.iter().enumerate() {
             let area = polygon_area(&self.points[range.clone()]);
-            if range.len() < 3 || !(area.abs() > 1e-10) {
+            if range.len() < 3 || area.is_nan() || area.abs() <= 1e-10 {
                 let what = if k == 0 { "outline" } else { "hole" };
                 let reason = format!("the {what} encloses no area");
                 return Err(error(

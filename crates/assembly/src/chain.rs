@@ -152,22 +152,13 @@ impl Matching {
                     self.diagnostics.push(Diagnostic::warning(
                         &seam.name,
                         format!("piece \"{name}\" is not sewn, so this seam is left open"),
-                        "",
+                        "cut the piece as part of the garment, or remove the seam",
                     ));
                     return Ok(());
                 }
                 let length = table.edges[edge].length;
-                let snap = (SNAP * spacing / length).min(0.25);
-                let [from, to] = [span.from, span.to].map(|f| {
-                    let f = f.clamp(0.0, 1.0);
-                    let (near, distance) = self.nodes.nearest(edge, f);
-                    let node = if distance <= snap {
-                        near
-                    } else {
-                        self.nodes.insert(edge, f)
-                    };
-                    self.nodes.all[node].fraction
-                });
+                let [from, to] =
+                    [span.from, span.to].map(|f| self.end_of_span(edge, f, spacing / length));
                 if from == to {
                     continue;
                 }
@@ -188,16 +179,7 @@ impl Matching {
                     "give both sides at least one span",
                 ));
             }
-        }
-        for side in 0..2 {
-            let total = lengths[side];
-            for stretch in &mut sides[side] {
-                stretch.start /= total;
-                stretch.end /= total;
-            }
-            if let Some(last) = sides[side].last_mut() {
-                last.end = 1.0;
-            }
+            as_shares(&mut sides[side], lengths[side]);
         }
         self.sewings.push(Sewing {
             seam: index,
@@ -206,6 +188,19 @@ impl Matching {
             pairs: Vec::new(),
         });
         Ok(())
+    }
+
+    /// Makes sure there is a node where a span ends, and gives its fraction. `spacing` is the
+    /// edge length as a fraction of the edge.
+    fn end_of_span(&mut self, edge: usize, fraction: f64, spacing: f64) -> f64 {
+        let fraction = fraction.clamp(0.0, 1.0);
+        let (near, distance) = self.nodes.nearest(edge, fraction);
+        let node = if distance <= (SNAP * spacing).min(0.25) {
+            near
+        } else {
+            self.nodes.insert(edge, fraction)
+        };
+        self.nodes.all[node].fraction
     }
 
     /// Adds notches that are not too near to another node; says whether any was added.
@@ -264,6 +259,17 @@ impl Matching {
             "the points its neighbours ask for never settle".to_owned(),
             "check for seams that sew one span to shifted copies of itself",
         ))
+    }
+}
+
+/// Turns lengths along a chain into shares of its whole length.
+fn as_shares(stretches: &mut [Stretch], total: f64) {
+    for stretch in stretches.iter_mut() {
+        stretch.start /= total;
+        stretch.end /= total;
+    }
+    if let Some(last) = stretches.last_mut() {
+        last.end = 1.0;
     }
 }
 

@@ -11,6 +11,9 @@ const SMALLEST_SHAPE_SIZE: f64 = 0.35;
 /// A point across the piece counts as near when the way to it along the outline is this much
 /// longer than the straight way: corners wider than about 40 degrees do not count.
 const ACROSS: f64 = 2.9;
+/// Outlines with more probes than this are not searched for narrow places, which takes the
+/// square of their number in time.
+const MOST_PROBES: usize = 30_000;
 /// Turning of the outline per sample [rad]: seven chords a circle at least.
 const TURN: f64 = 0.9;
 
@@ -129,7 +132,7 @@ impl EdgeTable {
             }
             let next = &edges[(k + 1) % edges.len()];
             let gap = (next.curve.start() - edge.curve.end()).norm();
-            if !(gap <= 1e-6) {
+            if gap.is_nan() || gap > 1e-6 {
                 return Err(outline_error(
                     piece,
                     format!("edge {k} ends {gap} m from where the next one starts"),
@@ -183,7 +186,12 @@ fn set_shape_sizes(edges: &mut [Edge], spacing: f64) {
             Vec2::new(probe.tangent.y, -probe.tangent.x)
         };
         let mut size = spacing;
-        for other in &probes {
+        let others = if probes.len() <= MOST_PROBES {
+            &probes[..]
+        } else {
+            &[]
+        };
+        for other in others {
             let offset = other.point - probe.point;
             let distance = offset.norm();
             if distance >= size || offset.dot(&inward) < 0.3 * distance {

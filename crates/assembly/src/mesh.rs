@@ -105,7 +105,8 @@ fn refuse_too_large(table: &EdgeTable, edge_length: f64) -> Result<(), AssemblyE
         }
     }
     let area: f64 = boxes.iter().map(|[l, h]| (h - l).x * (h - l).y).sum();
-    let vertices = area / (edge_length * edge_length);
+    let length: f64 = table.edges.iter().map(|e| e.length).sum();
+    let vertices = area / (edge_length * edge_length) + length / edge_length;
     if vertices > MOST_VERTICES {
         return Err(AssemblyError::TooLarge(vertices.round()));
     }

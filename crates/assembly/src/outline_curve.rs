@@ -3,6 +3,8 @@
 
 use toile_geometry::{Vec2, orient2d};
 
+/// Narrowest fold a ring is laid in [m].
+const NARROWEST_FOLD: f64 = 0.04;
 /// Angle between neighbouring points of a rounded corner [rad].
 const CORNER_STEP: f64 = 0.05;
 
@@ -100,6 +102,59 @@ impl OutlineCurve {
         };
         curve.measure();
         curve
+    }
+
+    /// The ring laid in even folds that reach up to `amplitude` [m] outward, so that it is
+    /// `length` [m] long. Folds get no narrower than [`NARROWEST_FOLD`]: what does not fit then
+    /// is left out.
+    pub fn folded(&self, length: f64, amplitude: f64) -> Self {
+        let around = self.length();
+        let most = (around / NARROWEST_FOLD).floor().max(2.0) as usize;
+        let mut count = 2;
+        while count < most && self.with_folds(count, amplitude).length() < length {
+            count += 1;
+        }
+        let (mut low, mut high) = (0.0, amplitude);
+        for _ in 0..30 {
+            let middle = 0.5 * (low + high);
+            if self.with_folds(count, middle).length() < length {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        self.with_folds(count, high)
+    }
+
+    fn with_folds(&self, count: usize, amplitude: f64) -> Self {
+        let around = self.length();
+        let steps = 24 * count;
+        let points = (0..=steps)
+            .map(|k| {
+                let place = around * (k % steps) as f64 / steps as f64;
+                let along = self.at(place + 1e-3) - self.at(place - 1e-3);
+                let outward = Vec2::new(-along.y, along.x)
+                    .try_normalize(0.0)
+                    .unwrap_or_default();
+                let phase = std::f64::consts::TAU * k as f64 / 24.0;
+                self.at(place) + outward * (0.5 * amplitude * (1.0 - phase.cos()))
+            })
+            .collect();
+        let mut curve = Self {
+            points,
+            lengths: Vec::new(),
+            closed: true,
+        };
+        curve.measure();
+        curve
+    }
+
+    /// Largest distance of its points from a centre [m].
+    pub fn reach(&self, centre: Vec2) -> f64 {
+        self.points
+            .iter()
+            .map(|p| (p - centre).norm())
+            .fold(0.0, f64::max)
     }
 
     /// The curve in front of points: their upper hull, no steeper than half a right angle,
@@ -212,6 +267,15 @@ mod tests {
             let step = (ring.at(s + 0.01) - ring.at(s)).norm();
             assert!(step <= 0.01 + 1e-12 && step > 0.0095, "{step}");
         }
+    }
+
+    #[test]
+    fn folds_make_a_ring_as_long_as_asked_and_stay_in_reach() {
+        let ring = OutlineCurve::ring(&[], Vec2::zeros(), 0.25);
+        let folded = ring.folded(4.0, 0.12);
+        assert!((folded.length() - 4.0).abs() < 1e-3, "{}", folded.length());
+        assert!(folded.reach(Vec2::zeros()) < 0.25 + 0.12 + 1e-3);
+        assert!((folded.at(0.0) - ring.at(0.0)).norm() < 1e-6);
     }
 
     #[test]

@@ -18,6 +18,8 @@ const LOOK: f64 = 0.03;
 const CLEAR_STEPS: usize = 60;
 /// Steps of moving rows that cross each other apart.
 const APART_STEPS: usize = 12;
+/// Steps in which collars and hoods only rise before they also widen.
+const HEAD_LIFTS: usize = 8;
 /// How far a piece placed by its file may be pushed [m].
 const LARGEST_PUSH: f64 = 0.3;
 
@@ -27,6 +29,10 @@ pub(crate) struct Placement {
     /// Positions of each meshed piece's vertices [m].
     pub positions: Vec<Vec<Vec3>>,
 }
+
+/// A way a row was placed: how deep it is in the skin [m] and how often it crosses it, what was
+/// asked, and where its pieces came to lie [m].
+type Attempt = ((f64, usize), Fit, Vec<Vec<Vec3>>);
 
 struct Placer<'a> {
     draft: &'a Draft,
@@ -125,7 +131,7 @@ impl Placer<'_> {
     fn place_row(&mut self, row: &Row, start: Fit) -> Fit {
         let placed: Vec<Vec3> = self.positions.iter().flatten().copied().collect();
         let mut fit = start;
-        let mut best: Option<((f64, usize), Fit, Vec<Vec<Vec3>>)> = None;
+        let mut best: Option<Attempt> = None;
         for step in 0..CLEAR_STEPS {
             let around = Surroundings {
                 wearer: self.wearer,
@@ -150,7 +156,7 @@ impl Placer<'_> {
             match row.part {
                 // Sleeves slide off the shoulder, collars and hoods rise off it.
                 BodyPart::LeftArm | BodyPart::RightArm if even => fit.lift -= 0.01,
-                BodyPart::Head if even => fit.lift += 0.005,
+                BodyPart::Head if even || step < HEAD_LIFTS => fit.lift += 0.005,
                 BodyPart::LeftArm | BodyPart::RightArm => fit.distance += 0.002,
                 _ => fit.distance += depth.clamp(0.003, 0.02),
             }

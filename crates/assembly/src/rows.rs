@@ -107,11 +107,13 @@ pub(crate) fn ties(meshes: &PieceMeshes, laid: &[Laid]) -> Vec<Tie> {
         .collect()
 }
 
-/// Parts that share heights above the floor are laid out together; each arm has its own.
+/// Parts that share heights above the floor are laid out together; each arm has its own, and
+/// what is worn on the head stands on the base of the neck, not in the neckline.
 fn family(part: BodyPart) -> usize {
     match part {
         BodyPart::LeftArm => 1,
         BodyPart::RightArm => 2,
+        BodyPart::Head => 3,
         _ => 0,
     }
 }
@@ -138,7 +140,7 @@ pub(crate) fn set_heights(
     let count = laid.len();
     let mut links = Links::new(count);
     let mut pulls: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
-    let mut reaches_arm = vec![false; count];
+    let mut reaches_upward = vec![false; count];
     for tie in ties {
         let [a, b] = tie.pieces;
         let (Some(x), Some(y)) = (wrapped(&roles[a]), wrapped(&roles[b])) else {
@@ -150,8 +152,8 @@ pub(crate) fn set_heights(
             pulls[a].push((b, difference));
             pulls[b].push((a, -difference));
         } else {
-            reaches_arm[a] = true;
-            reaches_arm[b] = true;
+            reaches_upward[a] = true;
+            reaches_upward[b] = true;
         }
     }
     for _ in 0..SWEEPS {
@@ -170,7 +172,12 @@ pub(crate) fn set_heights(
         if members.is_empty() {
             continue;
         }
-        let lift = group_lift(&members, laid, roles, (draft, meshes, wearer, &reaches_arm));
+        let lift = group_lift(
+            &members,
+            laid,
+            roles,
+            (draft, meshes, wearer, &reaches_upward),
+        );
         for &k in &members {
             laid[k].rise += lift;
         }
@@ -182,14 +189,15 @@ fn group_lift(
     members: &[usize],
     laid: &[Laid],
     roles: &[Role],
-    (draft, meshes, wearer, reaches_arm): (&Draft, &PieceMeshes, &Wearer, &[bool]),
+    (draft, meshes, wearer, reaches_upward): (&Draft, &PieceMeshes, &Wearer, &[bool]),
 ) -> f64 {
     let told: Vec<f64> = members
         .iter()
         .filter_map(|&k| {
             let (part, _, level) = wrapped(&roles[k])?;
             // On an arm the level counts from the shoulder outward, against the frame.
-            let height = if family(part) == 0 { level? } else { -level? };
+            let arm = matches!(part, BodyPart::LeftArm | BodyPart::RightArm);
+            let height = if arm { -level? } else { level? };
             Some(height - laid[k].rise)
         })
         .collect();
@@ -204,23 +212,20 @@ fn group_lift(
             .map(|&k| laid[k].span()[1])
             .fold(f64::NEG_INFINITY, f64::max)
     };
-    if members.iter().all(|&k| part_of(k).map(family) != Some(0)) {
-        return -top_of(&|_| true);
-    }
     let levels = &wearer.levels;
+    match members.first().and_then(|&k| part_of(k)) {
+        Some(BodyPart::LeftArm | BodyPart::RightArm) => return -top_of(&|_| true),
+        Some(BodyPart::Head) => {
+            let bottoms = members.iter().map(|&k| laid[k].span()[0]);
+            return levels.neck - bottoms.fold(f64::INFINITY, f64::min);
+        }
+        _ => {}
+    }
     let trunk = top_of(&|k| part_of(k) == Some(BodyPart::Trunk));
-    let head = members.iter().any(|&k| part_of(k) == Some(BodyPart::Head));
-    let is_top = head
-        || members.iter().any(|&k| reaches_arm[k])
+    let is_top = members.iter().any(|&k| reaches_upward[k])
         || has_shoulder_seam(members, laid, roles, (draft, meshes));
     if is_top && trunk.is_finite() {
         levels.neck - trunk
-    } else if is_top {
-        let bottom = members
-            .iter()
-            .map(|&k| laid[k].span()[0])
-            .fold(f64::INFINITY, f64::min);
-        levels.neck - bottom
     } else {
         levels.waist + 0.01 - top_of(&|_| true)
     }

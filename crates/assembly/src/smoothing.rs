@@ -18,9 +18,9 @@ const NARROW_EAR: f64 = 1.25;
 pub(crate) fn relax(planar: &mut Planar, frame: &Frame, field: &SizeField, sweeps: usize) {
     for _ in 0..sweeps {
         let stars = planar.stars();
-        for v in frame.fixed..planar.points.len() {
-            if let Some(target) = smoothed(planar, field, v, &stars[v]) {
-                move_towards(planar, v, &stars[v], target);
+        for (v, star) in stars.iter().enumerate().skip(frame.fixed) {
+            if let Some(target) = smoothed(planar, field, v, star) {
+                move_towards(planar, v, star, target);
             }
         }
         planar.make_delaunay();

@@ -14,6 +14,10 @@ const FIRST_DISTANCE: f64 = 0.012;
 const BAND: f64 = 0.03;
 /// Distance between neighbouring pieces of a row, as a share of their places' spread.
 const SPREAD: f64 = 1.02;
+/// Distance that rings round the trunk keep from the arms [m].
+const ARM_CLEARANCE: f64 = 0.015;
+/// Room for folds below which a ring is not folded [m].
+const SMALLEST_FOLD: f64 = 0.04;
 /// Distance that pieces of one leg keep from the middle of the body [m].
 const MIDDLE_CLEARANCE: f64 = 0.006;
 
@@ -144,13 +148,26 @@ fn ring_for(
         .into_iter()
         .map(|p| frame.across(p, 0))
         .collect();
+    let length = row.girth * SPREAD + 0.01;
     let hull = perimeter(&convex_hull(points.clone()));
-    let wanted = (row.girth * SPREAD + 0.01 - hull) / std::f64::consts::TAU;
-    OutlineCurve::ring(
-        &points,
-        Vec2::zeros(),
-        wanted.max(FIRST_DISTANCE) + distance,
-    )
+    let wanted = ((length - hull) / std::f64::consts::TAU).max(FIRST_DISTANCE) + distance;
+    let ring = OutlineCurve::ring(&points, Vec2::zeros(), wanted);
+    if row.part != BodyPart::Trunk {
+        return ring;
+    }
+    // Wide skirts would meet the arms: they are laid in folds between body and arms.
+    let free = obstacles(row.part, &skin_only, frame, band, |_, l| arm(l))
+        .into_iter()
+        .map(|p| frame.across(p, 0).norm())
+        .fold(f64::INFINITY, f64::min)
+        - ARM_CLEARANCE;
+    let close = OutlineCurve::ring(&points, Vec2::zeros(), FIRST_DISTANCE + distance);
+    let room = free - close.reach(Vec2::zeros());
+    if ring.reach(Vec2::zeros()) <= free || room < SMALLEST_FOLD {
+        return ring;
+    }
+    let base = FIRST_DISTANCE + distance + 0.3 * room;
+    OutlineCurve::ring(&points, Vec2::zeros(), base).folded(length, 0.65 * room)
 }
 
 fn wrap_ring(

@@ -196,3 +196,69 @@ fn the_same_draft_stands_the_same() {
     assert_eq!(a.garment.positions, b.garment.positions);
     assert_eq!(a.diagnostics, b.diagnostics);
 }
+
+#[test]
+fn a_very_wide_skirt_is_laid_in_folds_between_body_and_arms() {
+    let doll = Doll::new();
+    let panel = polygon(&[[-1.1, 0.0], [1.1, 0.0], [1.1, 0.5], [-1.1, 0.5]]);
+    let draft = support::draft(
+        vec![
+            piece(
+                0,
+                "front",
+                panel.clone(),
+                worn(BodyPart::Trunk, Facing::Front),
+            ),
+            piece(1, "back", panel, worn(BodyPart::Trunk, Facing::Back)),
+        ],
+        vec![
+            (
+                vec![support::span(0, 1, 0.0, 1.0)],
+                vec![support::span(1, 3, 1.0, 0.0)],
+            ),
+            (
+                vec![support::span(0, 3, 0.0, 1.0)],
+                vec![support::span(1, 1, 1.0, 0.0)],
+            ),
+        ],
+    );
+    let made = made(&draft, &doll);
+    assert_eq!(made.body_intersections, 0, "{:?}", made.diagnostics);
+    assert_eq!(made.panel_intersections, 0, "{:?}", made.diagnostics);
+}
+
+#[test]
+fn a_collar_stands_round_the_neck() {
+    let doll = Doll::new();
+    let mut draft = tee();
+    let band = polygon(&[[-0.21, 0.0], [0.21, 0.0], [0.21, 0.06], [-0.21, 0.06]]);
+    draft.pieces.push(piece(
+        4,
+        "collar",
+        band,
+        worn(BodyPart::Head, Facing::Around),
+    ));
+    let span = support::span;
+    // Closed at the back: from the middle of the back neck once round by the wearer's right.
+    let neck = vec![
+        span(1, 4, 0.5, 0.0),
+        span(0, 4, 1.0, 0.0),
+        span(1, 4, 1.0, 0.5),
+    ];
+    draft
+        .seams
+        .push(support::seam(10, vec![span(4, 0, 0.0, 1.0)], neck));
+    draft.seams.push(support::seam(
+        11,
+        vec![span(4, 1, 0.0, 1.0)],
+        vec![span(4, 3, 1.0, 0.0)],
+    ));
+    let made = made(&draft, &doll);
+    assert_eq!(made.body_intersections, 0, "{:?}", made.diagnostics);
+    assert_eq!(made.panel_intersections, 0, "{:?}", made.diagnostics);
+    let middle = centre(&made, "collar");
+    assert!(middle.x.abs() < 0.01 && middle.z.abs() < 0.06, "{middle}");
+    assert!((1.38..1.6).contains(&middle.y), "{middle}");
+    let report = sanity(&draft, &made.garment);
+    assert!(report.is_sound(), "{report:?}");
+}
