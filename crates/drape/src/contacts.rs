@@ -3,7 +3,7 @@
 use crate::laws::contact::{ContactLaw, ContactPlane};
 use crate::{Model, State};
 use rayon::prelude::*;
-use toile_geometry::{ClosestPoint, SurfaceTree, Vec3, closest_point_on_triangle};
+use toile_geometry::{ClosestPoint, Feature, SurfaceTree, Vec3, closest_point_on_triangle};
 
 /// One sample near one surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,9 +37,12 @@ struct Memory {
 /// Planes are kept from this many offsets away, so that a step is stopped before it lands.
 const REACH_IN_OFFSETS: f64 = 2.5;
 
-/// A second surface closer than the offset is kept when its normal is turned by more than 60
-/// degrees (cosine 0.5) from the first: the sample lies in a crease.
-const CREASE_COSINE: f64 = 0.5;
+/// Two places of a surface are told apart when the directions to them differ by more than 15
+/// degrees (cosine 0.966): nearer ones are the same place seen through two facets.
+const SAME_PLACE_COSINE: f64 = 0.966;
+
+/// Places of one surface that may hold a sample: a corner of three walls.
+const MOST_PLACES: usize = 4;
 
 impl Contacts {
     /// Finds the contacts of the present positions. Exact: a sample is skipped only when the
@@ -130,15 +133,28 @@ fn find(
     if closest.signed_distance > reach {
         return;
     }
+    let others = if closest.signed_distance.abs() < model.contact.offset {
+        crease(
+            &model.colliders[surface],
+            place,
+            &closest,
+            model.contact.offset,
+        )
+    } else {
+        Vec::new()
+    };
     let normal = model.contact.stiffness * sample.area;
+    // In a crease the walls hold the sample; friction on a wall that changes from look to look
+    // would only make it chatter.
+    let friction = if model.contact.friction && others.is_empty() {
+        sample.friction
+    } else {
+        0.0
+    };
     let law = ContactLaw {
         normal,
         tangential: 0.5 * normal,
-        friction: if model.contact.friction {
-            sample.friction
-        } else {
-            0.0
-        },
+        friction,
     };
     let plane = |c: &ClosestPoint, force: f64| ContactPlane {
         origin: c.point + c.normal * model.contact.offset,
@@ -153,55 +169,64 @@ fn find(
         law,
         primary: true,
     });
-    if closest.signed_distance.abs() < model.contact.offset
-        && let Some(second) = crease(
-            &model.colliders[surface],
-            place,
-            &closest,
-            model.contact.offset,
-        )
-    {
+    for other in &others {
         out.push(Contact {
             sample: at as u32,
-            plane: plane(&second, 0.0),
+            plane: plane(other, 0.0),
             law,
             primary: false,
         });
     }
 }
 
-/// The nearest part of the surface within `reach` that faces another way than `first`.
-fn crease(
-    tree: &SurfaceTree,
-    place: Vec3,
-    first: &ClosestPoint,
-    reach: f64,
-) -> Option<ClosestPoint> {
-    let mut best: Option<ClosestPoint> = None;
+/// Places of the surface besides `first` where its distance to `place` is least among their
+/// surroundings and below `reach`: the other walls of a crease the sample lies in.
+///
+/// Seen from outside, a least distance lies inside a face, or on an edge or corner that is the
+/// closest point of all its triangles.
+fn crease(tree: &SurfaceTree, place: Vec3, first: &ClosestPoint, reach: f64) -> Vec<ClosestPoint> {
+    let mut candidates: Vec<(ClosestPoint, Feature)> = Vec::new();
     for triangle in tree.near_box(place, place, reach) {
         let corners = tree.mesh().corners(triangle as usize);
-        let (weights, _) = closest_point_on_triangle(place, corners);
+        let (weights, feature) = closest_point_on_triangle(place, corners);
         let point = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
         let offset = place - point;
         let distance = offset.norm();
-        let face = (corners[1] - corners[0])
-            .cross(&(corners[2] - corners[0]))
-            .normalize();
-        if distance >= reach || distance < 1e-9 || offset.dot(&face) <= 0.0 {
-            continue;
-        }
-        let normal = offset / distance;
-        if normal.dot(&first.normal) < CREASE_COSINE
-            && best.is_none_or(|b| distance < b.signed_distance)
-        {
-            best = Some(ClosestPoint {
+        let face = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+        if distance < reach && distance > 1e-9 && offset.dot(&face) > 0.0 {
+            let normal = offset / distance;
+            let near = ClosestPoint {
                 point,
                 signed_distance: distance,
                 normal,
                 triangle,
                 weights,
-            });
+            };
+            candidates.push((near, feature));
         }
     }
-    best
+    candidates.sort_by(|(a, _), (b, _)| {
+        a.signed_distance
+            .total_cmp(&b.signed_distance)
+            .then(a.triangle.cmp(&b.triangle))
+    });
+    let mut walls: Vec<ClosestPoint> = Vec::new();
+    for (near, feature) in &candidates {
+        let sharing = candidates
+            .iter()
+            .filter(|(c, _)| (c.point - near.point).norm() < 1e-9)
+            .count();
+        let least = match feature {
+            Feature::Face => true,
+            Feature::Edge(_) => sharing >= 2,
+            Feature::Corner(_) => sharing >= 3,
+        };
+        let known = std::iter::once(first)
+            .chain(&walls)
+            .any(|w| w.normal.dot(&near.normal) > SAME_PLACE_COSINE);
+        if least && !known && walls.len() + 1 < MOST_PLACES {
+            walls.push(*near);
+        }
+    }
+    walls
 }
