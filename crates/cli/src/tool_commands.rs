@@ -124,7 +124,7 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
             row.name,
             row.asked * scale,
             row.got * scale,
-            (row.got - row.asked) * scale,
+            rounded((row.got - row.asked) * scale),
         ));
     }
     output.say(format!(
@@ -137,4 +137,9 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         .map(|row| json!({ "name": row.name, "asked": row.asked, "got": row.got, "unit": if row.angle { "rad" } else { "m" } }))
         .collect();
     Ok(json!({ "files": [body.out], "measurements": listed }))
+}
+
+/// To two decimals, and no negative zero.
+fn rounded(value: f64) -> f64 {
+    (value * 100.0).round() / 100.0 + 0.0
 }

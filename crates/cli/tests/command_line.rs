@@ -1,0 +1,184 @@
+//! The `toile` command as a person runs it.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn patterns() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../patterns")
+}
+
+fn toile(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_toile"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+fn words(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+#[test]
+fn help_states_units_and_defaults() {
+    let folder = tempfile::tempdir().unwrap();
+    let help = words(&toile(folder.path(), &["--help"]).stdout);
+    for task in [
+        "make", "drape", "check", "nest", "mesh", "body", "convert", "replay",
+    ] {
+        assert!(help.contains(task), "{help}");
+        let help = words(&toile(folder.path(), &[task, "--help"]).stdout);
+        assert!(
+            help.contains("efault") || help.contains("content"),
+            "{task}: {help}"
+        );
+    }
+    let help = words(&toile(folder.path(), &["mesh", "--help"]).stdout);
+    assert!(
+        help.contains("[default: 10mm]") && help.contains("(m)"),
+        "{help}"
+    );
+}
+
+#[test]
+fn bad_input_exits_with_2_and_says_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let shirt = patterns().join("t-shirt.toile.json");
+    let shirt = shirt.to_str().unwrap();
+    std::fs::write(
+        folder.path().join("broken.json"),
+        "{\"toile\": 1, \"panels\"",
+    )
+    .unwrap();
+    let cases: [(&[&str], &[&str]); 7] = [
+        (&["make", "gone.json"], &["gone.json", "spelling"]),
+        (&["make", "broken.json"], &["broken.json", "line 1"]),
+        (&["make", shirt, "--size", "XXL"], &["XXL", "S, M, L, XL"]),
+        (&["make", shirt, "--fabric", "silk"], &["silk", "jersey"]),
+        (&["make", shirt, "--body", "nobody"], &["nobody"]),
+        (&["make", shirt, "--width", "12"], &["12", "mm, cm, m, in"]),
+        (
+            &["mesh", shirt, "--edge", "9m", "--out", "m.obj"],
+            &["edge length"],
+        ),
+    ];
+    for (arguments, expected) in cases {
+        let output = toile(folder.path(), arguments);
+        let error = words(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
+        for word in expected {
+            assert!(error.contains(word), "{arguments:?}: {error}");
+        }
+    }
+    let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
+    assert_eq!(left.len(), 1, "nothing was written");
+}
+
+#[test]
+fn failure_to_write_exits_with_1() {
+    let folder = tempfile::tempdir().unwrap();
+    let shirt = patterns().join("t-shirt.toile.json");
+    let output = toile(
+        folder.path(),
+        &[
+            "mesh",
+            shirt.to_str().unwrap(),
+            "--edge",
+            "3cm",
+            "--out",
+            "no/such/m.obj",
+        ],
+    );
+    assert_eq!(output.status.code(), Some(1), "{}", words(&output.stderr));
+}
+
+#[test]
+fn json_is_one_report_on_stdout() {
+    let folder = tempfile::tempdir().unwrap();
+    let shirt = patterns().join("t-shirt.toile.json");
+    let shirt = shirt.to_str().unwrap();
+    let output = toile(
+        folder.path(),
+        &["nest", shirt, "--width", "140cm", "--json"],
+    );
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["ok"], true);
+    assert_eq!(report["markers"][0]["width_m"], 1.4);
+    assert_eq!(report["markers"][0]["sound"], true);
+    assert!(folder.path().join("out/marker.svg").is_file());
+    let output = toile(folder.path(), &["--json", "check", "gone.json"]);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["ok"], false);
+    assert!(report["error"].as_str().unwrap().contains("gone.json"));
+}
+
+#[test]
+fn patterns_are_checked_converted_and_converted_back() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["t-shirt", "gathered-skirt", "trousers", "poncho"] {
+        let pattern = patterns().join(format!("{name}.toile.json"));
+        let pattern = pattern.to_str().unwrap();
+        let output = toile(folder.path(), &["check", pattern]);
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "{name}: {}",
+            words(&output.stderr)
+        );
+        for (from, to) in [
+            (pattern, "a.json"),
+            ("a.json", "b.toile.json"),
+            (pattern, "c.toile.json"),
+        ] {
+            let output = toile(folder.path(), &["convert", from, to]);
+            assert_eq!(
+                output.status.code(),
+                Some(0),
+                "{name}: {}",
+                words(&output.stderr)
+            );
+        }
+        let output = toile(folder.path(), &["check", "b.toile.json"]);
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "{name}: {}",
+            words(&output.stderr)
+        );
+    }
+    let native = std::fs::read_to_string(folder.path().join("a.json")).unwrap();
+    assert!(native.contains("\"panels\"") && !native.contains("\"toile\""));
+}
+
+#[test]
+fn bodies_are_made_from_a_figure_or_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = r#"{"toile":1,"kind":"measurements","unit":"cm","measurements":{"waist":80}}"#;
+    std::fs::write(folder.path().join("me.json"), table).unwrap();
+    let output = toile(
+        folder.path(),
+        &[
+            "body",
+            "--figure",
+            "woman",
+            "--measurements",
+            "me.json",
+            "--out",
+            "me.obj",
+            "--json",
+        ],
+    );
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rows = report["measurements"].as_array().unwrap();
+    let waist = rows.iter().find(|row| row["name"] == "waist").unwrap();
+    assert_eq!(waist["asked"], 0.8);
+    assert!((waist["got"].as_f64().unwrap() - 0.8).abs() < 1e-3);
+    assert!(folder.path().join("me.obj").is_file());
+    let output = toile(
+        folder.path(),
+        &["body", "--figure", "giant", "--out", "x.obj"],
+    );
+    assert_eq!(output.status.code(), Some(2));
+}

@@ -1,0 +1,304 @@
+//! Commands, history and journal: invariants after any sequence.
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use proptest::prelude::*;
+use std::sync::Arc;
+use support::{BAND, band};
+use toile_body::Figure;
+use toile_pattern::{Edit, PanelEdit, PointPlace};
+use toile_session::{
+    BodyChoice, Command, Event, Project, Quality, Session, SessionError, Silent, journal_lines,
+    read_journal,
+};
+
+fn opened() -> (Session, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = band(folder.path());
+    let mut session = Session::new();
+    session
+        .execute(Command::OpenPattern { path }, &mut Silent)
+        .unwrap();
+    (session, folder)
+}
+
+fn move_point(session: &Session, which: usize, to: [f64; 2]) -> Edit {
+    let panel = &session.project().pattern.panels[which % 2];
+    Edit::InPanel {
+        panel: panel.id,
+        edit: PanelEdit::MovePoint {
+            point: panel.points[which / 2 % panel.points.len()].id,
+            place: PointPlace::at(to[0], to[1]),
+        },
+    }
+}
+
+fn edit(edits: Vec<Edit>, drag: Option<u64>) -> Command {
+    Command::Edit {
+        edits,
+        label: "Move point".into(),
+        drag,
+    }
+}
+
+fn run(session: &mut Session, command: Command) -> Result<Vec<Event>, SessionError> {
+    session.execute(command, &mut Silent)
+}
+
+#[test]
+fn a_drag_is_one_step() {
+    let (mut session, _folder) = opened();
+    let start = session.project().clone();
+    for k in 0..20 {
+        let step = move_point(&session, 0, [-0.2, -0.05 - 0.001 * f64::from(k)]);
+        run(&mut session, edit(vec![step], Some(7))).unwrap();
+    }
+    let next = move_point(&session, 2, [0.2, -0.05]);
+    run(&mut session, edit(vec![next], Some(8))).unwrap();
+    assert_eq!(session.can_undo(), Some("Move point"));
+    run(&mut session, Command::Undo).unwrap();
+    run(&mut session, Command::Undo).unwrap();
+    assert_eq!(*session.project(), start);
+    assert_eq!(session.can_undo(), None);
+    assert_eq!(session.can_redo(), Some("Move point"));
+}
+
+#[test]
+fn refused_commands_change_nothing() {
+    let (mut session, folder) = opened();
+    let good = move_point(&session, 0, [-0.25, -0.04]);
+    let bad = Edit::RemoveSize("XS".into());
+    let missing = folder.path().join("nobody.yaml");
+    let refused = [
+        edit(vec![good, bad], None),
+        Command::SetSize {
+            size: Some("XXL".into()),
+        },
+        Command::SetFabric {
+            fabric: Some("silk".into()),
+        },
+        Command::SetWidth {
+            width: Some(f64::NAN),
+        },
+        Command::SetWidth { width: Some(-1.0) },
+        Command::SetBody {
+            figure: None,
+            measurements: Some(missing.clone()),
+        },
+        Command::OpenPattern { path: missing },
+        Command::Undo,
+        Command::Redo,
+        Command::Export {
+            dir: folder.path().join("out"),
+        },
+    ];
+    let (before, revision, journal) = (
+        session.project().clone(),
+        session.revision(),
+        session.journal().to_vec(),
+    );
+    for command in refused {
+        let error = run(&mut session, command.clone()).unwrap_err();
+        assert!(error.is_bad_input(), "{command:?}: {error}");
+        assert!(!error.to_string().is_empty());
+        assert_eq!(*session.project(), before, "{command:?}");
+        assert_eq!(session.revision(), revision);
+        assert_eq!(session.journal(), journal);
+    }
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
+fn bodies_and_sizes_decide_the_measurements() {
+    let (mut session, folder) = opened();
+    let waist = |session: &Session| {
+        let project = session.project();
+        [project.wearer(), project.drafted_to()].map(|t| t.get("waist").unwrap())
+    };
+    assert_eq!(session.project().figure(), Figure::Woman);
+    assert_eq!(waist(&session), [0.84, 0.84]);
+    run(
+        &mut session,
+        Command::SetSize {
+            size: Some("L".into()),
+        },
+    )
+    .unwrap();
+    assert_eq!(waist(&session), [0.9, 0.9]);
+    // A file decides the body; the named size still decides the draft.
+    let file = folder.path().join("me.yaml");
+    std::fs::write(&file, "body:\n  waist: 87\n").unwrap();
+    run(
+        &mut session,
+        Command::SetBody {
+            figure: Some(Figure::Man),
+            measurements: Some(file),
+        },
+    )
+    .unwrap();
+    assert_eq!(waist(&session), [0.87, 0.9]);
+    run(&mut session, Command::SetSize { size: None }).unwrap();
+    assert_eq!(waist(&session), [0.87, 0.87]);
+    assert_eq!(session.project().figure(), Figure::Man);
+    run(
+        &mut session,
+        Command::SetBody {
+            figure: Some(Figure::Mean),
+            measurements: None,
+        },
+    )
+    .unwrap();
+    assert_eq!(session.project().body, BodyChoice::Sample(Figure::Mean));
+    assert!((waist(&session)[0] - 0.845).abs() < 1e-12);
+}
+
+#[test]
+fn a_size_that_is_edited_away_is_no_longer_chosen() {
+    let (mut session, _folder) = opened();
+    let size = Some("L".to_owned());
+    run(&mut session, Command::SetSize { size }).unwrap();
+    run(&mut session, edit(vec![Edit::RemoveSize("L".into())], None)).unwrap();
+    assert_eq!(session.project().size, None);
+    run(&mut session, Command::Undo).unwrap();
+    assert_eq!(session.project().size.as_deref(), Some("L"));
+}
+
+#[test]
+fn a_saved_pattern_opens_as_the_same_pattern() {
+    let (mut session, folder) = opened();
+    let path = folder.path().join("saved.toile.json");
+    let move_it = move_point(&session, 3, [0.21, -0.05]);
+    run(&mut session, edit(vec![move_it], None)).unwrap();
+    run(&mut session, Command::SavePattern { path: path.clone() }).unwrap();
+    let mut again = Session::new();
+    run(&mut again, Command::OpenPattern { path }).unwrap();
+    assert_eq!(again.project().pattern, session.project().pattern);
+}
+
+#[test]
+fn damaged_journals_are_refused_with_their_line() {
+    let text = "{\"command\":\"check\"}\n\n{\"command\":\"fly\"}\n";
+    let error = read_journal(text).unwrap_err().to_string();
+    assert!(error.contains("line 3"), "{error}");
+}
+
+#[test]
+fn faults_keep_a_garment_from_being_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("crossed.toile.json");
+    std::fs::write(
+        &path,
+        BAND.replace("[\"half / 2\", 4]", "[\"-half / 2\", -9]"),
+    )
+    .unwrap();
+    let mut session = Session::new();
+    run(&mut session, Command::OpenPattern { path }).unwrap();
+    let events = run(&mut session, Command::Check).unwrap();
+    assert!(
+        matches!(events[0], Event::Checked { errors, .. } if errors > 0),
+        "{events:?}"
+    );
+    for command in [Command::Nest, Command::Assemble, Command::Drape] {
+        let error = run(&mut session, command).unwrap_err();
+        assert!(error.is_bad_input());
+        assert!(error.to_string().contains("crossed.toile.json"), "{error}");
+    }
+}
+
+#[test]
+fn snapshots_give_back_what_they_derived() {
+    let (mut session, _folder) = opened();
+    let mut snapshot = session.snapshot();
+    let drafted = snapshot.draft();
+    session.adopt(snapshot);
+    assert!(Arc::ptr_eq(&session.draft(), &drafted));
+    // Of another project only the mannequin is taken, if it fits.
+    let mut snapshot = session.snapshot();
+    let mannequin = snapshot.mannequin().unwrap();
+    let size = Some("L".to_owned());
+    run(&mut session, Command::SetSize { size }).unwrap();
+    session.adopt(snapshot);
+    assert!(!Arc::ptr_eq(&session.draft(), &drafted));
+    assert!(!Arc::ptr_eq(&session.mannequin().unwrap(), &mannequin));
+}
+
+/// One random command; some of them are refused.
+fn any_command() -> impl Strategy<Value = (u8, usize, [f64; 2], Option<u64>)> {
+    (
+        0_u8..9,
+        0_usize..8,
+        [-0.5..0.5_f64, -0.5..0.5_f64],
+        proptest::option::of(0_u64..3),
+    )
+}
+
+fn command_of(
+    session: &Session,
+    (kind, which, place, drag): (u8, usize, [f64; 2], Option<u64>),
+) -> Command {
+    match kind {
+        0..=2 => edit(vec![move_point(session, which, place)], drag),
+        3 => Command::Undo,
+        4 => Command::Redo,
+        5 => Command::SetSize {
+            size: [None, Some("M"), Some("L"), Some("?")][which % 4].map(str::to_owned),
+        },
+        6 => Command::SetWidth {
+            width: Some(place[0]),
+        },
+        7 => Command::SetQuality {
+            quality: [Quality::Preview, Quality::Fit, Quality::Final][which % 3],
+        },
+        // Refused as a whole: the second edit names a panel that is not there.
+        _ => edit(
+            vec![
+                move_point(session, which, place),
+                Edit::SetBaseSize(Some("nobody".into())),
+                Edit::RemoveSize("nobody".into()),
+            ],
+            drag,
+        ),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+
+    /// Any commands: refused ones change nothing, undoing everything gives back the start, redoing
+    /// everything the end, and the journal replayed gives the same project.
+    #[test]
+    fn history_and_journal_hold(steps in proptest::collection::vec(any_command(), 1..40)) {
+        let (mut session, folder) = opened();
+        let start = session.project().clone();
+        for step in steps {
+            let command = command_of(&session, step);
+            let (before, revision) = (session.project().clone(), session.revision());
+            match run(&mut session, command) {
+                Ok(events) if events.is_empty() => prop_assert_eq!(session.project(), &before),
+                Ok(_) => prop_assert_eq!(session.revision(), revision + 1),
+                Err(_) => {
+                    prop_assert_eq!(session.project(), &before);
+                    prop_assert_eq!(session.revision(), revision);
+                }
+            }
+        }
+        let journal = read_journal(&journal_lines(session.journal())).unwrap();
+        prop_assert_eq!(&journal[..], session.journal());
+        let (replayed, _) = Session::replay(&journal, folder.path(), &mut Silent).unwrap();
+        prop_assert_eq!(replayed.project(), session.project());
+
+        let end = session.project().clone();
+        let mut passed: Vec<Project> = Vec::new();
+        while session.can_undo().is_some() {
+            passed.push(session.project().clone());
+            run(&mut session, Command::Undo).unwrap();
+        }
+        prop_assert_eq!(session.project(), &start);
+        while let Some(expected) = passed.pop() {
+            run(&mut session, Command::Redo).unwrap();
+            prop_assert_eq!(session.project(), &expected);
+        }
+        prop_assert_eq!(session.project(), &end);
+    }
+}

@@ -1,0 +1,242 @@
+//! The whole job on the smallest garment: files, replay, threads, progress, cancelling, live runs.
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Duration;
+use support::{band, make};
+use toile_session::{Command, Event, LiveRun, Session, SessionError, Silent, Stage, read_journal};
+
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap())
+        .map(|entry| {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            (name, std::fs::read(entry.path()).unwrap())
+        })
+        .collect()
+}
+
+/// Files without the times.
+fn lasting(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = files(folder);
+    assert!(files.remove("timing.json").is_some());
+    files
+}
+
+const NAMES: [&str; 8] = [
+    "drape.png",
+    "fit.png",
+    "garment.glb",
+    "garment.obj",
+    "journal.jsonl",
+    "marker.json",
+    "marker.svg",
+    "report.json",
+];
+
+#[test]
+fn same_input_same_bytes_replayed_and_on_any_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let pattern = band(folder.path());
+    let place = |name: &str| folder.path().join(name);
+    let with_threads = |threads: usize, dir: &str| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        let commands = make(&pattern, &place(dir));
+        let events = pool
+            .install(|| Session::new().execute_all(&commands, &mut Silent))
+            .unwrap();
+        let warned = |e: &&Event| matches!(e, Event::Warned { .. });
+        assert_eq!(events.iter().find(warned), None);
+    };
+    with_threads(1, "one");
+    with_threads(3, "three");
+    let first = lasting(&place("one"));
+    assert_eq!(first.keys().collect::<Vec<_>>(), NAMES);
+    assert_eq!(first, lasting(&place("three")));
+
+    let journal = String::from_utf8(first["journal.jsonl"].clone()).unwrap();
+    let journal = read_journal(&journal).unwrap();
+    Session::replay(&journal, &place("again"), &mut Silent).unwrap();
+    assert_eq!(first, lasting(&place("again")));
+    check_report(&first["report.json"]);
+    check_glb(&first["garment.glb"], &first["garment.obj"]);
+}
+
+fn check_report(bytes: &[u8]) {
+    let report: serde_json::Value = serde_json::from_slice(bytes).unwrap();
+    assert_eq!(report["components"], 1);
+    assert_eq!(report["non_manifold_edges"], 0);
+    assert_eq!(report["body_intersections"], 0);
+    assert_eq!(report["self_intersections"], 0);
+    assert_eq!(report["markers"][0]["sound"], true);
+    let number = |name: &str| report[name].as_f64().unwrap();
+    assert!(number("residual") <= 1e-2);
+    assert!(number("seam_gap_max_m") <= 1e-3);
+    assert!(number("kinetic_energy_J") < 1e-6);
+    assert_eq!(number("body_penetration_max_m"), 0.0);
+    for direction in ["warp", "weft"] {
+        assert!(report["strain_p99"][direction].as_f64().unwrap() < 0.05);
+        assert!(report["strain_max"][direction].as_f64().unwrap() < 0.15);
+    }
+    // Two pieces of (84 / 2 + 0.5) cm x 8 cm.
+    assert!((number("area_m2") - 2.0 * 0.425 * 0.08).abs() < 1e-12);
+    assert_eq!(
+        report["seams"][0]["lengths_m"],
+        serde_json::json!([0.08, 0.08])
+    );
+}
+
+/// Every panel is a primitive; distances of its texture coordinates are rest lengths; the OBJ has
+/// the same garment, welded.
+fn check_glb(glb: &[u8], obj: &[u8]) {
+    let file = gltf::Gltf::from_slice(glb).unwrap();
+    let blob = file.blob.as_deref().unwrap();
+    let obj = toile_interchange::read_obj(obj).unwrap();
+    let mesh = file.meshes().next().unwrap();
+    assert_eq!(mesh.primitives().len(), 2);
+    assert_eq!(obj.groups.len(), 2);
+    let mut first = 0;
+    for (primitive, group) in mesh.primitives().zip(&obj.groups) {
+        let reader = primitive.reader(|_| Some(blob));
+        let uvs: Vec<[f32; 2]> = reader.read_tex_coords(0).unwrap().into_f32().collect();
+        let positions: Vec<[f32; 3]> = reader.read_positions().unwrap().collect();
+        let indices: Vec<usize> = reader
+            .read_indices()
+            .unwrap()
+            .into_u32()
+            .map(|i| i as usize)
+            .collect();
+        assert_eq!(primitive.material().name(), Some(&*group.name));
+        assert_eq!(indices.len(), 3 * group.triangles.len());
+        for (corner, triangle) in indices.chunks(3).zip(group.triangles.clone()) {
+            for k in 0..3 {
+                let (a, b) = (corner[k], corner[(k + 1) % 3]);
+                let apart =
+                    f64::from(uvs[a][0] - uvs[b][0]).hypot(f64::from(uvs[a][1] - uvs[b][1]));
+                let flat = obj.texture_triangles[triangle].map(|v| obj.texture[v as usize]);
+                let rest = (flat[k] - flat[(k + 1) % 3]).norm();
+                assert!((apart - rest).abs() < 1e-6, "{apart} {rest}");
+                let place = obj.positions[obj.triangles[triangle][k] as usize];
+                for axis in 0..3 {
+                    assert!((f64::from(positions[a][axis]) - place[axis]).abs() < 1e-6);
+                }
+            }
+        }
+        assert_eq!(group.triangles.start, first);
+        first = group.triangles.end;
+    }
+    let welded = obj.into_triangle_mesh();
+    assert_eq!(welded.component_count(), 1);
+    assert_eq!(welded.euler_characteristic(), 0, "a ring");
+}
+
+#[test]
+fn progress_never_falls_and_every_stage_can_be_cancelled() {
+    let folder = tempfile::tempdir().unwrap();
+    let pattern = band(folder.path());
+    let commands = make(&pattern, &folder.path().join("out"));
+    let mut told: Vec<(String, f64)> = Vec::new();
+    let mut watcher = |stage: &str, share: f64, _: &str| {
+        told.push((stage.to_owned(), share));
+        ControlFlow::Continue(())
+    };
+    Session::new().execute_all(&commands, &mut watcher).unwrap();
+    assert!(told.windows(2).all(|pair| pair[0].1 <= pair[1].1));
+    assert!(told.iter().all(|(_, share)| (0.0..=1.0).contains(share)));
+    assert!(told[0].1 == 0.0 && told[told.len() - 1].1 > 0.999);
+
+    let mut stages: Vec<&str> = told.iter().map(|(stage, _)| &**stage).collect();
+    stages.dedup();
+    for stage in stages {
+        let dir = folder.path().join("cancelled");
+        let mut session = Session::new();
+        let mut watcher = |now: &str, share: f64, _: &str| match now == stage && share < 0.999 {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
+        let error = session
+            .execute_all(&make(&pattern, &dir), &mut watcher)
+            .unwrap_err();
+        assert!(matches!(error, SessionError::Cancelled), "{stage}: {error}");
+        assert!(!error.is_bad_input());
+        assert!(!dir.exists(), "{stage}");
+    }
+}
+
+#[test]
+fn what_was_not_made_is_not_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    let pattern = band(folder.path());
+    let dir = folder.path().join("out");
+    let mut session = Session::new();
+    let open = Command::OpenPattern { path: pattern };
+    let export = Command::Export { dir: dir.clone() };
+    session
+        .execute_all(&[open, Command::Nest, export.clone()], &mut Silent)
+        .unwrap();
+    let names: Vec<String> = files(&dir).into_keys().collect();
+    let expected = [
+        "journal.jsonl",
+        "marker.json",
+        "marker.svg",
+        "report.json",
+        "timing.json",
+    ];
+    assert_eq!(names, expected);
+    // An edit makes the marker stale.
+    let size = Some("L".to_owned());
+    session
+        .execute(Command::SetSize { size }, &mut Silent)
+        .unwrap();
+    let error = session.execute(export, &mut Silent).unwrap_err();
+    assert!(matches!(error, SessionError::Nothing { .. }), "{error}");
+}
+
+#[test]
+fn a_live_run_comes_to_the_same_rest() {
+    let folder = tempfile::tempdir().unwrap();
+    let pattern = band(folder.path());
+    let mut session = Session::new();
+    let commands = make(&pattern, folder.path());
+    session.execute_all(&commands[..2], &mut Silent).unwrap();
+    let job = session.garment_setup().unwrap();
+
+    let live = LiveRun::start(job.clone());
+    live.pause();
+    assert!(live.is_paused());
+    live.resume();
+    let (mut last, mut step, mut share) = (None, 0, 0.0);
+    for _ in 0..6000 {
+        let ended = live.is_finished();
+        if let Some(frame) = live.latest() {
+            assert!(frame.step >= step && frame.share >= share);
+            (step, share) = (frame.step, frame.share);
+            assert_eq!(frame.target.len(), job.garment.positions.len());
+            last = Some(frame);
+        } else if ended {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(live.failure(), None);
+    let last = last.unwrap();
+    assert_eq!((last.stage, last.share), (Stage::Finished, 1.0));
+
+    let mut run = toile_drape::GarmentRun::new(job.setup.clone()).unwrap();
+    while run.advance().unwrap().stage != Stage::Finished {}
+    assert_eq!(last.positions, run.state.positions);
+
+    // A run that is dropped, held or not, ends its thread.
+    drop(LiveRun::start(job.clone()));
+    let held = LiveRun::start(job);
+    held.pause();
+    drop(held);
+}
