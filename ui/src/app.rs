@@ -278,8 +278,14 @@ impl ToileApp {
             .show(ui, |ui| self.selection_strip(ui));
         let drawing = self.drawing.clone();
         let view = ui.available_rect_before_wrap();
+        let seen = |app: &Self| (app.table.selection, app.table.hover, app.session.revision());
+        let before = seen(self);
         for action in self.table.show(ui, &drawing) {
             self.act(action);
+        }
+        if seen(self) != before {
+            // The bars were drawn before this was known.
+            ui.ctx().request_repaint();
         }
         if drawing.panels.is_empty() {
             self.no_pattern(ui, view);

@@ -82,8 +82,8 @@ impl ToileApp {
             .or(base)
             .unwrap_or_else(|| names[0].clone());
         let before = chosen.clone();
-        let label = ui.label("Size").id;
-        ComboBox::from_id_salt("size")
+        // Right to left: the label comes after its choice to stand before it.
+        let choice = ComboBox::from_id_salt("size")
             .selected_text(&chosen)
             .width(70.0)
             .show_ui(ui, |ui| {
@@ -92,8 +92,9 @@ impl ToileApp {
                     ui.selectable_value(&mut chosen, name, words);
                 }
             })
-            .response
-            .labelled_by(label);
+            .response;
+        let label = ui.label("Size").id;
+        choice.labelled_by(label);
         if chosen != before {
             self.execute(Command::SetSize { size: Some(chosen) });
         }
@@ -199,6 +200,7 @@ impl ToileApp {
     fn quality_choice(&mut self, ui: &mut Ui) {
         let before = self.session.project().quality;
         let mut chosen = before;
+        let label = ui.label("Cloth").id;
         let response = ComboBox::from_id_salt("quality")
             .selected_text(quality_words(before))
             .width(80.0)
@@ -208,6 +210,7 @@ impl ToileApp {
                 }
             })
             .response;
+        let response = response.labelled_by(label);
         response.on_hover_text("How finely the cloth is meshed and how long it settles");
         if chosen != before {
             self.execute(Command::SetQuality { quality: chosen });
@@ -368,9 +371,9 @@ impl ToileApp {
 
 fn quality_words(quality: Quality) -> &'static str {
     match quality {
-        Quality::Preview => "Preview",
-        Quality::Fit => "Fit check",
-        Quality::Final => "Final",
+        Quality::Preview => "coarse",
+        Quality::Fit => "medium",
+        Quality::Final => "fine",
     }
 }
 

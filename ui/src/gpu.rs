@@ -296,3 +296,19 @@ fn pipeline(
         cache: None,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use eframe::wgpu::naga;
+
+    #[test]
+    fn the_shader_is_valid_and_has_the_entry_points_named_here() {
+        let module = naga::front::wgsl::parse_str(include_str!("stage.wgsl"));
+        let module = module.unwrap_or_else(|error| panic!("{error}"));
+        naga::valid::Validator::new(Default::default(), Default::default())
+            .validate(&module)
+            .unwrap();
+        let names: Vec<_> = module.entry_points.iter().map(|e| &*e.name).collect();
+        assert_eq!(names, ["corner", "rim", "surface"]);
+    }
+}

@@ -22,10 +22,16 @@ fn contains(rings: &[Vec<Vec2>], point: Vec2) -> bool {
     })
 }
 
-/// The place with most room round it, of a grid over the bounds; their middle if none is inside.
+/// Of two places with like room the one nearer to the middle is taken: room counts this much more
+/// than distance.
+const ROOM_OVER_DISTANCE: f64 = 5.0;
+
+/// The place with most room round it, of a grid over the bounds, rather near their middle; that
+/// middle if none is inside.
 pub fn roomiest(rings: &[Vec<Vec2>], bounds: &Bounds2) -> Vec2 {
     let size = bounds.max - bounds.min;
-    let mut best = ((bounds.min + bounds.max) * 0.5, 0.0);
+    let middle = (bounds.min + bounds.max) * 0.5;
+    let mut best = (middle, f64::NEG_INFINITY);
     for row in 1..TRIED {
         for column in 1..TRIED {
             let share = Vec2::new(column as f64, row as f64) / TRIED as f64;
@@ -36,8 +42,9 @@ pub fn roomiest(rings: &[Vec<Vec2>], bounds: &Bounds2) -> Vec2 {
             let room = sides(rings)
                 .map(|side| point_segment_distance(place, side))
                 .fold(f64::INFINITY, f64::min);
-            if room > best.1 {
-                best = (place, room);
+            let worth = room - (place - middle).norm() / ROOM_OVER_DISTANCE;
+            if worth > best.1 {
+                best = (place, worth);
             }
         }
     }

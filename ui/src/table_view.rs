@@ -50,6 +50,8 @@ struct PointDrag {
     pressed: ScreenPoint,
     /// Where the point was then.
     origin: PanelPoint,
+    /// Where it was last asked to go.
+    asked: PanelPoint,
     number: u64,
 }
 
@@ -212,20 +214,25 @@ impl TableView {
                 self.selection = hit;
             }
         }
-        let Some(held) = self.held else { return };
+        let Some(mut held) = self.held else { return };
         if let Some(now) = response.interact_pointer_pos() {
             // The whole way since the press, not the sum of the frames' ways, which loses moves.
             let mut way = self.camera.way(now - held.pressed.0);
             if ui.input(|input| input.modifiers.shift) {
                 way = straight(way);
             }
-            actions.push(TableAction::Move {
-                panel: held.panel,
-                point: held.point,
-                to: PanelPoint(held.origin.0 + way),
-                drag: held.number,
-            });
+            let to = PanelPoint(held.origin.0 + way);
+            if to != held.asked {
+                held.asked = to;
+                actions.push(TableAction::Move {
+                    panel: held.panel,
+                    point: held.point,
+                    to,
+                    drag: held.number,
+                });
+            }
         }
+        self.held = Some(held);
         if response.drag_stopped() || !ui.input(|input| input.pointer.primary_down()) {
             self.held = None;
         }
@@ -241,6 +248,7 @@ impl TableView {
             point,
             pressed: ScreenPoint(at),
             origin,
+            asked: origin,
             number: self.next_drag(),
         })
     }
@@ -310,7 +318,7 @@ impl TableView {
                 let Some(seen) = seen.filter(|seen| view.contains(*seen)) else {
                     continue;
                 };
-                let id = ui.id().with(match part {
+                let id = ui.scope_id().with(match part {
                     Selection::Nothing => continue,
                     Selection::Point(panel, point) => ("point", panel.0, point.0),
                     Selection::Edge(panel, edge) => ("edge", panel.0, edge.0),

@@ -1,0 +1,396 @@
+//! The window without a window: used by its accessible names, needing neither display nor GPU.
+#![allow(clippy::unwrap_used)]
+
+use egui::accesskit::{Action, ActionRequest, TreeId};
+use egui::{Key, Modifiers, Pos2, Role, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use toile_pattern::Pattern;
+use toile_session::{Command, Session, Silent};
+use toile_ui::{Selection, ToileApp};
+
+type Window = Harness<'static, ToileApp>;
+
+fn t_shirt() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../patterns/t-shirt.toile.json")
+}
+
+fn window(file: &Path) -> Window {
+    let file = file.to_owned();
+    let mut window = Harness::builder()
+        .with_size(vec2(1200.0, 800.0))
+        .with_max_steps(20)
+        .with_step_dt(1.0 / 60.0)
+        .build_eframe(move |creation| {
+            let state = creation.wgpu_render_state.as_ref();
+            ToileApp::new(&creation.egui_ctx, state, Some(&file))
+        });
+    window.run();
+    window
+}
+
+fn pattern(window: &Window) -> Pattern {
+    (*window.state().session().project().pattern).clone()
+}
+
+/// The panels and seams, which undoing must restore exactly.
+fn drawn(pattern: &Pattern) -> impl PartialEq + std::fmt::Debug + use<> {
+    (pattern.panels.clone(), pattern.seams.clone())
+}
+
+fn place(window: &Window, name: &str) -> Pos2 {
+    // The status line may say the same words; the part itself is a button.
+    let part = window.get_by_role_and_label(Role::Button, name);
+    part.rect().center()
+}
+
+fn press(window: &mut Window, name: &str) {
+    window.get_by_label(name).click();
+    window.run();
+}
+
+fn click(window: &mut Window, at: Pos2) {
+    window.hover_at(at);
+    window.drag_at(at);
+    window.drop_at(at);
+    window.run();
+}
+
+/// Drags the pointer in several moves.
+fn drag(window: &mut Window, from: Pos2, way: egui::Vec2) {
+    window.hover_at(from);
+    window.drag_at(from);
+    window.run();
+    for k in 1..=6 {
+        window.hover_at(from + way * (k as f32 / 6.0));
+        window.run();
+    }
+    window.drop_at(from + way);
+    window.run();
+}
+
+fn point_at(window: &Window, panel: &str, point: &str) -> toile_geometry::Vec2 {
+    let project = window.state().session().project();
+    let panel = project.pattern.panel_named(panel).unwrap();
+    let id = panel.point_named(point).unwrap().id;
+    project.pattern.point_places(&project.drafted_to())[&(panel.id, id)]
+}
+
+#[test]
+fn the_t_shirt_opens_and_its_parts_have_names() {
+    let window = window(&t_shirt());
+    for name in [
+        "Pattern view",
+        "3D view",
+        "Save",
+        "Undo",
+        "Redo",
+        "Drape",
+        "Point hem_centre of front",
+        "Point tip of back",
+        "Edge armhole of front",
+        "No faults",
+    ] {
+        assert!(window.query_by_label(name).is_some(), "{name}");
+    }
+    assert_eq!(window.unnamed_widgets(), Vec::<String>::new());
+    let disabled = |name| window.get_by_label(name).accesskit_node().is_disabled();
+    assert!(disabled("Undo") && disabled("Redo") && disabled("Save"));
+    assert!(disabled("Add point") && disabled("Delete point"));
+}
+
+#[test]
+fn a_point_is_dragged_and_undone_exactly() {
+    let mut window = window(&t_shirt());
+    let before = pattern(&window);
+    let old = point_at(&window, "front", "hem_side");
+    let scale = window.state().table().camera.scale;
+    let start = place(&window, "Point hem_side of front");
+    drag(&mut window, start, vec2(30.0, -18.0));
+
+    let new = point_at(&window, "front", "hem_side");
+    let way = (new - old) * scale;
+    assert!(
+        (way.x - 30.0).abs() < 0.01 && (way.y - 18.0).abs() < 0.01,
+        "{way}"
+    );
+    let seen = place(&window, "Point hem_side of front");
+    assert!((seen - start - vec2(30.0, -18.0)).length() < 0.5);
+    assert_eq!(window.state().session().can_undo(), Some("Move point"));
+    let after = pattern(&window);
+
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    window.run();
+    assert_eq!(drawn(&pattern(&window)), drawn(&before));
+    assert_eq!(
+        window.state().session().can_undo(),
+        None,
+        "a drag is one step"
+    );
+    assert!(!window.state().is_unsaved());
+
+    window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    window.run();
+    assert_eq!(drawn(&pattern(&window)), drawn(&after));
+}
+
+#[test]
+fn a_drag_replays_from_the_journal() {
+    let mut window = window(&t_shirt());
+    let start = place(&window, "Point underarm of back");
+    drag(&mut window, start, vec2(-25.0, 12.0));
+    let session = window.state().session();
+    let moves = session.journal().iter();
+    assert!(moves.filter(|c| matches!(c, Command::Edit { .. })).count() > 1);
+    let folder = tempfile::tempdir().unwrap();
+    let again = Session::replay(session.journal(), folder.path(), &mut Silent);
+    let (again, _) = again.unwrap();
+    assert_eq!(*again.project().pattern, pattern(&window));
+}
+
+#[test]
+fn shift_keeps_a_drag_level() {
+    let mut window = window(&t_shirt());
+    let old = point_at(&window, "front", "hem_side");
+    let start = place(&window, "Point hem_side of front");
+    window.event(egui::Event::ModifiersChanged(Modifiers::SHIFT));
+    drag(&mut window, start, vec2(40.0, 9.0));
+    let new = point_at(&window, "front", "hem_side");
+    assert!(new.x > old.x + 0.01);
+    assert_eq!(new.y, old.y);
+}
+
+#[test]
+fn a_point_is_added_in_the_middle_of_an_edge_and_deleted() {
+    let mut window = window(&t_shirt());
+    let before = pattern(&window);
+    let points = |window: &Window| pattern(window).panel_named("front").unwrap().outline.len();
+    let count = points(&window);
+    let middle = place(&window, "Edge side of front");
+    click(&mut window, middle + vec2(0.0, 30.0));
+    assert!(matches!(
+        window.state().table().selection,
+        Selection::Edge(..)
+    ));
+    assert!(window.query_by_label_contains("sewn by seam").is_some());
+
+    press(&mut window, "Add point");
+    assert_eq!(points(&window), count + 1);
+    let Selection::Point(panel, point) = window.state().table().selection else {
+        panic!("the new point is selected");
+    };
+    let project = window.state().session().project();
+    let name = project.pattern.panel(panel).unwrap().point(point).unwrap();
+    let label = format!("Point {} of front", name.name);
+    assert!((place(&window, &label) - middle).length() < 1.0);
+
+    press(&mut window, "Delete point");
+    assert_eq!(points(&window), count);
+    assert_eq!(window.state().table().selection, Selection::Nothing);
+    press(&mut window, "Undo");
+    press(&mut window, "Undo");
+    assert_eq!(drawn(&pattern(&window)), drawn(&before));
+}
+
+#[test]
+fn a_double_click_divides_an_edge_there() {
+    let mut window = window(&t_shirt());
+    let count = pattern(&window).panel_named("front").unwrap().outline.len();
+    let at = place(&window, "Edge side of front") + vec2(0.0, 45.0);
+    window.hover_at(at);
+    for _ in 0..2 {
+        window.drag_at(at);
+        window.drop_at(at);
+        window.hover_at(at);
+    }
+    window.run();
+    let outline = pattern(&window)
+        .panel_named("front")
+        .unwrap()
+        .outline
+        .clone();
+    assert_eq!(outline.len(), count + 1);
+    let Selection::Point(..) = window.state().table().selection else {
+        panic!("the new point is selected");
+    };
+    window.key_press(Key::Delete);
+    window.run();
+    assert_eq!(
+        pattern(&window).panel_named("front").unwrap().outline.len(),
+        count
+    );
+}
+
+#[test]
+fn arrow_keys_and_fields_move_the_selected_point() {
+    let mut window = window(&t_shirt());
+    let old = point_at(&window, "front", "tip");
+    let at = place(&window, "Point tip of front");
+    click(&mut window, at);
+    window.key_press(Key::ArrowRight);
+    window.run();
+    window.key_press_modifiers(Modifiers::SHIFT, Key::ArrowUp);
+    window.run();
+    let new = point_at(&window, "front", "tip");
+    assert!(
+        (new - old - toile_geometry::Vec2::new(0.001, 0.01)).norm() < 1e-7,
+        "{}",
+        new - old
+    );
+
+    window.get_by_label("x").focus();
+    window.run();
+    window.get_by_label("x").set_value_accesskit(21.5);
+    window.run();
+    assert!((point_at(&window, "front", "tip").x - 0.215).abs() < 1e-7);
+}
+
+#[test]
+fn a_screen_reader_can_select_a_point() {
+    let mut window = window(&t_shirt());
+    let node = window.get_by_role_and_label(Role::Button, "Point neck_centre of back");
+    let request = ActionRequest {
+        action: Action::Click,
+        target_tree: TreeId::ROOT,
+        target_node: node.accesskit_node().locate().0,
+        data: None,
+    };
+    window.event(egui::Event::AccessKitActionRequest(request));
+    window.run();
+    assert!(matches!(
+        window.state().table().selection,
+        Selection::Point(..)
+    ));
+    window.key_press(Key::Escape);
+    window.run();
+    assert_eq!(window.state().table().selection, Selection::Nothing);
+}
+
+#[test]
+fn the_table_is_panned_zoomed_and_fitted() {
+    let mut window = window(&t_shirt());
+    let name = "Point hem_side of front";
+    let fitted = place(&window, name);
+    window.hover_at(fitted);
+    window.run();
+    for delta in [120.0, 120.0, -60.0] {
+        window.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: vec2(0.0, delta),
+            modifiers: Modifiers::NONE,
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Unknown,
+        });
+        window.run();
+    }
+    assert!(
+        (place(&window, name) - fitted).length() < 1.0,
+        "zoomed at the cursor"
+    );
+    let before = window.state().table().camera;
+    for (button, pressed) in [(egui::PointerButton::Middle, true)] {
+        window.event(egui::Event::PointerButton {
+            pos: fitted,
+            button,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+    }
+    window.hover_at(fitted + vec2(35.0, 20.0));
+    window.run();
+    assert!((place(&window, name) - fitted - vec2(35.0, 20.0)).length() < 1.0);
+    assert_eq!(window.state().table().camera.scale, before.scale);
+    window.event(egui::Event::PointerButton {
+        pos: fitted,
+        button: egui::PointerButton::Middle,
+        pressed: false,
+        modifiers: Modifiers::NONE,
+    });
+    window.key_press(Key::F);
+    window.run();
+    assert!((place(&window, name) - fitted).length() < 1.0);
+    assert!(
+        window.state().session().can_undo().is_none(),
+        "views are not undone"
+    );
+}
+
+/// Runs frames until something holds: at most that many, and at most two minutes.
+fn wait(window: &mut Window, frames: usize, holds: impl Fn(&Window) -> bool) -> bool {
+    let start = Instant::now();
+    for _ in 0..frames {
+        window.step();
+        if holds(window) {
+            return true;
+        }
+        if start.elapsed() > Duration::from_secs(120) {
+            return false;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    false
+}
+
+#[test]
+fn drape_runs_live_is_held_goes_on_and_stops() {
+    let mut window = window(&t_shirt());
+    press(&mut window, "Drape");
+    let shows_cloth = |window: &Window| window.state().stage().vertices() > 100;
+    assert!(wait(&mut window, 6000, shows_cloth), "no cloth came");
+    let steps = |window: &Window| window.query_by_label_contains("step ").is_some();
+    assert!(wait(&mut window, 6000, steps), "no step came");
+    assert!(
+        window
+            .query_by_label_contains("3D view, garment of")
+            .is_some()
+    );
+    press(&mut window, "Pause");
+    assert!(window.query_by_label_contains("Paused").is_some());
+    press(&mut window, "Pause");
+    assert!(window.query_by_label_contains("Paused").is_none());
+    press(&mut window, "Stop");
+    assert!(window.query_by_label_contains("Stopped").is_some());
+    let start = place(&window, "Point hem_side of front");
+    drag(&mut window, start, vec2(10.0, 0.0));
+    assert!(window.query_by_label_contains("drape it again").is_some());
+}
+
+#[test]
+fn files_that_cannot_be_opened_say_so_in_the_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let rubbish = folder.path().join("rubbish.json");
+    std::fs::write(&rubbish, "{ \"panels\": [ 12").unwrap();
+    let missing = folder.path().join("missing.json");
+    for file in [&rubbish, &missing, &folder.path().to_path_buf()] {
+        let mut window = window(file);
+        let name = file.file_name().unwrap().to_string_lossy().into_owned();
+        assert!(
+            window
+                .query_by_label("This pattern cannot be opened")
+                .is_some()
+        );
+        assert!(window.query_by_label_contains(&name).is_some(), "{name}");
+        window.key_press(Key::D);
+        window.key_press(Key::Delete);
+        window.run();
+        assert!(window.state().session().project().pattern.panels.is_empty());
+    }
+}
+
+#[test]
+fn saving_writes_a_file_that_opens_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("mine.toile.json");
+    std::fs::copy(t_shirt(), &file).unwrap();
+    let mut window = window(&file);
+    let start = place(&window, "Point hem_side of front");
+    drag(&mut window, start, vec2(22.0, 0.0));
+    assert!(window.state().is_unsaved());
+    press(&mut window, "Save");
+    assert!(!window.state().is_unsaved());
+    assert!(window.query_by_label_contains("Saved").is_some());
+    let again = self::window(&file);
+    assert_eq!(drawn(&pattern(&again)), drawn(&pattern(&window)));
+}
