@@ -94,7 +94,7 @@ fn circle(
     notes: &mut Vec<FormatError>,
 ) -> Result<Curve, FormatError> {
     let half_chord = 0.5 * (end - start).norm();
-    if !(radius > 0.0) {
+    if radius <= 0.0 {
         return Err(params.error("the radius of a circle is not positive", "give a length"));
     }
     let mut sine = half_chord / radius;

@@ -125,7 +125,7 @@ impl<'a> At<'a> {
             value => value.as_f64(),
         };
         let number = number.ok_or_else(|| self.expected("a number"))?;
-        if !(number.abs() < 1e7) {
+        if !number.is_finite() || number.abs() >= 1e7 {
             return Err(self.error(
                 format!("{number} is too large for a garment"),
                 "check the units of the file",
