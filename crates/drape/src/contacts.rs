@@ -1,9 +1,10 @@
 //! Finding where the cloth touches solid surfaces: recomputed as it moves.
 
 use crate::laws::contact::{ContactLaw, ContactPlane};
+use crate::model::FIELD_REACH;
 use crate::{Model, State};
 use rayon::prelude::*;
-use toile_geometry::{ClosestPoint, Feature, SurfaceTree, Vec3, closest_point_on_triangle};
+use toile_geometry::Vec3;
 
 /// One sample near one surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,8 +15,6 @@ pub struct Contact {
     pub plane: ContactPlane,
     /// Its laws.
     pub law: ContactLaw,
-    /// Whether friction is kept for this contact (a sample between two surfaces sticks to one).
-    pub primary: bool,
 }
 
 /// Contacts of the present positions, and what makes finding them again cheap.
@@ -37,16 +36,13 @@ struct Memory {
 /// Planes are kept from this many offsets away, so that a step is stopped before it lands.
 const REACH_IN_OFFSETS: f64 = 2.5;
 
-/// Two places of a surface are told apart when the directions to them differ by more than 15
-/// degrees (cosine 0.966): nearer ones are the same place seen through two facets.
-const SAME_PLACE_COSINE: f64 = 0.966;
-
-/// Places of one surface that may hold a sample: a corner of three walls.
-const MOST_PLACES: usize = 4;
+/// Below this slope of the distance a sample lies on a ridge between walls that push against each
+/// other: no direction leads out.
+const FLAT_SLOPE: f64 = 0.05;
 
 impl Contacts {
-    /// Finds the contacts of the present positions. Exact: a sample is skipped only when the
-    /// distance it moved proves that it is out of reach.
+    /// Finds the contacts of the present positions. A sample is skipped only when the distance it
+    /// moved proves that it is out of reach.
     pub fn refresh(&mut self, model: &Model, state: &State, positions: &[Vec3]) {
         let unknown = Memory {
             place: Vec3::repeat(f64::INFINITY),
@@ -84,7 +80,7 @@ impl Contacts {
             let at = contact.sample as usize;
             let place = model.samples[at].place(&state.positions);
             let force = contact.law.normal_force(&contact.plane, place);
-            if contact.primary && force > 0.0 {
+            if force > 0.0 {
                 anchors[at] = Some(contact.law.slide(&contact.plane, place, force));
                 forces[at] = force;
             }
@@ -109,44 +105,38 @@ fn find(
     if moved.is_finite() && memory.clearance - moved > reach {
         return;
     }
-    // Look farther than needed, so that the next looks can be skipped.
-    let far = reach + 0.05;
-    let mut nearest: Option<(ClosestPoint, usize)> = None;
-    for (surface, tree) in model.colliders.iter().enumerate() {
-        if let Some(closest) = tree.closest_point(place, far)
-            && nearest.is_none_or(|(n, _)| closest.signed_distance < n.signed_distance)
+    let mut nearest: Option<(f64, Vec3)> = None;
+    for collider in &model.colliders {
+        if let Some(found) = collider.field.distance(place)
+            && nearest.is_none_or(|(distance, _)| found.0 < distance)
         {
-            nearest = Some((closest, surface));
+            nearest = Some(found);
         }
     }
-    let Some((closest, surface)) = nearest else {
+    let Some((distance, slope)) = nearest else {
         *memory = Memory {
             place,
-            clearance: far,
+            clearance: FIELD_REACH,
         };
         return;
     };
+    // The smooth distance may exceed the exact one by a fraction of a millimetre.
     *memory = Memory {
         place,
-        clearance: closest.signed_distance.max(0.0),
+        clearance: 0.9 * distance.max(0.0),
     };
-    if closest.signed_distance > reach {
+    if distance > reach || slope.norm() < FLAT_SLOPE {
         return;
     }
-    let others = if closest.signed_distance.abs() < model.contact.offset {
-        crease(
-            &model.colliders[surface],
-            place,
-            &closest,
-            model.contact.offset,
-        )
-    } else {
-        Vec::new()
-    };
+    let n = slope.normalize();
     let normal = model.contact.stiffness * sample.area;
-    // In a crease the walls hold the sample; friction on a wall that changes from look to look
-    // would only make it chatter.
-    let friction = if model.contact.friction && others.is_empty() {
+    let plane = ContactPlane {
+        origin: place + n * (model.contact.offset - distance),
+        normal: n,
+        anchor: state.anchors[at].unwrap_or(place),
+        lagged_normal_force: state.normal_forces[at],
+    };
+    let friction = if model.contact.friction {
         sample.friction
     } else {
         0.0
@@ -156,77 +146,9 @@ fn find(
         tangential: 0.5 * normal,
         friction,
     };
-    let plane = |c: &ClosestPoint, force: f64| ContactPlane {
-        origin: c.point + c.normal * model.contact.offset,
-        normal: c.normal,
-        anchor: state.anchors[at].unwrap_or(place),
-        lagged_normal_force: force,
-    };
-    let first = plane(&closest, state.normal_forces[at]);
     out.push(Contact {
         sample: at as u32,
-        plane: first,
+        plane,
         law,
-        primary: true,
     });
-    for other in &others {
-        out.push(Contact {
-            sample: at as u32,
-            plane: plane(other, 0.0),
-            law,
-            primary: false,
-        });
-    }
-}
-
-/// Places of the surface besides `first` where its distance to `place` is least among their
-/// surroundings and below `reach`: the other walls of a crease the sample lies in.
-///
-/// Seen from outside, a least distance lies inside a face, or on an edge or corner that is the
-/// closest point of all its triangles.
-fn crease(tree: &SurfaceTree, place: Vec3, first: &ClosestPoint, reach: f64) -> Vec<ClosestPoint> {
-    let mut candidates: Vec<(ClosestPoint, Feature)> = Vec::new();
-    for triangle in tree.near_box(place, place, reach) {
-        let corners = tree.mesh().corners(triangle as usize);
-        let (weights, feature) = closest_point_on_triangle(place, corners);
-        let point = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
-        let offset = place - point;
-        let distance = offset.norm();
-        let face = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
-        if distance < reach && distance > 1e-9 && offset.dot(&face) > 0.0 {
-            let normal = offset / distance;
-            let near = ClosestPoint {
-                point,
-                signed_distance: distance,
-                normal,
-                triangle,
-                weights,
-            };
-            candidates.push((near, feature));
-        }
-    }
-    candidates.sort_by(|(a, _), (b, _)| {
-        a.signed_distance
-            .total_cmp(&b.signed_distance)
-            .then(a.triangle.cmp(&b.triangle))
-    });
-    let mut walls: Vec<ClosestPoint> = Vec::new();
-    for (near, feature) in &candidates {
-        let sharing = candidates
-            .iter()
-            .filter(|(c, _)| (c.point - near.point).norm() < 1e-9)
-            .count();
-        let least = match feature {
-            Feature::Face => true,
-            Feature::Edge(_) => sharing >= 2,
-            Feature::Corner(_) => sharing >= 3,
-        };
-        let known = std::iter::once(first)
-            .chain(&walls)
-            .any(|w| w.normal.dot(&near.normal) > SAME_PLACE_COSINE);
-        if least && !known && walls.len() + 1 < MOST_PLACES {
-            walls.push(*near);
-        }
-    }
-    walls
 }

@@ -3,8 +3,8 @@
 
 use crate::measure::{Measures, measure};
 use crate::{
-    Cloth, ContactSettings, DrapeError, Model, RestRun, RestSettings, SewRun, SewSettings, State,
-    Workspace, merge_map,
+    Cloth, Collider, ContactSettings, DrapeError, Model, RestRun, RestSettings, SewRun,
+    SewSettings, State, Workspace, merge_map,
 };
 use std::sync::Arc;
 use toile_geometry::{SurfaceTree, Vec3};
@@ -85,7 +85,7 @@ impl GarmentRun {
     /// Meshes and materials that cannot be simulated.
     pub fn new(setup: GarmentSetup) -> Result<Self, DrapeError> {
         let mut model = Model::new("garment", &setup.cloth)?;
-        model.colliders = setup.colliders.clone();
+        model.colliders = setup.colliders.iter().cloned().map(Collider::new).collect();
         model.contact = ContactSettings {
             friction: false,
             ..setup.contact
@@ -206,8 +206,14 @@ impl GarmentRun {
     fn body_crossings(&self) -> Vec<u32> {
         let mesh = self.model.mesh(&self.state.positions);
         let mut crossing: Vec<u32> = Vec::new();
-        for tree in &self.model.colliders {
-            crossing.extend(tree.intersections_with(&mesh).iter().map(|pair| pair[0]));
+        for collider in &self.model.colliders {
+            crossing.extend(
+                collider
+                    .surface
+                    .intersections_with(&mesh)
+                    .iter()
+                    .map(|pair| pair[0]),
+            );
         }
         crossing.sort_unstable();
         crossing.dedup();
@@ -224,7 +230,7 @@ impl GarmentRun {
         let (target, count) = merge_map(placed.positions.len(), pairs);
         let merged = placed.merged(&target, count);
         let mut model = Model::new("garment", &merged)?;
-        model.colliders = self.setup.colliders.clone();
+        model.colliders = std::mem::take(&mut self.model.colliders);
         model.contact = self.setup.contact;
         model.gravity = self.setup.gravity;
         self.state = State::at_rest(&model, merged.positions);

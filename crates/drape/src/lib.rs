@@ -32,7 +32,7 @@ pub use garment::{GarmentRun, GarmentSetup, Progress, Stage};
 pub use material::Material;
 pub use measure::{Measures, measure, residual, stretch_per_triangle};
 pub use merge::merge_map;
-pub use model::{ContactSample, ContactSettings, Elastic, ElasticEnd, Model};
+pub use model::{Collider, ContactSample, ContactSettings, Elastic, ElasticEnd, Model};
 pub use newton::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 pub use pcg::PcgLimits;
 pub use rest::{RestRun, RestSettings};

@@ -85,7 +85,7 @@ pub fn measure(
         ) = top_of(&mut stretch);
     }
     let mesh = model.mesh(x);
-    for tree in &model.colliders {
+    for tree in model.colliders.iter().map(|c| &c.surface) {
         measures.body_intersections += tree.intersections_with(&mesh).len();
         let depths: Vec<f64> = x
             .par_iter()

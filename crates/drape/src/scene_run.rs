@@ -4,8 +4,8 @@ use crate::laws::elastic::ElasticLaw;
 use crate::measure::{Measures, measure};
 use crate::scene::{MethodKind, ObjectKind, Scene, SceneEnd};
 use crate::{
-    Cloth, DrapeError, Elastic, ElasticEnd, Model, RestRun, RestSettings, State, StepSettings,
-    Workspace, merge_map, step_in_time,
+    Cloth, Collider, DrapeError, Elastic, ElasticEnd, Model, RestRun, RestSettings, State,
+    StepSettings, Workspace, merge_map, step_in_time,
 };
 use std::sync::Arc;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
@@ -103,7 +103,7 @@ impl SceneRun {
             .filter(|o| o.kind == ObjectKind::Static);
         if self.model.colliders.is_empty() {
             self.model.colliders = solids
-                .map(|o| Arc::new(SurfaceTree::new(o.mesh.clone())))
+                .map(|o| Collider::new(Arc::new(SurfaceTree::new(o.mesh.clone()))))
                 .collect();
         }
         self.model.contact = self.scene.contact;

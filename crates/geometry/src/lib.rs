@@ -7,6 +7,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod curve;
+mod distance_field;
 mod ellipsoid;
 mod mesh;
 mod polygon;
@@ -23,6 +24,7 @@ mod triangle;
 mod units;
 
 pub use curve::Curve;
+pub use distance_field::DistanceField;
 pub use ellipsoid::Ellipsoid;
 pub use mesh::{MeshDefect, Topology, TriangleMesh};
 pub use polygon::{Bounds2, Location, Polygon, ring_area};

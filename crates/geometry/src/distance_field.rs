@@ -1,0 +1,262 @@
+//! A smooth signed distance to a surface: sampled on a sparse grid, blended by quadratic
+//! B-splines.
+
+use crate::{SurfaceTree, Vec3};
+use std::sync::{Arc, OnceLock};
+
+/// Nodes of a block along each axis.
+const SIDE: usize = 8;
+
+/// Blocks a field may be divided into; the cells grow until it has no more (a floor of a hundred
+/// metres needs no fine grid).
+const MOST_BLOCKS: usize = 4_000_000;
+
+/// A signed distance \[m\] with a continuous gradient, negative inside.
+///
+/// The distance to the closest point has kinks wherever two points are equally close, as in an
+/// armpit: forces along its gradient jump there. This one is sampled exactly at the nodes of a
+/// grid around the surface and inside it, and blended by quadratic B-splines over 3 x 3 x 3 nodes,
+/// so that its gradient is continuous. On a surface of principal curvatures k1, k2 it lies
+/// (k1 + k2) cell^2 / 8 above the exact distance: 0.15 mm on a 30 mm limb at cells of 6 mm.
+///
+/// Blocks of the grid are sampled when they are first asked for, so a shirt never pays for the
+/// feet; what a block holds does not depend on who asks.
+pub struct DistanceField {
+    surface: Arc<SurfaceTree>,
+    cell: f64,
+    reach: f64,
+    origin: Vec3,
+    blocks: [usize; 3],
+    /// Values of each block; none where it is far outside.
+    samples: Vec<OnceLock<Option<Box<[f64]>>>>,
+}
+
+impl DistanceField {
+    /// A field over a surface on cells of `cell` \[m\] or, where that takes too many, larger
+    /// ones, out to `reach` \[m\] from it.
+    pub fn new(surface: Arc<SurfaceTree>, cell: f64, reach: f64) -> Self {
+        let [low, high] = surface.mesh().bounds().unwrap_or_default();
+        let mut cell = cell;
+        loop {
+            let margin = Vec3::repeat(reach + 2.0 * cell);
+            let span = (high - low + 2.0 * margin) / (cell * SIDE as f64);
+            if span.map(f64::ceil).product() <= MOST_BLOCKS as f64 {
+                let blocks = [0, 1, 2].map(|k| span[k].ceil().max(1.0) as usize);
+                let mut samples = Vec::new();
+                samples.resize_with(blocks.iter().product(), OnceLock::new);
+                return Self {
+                    surface,
+                    cell,
+                    reach,
+                    origin: low - margin,
+                    blocks,
+                    samples,
+                };
+            }
+            cell *= 1.5;
+        }
+    }
+
+    fn block_corner(&self, block: usize) -> Vec3 {
+        let [nx, ny, _] = self.blocks;
+        let at = [block % nx, block / nx % ny, block / (nx * ny)];
+        self.origin + Vec3::from(at.map(|b| (b * SIDE) as f64 * self.cell))
+    }
+
+    /// Samples a block; nothing when no spline near the surface or inside it looks there.
+    fn sample_block(&self, block: usize) -> Option<Box<[f64]>> {
+        let corner = self.block_corner(block);
+        let width = SIDE as f64 * self.cell;
+        let centre = corner + Vec3::repeat(0.5 * width);
+        // Half the diagonal, and the two cells a spline looks beyond its own.
+        let near = 0.5 * width * 3f64.sqrt() + self.reach + 2.0 * self.cell;
+        let middle = self.surface.closest_point(centre, f64::INFINITY)?;
+        if middle.signed_distance > near {
+            return None;
+        }
+        let mut values = Vec::with_capacity(SIDE * SIDE * SIDE);
+        // A neighbour's distance bounds the next one's: distance changes by at most the step.
+        let mut bound = f64::INFINITY;
+        for k in 0..SIDE {
+            for j in 0..SIDE {
+                for i in 0..SIDE {
+                    // Every second row runs back, so that each step is to a neighbour.
+                    let i = if (j + k * SIDE) % 2 == 0 {
+                        i
+                    } else {
+                        SIDE - 1 - i
+                    };
+                    let j = if k % 2 == 0 { j } else { SIDE - 1 - j };
+                    let place = corner + Vec3::new(i as f64, j as f64, k as f64) * self.cell;
+                    let closest = self
+                        .surface
+                        .closest_point(place, bound)
+                        .or_else(|| self.surface.closest_point(place, f64::INFINITY));
+                    let distance = closest.map_or(f64::INFINITY, |c| c.signed_distance);
+                    bound = distance.abs() + 1.001 * self.cell + 1e-9;
+                    values.push((i + SIDE * (j + SIDE * k), distance));
+                }
+            }
+        }
+        values.sort_unstable_by_key(|&(at, _)| at);
+        Some(values.into_iter().map(|(_, distance)| distance).collect())
+    }
+
+    fn node(&self, at: [usize; 3]) -> Option<f64> {
+        let b = at.map(|a| a / SIDE);
+        if b[0] >= self.blocks[0] || b[1] >= self.blocks[1] || b[2] >= self.blocks[2] {
+            return None;
+        }
+        let block = b[0] + self.blocks[0] * (b[1] + self.blocks[1] * b[2]);
+        let values = self.samples[block]
+            .get_or_init(|| self.sample_block(block))
+            .as_ref()?;
+        let [i, j, k] = at.map(|a| a % SIDE);
+        Some(values[i + SIDE * (j + SIDE * k)])
+    }
+
+    /// Smooth signed distance \[m\] and its gradient at a point; nothing farther outside than the
+    /// field reaches.
+    pub fn distance(&self, point: Vec3) -> Option<(f64, Vec3)> {
+        let local = (point - self.origin) / self.cell;
+        if !local.iter().all(|x| *x >= 1.0 && *x < 1e9) {
+            return None;
+        }
+        let mut first = [0usize; 3];
+        let mut weights = [[0.0; 3]; 3];
+        let mut slopes = [[0.0; 3]; 3];
+        for axis in 0..3 {
+            let nearest = local[axis].round();
+            let t = local[axis] - nearest;
+            first[axis] = nearest as usize - 1;
+            let (before, after) = (0.5 - t, 0.5 + t);
+            weights[axis] = [0.5 * before * before, 0.75 - t * t, 0.5 * after * after];
+            slopes[axis] = [-before, -2.0 * t, after];
+        }
+        let mut distance = 0.0;
+        let mut gradient = Vec3::zeros();
+        for k in 0..3 {
+            for j in 0..3 {
+                for i in 0..3 {
+                    let value = self.node([first[0] + i, first[1] + j, first[2] + k])?;
+                    let (x, y, z) = (weights[0][i], weights[1][j], weights[2][k]);
+                    distance += value * x * y * z;
+                    gradient += Vec3::new(
+                        slopes[0][i] * y * z,
+                        x * slopes[1][j] * z,
+                        x * y * slopes[2][k],
+                    ) * value;
+                }
+            }
+        }
+        Some((distance, gradient / self.cell))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::TriangleMesh;
+
+    /// A ball as a subdivided octahedron.
+    fn ball(radius: f64, levels: usize) -> TriangleMesh {
+        let mut mesh = TriangleMesh {
+            positions: vec![
+                Vec3::x(),
+                -Vec3::x(),
+                Vec3::y(),
+                -Vec3::y(),
+                Vec3::z(),
+                -Vec3::z(),
+            ],
+            triangles: vec![
+                [0, 2, 4],
+                [2, 1, 4],
+                [1, 3, 4],
+                [3, 0, 4],
+                [2, 0, 5],
+                [1, 2, 5],
+                [3, 1, 5],
+                [0, 3, 5],
+            ],
+        };
+        for _ in 0..levels {
+            let mut finer = Vec::new();
+            let mut middles = std::collections::BTreeMap::new();
+            for &[a, b, c] in &mesh.triangles {
+                let [p, q, r] = [[a, b], [b, c], [c, a]].map(|[a, b]| {
+                    *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                        let middle = mesh.positions[a as usize] + mesh.positions[b as usize];
+                        mesh.positions.push(middle.normalize());
+                        mesh.positions.len() as u32 - 1
+                    })
+                });
+                finer.extend([[a, p, r], [p, b, q], [r, q, c], [p, q, r]]);
+            }
+            mesh.triangles = finer;
+        }
+        for p in &mut mesh.positions {
+            *p *= radius;
+        }
+        mesh
+    }
+
+    #[test]
+    fn a_ball_keeps_its_distance_within_the_stated_error() {
+        let radius = 0.05;
+        let field = DistanceField::new(Arc::new(SurfaceTree::new(ball(radius, 5))), 6e-3, 0.02);
+        // (k1 + k2) cell^2 / 8 = 0.18 mm, and the facets' sagitta of 0.02 mm.
+        for s in 0..400 {
+            let s = f64::from(s);
+            let direction =
+                Vec3::new((s * 0.7).sin(), (s * 1.3).cos(), (s * 2.9).sin()).normalize();
+            let place = direction * (radius + 0.018 * (s * 0.37).sin());
+            let (distance, gradient) = field.distance(place).expect("near");
+            let exact = place.norm() - radius;
+            assert!((distance - exact).abs() < 0.35e-3, "{distance} {exact}");
+            assert!(
+                (gradient - direction).norm() < 0.05,
+                "{gradient:?} {direction:?}"
+            );
+        }
+        assert!(field.distance(Vec3::repeat(1.0)).is_none());
+        assert!(field.distance(Vec3::zeros()).expect("inside").0 < -0.04);
+    }
+
+    #[test]
+    fn the_gradient_is_the_slope_and_does_not_jump_between_two_walls() {
+        let mut two = ball(0.05, 3);
+        let count = two.positions.len() as u32;
+        let other: Vec<Vec3> = two
+            .positions
+            .iter()
+            .map(|p| p + Vec3::new(0.106, 0.0, 0.0))
+            .collect();
+        two.positions.extend(other);
+        let moved: Vec<[u32; 3]> = two.triangles.iter().map(|t| t.map(|v| v + count)).collect();
+        two.triangles.extend(moved);
+        let field = DistanceField::new(Arc::new(SurfaceTree::new(two)), 6e-3, 0.02);
+        let mut last: Option<Vec3> = None;
+        for k in 0..=200 {
+            let place = Vec3::new(0.048 + 1e-2 * f64::from(k) / 200.0, 0.002, 0.001);
+            let (_, gradient) = field.distance(place).expect("near");
+            for axis in 0..3 {
+                let step = Vec3::ith(axis, 1e-7);
+                let slope = (field.distance(place + step).expect("near").0
+                    - field.distance(place - step).expect("near").0)
+                    / 2e-7;
+                assert!(
+                    (slope - gradient[axis]).abs() < 1e-4,
+                    "{slope} {}",
+                    gradient[axis]
+                );
+            }
+            // 0.05 mm further the gradient turned by no more than a few per cent.
+            assert!(
+                last.is_none_or(|l| (l - gradient).norm() < 0.05),
+                "{last:?} {gradient:?}"
+            );
+            last = Some(gradient);
+        }
+    }
+}
