@@ -66,6 +66,17 @@ const FLOOR_COLOURS: [[f64; 3]; 2] = [[0.77, 0.775, 0.78], [0.894, 0.902, 0.906]
 /// Neighbouring panels of one cloth differ by this much lightness, so that seams are seen.
 const PANEL_SHADES: [f64; 3] = [1.0, 0.93, 1.05];
 
+/// The colour of seam lines on cloth of that colour (both linear): darker on light cloth, lighter
+/// on dark.
+fn seam_ink(cloth: [f32; 3]) -> [f32; 3] {
+    // Luminance of sRGB primaries (IEC 61966-2-1).
+    let luminance = 0.2126 * cloth[0] + 0.7152 * cloth[1] + 0.0722 * cloth[2];
+    match luminance > 0.08 {
+        true => cloth.map(|c| 0.2 * c),
+        false => cloth.map(|c| 0.12 + 0.7 * c),
+    }
+}
+
 /// Unit normals of the vertices, weighted by the triangles' areas.
 fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut normals = vec![Vec3::zeros(); positions.len()];
@@ -127,8 +138,8 @@ pub struct ClothLook {
     garment: Arc<Garment>,
     /// Colour of each triangle, linear.
     colours: Vec<[f32; 3]>,
-    /// Edges at the rims of panels, by vertices of the job's garment.
-    rims: Vec<[u32; 2]>,
+    /// Edges at the rims of panels, by vertices of the job's garment, with their linear colours.
+    rims: Vec<([u32; 2], [f32; 3])>,
 }
 
 /// A garment ready to be drawn.
@@ -151,17 +162,23 @@ impl ClothLook {
             let colour = base.map(|c| linear((c * shade).clamp(0.0, 1.0)));
             colours[panel.triangles.clone()].fill(colour);
         }
-        let mut sides: BTreeMap<[u32; 2], u32> = BTreeMap::new();
-        for [a, b, c] in &garment.triangles {
+        let mut sides: BTreeMap<[u32; 2], (u32, usize)> = BTreeMap::new();
+        for (k, [a, b, c]) in garment.triangles.iter().enumerate() {
             for (from, to) in [(a, b), (b, c), (c, a)] {
-                *sides.entry([*from.min(to), *from.max(to)]).or_default() += 1;
+                sides
+                    .entry([*from.min(to), *from.max(to)])
+                    .or_insert((0, k))
+                    .0 += 1;
             }
         }
-        let rims = sides.into_iter().filter(|(_, count)| *count == 1);
+        let rims = sides.into_iter().filter(|(_, (count, _))| *count == 1);
+        let rims = rims
+            .map(|(side, (_, k))| (side, seam_ink(colours[k])))
+            .collect();
         Self {
             garment: garment.clone(),
             colours,
-            rims: rims.map(|(side, _)| side).collect(),
+            rims,
         }
     }
 
@@ -186,15 +203,14 @@ impl ClothLook {
                 corners.map(|v| Corner::new(positions[v], normals[v], *colour, Finish::Cloth)),
             );
         }
-        let ink = [0.25, 0.25, 0.27].map(linear);
-        for side in &self.rims {
+        for (side, ink) in &self.rims {
             let [a, b] = side.map(merged);
             if a == b {
                 continue;
             }
             solid.lines.extend([a, b].map(|v| {
                 let v = v as usize;
-                Corner::new(positions[v], normals[v], ink, Finish::Plain)
+                Corner::new(positions[v], normals[v], *ink, Finish::Plain)
             }));
         }
         solid

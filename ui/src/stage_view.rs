@@ -88,6 +88,11 @@ impl StageView {
         self.vertices
     }
 
+    /// Whether there is a mannequin to show.
+    pub fn has_body(&self) -> bool {
+        !self.body.is_empty()
+    }
+
     /// Looks from a side, level: 0 in front, positive toward the wearer's left [rad].
     pub fn look_from(&mut self, yaw: f64) {
         self.orbit.yaw = yaw;
@@ -118,7 +123,7 @@ impl StageView {
         ui.painter().rect_filled(view, 0.0, theme::STAGE);
         let words = match &self.renderer {
             None => "This computer offers no graphics card or driver for the 3D view",
-            Some(_) if self.body.is_empty() => empty,
+            Some(_) if !self.has_body() => empty,
             Some(_) => "",
         };
         self.draw(ui, view);

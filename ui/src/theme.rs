@@ -47,9 +47,21 @@ const SEAMS: [Color32; 10] = [
     Color32::from_rgb(0x7A, 0x6A, 0x5C),
 ];
 
+/// The second round of colours is darker by this factor, so that 20 seams differ.
+const SECOND_ROUND: f32 = 0.68;
+
 /// The colour of the seam with that number (from 1).
 pub fn seam(number: usize) -> Color32 {
-    SEAMS[number.saturating_sub(1) % SEAMS.len()]
+    let k = number.saturating_sub(1);
+    let colour = SEAMS[k % SEAMS.len()];
+    match (k / SEAMS.len()) % 2 {
+        0 => colour,
+        _ => {
+            let [red, green, blue, _] = colour.to_array();
+            let darker = |x: u8| (f32::from(x) * SECOND_ROUND) as u8;
+            Color32::from_rgb(darker(red), darker(green), darker(blue))
+        }
+    }
 }
 
 /// Font of that size [logical pixels].

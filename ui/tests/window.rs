@@ -290,24 +290,18 @@ fn the_table_is_panned_zoomed_and_fitted() {
         "zoomed at the cursor"
     );
     let before = window.state().table().camera;
-    for (button, pressed) in [(egui::PointerButton::Middle, true)] {
-        window.event(egui::Event::PointerButton {
-            pos: fitted,
-            button,
-            pressed,
-            modifiers: Modifiers::NONE,
-        });
-    }
+    let middle_button = |pressed| egui::Event::PointerButton {
+        pos: fitted,
+        button: egui::PointerButton::Middle,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    window.event(middle_button(true));
     window.hover_at(fitted + vec2(35.0, 20.0));
     window.run();
     assert!((place(&window, name) - fitted - vec2(35.0, 20.0)).length() < 1.0);
     assert_eq!(window.state().table().camera.scale, before.scale);
-    window.event(egui::Event::PointerButton {
-        pos: fitted,
-        button: egui::PointerButton::Middle,
-        pressed: false,
-        modifiers: Modifiers::NONE,
-    });
+    window.event(middle_button(false));
     window.key_press(Key::F);
     window.run();
     assert!((place(&window, name) - fitted).length() < 1.0);
