@@ -1,7 +1,7 @@
 //! Pieces as they are cut: flattened outlines with their seam allowance.
 
-use toile_geometry::{Polygon, Vec2, wound_region};
-use toile_pattern::{Piece, PieceEdge};
+use toile_geometry::{Curve, Polygon, Vec2, wound_region};
+use toile_pattern::{DartId, EdgeOrigin, Piece, PieceEdge};
 
 /// Flattened curves stay this near to the drawn ones [m].
 const FLATNESS: f64 = 1e-4;
@@ -17,7 +17,7 @@ struct SewnRing {
     allowance: Vec<f64>,
 }
 
-fn ring(edges: &[PieceEdge]) -> SewnRing {
+fn ring<'a>(edges: impl IntoIterator<Item = &'a PieceEdge>) -> SewnRing {
     let mut ring = SewnRing {
         points: Vec::new(),
         allowance: Vec::new(),
@@ -46,13 +46,52 @@ pub(crate) fn sewn_outline(piece: &Piece) -> Polygon {
     }
 }
 
-/// The line a piece is cut along, without holes [m]: the sewn outline grown by each edge's
-/// allowance, with mitred corners.
+/// The edges of an outline with every dart's mouth closed by a straight edge: the cloth inside a
+/// dart is not cut away. The mouth has the allowance of the edge it interrupts.
+fn with_closed_darts(edges: &[PieceEdge]) -> Vec<PieceEdge> {
+    let Some(first) = edges.iter().position(|edge| dart_of(edge).is_none()) else {
+        return edges.to_vec();
+    };
+    let mut closed: Vec<PieceEdge> = Vec::with_capacity(edges.len());
+    // From an edge that is no leg, so that no dart is met half-way.
+    for edge in edges[first..].iter().chain(&edges[..first]) {
+        match (dart_of(edge), closed.last_mut()) {
+            (Some(dart), Some(last)) if dart_of(last) == Some(dart) => {
+                last.curve = Curve::Line {
+                    start: last.curve.start(),
+                    end: edge.curve.end(),
+                };
+            }
+            (Some(_), Some(last)) => {
+                let seam_allowance = last.seam_allowance;
+                closed.push(PieceEdge {
+                    seam_allowance,
+                    ..edge.clone()
+                });
+            }
+            _ => closed.push(edge.clone()),
+        }
+    }
+    closed
+}
+
+/// The dart an edge is a leg of, and on which half of a folded panel.
+fn dart_of(edge: &PieceEdge) -> Option<(DartId, bool)> {
+    match edge.origin {
+        EdgeOrigin::DartLeg {
+            dart, reflected, ..
+        } => Some((dart, reflected)),
+        EdgeOrigin::Edge { .. } => None,
+    }
+}
+
+/// The line a piece is cut along, without holes [m]: the sewn outline, darts closed, grown by each
+/// edge's allowance, with mitred corners.
 ///
 /// It is the union of the outline, a rectangle outside each segment, and a kite at each outer
 /// corner, so that narrow necks and tight curves come out whole.
 pub(crate) fn cut_outline(piece: &Piece) -> Polygon {
-    let mut sewn = ring(&piece.outline);
+    let mut sewn = ring(&with_closed_darts(&piece.outline));
     if sewn.allowance.iter().all(|&a| a == 0.0) {
         return Polygon::new(sewn.points);
     }
@@ -114,8 +153,7 @@ fn corner(p: Vec2, normals: [Vec2; 2], widths: [f64; 2]) -> Option<Vec<Vec2>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_geometry::Curve;
-    use toile_pattern::{EdgeId, EdgeOrigin, PanelId, PieceId, Worn};
+    use toile_pattern::{EdgeId, PanelId, PieceId, Worn};
 
     fn piece(corners: &[[f64; 2]], allowances: &[f64]) -> Piece {
         let point = |k: usize| Vec2::from(corners[k % corners.len()]);
@@ -192,6 +230,33 @@ mod tests {
         let cut = cut_outline(&piece(&hook, &[0.01; 6]));
         assert!((cut.area().abs() - (0.32 * 0.12 + 0.12 * 0.2)).abs() < 1e-9);
         assert_eq!(cut.outer.len(), 6);
+    }
+
+    #[test]
+    fn the_cloth_inside_a_dart_is_not_cut_away() {
+        let mouth = [
+            [0.0, 0.0],
+            [0.18, 0.0],
+            [0.2, 0.1],
+            [0.22, 0.0],
+            [0.4, 0.0],
+            [0.4, 0.3],
+            [0.0, 0.3],
+        ];
+        let mut piece = piece(&mouth, &[0.02, 0.0, 0.0, 0.02, 0.02, 0.02, 0.02]);
+        for leg in 0..2 {
+            piece.outline[1 + leg].origin = EdgeOrigin::DartLeg {
+                dart: DartId(0),
+                reflected: false,
+                leg: leg as u8,
+            };
+        }
+        let whole = 0.44 * 0.34;
+        assert!((cut_outline(&piece).area().abs() - whole).abs() < 1e-9);
+        // Wherever the outline starts.
+        piece.outline.rotate_left(2);
+        assert!((cut_outline(&piece).area().abs() - whole).abs() < 1e-9);
+        assert!(sewn_outline(&piece).area() < 0.4 * 0.3 - 1e-3);
     }
 
     #[test]
