@@ -20,6 +20,8 @@ use toile_session::{Command, Event, Project, Session, Silent};
 const FRAME: Duration = Duration::from_millis(33);
 /// Share of the window's width the 3D view begins with.
 const STAGE_SHARE: f32 = 0.42;
+/// Most of the window's width that the 3D view may take.
+const STAGE_MOST: f32 = 0.6;
 
 /// The window. Documents are decided on by the session alone; this holds what is seen of them.
 pub struct ToileApp {
@@ -77,6 +79,11 @@ impl ToileApp {
     /// The session: the document and everything derived from it.
     pub fn session(&self) -> &Session {
         &self.session
+    }
+
+    /// What is found wrong with the pattern.
+    pub fn findings(&self) -> &[Diagnostic] {
+        &self.findings
     }
 
     /// The pattern view.
@@ -259,7 +266,7 @@ impl ToileApp {
             .frame(egui::Frame::new())
             .resizable(true)
             .default_size(width * STAGE_SHARE)
-            .size_range(240.0..=(width - 300.0).max(240.0))
+            .size_range(240.0..=(width * STAGE_MOST).max(240.0))
             .show(ui, |ui| self.stage_side(ui));
         egui::CentralPanel::default()
             .frame(egui::Frame::new())

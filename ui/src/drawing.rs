@@ -38,6 +38,8 @@ pub struct PanelDrawing {
     pub cloth_side: f64,
     /// Least rectangle round the panel, its mirrored half included [m].
     pub bounds: Bounds2,
+    /// Least rectangle round the half that is drawn [m].
+    pub drawn_bounds: Bounds2,
     /// The half that is drawn, filled.
     pub fill: Fill,
     /// The mirrored half of a folded panel, filled.
@@ -236,7 +238,8 @@ fn draw_panel(
     };
     let drawn = half(false);
     let bounds = Bounds2::of(piece.outline.iter().flat_map(|edge| polyline(&edge.curve)));
-    let middle = roomiest(&drawn, &Bounds2::of(drawn.iter().flatten().copied()));
+    let drawn_bounds = Bounds2::of(drawn.iter().flatten().copied());
+    let middle = roomiest(&drawn, &drawn_bounds);
     let direction = Vec2::new(piece.grain.cos(), piece.grain.sin());
     let place = |id: PointId| places.get(&(panel.id, id)).copied();
     let mut drawing = PanelDrawing {
@@ -248,6 +251,7 @@ fn draw_panel(
             false => 1.0,
         },
         bounds,
+        drawn_bounds,
         fill: fill(&drawn),
         mirrored_fill: fill(&half(true)),
         edges: Vec::new(),

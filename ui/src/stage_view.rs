@@ -25,6 +25,8 @@ pub struct StageView {
     vertices: usize,
     stale: Stale,
     wants_fit: bool,
+    /// Size of the view that the mannequin was fitted into, until it is panned or zoomed.
+    fitted: Option<egui::Vec2>,
     drawn: Option<Drawn>,
 }
 
@@ -112,13 +114,15 @@ impl StageView {
             WidgetInfo::labeled(Role::Canvas, true, words)
         });
         self.navigate(ui, &response);
-        if self.wants_fit
+        let resized = self.fitted.is_some_and(|size| size != view.size());
+        if (self.wants_fit || resized)
             && view.height() > 50.0
             && let Some(bounds) = self.body_bounds
         {
             let aspect = f64::from(view.width() / view.height());
             self.orbit.fit(bounds, aspect);
             self.wants_fit = false;
+            self.fitted = Some(view.size());
         }
         ui.painter().rect_filled(view, 0.0, theme::STAGE);
         let words = match &self.renderer {
@@ -145,6 +149,7 @@ impl StageView {
             self.orbit.turn(drag);
         } else if response.dragged() {
             self.orbit.pan(drag, response.rect.height());
+            self.fitted = None;
         }
         if response.dragged() {
             ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
@@ -152,8 +157,11 @@ impl StageView {
         if response.hovered() {
             let (scroll, pinch) =
                 ui.input(|input| (input.smooth_scroll_delta.y, input.zoom_delta()));
-            self.orbit
-                .zoom(f64::from(scroll / 300.0).exp2() * f64::from(pinch));
+            let factor = f64::from(scroll / 300.0).exp2() * f64::from(pinch);
+            if factor != 1.0 {
+                self.orbit.zoom(factor);
+                self.fitted = None;
+            }
         }
     }
 

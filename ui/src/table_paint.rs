@@ -220,7 +220,8 @@ impl<'a> TablePainter<'a> {
             } else {
                 cut.size().y
             };
-        let [low, high] = [panel.bounds.min, panel.bounds.max].map(|p| self.seen(place, p));
+        let bounds = &panel.drawn_bounds;
+        let [low, high] = [bounds.min, bounds.max].map(|p| self.seen(place, p));
         let room = 2.0 * NUMBER_INSET as f32;
         let fits =
             width + room + 16.0 < (high.x - low.x).abs() && height + room < (low.y - high.y).abs();

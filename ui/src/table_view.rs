@@ -71,6 +71,8 @@ pub struct TableView {
     held: Option<PointDrag>,
     drags: u64,
     wants_fit: bool,
+    /// Size of the view that everything was fitted into, until it is panned or zoomed.
+    fitted: Option<egui::Vec2>,
 }
 
 impl TableView {
@@ -89,6 +91,7 @@ impl TableView {
 
     /// Enlarges about the middle of the view.
     pub fn zoom(&mut self, factor: f64) {
+        self.fitted = None;
         let middle = ScreenPoint(Pos2::ZERO);
         let view = Rect::from_center_size(Pos2::ZERO, egui::Vec2::ZERO);
         self.camera.zoom(view, middle, factor);
@@ -119,14 +122,20 @@ impl TableView {
         let view = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(view, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Pattern view"));
-        if self.wants_fit
+        let camera = self.camera;
+        let panning = self.navigate(ui, &response);
+        if self.camera != camera {
+            self.fitted = None;
+        }
+        let resized = self.fitted.is_some_and(|size| size != view.size());
+        if (self.wants_fit || resized)
             && view.width() > 50.0
             && let Some(bounds) = self.layout.bounds(drawing)
         {
             self.camera.fit(view, &bounds);
             self.wants_fit = false;
+            self.fitted = Some(view.size());
         }
-        let panning = self.navigate(ui, &response);
         let pointer = response.hover_pos();
         self.hover = match (pointer, self.held) {
             (_, Some(held)) => Selection::Point(held.panel, held.point),

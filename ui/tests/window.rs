@@ -1,5 +1,5 @@
 //! The window without a window: used by its accessible names, needing neither display nor GPU.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use egui::accesskit::{Action, ActionRequest, TreeId};
 use egui::{Key, Modifiers, Pos2, Role, vec2};
@@ -371,6 +371,71 @@ fn files_that_cannot_be_opened_say_so_in_the_window() {
         window.run();
         assert!(window.state().session().project().pattern.panels.is_empty());
     }
+}
+
+#[test]
+fn closing_asks_before_changes_are_lost() {
+    let close = |window: &mut Window| {
+        let root = window
+            .input_mut()
+            .viewports
+            .get_mut(&egui::ViewportId::ROOT);
+        root.unwrap().events.push(egui::ViewportEvent::Close);
+        window.step();
+        window.run();
+    };
+    let question = "Save the changes?";
+    let mut window = window(&t_shirt());
+    close(&mut window);
+    assert!(window.query_by_label(question).is_none());
+    let start = place(&window, "Point hem_side of front");
+    drag(&mut window, start, vec2(22.0, 0.0));
+    close(&mut window);
+    assert!(window.query_by_label(question).is_some());
+    press(&mut window, "Keep working");
+    assert!(window.query_by_label(question).is_none());
+    assert!(window.state().is_unsaved());
+}
+
+#[test]
+fn faults_are_listed_and_lead_to_their_place() {
+    let mut window = window(&t_shirt());
+    let start = place(&window, "Point hem_side of front");
+    drag(&mut window, start, vec2(0.0, -60.0));
+    assert!(window.query_by_label("No faults").is_none());
+    let counts = ["1 fault", "1 warning", "2 faults", "2 warnings"];
+    let count = counts
+        .iter()
+        .find(|name| window.query_by_label(name).is_some());
+    press(&mut window, count.unwrap());
+    let found = window.state().findings().first().unwrap().to_string();
+    assert!(
+        window.query_all_by_label_contains(&found).count() >= 1,
+        "{found}"
+    );
+    press(&mut window, "Undo");
+    assert!(window.query_by_label("No faults").is_some());
+}
+
+#[test]
+fn patterns_of_other_programs_open() {
+    let shared = std::env::var_os("TOILE_SHARED").map(|folder| PathBuf::from(folder).join("data"));
+    let data = shared.or_else(|| {
+        let mut folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+        folders.find_map(|folder| Some(folder.join("shared/data")).filter(|data| data.is_dir()))
+    });
+    let file = data.map(|data| data.join("garmentcode/shirt_mean_specification.json"));
+    let Some(file) = file.filter(|file| file.is_file()) else {
+        println!("skipped: no folder of samples");
+        return;
+    };
+    let window = window(&file);
+    for name in ["right_ftorso", "left_sleeve_b"] {
+        let parts = format!(" of {name}");
+        let count = window.query_all_by_label_contains(&parts).count();
+        assert!(count > 6, "{name}: {count}");
+    }
+    assert!(window.query_by_label("No faults").is_some());
 }
 
 #[test]
