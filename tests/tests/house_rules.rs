@@ -1,0 +1,280 @@
+//! The rules of the house, as tests: layering, file length, units in docs, top level.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use toile_tests::{files_below, root};
+
+/// Which of our packages each may use. The arrows of docs/ARCHITECTURE.md, and nothing else.
+const LAYERS: [(&str, &[&str]); 14] = [
+    ("toile-geometry", &[]),
+    ("toile-measure", &[]),
+    ("toile-pattern", &["geometry", "measure"]),
+    ("toile-assembly", &["geometry", "measure", "pattern"]),
+    ("toile-nesting", &["geometry"]),
+    ("toile-body", &["geometry", "measure"]),
+    ("toile-drape", &["geometry"]),
+    ("toile-picture", &["geometry"]),
+    (
+        "toile-interchange",
+        &[
+            "geometry", "measure", "pattern", "assembly", "nesting", "body", "drape", "picture",
+        ],
+    ),
+    (
+        "toile-session",
+        &[
+            "geometry",
+            "measure",
+            "pattern",
+            "assembly",
+            "nesting",
+            "body",
+            "drape",
+            "picture",
+            "interchange",
+        ],
+    ),
+    ("toile", &["geometry", "measure", "session"]),
+    ("toile-ui", &["geometry", "pattern", "session", "picture"]),
+    (
+        "toile-tests",
+        &[
+            "geometry",
+            "measure",
+            "pattern",
+            "assembly",
+            "nesting",
+            "body",
+            "drape",
+            "picture",
+            "interchange",
+            "session",
+        ],
+    ),
+    (
+        "toile-lab",
+        &[
+            "geometry",
+            "measure",
+            "pattern",
+            "assembly",
+            "nesting",
+            "body",
+            "drape",
+            "picture",
+            "interchange",
+            "session",
+        ],
+    ),
+];
+
+/// What may stand at the top level besides dot-files.
+const TOP_LEVEL: [&str; 11] = [
+    "Cargo.toml",
+    "Cargo.lock",
+    "README.md",
+    "LICENSE-MIT",
+    "LICENSE-APACHE",
+    "crates",
+    "patterns",
+    "ui",
+    "tests",
+    "docs",
+    "target",
+];
+
+/// Lines a source file may have: about one screenful of ideas.
+const LONGEST_FILE: usize = 620;
+
+fn manifests() -> Vec<(String, toml::Table)> {
+    let mut found = Vec::new();
+    for path in files_below(&root(), "Cargo.toml") {
+        let text = fs::read_to_string(&path).expect("readable");
+        let table: toml::Table = text.parse().expect("a manifest is TOML");
+        if let Some(package) = table.get("package") {
+            let name = package["name"]
+                .as_str()
+                .expect("a package has a name")
+                .to_owned();
+            found.push((name, table));
+        }
+    }
+    assert!(found.len() >= 13, "only {} manifests found", found.len());
+    found
+}
+
+#[test]
+fn packages_use_only_the_layers_below_them() {
+    let allowed: BTreeMap<_, _> = LAYERS.iter().copied().collect();
+    for (name, manifest) in manifests() {
+        let below = allowed
+            .get(name.as_str())
+            .unwrap_or_else(|| panic!("{name} has no place in LAYERS"));
+        let empty = toml::Table::new();
+        let dependencies = manifest
+            .get("dependencies")
+            .and_then(|d| d.as_table())
+            .unwrap_or(&empty);
+        for dependency in dependencies.keys().filter_map(|d| d.strip_prefix("toile-")) {
+            assert!(
+                below.contains(&dependency),
+                "{name} must not use toile-{dependency}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_package_takes_the_common_lints() {
+    for (name, manifest) in manifests() {
+        let takes = manifest
+            .get("lints")
+            .and_then(|l| l.get("workspace"))
+            .and_then(toml::Value::as_bool);
+        assert_eq!(takes, Some(true), "{name} needs [lints] workspace = true");
+    }
+}
+
+#[test]
+fn every_dependency_is_named_with_its_reason() {
+    let text = fs::read_to_string(root().join("docs/ARCHITECTURE.md")).expect("readable");
+    let mut used = BTreeSet::new();
+    for (_, manifest) in manifests() {
+        for section in ["dependencies", "dev-dependencies"] {
+            let Some(table) = manifest.get(section).and_then(|d| d.as_table()) else {
+                continue;
+            };
+            used.extend(table.keys().filter(|k| !k.starts_with("toile")).cloned());
+        }
+    }
+    for dependency in used {
+        assert!(
+            text.contains(&format!("`{dependency}`")),
+            "docs/ARCHITECTURE.md does not say why {dependency} is used"
+        );
+    }
+}
+
+#[test]
+fn source_files_stay_short() {
+    for path in files_below(&root(), ".rs") {
+        let lines = fs::read_to_string(&path).expect("readable").lines().count();
+        assert!(
+            lines <= LONGEST_FILE,
+            "{} has {lines} lines: divide it",
+            path.display()
+        );
+    }
+}
+
+#[test]
+fn nothing_stray_at_the_top_level() {
+    for entry in fs::read_dir(root()).expect("readable").flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let known = name.starts_with('.') || name == "out" || TOP_LEVEL.contains(&name.as_str());
+        assert!(known, "{name} does not belong at the top level");
+    }
+}
+
+#[test]
+fn nothing_is_left_undone_in_the_code() {
+    let words = [
+        "todo!(",
+        "unimplemented!(",
+        "FIX\u{4d}E",
+        "TO\u{44}O",
+        "HA\u{43}K",
+        "#[ign\u{6f}re",
+    ];
+    for path in files_below(&root(), ".rs") {
+        let text = fs::read_to_string(&path).expect("readable");
+        for word in words {
+            // This very list is spelled so that it does not find itself.
+            let own = path.ends_with("tests/house_rules.rs");
+            assert!(
+                own || !text.contains(word),
+                "{} contains {word}",
+                path.display()
+            );
+        }
+    }
+}
+
+/// Public floating-point fields of the crates that carry physical quantities must say their unit
+/// in brackets, or that they are a ratio, share, weight, count or the like.
+#[test]
+fn public_numbers_say_their_unit() {
+    let unitless = [
+        "share",
+        "ratio",
+        "weight",
+        "fraction",
+        "efficiency",
+        "coefficient",
+        "parameter",
+        "strain",
+        "stretch",
+        "scale",
+        "factor",
+        "0..=1",
+        "number",
+        "residual",
+        "cosine",
+        "opacity",
+        "tangent of",
+        "sRGB",
+        "relative",
+        "net force over",
+        "barycentric",
+        "value",
+        "shortening",
+        "error",
+        "share",
+    ];
+    let mut missing = Vec::new();
+    for folder in [
+        "geometry", "pattern", "assembly", "nesting", "body", "drape",
+    ] {
+        for path in files_below(&root().join("crates").join(folder).join("src"), ".rs") {
+            let text = fs::read_to_string(&path).expect("readable");
+            let mut doc = String::new();
+            for line in text.lines().map(str::trim) {
+                if let Some(rest) = line.strip_prefix("///") {
+                    doc.push_str(rest);
+                } else if line.starts_with("#[") {
+                    continue;
+                } else {
+                    let field = line.strip_prefix("pub ").and_then(|l| l.strip_suffix(','));
+                    let is_number = field.is_some_and(|f| {
+                        [
+                            ": f64",
+                            ": [f64; 2]",
+                            ": [f64; 3]",
+                            ": Vec2",
+                            ": Vec3",
+                            ": Vec<f64>",
+                            ": Vec<Vec3>",
+                        ]
+                        .iter()
+                        .any(|end| f.ends_with(end))
+                    });
+                    let lower = doc.to_lowercase();
+                    let said = doc.contains('[')
+                        || unitless.iter().any(|w| lower.contains(&w.to_lowercase()))
+                        || lower.contains("unit ")
+                        || lower.contains("normal")
+                        || lower.contains("direction");
+                    if is_number && !said {
+                        missing.push(format!("{}: {line}", path.display()));
+                    }
+                    doc.clear();
+                }
+            }
+        }
+    }
+    assert!(
+        missing.is_empty(),
+        "no unit in the docs of:\n{}",
+        missing.join("\n")
+    );
+}
