@@ -303,7 +303,8 @@ impl ToileApp {
             }
             return (words, theme::INK);
         }
-        let worst = self.findings.iter().max_by_key(|found| found.severity);
+        // The first of the worst.
+        let worst = self.findings.iter().rev().max_by_key(|f| f.severity);
         match worst {
             Some(found) if found.severity > Severity::Note => {
                 (found.to_string(), finding_colour(found))
@@ -359,12 +360,22 @@ impl ToileApp {
                     }
                 }
             });
-        match chosen {
-            Some(Place::Point(panel, point)) => {
-                self.table.selection = Selection::Point(panel, point);
+        if let Some(part) = chosen.and_then(|place| self.part_at(&place)) {
+            self.table.selection = part;
+        }
+    }
+
+    /// The part of the drawing that a finding is about.
+    fn part_at(&self, place: &Place) -> Option<Selection> {
+        match *place {
+            Place::Point(panel, point) => Some(Selection::Point(panel, point)),
+            Place::Edge(panel, edge) => Some(Selection::Edge(panel, edge)),
+            Place::Seam(id) => {
+                let seam = self.drawing.seams.iter().find(|seam| seam.id == id)?;
+                let mut stretches = seam.stretches.iter();
+                stretches.find_map(|s| Some(Selection::Edge(s.panel, s.edge?)))
             }
-            Some(Place::Edge(panel, edge)) => self.table.selection = Selection::Edge(panel, edge),
-            _ => {}
+            _ => None,
         }
     }
 }

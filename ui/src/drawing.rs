@@ -7,7 +7,8 @@ use crate::space::PanelPoint;
 use std::collections::{BTreeMap, BTreeSet};
 use toile_geometry::{Bounds2, Curve, Vec2, ring_area};
 use toile_pattern::{
-    Draft, EdgeId, EdgeOrigin, Panel, PanelId, Pattern, Piece, PieceEdge, PointId, SeamOrigin,
+    Draft, EdgeId, EdgeOrigin, Panel, PanelId, Pattern, Piece, PieceEdge, PointId, SeamId,
+    SeamOrigin,
 };
 
 /// Largest distance of a drawn curve from the true one [m]: a tenth of a millimetre, below a
@@ -106,6 +107,8 @@ pub struct PointDrawing {
 /// One seam as drawn.
 #[derive(Clone, Debug)]
 pub struct SeamDrawing {
+    /// Which seam.
+    pub id: SeamId,
     /// Its name.
     pub name: String,
     /// Number that both sides carry.
@@ -361,10 +364,11 @@ fn cut_words(panel: &Panel) -> String {
 fn draw_seams(draft: &Draft) -> Vec<SeamDrawing> {
     let mut seams: Vec<SeamDrawing> = Vec::new();
     for seam in &draft.seams {
-        if !matches!(seam.id, SeamOrigin::Seam(_)) {
+        let SeamOrigin::Seam(id) = seam.id else {
             continue;
-        }
+        };
         let mut drawing = SeamDrawing {
+            id,
             name: seam.name.clone(),
             number: seams.len() + 1,
             lengths: [0.0; 2],
