@@ -144,10 +144,16 @@ fn words(event: &Event) -> Option<String> {
             mesh.stitches
         )),
         Event::Draped(drape) => Some(format!(
-            "sewn in {} steps to a gap of {:.2} mm, draped in {} steps to a net force of {:.1e} of the weight; stretch at most {:.1} % along the warp, {:.1} % along the weft",
-            drape.steps[0],
-            drape.seam_gap * 1e3,
-            drape.steps[1],
+            "{}draped in {} to a net force of {:.1e} of the weight; stretch at most {:.1} % along the warp, {:.1} % along the weft",
+            match drape.steps[0] {
+                0 => String::new(),
+                steps => format!(
+                    "sewn in {} to a gap of {:.2} mm, ",
+                    count(steps, "step"),
+                    drape.seam_gap * 1e3
+                ),
+            },
+            count(drape.steps[1], "step"),
             drape.residual,
             drape.strain_max[0] * 100.0,
             drape.strain_max[1] * 100.0,

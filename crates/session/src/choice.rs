@@ -96,6 +96,15 @@ impl Quality {
         }
     }
 
+    /// Steps on the way to rest at the most: a finer mesh needs more of them.
+    pub fn steps(self) -> usize {
+        match self {
+            Self::Preview => 400,
+            Self::Fit => 600,
+            Self::Final => 1000,
+        }
+    }
+
     /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {

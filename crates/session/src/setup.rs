@@ -62,6 +62,7 @@ pub(crate) fn job(
         sew: SewSettings::default(),
         rest: RestSettings {
             residual: quality.residual(),
+            steps: quality.steps(),
             ..RestSettings::default()
         },
     };
