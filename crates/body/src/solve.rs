@@ -10,7 +10,7 @@ use crate::{BodyError, Part};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// Height of the neck's side below the nape, over stature.
-pub(crate) const NECK_SIDE_DROP: f64 = 0.008;
+pub(crate) const NECK_SIDE_DROP: f64 = 0.020;
 /// Depth below the crotch at which the thigh is measured, over stature.
 pub(crate) const THIGH_DROP: f64 = 0.012;
 

@@ -100,7 +100,8 @@ fn find(
 ) {
     let sample = &model.samples[at];
     let place = sample.place(positions);
-    let reach = model.contact.offset * REACH_IN_OFFSETS;
+    let offset = model.contact.offset + sample.extra_offset;
+    let reach = offset * REACH_IN_OFFSETS;
     let moved = (place - memory.place).norm();
     if moved.is_finite() && memory.clearance - moved > reach {
         return;
@@ -131,7 +132,7 @@ fn find(
     let n = slope.normalize();
     let normal = model.contact.stiffness * sample.area;
     let plane = ContactPlane {
-        origin: place + n * (model.contact.offset - distance),
+        origin: place + n * (offset - distance),
         normal: n,
         anchor: state.anchors[at].unwrap_or(place),
         lagged_normal_force: state.normal_forces[at],

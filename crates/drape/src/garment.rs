@@ -76,7 +76,7 @@ pub struct GarmentRun {
 }
 
 /// Rounds of finer contact testing before crossings of the body are left and reported.
-const MOST_REFINEMENTS: usize = 6;
+const MOST_REFINEMENTS: usize = 12;
 
 impl GarmentRun {
     /// Prepares the first step.

@@ -75,6 +75,10 @@ impl Default for ContactSettings {
     }
 }
 
+/// How much farther a triangle is kept each time it is found crossing again [m]: a quarter of the
+/// usual offset.
+const EXTRA_OFFSET: f64 = 1e-3;
+
 /// A point of the cloth that is tested against surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSample {
@@ -88,6 +92,8 @@ pub struct ContactSample {
     pub area: f64,
     /// Friction coefficient there.
     pub friction: f64,
+    /// Distance kept beyond the usual offset [m]: raised where a triangle went on crossing.
+    pub extra_offset: f64,
 }
 
 impl ContactSample {
@@ -201,6 +207,7 @@ impl Model {
                 weights: [1.0, 0.0, 0.0],
                 area: area[v],
                 friction: friction[v] / area[v],
+                extra_offset: 0.0,
             })
             .collect();
         // A vertex on no triangle has no mass; it stays where it is.
@@ -245,9 +252,17 @@ impl Model {
     }
 
     /// Tests a triangle at its middle and the middles of its edges too, where it is too large
-    /// for the curve it lies on. Does nothing when it is tested so already.
+    /// for the curve it lies on; when it is tested so already, keeps it and its corners farther
+    /// from the surface.
     pub fn refine_contact(&mut self, triangle: u32) {
         if self.samples.iter().any(|s| s.triangle == Some(triangle)) {
+            let corners = self.triangles[triangle as usize];
+            for sample in &mut self.samples {
+                let corner = sample.triangle.is_none() && corners.contains(&sample.vertices[0]);
+                if corner || sample.triangle == Some(triangle) {
+                    sample.extra_offset += EXTRA_OFFSET;
+                }
+            }
             return;
         }
         let vertices = self.triangles[triangle as usize];
@@ -265,6 +280,7 @@ impl Model {
                 weights,
                 area: self.elements[triangle as usize].area / 3.0,
                 friction: material.friction,
+                extra_offset: 0.0,
             });
         }
     }

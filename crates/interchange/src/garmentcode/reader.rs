@@ -44,10 +44,10 @@ pub fn read_garmentcode(text: &str) -> Result<GarmentCodeReading, FormatError> {
     let fabric = builder.pattern.ids.take_fabric();
     builder.pattern.fabrics.push(Arc::new(Fabric {
         id: fabric,
-        name: "cotton jersey".to_owned(),
+        name: "cotton weave".to_owned(),
         density: 0.2,
         thickness: 5e-4,
-        stretch: [600.0, 600.0],
+        stretch: [1500.0, 1500.0],
         shear: 80.0,
         poisson: 0.3,
         bend: [1.5e-5; 3],
