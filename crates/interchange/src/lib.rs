@@ -20,16 +20,20 @@ mod scene;
 
 pub use atomic::{write_all_atomically, write_atomically};
 pub use error::{FileError, FormatError, read_text};
-pub use garmentcode::{GarmentCodeReading, GarmentCodeWriting, read_garmentcode, write_garmentcode};
+pub use garmentcode::{
+    GarmentCodeReading, GarmentCodeWriting, read_garmentcode, write_garmentcode,
+};
 pub use gltf::{GlbMesh, GlbPrimitive, GlbScene, write_glb};
-pub use measurements::read_body_yaml;
-pub use measurements_json::{read_measurements, write_measurements};
-pub use native::{read_pattern, write_pattern};
 pub use marker_json::{
     MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, read_marker_json,
     write_marker_json,
 };
 pub use marker_svg::{MarkerDrawing, MarkerPiece, write_marker_svg};
+pub use measurements::read_body_yaml;
+pub use measurements_json::{read_measurements, write_measurements};
+pub use native::{read_pattern, write_pattern};
 pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;
-pub use scene::{ElasticFile, EndFile, MaterialFile, ObjectFile, SceneFile, TransformFile, read_scene};
+pub use scene::{
+    ElasticFile, EndFile, MaterialFile, ObjectFile, SceneFile, TransformFile, read_scene,
+};

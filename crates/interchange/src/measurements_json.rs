@@ -24,7 +24,11 @@ struct MeasurementsFile {
 /// # Errors
 /// What is wrong, where, and the remedy.
 pub fn read_measurements(text: &str) -> Result<Measurements, FormatError> {
-    if text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
+    if text
+        .trim_start_matches('\u{feff}')
+        .trim_start()
+        .starts_with('{')
+    {
         read_json(text)
     } else {
         read_body_yaml(text)
@@ -41,7 +45,10 @@ fn read_json(text: &str) -> Result<Measurements, FormatError> {
     })?;
     let refuse = |place: &str, what: String| Err(FormatError::new(place, what, hint));
     if file.kind != KIND {
-        return refuse("kind", format!("{:?} is not a table of measurements", file.kind));
+        return refuse(
+            "kind",
+            format!("{:?} is not a table of measurements", file.kind),
+        );
     }
     if file.toile != VERSION {
         return refuse("toile", format!("version {} is not known here", file.toile));
@@ -56,9 +63,17 @@ fn read_json(text: &str) -> Result<Measurements, FormatError> {
     let mut table = Measurements::new();
     for (name, number) in file.measurements {
         let angle = definition(&name).is_some_and(|known| known.kind == UnitKind::Angle);
-        let value = if angle { number.to_radians() } else { number * metres };
+        let value = if angle {
+            number.to_radians()
+        } else {
+            number * metres
+        };
         table.set(&name, value, Origin::Asked).map_err(|error| {
-            FormatError::new(format!("measurements.{name}"), error.to_string(), "correct it")
+            FormatError::new(
+                format!("measurements.{name}"),
+                error.to_string(),
+                "correct it",
+            )
         })?;
     }
     Ok(table)
@@ -71,7 +86,11 @@ fn read_json(text: &str) -> Result<Measurements, FormatError> {
 pub fn write_measurements(table: &Measurements) -> Result<String, FormatError> {
     let number = |name: &str, value: f64| {
         let angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
-        let shown = if angle { value.to_degrees() } else { value * 100.0 };
+        let shown = if angle {
+            value.to_degrees()
+        } else {
+            value * 100.0
+        };
         // A micrometre and less than 1e-6 degrees: what is written reads as a round number.
         (shown * 1e6).round() / 1e6
     };
@@ -99,7 +118,10 @@ mod tests {
         let again = read_measurements(&write_measurements(&table).unwrap()).unwrap();
         assert_eq!(again.len(), table.len());
         for (name, measured) in table.iter() {
-            assert!((again.get(name).unwrap() - measured.value).abs() < 1e-8, "{name}");
+            assert!(
+                (again.get(name).unwrap() - measured.value).abs() < 1e-8,
+                "{name}"
+            );
         }
     }
 
@@ -110,19 +132,27 @@ mod tests {
         let json = read_measurements(json).unwrap();
         assert_eq!(yaml.get("height"), Some(1.7));
         assert_eq!(json.get("height"), Some(0.254));
-        assert_eq!(json.get("arm_pose_angle"), Some(std::f64::consts::FRAC_PI_4));
+        assert_eq!(
+            json.get("arm_pose_angle"),
+            Some(std::f64::consts::FRAC_PI_4)
+        );
     }
 
     #[test]
     fn refusals_name_the_place() {
         let place = |text: &str| read_measurements(text).unwrap_err().place;
         let file = |unit: &str, rest: &str| {
-            format!(r#"{{"toile":1,"kind":"measurements","unit":"{unit}","measurements":{{{rest}}}}}"#)
+            format!(
+                r#"{{"toile":1,"kind":"measurements","unit":"{unit}","measurements":{{{rest}}}}}"#
+            )
         };
         assert!(place("{").starts_with("line 1"));
         assert_eq!(place(&file("ell", "")), "unit");
         assert_eq!(place(&file("cm", r#""Hei ght":1"#)), "measurements.Hei ght");
         assert!(place(&file("cm", r#""height":1e999"#)).starts_with("line"));
-        assert!(place(r#"{"toile":1,"kind":"measurements","unit":"cm","measurements":{},"x":1}"#).starts_with("line"));
+        assert!(
+            place(r#"{"toile":1,"kind":"measurements","unit":"cm","measurements":{},"x":1}"#)
+                .starts_with("line")
+        );
     }
 }
