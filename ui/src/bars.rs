@@ -253,7 +253,7 @@ impl ToileApp {
         let state = moment_words(&moment);
         let current = self.making.revision() == Some(self.session.revision());
         match () {
-            () if !current => format!("{state}. The pattern has changed since: drape it again"),
+            () if !current => format!("The pattern has changed: drape it again. {state}"),
             () if self.making.is_paused() => format!("{state}. Paused"),
             () if !self.making.is_draping() && moment.stage != Stage::Finished => {
                 format!("{state}. Stopped")
@@ -404,8 +404,11 @@ fn moment_words(moment: &Moment) -> String {
             format!("Sewing, step {step}: seams up to {gap:.1} mm apart")
         }
         Stage::Settling => {
-            let residual = moment.residual * 100.0;
-            format!("Settling, step {step}: net force {residual:.2} % of the weight")
+            let force = match moment.residual {
+                many if many >= 1.0 => format!("{many:.0} times the weight"),
+                few => format!("{:.2} % of the weight", few * 100.0),
+            };
+            format!("Settling, step {step}: net force {force}")
         }
         Stage::Finished => format!("At rest after {step} steps"),
     }
