@@ -46,6 +46,21 @@ pub enum Task {
     Convert(Convert),
     /// Do the commands of a journal again; what they write goes into one folder.
     Replay(Replay),
+    /// Simulate a scene: objects, elastics, gravity (JSON, SI units; see docs/FORMATS.md).
+    ///
+    /// Writes the frames asked for and the last state as OBJ (m), report.json (SI units) and
+    /// timing.json (s).
+    Run(Run),
+}
+
+/// `toile run`.
+#[derive(Debug, Args)]
+pub struct Run {
+    /// The scene file.
+    pub scene: PathBuf,
+    /// Folder to write into; it is made if need be.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
 }
 
 /// How finely to mesh and drape.

@@ -50,5 +50,6 @@ fn run(task: Task, output: &Output) -> Result<serde_json::Value, Failure> {
         Task::Mesh(mesh) => tool_commands::mesh(&mesh, output),
         Task::Nest(nest) => tool_commands::nest(&nest, output),
         Task::Body(body) => tool_commands::body(&body, output),
+        Task::Run(run) => tool_commands::run(&run, output),
     }
 }

@@ -1,13 +1,13 @@
 //! Commands that need no session.
 
-use crate::arguments::{Body, Convert, FormatName, Mesh, Nest};
+use crate::arguments::{Body, Convert, FormatName, Mesh, Nest, Run};
 use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
 use std::sync::Arc;
 use toile_session::{
     BodyChoice, Event, Project, convert as convert_file, figure_named, make_body, mesh_panels,
-    nest_patterns, open_measurements,
+    nest_patterns, open_measurements, run_scene,
 };
 
 /// A pattern in another format.
@@ -142,4 +142,14 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
 /// To two decimals, and no negative zero.
 fn rounded(value: f64) -> f64 {
     (value * 100.0).round() / 100.0 + 0.0
+}
+
+/// Simulates a scene.
+pub fn run(run: &Run, output: &Output) -> Result<Value, Failure> {
+    let outcome = run_scene(&run.scene, &run.out, &mut Bar::new())
+        .map_err(|error| Failure::from(error).about(&run.scene))?;
+    for file in &outcome.files {
+        output.say(format!("wrote {}", file.display()));
+    }
+    Ok(json!({ "files": outcome.files, "report": outcome.report }))
 }

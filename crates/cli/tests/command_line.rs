@@ -182,3 +182,56 @@ fn bodies_are_made_from_a_figure_or_a_file() {
     );
     assert_eq!(output.status.code(), Some(2));
 }
+
+#[test]
+fn a_scene_is_simulated_and_a_bad_one_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name);
+    let mut flag = String::new();
+    for j in 0..5 {
+        for i in 0..5 {
+            flag.push_str(&format!(
+                "v {} {} 0\n",
+                0.05 * f64::from(i),
+                1.0 - 0.05 * f64::from(j)
+            ));
+        }
+    }
+    for j in 0..4 {
+        for i in 0..4 {
+            let a = j * 5 + i + 1;
+            flag.push_str(&format!("f {} {} {} {}\n", a, a + 5, a + 6, a + 1));
+        }
+    }
+    std::fs::write(place("flag.obj"), flag).unwrap();
+    let scene = r#"{ "duration": 0.1, "frame_step": 0.05, "glitter": 1, "objects": [
+        { "name": "flag", "kind": "deformable", "mesh": "flag.obj", "pins": [0, 4] } ] }"#;
+    std::fs::write(place("scene.json"), scene).unwrap();
+    let run = |scene: &str| {
+        std::process::Command::new(env!("CARGO_BIN_EXE_toile"))
+            .args([
+                "run",
+                place(scene).to_str().unwrap(),
+                "--out",
+                place("out").to_str().unwrap(),
+            ])
+            .output()
+            .unwrap()
+    };
+    let good = run("scene.json");
+    assert!(
+        good.status.success(),
+        "{}",
+        String::from_utf8_lossy(&good.stderr)
+    );
+    let report = std::fs::read_to_string(place("out/report.json")).unwrap();
+    assert!(
+        report.contains("glitter"),
+        "unknown fields are reported: {report}"
+    );
+    assert!(place("out/frame-00001-flag.obj").is_file() && place("out/flag.obj").is_file());
+    std::fs::write(place("bad.json"), scene.replace("[0, 4]", "[0, 99]")).unwrap();
+    let bad = run("bad.json");
+    assert_eq!(bad.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&bad.stderr).contains("no vertex 99"));
+}

@@ -81,12 +81,8 @@ impl DistanceField {
             for j in 0..SIDE {
                 for i in 0..SIDE {
                     // Every second row runs back, so that each step is to a neighbour.
-                    let i = if (j + k * SIDE) % 2 == 0 {
-                        i
-                    } else {
-                        SIDE - 1 - i
-                    };
-                    let j = if k % 2 == 0 { j } else { SIDE - 1 - j };
+                    let i = if j.is_multiple_of(2) { i } else { SIDE - 1 - i };
+                    let j = if k.is_multiple_of(2) { j } else { SIDE - 1 - j };
                     let place = corner + Vec3::new(i as f64, j as f64, k as f64) * self.cell;
                     let closest = self
                         .surface

@@ -23,6 +23,7 @@ mod pictures;
 mod product;
 mod project;
 mod report;
+mod scene;
 mod session;
 mod setup;
 mod snapshot;
@@ -41,6 +42,7 @@ pub use open::{
     read_text_file,
 };
 pub use project::Project;
+pub use scene::{SceneOutcome, run_scene};
 pub use session::Session;
 pub use setup::{GarmentJob, JobPanel};
 pub use toile_assembly::Garment;

@@ -1,0 +1,354 @@
+//! Running a scene file: its meshes, patterns and bodies found, simulated, and written.
+
+use crate::choice::figure_named;
+use crate::export::cannot;
+use crate::open::{open_measurements, read_text_file};
+use crate::timing::Timing;
+use crate::watcher::tell;
+use crate::{BodyChoice, Command, Project, Quality, Session, SessionError, Watcher};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+use toile_body::Figure;
+use toile_drape::{
+    Cloth, GarmentRun, Material, ObjectKind, Scene, SceneElastic, SceneEnd, SceneObject, SceneRun,
+    Stage,
+};
+use toile_geometry::{TriangleMesh, Vec3};
+use toile_interchange::{
+    EndFile, FormatError, ObjMesh, ObjectFile, SceneFile, read_obj, read_scene,
+    write_all_atomically, write_obj,
+};
+
+/// What running a scene made.
+#[derive(Clone, Debug)]
+pub struct SceneOutcome {
+    /// Files written.
+    pub files: Vec<PathBuf>,
+    /// The report, as JSON.
+    pub report: serde_json::Value,
+}
+
+/// Frames a scene may save: beyond this the frame step is surely a mistake.
+const MOST_FRAMES: usize = 100_000;
+
+/// Runs a scene file and writes its frames, its last state and a report into a folder.
+///
+/// # Errors
+/// The scene or a file it names cannot be read, the simulation fails, or a file cannot be written.
+pub fn run_scene(
+    path: &Path,
+    folder: &Path,
+    watcher: &mut dyn Watcher,
+) -> Result<SceneOutcome, SessionError> {
+    let mut timing = Timing::default();
+    timing.restart();
+    let start = Instant::now();
+    let text = read_text_file(path)?;
+    let wrong = |error| SessionError::Format {
+        path: path.to_owned(),
+        error,
+    };
+    let (file, unknown) = read_scene(&text).map_err(wrong)?;
+    let base = path.parent().unwrap_or(Path::new("."));
+    let scene = Builder {
+        path,
+        base,
+        file: &file,
+    }
+    .scene(watcher)?;
+    timing.add("read", start);
+    let start = Instant::now();
+    let frame_step = scene.frame_step;
+    let mut run = SceneRun::new(scene)?;
+    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+    let mut frame = 0usize;
+    while !run.finished() {
+        if let Some(step) = frame_step
+            && run.state.time + 1e-9 >= frame as f64 * step
+            && frame < MOST_FRAMES
+        {
+            files.extend(state_files(&run, &format!("frame-{frame:05}-"))?);
+            frame += 1;
+        }
+        run.advance()?;
+        tell(
+            watcher,
+            "simulating",
+            run.share(),
+            &format!("{:.2} s", run.state.time),
+        )?;
+    }
+    files.extend(state_files(&run, "")?);
+    timing.add("simulate", start);
+    let start = Instant::now();
+    let report = report(&mut run, &unknown);
+    timing.add("measure", start);
+    let pretty = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
+    files.push(("report.json".to_owned(), pretty.into_bytes()));
+    files.push(("timing.json".to_owned(), timing.to_json().into_bytes()));
+    let named: Vec<(&str, &[u8])> = files
+        .iter()
+        .map(|(n, b)| (n.as_str(), b.as_slice()))
+        .collect();
+    write_all_atomically(folder, &named)?;
+    let files = files.iter().map(|(name, _)| folder.join(name)).collect();
+    Ok(SceneOutcome { files, report })
+}
+
+/// The deformable objects of a scene as OBJ files.
+fn state_files(run: &SceneRun, prefix: &str) -> Result<Vec<(String, Vec<u8>)>, SessionError> {
+    let mut files = Vec::new();
+    for (object, mesh) in run.scene().objects.iter().zip(run.meshes()) {
+        if object.kind != ObjectKind::Static {
+            let obj = ObjMesh {
+                positions: mesh.positions,
+                triangles: mesh.triangles,
+                ..ObjMesh::default()
+            };
+            let text = write_obj(&obj).map_err(cannot("the state"))?;
+            let name: String = object
+                .name
+                .chars()
+                .map(|c| {
+                    if c.is_alphanumeric() || c == '-' || c == '_' {
+                        c
+                    } else {
+                        '_'
+                    }
+                })
+                .collect();
+            files.push((format!("{prefix}{name}.obj"), text.into_bytes()));
+        }
+    }
+    Ok(files)
+}
+
+fn report(run: &mut SceneRun, unknown: &[String]) -> serde_json::Value {
+    let measures = run.measure();
+    let mut warnings: Vec<String> = unknown
+        .iter()
+        .map(|field| format!("the field {field} is not known and was left out"))
+        .collect();
+    if run.split_steps() > 0 {
+        warnings.push(format!(
+            "{} steps failed and were taken in smaller ones",
+            run.split_steps()
+        ));
+    }
+    serde_json::json!({
+        "method": run.scene().method.name(),
+        "vertices": run.state.positions.len(),
+        "triangles": run.model.triangles.len(),
+        "steps": run.steps(),
+        "time_s": run.state.time,
+        "residual": measures.residual,
+        "kinetic_energy_J": measures.kinetic_energy,
+        "strain_max": { "warp": measures.strain_max[0], "weft": measures.strain_max[1] },
+        "strain_p99": { "warp": measures.strain_p99[0], "weft": measures.strain_p99[1] },
+        "seam_gap_max_m": run.elastic_gap(),
+        "body_penetration_max_m": measures.penetration_max,
+        "body_intersections": measures.body_intersections,
+        "self_intersections": measures.self_intersections,
+        "warnings": warnings,
+    })
+}
+
+/// Turns a scene file into a scene.
+struct Builder<'a> {
+    path: &'a Path,
+    base: &'a Path,
+    file: &'a SceneFile,
+}
+
+impl Builder<'_> {
+    fn wrong(&self, place: String, what: String, hint: &str) -> SessionError {
+        SessionError::Format {
+            path: self.path.to_owned(),
+            error: FormatError::new(place, what, hint),
+        }
+    }
+
+    fn scene(&self, watcher: &mut dyn Watcher) -> Result<Scene, SessionError> {
+        let file = self.file;
+        let wrong = |error| SessionError::Format {
+            path: self.path.to_owned(),
+            error,
+        };
+        let mut objects = Vec::new();
+        for (index, object) in file.objects.iter().enumerate() {
+            objects.push(self.object(index, object, watcher)?);
+        }
+        let mut elastics = Vec::new();
+        for (index, elastic) in file.elastics.iter().enumerate() {
+            elastics.push(SceneElastic {
+                from: self.end(index, &elastic.from, &objects)?,
+                to: self.end(index, &elastic.to, &objects)?,
+                stiffness: elastic.stiffness,
+                merge_within: elastic.merge_within,
+            });
+        }
+        Ok(Scene {
+            gravity: Vec3::from(file.gravity),
+            air_drag: file.air.drag,
+            duration: file.duration,
+            step: file.step,
+            frame_step: file.frame_step,
+            method: file.method().map_err(wrong)?,
+            contact: file.contact(),
+            objects,
+            elastics,
+        })
+    }
+
+    fn end(
+        &self,
+        index: usize,
+        end: &EndFile,
+        objects: &[SceneObject],
+    ) -> Result<SceneEnd, SessionError> {
+        match end {
+            EndFile::Point(point) => Ok(SceneEnd::Point(Vec3::from(*point))),
+            EndFile::Vertex(name, vertex) => {
+                let object = objects
+                    .iter()
+                    .position(|o| o.name == *name)
+                    .ok_or_else(|| {
+                        let what = format!("there is no object \"{name}\"");
+                        self.wrong(
+                            format!("elastics[{index}]"),
+                            what,
+                            "name an object of the scene",
+                        )
+                    })?;
+                Ok(SceneEnd::Vertex {
+                    object,
+                    vertex: *vertex,
+                })
+            }
+        }
+    }
+
+    fn object(
+        &self,
+        index: usize,
+        object: &ObjectFile,
+        watcher: &mut dyn Watcher,
+    ) -> Result<SceneObject, SessionError> {
+        let place = format!("objects[{index}]");
+        let deformable = match object.kind.as_str() {
+            "static" => false,
+            "deformable" => true,
+            other => {
+                let what = format!("kind \"{other}\" cannot be simulated here");
+                return Err(self.wrong(place, what, "write static or deformable"));
+            }
+        };
+        let (mut mesh, mut cloth) = match (&object.mesh, &object.pattern, &object.body) {
+            (Some(mesh), None, None) => (self.obj(mesh)?, None),
+            (None, None, Some(body)) if !deformable => (self.skin(body)?, None),
+            (None, Some(pattern), None) if deformable => {
+                let cloth = self.garment(pattern, watcher)?;
+                (cloth.mesh(), Some(cloth))
+            }
+            _ => {
+                let what = "it needs one of mesh, pattern (deformable) or body (static)".to_owned();
+                return Err(self.wrong(place, what, "name one file"));
+            }
+        };
+        for p in mesh
+            .positions
+            .iter_mut()
+            .chain(cloth.iter_mut().flat_map(|c| &mut c.positions))
+        {
+            *p = object.transform.apply(*p);
+        }
+        let kind = if deformable {
+            let material = match (&object.material, &cloth) {
+                (Some(material), _) => material.material(),
+                (None, Some(cloth)) => cloth.materials.first().cloned().unwrap_or_default(),
+                (None, None) => Material::default(),
+            };
+            ObjectKind::Deformable {
+                material,
+                pins: object.pins.clone(),
+            }
+        } else {
+            ObjectKind::Static
+        };
+        Ok(SceneObject {
+            name: object.name.clone(),
+            kind,
+            mesh,
+            cloth,
+        })
+    }
+
+    fn obj(&self, name: &str) -> Result<TriangleMesh, SessionError> {
+        let path = self.base.join(name);
+        let text = read_text_file(&path)?;
+        let mesh =
+            read_obj(text.as_bytes()).map_err(|error| SessionError::Format { path, error })?;
+        Ok(mesh.into_triangle_mesh())
+    }
+
+    fn skin(&self, body: &str) -> Result<TriangleMesh, SessionError> {
+        let body = match figure_named(body) {
+            Some(figure) => BodyChoice::Sample(figure),
+            None => {
+                let path = self.base.join(body);
+                let measurements = Arc::new(open_measurements(&path)?);
+                BodyChoice::Measured {
+                    figure: Figure::Mean,
+                    path,
+                    measurements,
+                }
+            }
+        };
+        let project = Project {
+            body,
+            ..Project::default()
+        };
+        let mannequin = toile_body::Mannequin::new(&project.wearer(), project.figure())?;
+        Ok(mannequin.skin().clone())
+    }
+
+    /// A pattern's garment, sewn round the scene's first body, or the one its pattern is for.
+    fn garment(&self, pattern: &str, watcher: &mut dyn Watcher) -> Result<Cloth, SessionError> {
+        let mut session = Session::new();
+        let mut commands = vec![Command::OpenPattern {
+            path: self.base.join(pattern),
+        }];
+        if let Some(body) = self.file.objects.iter().find_map(|o| o.body.as_ref()) {
+            let figure = figure_named(body);
+            let measurements = figure.is_none().then(|| self.base.join(body));
+            commands.push(Command::SetBody {
+                figure,
+                measurements,
+            });
+        }
+        commands.push(Command::SetQuality {
+            quality: Quality::Preview,
+        });
+        for command in commands {
+            session.execute(command, watcher)?;
+        }
+        let setup = session.garment_setup()?.setup;
+        let mut cloth = setup.cloth.clone();
+        let mut run = GarmentRun::new(setup)?;
+        while run.progress().stage == Stage::Sewing {
+            let progress = run.advance()?;
+            tell(
+                watcher,
+                "sewing",
+                0.0,
+                &format!("gap {:.0} mm", progress.gap * 1e3),
+            )?;
+        }
+        let count = run.state.positions.len();
+        for (position, &to) in cloth.positions.iter_mut().zip(&run.target) {
+            *position = run.state.positions[to as usize];
+        }
+        Ok(cloth.merged(&run.target, count))
+    }
+}
