@@ -1,5 +1,7 @@
 //! Data-driven suite over the public interfaces, and the house rules.
 
+#![allow(clippy::print_stdout)] // tests say what they skip
+
 use std::path::{Path, PathBuf};
 
 /// The project's root folder.

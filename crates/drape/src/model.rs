@@ -211,8 +211,8 @@ impl Model {
             })
             .collect();
         // A vertex on no triangle has no mass; it stays where it is.
-        for v in 0..count {
-            if area[v] <= 0.0 {
+        for (v, &share) in area.iter().enumerate() {
+            if share <= 0.0 {
                 self.pinned[v] = true;
                 self.mass[v] = 1.0;
             }

@@ -281,9 +281,9 @@ mod tests {
                 }
             }
         }
-        for v in 0..6 {
+        for (v, added) in diagonal.iter().enumerate() {
             let mut view = dense.fixed_view_mut::<3, 3>(3 * v, 3 * v);
-            view += diagonal[v];
+            view += added;
         }
         let x: Vec<Vec3> = (0..6)
             .map(|v| Vec3::new(1.0, -2.0, 0.5) * f64::from(v + 1))

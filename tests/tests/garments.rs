@@ -1,0 +1,80 @@
+//! Whole garments: every shipped pattern, and foreign ones where they are present, from file to
+//! worn.
+
+use std::path::PathBuf;
+use toile_drape::{GarmentRun, Stage};
+use toile_session::{Command, Quality, Session, Silent};
+use toile_tests::{files_below, root, shared_data};
+
+/// Sews and drapes a pattern at preview quality and holds it to what every garment must meet.
+fn check(path: PathBuf) {
+    let name = path
+        .file_name()
+        .map(|n| n.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    let mut session = Session::new();
+    for command in [
+        Command::OpenPattern { path },
+        Command::SetQuality {
+            quality: Quality::Preview,
+        },
+        Command::Check,
+        Command::Nest,
+    ] {
+        session
+            .execute(command, &mut Silent)
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+    let job = session
+        .garment_setup()
+        .unwrap_or_else(|error| panic!("{name}: {error}"));
+    let mut run = GarmentRun::new(job.setup).unwrap_or_else(|error| panic!("{name}: {error}"));
+    while run.progress().stage != Stage::Finished {
+        run.advance()
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+    let measures = run.measure();
+    let mesh = run.model.mesh(&run.state.positions);
+    assert_eq!(mesh.component_count(), 1, "{name}: one merged object");
+    assert_eq!(
+        mesh.topology().non_manifold().count(),
+        0,
+        "{name}: edge-manifold"
+    );
+    assert!(
+        run.gap_before_merging() <= 1e-3,
+        "{name}: gap {}",
+        run.gap_before_merging()
+    );
+    assert!(
+        measures.residual <= 1e-2,
+        "{name}: residual {}",
+        measures.residual
+    );
+    assert_eq!(measures.body_intersections, 0, "{name}");
+    for direction in 0..2 {
+        assert!(
+            measures.strain_p99[direction] <= 0.05,
+            "{name}: {measures:?}"
+        );
+        assert!(
+            measures.strain_max[direction] <= 0.15,
+            "{name}: {measures:?}"
+        );
+    }
+}
+
+#[test]
+fn shipped_patterns_are_worn() {
+    let patterns = files_below(&root().join("patterns"), ".toile.json");
+    assert_eq!(patterns.len(), 4);
+    patterns.into_iter().for_each(check);
+}
+
+#[test]
+fn foreign_patterns_are_worn() {
+    let Some(data) = shared_data() else { return };
+    let patterns = files_below(&data.join("garmentcode"), "_specification.json");
+    assert!(!patterns.is_empty());
+    patterns.into_iter().for_each(check);
+}
