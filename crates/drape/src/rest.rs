@@ -37,9 +37,14 @@ pub struct RestRun {
     pseudo_step: f64,
     steps: usize,
     residual: f64,
+    longest_step: f64,
+    best: f64,
+    waited: usize,
     linear_iterations: usize,
 }
 
+/// Steps without a new low of the residual before a cycle is suspected.
+const PATIENCE: usize = 60;
 /// First pseudo time step [s]: a drop of 4 mm under gravity.
 const FIRST_STEP: f64 = 0.02;
 /// Bounds of the pseudo time step [s]: at the upper one inertia is 1e-6 of gravity over a metre.
@@ -54,6 +59,9 @@ impl RestRun {
             pseudo_step: FIRST_STEP,
             steps: 0,
             residual: f64::INFINITY,
+            longest_step: LONGEST_STEP,
+            best: f64::INFINITY,
+            waited: 0,
             linear_iterations: 0,
         }
     }
@@ -83,6 +91,9 @@ impl RestRun {
         self.settings.residual = residual;
         self.settings.steps = self.steps + more_steps;
         self.residual = f64::INFINITY;
+        self.best = f64::INFINITY;
+        self.waited = 0;
+        self.longest_step = LONGEST_STEP;
     }
 
     /// Takes one step.
@@ -151,9 +162,28 @@ impl RestRun {
     fn adapt(&mut self, fraction: f64, moved: f64, residual_before: f64) {
         let free = moved < 0.5 * self.settings.longest_move;
         if fraction >= 1.0 && free && self.residual < 1.05 * residual_before {
-            self.pseudo_step = (self.pseudo_step * 1.5).min(LONGEST_STEP);
+            self.pseudo_step = (self.pseudo_step * 1.5).min(self.longest_step);
         } else if fraction < 0.3 || moved >= 0.99 * self.settings.longest_move {
             self.pseudo_step = (self.pseudo_step * 0.7).max(SHORTEST_STEP);
+        }
+        self.break_cycles();
+    }
+
+    /// Newton's method can go round in a cycle between two sets of contacts. When the residual has
+    /// found no new low for long, the pseudo step is bounded ten times lower: inertia then damps
+    /// the cycle.
+    fn break_cycles(&mut self) {
+        if self.residual < 0.9 * self.best {
+            self.best = self.residual;
+            self.waited = 0;
+            return;
+        }
+        self.waited += 1;
+        if self.waited >= PATIENCE {
+            self.waited = 0;
+            self.best = self.residual;
+            self.longest_step = (0.1 * self.longest_step).max(FIRST_STEP);
+            self.pseudo_step = self.pseudo_step.min(self.longest_step);
         }
     }
 }
