@@ -35,6 +35,18 @@ pub enum BodyError {
         /// What to change.
         remedy: &'static str,
     },
+    /// A girth that the body cannot have beside the other measurements.
+    #[error(
+        "measurement {name}: asked {asked:.3} m, but beside the others this body gets {got:.3} m: bring it nearer to its neighbours"
+    )]
+    Unmet {
+        /// The measurement.
+        name: &'static str,
+        /// Asked for [m].
+        asked: f64,
+        /// Taken from the skin [m].
+        got: f64,
+    },
     /// The primitives leave a hole where the skin should be.
     #[error("the primitives of the {part} do not enclose its axis near ({x:.3}, {y:.3}, {z:.3}) m")]
     Open {

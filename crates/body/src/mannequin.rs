@@ -26,6 +26,11 @@ pub struct Mannequin {
     pub(crate) landmarks: Landmarks,
 }
 
+/// Girths a body must have as asked.
+const GIRTHS: [&str; 5] = ["bust", "underbust", "waist", "hips", "leg_circ"];
+/// Largest difference of a girth from what was asked [m]: more would change the size worn.
+const LARGEST_GAP: f64 = 5e-3;
+
 impl Mannequin {
     /// Makes the body of a figure with the given measurements.
     ///
@@ -57,7 +62,7 @@ impl Mannequin {
             .map(|primitive| carried(primitive, &warp))
             .collect();
         let landmarks = Landmarks::find(&grown, &warp, &mesh);
-        Ok(Self {
+        let body = Self {
             figure,
             measurements: measurements.clone(),
             request,
@@ -67,7 +72,21 @@ impl Mannequin {
             parts: skin.parts,
             landmarks,
             template_primitives: template.primitives,
-        })
+        };
+        body.refuse_unmet()?;
+        Ok(body)
+    }
+
+    /// Refuses a body whose girths are not those asked for: far from any real table the sections
+    /// influence each other so much that no warp meets them all.
+    fn refuse_unmet(&self) -> Result<(), BodyError> {
+        for gap in self.measure() {
+            if GIRTHS.contains(&gap.name) && gap.gap().abs() >= LARGEST_GAP {
+                let (name, asked, got) = (gap.name, gap.asked, gap.got);
+                return Err(BodyError::Unmet { name, asked, got });
+            }
+        }
+        Ok(())
     }
 
     /// The figure it was grown from.
