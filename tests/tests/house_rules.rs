@@ -84,7 +84,7 @@ const TOP_LEVEL: [&str; 11] = [
 ];
 
 /// Lines a source file may have: about one screenful of ideas.
-const LONGEST_FILE: usize = 620;
+const LONGEST_FILE: usize = 600;
 
 fn manifests() -> Vec<(String, toml::Table)> {
     let mut found = Vec::new();
