@@ -126,6 +126,8 @@ pub struct Model {
     pub samples: Vec<ContactSample>,
     /// Acceleration of gravity [m/s2].
     pub gravity: Vec3,
+    /// Drag of the air per mass [1/s]: a free velocity falls by exp(-drag t).
+    pub air_drag: f64,
     pub(crate) elements: Vec<MembraneElement>,
     pub(crate) stiffness: Vec<[f64; 4]>,
     pub(crate) bending: ScalarMatrix,
@@ -175,6 +177,7 @@ impl Model {
             contact: ContactSettings::default(),
             samples: Vec::new(),
             gravity: Vec3::new(0.0, -9.81, 0.0),
+            air_drag: 0.0,
             elements,
             bending,
             corner_start,

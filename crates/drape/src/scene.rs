@@ -1,6 +1,6 @@
 //! The scene: every object of a simulation in one form, whatever file it came from.
 
-use crate::{Cloth, DrapeError, Material};
+use crate::{Cloth, DrapeError, Material, MethodSettings};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// Objects, elastics, gravity and air: one simulation.
@@ -17,7 +17,7 @@ pub struct Scene {
     /// Time between saved frames [s]; nothing saves the last state only.
     pub frame_step: Option<f64>,
     /// How the motion is computed.
-    pub method: MethodKind,
+    pub method: MethodSettings,
     /// How cloth meets surfaces.
     pub contact: crate::ContactSettings,
     /// The objects.
@@ -35,37 +35,11 @@ impl Default for Scene {
             duration: 1.0,
             step: 1.0 / 120.0,
             frame_step: None,
-            method: MethodKind::ImplicitEuler,
+            method: MethodSettings::default(),
             contact: crate::ContactSettings::default(),
             objects: Vec::new(),
             elastics: Vec::new(),
         }
-    }
-}
-
-/// A time integrator or equilibrium solver.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum MethodKind {
-    /// Implicit Euler by full Newton with line search.
-    #[default]
-    ImplicitEuler,
-    /// Straight to rest by pseudo-transient continuation; time does not run.
-    Rest,
-}
-
-impl MethodKind {
-    /// Every method with its name in files.
-    pub const ALL: [(&'static str, Self); 2] = [
-        ("implicit-euler", Self::ImplicitEuler),
-        ("rest", Self::Rest),
-    ];
-
-    /// Its name in files.
-    pub fn name(self) -> &'static str {
-        Self::ALL
-            .iter()
-            .find(|(_, kind)| *kind == self)
-            .map_or("", |(name, _)| name)
     }
 }
 

@@ -2,11 +2,9 @@
 
 use crate::laws::elastic::ElasticLaw;
 use crate::measure::{Measures, measure};
-use crate::scene::{MethodKind, ObjectKind, Scene, SceneEnd};
-use crate::{
-    Cloth, Collider, DrapeError, Elastic, ElasticEnd, Model, RestRun, RestSettings, State,
-    StepSettings, Workspace, merge_map, step_in_time,
-};
+use crate::method::Method;
+use crate::scene::{ObjectKind, Scene, SceneEnd};
+use crate::{Cloth, Collider, DrapeError, Elastic, ElasticEnd, Model, State, Workspace, merge_map};
 use std::sync::Arc;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
@@ -26,7 +24,7 @@ pub struct SceneRun {
     /// Elastics still acting, as indices into the scene's.
     acting: Vec<usize>,
     workspace: Workspace,
-    rest: RestRun,
+    method: Box<dyn Method>,
     steps: usize,
     split_steps: usize,
 }
@@ -74,11 +72,7 @@ impl SceneRun {
         let mut run = Self {
             model: Model::new("scene", &cloth)?,
             state,
-            rest: RestRun::new(RestSettings {
-                residual: 1e-3,
-                steps: 2000,
-                ..RestSettings::default()
-            }),
+            method: scene.method.build(),
             workspace: Workspace::default(),
             scene,
             cloth,
@@ -108,6 +102,7 @@ impl SceneRun {
         }
         self.model.contact = self.scene.contact;
         self.model.gravity = self.scene.gravity;
+        self.model.air_drag = self.scene.air_drag;
         for &pin in &self.pins {
             self.model.pinned[self.target[pin as usize] as usize] = true;
         }
@@ -150,24 +145,20 @@ impl SceneRun {
 
     /// Whether the duration is over, or rest is reached.
     pub fn finished(&self) -> bool {
-        match self.scene.method {
-            MethodKind::ImplicitEuler => {
-                self.steps as f64 * self.scene.step >= self.scene.duration - 1e-9 * self.scene.step
-            }
-            MethodKind::Rest => self.rest.finished(),
+        if self.scene.method.kind.is_equilibrium() {
+            return self.method.finished();
         }
+        self.steps as f64 * self.scene.step >= self.scene.duration - 1e-9 * self.scene.step
     }
 
     /// Share of the way, 0..=1.
     pub fn share(&self) -> f64 {
-        match self.scene.method {
-            MethodKind::ImplicitEuler if self.scene.duration > 0.0 => {
+        match self.method.residual() {
+            Some(residual) => ((1.0 / residual.max(1e-3)).log10() / 3.0).clamp(0.0, 1.0),
+            None if self.scene.duration > 0.0 => {
                 (self.steps as f64 * self.scene.step / self.scene.duration).min(1.0)
             }
-            MethodKind::Rest => {
-                ((1.0 / self.rest.residual().max(1e-3)).log10() / 3.0).clamp(0.0, 1.0)
-            }
-            MethodKind::ImplicitEuler => 1.0,
+            None => 1.0,
         }
     }
 
@@ -186,22 +177,10 @@ impl SceneRun {
     /// # Errors
     /// When a step fails at every size; the state is the last good one.
     pub fn advance(&mut self) -> Result<(), DrapeError> {
-        match self.scene.method {
-            MethodKind::ImplicitEuler => {
-                let settings = StepSettings {
-                    step: self.scene.step,
-                    drag: self.scene.air_drag,
-                    ..StepSettings::default()
-                };
-                let (_, pieces) =
-                    step_in_time(&self.model, &mut self.state, &mut self.workspace, &settings)?;
-                self.split_steps += usize::from(pieces > 1);
-            }
-            MethodKind::Rest => {
-                self.rest
-                    .advance(&self.model, &mut self.state, &mut self.workspace)?;
-            }
-        }
+        let report = self
+            .method
+            .advance(&self.model, &mut self.state, self.scene.step)?;
+        self.split_steps += usize::from(report.pieces > 1);
         self.steps += 1;
         self.merge_close()
     }
@@ -264,6 +243,7 @@ impl SceneRun {
             *target = map[*target as usize];
         }
         self.workspace = Workspace::default();
+        self.method = self.scene.method.build();
         self.furnish();
         Ok(())
     }

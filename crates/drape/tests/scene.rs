@@ -87,7 +87,7 @@ fn a_hanging_strip_stretches_by_its_weight() {
     };
     let scene = Scene {
         objects: vec![object],
-        method: MethodKind::Rest,
+        method: MethodKind::Rest.into(),
         ..Scene::default()
     };
     let mut run = finish(SceneRun::new(scene).expect("sound"));

@@ -7,7 +7,7 @@ use crate::FormatError;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use toile_drape::{ContactSettings, Material, MethodKind, Scene};
+use toile_drape::{ContactSettings, Material, MethodKind, MethodSettings, Scene};
 use toile_geometry::Vec3;
 
 /// A scene as written.
@@ -60,6 +60,15 @@ pub struct AirFile {
 pub struct MethodFile {
     /// Its name.
     pub name: String,
+    /// Substeps a step is cut into.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub substeps: Option<u32>,
+    /// Iterations in a substep at the most.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub iterations: Option<usize>,
+    /// Where iterations stop: a gradient [N] in time, net force over weight for rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
     #[serde(flatten)]
     unknown: Unknown,
 }
@@ -68,6 +77,9 @@ impl Default for MethodFile {
     fn default() -> Self {
         Self {
             name: MethodKind::default().name().to_owned(),
+            substeps: None,
+            iterations: None,
+            tolerance: None,
             unknown: Unknown::new(),
         }
     }
@@ -222,26 +234,54 @@ fn earth() -> [f64; 3] {
 fn one() -> f64 {
     1.0
 }
+/// Substeps or iterations a file may ask for: more is surely a mistake.
+const MOST_ITERATIONS: usize = 1_000_000;
+
 fn usual_step() -> f64 {
     Scene::default().step
 }
 
 impl SceneFile {
-    /// The method named.
+    /// The method named, with its settings.
     ///
     /// # Errors
-    /// An unknown name; the message lists those that are known.
-    pub fn method(&self) -> Result<MethodKind, FormatError> {
-        let found = MethodKind::ALL
-            .iter()
-            .find(|(name, _)| *name == self.method.name);
-        found.map(|&(_, kind)| kind).ok_or_else(|| {
+    /// An unknown name (the message lists those that are known), settings out of range.
+    pub fn method(&self) -> Result<MethodSettings, FormatError> {
+        let file = &self.method;
+        let found = MethodKind::ALL.iter().find(|(name, _)| *name == file.name);
+        let Some(&(_, kind)) = found else {
             let known: Vec<_> = MethodKind::ALL.iter().map(|(name, _)| *name).collect();
-            FormatError::new(
+            return Err(FormatError::new(
                 "method.name",
-                format!("\"{}\" is not a method", self.method.name),
+                format!("\"{}\" is not a method", file.name),
                 format!("write one of {}", known.join(", ")),
-            )
+            ));
+        };
+        let counts = [
+            ("substeps", file.substeps.map(|n| n as usize)),
+            ("iterations", file.iterations),
+        ];
+        for (field, count) in counts {
+            if count.is_some_and(|n| n == 0 || n > MOST_ITERATIONS) {
+                return Err(FormatError::new(
+                    format!("method.{field}"),
+                    "it is out of range".to_owned(),
+                    format!("give a whole number from 1 to {MOST_ITERATIONS}"),
+                ));
+            }
+        }
+        if file.tolerance.is_some_and(|t| !(t.is_finite() && t >= 0.0)) {
+            return Err(FormatError::new(
+                "method.tolerance",
+                "it is out of range".to_owned(),
+                "give a finite number, zero or above".to_owned(),
+            ));
+        }
+        Ok(MethodSettings {
+            kind,
+            substeps: file.substeps,
+            iterations: file.iterations,
+            tolerance: file.tolerance,
         })
     }
 
@@ -313,7 +353,10 @@ mod tests {
     fn a_scene_is_read_and_unknown_fields_are_named() {
         let (file, unknown) = read_scene(FLAG).expect("good");
         assert_eq!(unknown, ["colour", "objects[0].material.gloss"]);
-        assert_eq!(file.method().expect("default"), MethodKind::ImplicitEuler);
+        assert_eq!(
+            file.method().expect("default").kind,
+            MethodKind::ImplicitEuler
+        );
         let flag = &file.objects[0];
         assert!((flag.material.as_ref().expect("given").material().density - 0.1).abs() < 1e-15);
         assert_eq!(

@@ -137,7 +137,7 @@ fn report(run: &mut SceneRun, unknown: &[String]) -> serde_json::Value {
         ));
     }
     serde_json::json!({
-        "method": run.scene().method.name(),
+        "method": run.scene().method.kind.name(),
         "vertices": run.state.positions.len(),
         "triangles": run.model.triangles.len(),
         "steps": run.steps(),
