@@ -2,7 +2,7 @@
 
 use crate::laws::elastic::ElasticLaw;
 use crate::measure::{Measures, measure};
-use crate::method::Method;
+use crate::methods::Method;
 use crate::scene::{ObjectKind, Scene, SceneEnd};
 use crate::{Cloth, Collider, DrapeError, Elastic, ElasticEnd, Model, State, Workspace, merge_map};
 use std::sync::Arc;

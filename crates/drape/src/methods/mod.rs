@@ -1,9 +1,9 @@
 //! Methods: one trait with a whole step in it, chosen once by name from a closed list.
 
-use crate::{
-    DrapeError, Model, NewtonSettings, RestRun, RestSettings, State, StepSettings, Workspace,
-    step_in_time,
-};
+mod implicit_euler;
+mod rest;
+
+use crate::{DrapeError, Model, State};
 
 /// What one step of a method took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -102,106 +102,8 @@ impl MethodSettings {
     /// The method, its memory still empty.
     pub fn build(&self) -> Box<dyn Method> {
         match self.kind {
-            MethodKind::ImplicitEuler => Box::new(ImplicitEuler::new(self)),
-            MethodKind::Rest => Box::new(Rest::new(self)),
+            MethodKind::ImplicitEuler => Box::new(implicit_euler::ImplicitEuler::new(self)),
+            MethodKind::Rest => Box::new(rest::Rest::new(self)),
         }
-    }
-}
-
-/// Implicit Euler: see [`step_in_time`].
-struct ImplicitEuler {
-    settings: StepSettings,
-    substeps: u32,
-    workspace: Workspace,
-}
-
-impl ImplicitEuler {
-    fn new(settings: &MethodSettings) -> Self {
-        let defaults = StepSettings::default();
-        let newton = NewtonSettings {
-            iterations: settings.iterations.unwrap_or(defaults.newton.iterations),
-            tolerance: settings.tolerance.unwrap_or(defaults.newton.tolerance),
-            ..defaults.newton
-        };
-        Self {
-            settings: StepSettings { newton, ..defaults },
-            substeps: settings.substeps.unwrap_or(1).max(1),
-            workspace: Workspace::default(),
-        }
-    }
-}
-
-impl Method for ImplicitEuler {
-    fn advance(
-        &mut self,
-        model: &Model,
-        state: &mut State,
-        step: f64,
-    ) -> Result<StepReport, DrapeError> {
-        let start = state.clone();
-        let settings = StepSettings {
-            step: step / f64::from(self.substeps),
-            drag: model.air_drag,
-            ..self.settings
-        };
-        let mut total = StepReport::default();
-        for _ in 0..self.substeps {
-            match step_in_time(model, state, &mut self.workspace, &settings) {
-                Ok((report, pieces)) => {
-                    total.pieces = total.pieces.max(pieces);
-                    total.iterations += report.iterations;
-                    total.linear_iterations += report.linear_iterations;
-                }
-                Err(error) => {
-                    *state = start;
-                    return Err(error);
-                }
-            }
-        }
-        Ok(total)
-    }
-}
-
-/// The way to rest: see [`RestRun`].
-struct Rest {
-    run: RestRun,
-    workspace: Workspace,
-}
-
-impl Rest {
-    fn new(settings: &MethodSettings) -> Self {
-        Self {
-            run: RestRun::new(RestSettings {
-                residual: settings.tolerance.unwrap_or(1e-3),
-                steps: settings.iterations.unwrap_or(2000),
-                ..RestSettings::default()
-            }),
-            workspace: Workspace::default(),
-        }
-    }
-}
-
-impl Method for Rest {
-    fn advance(
-        &mut self,
-        model: &Model,
-        state: &mut State,
-        _step: f64,
-    ) -> Result<StepReport, DrapeError> {
-        let before = self.run.linear_iterations();
-        self.run.advance(model, state, &mut self.workspace)?;
-        Ok(StepReport {
-            pieces: 1,
-            iterations: 1,
-            linear_iterations: self.run.linear_iterations() - before,
-        })
-    }
-
-    fn finished(&self) -> bool {
-        self.run.finished()
-    }
-
-    fn residual(&self) -> Option<f64> {
-        Some(self.run.residual())
     }
 }

@@ -1,0 +1,49 @@
+//! The way to rest by pseudo-transient continuation.
+
+use super::{Method, MethodSettings, StepReport};
+use crate::{DrapeError, Model, RestRun, RestSettings, State, Workspace};
+
+/// The way to rest: see [`RestRun`].
+pub struct Rest {
+    run: RestRun,
+    workspace: Workspace,
+}
+
+impl Rest {
+    /// With what the settings leave open at its defaults.
+    pub fn new(settings: &MethodSettings) -> Self {
+        Self {
+            run: RestRun::new(RestSettings {
+                residual: settings.tolerance.unwrap_or(1e-3),
+                steps: settings.iterations.unwrap_or(2000),
+                ..RestSettings::default()
+            }),
+            workspace: Workspace::default(),
+        }
+    }
+}
+
+impl Method for Rest {
+    fn advance(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        _step: f64,
+    ) -> Result<StepReport, DrapeError> {
+        let before = self.run.linear_iterations();
+        self.run.advance(model, state, &mut self.workspace)?;
+        Ok(StepReport {
+            pieces: 1,
+            iterations: 1,
+            linear_iterations: self.run.linear_iterations() - before,
+        })
+    }
+
+    fn finished(&self) -> bool {
+        self.run.finished()
+    }
+
+    fn residual(&self) -> Option<f64> {
+        Some(self.run.residual())
+    }
+}
