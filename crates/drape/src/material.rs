@@ -1,6 +1,7 @@
 //! What a cloth is made of, in SI units.
 
 use crate::DrapeError;
+use crate::laws::stretch::MembraneLaw;
 
 /// An orthotropic cloth: membrane, bending, mass, surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,17 +40,16 @@ impl Default for Material {
 }
 
 impl Material {
-    /// Membrane stiffness matrix entries C11, C22, C12 and shear G [N/m], symmetric positive
-    /// definite: C12 = nu sqrt(Y1 Y2) / (1 - nu^2), C11 = Y1 / (1 - nu^2), C22 = Y2 / (1 - nu^2).
-    pub fn membrane(&self) -> [f64; 4] {
+    /// The law of the membrane, its stiffness matrix symmetric positive definite: C12 = nu sqrt(Y1 Y2) / (1 - nu^2), C11 = Y1 / (1 - nu^2), C22 = Y2 / (1 - nu^2).
+    pub fn membrane(&self) -> MembraneLaw {
         let spread = 1.0 - self.poisson * self.poisson;
         let [warp, weft] = self.stretch;
-        [
+        MembraneLaw::linear([
             warp / spread,
             weft / spread,
             self.poisson * (warp * weft).sqrt() / spread,
             self.shear,
-        ]
+        ])
     }
 
     /// Bending stiffness of curvature along warp, along weft, and of twist [N m]. The twist term

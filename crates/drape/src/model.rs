@@ -3,6 +3,7 @@
 use crate::laws::bending::RestSheet;
 use crate::laws::elastic::ElasticLaw;
 use crate::laws::membrane::MembraneElement;
+use crate::laws::stretch::MembraneLaw;
 use crate::sparse::{BlockPattern, ScalarMatrix};
 use crate::{Cloth, DrapeError, Material};
 use std::sync::Arc;
@@ -112,6 +113,8 @@ pub struct Model {
     pub material: Vec<u16>,
     /// The materials.
     pub materials: Vec<Material>,
+    /// How each material resists stretch.
+    pub laws: Vec<MembraneLaw>,
     /// Mass of each vertex [kg].
     pub mass: Vec<f64>,
     /// Vertices that do not move.
@@ -129,7 +132,6 @@ pub struct Model {
     /// Drag of the air per mass [1/s]: a free velocity falls by exp(-drag t).
     pub air_drag: f64,
     pub(crate) elements: Vec<MembraneElement>,
-    pub(crate) stiffness: Vec<[f64; 4]>,
     pub(crate) bending: ScalarMatrix,
     pub(crate) pattern: BlockPattern,
     pub(crate) corner_start: Vec<u32>,
@@ -168,7 +170,7 @@ impl Model {
             pattern: BlockPattern::new(count, &cloth.triangles),
             triangles: cloth.triangles.clone(),
             material: cloth.material.clone(),
-            stiffness: cloth.materials.iter().map(Material::membrane).collect(),
+            laws: cloth.materials.iter().map(Material::membrane).collect(),
             materials: cloth.materials.clone(),
             mass: vec![0.0; count],
             pinned: vec![false; count],

@@ -177,8 +177,8 @@ impl Workspace {
                 let mut energy = 0.0;
                 for (k, corners) in triangles.iter().enumerate() {
                     let t = chunk * CHUNK + k;
-                    let stiffness = model.stiffness[model.material[t] as usize];
-                    energy += model.elements[t].energy(stiffness, corners.map(|v| x[v as usize]));
+                    let law = &model.laws[model.material[t] as usize];
+                    energy += model.elements[t].energy(law, corners.map(|v| x[v as usize]));
                 }
                 energy
             })
@@ -215,9 +215,9 @@ impl Workspace {
             .for_each(|(chunk, out)| {
                 for (k, out) in out.iter_mut().enumerate() {
                     let t = chunk * CHUNK + k;
-                    let stiffness = model.stiffness[model.material[t] as usize];
+                    let law = &model.laws[model.material[t] as usize];
                     let corners = model.triangles[t].map(|v| x[v as usize]);
-                    *out = model.elements[t].gradient(stiffness, corners).1;
+                    *out = model.elements[t].gradient(law, corners).1;
                 }
             });
         for (secant, elastic) in self.secants.iter_mut().zip(&model.elastics) {
@@ -267,9 +267,9 @@ impl Workspace {
             .for_each(|(chunk, out)| {
                 for (k, out) in out.iter_mut().enumerate() {
                     let t = chunk * CHUNK + k;
-                    let stiffness = model.stiffness[model.material[t] as usize];
-                    *out = model.elements[t]
-                        .hessian(stiffness, model.triangles[t].map(|v| x[v as usize]));
+                    let law = &model.laws[model.material[t] as usize];
+                    *out =
+                        model.elements[t].hessian(law, model.triangles[t].map(|v| x[v as usize]));
                 }
             });
         for (v, d) in self.diagonal.iter_mut().enumerate() {

@@ -2,9 +2,10 @@
 //!
 //! With warp and weft tangents f_u = sum a_i x_i and f_v = sum b_i x_i, Green strain
 //! E_uu = (f_u.f_u - 1) / 2, E_vv = (f_v.f_v - 1) / 2, gamma = f_u.f_v, the energy per area is
-//! W = 1/2 (C11 E_uu^2 + C22 E_vv^2 + 2 C12 E_uu E_vv + G gamma^2)
-//! (Volino, Magnenat-Thalmann and Faure 2009, section 3).
+//! W = 1/2 (C11 E_uu^2 + C22 E_vv^2 + 2 C12 E_uu E_vv + G gamma^2), or what [`MembraneLaw`] makes of
+//! it (Volino, Magnenat-Thalmann and Faure 2009, section 3).
 
+use crate::laws::stretch::MembraneLaw;
 use nalgebra::Matrix3;
 use toile_geometry::{Vec2, Vec3};
 
@@ -59,24 +60,15 @@ impl MembraneElement {
         ]
     }
 
-    /// Stresses S_uu, S_vv, S_uv [N/m] and energy per area [J/m2].
-    fn stress([c11, c22, c12, g]: [f64; 4], [fu, fv]: [Vec3; 2]) -> ([f64; 3], f64) {
-        let e_uu = 0.5 * (fu.norm_squared() - 1.0);
-        let e_vv = 0.5 * (fv.norm_squared() - 1.0);
-        let gamma = fu.dot(&fv);
-        let s = [c11 * e_uu + c12 * e_vv, c22 * e_vv + c12 * e_uu, g * gamma];
-        (s, 0.5 * (s[0] * e_uu + s[1] * e_vv + s[2] * gamma))
-    }
-
-    /// Energy [J]; `stiffness` is C11, C22, C12, G [N/m].
-    pub fn energy(&self, stiffness: [f64; 4], x: [Vec3; 3]) -> f64 {
-        self.area * Self::stress(stiffness, self.tangents(x)).1
+    /// Energy [J].
+    pub fn energy(&self, law: &MembraneLaw, x: [Vec3; 3]) -> f64 {
+        self.area * law.stress(green_strain(self.tangents(x))).1
     }
 
     /// Energy [J] and its gradient by the corners [N].
-    pub fn gradient(&self, stiffness: [f64; 4], x: [Vec3; 3]) -> (f64, [Vec3; 3]) {
+    pub fn gradient(&self, law: &MembraneLaw, x: [Vec3; 3]) -> (f64, [Vec3; 3]) {
         let [fu, fv] = self.tangents(x);
-        let ([s_uu, s_vv, s_uv], density) = Self::stress(stiffness, [fu, fv]);
+        let ([s_uu, s_vv, s_uv], density) = law.stress(green_strain([fu, fv]));
         let by_u = (fu * s_uu + fv * s_uv) * self.area;
         let by_v = (fv * s_vv + fu * s_uv) * self.area;
         let gradient = [0, 1, 2].map(|i| by_u * self.warp[i] + by_v * self.weft[i]);
@@ -88,10 +80,11 @@ impl MembraneElement {
     /// The material part is positive semidefinite as it stands. The geometric part is the 2x2
     /// stress times the identity; its negative (compressive) principal stresses are dropped, so
     /// the matrix is exact where the cloth is in tension and safe where it buckles.
-    pub fn hessian(&self, stiffness: [f64; 4], x: [Vec3; 3]) -> [Matrix3<f64>; 6] {
-        let [c11, c22, c12, g] = stiffness;
+    pub fn hessian(&self, law: &MembraneLaw, x: [Vec3; 3]) -> [Matrix3<f64>; 6] {
         let [fu, fv] = self.tangents(x);
-        let (s, _) = Self::stress(stiffness, [fu, fv]);
+        let strain = green_strain([fu, fv]);
+        let (s, _) = law.stress(strain);
+        let [c11, c22, c12, g, c13, c23] = law.slope(strain);
         let [s_uu, s_vv, s_uv] = tension_part(s);
         let (uu, vv, uv) = (
             fu * fu.transpose(),
@@ -99,9 +92,11 @@ impl MembraneElement {
             fu * fv.transpose(),
         );
         let identity = Matrix3::identity();
-        let h_uu = (identity * s_uu + uu * c11 + vv * g) * self.area;
-        let h_vv = (identity * s_vv + vv * c22 + uu * g) * self.area;
-        let h_uv = (identity * s_uv + uv * c12 + uv.transpose() * g) * self.area;
+        let vu = uv.transpose();
+        let cross = uv + vu;
+        let h_uu = (identity * s_uu + uu * c11 + vv * g + cross * c13) * self.area;
+        let h_vv = (identity * s_vv + vv * c22 + uu * g + cross * c23) * self.area;
+        let h_uv = (identity * s_uv + uv * c12 + vu * g + uu * c13 + vv * c23) * self.area;
         let h_vu = h_uv.transpose();
         let (a, b) = (self.warp, self.weft);
         [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|(i, j)| {
@@ -127,6 +122,16 @@ impl MembraneElement {
             shear: sine.clamp(-1.0, 1.0).asin(),
         }
     }
+}
+
+/// Green strain E_uu, E_vv, gamma of two tangents.
+#[inline]
+pub fn green_strain([fu, fv]: [Vec3; 2]) -> [f64; 3] {
+    [
+        0.5 * (fu.norm_squared() - 1.0),
+        0.5 * (fv.norm_squared() - 1.0),
+        fu.dot(&fv),
+    ]
 }
 
 /// The positive semidefinite part of a symmetric 2x2 stress given as uu, vv, uv.
@@ -157,6 +162,10 @@ mod tests {
 
     const STIFFNESS: [f64; 4] = [700.0, 450.0, 120.0, 60.0];
 
+    fn law() -> MembraneLaw {
+        MembraneLaw::linear(STIFFNESS)
+    }
+
     fn element() -> MembraneElement {
         MembraneElement::new([
             Vec2::new(0.0, 0.0),
@@ -177,15 +186,15 @@ mod tests {
     #[test]
     fn gradient_is_the_slope_of_the_energy() {
         let (element, x) = (element(), deformed(1.1));
-        let (_, gradient) = element.gradient(STIFFNESS, x);
+        let (_, gradient) = element.gradient(&law(), x);
         for corner in 0..3 {
             for axis in 0..3 {
                 let step = 1e-7;
                 let (mut up, mut down) = (x, x);
                 up[corner][axis] += step;
                 down[corner][axis] -= step;
-                let slope = (element.energy(STIFFNESS, up) - element.energy(STIFFNESS, down))
-                    / (2.0 * step);
+                let slope =
+                    (element.energy(&law(), up) - element.energy(&law(), down)) / (2.0 * step);
                 let got = gradient[corner][axis];
                 assert!(
                     (slope - got).abs() < 1e-6 * gradient[corner].norm().max(1e-3),
@@ -211,15 +220,15 @@ mod tests {
     #[test]
     fn hessian_is_exact_in_tension() {
         let (element, x) = (element(), deformed(1.3));
-        let hessian = full(element.hessian(STIFFNESS, x));
+        let hessian = full(element.hessian(&law(), x));
         for corner in 0..3 {
             for axis in 0..3 {
                 let step = 1e-7;
                 let (mut up, mut down) = (x, x);
                 up[corner][axis] += step;
                 down[corner][axis] -= step;
-                let (_, high) = element.gradient(STIFFNESS, up);
-                let (_, low) = element.gradient(STIFFNESS, down);
+                let (_, high) = element.gradient(&law(), up);
+                let (_, low) = element.gradient(&law(), down);
                 for other in 0..3 {
                     let slope = (high[other] - low[other]) / (2.0 * step);
                     for k in 0..3 {
@@ -237,8 +246,9 @@ mod tests {
 
     #[test]
     fn hessian_stays_positive_in_compression_and_collapse() {
+        let stiff = MembraneLaw::linear([1e8, 1e8, 2e7, 1e6]);
         for scale in [1.0, 0.9, 0.5, 0.1, 0.0] {
-            let hessian = full(element().hessian([1e8, 1e8, 2e7, 1e6], deformed(scale)));
+            let hessian = full(element().hessian(&stiff, deformed(scale)));
             let smallest = hessian.symmetric_eigenvalues().min();
             assert!(
                 smallest > -1e-9 * hessian.norm().max(1.0),
@@ -257,11 +267,11 @@ mod tests {
         let element = MembraneElement::new(rest).expect("has area");
         let turn = nalgebra::Rotation3::from_euler_angles(0.3, -1.1, 2.0);
         let rigid = rest.map(|p| turn * Vec3::new(p.x, p.y, 0.0) + Vec3::new(1.0, 2.0, 3.0));
-        assert!(element.energy(STIFFNESS, rigid) < 1e-20);
+        assert!(element.energy(&law(), rigid) < 1e-20);
         let stretched = rest.map(|p| Vec3::new(p.x * 1.05, p.y, 0.0));
         let e_uu = 0.5 * (1.05f64 * 1.05 - 1.0);
         let expected = element.area * 0.5 * STIFFNESS[0] * e_uu * e_uu;
-        assert!((element.energy(STIFFNESS, stretched) - expected).abs() < 1e-12 * expected);
+        assert!((element.energy(&law(), stretched) - expected).abs() < 1e-12 * expected);
         assert!((element.strain(stretched).warp - 0.05).abs() < 1e-12);
         assert!(MembraneElement::new([rest[0], rest[1], rest[0]]).is_none());
     }

@@ -4,3 +4,4 @@ pub mod bending;
 pub mod contact;
 pub mod elastic;
 pub mod membrane;
+pub mod stretch;
