@@ -1,7 +1,7 @@
 //! The mannequin as a small file: what it is grown from, not what it looks like.
 
 use crate::template::Template;
-use crate::{BodyError, Figure, Mannequin, Part, Primitive};
+use crate::{BodyError, Figure, Mannequin, Primitive};
 use serde::{Deserialize, Serialize};
 use toile_measure::Measurements;
 
@@ -22,15 +22,13 @@ pub struct Description {
 impl Mannequin {
     /// The description of this body, with its template's primitives written out.
     pub fn description(&self) -> Description {
-        let right = |p: &Primitive| matches!(p.part, Part::RightArm | Part::RightLeg);
-        let mirrored = |p: &Primitive| !p.is_central() && p.centre[0] < 0.0;
         Description {
             figure: self.figure,
             measurements: self.measurements.clone(),
             primitives: self
                 .template_primitives
                 .iter()
-                .filter(|p| !right(p) && !mirrored(p))
+                .filter(|p| !p.is_right())
                 .copied()
                 .collect(),
         }
@@ -73,7 +71,7 @@ fn check(index: usize, p: &Primitive) -> Result<(), BodyError> {
     if p.radii.iter().any(|&r| r < 1e-3) {
         return bad("has a semi-axis under 0.001 m: enlarge it or remove the primitive");
     }
-    if matches!(p.part, Part::RightArm | Part::RightLeg) || p.centre[0] < 0.0 {
+    if p.is_right() {
         return bad("is on the right: give the left one, the right is its mirror image");
     }
     Ok(())

@@ -41,6 +41,17 @@ impl Part {
         Part::RightLeg,
     ];
 
+    /// The same part of the other side; itself in the middle.
+    pub fn mirrored(self) -> Self {
+        match self {
+            Part::LeftArm => Part::RightArm,
+            Part::RightArm => Part::LeftArm,
+            Part::LeftLeg => Part::RightLeg,
+            Part::RightLeg => Part::LeftLeg,
+            Part::Trunk | Part::Head => self,
+        }
+    }
+
     /// The name on screens.
     pub fn name(self) -> &'static str {
         match self {
@@ -76,13 +87,7 @@ impl Primitive {
 
     /// The same primitive on the other side of the plane x = 0.
     pub fn mirrored(&self) -> Self {
-        let part = match self.part {
-            Part::LeftArm => Part::RightArm,
-            Part::RightArm => Part::LeftArm,
-            Part::LeftLeg => Part::RightLeg,
-            Part::RightLeg => Part::LeftLeg,
-            part => part,
-        };
+        let part = self.part.mirrored();
         let ([x, y, z], [a, b, c]) = (self.centre, self.rotation);
         Self {
             part,
@@ -94,7 +99,18 @@ impl Primitive {
 
     /// Whether the primitive is its own mirror image.
     pub fn is_central(&self) -> bool {
-        self.centre[0] == 0.0 && self.rotation[1] == 0.0 && self.rotation[2] == 0.0
+        let middle = self.part == self.part.mirrored() && self.centre[0] == 0.0;
+        middle && self.rotation[1] == 0.0 && self.rotation[2] == 0.0
+    }
+
+    /// Whether the primitive belongs to the wearer's right side: by its part, in trunk and head
+    /// by its centre. A limb's primitive may reach over the middle.
+    pub fn is_right(&self) -> bool {
+        match self.part {
+            Part::RightArm | Part::RightLeg => true,
+            Part::LeftArm | Part::LeftLeg => false,
+            Part::Trunk | Part::Head => self.centre[0] < 0.0,
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::marks::UNDERBUST;
 use crate::solve::THIGH_DROP;
 use crate::tape::{girth, girth_across};
-use crate::{Mannequin, Part};
+use crate::{Joint, Mannequin, Part};
 
 /// One measurement: asked for, and got on the skin by our own tape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,8 +30,9 @@ impl Mannequin {
         let (q, l) = (&self.request, &self.landmarks);
         let mesh = self.skin();
         let tape = |part: Part, level: f64| girth(mesh, &self.parts, part, level);
-        let (tip, neck, wrist) = (l.shoulder_tips[0], l.neck_sides[0], l.wrists[0]);
-        let along = (wrist - l.shoulders[0]).normalize();
+        let (tip, neck) = (l.shoulder_tips[0], l.neck_sides[0]);
+        let wrist = self.skeleton.centre(Joint::LWrist);
+        let along = (wrist - self.skeleton.centre(Joint::LShoulder)).normalize();
         let floor = mesh.bounds().map_or(0.0, |[low, _]| low.y);
         let waist = q.waist_level();
         let row = |name, asked, got| Gap { name, asked, got };

@@ -4,11 +4,11 @@ use crate::marks::middle_depth;
 use crate::solve::Grown;
 use crate::tape::ridge;
 use crate::warp::{Follow, Warp};
-use crate::{Mannequin, Part};
+use crate::{Joint, Mannequin, Part};
 use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
 
-/// Named points of a body [m]. Pairs are left, +X, then right. Joints are centres inside the
-/// body, the other points lie on the skin.
+/// Named points of a body [m], on its skin but for the middle of the trunk. Pairs are left, +X,
+/// then right. The joints are in [`Mannequin::skeleton`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Landmarks {
     /// Top of the head.
@@ -27,22 +27,8 @@ pub struct Landmarks {
     pub hips: Vec3,
     /// Lowest point of the trunk between the legs.
     pub crotch: Vec3,
-    /// Shoulder joints.
-    pub shoulders: [Vec3; 2],
-    /// Elbow joints.
-    pub elbows: [Vec3; 2],
-    /// Wrist joints.
-    pub wrists: [Vec3; 2],
-    /// Hip joints.
-    pub hip_joints: [Vec3; 2],
-    /// Knee joints.
-    pub knees: [Vec3; 2],
-    /// Ankle joints.
-    pub ankles: [Vec3; 2],
     /// Middle of the trunk at crotch, hips, waist, bust and base of the neck, from below.
     pub spine: [Vec3; 5],
-    /// Base of the skull.
-    pub skull_base: Vec3,
 }
 
 /// The axis of one part of the body.
@@ -81,7 +67,6 @@ fn pair(left: Vec3) -> [Vec3; 2] {
 impl Landmarks {
     pub(crate) fn find(grown: &Grown, warp: &Warp, mesh: &TriangleMesh) -> Self {
         let q = &grown.request;
-        let j = grown.template.joints;
         let trunk_section = |y: f64| -> Vec<Vec2> {
             let trunk = (0..mesh.triangles.len())
                 .filter(|&t| matches!(grown.skin.parts[t], Part::Trunk | Part::Head));
@@ -112,10 +97,7 @@ impl Landmarks {
             .map(|v| mesh.positions[v])
             .max_by(|a, b| a.y.total_cmp(&b.y))
             .unwrap_or_default();
-        let arm = |p: [f64; 3]| pair(warp.apply(Vec3::from(p), Follow { arm: 1.0, leg: 0.0 }));
-        let leg = |p: [f64; 3]| pair(warp.apply(Vec3::from(p), Follow { arm: 0.0, leg: 1.0 }));
-        let centre = |p: [f64; 3]| warp.apply(Vec3::from(p), Follow::default());
-        let neck_base = centre(j.neck);
+        let neck_base = warp.apply(Vec3::from(grown.template.joints.neck), Follow::default());
         Self {
             crown,
             nape: Vec3::new(0.0, q.nape(), nape_z),
@@ -125,12 +107,6 @@ impl Landmarks {
             waist: front(q.waist_level()),
             hips: front(q.hip_level()),
             crotch: lowest,
-            shoulders: arm(j.shoulder),
-            elbows: arm(j.elbow),
-            wrists: arm(j.wrist),
-            hip_joints: leg(j.hip),
-            knees: leg(j.knee),
-            ankles: leg(j.ankle),
             spine: [
                 Vec3::new(0.0, lowest.y, lowest.z),
                 spine(q.hip_level()),
@@ -138,7 +114,6 @@ impl Landmarks {
                 spine(q.bust_level()),
                 Vec3::new(0.0, neck.y, neck_base.z),
             ],
-            skull_base: centre(j.head),
         }
     }
 }
@@ -153,18 +128,19 @@ impl Mannequin {
     /// The axes of all six parts, in the order of [`Part::ALL`].
     pub fn parts(&self) -> Vec<PartAxis> {
         let l = &self.landmarks;
-        let limb = |joints: [&[Vec3; 2]; 3], side: usize| joints.map(|pair| pair[side]).to_vec();
+        let at = |joint: Joint| self.skeleton.centre(joint);
+        let limb = |joints: [Joint; 3]| joints.map(at).to_vec();
         Part::ALL
             .into_iter()
             .map(|part| PartAxis {
                 part,
                 axis: match part {
                     Part::Trunk => l.spine.to_vec(),
-                    Part::Head => vec![l.spine[4], l.skull_base, l.crown],
-                    Part::LeftArm => limb([&l.shoulders, &l.elbows, &l.wrists], 0),
-                    Part::RightArm => limb([&l.shoulders, &l.elbows, &l.wrists], 1),
-                    Part::LeftLeg => limb([&l.hip_joints, &l.knees, &l.ankles], 0),
-                    Part::RightLeg => limb([&l.hip_joints, &l.knees, &l.ankles], 1),
+                    Part::Head => vec![l.spine[4], at(Joint::Skullbase), l.crown],
+                    Part::LeftArm => limb([Joint::LShoulder, Joint::LElbow, Joint::LWrist]),
+                    Part::RightArm => limb([Joint::RShoulder, Joint::RElbow, Joint::RWrist]),
+                    Part::LeftLeg => limb([Joint::LHip, Joint::LKnee, Joint::LAnkle]),
+                    Part::RightLeg => limb([Joint::RHip, Joint::RKnee, Joint::RAnkle]),
                 },
             })
             .collect()

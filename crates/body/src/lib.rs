@@ -1,27 +1,34 @@
 //! Mannequins: skeleton, ellipsoid primitives, skin.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod attach;
+mod bones;
 mod curve;
 mod describe;
 mod error;
 mod fair;
 mod field;
 mod gaps;
+mod joint;
 mod landmarks;
 mod limbs;
 mod mannequin;
 mod marks;
 mod request;
 mod rings;
+mod skeleton;
 mod solve;
 mod tape;
 mod template;
 mod warp;
 
+pub use attach::AttachedPrimitive;
 pub use describe::Description;
 pub use error::BodyError;
 pub use field::{Field, Part, Primitive, THRESHOLD, VISIBLE_RATIO};
 pub use gaps::Gap;
+pub use joint::Joint;
 pub use landmarks::{BodyLevels, Landmarks, PartAxis};
 pub use mannequin::Mannequin;
+pub use skeleton::{JointFrames, Pose, Skeleton};
 pub use template::Figure;

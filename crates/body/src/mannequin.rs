@@ -1,5 +1,7 @@
 //! The mannequin: everything the other parts need of a body.
 
+use crate::attach::posed;
+use crate::bones;
 use crate::landmarks::Landmarks;
 use crate::marks::Marks;
 use crate::request::Request;
@@ -7,7 +9,7 @@ use crate::rings;
 use crate::solve::Grown;
 use crate::template::Template;
 use crate::warp::{Follow, Warp};
-use crate::{BodyError, Field, Figure, Part, Primitive};
+use crate::{AttachedPrimitive, BodyError, Field, Figure, Part, Pose, Primitive, Skeleton};
 use nalgebra::Rotation3;
 use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3};
 use toile_measure::Measurements;
@@ -21,7 +23,8 @@ pub struct Mannequin {
     pub(crate) template_primitives: Vec<Primitive>,
     pub(crate) skin: SurfaceTree,
     pub(crate) parts: Vec<Part>,
-    pub(crate) primitives: Vec<Primitive>,
+    pub(crate) skeleton: Skeleton,
+    pub(crate) primitives: Vec<AttachedPrimitive>,
     pub(crate) field: Field,
     pub(crate) landmarks: Landmarks,
 }
@@ -56,17 +59,22 @@ impl Mannequin {
         };
         let (shape, mesh) = grown.solve()?;
         let warp = Warp::new(&template, shape);
-        let primitives: Vec<Primitive> = template
+        let skeleton = bones::skeleton(&template, &warp);
+        let primitives: Vec<AttachedPrimitive> = template
             .primitives
             .iter()
-            .map(|primitive| carried(primitive, &warp))
+            .map(|primitive| {
+                let joint = bones::joint_of(&template, primitive);
+                AttachedPrimitive::new(joint, &carried(primitive, &warp), &skeleton)
+            })
             .collect();
         let landmarks = Landmarks::find(&grown, &warp, &mesh);
         let body = Self {
             figure,
             measurements: measurements.clone(),
             request,
-            field: Field::new(&primitives),
+            field: Field::new(&posed(&primitives, &skeleton, &Pose::rest())),
+            skeleton,
             primitives,
             skin: SurfaceTree::new(mesh),
             parts: skin.parts,
@@ -114,13 +122,29 @@ impl Mannequin {
         &self.parts
     }
 
-    /// The ellipsoid primitives of the body: a coarse description of it, carried from the
-    /// template's by the map of the skin, linearised at their centres.
-    pub fn ellipsoids(&self) -> &[Primitive] {
+    /// The joints, where they are at rest.
+    pub fn skeleton(&self) -> &Skeleton {
+        &self.skeleton
+    }
+
+    /// The ellipsoid primitives of the body, each in the frame of the joint it is fixed to: a
+    /// coarse description of the body, carried from the template's by the map of the skin,
+    /// linearised at their centres.
+    pub fn primitives(&self) -> &[AttachedPrimitive] {
         &self.primitives
     }
 
-    /// The implicit surface of the primitives.
+    /// The primitives in the body's frame, at rest, in the order of [`Mannequin::primitives`].
+    pub fn ellipsoids(&self) -> Vec<Primitive> {
+        self.posed_ellipsoids(&Pose::rest())
+    }
+
+    /// The primitives in the body's frame, in a pose: each goes rigidly with its joint.
+    pub fn posed_ellipsoids(&self, pose: &Pose) -> Vec<Primitive> {
+        posed(&self.primitives, &self.skeleton, pose)
+    }
+
+    /// The implicit surface of the primitives at rest.
     pub fn field(&self) -> &Field {
         &self.field
     }
@@ -145,7 +169,7 @@ impl Mannequin {
 /// A primitive carried by the derivative J of the map at its centre: the ellipsoid with the matrix
 /// `J R S`, whose singular vectors and values are the new axes.
 fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
-    if primitive.centre[0] < 0.0 {
+    if primitive.is_right() {
         return carried(&primitive.mirrored(), warp).mirrored();
     }
     let follow = match primitive.part {

@@ -156,13 +156,10 @@ fn every_vertex_has_its_mirror_image() {
 fn inside_and_closest_point() {
     let body = Mannequin::new(&Measurements::adult_woman(), Figure::Woman).unwrap();
     let marks = body.landmarks();
-    for inside in marks
-        .spine
-        .iter()
-        .skip(1)
-        .chain(&marks.elbows)
-        .chain(&marks.knees)
-    {
+    for (joint, centre) in body.skeleton().joints() {
+        assert!(body.contains(centre), "{joint:?} {centre:?}");
+    }
+    for inside in marks.spine.iter().skip(1) {
         assert!(body.contains(*inside), "{inside:?}");
         assert!(
             body.field().contains(*inside),
@@ -276,6 +273,17 @@ fn a_description_is_small_and_gives_the_same_body() {
         bad.primitives[5].radii[1] = spoil;
         let refused = Mannequin::from_description(&bad);
         assert!(matches!(refused, Err(BodyError::Description(_))), "{spoil}");
+    }
+    // Every figure's own primitives, written out, are the figure's.
+    for (figure, table) in built_in() {
+        let body = Mannequin::new(&table, figure).unwrap();
+        let again = Mannequin::from_description(&body.description()).unwrap();
+        assert_eq!(
+            again.ellipsoids().len(),
+            body.ellipsoids().len(),
+            "{figure:?}"
+        );
+        assert_eq!(again.skin(), body.skin(), "{figure:?}");
     }
     let mut few = read;
     few.primitives.truncate(3);

@@ -1,0 +1,116 @@
+//! The articulated skeleton: a tree of joints with their frames at rest, posed by a rotation of
+//! each joint.
+
+use crate::Joint;
+use nalgebra::{Translation3, UnitQuaternion};
+use toile_geometry::{Rigid, Vec3};
+
+/// The joints of one body where they are at rest. A joint's frame at rest has its origin in the
+/// joint and axes parallel to the body's, as in H-Anim; what is fixed to a joint is given in that
+/// frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skeleton {
+    rest: [Vec3; Joint::COUNT],
+}
+
+/// A rotation of every joint about its own centre, in its own frame. The identity is the rest
+/// pose: arms held off at the angle asked for, legs apart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pose {
+    rotations: [UnitQuaternion<f64>; Joint::COUNT],
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self {
+            rotations: [UnitQuaternion::identity(); Joint::COUNT],
+        }
+    }
+}
+
+impl Pose {
+    /// The rest pose.
+    pub fn rest() -> Self {
+        Self::default()
+    }
+
+    /// The same pose with one joint turned so.
+    #[must_use]
+    pub fn with(mut self, joint: Joint, rotation: UnitQuaternion<f64>) -> Self {
+        self.rotations[joint as usize] = rotation;
+        self
+    }
+
+    /// Turns one joint so.
+    pub fn set(&mut self, joint: Joint, rotation: UnitQuaternion<f64>) {
+        self.rotations[joint as usize] = rotation;
+    }
+
+    /// How a joint is turned.
+    pub fn rotation(&self, joint: Joint) -> UnitQuaternion<f64> {
+        self.rotations[joint as usize]
+    }
+}
+
+/// Where every joint's frame is in one pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointFrames {
+    body_from_joint: [Rigid; Joint::COUNT],
+}
+
+impl JointFrames {
+    /// The map from a joint's frame to the body's [m].
+    pub fn body_from_joint(&self, joint: Joint) -> &Rigid {
+        &self.body_from_joint[joint as usize]
+    }
+
+    /// The joint's centre [m].
+    pub fn centre(&self, joint: Joint) -> Vec3 {
+        self.body_from_joint[joint as usize].translation.vector
+    }
+}
+
+impl Skeleton {
+    pub(crate) fn new(rest: [Vec3; Joint::COUNT]) -> Self {
+        Self { rest }
+    }
+
+    /// The joints, every one after the joint it hangs on.
+    pub fn joints(&self) -> impl Iterator<Item = (Joint, Vec3)> + '_ {
+        Joint::ALL.into_iter().zip(self.rest)
+    }
+
+    /// Centre of a joint at rest [m].
+    pub fn centre(&self, joint: Joint) -> Vec3 {
+        self.rest[joint as usize]
+    }
+
+    /// From the centre of the joint it hangs on to a joint's centre, at rest [m]; for the root
+    /// from the body's origin.
+    pub fn offset(&self, joint: Joint) -> Vec3 {
+        let parent = joint.parent().map(|parent| self.centre(parent));
+        self.centre(joint) - parent.unwrap_or_default()
+    }
+
+    /// The frames at rest.
+    pub fn rest_frames(&self) -> JointFrames {
+        JointFrames {
+            body_from_joint: self.rest.map(|c| Rigid::translation(c.x, c.y, c.z)),
+        }
+    }
+
+    /// The frames in a pose, by forward kinematics from the root outward:
+    /// `body_from_joint = body_from_parent * translation(offset) * rotation`.
+    pub fn frames(&self, pose: &Pose) -> JointFrames {
+        let mut frames = self.rest_frames();
+        for joint in Joint::ALL {
+            let step =
+                Rigid::from_parts(Translation3::from(self.offset(joint)), pose.rotation(joint));
+            frames.body_from_joint[joint as usize] = match joint.parent() {
+                Some(parent) => frames.body_from_joint[parent as usize] * step,
+                None => step,
+            };
+        }
+        frames
+    }
+}
