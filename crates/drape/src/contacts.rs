@@ -44,6 +44,10 @@ impl Contacts {
     /// Finds the contacts of the present positions. A sample is skipped only when the distance it
     /// moved proves that it is out of reach.
     pub fn refresh(&mut self, model: &Model, state: &State, positions: &[Vec3]) {
+        if model.colliders.is_empty() {
+            self.active.clear();
+            return;
+        }
         let unknown = Memory {
             place: Vec3::repeat(f64::INFINITY),
             clearance: 0.0,
@@ -74,19 +78,18 @@ impl Contacts {
 
     /// Moves the friction anchors after a step, and remembers the normal forces.
     pub fn settle(&self, model: &Model, state: &mut State) {
-        let mut anchors = vec![None; model.samples.len()];
-        let mut forces = vec![0.0; model.samples.len()];
+        state.anchors.fill(None);
+        state.normal_forces.fill(0.0);
+        state.follow_samples(model);
         for contact in &self.active {
             let at = contact.sample as usize;
             let place = model.samples[at].place(&state.positions);
             let force = contact.law.normal_force(&contact.plane, place);
             if force > 0.0 {
-                anchors[at] = Some(contact.law.slide(&contact.plane, place, force));
-                forces[at] = force;
+                state.anchors[at] = Some(contact.law.slide(&contact.plane, place, force));
+                state.normal_forces[at] = force;
             }
         }
-        state.anchors = anchors;
-        state.normal_forces = forces;
     }
 }
 

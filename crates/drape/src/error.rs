@@ -43,15 +43,41 @@ pub enum DrapeError {
         /// What to do.
         remedy: String,
     },
-    /// A position or velocity became something that is no number, and smaller steps did not help.
+    /// A position or velocity is no finite number, given so or become so.
     #[error(
-        "{stage}: vertex {vertex} left the finite numbers even at the smallest step; look for slivers or extreme stiffness near it"
+        "{stage}: the position or velocity of vertex {vertex} is not a finite number; look for slivers or extreme stiffness near it, or take smaller steps"
     )]
     NotFinite {
         /// What was being done.
         stage: &'static str,
         /// The first vertex concerned.
         vertex: usize,
+    },
+    /// A vertex moves as nothing physical does: the step is above the method's stability limit.
+    #[error(
+        "{stage}: blown up at vertex {vertex} ({speed:.3e} m/s); the substep of {substep:.3e} s is too long: take more substeps, softer cloth or an implicit method"
+    )]
+    BlownUp {
+        /// The method.
+        stage: &'static str,
+        /// The fastest vertex.
+        vertex: usize,
+        /// Its speed [m/s].
+        speed: f64,
+        /// The substep [s].
+        substep: f64,
+    },
+    /// No number of substeps that could be waited for keeps an explicit method stable.
+    #[error(
+        "{stage}: vertex {vertex} is so stiff for its mass that a step would take {substeps:.1e} substeps; mesh without slivers or take an implicit method"
+    )]
+    TooStiff {
+        /// The method.
+        stage: &'static str,
+        /// The vertex of the fastest vibration.
+        vertex: usize,
+        /// Substeps it would take.
+        substeps: f64,
     },
     /// Steps made no progress even at the smallest size.
     #[error(

@@ -133,6 +133,8 @@ pub struct Model {
     pub air_drag: f64,
     pub(crate) elements: Vec<MembraneElement>,
     pub(crate) bending: ScalarMatrix,
+    /// Where the vertices lay when the model was built [m]: what orders of elimination follow.
+    pub(crate) layout: Vec<Vec3>,
     pub(crate) pattern: BlockPattern,
     pub(crate) corner_start: Vec<u32>,
     pub(crate) corners: Vec<u32>,
@@ -182,6 +184,7 @@ impl Model {
             air_drag: 0.0,
             elements,
             bending,
+            layout: cloth.positions.clone(),
             corner_start,
             corners,
             elastic_start: vec![0; count + 1],

@@ -92,7 +92,7 @@ const DECREASE: f64 = 1e-4;
 const HALVINGS: usize = 12;
 
 impl Workspace {
-    fn fit(&mut self, model: &Model) {
+    pub(crate) fn fit(&mut self, model: &Model) {
         let n = model.vertex_count();
         self.gradient.resize(n, Vec3::zeros());
         self.direction.resize(n, Vec3::zeros());
@@ -116,6 +116,11 @@ impl Workspace {
         for g in &mut self.gradient {
             *g = -*g;
         }
+        &self.gradient
+    }
+
+    /// What [`Self::net_force`] found last.
+    pub(crate) fn last_force(&self) -> &[Vec3] {
         &self.gradient
     }
 
@@ -147,7 +152,7 @@ impl Workspace {
             }
             self.fill_hessian(model, &state.positions, inertia);
             report.iterations += 1;
-            report.linear_iterations += self.solve_linear(model, &state.positions, settings.linear);
+            report.linear_iterations += self.solve_linear(model, settings.linear);
             self.limit_moves(settings.longest_move);
             let fraction = self.line_search(model, &state.positions, inertia);
             report.fraction = fraction;
@@ -168,7 +173,7 @@ impl Workspace {
     }
 
     /// Potential at some positions, with the contact planes as they are [J].
-    fn potential(&self, model: &Model, x: &[Vec3], inertia: &Inertia) -> f64 {
+    pub(crate) fn potential(&self, model: &Model, x: &[Vec3], inertia: &Inertia) -> f64 {
         let elements: Vec<f64> = model
             .triangles
             .par_chunks(CHUNK)
@@ -208,7 +213,7 @@ impl Workspace {
     }
 
     /// Gradient of the potential at `x`; zero at pins.
-    fn fill_gradient(&mut self, model: &Model, x: &[Vec3], inertia: Option<&Inertia>) {
+    pub(crate) fn fill_gradient(&mut self, model: &Model, x: &[Vec3], inertia: Option<&Inertia>) {
         self.corner_gradients
             .par_chunks_mut(CHUNK)
             .enumerate()
@@ -260,7 +265,7 @@ impl Workspace {
 
     /// A positive semidefinite Hessian of the potential at `x`, but for the bending part, which is
     /// constant and stays in the model.
-    fn fill_hessian(&mut self, model: &Model, x: &[Vec3], inertia: &Inertia) {
+    pub(crate) fn fill_hessian(&mut self, model: &Model, x: &[Vec3], inertia: &Inertia) {
         self.elements
             .par_chunks_mut(CHUNK)
             .enumerate()
@@ -295,18 +300,15 @@ impl Workspace {
             .gather(&self.elements, &self.diagonal, &mut self.blocks);
     }
 
+    /// One row of the Hessian filled last times a vector.
+    pub(crate) fn hessian_row(&self, model: &Model, row: usize, p: &[Vec3]) -> Vec3 {
+        hessian_row(model, &self.blocks, &self.secants, row, p)
+    }
+
     /// Solves for the Newton direction; returns the iterations taken.
-    fn solve_linear(&mut self, model: &Model, x: &[Vec3], limits: LinearSolver) -> usize {
+    fn solve_linear(&mut self, model: &Model, limits: LinearSolver) -> usize {
         let (blocks, secants) = (&self.blocks, &self.secants);
-        let apply = |row: usize, p: &[Vec3]| {
-            let mut sum = model.pattern.row_times(row, blocks, p) + model.bending.row_times(row, p);
-            for (e, other) in elastics_of(model, row) {
-                if let ElasticEnd::Vertex(other) = other {
-                    sum -= p[other as usize] * secants[e];
-                }
-            }
-            sum
-        };
+        let apply = |row: usize, p: &[Vec3]| hessian_row(model, blocks, secants, row, p);
         let diagonal = |row: usize| {
             model.pattern.diagonal_block(row, blocks)
                 + Matrix3::identity() * model.bending.diagonal(row)
@@ -317,7 +319,9 @@ impl Workspace {
         let limits = match limits {
             LinearSolver::Iterative(limits) => limits,
             LinearSolver::Direct { otherwise } => {
-                let direct = self.direct.get_or_insert_with(|| Direct::new(model, x));
+                let direct = self
+                    .direct
+                    .get_or_insert_with(|| Direct::new(model, &model.layout));
                 if let Some(direct) = direct
                     && direct.solve(model, blocks, &self.gradient, &mut self.direction)
                 {
@@ -375,8 +379,28 @@ impl Workspace {
     }
 }
 
+/// One row of the Hessian (blocks, bending, elastics between vertices) times a vector.
+fn hessian_row(
+    model: &Model,
+    blocks: &[Matrix3<f64>],
+    secants: &[f64],
+    row: usize,
+    p: &[Vec3],
+) -> Vec3 {
+    let mut sum = model.pattern.row_times(row, blocks, p) + model.bending.row_times(row, p);
+    for (e, other) in elastics_of(model, row) {
+        if let ElasticEnd::Vertex(other) = other {
+            sum -= p[other as usize] * secants[e];
+        }
+    }
+    sum
+}
+
 /// Elastics at a vertex with their other end.
-fn elastics_of(model: &Model, v: usize) -> impl Iterator<Item = (usize, ElasticEnd)> + '_ {
+pub(crate) fn elastics_of(
+    model: &Model,
+    v: usize,
+) -> impl Iterator<Item = (usize, ElasticEnd)> + '_ {
     let uses = model.elastic_start[v] as usize..model.elastic_start[v + 1] as usize;
     model.elastic_uses[uses].iter().map(move |&e| {
         let elastic = &model.elastics[e as usize];

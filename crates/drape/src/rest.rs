@@ -31,7 +31,7 @@ impl Default for RestSettings {
 }
 
 /// A drape on its way to rest.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RestRun {
     settings: RestSettings,
     pseudo_step: f64,
@@ -64,6 +64,11 @@ impl RestRun {
             waited: 0,
             linear_iterations: 0,
         }
+    }
+
+    /// The same way with other settings.
+    pub fn with_settings(self, settings: RestSettings) -> Self {
+        Self { settings, ..self }
     }
 
     /// Residual after the last step.

@@ -1,7 +1,27 @@
 //! The state: what changes as a simulation runs; a complete checkpoint.
 
-use crate::Model;
+use crate::{Model, RestRun};
 use toile_geometry::Vec3;
+
+/// What a method must remember from one step to the next beyond positions and velocities. Another
+/// method than the one that wrote it takes no notice of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Memory {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The state before the last step, for methods of two steps.
+    Previous {
+        /// Positions then [m].
+        positions: Vec<Vec3>,
+        /// Velocities then [m/s].
+        velocities: Vec<Vec3>,
+        /// Length of the step that followed [s].
+        step: f64,
+    },
+    /// How the way to rest stands.
+    Rest(RestRun),
+}
 
 /// Positions, velocities, and what contact remembers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,6 +36,8 @@ pub struct State {
     pub normal_forces: Vec<f64>,
     /// Simulated time [s].
     pub time: f64,
+    /// What the method remembers.
+    pub memory: Memory,
 }
 
 impl State {
@@ -27,6 +49,7 @@ impl State {
             anchors: vec![None; model.samples.len()],
             normal_forces: vec![0.0; model.samples.len()],
             time: 0.0,
+            memory: Memory::Nothing,
         }
     }
 

@@ -1,9 +1,20 @@
 //! Methods: one trait with a whole step in it, chosen once by name from a closed list.
 
+mod explicit;
+mod forward_euler;
+mod frequency;
+mod guard;
 mod implicit_euler;
 mod rest;
+mod runge_kutta;
+mod symplectic_euler;
+mod velocity_verlet;
+
+pub use frequency::largest_frequency;
 
 use crate::{DrapeError, Model, State};
+use explicit::Explicit;
+use guard::Guarded;
 
 /// What one step of a method took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,6 +59,14 @@ pub trait Method: Send {
 /// The closed list of methods.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum MethodKind {
+    /// Forward Euler: explicit, order 1, never stable without damping.
+    ForwardEuler,
+    /// Symplectic Euler: explicit, order 1.
+    SymplecticEuler,
+    /// Velocity Verlet: explicit, order 2.
+    VelocityVerlet,
+    /// The classical Runge-Kutta method: explicit, order 4.
+    RungeKutta4,
     /// Implicit Euler by full Newton with line search.
     #[default]
     ImplicitEuler,
@@ -57,7 +76,11 @@ pub enum MethodKind {
 
 impl MethodKind {
     /// Every method with its name in files.
-    pub const ALL: [(&'static str, Self); 2] = [
+    pub const ALL: [(&'static str, Self); 6] = [
+        ("forward-euler", Self::ForwardEuler),
+        ("symplectic-euler", Self::SymplecticEuler),
+        ("velocity-verlet", Self::VelocityVerlet),
+        ("runge-kutta-4", Self::RungeKutta4),
         ("implicit-euler", Self::ImplicitEuler),
         ("rest", Self::Rest),
     ];
@@ -68,6 +91,17 @@ impl MethodKind {
             .iter()
             .find(|(_, kind)| *kind == self)
             .map_or("", |(name, _)| name)
+    }
+
+    /// Largest stable product of angular frequency and substep of an undamped vibration; nothing
+    /// for implicit methods, which have no limit, and for forward Euler 0.
+    pub fn stability_limit(self) -> Option<f64> {
+        match self {
+            Self::ForwardEuler => Some(0.0),
+            Self::SymplecticEuler | Self::VelocityVerlet => Some(2.0),
+            Self::RungeKutta4 => Some(2.0 * std::f64::consts::SQRT_2),
+            Self::ImplicitEuler | Self::Rest => None,
+        }
     }
 
     /// Whether it looks for rest rather than running in time.
@@ -81,7 +115,8 @@ impl MethodKind {
 pub struct MethodSettings {
     /// Which method.
     pub kind: MethodKind,
-    /// Substeps a step is cut into.
+    /// Substeps a step is cut into; explicit methods left without take what the largest frequency
+    /// at the start of each step asks for (0.9 of their limit).
     pub substeps: Option<u32>,
     /// Iterations in a (sub)step at the most.
     pub iterations: Option<usize>,
@@ -102,8 +137,20 @@ impl MethodSettings {
     /// The method, its memory still empty.
     pub fn build(&self) -> Box<dyn Method> {
         match self.kind {
-            MethodKind::ImplicitEuler => Box::new(implicit_euler::ImplicitEuler::new(self)),
-            MethodKind::Rest => Box::new(rest::Rest::new(self)),
+            MethodKind::ForwardEuler => {
+                Guarded::boxed(Explicit::<forward_euler::ForwardEuler>::new(self))
+            }
+            MethodKind::SymplecticEuler => {
+                Guarded::boxed(Explicit::<symplectic_euler::SymplecticEuler>::new(self))
+            }
+            MethodKind::VelocityVerlet => {
+                Guarded::boxed(Explicit::<velocity_verlet::VelocityVerlet>::new(self))
+            }
+            MethodKind::RungeKutta4 => {
+                Guarded::boxed(Explicit::<runge_kutta::RungeKutta4>::new(self))
+            }
+            MethodKind::ImplicitEuler => Guarded::boxed(implicit_euler::ImplicitEuler::new(self)),
+            MethodKind::Rest => Guarded::boxed(rest::Rest::new(self)),
         }
     }
 }

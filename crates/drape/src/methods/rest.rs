@@ -1,10 +1,11 @@
 //! The way to rest by pseudo-transient continuation.
 
 use super::{Method, MethodSettings, StepReport};
-use crate::{DrapeError, Model, RestRun, RestSettings, State, Workspace};
+use crate::{DrapeError, Memory, Model, RestRun, RestSettings, State, Workspace};
 
-/// The way to rest: see [`RestRun`].
+/// The way to rest: see [`RestRun`]. How it stands is remembered in the state.
 pub struct Rest {
+    settings: RestSettings,
     run: RestRun,
     workspace: Workspace,
 }
@@ -12,12 +13,14 @@ pub struct Rest {
 impl Rest {
     /// With what the settings leave open at its defaults.
     pub fn new(settings: &MethodSettings) -> Self {
+        let settings = RestSettings {
+            residual: settings.tolerance.unwrap_or(1e-3),
+            steps: settings.iterations.unwrap_or(2000),
+            ..RestSettings::default()
+        };
         Self {
-            run: RestRun::new(RestSettings {
-                residual: settings.tolerance.unwrap_or(1e-3),
-                steps: settings.iterations.unwrap_or(2000),
-                ..RestSettings::default()
-            }),
+            settings,
+            run: RestRun::new(settings),
             workspace: Workspace::default(),
         }
     }
@@ -30,8 +33,13 @@ impl Method for Rest {
         state: &mut State,
         _step: f64,
     ) -> Result<StepReport, DrapeError> {
+        self.run = match std::mem::take(&mut state.memory) {
+            Memory::Rest(run) => run.with_settings(self.settings),
+            _ => RestRun::new(self.settings),
+        };
         let before = self.run.linear_iterations();
         self.run.advance(model, state, &mut self.workspace)?;
+        state.memory = Memory::Rest(self.run.clone());
         Ok(StepReport {
             pieces: 1,
             iterations: 1,

@@ -1,0 +1,55 @@
+//! The guard round every method: bad states are refused, failed steps undone, results checked.
+
+use super::{Method, StepReport};
+use crate::{DrapeError, Model, State};
+
+/// A method whose steps either end finite or leave the state as it was.
+pub struct Guarded<M> {
+    method: M,
+    start: State,
+}
+
+impl<M: Method + 'static> Guarded<M> {
+    /// Puts the guard round a method.
+    pub fn boxed(method: M) -> Box<dyn Method> {
+        Box::new(Self {
+            method,
+            start: State::default(),
+        })
+    }
+}
+
+impl<M: Method> Method for Guarded<M> {
+    fn advance(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        step: f64,
+    ) -> Result<StepReport, DrapeError> {
+        if let Some(vertex) = state.first_not_finite() {
+            let stage = "start of a step";
+            return Err(DrapeError::NotFinite { stage, vertex });
+        }
+        self.start.clone_from(state);
+        let result = self.method.advance(model, state, step);
+        let result = match (result, state.first_not_finite()) {
+            (Ok(_), Some(vertex)) => {
+                let stage = "end of a step";
+                Err(DrapeError::NotFinite { stage, vertex })
+            }
+            (result, _) => result,
+        };
+        if result.is_err() {
+            state.clone_from(&self.start);
+        }
+        result
+    }
+
+    fn finished(&self) -> bool {
+        self.method.finished()
+    }
+
+    fn residual(&self) -> Option<f64> {
+        self.method.residual()
+    }
+}

@@ -1,0 +1,5 @@
+//! Every method against closed forms, its own limits and the promises all methods make.
+
+mod explicit;
+mod fixtures;
+mod table;

@@ -1,0 +1,275 @@
+//! One table over every method: what all of them promise.
+
+use crate::fixtures::{ball, cloth, hanging_square, method, shake, sheet};
+use toile_drape::{DrapeError, Material, MethodKind, Model, State, Workspace, residual};
+use toile_geometry::Vec3;
+
+/// Substeps that keep the explicit methods stable on the small cloths at 1/60 s.
+const SUBSTEPS: u32 = 40;
+
+fn substeps(kind: MethodKind) -> u32 {
+    match kind.stability_limit() {
+        // Forward Euler grows by h w^2 / 2 a second: over these short runs this many hold it.
+        Some(0.0) => 20 * SUBSTEPS,
+        Some(_) => SUBSTEPS,
+        None => 1,
+    }
+}
+
+fn in_time() -> impl Iterator<Item = (&'static str, MethodKind)> {
+    MethodKind::ALL
+        .into_iter()
+        .filter(|(_, kind)| !kind.is_equilibrium())
+}
+
+/// That two states are equal to the last bit, naming the first vertex that is not.
+fn assert_same(name: &str, a: &State, b: &State) {
+    let moved = a
+        .positions
+        .iter()
+        .zip(&b.positions)
+        .position(|(a, b)| a != b);
+    assert_eq!(moved, None, "{name}: first vertex elsewhere");
+    assert!(a == b, "{name}: states differ in more than place");
+}
+
+fn momentum(model: &Model, state: &State) -> Vec3 {
+    let pairs = state.velocities.iter().zip(&model.mass);
+    pairs.map(|(v, m)| v * *m).sum()
+}
+
+/// Height fallen after `n` steps of `h` from rest.
+fn fallen(kind: MethodKind, h: f64, n: u32) -> f64 {
+    let n = f64::from(n);
+    let unit = 9.81 * h * h / 2.0;
+    match kind {
+        MethodKind::ForwardEuler => unit * n * (n - 1.0),
+        MethodKind::VelocityVerlet | MethodKind::RungeKutta4 => unit * n * n,
+        _ => unit * n * (n + 1.0),
+    }
+}
+
+#[test]
+fn a_free_sheet_falls_as_the_method_says() {
+    for (name, kind) in in_time() {
+        let mesh = sheet([4, 4], [0.2, 0.2], |u, v| Vec3::new(u, 0.0, v));
+        let (model, mut state) = cloth(&mesh, Material::default());
+        let steps = 10;
+        let mut method = method(kind, substeps(kind));
+        for _ in 0..steps {
+            method
+                .advance(&model, &mut state, 0.005)
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+        let h = 0.005 / f64::from(substeps(kind));
+        let expected = fallen(kind, h, steps * substeps(kind));
+        for x in &state.positions {
+            assert!((x.y + expected).abs() < 2e-8, "{name}: {} {expected}", x.y);
+        }
+        assert!((state.time - 0.05).abs() < 1e-12, "{name}: {}", state.time);
+    }
+}
+
+#[test]
+fn momentum_is_kept_in_free_flight() {
+    for (name, kind) in in_time() {
+        let mesh = sheet([5, 5], [0.2, 0.2], |u, v| Vec3::new(u, 0.0, v));
+        let (mut model, mut state) = cloth(&mesh, Material::default());
+        model.gravity = Vec3::zeros();
+        shake(&model, &mut state, 2e-3);
+        for (v, velocity) in state.velocities.iter_mut().enumerate() {
+            *velocity = Vec3::new(0.3, 0.1, -0.2) + Vec3::y() * (0.05 * v as f64).sin();
+        }
+        let before = momentum(&model, &state);
+        let mut method = method(kind, substeps(kind));
+        for _ in 0..20 {
+            method
+                .advance(&model, &mut state, 0.004)
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+        let off = (momentum(&model, &state) - before).norm() / before.norm();
+        // Iterative methods keep it to their tolerance of 1e-8 N over 80 ms.
+        assert!(off < 1e-6, "{name}: {off}");
+    }
+}
+
+#[test]
+fn numbers_that_are_none_are_refused_by_vertex() {
+    for (name, kind) in MethodKind::ALL {
+        for (bad, value) in [(17usize, f64::NAN), (30, f64::INFINITY)] {
+            let (model, mut state) = hanging_square();
+            state.velocities[bad].y = value;
+            let mut method = method(kind, 2);
+            let error = method.advance(&model, &mut state, 0.01);
+            assert!(
+                matches!(error, Err(DrapeError::NotFinite { vertex, .. }) if vertex == bad),
+                "{name}: {error:?}"
+            );
+            // Nothing is left behind in the method.
+            state.velocities[bad].y = 0.0;
+            method
+                .advance(&model, &mut state, 1e-4)
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+    }
+}
+
+#[test]
+fn steps_far_too_large_end_sound_or_say_so() {
+    for (name, kind) in MethodKind::ALL {
+        for step in [0.3, 1e3] {
+            let (model, mut state) = hanging_square();
+            shake(&model, &mut state, 0.02);
+            let mut method = method(kind, 1);
+            for _ in 0..10 {
+                let before = state.clone();
+                match method.advance(&model, &mut state, step) {
+                    Ok(_) => {
+                        assert_eq!(state.first_not_finite(), None, "{name}");
+                        let longest = state.positions.iter().map(Vec3::norm).fold(0.0, f64::max);
+                        assert!(longest < 100.0, "{name}: {longest} m away");
+                    }
+                    Err(error) => {
+                        assert_same(name, &state, &before);
+                        let text = error.to_string();
+                        assert!(text.len() > 20, "{name}: {text}");
+                        break;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A cloth with everything in it: pins, elastics, a ball with friction, drag.
+fn busy() -> (Model, State) {
+    let mesh = sheet([24, 24], [0.24, 0.24], |u, v| {
+        Vec3::new(u - 0.12, 0.106 + 0.02 * u, v - 0.1)
+    });
+    let material = Material {
+        stretch: [40.0, 30.0],
+        shear: 8.0,
+        ..Material::default()
+    };
+    let (mut model, mut state) = cloth(&mesh, material);
+    model.colliders = vec![ball(0.1)];
+    model.air_drag = 1.0;
+    model.pinned[0] = true;
+    let law = toile_drape::laws::elastic::ElasticLaw {
+        stiffness: 5.0,
+        largest_force: 0.05,
+    };
+    model.set_elastics(vec![
+        toile_drape::Elastic {
+            from: 24,
+            to: toile_drape::ElasticEnd::Point(Vec3::new(0.2, 0.2, -0.1)),
+            law,
+        },
+        toile_drape::Elastic {
+            from: 600,
+            to: toile_drape::ElasticEnd::Vertex(624),
+            law,
+        },
+    ]);
+    shake(&model, &mut state, 1e-4);
+    (model, state)
+}
+
+#[test]
+fn a_saved_state_goes_on_with_a_fresh_method_to_the_same_bytes() {
+    let (model, start) = busy();
+    for (name, kind) in MethodKind::ALL {
+        let count = 4 * substeps(kind);
+        let mut state = start.clone();
+        let mut through = method(kind, count);
+        for _ in 0..6 {
+            through
+                .advance(&model, &mut state, 0.008)
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+        let mut resumed = start.clone();
+        for part in 0..3 {
+            let mut fresh = method(kind, count);
+            for _ in 0..2 {
+                fresh
+                    .advance(&model, &mut resumed, 0.008)
+                    .unwrap_or_else(|error| panic!("{name}: {error}"));
+            }
+            assert!(resumed != start, "{name} moved by part {part}");
+        }
+        assert_same(name, &state, &resumed);
+    }
+}
+
+#[test]
+fn thread_counts_give_the_same_bytes() {
+    let (model, start) = busy();
+    for (name, kind) in MethodKind::ALL {
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .expect("threads can be made");
+            pool.install(|| {
+                let mut state = start.clone();
+                let mut method = method(kind, 2 * substeps(kind));
+                for _ in 0..4 {
+                    method
+                        .advance(&model, &mut state, 0.008)
+                        .unwrap_or_else(|error| panic!("{name}: {error}"));
+                }
+                state
+            })
+        };
+        let one = run(1);
+        assert_same(name, &one, &run(2));
+        assert_same(name, &one, &run(3));
+    }
+}
+
+#[test]
+fn a_hanging_strip_comes_to_the_same_rest() {
+    let strip = || {
+        let mesh = sheet([2, 8], [0.04, 0.16], |u, v| Vec3::new(u, -v, 0.0));
+        let material = Material {
+            stretch: [30.0, 30.0],
+            shear: 6.0,
+            ..Material::default()
+        };
+        let (mut model, mut state) = cloth(&mesh, material);
+        model.pinned[..3].fill(true);
+        model.air_drag = 8.0;
+        shake(&model, &mut state, 1e-4);
+        (model, state)
+    };
+    let run = |name: &str, kind: MethodKind| {
+        let (model, mut state) = strip();
+        let mut method = method(kind, substeps(kind) / 2);
+        for _ in 0..3000 {
+            method
+                .advance(&model, &mut state, 1.0 / 120.0)
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
+            let quiet = state.kinetic_energy(&model) < 1e-14;
+            if method.finished() || quiet && state.time > 1.0 {
+                break;
+            }
+        }
+        let left = residual(&model, &state, &mut Workspace::default());
+        assert!(left < 2e-3, "{name}: residual {left}");
+        state.positions
+    };
+    let expected = run("rest", MethodKind::Rest);
+    for (name, kind) in MethodKind::ALL {
+        // Forward Euler's growth must stay below what drag takes: it needs a finer step.
+        if kind == MethodKind::ForwardEuler {
+            continue;
+        }
+        let got = run(name, kind);
+        let off = got
+            .iter()
+            .zip(&expected)
+            .map(|(a, b)| (a - b).norm())
+            .fold(0.0, f64::max);
+        assert!(off < 2e-4, "{name}: {off} m from the rest of Newton");
+    }
+}
