@@ -70,9 +70,9 @@ pub struct NewtonReport {
 #[derive(Default)]
 pub struct Workspace {
     pub(crate) contacts: Contacts,
-    gradient: Vec<Vec3>,
-    direction: Vec<Vec3>,
-    trial: Vec<Vec3>,
+    pub(crate) gradient: Vec<Vec3>,
+    pub(crate) direction: Vec<Vec3>,
+    pub(crate) trial: Vec<Vec3>,
     corner_gradients: Vec<[Vec3; 3]>,
     elements: Vec<[Matrix3<f64>; 6]>,
     diagonal: Vec<Matrix3<f64>>,
@@ -305,8 +305,9 @@ impl Workspace {
         hessian_row(model, &self.blocks, &self.secants, row, p)
     }
 
-    /// Solves for the Newton direction; returns the iterations taken.
-    fn solve_linear(&mut self, model: &Model, limits: LinearSolver) -> usize {
+    /// Solves for the Newton direction; returns the iterations taken. `gradient` then holds its
+    /// negative.
+    pub(crate) fn solve_linear(&mut self, model: &Model, limits: LinearSolver) -> usize {
         let (blocks, secants) = (&self.blocks, &self.secants);
         let apply = |row: usize, p: &[Vec3]| hessian_row(model, blocks, secants, row, p);
         let diagonal = |row: usize| {

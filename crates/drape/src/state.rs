@@ -24,7 +24,7 @@ pub enum Memory {
 }
 
 /// Positions, velocities, and what contact remembers.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub struct State {
     /// Positions [m].
     pub positions: Vec<Vec3>,
@@ -38,6 +38,32 @@ pub struct State {
     pub time: f64,
     /// What the method remembers.
     pub memory: Memory,
+}
+
+impl Clone for State {
+    fn clone(&self) -> Self {
+        let mut copy = Self::default();
+        copy.clone_from(self);
+        copy
+    }
+
+    /// Copies into the memory that is there: a step that keeps its start allocates nothing.
+    fn clone_from(&mut self, from: &Self) {
+        let Self {
+            positions,
+            velocities,
+            anchors,
+            normal_forces,
+            time,
+            memory,
+        } = from;
+        self.positions.clone_from(positions);
+        self.velocities.clone_from(velocities);
+        self.anchors.clone_from(anchors);
+        self.normal_forces.clone_from(normal_forces);
+        self.time = *time;
+        self.memory.clone_from(memory);
+    }
 }
 
 impl State {

@@ -11,9 +11,10 @@
 //! stiffness / density: at 1e6 N/m3 and 0.2 kg/m2 the substep must stay below 2 / 2236 s = 0.89 ms
 //! however soft the cloth is.
 
+use super::energy::{EnergyWatch, fastest, runaway};
 use super::frequency::{FrequencySearch, contact_frequency};
 use super::{Method, MethodSettings, StepReport};
-use crate::{DrapeError, Inertia, Model, State, Workspace};
+use crate::{DrapeError, Model, State, Workspace};
 use toile_geometry::Vec3;
 
 /// One substep of an explicit method.
@@ -38,7 +39,7 @@ pub struct Explicit<S> {
     substeps: Option<u32>,
     workspace: Workspace,
     search: FrequencySearch,
-    zeros: Vec<f64>,
+    watch: EnergyWatch,
 }
 
 /// Share of the stability limit that automatic substeps use: what is left pays for cloth that
@@ -50,18 +51,6 @@ const SEARCH: usize = 30;
 
 /// Substeps of one step at the most: more is a mesh with slivers, not a simulation.
 const MOST_SUBSTEPS: f64 = 1e6;
-
-/// No part of a cloth moves faster [m/s]: the speed of sound in the stiffest fibres (aramid,
-/// drawn polyethylene), which no wave in it exceeds.
-const FASTEST: f64 = 1e4;
-
-/// How far the energy may lie above its physical bound. The energy of a symplectic method swings
-/// by (1 + hw/2) / (1 - hw/2): 1000 is reached at 0.999 of the limit. What is unstable passes it a
-/// few substeps later than it would pass 1.
-const SWING: f64 = 1e3;
-
-/// Speed of the whole cloth whose energy is counted as rounding [m/s].
-const STILL: f64 = 1e-3;
 
 /// Net force on every vertex: all forces of the model at a state, zero at pins [N].
 pub fn forces<'a>(model: &Model, state: &State, workspace: &'a mut Workspace) -> &'a [Vec3] {
@@ -89,7 +78,7 @@ impl<S: Scheme> Explicit<S> {
             substeps: settings.substeps,
             workspace: Workspace::default(),
             search: FrequencySearch::default(),
-            zeros: Vec::new(),
+            watch: EnergyWatch::default(),
         }
     }
 
@@ -115,37 +104,6 @@ impl<S: Scheme> Explicit<S> {
         }
         Ok((substeps as u32).max(1))
     }
-
-    /// Energy of motion, strain, elastics and contact, gravity left out [J].
-    fn energy(&mut self, model: &Model, state: &State) -> f64 {
-        self.zeros.resize(model.vertex_count(), 0.0);
-        let nothing = Inertia {
-            weight: &self.zeros,
-            target: &state.positions,
-        };
-        self.workspace.fit(model);
-        self.workspace
-            .contacts
-            .refresh(model, state, &state.positions);
-        let height: f64 = state
-            .positions
-            .iter()
-            .zip(&model.mass)
-            .map(|(x, m)| m * model.gravity.dot(x))
-            .sum();
-        self.workspace.potential(model, &state.positions, &nothing)
-            + height
-            + state.kinetic_energy(model)
-    }
-}
-
-/// The first vertex faster than anything can be, or not finite.
-fn runaway(state: &State) -> Option<usize> {
-    state.velocities.iter().position(|v| {
-        v.norm_squared()
-            .partial_cmp(&(FASTEST * FASTEST))
-            .is_none_or(|o| o.is_gt())
-    })
 }
 
 fn blown_up(stage: &'static str, state: &State, vertex: usize, substep: f64) -> DrapeError {
@@ -160,20 +118,6 @@ fn blown_up(stage: &'static str, state: &State, vertex: usize, substep: f64) -> 
     } else {
         DrapeError::NotFinite { stage, vertex }
     }
-}
-
-/// The largest energy a cloth can have after `step` [J]. All its potentials are above zero, so
-/// dH/dt = sum m g.v <= |g| sqrt(2 M H), hence sqrt(H) grows by |g| sqrt(M/2) a second at the most.
-fn energy_bound(model: &Model, before: f64, step: f64) -> f64 {
-    let mass: f64 = model
-        .mass
-        .iter()
-        .zip(&model.pinned)
-        .filter(|&(_, &pinned)| !pinned)
-        .map(|(m, _)| m)
-        .sum();
-    let root = before.max(0.0).sqrt() + model.gravity.norm() * (0.5 * mass).sqrt() * step;
-    SWING * (root * root + 0.5 * mass * STILL * STILL)
 }
 
 impl<S: Scheme> Method for Explicit<S> {
@@ -191,7 +135,7 @@ impl<S: Scheme> Method for Explicit<S> {
                 *v = Vec3::zeros();
             }
         }
-        let before = self.energy(model, state);
+        self.watch.start(model, state, &mut self.workspace);
         let end = state.time + step;
         self.scheme.begin(model, state, &mut self.workspace);
         for _ in 0..substeps {
@@ -200,11 +144,11 @@ impl<S: Scheme> Method for Explicit<S> {
                 return Err(blown_up(S::STAGE, state, vertex, h));
             }
         }
-        let bound = energy_bound(model, before, step);
-        let after = self.energy(model, state);
-        if after.is_nan() || after > bound {
-            let fastest = fastest_vertex(state);
-            return Err(blown_up(S::STAGE, state, fastest, h));
+        if !self
+            .watch
+            .is_possible(model, state, &mut self.workspace, step)
+        {
+            return Err(blown_up(S::STAGE, state, fastest(state).0, h));
         }
         state.time = end;
         Ok(StepReport {
@@ -213,14 +157,4 @@ impl<S: Scheme> Method for Explicit<S> {
             linear_iterations: 0,
         })
     }
-}
-
-fn fastest_vertex(state: &State) -> usize {
-    let mut best = (0, -1.0);
-    for (v, velocity) in state.velocities.iter().enumerate() {
-        if velocity.norm_squared() > best.1 {
-            best = (v, velocity.norm_squared());
-        }
-    }
-    best.0
 }

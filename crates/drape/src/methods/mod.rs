@@ -1,11 +1,15 @@
 //! Methods: one trait with a whole step in it, chosen once by name from a closed list.
 
+mod energy;
 mod explicit;
 mod forward_euler;
 mod frequency;
 mod guard;
+mod implicit;
 mod implicit_euler;
+mod newton_solver;
 mod rest;
+mod rules;
 mod runge_kutta;
 mod symplectic_euler;
 mod velocity_verlet;
@@ -15,6 +19,8 @@ pub use frequency::largest_frequency;
 use crate::{DrapeError, Model, State};
 use explicit::Explicit;
 use guard::Guarded;
+use implicit::Implicit;
+use newton_solver::{Newton, OneSolve};
 
 /// What one step of a method took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -67,21 +73,30 @@ pub enum MethodKind {
     VelocityVerlet,
     /// The classical Runge-Kutta method: explicit, order 4.
     RungeKutta4,
+    /// Semi-implicit Euler: one linear solve a step (Baraff and Witkin 1998), order 1.
+    SemiImplicitEuler,
     /// Implicit Euler by full Newton with line search.
     #[default]
     ImplicitEuler,
+    /// The two-step backward differentiation formula: implicit, order 2, little damping.
+    Bdf2,
+    /// Implicit midpoint: order 2, no damping.
+    ImplicitMidpoint,
     /// Straight to rest by pseudo-transient continuation; time does not run.
     Rest,
 }
 
 impl MethodKind {
     /// Every method with its name in files.
-    pub const ALL: [(&'static str, Self); 6] = [
+    pub const ALL: [(&'static str, Self); 9] = [
         ("forward-euler", Self::ForwardEuler),
         ("symplectic-euler", Self::SymplecticEuler),
         ("velocity-verlet", Self::VelocityVerlet),
         ("runge-kutta-4", Self::RungeKutta4),
+        ("semi-implicit-euler", Self::SemiImplicitEuler),
         ("implicit-euler", Self::ImplicitEuler),
+        ("bdf2", Self::Bdf2),
+        ("implicit-midpoint", Self::ImplicitMidpoint),
         ("rest", Self::Rest),
     ];
 
@@ -100,7 +115,7 @@ impl MethodKind {
             Self::ForwardEuler => Some(0.0),
             Self::SymplecticEuler | Self::VelocityVerlet => Some(2.0),
             Self::RungeKutta4 => Some(2.0 * std::f64::consts::SQRT_2),
-            Self::ImplicitEuler | Self::Rest => None,
+            _ => None,
         }
     }
 
@@ -148,6 +163,13 @@ impl MethodSettings {
             }
             MethodKind::RungeKutta4 => {
                 Guarded::boxed(Explicit::<runge_kutta::RungeKutta4>::new(self))
+            }
+            MethodKind::SemiImplicitEuler => {
+                Guarded::boxed(Implicit::<rules::Euler, OneSolve>::new(self))
+            }
+            MethodKind::Bdf2 => Guarded::boxed(Implicit::<rules::Bdf2, Newton>::new(self)),
+            MethodKind::ImplicitMidpoint => {
+                Guarded::boxed(Implicit::<rules::Midpoint, Newton>::new(self))
             }
             MethodKind::ImplicitEuler => Guarded::boxed(implicit_euler::ImplicitEuler::new(self)),
             MethodKind::Rest => Guarded::boxed(rest::Rest::new(self)),

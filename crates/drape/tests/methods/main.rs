@@ -2,4 +2,5 @@
 
 mod explicit;
 mod fixtures;
+mod order;
 mod table;

@@ -1,0 +1,92 @@
+//! The energy a cloth has, and the most it can have: what tells a result from rubbish.
+
+use crate::{Inertia, Model, State, Workspace};
+
+/// No part of a cloth moves faster [m/s]: the speed of sound in the stiffest fibres (aramid,
+/// drawn polyethylene), which no wave in it exceeds.
+const FASTEST: f64 = 1e4;
+
+/// How far the energy may lie above its physical bound. The energy of a symplectic method swings
+/// by (1 + hw/2) / (1 - hw/2): 1000 is reached at 0.999 of the limit. What is unstable passes it a
+/// few substeps later than it would pass 1.
+const SWING: f64 = 1e3;
+
+/// Speed of the whole cloth whose energy is counted as rounding [m/s].
+const STILL: f64 = 1e-3;
+
+/// Measures energies; its memory is sized once.
+#[derive(Default)]
+pub struct EnergyWatch {
+    zeros: Vec<f64>,
+    before: f64,
+}
+
+impl EnergyWatch {
+    /// Notes the energy before a step.
+    pub fn start(&mut self, model: &Model, state: &State, workspace: &mut Workspace) {
+        self.before = self.energy(model, state, workspace);
+    }
+
+    /// Whether the energy after `step` [s] is one the cloth can have. All potentials but gravity's
+    /// are above zero, so the energy H of motion, strain, elastics and contact obeys
+    /// dH/dt = sum m g.v <= |g| sqrt(2 M H), and sqrt(H) grows by |g| sqrt(M/2) a second at most.
+    pub fn is_possible(
+        &mut self,
+        model: &Model,
+        state: &State,
+        workspace: &mut Workspace,
+        step: f64,
+    ) -> bool {
+        let mass: f64 = model
+            .mass
+            .iter()
+            .zip(&model.pinned)
+            .filter(|&(_, &pinned)| !pinned)
+            .map(|(m, _)| m)
+            .sum();
+        let root = self.before.max(0.0).sqrt() + model.gravity.norm() * (0.5 * mass).sqrt() * step;
+        let bound = SWING * (root * root + 0.5 * mass * STILL * STILL);
+        self.energy(model, state, workspace) <= bound
+    }
+
+    /// Energy of motion, strain, elastics and contact [J].
+    fn energy(&mut self, model: &Model, state: &State, workspace: &mut Workspace) -> f64 {
+        self.zeros.resize(model.vertex_count(), 0.0);
+        let nothing = Inertia {
+            weight: &self.zeros,
+            target: &state.positions,
+        };
+        workspace.fit(model);
+        workspace.contacts.refresh(model, state, &state.positions);
+        let gravity: f64 = state
+            .positions
+            .iter()
+            .zip(&model.mass)
+            .map(|(x, m)| m * model.gravity.dot(x))
+            .sum();
+        workspace.potential(model, &state.positions, &nothing)
+            + gravity
+            + state.kinetic_energy(model)
+    }
+}
+
+/// The first vertex faster than anything can be, or not finite.
+pub fn runaway(state: &State) -> Option<usize> {
+    let possible = |speed: f64| speed <= FASTEST * FASTEST;
+    state
+        .velocities
+        .iter()
+        .position(|v| !possible(v.norm_squared()))
+}
+
+/// The vertex with the highest speed, and the speed [m/s].
+pub fn fastest(state: &State) -> (usize, f64) {
+    let mut best = (0, 0.0);
+    for (v, velocity) in state.velocities.iter().enumerate() {
+        let squared = velocity.norm_squared();
+        if squared > best.1 {
+            best = (v, squared);
+        }
+    }
+    (best.0, best.1.sqrt())
+}

@@ -1,0 +1,228 @@
+//! What the implicit methods share: one potential a step, some way to lower it, halving.
+//!
+//! Each is a rule that turns a step into a minimum of
+//! Phi(x) = E(x) + sum_i w_i/2 |x_i - y_i|^2, w_i = b m_i,
+//! (see [`Workspace`]), and a solver that lowers Phi. A step that fails is undone and taken in
+//! two, four ... pieces.
+
+use super::energy::{EnergyWatch, fastest, runaway};
+use super::{Method, MethodSettings, StepReport};
+use crate::{DrapeError, Inertia, Model, NewtonReport, State, Workspace};
+use std::marker::PhantomData;
+use toile_geometry::Vec3;
+
+/// A rule of time integration, as a minimum and what follows from it.
+pub trait TimeRule: Send {
+    /// Inertia's weight per mass b [1/s2].
+    fn weight(model: &Model, state: &State, h: f64) -> f64;
+
+    /// Where inertia alone would take each vertex, into `target` [m].
+    fn aim(model: &Model, state: &State, h: f64, target: &mut Vec<Vec3>);
+
+    /// Turns the minimum in `state.positions` into the new positions and velocities; `before`
+    /// holds the old ones.
+    fn finish(before: &State, state: &mut State, h: f64);
+}
+
+/// When a solver stops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Iterations at the most.
+    pub iterations: usize,
+    /// Norm of the gradient [N].
+    pub tolerance: f64,
+}
+
+/// What a solver is to lower.
+pub struct Problem<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Weights and targets of the vertices.
+    pub inertia: Inertia<'a>,
+    /// When to stop.
+    pub limits: Limits,
+}
+
+/// A way to lower Phi.
+pub trait Solver: Default + Send {
+    /// The method's name, for errors.
+    const STAGE: &'static str;
+
+    /// Iterations and tolerance where the settings give none.
+    const LIMITS: Limits;
+
+    /// Whether a step counts only when the minimum was reached.
+    const CONVERGES: bool;
+
+    /// Lowers Phi from `state.positions` and leaves the result there.
+    fn lower(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        workspace: &mut Workspace,
+    ) -> NewtonReport;
+}
+
+/// An implicit method: a rule with a solver.
+pub struct Implicit<R, S> {
+    rule: PhantomData<R>,
+    solver: S,
+    limits: Limits,
+    substeps: u32,
+    workspace: Workspace,
+    weights: Vec<f64>,
+    target: Vec<Vec3>,
+    before: State,
+    start: State,
+    watch: EnergyWatch,
+}
+
+/// Halvings of a step before it is an error.
+const HALVINGS: u32 = 8;
+
+/// Gradient over weight up to which a minimum counts as reached although the tolerance is not:
+/// rounding alone leaves more than the tolerance in very stiff cloth.
+const REACHED: f64 = 1e-3;
+
+/// Why a piece of a step was given up.
+enum Failure {
+    /// A vertex left the finite or the possible.
+    Runaway(usize),
+    /// The potential could not be lowered, or its minimum was not reached.
+    Stuck,
+}
+
+impl<R: TimeRule, S: Solver> Implicit<R, S> {
+    /// With what the settings leave open at the solver's defaults.
+    pub fn new(settings: &MethodSettings) -> Self {
+        Self {
+            rule: PhantomData,
+            solver: S::default(),
+            limits: Limits {
+                iterations: settings.iterations.unwrap_or(S::LIMITS.iterations),
+                tolerance: settings.tolerance.unwrap_or(S::LIMITS.tolerance),
+            },
+            substeps: settings.substeps.unwrap_or(1).max(1),
+            workspace: Workspace::default(),
+            weights: Vec::new(),
+            target: Vec::new(),
+            before: State::default(),
+            start: State::default(),
+            watch: EnergyWatch::default(),
+        }
+    }
+
+    /// One step of `h` [s], in pieces where it fails whole.
+    fn whole(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        h: f64,
+        total: &mut StepReport,
+    ) -> Result<(), DrapeError> {
+        self.start.clone_from(state);
+        let mut failure = Failure::Stuck;
+        'halving: for halvings in 0..=HALVINGS {
+            let pieces = 1u32 << halvings;
+            for _ in 0..pieces {
+                match self.piece(model, state, h / f64::from(pieces)) {
+                    Ok(report) => {
+                        total.iterations += report.iterations;
+                        total.linear_iterations += report.linear_iterations;
+                    }
+                    Err(why) => {
+                        failure = why;
+                        if halvings < HALVINGS {
+                            state.clone_from(&self.start);
+                        }
+                        continue 'halving;
+                    }
+                }
+            }
+            total.pieces = total.pieces.max(pieces);
+            return Ok(());
+        }
+        Err(self.error(model, state, failure, h))
+    }
+
+    fn piece(&mut self, model: &Model, state: &mut State, h: f64) -> Result<NewtonReport, Failure> {
+        self.before.clone_from(state);
+        self.watch.start(model, state, &mut self.workspace);
+        let weight = R::weight(model, state, h);
+        self.weights.clear();
+        self.weights.extend(model.mass.iter().map(|m| m * weight));
+        R::aim(model, state, h, &mut self.target);
+        for (v, target) in self.target.iter_mut().enumerate() {
+            if model.pinned[v] {
+                *target = state.positions[v];
+            }
+        }
+        let problem = Problem {
+            model,
+            inertia: Inertia {
+                weight: &self.weights,
+                target: &self.target,
+            },
+            limits: self.limits,
+        };
+        let report = self.solver.lower(&problem, state, &mut self.workspace);
+        R::finish(&self.before, state, h);
+        if let Some(vertex) = state.first_not_finite().or_else(|| runaway(state)) {
+            return Err(Failure::Runaway(vertex));
+        }
+        let reached = report.gradient <= self.limits.tolerance.max(REACHED * weight_norm(model));
+        if !report.sound || S::CONVERGES && !reached {
+            return Err(Failure::Stuck);
+        }
+        let workspace = &mut self.workspace;
+        if !self.watch.is_possible(model, state, workspace, h) {
+            return Err(Failure::Runaway(fastest(state).0));
+        }
+        // `is_possible` found the contacts of the new positions.
+        self.workspace.contacts.settle(model, state);
+        state.time += h;
+        Ok(report)
+    }
+
+    fn error(&mut self, model: &Model, state: &State, failure: Failure, h: f64) -> DrapeError {
+        let stage = S::STAGE;
+        match failure {
+            Failure::Runaway(vertex) if state.velocities[vertex].iter().all(|x| x.is_finite()) => {
+                DrapeError::BlownUp {
+                    stage,
+                    vertex,
+                    speed: state.velocities[vertex].norm(),
+                    substep: h / f64::from(1u32 << HALVINGS),
+                }
+            }
+            Failure::Runaway(vertex) => DrapeError::NotFinite { stage, vertex },
+            Failure::Stuck => DrapeError::NoProgress {
+                stage,
+                residual: crate::measure::residual(model, &self.start, &mut self.workspace),
+            },
+        }
+    }
+}
+
+/// Norm of the weights on earth, over all vertices [N].
+fn weight_norm(model: &Model) -> f64 {
+    9.81 * model.mass.iter().map(|m| m * m).sum::<f64>().sqrt()
+}
+
+impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
+    fn advance(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        step: f64,
+    ) -> Result<StepReport, DrapeError> {
+        state.follow_samples(model);
+        let mut total = StepReport::default();
+        let end = state.time + step;
+        for _ in 0..self.substeps {
+            self.whole(model, state, step / f64::from(self.substeps), &mut total)?;
+        }
+        state.time = end;
+        Ok(total)
+    }
+}

@@ -1,0 +1,99 @@
+//! Lowering the potential by Newton's method: to its minimum, or by one linear solve.
+
+use super::implicit::{Limits, Problem, Solver};
+use crate::sparse::dot;
+use crate::{LinearSolver, NewtonReport, NewtonSettings, PcgLimits, State, Workspace};
+
+/// Longest move of a vertex in one iteration near solid surfaces [m]: contact is found within
+/// 10 mm only, so a longer one may pass through a limb.
+const LONGEST_MOVE: f64 = 0.05;
+
+/// Block conjugate gradients, as [`crate::step_in_time`] uses them.
+const LINEAR: LinearSolver = LinearSolver::Iterative(PcgLimits {
+    tolerance: 1e-6,
+    iterations: 1000,
+});
+
+/// The same for a step that is never corrected: what the solve leaves is lost momentum, 1e-7 of
+/// it a step.
+const ONE_SOLVE: LinearSolver = LinearSolver::Iterative(PcgLimits {
+    tolerance: 1e-8,
+    iterations: 1000,
+});
+
+/// Newton's method with line search to the minimum: see [`Workspace::solve`].
+#[derive(Default)]
+pub struct Newton;
+
+impl Solver for Newton {
+    const STAGE: &'static str = "implicit step";
+    const LIMITS: Limits = Limits {
+        iterations: 40,
+        tolerance: 1e-8,
+    };
+    const CONVERGES: bool = true;
+
+    fn lower(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        workspace: &mut Workspace,
+    ) -> NewtonReport {
+        let settings = NewtonSettings {
+            iterations: problem.limits.iterations,
+            tolerance: problem.limits.tolerance,
+            longest_move: if problem.model.colliders.is_empty() {
+                f64::INFINITY
+            } else {
+                LONGEST_MOVE
+            },
+            linear: LINEAR,
+        };
+        workspace.solve(problem.model, state, &problem.inertia, &settings)
+    }
+}
+
+/// One linear solve and nothing else: (M (1 + c h) / h^2 + K(x)) dx = -grad Phi(x), x' = x + dx.
+///
+/// With dv = dx/h - v this is (M + h^2 K) dv = h (f(x) - h K v), semi-implicit Euler as in
+/// Baraff and Witkin 1998, equation 6, solved like theirs by conjugate gradients preconditioned by
+/// the 3x3 diagonal blocks, pins held exactly. K is the positive semidefinite Hessian. What the
+/// solve cannot see (kinks, large rotation in one step) is not corrected; a step whose energy
+/// rises out of bounds is halved, as theirs is.
+#[derive(Default)]
+pub struct OneSolve;
+
+impl Solver for OneSolve {
+    const STAGE: &'static str = "semi-implicit Euler";
+    const LIMITS: Limits = Limits {
+        iterations: 1,
+        tolerance: 0.0,
+    };
+    const CONVERGES: bool = false;
+
+    fn lower(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        workspace: &mut Workspace,
+    ) -> NewtonReport {
+        let model = problem.model;
+        workspace.fit(model);
+        workspace.contacts.refresh(model, state, &state.positions);
+        workspace.fill_gradient(model, &state.positions, Some(&problem.inertia));
+        workspace.fill_hessian(model, &state.positions, &problem.inertia);
+        let gradient = dot(&workspace.gradient, &workspace.gradient).sqrt();
+        let linear_iterations = workspace.solve_linear(model, ONE_SOLVE);
+        for (x, d) in state.positions.iter_mut().zip(&workspace.direction) {
+            *x += d;
+        }
+        NewtonReport {
+            iterations: 1,
+            linear_iterations,
+            gradient,
+            fraction: 1.0,
+            sound: gradient.is_finite(),
+            ..NewtonReport::default()
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Orders in time, energy and angular momentum.
+
+use crate::fixtures::{cloth, method, sheet};
+use toile_drape::{Material, MethodKind, MethodSettings, Model, State};
+use toile_geometry::Vec3;
+
+/// A soft strip, bent and moving: everything in it is smooth over the time it runs.
+fn smooth() -> (Model, State) {
+    let mesh = sheet([6, 3], [0.3, 0.15], |u, v| {
+        Vec3::new(u, 0.02 * (9.0 * u).sin(), v)
+    });
+    let material = Material {
+        stretch: [8.0, 6.0],
+        shear: 3.0,
+        ..Material::default()
+    };
+    let (mut model, mut state) = cloth(&mesh, material);
+    model.pinned[0] = true;
+    model.pinned[6] = true;
+    model.air_drag = 0.5;
+    for (v, x) in state.velocities.iter_mut().zip(&state.positions) {
+        *v = Vec3::new(0.2 * (7.0 * x.z).sin(), 0.5 * x.x, 0.1 * (8.0 * x.x).cos());
+    }
+    (model, state)
+}
+
+/// Where the strip is after 0.1 s in `steps` steps.
+fn after(kind: MethodKind, steps: u32) -> Vec<Vec3> {
+    let (model, mut state) = smooth();
+    let settings = MethodSettings {
+        substeps: Some(1),
+        tolerance: Some(1e-11),
+        iterations: Some(200),
+        ..kind.into()
+    };
+    let mut method = settings.build();
+    for _ in 0..steps {
+        let name = kind.name();
+        let taken = method.advance(&model, &mut state, 0.1 / f64::from(steps));
+        let report = taken.unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert!(report.pieces <= 1, "{name} cut its step");
+    }
+    state.positions
+}
+
+fn distance(a: &[Vec3], b: &[Vec3]) -> f64 {
+    let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_squared()).sum();
+    (squares / a.len() as f64).sqrt()
+}
+
+#[test]
+fn methods_converge_at_their_order() {
+    let exact = after(MethodKind::RungeKutta4, 4000);
+    for (kind, order, steps) in [
+        (MethodKind::ForwardEuler, 1.0, 2000),
+        (MethodKind::SymplecticEuler, 1.0, 400),
+        (MethodKind::VelocityVerlet, 2.0, 400),
+        (MethodKind::RungeKutta4, 4.0, 200),
+        (MethodKind::SemiImplicitEuler, 1.0, 200),
+        (MethodKind::ImplicitEuler, 1.0, 200),
+        (MethodKind::Bdf2, 2.0, 200),
+        (MethodKind::ImplicitMidpoint, 2.0, 100),
+    ] {
+        let coarse = distance(&after(kind, steps), &exact);
+        let fine = distance(&after(kind, 2 * steps), &exact);
+        let got = (coarse / fine).log2();
+        assert!(
+            (got - order).abs() < 0.25,
+            "{}: order {got:.2} instead of {order}, errors {coarse:.2e} {fine:.2e}",
+            kind.name()
+        );
+    }
+}
+
+#[test]
+fn angular_momentum_hardly_drifts_in_free_flight() {
+    for (kind, substeps, most) in [
+        (MethodKind::SymplecticEuler, 40, 1e-10),
+        (MethodKind::VelocityVerlet, 40, 1e-10),
+        (MethodKind::ImplicitMidpoint, 1, 1e-8),
+    ] {
+        let mesh = sheet([4, 4], [0.2, 0.2], |u, v| Vec3::new(u - 0.1, 0.0, v - 0.1));
+        let (mut model, mut state) = cloth(&mesh, Material::default());
+        model.gravity = Vec3::zeros();
+        let spin = Vec3::new(1.0, 2.0, 0.5);
+        for (v, x) in state.velocities.iter_mut().zip(&state.positions) {
+            *v = spin.cross(x);
+        }
+        let angular = |state: &State| -> Vec3 {
+            let moving = state.positions.iter().zip(&state.velocities);
+            moving
+                .zip(&model.mass)
+                .map(|((x, v), m)| x.cross(v) * *m)
+                .sum()
+        };
+        let before = angular(&state);
+        let mut method = method(kind, substeps);
+        for _ in 0..250 {
+            let step = method.advance(&model, &mut state, 0.004);
+            step.unwrap_or_else(|error| panic!("{}: {error}", kind.name()));
+        }
+        let off = (angular(&state) - before).norm() / before.norm();
+        assert!(off < most, "{}: {off:e}", kind.name());
+    }
+}
