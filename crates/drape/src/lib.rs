@@ -9,6 +9,7 @@ mod cloth;
 mod contacts;
 mod direct;
 mod error;
+pub mod factor;
 mod garment;
 pub mod laws;
 mod material;
