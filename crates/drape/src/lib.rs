@@ -7,10 +7,10 @@
 
 mod cloth;
 mod contacts;
-mod direct;
 mod error;
 pub mod factor;
 mod garment;
+mod hessian;
 pub mod laws;
 mod material;
 mod measure;

@@ -7,8 +7,8 @@
 //! 2011, equation 3). With y = x_n and growing h it is pseudo-transient continuation to rest.
 
 use crate::contacts::Contacts;
-use crate::direct::Direct;
-use crate::pcg::{Pcg, PcgLimits};
+use crate::hessian::{Direct, Hessian};
+use crate::pcg::{BlockJacobi, Pcg, PcgLimits, System};
 use crate::sparse::dot;
 use crate::{ElasticEnd, Model, State};
 use nalgebra::Matrix3;
@@ -79,7 +79,8 @@ pub struct Workspace {
     blocks: Vec<Matrix3<f64>>,
     secants: Vec<f64>,
     pcg: Pcg,
-    direct: Option<Option<Direct>>,
+    jacobi: BlockJacobi,
+    direct: Option<Direct>,
 }
 
 /// Elements handled by one task.
@@ -300,45 +301,52 @@ impl Workspace {
             .gather(&self.elements, &self.diagonal, &mut self.blocks);
     }
 
+    fn hessian<'a>(&'a self, model: &'a Model) -> Hessian<'a> {
+        Hessian {
+            model,
+            blocks: &self.blocks,
+            secants: &self.secants,
+        }
+    }
+
     /// One row of the Hessian filled last times a vector.
     pub(crate) fn hessian_row(&self, model: &Model, row: usize, p: &[Vec3]) -> Vec3 {
-        hessian_row(model, &self.blocks, &self.secants, row, p)
+        self.hessian(model).row_times(row, p)
     }
 
     /// Solves for the Newton direction; returns the iterations taken. `gradient` then holds its
     /// negative.
     pub(crate) fn solve_linear(&mut self, model: &Model, limits: LinearSolver) -> usize {
-        let (blocks, secants) = (&self.blocks, &self.secants);
-        let apply = |row: usize, p: &[Vec3]| hessian_row(model, blocks, secants, row, p);
-        let diagonal = |row: usize| {
-            model.pattern.diagonal_block(row, blocks)
-                + Matrix3::identity() * model.bending.diagonal(row)
-        };
         for g in &mut self.gradient {
             *g = -*g;
         }
+        let hessian = Hessian {
+            model,
+            blocks: &self.blocks,
+            secants: &self.secants,
+        };
         let limits = match limits {
             LinearSolver::Iterative(limits) => limits,
             LinearSolver::Direct { otherwise } => {
-                let direct = self
-                    .direct
-                    .get_or_insert_with(|| Direct::new(model, &model.layout));
-                if let Some(direct) = direct
-                    && direct.solve(model, blocks, &self.gradient, &mut self.direction)
-                {
+                let direct = match self.direct.take().filter(|direct| direct.fits(model)) {
+                    Some(direct) => self.direct.insert(direct),
+                    None => self.direct.insert(Direct::new(model, &model.layout)),
+                };
+                if direct.solve(&hessian, &self.gradient, &mut self.direction) {
                     return 0;
                 }
                 otherwise
             }
         };
-        self.pcg.solve(
-            &self.gradient,
-            &model.pinned,
-            apply,
-            diagonal,
-            limits,
-            &mut self.direction,
-        )
+        self.jacobi
+            .refresh(&model.pinned, |row| hessian.diagonal(row));
+        let system = System {
+            b: &self.gradient,
+            fixed: &model.pinned,
+            row: |row, p: &[Vec3]| hessian.row_times(row, p),
+        };
+        self.pcg
+            .solve(&system, &mut self.jacobi, limits, &mut self.direction)
     }
 
     /// Shortens the whole direction so that no vertex moves farther than `longest` [m].
@@ -378,23 +386,6 @@ impl Workspace {
         }
         0.0
     }
-}
-
-/// One row of the Hessian (blocks, bending, elastics between vertices) times a vector.
-fn hessian_row(
-    model: &Model,
-    blocks: &[Matrix3<f64>],
-    secants: &[f64],
-    row: usize,
-    p: &[Vec3],
-) -> Vec3 {
-    let mut sum = model.pattern.row_times(row, blocks, p) + model.bending.row_times(row, p);
-    for (e, other) in elastics_of(model, row) {
-        if let ElasticEnd::Vertex(other) = other {
-            sum -= p[other as usize] * secants[e];
-        }
-    }
-    sum
 }
 
 /// Elastics at a vertex with their other end.

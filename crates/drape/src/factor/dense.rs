@@ -127,7 +127,14 @@ pub fn subtract_square<T: Number>(square: MatMut<'_, T>, rows: MatRef<'_, T>) {
 fn subtract_product<T: Number>(out: MatMut<'_, T>, a: MatRef<'_, T>, b: MatRef<'_, T>) {
     let (rows, columns) = (out.nrows(), out.ncols());
     if rows.max(columns) <= TILE {
-        matmul(out, Accum::Add, a, b.transpose(), -T::rounded(1.0), Par::Seq);
+        matmul(
+            out,
+            Accum::Add,
+            a,
+            b.transpose(),
+            -T::rounded(1.0),
+            Par::Seq,
+        );
     } else if rows >= columns {
         let (top, bottom) = out.split_at_row_mut(half(rows));
         let (a_top, a_bottom) = a.split_at_row(half(rows));

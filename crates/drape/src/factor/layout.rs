@@ -69,7 +69,11 @@ impl Layout {
             let size = stride(front.rows() * unknowns) * columns;
             layout.panel.push(layout.panel[f] + size);
             below[f] = operations(front.pivots as usize, front.boundary as usize, unknowns)
-                + front.children.iter().map(|&c| below[c as usize]).sum::<f64>();
+                + front
+                    .children
+                    .iter()
+                    .map(|&c| below[c as usize])
+                    .sum::<f64>();
         }
         layout.operations = below.last().copied().unwrap_or(0.0);
         let most = (layout.operations * TASK_SHARE).max(TASK_LEAST);
@@ -97,7 +101,11 @@ impl Layout {
             let children: Vec<usize> = if small {
                 Vec::new()
             } else {
-                front.children.iter().map(|&c| unit_of[c as usize]).collect()
+                front
+                    .children
+                    .iter()
+                    .map(|&c| unit_of[c as usize])
+                    .collect()
             };
             let first_unit = children
                 .first()
@@ -132,7 +140,11 @@ impl Layout {
             }
             let even = symbolic.fronts[root].depth.is_multiple_of(2);
             // The child beside which the root's own part lies.
-            let beside = if even { unit.children.first() } else { unit.children.last() };
+            let beside = if even {
+                unit.children.first()
+            } else {
+                unit.children.last()
+            };
             if let Some(&c) = beside {
                 let free = length[c] - size[self.units[c].fronts.end - 1];
                 padding[c] = size[root].saturating_sub(free);

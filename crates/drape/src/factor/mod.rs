@@ -41,6 +41,7 @@ pub struct Factor<const D: usize, T = f64> {
     panels: Vec<T>,
     arena: Vec<T>,
     rows: Vec<Block<D>>,
+    longest_row: usize,
     unknowns: Vec<T>,
     boundary: Vec<T>,
 }
@@ -61,15 +62,21 @@ impl<const D: usize, T: Number> Factor<D, T> {
     /// # Panics
     /// When there are not as many places as vertices.
     pub fn new(graph: Graph, places: &[Vec3]) -> Self {
-        assert_eq!(places.len(), graph.vertex_count(), "a place for each vertex");
+        assert_eq!(
+            places.len(),
+            graph.vertex_count(),
+            "a place for each vertex"
+        );
         let nodes = dissection::dissect(&graph, places);
         let symbolic = Symbolic::new(&graph, nodes, D);
         let layout = Layout::new(&symbolic, D);
+        let longest_row = graph.longest_row();
         let zeros = |length: usize| vec![T::rounded(0.0); length + SLACK];
         Self {
             panels: zeros(layout.panel.last().copied().unwrap_or(0)),
             arena: zeros(layout.arena),
-            rows: vec![[[0.0; D]; D]; graph.longest_row() * layout.units.len()],
+            rows: vec![[[0.0; D]; D]; longest_row * layout.units.len()],
+            longest_row,
             unknowns: Vec::new(),
             boundary: Vec::new(),
             graph,
@@ -93,22 +100,21 @@ impl<const D: usize, T: Number> Factor<D, T> {
         [self.panels.len(), self.arena.len()]
     }
 
-    /// Factorises. `fill(v, row)` writes the entries of vertex v's row, in the order of
-    /// `graph().row(v)`; the matrix must be symmetric.
+    /// Factorises. `fill(v, columns, row)` writes the entries of vertex v's row; `columns` are the
+    /// vertices they couple it with, those of `graph().row(v)`. The matrix must be symmetric.
     ///
     /// # Errors
     /// When the matrix is not positive definite or not finite; the factor must not be used then.
     pub fn factorise(
         &mut self,
-        fill: impl Fn(usize, &mut [Block<D>]) + Sync,
+        fill: impl Fn(usize, &[u32], &mut [Block<D>]) + Sync,
     ) -> Result<(), NotPositive> {
-        let graph = &self.graph;
         let elimination = numeric::Elimination {
+            graph: &self.graph,
             symbolic: &self.symbolic,
             layout: &self.layout,
             fill: &fill,
-            row_length: &|v| graph.row(v).len(),
-            longest_row: graph.longest_row(),
+            longest_row: self.longest_row,
         };
         let length = self.layout.panel.last().copied().unwrap_or(0);
         elimination.run(numeric::Part {

@@ -4,19 +4,18 @@
 use super::dense::{self, Number};
 use super::layout::{Layout, stride};
 use super::symbolic::Symbolic;
-use super::{Block, NotPositive};
+use super::{Block, Graph, NotPositive};
 use faer::MatMut;
-use faer::prelude::ReborrowMut;
 use faer::prelude::Reborrow;
+use faer::prelude::ReborrowMut;
 
 /// What a task needs to read.
 pub struct Elimination<'a, F, const D: usize> {
+    pub graph: &'a Graph,
     pub symbolic: &'a Symbolic,
     pub layout: &'a Layout,
     /// Writes the entries of a vertex's row.
     pub fill: &'a F,
-    /// Length of each vertex's row.
-    pub row_length: &'a (dyn Fn(usize) -> usize + Sync),
     /// Length of the longest row.
     pub longest_row: usize,
 }
@@ -48,7 +47,9 @@ impl<'a, T, const D: usize> Part<'a, T, D> {
     fn split(self, panel: usize, arena: usize, unit: usize, longest_row: usize) -> (Self, Self) {
         let (panels, more_panels) = self.panels.split_at_mut(panel - self.first_panel);
         let (low, high) = self.arena.split_at_mut(arena - self.first_arena);
-        let (rows, more_rows) = self.rows.split_at_mut((unit - self.first_unit) * longest_row);
+        let (rows, more_rows) = self
+            .rows
+            .split_at_mut((unit - self.first_unit) * longest_row);
         let head = Self {
             panels,
             first_panel: self.first_panel,
@@ -94,7 +95,7 @@ fn both(a: Result<(), u32>, b: Result<(), u32>) -> Result<(), u32> {
     }
 }
 
-impl<F: Fn(usize, &mut [Block<D>]) + Sync, const D: usize> Elimination<'_, F, D> {
+impl<F: Fn(usize, &[u32], &mut [Block<D>]) + Sync, const D: usize> Elimination<'_, F, D> {
     /// Factorises the whole tree.
     pub fn run<T: Number>(&self, part: Part<'_, T, D>) -> Result<(), NotPositive> {
         let Some(root) = self.layout.units.len().checked_sub(1) else {
@@ -210,9 +211,11 @@ impl<F: Fn(usize, &mut [Block<D>]) + Sync, const D: usize> Elimination<'_, F, D>
         for (at, place) in (front.first..front.first + front.pivots).enumerate() {
             let place = place as usize;
             let vertex = symbolic.order[place] as usize;
-            let row = &mut rows[..(self.row_length)(vertex)];
-            (self.fill)(vertex, row);
-            for slot in &symbolic.slots[symbolic.slot_start[place]..symbolic.slot_start[place + 1]] {
+            let columns = self.graph.row(vertex);
+            let row = &mut rows[..columns.len()];
+            (self.fill)(vertex, columns, row);
+            for slot in &symbolic.slots[symbolic.slot_start[place]..symbolic.slot_start[place + 1]]
+            {
                 // By symmetry the column of a vertex is its row.
                 for (c, values) in row[slot.entry as usize].iter().enumerate() {
                     let first = (at * D + c) * stride + slot.row as usize * D;
@@ -277,7 +280,8 @@ impl<F: Fn(usize, &mut [Block<D>]) + Sync, const D: usize> Elimination<'_, F, D>
             let (from, to, length) = (run.from as usize, run.to as usize, run.length as usize);
             for k in first.saturating_sub(to)..length.min(last.saturating_sub(to)) {
                 for d in 0..D {
-                    let source = &handed.values[((from + k) * D + d) * child_stride..][..child_stride];
+                    let source =
+                        &handed.values[((from + k) * D + d) * child_stride..][..child_stride];
                     let target = &mut columns.values[((to + k - first) * D + d) * columns.stride..]
                         [..columns.stride];
                     let mut add = |from: usize, to: usize, length: usize| {

@@ -70,10 +70,9 @@ fn candidate_keys(piece: &Piece) -> Vec<Vec<f64>> {
     let along = |d: Vec3| piece.places.iter().map(|p| p.dot(&d)).collect();
     let mut all: Vec<Vec<f64>> = vec![along(Vec3::x()), along(Vec3::y()), along(Vec3::z())];
     let centre = piece.places.iter().sum::<Vec3>() / piece.len() as f64;
-    let spread = piece
-        .places
-        .iter()
-        .fold(Matrix3::zeros(), |sum, p| sum + (p - centre) * (p - centre).transpose());
+    let spread = piece.places.iter().fold(Matrix3::zeros(), |sum, p| {
+        sum + (p - centre) * (p - centre).transpose()
+    });
     if spread.iter().all(|s| s.is_finite())
         && let Some(eigen) = SymmetricEigen::try_new(spread, 1e-12, 100)
     {
@@ -114,7 +113,11 @@ fn farthest(steps: &[f64]) -> usize {
 fn sweep(piece: &Piece, keys: &[f64]) -> Option<Vec<u32>> {
     let n = piece.len();
     let mut order: Vec<u32> = (0..n as u32).collect();
-    order.sort_unstable_by(|&a, &b| keys[a as usize].total_cmp(&keys[b as usize]).then(a.cmp(&b)));
+    order.sort_unstable_by(|&a, &b| {
+        keys[a as usize]
+            .total_cmp(&keys[b as usize])
+            .then(a.cmp(&b))
+    });
     let mut in_left = vec![0u32; n];
     let mut left = vec![false; n];
     let (mut left_rim, mut right_rim) = (0usize, 0usize);
@@ -155,7 +158,13 @@ fn sweep(piece: &Piece, keys: &[f64]) -> Option<Vec<u32>> {
     }
     let (own, other) = if from_left { (0, 1) } else { (1, 0) };
     let rim: Vec<usize> = (0..n)
-        .filter(|&v| side[v] == own && piece.neighbours(v).iter().any(|&u| side[u as usize] == other))
+        .filter(|&v| {
+            side[v] == own
+                && piece
+                    .neighbours(v)
+                    .iter()
+                    .any(|&u| side[u as usize] == other)
+        })
         .collect();
     for v in rim {
         side[v] = SEPARATOR;
@@ -218,7 +227,9 @@ fn pass(piece: &Piece, side: &mut [u32], count: &mut [usize; 3]) -> f64 {
                 }
             }
         }
-        let Some((_, to_right, at)) = choice else { break };
+        let Some((_, to_right, at)) = choice else {
+            break;
+        };
         let to = u32::from(to_right);
         let v = rim.swap_remove(at);
         let mut changed = vec![v];

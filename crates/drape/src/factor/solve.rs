@@ -56,7 +56,9 @@ impl<T: Number> Substitution<'_, T> {
         let units = &self.layout.units;
         let front = &self.symbolic.fronts[units[units[unit].first_unit].fronts.start];
         let (first, boundary) = (front.first as usize, front.boundary_start);
-        let (x, more_x) = part.x.split_at_row_mut((first - part.first) * self.unknowns);
+        let (x, more_x) = part
+            .x
+            .split_at_row_mut((first - part.first) * self.unknowns);
         let (low, high) = part
             .boundary
             .split_at_mut((boundary - part.first_boundary) * self.width());
@@ -102,12 +104,20 @@ impl<T: Number> Substitution<'_, T> {
             _ => {
                 let (head, tail) = units.split_at(units.len() / 2);
                 let (low, high) = self.split(part, tail[0]);
-                rayon::join(|| self.forward_all(head, low), || self.forward_all(tail, high));
+                rayon::join(
+                    || self.forward_all(head, low),
+                    || self.forward_all(tail, high),
+                );
             }
         }
     }
 
-    fn own<'b>(&self, front: &Front, boundary: &'b mut [T], first: usize) -> (&'b [T], &'b mut [T]) {
+    fn own<'b>(
+        &self,
+        front: &Front,
+        boundary: &'b mut [T],
+        first: usize,
+    ) -> (&'b [T], &'b mut [T]) {
         let at = (front.boundary_start - first) * self.width();
         let (before, own) = boundary.split_at_mut(at);
         (before, &mut own[..front.boundary as usize * self.width()])
@@ -149,7 +159,14 @@ impl<T: Number> Substitution<'_, T> {
         solve_lower_triangular_in_place(triangle, pivot_rows.rb_mut(), Par::Seq);
         if rows > 0 {
             let own = MatMut::from_column_major_slice_mut(own, rows, self.columns);
-            matmul(own, Accum::Add, below, pivot_rows.rb(), -T::rounded(1.0), Par::Seq);
+            matmul(
+                own,
+                Accum::Add,
+                below,
+                pivot_rows.rb(),
+                -T::rounded(1.0),
+                Par::Seq,
+            );
         }
     }
 
@@ -169,7 +186,10 @@ impl<T: Number> Substitution<'_, T> {
             _ => {
                 let (head, tail) = units.split_at(units.len() / 2);
                 let (low, high) = self.split(part, tail[0]);
-                rayon::join(|| self.backward_all(head, low), || self.backward_all(tail, high));
+                rayon::join(
+                    || self.backward_all(head, low),
+                    || self.backward_all(tail, high),
+                );
             }
         }
     }

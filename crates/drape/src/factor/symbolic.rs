@@ -113,7 +113,11 @@ impl Symbolic {
                 boundary: 0,
                 first_front,
                 depth,
-                children: nodes[node].children.iter().map(|&c| number[c as usize]).collect(),
+                children: nodes[node]
+                    .children
+                    .iter()
+                    .map(|&c| number[c as usize])
+                    .collect(),
                 runs: Vec::new(),
             });
         }
@@ -139,7 +143,9 @@ impl Symbolic {
                 }
             }
             for &c in &front.children {
-                self.boundary_of(&self.fronts[c as usize]).iter().for_each(|&p| take(p));
+                self.boundary_of(&self.fronts[c as usize])
+                    .iter()
+                    .for_each(|&p| take(p));
             }
             found.sort_unstable();
             self.fronts[f].boundary_start = self.boundary.len();
@@ -162,7 +168,11 @@ impl Symbolic {
         for f in 0..self.fronts.len() {
             for c in self.fronts[f].children.clone() {
                 let mut runs: Vec<Run> = Vec::new();
-                for (from, &p) in self.boundary_of(&self.fronts[c as usize]).iter().enumerate() {
+                for (from, &p) in self
+                    .boundary_of(&self.fronts[c as usize])
+                    .iter()
+                    .enumerate()
+                {
                     let to = self.row_of(&self.fronts[f], p);
                     match runs.last_mut() {
                         Some(run) if run.to + run.length == to => run.length += 1,
@@ -286,7 +296,9 @@ fn boundary_counts(graph: &Graph, nodes: &[Node]) -> Vec<u32> {
             graph.row(v as usize).iter().for_each(|&u| take(u));
         }
         for &c in &node.children {
-            std::mem::take(&mut lists[c as usize]).into_iter().for_each(&mut take);
+            std::mem::take(&mut lists[c as usize])
+                .into_iter()
+                .for_each(&mut take);
         }
         counts.push(list.len() as u32);
         lists.push(list);

@@ -12,7 +12,10 @@ fn sheet(columns: usize, rows: usize) -> (Graph, Vec<Vec3>) {
             for dj in 0..3usize {
                 for di in -2i64..3 {
                     let (i2, j2) = (i as i64 + di, j + dj);
-                    if (0..columns as i64).contains(&i2) && j2 < rows && di.unsigned_abs() as usize + dj < 4 {
+                    if (0..columns as i64).contains(&i2)
+                        && j2 < rows
+                        && di.unsigned_abs() as usize + dj < 4
+                    {
                         pairs.push([at(i, j), at(i2 as usize, j2)]);
                     }
                 }
@@ -39,15 +42,19 @@ fn entry<const D: usize>(graph: &Graph, v: usize, u: usize) -> Block<D> {
     std::array::from_fn(|r| {
         std::array::from_fn(|c| {
             let (a, b) = ((v * D + r).min(u * D + c), (v * D + r).max(u * D + c));
-            let dominant = if a == b { (graph.row(v).len() * D + 1) as f64 } else { 0.0 };
+            let dominant = if a == b {
+                (graph.row(v).len() * D + 1) as f64
+            } else {
+                0.0
+            };
             dominant + noise(a, b)
         })
     })
 }
 
-fn fill<const D: usize>(graph: &Graph) -> impl Fn(usize, &mut [Block<D>]) + Sync + '_ {
-    move |v, row| {
-        for (out, &u) in row.iter_mut().zip(graph.row(v)) {
+fn fill<const D: usize>(graph: &Graph) -> impl Fn(usize, &[u32], &mut [Block<D>]) + Sync + '_ {
+    move |v, columns, row| {
+        for (out, &u) in row.iter_mut().zip(columns) {
             *out = entry(graph, v, u as usize);
         }
     }
@@ -89,9 +96,18 @@ fn solved<const D: usize>(graph: &Graph, places: &[Vec3], columns: usize) -> (Ve
 fn sheets_of_any_size_are_solved() {
     for (columns, rows) in [(1, 1), (3, 1), (5, 4), (12, 30), (40, 40)] {
         let (graph, places) = sheet(columns, rows);
-        assert!(solved::<3>(&graph, &places, 1).1 < 1e-12, "{columns} x {rows}");
-        assert!(solved::<1>(&graph, &places, 3).1 < 1e-12, "{columns} x {rows}");
-        assert!(solved::<3>(&graph, &places, 2).1 < 1e-12, "{columns} x {rows}");
+        assert!(
+            solved::<3>(&graph, &places, 1).1 < 1e-12,
+            "{columns} x {rows}"
+        );
+        assert!(
+            solved::<1>(&graph, &places, 3).1 < 1e-12,
+            "{columns} x {rows}"
+        );
+        assert!(
+            solved::<3>(&graph, &places, 2).1 < 1e-12,
+            "{columns} x {rows}"
+        );
     }
 }
 
@@ -125,9 +141,12 @@ fn a_second_factorisation_forgets_the_first() {
     };
     let fresh = solve(&mut Factor::new(graph.clone(), &places));
     let mut used = Factor::<3>::new(graph.clone(), &places);
-    assert!(used.factorise(|_, row| row.fill([[-1.0; 3]; 3])).is_err());
-    used.factorise(|v, row| {
-        fill(&graph)(v, row);
+    assert!(
+        used.factorise(|_, _, row| row.fill([[-1.0; 3]; 3]))
+            .is_err()
+    );
+    used.factorise(|v, columns, row| {
+        fill(&graph)(v, columns, row);
         row.iter_mut().flatten().flatten().for_each(|e| *e *= 3.0);
     })
     .unwrap();
@@ -150,8 +169,8 @@ fn the_vertex_that_fails_is_named() {
     let (graph, places) = sheet(30, 30);
     for (bad, value) in [(451, -1.0), (17, f64::NAN), (880, f64::INFINITY), (3, 0.0)] {
         // Uncoupled from the others, so that no other vertex can fail for it.
-        let spoilt = |v: usize, row: &mut [Block<3>]| {
-            for (out, &u) in row.iter_mut().zip(graph.row(v)) {
+        let spoilt = |v: usize, columns: &[u32], row: &mut [Block<3>]| {
+            for (out, &u) in row.iter_mut().zip(columns) {
                 *out = entry(&graph, v, u as usize);
                 if v == bad || u as usize == bad {
                     let diagonal = if v == u as usize { value } else { 0.0 };
@@ -176,7 +195,11 @@ fn the_vertex_that_fails_is_named() {
 #[test]
 fn places_need_not_make_sense() {
     let (graph, places) = sheet(30, 20);
-    for junk in [Vec3::zeros(), Vec3::repeat(f64::NAN), Vec3::repeat(f64::INFINITY)] {
+    for junk in [
+        Vec3::zeros(),
+        Vec3::repeat(f64::NAN),
+        Vec3::repeat(f64::INFINITY),
+    ] {
         assert!(solved::<3>(&graph, &vec![junk; 600], 1).1 < 1e-12);
     }
     let flat: Vec<Vec3> = places.iter().map(|p| Vec3::new(p.x, 0.0, 0.0)).collect();
@@ -186,7 +209,7 @@ fn places_need_not_make_sense() {
 #[test]
 fn nothing_is_solved_without_vertices() {
     let mut factor = Factor::<3>::new(Graph::from_pairs(0, []), &[]);
-    factor.factorise(|_, _| {}).unwrap();
+    factor.factorise(|_, _, _| {}).unwrap();
     factor.solve(&[], &mut []);
 }
 
