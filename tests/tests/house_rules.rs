@@ -4,6 +4,25 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use toile_tests::{files_below, root};
 
+/// Our libraries from below: each may at most use those before it.
+const LIBRARIES: [&str; 10] = [
+    "geometry",
+    "measure",
+    "pattern",
+    "assembly",
+    "nesting",
+    "body",
+    "drape",
+    "picture",
+    "interchange",
+    "session",
+];
+
+/// The lowest libraries.
+const fn lowest(count: usize) -> &'static [&'static str] {
+    LIBRARIES.split_at(count).0
+}
+
 /// Which of our packages each may use. The arrows of docs/ARCHITECTURE.md, and nothing else.
 const LAYERS: [(&str, &[&str]); 14] = [
     ("toile-geometry", &[]),
@@ -14,58 +33,12 @@ const LAYERS: [(&str, &[&str]); 14] = [
     ("toile-body", &["geometry", "measure"]),
     ("toile-drape", &["geometry"]),
     ("toile-picture", &["geometry"]),
-    (
-        "toile-interchange",
-        &[
-            "geometry", "measure", "pattern", "assembly", "nesting", "body", "drape", "picture",
-        ],
-    ),
-    (
-        "toile-session",
-        &[
-            "geometry",
-            "measure",
-            "pattern",
-            "assembly",
-            "nesting",
-            "body",
-            "drape",
-            "picture",
-            "interchange",
-        ],
-    ),
+    ("toile-interchange", lowest(8)),
+    ("toile-session", lowest(9)),
     ("toile", &["geometry", "measure", "session"]),
     ("toile-ui", &["geometry", "pattern", "session", "picture"]),
-    (
-        "toile-tests",
-        &[
-            "geometry",
-            "measure",
-            "pattern",
-            "assembly",
-            "nesting",
-            "body",
-            "drape",
-            "picture",
-            "interchange",
-            "session",
-        ],
-    ),
-    (
-        "toile-lab",
-        &[
-            "geometry",
-            "measure",
-            "pattern",
-            "assembly",
-            "nesting",
-            "body",
-            "drape",
-            "picture",
-            "interchange",
-            "session",
-        ],
-    ),
+    ("toile-tests", lowest(10)),
+    ("toile-lab", lowest(10)),
 ];
 
 /// What may stand at the top level besides dot-files.

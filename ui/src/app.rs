@@ -181,7 +181,7 @@ impl ToileApp {
     /// Whether the pattern has changes that are in no file.
     pub fn is_unsaved(&self) -> bool {
         let pattern = &self.session.project().pattern;
-        !Arc::ptr_eq(&self.saved, pattern) && self.saved != *pattern
+        !Arc::ptr_eq(&self.saved, pattern) && !self.saved.says_the_same(pattern)
     }
 
     fn take_news(&mut self) {
@@ -197,7 +197,14 @@ impl ToileApp {
                     self.stage.set_frame(&first_frame(&job));
                 }
                 News::Frame(frame) => self.stage.set_frame(&frame),
-                News::Finished => self.notice = Notice::news("The garment hangs at rest"),
+                News::Finished(events) => {
+                    self.notice = Notice::news("The garment hangs at rest");
+                    for event in events {
+                        if let Event::Warned { message } = event {
+                            self.notice = Notice::warning(message);
+                        }
+                    }
+                }
                 News::Failed(words) => self.notice = Notice::fault(words),
             }
         }

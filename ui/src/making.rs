@@ -2,7 +2,7 @@
 //! thread of their own from a snapshot, then the drape runs live.
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use toile_session::{GarmentJob, LiveFrame, LiveRun, Session, SessionError, Stage};
+use toile_session::{Event, GarmentJob, LiveFrame, LiveRun, Session, SessionError, Stage};
 
 /// What is being made.
 #[derive(Default)]
@@ -44,8 +44,9 @@ pub enum News {
     Begun(Box<GarmentJob>),
     /// The cloth has moved.
     Frame(LiveFrame),
-    /// The drape has ended by itself.
-    Finished,
+    /// The drape has ended by itself. What the session tells of it; nothing when the pattern has
+    /// changed since.
+    Finished(Vec<Event>),
     /// It cannot be done.
     Failed(String),
 }
@@ -144,11 +145,11 @@ impl Making {
                 Err(words) => news.push(News::Failed(words)),
             }
         }
-        self.follow(&mut news);
+        self.follow(session, &mut news);
         news
     }
 
-    fn follow(&mut self, news: &mut Vec<News>) {
+    fn follow(&mut self, session: &mut Session, news: &mut Vec<News>) {
         let Some(run) = &self.run else { return };
         // Asked before the last frame is taken, or that frame could be missed.
         let finished = run.is_finished();
@@ -163,9 +164,10 @@ impl Making {
             news.push(News::Frame(frame));
         }
         if finished {
-            news.push(match run.failure() {
-                Some(words) => News::Failed(words),
-                None => News::Finished,
+            let adopted = run.result().and_then(|result| session.adopt_drape(result));
+            news.push(match (run.failure(), adopted) {
+                (Some(words), _) => News::Failed(words),
+                (None, events) => News::Finished(events.unwrap_or_default()),
             });
             self.run = None;
         }

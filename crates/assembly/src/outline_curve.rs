@@ -1,7 +1,7 @@
 //! Curves round a body in the plane across a limb: convex, at a distance from what they go
 //! round, walked by arc length so that cloth laid on them is not stretched.
 
-use toile_geometry::{Vec2, orient2d};
+use toile_geometry::{Vec2, convex_hull, half_hull};
 
 /// Narrowest fold a ring is laid in [m].
 const NARROWEST_FOLD: f64 = 0.04;
@@ -18,44 +18,11 @@ pub(crate) struct OutlineCurve {
     closed: bool,
 }
 
-/// Convex hull, counter-clockwise (Andrew 1979).
-pub(crate) fn convex_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    points.dedup();
-    if points.len() < 3 {
-        return points;
-    }
-    let mut hull = half_hull(points.iter().copied());
-    let upper = half_hull(points.iter().rev().copied());
-    hull.pop();
-    hull.extend(&upper[..upper.len() - 1]);
-    hull
-}
-
-fn half_hull(points: impl Iterator<Item = Vec2>) -> Vec<Vec2> {
-    let mut chain: Vec<Vec2> = Vec::new();
-    for p in points {
-        while chain.len() >= 2 && orient2d(chain[chain.len() - 2], chain[chain.len() - 1], p) <= 0.0
-        {
-            chain.pop();
-        }
-        chain.push(p);
-    }
-    chain
-}
-
-/// Perimeter of a closed polygon [m].
-pub(crate) fn perimeter(polygon: &[Vec2]) -> f64 {
-    (0..polygon.len())
-        .map(|k| (polygon[(k + 1) % polygon.len()] - polygon[k]).norm())
-        .sum()
-}
-
 impl OutlineCurve {
     /// The ring at `distance` [m] round the convex hull of points, walked from the front
     /// (first coordinate that of `centre`, second largest) towards the left.
     pub fn ring(points: &[Vec2], centre: Vec2, distance: f64) -> Self {
-        let mut hull = convex_hull(points.to_vec());
+        let mut hull = convex_hull(points);
         if hull.is_empty() {
             hull.push(centre);
         }

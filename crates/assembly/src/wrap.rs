@@ -1,11 +1,11 @@
 //! Rows of pieces wrapped round a body part, outside the skin, without stretching them.
 
 use crate::Wearer;
-use crate::outline_curve::{OutlineCurve, convex_hull, perimeter};
+use crate::outline_curve::OutlineCurve;
 use crate::role::Role;
 use crate::rows::{Laid, Row};
 use crate::space::PartFrame;
-use toile_geometry::{Vec2, Vec3};
+use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
 use toile_pattern::{BodyPart, Facing};
 
 /// Distance of cloth from the hull of the skin to start with [m].
@@ -149,7 +149,7 @@ fn ring_for(
         .map(|p| frame.across(p, 0))
         .collect();
     let length = row.girth * SPREAD + 0.01;
-    let hull = perimeter(&convex_hull(points.clone()));
+    let hull = closed_length(&convex_hull(&points));
     let wanted = ((length - hull) / std::f64::consts::TAU).max(FIRST_DISTANCE) + distance;
     let ring = OutlineCurve::ring(&points, Vec2::zeros(), wanted);
     if row.part != BodyPart::Trunk {

@@ -13,14 +13,14 @@ pub fn make(make: &Make, output: &Output) -> Result<Value, Failure> {
         Command::Check,
         Command::Nest,
         Command::Assemble,
-        Command::Drape,
+        Command::drape(),
     ];
     run(make, &work, output)
 }
 
 /// The 3D half alone.
 pub fn drape(make: &Make, output: &Output) -> Result<Value, Failure> {
-    let work = [Command::Check, Command::Assemble, Command::Drape];
+    let work = [Command::Check, Command::Assemble, Command::drape()];
     run(make, &work, output)
 }
 

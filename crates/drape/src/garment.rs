@@ -129,6 +129,18 @@ impl GarmentRun {
         }
     }
 
+    /// Lets a merged garment settle anew, with all the steps of its setup again: for when the
+    /// elastics of [`GarmentRun::model`] were changed from outside. While it is sewn nothing
+    /// changes.
+    pub fn unsettle(&mut self) {
+        if self.stage != Stage::Sewing {
+            self.stage = Stage::Settling;
+            self.warnings.clear();
+            self.rest
+                .go_on(self.setup.rest.residual, self.setup.rest.steps);
+        }
+    }
+
     /// Largest seam gap in the step before merging [m].
     pub fn gap_before_merging(&self) -> f64 {
         self.gap_before_merging

@@ -32,7 +32,7 @@ pub use polygon_boolean::{
     Corner, difference, intersection, offset, total_area, union, wound_region,
 };
 pub use polygon_contact::{PreparedPolygon, interiors_overlap};
-pub use polygon_hull::convex_hull;
+pub use polygon_hull::{convex_hull, half_hull};
 pub use polygon_minkowski::{minkowski_sum, no_fit_polygon};
 pub use polygon_simple::{Crossing, CrossingKind, PolygonDefect, crossing_point};
 pub use polygon_tree::{EdgeTree, closest_on_segment, point_segment_distance, segment_distance};

@@ -25,7 +25,9 @@ pub fn convex_hull(points: &[Vec2]) -> Vec<Vec2> {
     hull
 }
 
-fn half_hull(points: impl Iterator<Item = Vec2>) -> Vec<Vec2> {
+/// One half of a convex hull (Andrew 1979): of points sorted by x, then y, the lower half; of points
+/// sorted the other way the upper half, walked the other way. Exact as [`convex_hull`].
+pub fn half_hull(points: impl Iterator<Item = Vec2>) -> Vec<Vec2> {
     let mut chain: Vec<Vec2> = Vec::new();
     for p in points {
         while chain.len() > 1 && orient2d(chain[chain.len() - 2], chain[chain.len() - 1], p) <= 0.0

@@ -360,6 +360,15 @@ impl Pattern {
         }
     }
 
+    /// Whether another pattern is the same, whatever ids each would give next.
+    pub fn says_the_same(&self, other: &Self) -> bool {
+        let counted_alike = Self {
+            ids: other.ids,
+            ..self.clone()
+        };
+        counted_alike == *other
+    }
+
     /// The panel with that id.
     pub fn panel(&self, id: PanelId) -> Option<&Panel> {
         self.panels

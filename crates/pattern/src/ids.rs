@@ -84,6 +84,26 @@ macro_rules! takers {
     };
 }
 
+impl IdCounters {
+    /// Raises each counter to another's where that is higher: no id that the other has given is
+    /// given again.
+    pub fn raise(&mut self, other: &Self) {
+        let pairs = [
+            (&mut self.panel, other.panel),
+            (&mut self.point, other.point),
+            (&mut self.edge, other.edge),
+            (&mut self.internal_line, other.internal_line),
+            (&mut self.dart, other.dart),
+            (&mut self.notch, other.notch),
+            (&mut self.seam, other.seam),
+            (&mut self.fabric, other.fabric),
+        ];
+        for (counter, other) in pairs {
+            *counter = (*counter).max(other);
+        }
+    }
+}
+
 takers! {
     /// Takes a fresh id.
     take_panel panel PanelId,

@@ -1,6 +1,6 @@
 //! Commands: everything that can be asked of a session, as data.
 
-use crate::Quality;
+use crate::{Quality, StampedInput};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use toile_body::Figure;
@@ -69,7 +69,11 @@ pub enum Command {
     /// Meshes the pieces and places them round the mannequin.
     Assemble,
     /// Sews the garment and drapes it to rest.
-    Drape,
+    Drape {
+        /// What was done to the cloth meanwhile.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        inputs: Vec<StampedInput>,
+    },
     /// Writes what has been made of the present project: marker, garment, pictures, report.
     Export {
         /// The folder; it is made if need be.
@@ -78,6 +82,11 @@ pub enum Command {
 }
 
 impl Command {
+    /// Sews the garment and drapes it to rest with nobody touching it.
+    pub fn drape() -> Self {
+        Self::Drape { inputs: Vec::new() }
+    }
+
     /// Whether it changes the project.
     pub fn changes_project(&self) -> bool {
         matches!(
@@ -101,7 +110,7 @@ impl Command {
             Self::Check => Some("check"),
             Self::Nest => Some("nest"),
             Self::Assemble => Some("assemble"),
-            Self::Drape => Some("drape"),
+            Self::Drape { .. } => Some("drape"),
             Self::Export { .. } => Some("export"),
             _ => None,
         }
@@ -110,7 +119,7 @@ impl Command {
     /// Rough share of the work of making a garment, for progress.
     pub(crate) fn weight(&self) -> f64 {
         match self {
-            Self::Drape => 80.0,
+            Self::Drape { .. } => 80.0,
             Self::Nest | Self::Export { .. } => 7.0,
             Self::Assemble => 4.0,
             Self::Check | Self::OpenPattern { .. } => 1.0,

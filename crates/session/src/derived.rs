@@ -4,7 +4,7 @@ use crate::choice::BodyChoice;
 use crate::drape::{Drape, drape};
 use crate::laying::{Laying, lay};
 use crate::setup::{self, GarmentJob};
-use crate::{Project, SessionError, Watcher};
+use crate::{Project, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
 use toile_assembly::{AssemblyOptions, Garment, assemble};
 use toile_body::{Figure, Mannequin};
@@ -176,12 +176,13 @@ impl Derived {
     pub fn drape(
         &mut self,
         project: &Project,
+        inputs: &[StampedInput],
         watcher: &mut dyn Watcher,
     ) -> Result<Arc<Drape>, SessionError> {
-        if let Some(drape) = &self.drape {
+        if let Some(drape) = self.drape.as_ref().filter(|drape| drape.inputs == inputs) {
             return Ok(drape.clone());
         }
-        let made = Arc::new(drape(self.job(project)?, watcher)?);
+        let made = Arc::new(drape(self.job(project)?, inputs, watcher)?);
         self.drape = Some(made.clone());
         Ok(made)
     }

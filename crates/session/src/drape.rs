@@ -1,8 +1,10 @@
 //! The drape of a garment as a finished product.
 
+use crate::hands::HandledRun;
 use crate::watcher::tell;
-use crate::{Draped, GarmentJob, SessionError, Watcher};
-use toile_drape::{GarmentRun, Measures, Stage, stretch_per_triangle};
+use crate::{Draped, Event, GarmentJob, SessionError, StampedInput, Watcher};
+use std::sync::Arc;
+use toile_drape::{Measures, Stage, stretch_per_triangle};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// A garment sewn and draped.
@@ -23,9 +25,42 @@ pub(crate) struct Drape {
     /// Largest seam gap in the step before merging [m].
     pub seam_gap: f64,
     pub warnings: Vec<String>,
+    /// What was done to the cloth meanwhile.
+    pub inputs: Vec<StampedInput>,
 }
 
 impl Drape {
+    /// A finished run as a product.
+    pub fn of(job: GarmentJob, handled: HandledRun) -> Self {
+        let held = handled.is_held();
+        let (mut run, inputs) = handled.into_parts();
+        let measures = run.measure();
+        let mesh = run.model.mesh(&run.state.positions);
+        let origin = (0..job.garment.triangles.len() as u32)
+            .filter(|&t| {
+                let [a, b, c] = job.garment.triangles[t as usize].map(|v| run.target[v as usize]);
+                a != b && b != c && c != a
+            })
+            .collect();
+        let mut warnings = run.warnings().to_vec();
+        warnings.extend(shortcomings(&mesh, &measures));
+        if held {
+            warnings.push("the cloth is still held; let go of it to see how it hangs".to_owned());
+        }
+        Self {
+            stretch: stretch_per_triangle(&run.model, &run.state.positions),
+            steps: run.steps(),
+            seam_gap: run.gap_before_merging(),
+            target: run.target,
+            job,
+            mesh,
+            origin,
+            measures,
+            warnings,
+            inputs,
+        }
+    }
+
     /// Unit normals of the merged vertices.
     pub fn normals(&self) -> Vec<Vec3> {
         self.mesh.vertex_normals()
@@ -52,6 +87,13 @@ impl Drape {
         pairs
     }
 
+    /// What is told of it.
+    pub fn events(&self) -> Vec<Event> {
+        let mut events = vec![Event::Draped(self.summary())];
+        events.extend(Event::warnings(&self.warnings));
+        events
+    }
+
     /// A few numbers.
     pub fn summary(&self) -> Draped {
         Draped {
@@ -66,10 +108,49 @@ impl Drape {
     }
 }
 
+/// A garment draped by a [`crate::LiveRun`], for the session it came from:
+/// [`crate::Session::adopt_drape`].
+#[derive(Clone)]
+pub struct DrapeResult {
+    pub(crate) drape: Arc<Drape>,
+    /// Wall time of its steps, without pauses [s].
+    pub(crate) seconds: f64,
+}
+
+impl DrapeResult {
+    /// The session's revision it was made from.
+    pub fn revision(&self) -> u64 {
+        self.drape.job.revision
+    }
+
+    /// A few numbers.
+    pub fn summary(&self) -> Draped {
+        self.drape.summary()
+    }
+
+    /// The merged garment where it lies.
+    pub fn mesh(&self) -> &TriangleMesh {
+        &self.drape.mesh
+    }
+
+    /// What was done to the cloth meanwhile.
+    pub fn inputs(&self) -> &[StampedInput] {
+        &self.drape.inputs
+    }
+}
+
 /// Sews, merges and drapes a garment to rest.
-pub(crate) fn drape(job: GarmentJob, watcher: &mut dyn Watcher) -> Result<Drape, SessionError> {
+pub(crate) fn drape(
+    job: GarmentJob,
+    inputs: &[StampedInput],
+    watcher: &mut dyn Watcher,
+) -> Result<Drape, SessionError> {
     tell(watcher, "sewing", 0.0, "")?;
-    let mut run = GarmentRun::new(job.setup.clone())?;
+    let mut run = HandledRun::new(&job)?;
+    for stamped in inputs {
+        stamped.input.check(&job)?;
+        run.give(stamped.input, Some(stamped.step));
+    }
     loop {
         let progress = run.advance()?;
         let (stage, detail) = match progress.stage {
@@ -78,31 +159,11 @@ pub(crate) fn drape(job: GarmentJob, watcher: &mut dyn Watcher) -> Result<Drape,
             Stage::Finished => ("measuring", String::new()),
         };
         tell(watcher, stage, 0.98 * progress.share, &detail)?;
-        if progress.stage == Stage::Finished {
+        if run.at_rest() {
             break;
         }
     }
-    let measures = run.measure();
-    let mesh = run.model.mesh(&run.state.positions);
-    let origin = (0..job.garment.triangles.len() as u32)
-        .filter(|&t| {
-            let [a, b, c] = job.garment.triangles[t as usize].map(|v| run.target[v as usize]);
-            a != b && b != c && c != a
-        })
-        .collect();
-    let mut warnings = run.warnings().to_vec();
-    warnings.extend(shortcomings(&mesh, &measures));
-    Ok(Drape {
-        stretch: stretch_per_triangle(&run.model, &run.state.positions),
-        steps: run.steps(),
-        seam_gap: run.gap_before_merging(),
-        target: run.target.clone(),
-        job,
-        mesh,
-        origin,
-        measures,
-        warnings,
-    })
+    Ok(Drape::of(job, run))
 }
 
 /// What a finished garment ought not to have, in plain words.

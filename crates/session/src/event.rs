@@ -37,6 +37,15 @@ pub enum Event {
     },
 }
 
+impl Event {
+    /// A warning for each note.
+    pub(crate) fn warnings(notes: &[String]) -> impl Iterator<Item = Self> + '_ {
+        notes.iter().map(|note| Self::Warned {
+            message: note.clone(),
+        })
+    }
+}
+
 /// A marker in a few numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nested {

@@ -13,6 +13,7 @@ mod drape;
 mod error;
 mod event;
 mod export;
+mod hands;
 mod history;
 mod journal;
 mod laying;
@@ -33,8 +34,10 @@ mod watcher;
 
 pub use choice::{BodyChoice, Quality, figure_named};
 pub use command::Command;
+pub use drape::DrapeResult;
 pub use error::SessionError;
 pub use event::{Assembled, Draped, Event, Nested};
+pub use hands::{LiveInput, StampedInput};
 pub use journal::{journal_lines, read_journal};
 pub use live::{LiveFrame, LiveRun};
 pub use open::{

@@ -1,10 +1,13 @@
-//! A drape that runs on its own thread while somebody watches.
+//! A drape that runs on its own thread while somebody watches and takes hold of the cloth.
 
-use crate::GarmentJob;
+use crate::drape::{Drape, DrapeResult};
+use crate::hands::HandledRun;
+use crate::{GarmentJob, LiveInput, SessionError, StampedInput};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use toile_drape::{GarmentRun, Stage};
+use std::time::Instant;
+use toile_drape::{DrapeError, Stage};
 use toile_geometry::Vec3;
 
 /// One moment of a live drape.
@@ -28,24 +31,35 @@ pub struct LiveFrame {
     pub share: f64,
 }
 
+/// What the thread is told.
+#[derive(Default)]
+struct Orders {
+    paused: bool,
+    stop: bool,
+    /// Inputs not yet taken, with the step they are for.
+    inputs: Vec<(LiveInput, Option<u64>)>,
+}
+
 #[derive(Default)]
 struct Shared {
-    latest: Mutex<Option<LiveFrame>>,
-    failure: Mutex<Option<String>>,
-    paused: Mutex<bool>,
+    orders: Mutex<Orders>,
     woken: Condvar,
-    stop: AtomicBool,
+    latest: Mutex<Option<LiveFrame>>,
+    applied: Mutex<Vec<StampedInput>>,
+    outcome: Mutex<Option<Result<DrapeResult, String>>>,
     finished: AtomicBool,
 }
 
-/// A garment sewn and draped on its own thread. Only the newest frame is kept. Dropping it stops
-/// the thread and waits for it.
+/// A garment sewn and draped on its own thread. Only the newest frame is kept. While the cloth is
+/// held it does not end: at rest it waits for the hand to move or let go. Dropping it stops the
+/// thread and waits for it.
 pub struct LiveRun {
+    job: GarmentJob,
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -53,14 +67,15 @@ impl LiveRun {
     /// Starts the thread.
     pub fn start(job: GarmentJob) -> Self {
         let shared = Arc::new(Shared::default());
-        let of_thread = shared.clone();
+        let (of_thread, its_job) = (shared.clone(), job.clone());
         let thread = std::thread::spawn(move || {
-            if let Err(error) = run(&of_thread, job) {
-                *lock(&of_thread.failure) = Some(error.to_string());
-            }
+            *lock(&of_thread.outcome) = run(&of_thread, its_job)
+                .map_err(|error| error.to_string())
+                .transpose();
             of_thread.finished.store(true, Ordering::Release);
         });
         Self {
+            job,
             shared,
             thread: Some(thread),
         }
@@ -71,26 +86,57 @@ impl LiveRun {
         lock(&self.shared.latest).take()
     }
 
+    /// Does something to the cloth before the next step. Of several inputs for one vertex that
+    /// come between two steps only the newest counts. After the end nothing happens.
+    ///
+    /// # Errors
+    /// A vertex or a place that is not there.
+    pub fn give(&self, input: LiveInput) -> Result<(), SessionError> {
+        self.order(input, None)
+    }
+
+    /// The same when so many steps are taken; before the next step if more are already. When the
+    /// garment comes to rest earlier, then.
+    ///
+    /// # Errors
+    /// A vertex or a place that is not there.
+    pub fn give_at(&self, stamped: StampedInput) -> Result<(), SessionError> {
+        self.order(stamped.input, Some(stamped.step))
+    }
+
+    fn order(&self, input: LiveInput, step: Option<u64>) -> Result<(), SessionError> {
+        input.check(&self.job)?;
+        lock(&self.shared.orders).inputs.push((input, step));
+        self.shared.woken.notify_all();
+        Ok(())
+    }
+
+    /// Everything that was done to the cloth so far, each with the step it was applied at. The
+    /// same job with these inputs gives the same positions, bit by bit.
+    pub fn inputs(&self) -> Vec<StampedInput> {
+        lock(&self.shared.applied).clone()
+    }
+
     /// Holds the run after the present step.
     pub fn pause(&self) {
-        *lock(&self.shared.paused) = true;
+        lock(&self.shared.orders).paused = true;
     }
 
     /// Lets a held run go on.
     pub fn resume(&self) {
-        *lock(&self.shared.paused) = false;
+        lock(&self.shared.orders).paused = false;
         self.shared.woken.notify_all();
     }
 
     /// Whether the run is held.
     pub fn is_paused(&self) -> bool {
-        *lock(&self.shared.paused)
+        lock(&self.shared.orders).paused
     }
 
     /// Ends the run after the present step.
     pub fn stop(&self) {
-        self.shared.stop.store(true, Ordering::Release);
-        self.resume();
+        lock(&self.shared.orders).stop = true;
+        self.shared.woken.notify_all();
     }
 
     /// Whether the run has ended: at rest, stopped or failed.
@@ -100,7 +146,13 @@ impl LiveRun {
 
     /// Why it failed, if it did.
     pub fn failure(&self) -> Option<String> {
-        lock(&self.shared.failure).clone()
+        lock(&self.shared.outcome).as_ref()?.as_ref().err().cloned()
+    }
+
+    /// The draped garment, once it hangs at rest; nothing before, and nothing of a run that was
+    /// stopped or failed.
+    pub fn result(&self) -> Option<DrapeResult> {
+        lock(&self.shared.outcome).as_ref()?.as_ref().ok().cloned()
     }
 }
 
@@ -114,40 +166,68 @@ impl Drop for LiveRun {
     }
 }
 
-fn run(shared: &Shared, job: GarmentJob) -> Result<(), toile_drape::DrapeError> {
-    let mut run = GarmentRun::new(job.setup)?;
-    let mut triangles = Arc::new(run.model.triangles.clone());
-    let mut target = Arc::new(run.target.clone());
-    loop {
-        let mut paused = lock(&shared.paused);
-        while *paused && !shared.stop.load(Ordering::Acquire) {
-            paused = shared
+impl Shared {
+    /// Waits while the run is paused, or at rest with the cloth held. Hands the inputs that came
+    /// to the run; `false` means stop.
+    fn wait_for_turn(&self, run: &mut HandledRun) -> bool {
+        let mut orders = lock(&self.orders);
+        loop {
+            if orders.stop {
+                return false;
+            }
+            if !orders.paused {
+                for (input, step) in orders.inputs.drain(..) {
+                    run.give(input, step);
+                }
+                if !(run.at_rest() && run.is_held()) {
+                    return true;
+                }
+            }
+            orders = self
                 .woken
-                .wait(paused)
+                .wait(orders)
                 .unwrap_or_else(PoisonError::into_inner);
         }
-        drop(paused);
-        if shared.stop.load(Ordering::Acquire) {
-            return Ok(());
+    }
+}
+
+/// Runs to rest; nothing means that it was stopped.
+fn run(shared: &Shared, job: GarmentJob) -> Result<Option<DrapeResult>, DrapeError> {
+    let start = Instant::now();
+    let mut run = HandledRun::new(&job)?;
+    let mut seconds = start.elapsed().as_secs_f64();
+    let mut triangles = Arc::new(run.run().model.triangles.clone());
+    let mut target = Arc::new(run.run().target.clone());
+    let mut merged = run.run().progress().stage != Stage::Sewing;
+    while shared.wait_for_turn(&mut run) {
+        if run.at_rest() {
+            let start = Instant::now();
+            let drape = Arc::new(Drape::of(job, run));
+            seconds += start.elapsed().as_secs_f64();
+            return Ok(Some(DrapeResult { drape, seconds }));
         }
-        let stage = run.progress().stage;
+        let start = Instant::now();
         let progress = run.advance()?;
-        if progress.stage != stage {
-            triangles = Arc::new(run.model.triangles.clone());
-            target = Arc::new(run.target.clone());
+        seconds += start.elapsed().as_secs_f64();
+        if !merged && progress.stage != Stage::Sewing {
+            merged = true;
+            triangles = Arc::new(run.run().model.triangles.clone());
+            target = Arc::new(run.run().target.clone());
         }
+        let mut applied = lock(&shared.applied);
+        let known = applied.len();
+        applied.extend_from_slice(&run.applied()[known..]);
+        drop(applied);
         *lock(&shared.latest) = Some(LiveFrame {
-            positions: run.state.positions.clone(),
+            positions: run.run().state.positions.clone(),
             triangles: triangles.clone(),
             target: target.clone(),
             stage: progress.stage,
             residual: progress.residual,
             gap: progress.gap,
-            step: run.steps().iter().sum(),
+            step: run.steps() as usize,
             share: progress.share,
         });
-        if progress.stage == Stage::Finished {
-            return Ok(());
-        }
     }
+    Ok(None)
 }

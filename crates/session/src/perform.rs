@@ -6,7 +6,8 @@ use crate::history::History;
 use crate::open::{open_measurements, open_pattern};
 use crate::watcher::{Part, tell};
 use crate::{
-    Assembled, BodyChoice, Command, Event, Project, Session, SessionError, Watcher, journal_lines,
+    Assembled, BodyChoice, Command, Event, Project, Session, SessionError, StampedInput, Watcher,
+    journal_lines,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -46,7 +47,7 @@ impl Session {
             Command::Check => self.check(watcher),
             Command::Nest => self.nest(watcher),
             Command::Assemble => self.assemble(watcher),
-            Command::Drape => self.drape(watcher),
+            Command::Drape { inputs } => self.drape(inputs, watcher),
             Command::Export { dir } => self.export(dir, watcher),
         }
     }
@@ -75,8 +76,15 @@ impl Session {
         action: &'static str,
         hint: &'static str,
     ) -> Outcome {
-        let next =
+        let mut next =
             step(&mut self.history, &self.project).ok_or(SessionError::Nothing { action, hint })?;
+        // Ids are never given twice, not even those of what was undone.
+        let given = self.project.pattern.ids;
+        let mut ids = next.pattern.ids;
+        ids.raise(&given);
+        if ids != next.pattern.ids {
+            Arc::make_mut(&mut next.pattern).ids = ids;
+        }
         Ok(self.replace(next))
     }
 
@@ -246,22 +254,20 @@ impl Session {
             triangles: garment.triangles.len(),
             stitches: garment.stitches.len(),
         })];
-        events.extend(warned(&self.derived.assembly_notes));
+        events.extend(Event::warnings(&self.derived.assembly_notes));
         Ok(events)
     }
 
-    fn drape(&mut self, watcher: &mut dyn Watcher) -> Outcome {
+    fn drape(&mut self, inputs: &[StampedInput], watcher: &mut dyn Watcher) -> Outcome {
         let mut events = Vec::new();
         let mut from = 0.0;
         if !self.derived.has_garment() {
             from = 0.05;
             events = self.assemble(&mut Part::new(watcher, 0.0, from))?;
         }
-        let drape = self
-            .derived
-            .drape(&self.project, &mut Part::new(watcher, from, 1.0))?;
-        events.push(Event::Draped(drape.summary()));
-        events.extend(warned(&drape.warnings));
+        let mut part = Part::new(watcher, from, 1.0);
+        let drape = self.derived.drape(&self.project, inputs, &mut part)?;
+        events.extend(drape.events());
         Ok(events)
     }
 
@@ -286,10 +292,4 @@ impl Session {
             paths: files.iter().map(|(name, _)| dir.join(name)).collect(),
         }])
     }
-}
-
-fn warned(notes: &[String]) -> impl Iterator<Item = Event> + '_ {
-    notes.iter().map(|note| Event::Warned {
-        message: note.clone(),
-    })
 }

@@ -4,7 +4,7 @@ use crate::derived::Derived;
 use crate::history::History;
 use crate::timing::Timing;
 use crate::watcher::Part;
-use crate::{Command, Event, GarmentJob, Project, SessionError, Watcher};
+use crate::{Command, DrapeResult, Draped, Event, GarmentJob, Project, SessionError, Watcher};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -76,7 +76,32 @@ impl Session {
     /// # Errors
     /// A pattern or measurements nothing can be made from.
     pub fn garment_setup(&mut self) -> Result<GarmentJob, SessionError> {
-        self.derived.job(&self.project)
+        let job = self.derived.job(&self.project)?;
+        Ok(GarmentJob {
+            revision: self.revision,
+            ..job
+        })
+    }
+
+    /// The drape of the present project in a few numbers, if it was made.
+    pub fn draped(&self) -> Option<Draped> {
+        self.derived.drape.as_ref().map(|drape| drape.summary())
+    }
+
+    /// Takes over a drape that ran live, as if it had been made by a command: it is noted in the
+    /// journal, and what is exported from now on is this. The result of another revision comes
+    /// too late and is dropped; nothing is told then.
+    pub fn adopt_drape(&mut self, result: DrapeResult) -> Option<Vec<Event>> {
+        if result.revision() != self.revision {
+            return None;
+        }
+        self.journal.push(Command::Drape {
+            inputs: result.inputs().to_vec(),
+        });
+        self.timing.add_seconds("drape", result.seconds);
+        let events = result.drape.events();
+        self.derived.drape = Some(result.drape);
+        Some(events)
     }
 
     /// Does one command and notes it in the journal.

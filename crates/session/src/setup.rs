@@ -14,6 +14,8 @@ pub(crate) const GRAVITY: f64 = 9.81;
 /// A garment ready to be sewn and draped, and what is needed to map the result back to panels.
 #[derive(Clone)]
 pub struct GarmentJob {
+    /// The session's revision it was made from.
+    pub revision: u64,
     /// What the drape is made from.
     pub setup: GarmentSetup,
     /// The meshed and placed pieces; vertices are the setup's.
@@ -67,6 +69,7 @@ pub(crate) fn job(
         },
     };
     GarmentJob {
+        revision: 0,
         setup,
         garment,
         panels: Arc::new(panels),

@@ -31,7 +31,11 @@ impl Timing {
 
     /// Adds the time since `start` to a stage.
     pub fn add(&mut self, stage: &str, start: Instant) {
-        let seconds = start.elapsed().as_secs_f64();
+        self.add_seconds(stage, start.elapsed().as_secs_f64());
+    }
+
+    /// Adds a time [s] to a stage.
+    pub fn add_seconds(&mut self, stage: &str, seconds: f64) {
         *self.stages.entry(stage.to_owned()).or_default() += seconds;
         self.wall += seconds;
     }

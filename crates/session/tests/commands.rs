@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use std::sync::Arc;
 use support::{BAND, band};
 use toile_body::Figure;
-use toile_pattern::{Edit, PanelEdit, PointPlace};
+use toile_pattern::{Edit, PanelEdit, PointId, PointPlace};
 use toile_session::{
     BodyChoice, Command, Event, Project, Quality, Session, SessionError, Silent, journal_lines,
     read_journal,
@@ -165,6 +165,54 @@ fn a_size_that_is_edited_away_is_no_longer_chosen() {
 }
 
 #[test]
+fn ids_are_never_given_twice() {
+    let (mut session, folder) = opened();
+    let path = folder.path().join("saved.toile.json");
+    let split = |session: &Session| {
+        let project = session.project();
+        let panel = &project.pattern.panels[0];
+        let edge = panel.outline[0].id;
+        let measurements = project.drafted_to();
+        project
+            .pattern
+            .split_edit(&measurements, (panel.id, edge), 0.5)
+            .unwrap()
+    };
+    let points = |session: &Session| -> Vec<PointId> {
+        let panels = &session.project().pattern.panels;
+        panels
+            .iter()
+            .flat_map(|panel| panel.points.iter().map(|p| p.id))
+            .collect()
+    };
+    let start = session.project().pattern.clone();
+    let mut given = points(&session);
+    for round in 0..5 {
+        let step = split(&session);
+        run(&mut session, edit(vec![step], None)).unwrap();
+        let new: Vec<PointId> = points(&session)
+            .into_iter()
+            .filter(|id| !start.panels.iter().any(|panel| panel.point(*id).is_some()))
+            .collect();
+        assert!(!new.is_empty());
+        assert!(
+            new.iter().all(|id| !given.contains(id)),
+            "round {round}: {new:?}"
+        );
+        given.extend(new);
+        run(&mut session, Command::Undo).unwrap();
+        assert!(session.project().pattern.says_the_same(&start));
+        if round == 2 {
+            // What was given before is remembered in the file too, and past a redo.
+            run(&mut session, Command::Redo).unwrap();
+            run(&mut session, Command::Undo).unwrap();
+            run(&mut session, Command::SavePattern { path: path.clone() }).unwrap();
+            run(&mut session, Command::OpenPattern { path: path.clone() }).unwrap();
+        }
+    }
+}
+
+#[test]
 fn a_saved_pattern_opens_as_the_same_pattern() {
     let (mut session, folder) = opened();
     let path = folder.path().join("saved.toile.json");
@@ -199,7 +247,7 @@ fn faults_keep_a_garment_from_being_made() {
         matches!(events[0], Event::Checked { errors, .. } if errors > 0),
         "{events:?}"
     );
-    for command in [Command::Nest, Command::Assemble, Command::Drape] {
+    for command in [Command::Nest, Command::Assemble, Command::drape()] {
         let error = run(&mut session, command).unwrap_err();
         assert!(error.is_bad_input());
         assert!(error.to_string().contains("crossed.toile.json"), "{error}");

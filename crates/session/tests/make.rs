@@ -1,32 +1,11 @@
-//! The whole job on the smallest garment: files, replay, threads, progress, cancelling, live runs.
+//! The whole job on the smallest garment: files, replay, threads, progress, cancelling.
 #![allow(clippy::unwrap_used)]
 
 mod support;
 
-use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-use std::path::Path;
-use std::time::Duration;
-use support::{band, make};
-use toile_session::{Command, Event, LiveRun, Session, SessionError, Silent, Stage, read_journal};
-
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap())
-        .map(|entry| {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            (name, std::fs::read(entry.path()).unwrap())
-        })
-        .collect()
-}
-
-/// Files without the times.
-fn lasting(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut files = files(folder);
-    assert!(files.remove("timing.json").is_some());
-    files
-}
+use support::{band, files, lasting, make};
+use toile_session::{Command, Event, Session, SessionError, Silent, read_journal};
 
 const NAMES: [&str; 8] = [
     "drape.png",
@@ -198,45 +177,4 @@ fn what_was_not_made_is_not_exported() {
         .unwrap();
     let error = session.execute(export, &mut Silent).unwrap_err();
     assert!(matches!(error, SessionError::Nothing { .. }), "{error}");
-}
-
-#[test]
-fn a_live_run_comes_to_the_same_rest() {
-    let folder = tempfile::tempdir().unwrap();
-    let pattern = band(folder.path());
-    let mut session = Session::new();
-    let commands = make(&pattern, folder.path());
-    session.execute_all(&commands[..2], &mut Silent).unwrap();
-    let job = session.garment_setup().unwrap();
-
-    let live = LiveRun::start(job.clone());
-    live.pause();
-    assert!(live.is_paused());
-    live.resume();
-    let (mut last, mut step, mut share) = (None, 0, 0.0);
-    for _ in 0..6000 {
-        let ended = live.is_finished();
-        if let Some(frame) = live.latest() {
-            assert!(frame.step >= step && frame.share >= share);
-            (step, share) = (frame.step, frame.share);
-            assert_eq!(frame.target.len(), job.garment.positions.len());
-            last = Some(frame);
-        } else if ended {
-            break;
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    assert_eq!(live.failure(), None);
-    let last = last.unwrap();
-    assert_eq!((last.stage, last.share), (Stage::Finished, 1.0));
-
-    let mut run = toile_drape::GarmentRun::new(job.setup.clone()).unwrap();
-    while run.advance().unwrap().stage != Stage::Finished {}
-    assert_eq!(last.positions, run.state.positions);
-
-    // A run that is dropped, held or not, ends its thread.
-    drop(LiveRun::start(job.clone()));
-    let held = LiveRun::start(job);
-    held.pause();
-    drop(held);
 }

@@ -1,6 +1,7 @@
 //! What the session's tests share.
 #![allow(dead_code)]
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use toile_session::{Command, Quality};
 
@@ -49,9 +50,28 @@ pub fn make(pattern: &Path, dir: &Path) -> Vec<Command> {
         Command::Check,
         Command::Nest,
         Command::Assemble,
-        Command::Drape,
+        Command::drape(),
         Command::Export {
             dir: dir.to_owned(),
         },
     ]
+}
+
+/// Every file of a folder.
+pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap())
+        .map(|entry| {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            (name, std::fs::read(entry.path()).unwrap())
+        })
+        .collect()
+}
+
+/// Files without the times.
+pub fn lasting(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = files(folder);
+    assert!(files.remove("timing.json").is_some());
+    files
 }

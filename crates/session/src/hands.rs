@@ -1,0 +1,208 @@
+//! A garment's run with hands on the cloth: inputs stamped with the step they apply to.
+
+use crate::{GarmentJob, SessionError};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use toile_drape::laws::elastic::ElasticLaw;
+use toile_drape::{DrapeError, Elastic, ElasticEnd, GarmentRun, Progress, Stage};
+use toile_geometry::Vec3;
+
+/// Something done to cloth while it is draped. Vertices are those of the job's garment, before
+/// seams are merged.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "input")]
+pub enum LiveInput {
+    /// An elastic draws a vertex to a place from now on; one that is held already, to this place.
+    Drag {
+        /// The vertex.
+        vertex: u32,
+        /// The place [m].
+        to: [f64; 3],
+    },
+    /// The vertex is let go.
+    Release {
+        /// The vertex.
+        vertex: u32,
+    },
+}
+
+/// An input and when it applies.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StampedInput {
+    /// Steps taken before it.
+    pub step: u64,
+    /// What is done.
+    #[serde(flatten)]
+    pub input: LiveInput,
+}
+
+/// The pull of a hand: 5 N, some times the weight of a garment, from 5 cm on.
+const HAND: ElasticLaw = ElasticLaw {
+    stiffness: 100.0,
+    largest_force: 5.0,
+};
+
+/// Farthest place cloth may be drawn to, along each axis [m]: no room is larger.
+const FARTHEST: f64 = 100.0;
+
+impl LiveInput {
+    /// The vertex it concerns.
+    pub fn vertex(&self) -> u32 {
+        match *self {
+            Self::Drag { vertex, .. } | Self::Release { vertex } => vertex,
+        }
+    }
+
+    /// Refuses vertices and places that are not there.
+    pub(crate) fn check(&self, job: &GarmentJob) -> Result<(), SessionError> {
+        let count = job.garment.positions.len();
+        let vertex = self.vertex();
+        if vertex as usize >= count {
+            return Err(SessionError::Unknown {
+                kind: "vertex",
+                name: vertex.to_string(),
+                hint: format!("the garment has {count}, counted from 0"),
+            });
+        }
+        let places = match self {
+            Self::Drag { to, .. } => to.as_slice(),
+            Self::Release { .. } => &[],
+        };
+        match places.iter().find(|x| x.is_nan() || x.abs() > FARTHEST) {
+            Some(&value) => Err(SessionError::Number {
+                what: "a coordinate of the place cloth is drawn to [m]",
+                value,
+                hint: "give a place within 100 m",
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A garment being sewn and draped while inputs come.
+pub(crate) struct HandledRun {
+    run: GarmentRun,
+    /// Elastics of the seams while they are sewn; they come first.
+    seams: usize,
+    /// Where each held vertex is drawn to.
+    held: BTreeMap<u32, Vec3>,
+    /// Inputs to come, by step; those of one step in the order given.
+    waiting: BTreeMap<u64, Vec<LiveInput>>,
+    /// Inputs that were applied.
+    applied: Vec<StampedInput>,
+    steps: u64,
+}
+
+impl HandledRun {
+    /// Prepares the first step.
+    pub fn new(job: &GarmentJob) -> Result<Self, DrapeError> {
+        let run = GarmentRun::new(job.setup.clone())?;
+        Ok(Self {
+            seams: run.model.elastics.len(),
+            run,
+            held: BTreeMap::new(),
+            waiting: BTreeMap::new(),
+            applied: Vec::new(),
+            steps: 0,
+        })
+    }
+
+    /// Takes an input for after `step` steps; for the next step if that is past or not said.
+    pub fn give(&mut self, input: LiveInput, step: Option<u64>) {
+        let step = step.unwrap_or(0).max(self.steps);
+        self.waiting.entry(step).or_default().push(input);
+    }
+
+    /// The garment.
+    pub fn run(&self) -> &GarmentRun {
+        &self.run
+    }
+
+    /// The garment, and the inputs it was made with.
+    pub fn into_parts(self) -> (GarmentRun, Vec<StampedInput>) {
+        (self.run, self.applied)
+    }
+
+    /// The inputs applied so far.
+    pub fn applied(&self) -> &[StampedInput] {
+        &self.applied
+    }
+
+    /// Steps taken.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Whether it hangs at rest and nothing is to come.
+    pub fn at_rest(&self) -> bool {
+        self.run.progress().stage == Stage::Finished && self.waiting.is_empty()
+    }
+
+    /// Whether a hand is on the cloth.
+    pub fn is_held(&self) -> bool {
+        !self.held.is_empty()
+    }
+
+    /// Applies the inputs that are due and takes one step. At rest no time passes: what is to
+    /// come next is due then.
+    pub fn advance(&mut self) -> Result<Progress, DrapeError> {
+        let at_rest = self.run.progress().stage == Stage::Finished;
+        let first = self.waiting.keys().next().copied();
+        let due = first.filter(|&step| step <= self.steps || at_rest);
+        let inputs = due.and_then(|step| self.waiting.remove(&step));
+        let changed = self.apply(inputs.unwrap_or_default());
+        if changed {
+            self.run.unsettle();
+        } else if at_rest {
+            return Ok(self.run.progress());
+        }
+        if changed || self.is_held() {
+            self.pull();
+        }
+        let progress = self.run.advance()?;
+        self.steps += 1;
+        Ok(progress)
+    }
+
+    /// Applies inputs of one step: of each vertex only the newest, as if the others had not been.
+    /// Says whether anything changed.
+    fn apply(&mut self, inputs: Vec<LiveInput>) -> bool {
+        let newest: BTreeMap<u32, LiveInput> = inputs
+            .into_iter()
+            .map(|input| (input.vertex(), input))
+            .collect();
+        let mut changed = false;
+        for (vertex, input) in newest {
+            let before = self.held.get(&vertex).copied();
+            let after = match input {
+                LiveInput::Drag { to, .. } => Some(Vec3::from(to)),
+                LiveInput::Release { .. } => None,
+            };
+            if before == after {
+                continue;
+            }
+            match after {
+                Some(place) => self.held.insert(vertex, place),
+                None => self.held.remove(&vertex),
+            };
+            let step = self.steps;
+            self.applied.push(StampedInput { step, input });
+            changed = true;
+        }
+        changed
+    }
+
+    /// Gives the model the elastics of the hands beside those of the seams.
+    fn pull(&mut self) {
+        let sewing = self.run.progress().stage == Stage::Sewing;
+        let mut elastics = std::mem::take(&mut self.run.model.elastics);
+        elastics.truncate(if sewing { self.seams } else { 0 });
+        let target = &self.run.target;
+        elastics.extend(self.held.iter().map(|(&vertex, &place)| Elastic {
+            from: target[vertex as usize],
+            to: ElasticEnd::Point(place),
+            law: HAND,
+        }));
+        self.run.model.set_elastics(elastics);
+    }
+}

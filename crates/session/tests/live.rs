@@ -1,0 +1,278 @@
+//! Live runs: the same rest as a drape, inputs by steps, results handed back to the session.
+#![allow(clippy::unwrap_used)]
+
+mod support;
+
+use std::path::Path;
+use std::time::Duration;
+use support::{band, lasting, make};
+use toile_drape::GarmentRun;
+use toile_geometry::Vec3;
+use toile_session::{
+    Command, DrapeResult, GarmentJob, LiveInput, LiveRun, Session, Silent, Stage, StampedInput,
+    read_journal,
+};
+
+/// A session with the band in it, meshed coarsely.
+fn prepared(folder: &Path) -> Session {
+    let mut session = Session::new();
+    let commands = make(&band(folder), folder);
+    session.execute_all(&commands[..2], &mut Silent).unwrap();
+    session
+}
+
+fn wait_for_end(live: &LiveRun) {
+    for _ in 0..12_000 {
+        if live.is_finished() {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    panic!("still running after a minute");
+}
+
+fn finished(live: &LiveRun) -> DrapeResult {
+    wait_for_end(live);
+    assert_eq!(live.failure(), None);
+    live.result().unwrap()
+}
+
+fn bits(positions: &[Vec3]) -> Vec<[u64; 3]> {
+    positions
+        .iter()
+        .map(|p| [p.x, p.y, p.z].map(f64::to_bits))
+        .collect()
+}
+
+/// A vertex at the upper edge of the front, and a place half a metre before it.
+fn handle(job: &GarmentJob) -> (u32, [f64; 3]) {
+    let at = &job.garment.positions;
+    let highest = (0..at.len()).max_by(|&a, &b| at[a].y.total_cmp(&at[b].y));
+    let vertex = highest.unwrap();
+    (vertex as u32, (at[vertex] + Vec3::z() * 0.5).into())
+}
+
+fn at(step: u64, input: LiveInput) -> StampedInput {
+    StampedInput { step, input }
+}
+
+#[test]
+fn a_live_run_comes_to_the_same_rest() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = prepared(folder.path());
+    let job = session.garment_setup().unwrap();
+
+    let live = LiveRun::start(job.clone());
+    live.pause();
+    assert!(live.is_paused());
+    live.resume();
+    let (mut last, mut step, mut share) = (None, 0, 0.0);
+    for _ in 0..6000 {
+        let ended = live.is_finished();
+        if let Some(frame) = live.latest() {
+            assert!(frame.step >= step && frame.share >= share);
+            (step, share) = (frame.step, frame.share);
+            assert_eq!(frame.target.len(), job.garment.positions.len());
+            last = Some(frame);
+        } else if ended {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(live.failure(), None);
+    let last = last.unwrap();
+    assert_eq!((last.stage, last.share), (Stage::Finished, 1.0));
+
+    let mut run = GarmentRun::new(job.setup.clone()).unwrap();
+    while run.advance().unwrap().stage != Stage::Finished {}
+    assert_eq!(bits(&last.positions), bits(&run.state.positions));
+    assert_eq!(live.result().unwrap().mesh().positions, run.state.positions);
+    assert_eq!(live.inputs(), []);
+
+    // A run that is dropped, held or not, ends its thread.
+    drop(LiveRun::start(job.clone()));
+    let held = LiveRun::start(job);
+    held.pause();
+    drop(held);
+}
+
+#[test]
+fn the_same_inputs_give_the_same_positions_bit_by_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = prepared(folder.path());
+    let job = session.garment_setup().unwrap();
+    let (vertex, to) = handle(&job);
+    let untouched = finished(&LiveRun::start(job.clone()));
+    let last_step = untouched.summary().steps.iter().sum::<usize>() as u64;
+
+    // Held while it is sewn, drawn on while it settles, let go at last.
+    let drag = |share: f64| LiveInput::Drag {
+        vertex,
+        to: [to[0], to[1], to[2] * share],
+    };
+    let live = LiveRun::start(job.clone());
+    live.pause();
+    for (step, input) in [
+        (2, drag(1.0)),
+        (last_step / 2, drag(0.9)),
+        (last_step / 2, drag(0.8)),
+        (last_step, LiveInput::Release { vertex }),
+        (last_step, LiveInput::Release { vertex: vertex + 1 }),
+    ] {
+        live.give_at(at(step, input)).unwrap();
+    }
+    live.resume();
+    let first = finished(&live);
+    // Of two inputs in one step the newest counts; letting go of what is not held is nothing.
+    let applied = live.inputs();
+    assert_eq!(applied, first.inputs());
+    assert_eq!(applied[0], at(2, drag(1.0)));
+    assert_eq!(applied[1], at(last_step / 2, drag(0.8)));
+    assert_eq!(applied[2].input, LiveInput::Release { vertex });
+    assert_eq!(applied.len(), 3);
+    assert_ne!(
+        bits(&first.mesh().positions),
+        bits(&untouched.mesh().positions)
+    );
+
+    let again = LiveRun::start(job);
+    for stamped in first.inputs() {
+        again.give_at(*stamped).unwrap();
+    }
+    let again = finished(&again);
+    assert_eq!(again.inputs(), first.inputs());
+    assert_eq!(bits(&again.mesh().positions), bits(&first.mesh().positions));
+}
+
+#[test]
+fn cloth_that_is_held_goes_to_the_hand_and_falls_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = prepared(folder.path());
+    let job = session.garment_setup().unwrap();
+    let (vertex, to) = handle(&job);
+    let live = LiveRun::start(job);
+    live.give(LiveInput::Drag { vertex, to }).unwrap();
+    // It comes to rest in the hand, and does not end.
+    let mut frame = None;
+    for _ in 0..12_000 {
+        frame = live.latest().or(frame);
+        if frame.as_ref().is_some_and(|f| f.stage == Stage::Finished) {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let held = frame.unwrap();
+    assert_eq!(held.stage, Stage::Finished);
+    std::thread::sleep(Duration::from_millis(50));
+    assert!(!live.is_finished() && live.result().is_none());
+    let place = |positions: &[Vec3]| positions[held.target[vertex as usize] as usize];
+    let in_hand = place(&held.positions);
+
+    // Whenever the hand lets go, the journal knows: replayed it is the same garment.
+    live.give(LiveInput::Release { vertex }).unwrap();
+    let released = finished(&live);
+    let fallen = place(&released.mesh().positions);
+    let to = Vec3::from(to);
+    assert!(
+        (in_hand - to).norm() + 0.02 < (fallen - to).norm(),
+        "{in_hand:?} {fallen:?}"
+    );
+    assert_eq!(released.inputs().len(), 2);
+    let inputs = released.inputs().to_vec();
+    let events = session
+        .execute(Command::Drape { inputs }, &mut Silent)
+        .unwrap();
+    assert!(!events.is_empty());
+    assert_eq!(session.draped(), Some(released.summary()));
+}
+
+#[test]
+fn inputs_that_make_no_sense_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = prepared(folder.path());
+    let job = session.garment_setup().unwrap();
+    let count = job.garment.positions.len() as u32;
+    let live = LiveRun::start(job);
+    live.pause();
+    for (vertex, x) in [
+        (count, 0.0),
+        (u32::MAX, 0.0),
+        (0, f64::NAN),
+        (0, 1e300),
+        (0, -1e3),
+    ] {
+        let input = LiveInput::Drag {
+            vertex,
+            to: [0.0, x, 0.0],
+        };
+        let error = live.give(input).unwrap_err();
+        assert!(error.is_bad_input(), "{error}");
+        let before = session.journal().len();
+        let inputs = vec![at(0, input)];
+        assert!(
+            session
+                .execute(Command::Drape { inputs }, &mut Silent)
+                .is_err()
+        );
+        assert_eq!(session.journal().len(), before);
+    }
+    live.stop();
+    wait_for_end(&live);
+    assert!(live.result().is_none() && live.failure().is_none());
+}
+
+#[test]
+fn a_result_is_exported_without_draping_again_and_replayed_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = prepared(folder.path());
+    let job = session.garment_setup().unwrap();
+    let (vertex, to) = handle(&job);
+    let live = LiveRun::start(job);
+    for stamped in [
+        at(5, LiveInput::Drag { vertex, to }),
+        at(9, LiveInput::Release { vertex }),
+    ] {
+        live.give_at(stamped).unwrap();
+    }
+    let result = finished(&live);
+    assert_eq!(session.draped(), None);
+    let events = session.adopt_drape(result.clone()).unwrap();
+    assert!(!events.is_empty());
+    assert_eq!(session.draped(), Some(result.summary()));
+    let dir = folder.path().join("out");
+    let mut stages = Vec::new();
+    let mut watcher = |stage: &str, _: f64, _: &str| {
+        stages.push(stage.to_owned());
+        std::ops::ControlFlow::Continue(())
+    };
+    session
+        .execute(Command::Export { dir: dir.clone() }, &mut watcher)
+        .unwrap();
+    assert!(stages.iter().all(|stage| stage == "writing"), "{stages:?}");
+
+    let exported = lasting(&dir);
+    let journal = String::from_utf8(exported["journal.jsonl"].clone()).unwrap();
+    let journal = read_journal(&journal).unwrap();
+    let again = folder.path().join("again");
+    Session::replay(&journal, &again, &mut Silent).unwrap();
+    assert_eq!(exported, lasting(&again));
+}
+
+#[test]
+fn a_late_result_of_an_older_revision_is_dropped() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = prepared(folder.path());
+    let mut snapshot = session.snapshot();
+    let job = snapshot.garment_setup().unwrap();
+    assert_eq!(job.revision, session.revision());
+    let result = finished(&LiveRun::start(job));
+    session.adopt(snapshot);
+    let size = Some("L".to_owned());
+    session
+        .execute(Command::SetSize { size }, &mut Silent)
+        .unwrap();
+    let journal = session.journal().to_vec();
+    assert_eq!(session.adopt_drape(result), None);
+    assert_eq!(session.draped(), None);
+    assert_eq!(session.journal(), journal);
+}
