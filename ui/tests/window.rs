@@ -1,6 +1,9 @@
 //! The window without a window: used by its accessible names, needing neither display nor GPU.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+#[path = "../../crates/session/tests/support/mod.rs"]
+mod garments;
+
 use egui::accesskit::{Action, ActionRequest, TreeId};
 use egui::{Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::Harness;
@@ -192,6 +195,7 @@ fn a_point_is_added_in_the_middle_of_an_edge_and_deleted() {
     press(&mut window, "Undo");
     press(&mut window, "Undo");
     assert_eq!(drawn(&pattern(&window)), drawn(&before));
+    assert!(!window.state().is_unsaved());
 }
 
 #[test]
@@ -349,6 +353,39 @@ fn drape_runs_live_is_held_goes_on_and_stops() {
     let start = place(&window, "Point hem_side of front");
     drag(&mut window, start, vec2(10.0, 0.0));
     assert!(window.query_by_label_contains("drape it again").is_some());
+}
+
+#[test]
+fn a_garment_at_rest_is_the_sessions_until_the_pattern_changes() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window(&garments::band(folder.path()));
+    press(&mut window, "Drape");
+    let made = |window: &Window| window.state().session().draped().is_some();
+    assert!(wait(&mut window, 6000, made), "no garment came to rest");
+    let session = window.state().session();
+    assert_eq!(session.journal().last(), Some(&Command::drape()));
+    let (mut exported, journal) = (session.snapshot(), session.journal().len());
+    let dir = folder.path().join("out");
+    exported
+        .execute(Command::Export { dir: dir.clone() }, &mut Silent)
+        .unwrap();
+    assert!(dir.join("garment.glb").exists());
+    // A garment of an older pattern is not taken.
+    press(&mut window, "Drape");
+    let start = place(&window, "Point a of front");
+    drag(&mut window, start, vec2(-22.0, 0.0));
+    assert!(window.state().is_unsaved());
+    let ended = |window: &Window| {
+        window
+            .query_by_label("Pause")
+            .unwrap()
+            .accesskit_node()
+            .is_disabled()
+    };
+    assert!(wait(&mut window, 6000, ended));
+    let session = window.state().session();
+    assert_eq!(session.draped(), None);
+    assert!(!session.journal()[journal..].contains(&Command::drape()));
 }
 
 #[test]
