@@ -1,6 +1,7 @@
 //! What a cloth is made of, in SI units.
 
 use crate::DrapeError;
+use crate::laws::bending::{BendingMatrix, bending_matrix};
 use crate::laws::stretch::MembraneLaw;
 
 /// An orthotropic cloth: membrane, bending, mass, surface.
@@ -53,11 +54,17 @@ impl Material {
     }
 
     /// Bending stiffness of curvature along warp, along weft, and of twist [N m]. The twist term
-    /// is what makes a fold at 45 degrees cost the bias stiffness:
-    /// D_bias = (D_warp + D_weft + 2 D_twist) / 4, kept at zero or above.
+    /// is what makes a fold at 45 degrees cost the bias stiffness (Cooper 1960):
+    /// D_bias = (D_warp + D_weft + 2 D_nu + 2 D_twist) / 4, kept at zero or above.
     pub fn bending(&self) -> [f64; 3] {
         let [warp, weft, bias] = self.bend;
         [warp, weft, ((4.0 * bias - warp - weft) / 2.0).max(0.0)]
+    }
+
+    /// The same as a matrix over the three curvatures.
+    pub fn bending_matrix(&self) -> BendingMatrix {
+        let [warp, weft, twist] = self.bending();
+        bending_matrix([warp, weft, 0.0, twist])
     }
 
     /// Checks every number.

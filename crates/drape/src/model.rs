@@ -6,6 +6,7 @@ use crate::laws::membrane::MembraneElement;
 use crate::laws::stretch::MembraneLaw;
 use crate::sparse::{BlockPattern, ScalarMatrix};
 use crate::{Cloth, DrapeError, Material};
+use nalgebra::Vector3;
 use std::sync::Arc;
 use toile_geometry::{DistanceField, SurfaceTree, TriangleMesh, Vec3};
 
@@ -331,16 +332,18 @@ fn bending_matrix(
         rest: &cloth.rest,
         topology: &topology,
     };
-    let mut entries = Vec::with_capacity(36 * cloth.triangles.len());
-    for (t, element) in elements.iter().enumerate() {
-        let Some(stencil) = sheet.stencil(t) else {
-            continue;
-        };
-        let [warp, weft, twist] = cloth.materials[cloth.material[t] as usize].bending();
+    let laws: Vec<_> = cloth
+        .materials
+        .iter()
+        .map(Material::bending_matrix)
+        .collect();
+    let mut entries = Vec::with_capacity(100 * cloth.triangles.len());
+    for (t, stencil) in sheet.stencils().iter().enumerate() {
+        let stiffness = stencil.stiffness(laws[cloth.material[t] as usize]) * elements[t].area;
         for (&i, p) in stencil.vertices.iter().zip(&stencil.weights) {
+            let moment = stiffness * Vector3::from(*p);
             for (&j, q) in stencil.vertices.iter().zip(&stencil.weights) {
-                let value = warp * p[0] * q[0] + weft * p[2] * q[2] + 2.0 * twist * p[1] * q[1];
-                entries.push((i, j, element.area * value));
+                entries.push((i, j, moment.dot(&Vector3::from(*q))));
             }
         }
     }

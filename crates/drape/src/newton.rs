@@ -194,9 +194,9 @@ impl Workspace {
             .map(|chunk| {
                 let mut energy = 0.0;
                 for v in chunk * CHUNK..((chunk + 1) * CHUNK).min(x.len()) {
-                    let bend = model.bending.row_times(v, x);
                     let off = x[v] - inertia.target[v];
-                    energy += 0.5 * x[v].dot(&bend) + 0.5 * inertia.weight[v] * off.norm_squared()
+                    energy += model.bending.row_energy(v, x)
+                        + 0.5 * inertia.weight[v] * off.norm_squared()
                         - model.mass[v] * model.gravity.dot(&x[v]);
                 }
                 energy
@@ -236,7 +236,7 @@ impl Workspace {
             .for_each(|(chunk, out)| {
                 for (k, out) in out.iter_mut().enumerate() {
                     let v = chunk * CHUNK + k;
-                    let mut g = model.bending.row_times(v, x) - model.gravity * model.mass[v];
+                    let mut g = model.bending.row_force(v, x) - model.gravity * model.mass[v];
                     let uses = model.corner_start[v] as usize..model.corner_start[v + 1] as usize;
                     for &corner in &model.corners[uses] {
                         g += corner_gradients[corner as usize / 3][corner as usize % 3];

@@ -72,6 +72,27 @@ impl ScalarMatrix {
         (&self.columns[range.clone()], &self.values[range])
     }
 
+    /// One row of the gradient of [`ScalarMatrix::row_energy`]'s sum: sum_j K_ij (x_j - x_i), the
+    /// row times a vector when rows sum to zero. Differences keep the rounding small.
+    pub fn row_force(&self, row: usize, x: &[Vec3]) -> Vec3 {
+        let range = self.row_start[row] as usize..self.row_start[row + 1] as usize;
+        let mut sum = Vec3::zeros();
+        for (&column, &value) in self.columns[range.clone()].iter().zip(&self.values[range]) {
+            sum += (x[column as usize] - x[row]) * value;
+        }
+        sum
+    }
+
+    /// A row's share of x K x / 2 when rows sum to zero: -1/4 sum_j K_ij |x_j - x_i|^2.
+    pub fn row_energy(&self, row: usize, x: &[Vec3]) -> f64 {
+        let range = self.row_start[row] as usize..self.row_start[row + 1] as usize;
+        let mut sum = 0.0;
+        for (&column, &value) in self.columns[range.clone()].iter().zip(&self.values[range]) {
+            sum += (x[column as usize] - x[row]).norm_squared() * value;
+        }
+        -0.25 * sum
+    }
+
     /// One row times a vector.
     pub fn row_times(&self, row: usize, x: &[Vec3]) -> Vec3 {
         let range = self.row_start[row] as usize..self.row_start[row + 1] as usize;
