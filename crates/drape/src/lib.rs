@@ -34,7 +34,9 @@ pub use garment::{GarmentRun, GarmentSetup, Progress, Stage};
 pub use material::Material;
 pub use measure::{Measures, measure, residual, stretch_per_triangle};
 pub use merge::merge_map;
-pub use methods::{Method, MethodKind, MethodSettings, StepReport, largest_frequency};
+pub use methods::{
+    Method, MethodKind, MethodSettings, RelaxationRun, StepReport, largest_frequency,
+};
 pub use model::{Collider, ContactSample, ContactSettings, Elastic, ElasticEnd, Model};
 pub use newton::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 pub use pcg::PcgLimits;

@@ -32,6 +32,11 @@ pub struct Measures {
 pub fn residual(model: &Model, state: &State, workspace: &mut Workspace) -> f64 {
     let net = workspace.net_force(model, state);
     let force: f64 = net.iter().map(Vec3::norm_squared).sum();
+    force.sqrt() / weight_norm(model)
+}
+
+/// Norm of the weights of the free vertices [N]; without gravity their weight on earth.
+pub(crate) fn weight_norm(model: &Model) -> f64 {
     let free = model
         .mass
         .iter()
@@ -44,7 +49,7 @@ pub fn residual(model: &Model, state: &State, workspace: &mut Workspace) -> f64 
     } else {
         9.81
     };
-    (force / (mass * gravity * gravity)).sqrt()
+    mass.sqrt() * gravity
 }
 
 /// Measures a state. `counted` says which triangles count for strain (those away from gathers).

@@ -260,6 +260,15 @@ impl Model {
         self.elastics = elastics;
     }
 
+    /// Sum of the stiffnesses of the elastics at a vertex at small gaps [N/m].
+    pub(crate) fn elastic_stiffness(&self, v: usize) -> f64 {
+        let uses = self.elastic_start[v] as usize..self.elastic_start[v + 1] as usize;
+        self.elastic_uses[uses]
+            .iter()
+            .map(|&e| self.elastics[e as usize].law.stiffness)
+            .sum()
+    }
+
     /// Tests a triangle at its middle and the middles of its edges too, where it is too large
     /// for the curve it lies on; when it is tested so already, keeps it and its corners farther
     /// from the surface.

@@ -314,6 +314,16 @@ impl Workspace {
         self.hessian(model).row_times(row, p)
     }
 
+    /// The triangles' and elastics' rows of the Hessian filled last: columns and blocks, bending
+    /// left out.
+    pub(crate) fn hessian_blocks<'a>(
+        &'a self,
+        model: &'a Model,
+        row: usize,
+    ) -> (&'a [u32], &'a [Matrix3<f64>]) {
+        model.pattern.row_entries(row, &self.blocks)
+    }
+
     /// Solves for the Newton direction; returns the iterations taken. `gradient` then holds its
     /// negative.
     pub(crate) fn solve_linear(&mut self, model: &Model, limits: LinearSolver) -> usize {
@@ -405,7 +415,7 @@ pub(crate) fn elastics_of(
     })
 }
 
-fn end_place(end: ElasticEnd, x: &[Vec3]) -> Vec3 {
+pub(crate) fn end_place(end: ElasticEnd, x: &[Vec3]) -> Vec3 {
     match end {
         ElasticEnd::Vertex(v) => x[v as usize],
         ElasticEnd::Point(p) => p,

@@ -1,6 +1,6 @@
 //! The state: what changes as a simulation runs; a complete checkpoint.
 
-use crate::{Model, RestRun};
+use crate::{Model, RelaxationRun, RestRun};
 use toile_geometry::Vec3;
 
 /// What a method must remember from one step to the next beyond positions and velocities. Another
@@ -21,6 +21,8 @@ pub enum Memory {
     },
     /// How the way to rest stands.
     Rest(RestRun),
+    /// How dynamic relaxation stands.
+    Relaxation(RelaxationRun),
 }
 
 /// Positions, velocities, and what contact remembers.

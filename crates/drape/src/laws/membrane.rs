@@ -75,6 +75,27 @@ impl MembraneElement {
         (self.area * density, gradient)
     }
 
+    /// Gradient by one corner [N] and the positive semidefinite block of the Hessian there [N/m]:
+    /// one corner of what [`Self::gradient`] and [`Self::hessian`] give for all three.
+    pub fn corner(&self, law: &MembraneLaw, x: [Vec3; 3], i: usize) -> (Vec3, Matrix3<f64>) {
+        let [fu, fv] = self.tangents(x);
+        let strain = green_strain([fu, fv]);
+        let (s, _) = law.stress(strain);
+        let [c11, c22, c12, g, c13, c23] = law.slope(strain);
+        let (a, b) = (self.warp[i], self.weft[i]);
+        let by_u = fu * s[0] + fv * s[2];
+        let by_v = fv * s[1] + fu * s[2];
+        let [s_uu, s_vv, s_uv] = tension_part(s);
+        // Derivatives of E_uu, E_vv and gamma by the corner.
+        let (e_uu, e_vv, e_uv) = (fu * a, fv * b, fv * a + fu * b);
+        let geometric = s_uu * a * a + s_vv * b * b + 2.0 * s_uv * a * b;
+        let hessian = Matrix3::identity() * geometric
+            + e_uu * (e_uu * c11 + e_vv * c12 + e_uv * c13).transpose()
+            + e_vv * (e_uu * c12 + e_vv * c22 + e_uv * c23).transpose()
+            + e_uv * (e_uu * c13 + e_vv * c23 + e_uv * g).transpose();
+        ((by_u * a + by_v * b) * self.area, hessian * self.area)
+    }
+
     /// A positive semidefinite Hessian: blocks of the corner pairs 00, 01, 02, 11, 12, 22 [N/m].
     ///
     /// The material part is positive semidefinite as it stands. The geometric part is the 2x2
@@ -215,6 +236,21 @@ mod tests {
                 .copy_from(&block.transpose());
         }
         full
+    }
+
+    #[test]
+    fn one_corner_is_a_corner_of_all() {
+        let (element, law) = (element(), MembraneLaw::linear(STIFFNESS));
+        for scale in [0.6, 1.0, 1.3] {
+            let x = deformed(scale);
+            let gradient = element.gradient(&law, x).1;
+            let hessian = element.hessian(&law, x);
+            for (i, block) in [(0, 0), (1, 3), (2, 5)] {
+                let (g, h) = element.corner(&law, x, i);
+                assert!((g - gradient[i]).norm() < 1e-12 * (1.0 + g.norm()));
+                assert!((h - hessian[block]).norm() < 1e-9 * h.norm(), "{scale} {i}");
+            }
+        }
     }
 
     #[test]

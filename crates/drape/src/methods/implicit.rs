@@ -7,6 +7,7 @@
 
 use super::energy::{EnergyWatch, fastest, runaway};
 use super::{Method, MethodSettings, StepReport};
+use crate::measure::weight_norm;
 use crate::{DrapeError, Inertia, Model, NewtonReport, State, Workspace};
 use std::marker::PhantomData;
 use toile_geometry::Vec3;
@@ -39,6 +40,8 @@ pub struct Problem<'a> {
     pub model: &'a Model,
     /// Weights and targets of the vertices.
     pub inertia: Inertia<'a>,
+    /// Weight per mass [1/s2]: the weights are this times the masses.
+    pub weight: f64,
     /// When to stop.
     pub limits: Limits,
 }
@@ -163,6 +166,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
                 weight: &self.weights,
                 target: &self.target,
             },
+            weight,
             limits: self.limits,
         };
         let report = self.solver.lower(&problem, state, &mut self.workspace);
@@ -202,11 +206,6 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             },
         }
     }
-}
-
-/// Norm of the weights on earth, over all vertices [N].
-fn weight_norm(model: &Model) -> f64 {
-    9.81 * model.mass.iter().map(|m| m * m).sum::<f64>().sqrt()
 }
 
 impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {

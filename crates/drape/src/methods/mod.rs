@@ -1,5 +1,7 @@
 //! Methods: one trait with a whole step in it, chosen once by name from a closed list.
 
+mod block_descent;
+mod colours;
 mod energy;
 mod explicit;
 mod forward_euler;
@@ -8,6 +10,7 @@ mod guard;
 mod implicit;
 mod implicit_euler;
 mod newton_solver;
+mod relaxation;
 mod rest;
 mod rules;
 mod runge_kutta;
@@ -15,8 +18,10 @@ mod symplectic_euler;
 mod velocity_verlet;
 
 pub use frequency::largest_frequency;
+pub use relaxation::RelaxationRun;
 
 use crate::{DrapeError, Model, State};
+use block_descent::BlockDescent;
 use explicit::Explicit;
 use guard::Guarded;
 use implicit::Implicit;
@@ -82,13 +87,19 @@ pub enum MethodKind {
     Bdf2,
     /// Implicit midpoint: order 2, no damping.
     ImplicitMidpoint,
+    /// Vertex block descent (Chen et al. 2024) on implicit Euler.
+    VertexBlockDescent,
+    /// The same with Chebyshev acceleration.
+    ChebyshevBlockDescent,
+    /// Dynamic relaxation with kinetic damping: to rest without any system; time does not run.
+    DynamicRelaxation,
     /// Straight to rest by pseudo-transient continuation; time does not run.
     Rest,
 }
 
 impl MethodKind {
     /// Every method with its name in files.
-    pub const ALL: [(&'static str, Self); 9] = [
+    pub const ALL: [(&'static str, Self); 12] = [
         ("forward-euler", Self::ForwardEuler),
         ("symplectic-euler", Self::SymplecticEuler),
         ("velocity-verlet", Self::VelocityVerlet),
@@ -97,6 +108,9 @@ impl MethodKind {
         ("implicit-euler", Self::ImplicitEuler),
         ("bdf2", Self::Bdf2),
         ("implicit-midpoint", Self::ImplicitMidpoint),
+        ("vertex-block-descent", Self::VertexBlockDescent),
+        ("chebyshev-block-descent", Self::ChebyshevBlockDescent),
+        ("dynamic-relaxation", Self::DynamicRelaxation),
         ("rest", Self::Rest),
     ];
 
@@ -121,7 +135,7 @@ impl MethodKind {
 
     /// Whether it looks for rest rather than running in time.
     pub fn is_equilibrium(self) -> bool {
-        matches!(self, Self::Rest)
+        matches!(self, Self::Rest | Self::DynamicRelaxation)
     }
 }
 
@@ -171,6 +185,13 @@ impl MethodSettings {
             MethodKind::ImplicitMidpoint => {
                 Guarded::boxed(Implicit::<rules::Midpoint, Newton>::new(self))
             }
+            MethodKind::VertexBlockDescent => {
+                Guarded::boxed(Implicit::<rules::Euler, BlockDescent<false>>::new(self))
+            }
+            MethodKind::ChebyshevBlockDescent => {
+                Guarded::boxed(Implicit::<rules::Euler, BlockDescent<true>>::new(self))
+            }
+            MethodKind::DynamicRelaxation => Guarded::boxed(relaxation::Relaxation::new(self)),
             MethodKind::ImplicitEuler => Guarded::boxed(implicit_euler::ImplicitEuler::new(self)),
             MethodKind::Rest => Guarded::boxed(rest::Rest::new(self)),
         }
