@@ -2,6 +2,7 @@
 
 mod block_descent;
 mod colours;
+mod descent;
 mod energy;
 mod explicit;
 mod forward_euler;
@@ -9,7 +10,10 @@ mod frequency;
 mod guard;
 mod implicit;
 mod implicit_euler;
+mod lbfgs;
+mod metric;
 mod newton_solver;
+mod projective;
 mod relaxation;
 mod rest;
 mod rules;
@@ -25,7 +29,9 @@ use block_descent::BlockDescent;
 use explicit::Explicit;
 use guard::Guarded;
 use implicit::Implicit;
+use lbfgs::Lbfgs;
 use newton_solver::{Newton, OneSolve};
+use projective::Projective;
 
 /// What one step of a method took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -87,6 +93,10 @@ pub enum MethodKind {
     Bdf2,
     /// Implicit midpoint: order 2, no damping.
     ImplicitMidpoint,
+    /// Projective dynamics with Anderson acceleration on implicit Euler.
+    ProjectiveDynamics,
+    /// L-BFGS from the metric of projective dynamics on implicit Euler.
+    Lbfgs,
     /// Vertex block descent (Chen et al. 2024) on implicit Euler.
     VertexBlockDescent,
     /// The same with Chebyshev acceleration.
@@ -99,7 +109,7 @@ pub enum MethodKind {
 
 impl MethodKind {
     /// Every method with its name in files.
-    pub const ALL: [(&'static str, Self); 12] = [
+    pub const ALL: [(&'static str, Self); 14] = [
         ("forward-euler", Self::ForwardEuler),
         ("symplectic-euler", Self::SymplecticEuler),
         ("velocity-verlet", Self::VelocityVerlet),
@@ -108,6 +118,8 @@ impl MethodKind {
         ("implicit-euler", Self::ImplicitEuler),
         ("bdf2", Self::Bdf2),
         ("implicit-midpoint", Self::ImplicitMidpoint),
+        ("projective-dynamics", Self::ProjectiveDynamics),
+        ("lbfgs", Self::Lbfgs),
         ("vertex-block-descent", Self::VertexBlockDescent),
         ("chebyshev-block-descent", Self::ChebyshevBlockDescent),
         ("dynamic-relaxation", Self::DynamicRelaxation),
@@ -185,6 +197,10 @@ impl MethodSettings {
             MethodKind::ImplicitMidpoint => {
                 Guarded::boxed(Implicit::<rules::Midpoint, Newton>::new(self))
             }
+            MethodKind::ProjectiveDynamics => {
+                Guarded::boxed(Implicit::<rules::Euler, Projective>::new(self))
+            }
+            MethodKind::Lbfgs => Guarded::boxed(Implicit::<rules::Euler, Lbfgs>::new(self)),
             MethodKind::VertexBlockDescent => {
                 Guarded::boxed(Implicit::<rules::Euler, BlockDescent<false>>::new(self))
             }

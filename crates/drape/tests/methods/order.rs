@@ -30,7 +30,7 @@ fn after(kind: MethodKind, steps: u32) -> Vec<Vec3> {
     let settings = MethodSettings {
         substeps: Some(1),
         tolerance: Some(1e-11),
-        iterations: Some(200),
+        iterations: Some(1000),
         ..kind.into()
     };
     let mut method = settings.build();
@@ -69,6 +69,20 @@ fn methods_converge_at_their_order() {
             "{}: order {got:.2} instead of {order}, errors {coarse:.2e} {fine:.2e}",
             kind.name()
         );
+    }
+}
+
+#[test]
+fn methods_on_one_potential_take_the_same_step() {
+    let exact = after(MethodKind::ImplicitEuler, 10);
+    for kind in [
+        MethodKind::ProjectiveDynamics,
+        MethodKind::Lbfgs,
+        MethodKind::VertexBlockDescent,
+        MethodKind::ChebyshevBlockDescent,
+    ] {
+        let off = distance(&after(kind, 10), &exact);
+        assert!(off < 1e-7, "{}: {off:e} m", kind.name());
     }
 }
 

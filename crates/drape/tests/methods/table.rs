@@ -1,7 +1,9 @@
 //! One table over every method: what all of them promise.
 
 use crate::fixtures::{ball, cloth, hanging_square, method, shake, sheet};
-use toile_drape::{DrapeError, Material, MethodKind, MethodSettings, Model, State, Workspace, residual};
+use toile_drape::{
+    DrapeError, Material, MethodKind, MethodSettings, Model, State, Workspace, residual,
+};
 use toile_geometry::Vec3;
 
 /// Substeps that keep the explicit methods stable on the small cloths at 1/60 s.

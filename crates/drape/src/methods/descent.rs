@@ -1,0 +1,66 @@
+//! What the quasi-Newton methods share: gradient and potential at a place, and a line search.
+
+use super::implicit::Problem;
+use crate::sparse::dot;
+use crate::{State, Workspace};
+use toile_geometry::Vec3;
+
+/// Sufficient decrease (Armijo's constant; Nocedal and Wright 2006, 3.1).
+const DECREASE: f64 = 1e-4;
+
+/// Halvings before a line search gives up.
+const HALVINGS: usize = 16;
+
+/// Longest move of a vertex in one iteration near solid surfaces [m].
+const LONGEST_MOVE: f64 = 0.05;
+
+/// Contacts and gradient at the state's positions; returns the gradient's norm [N].
+pub fn slope(problem: &Problem, state: &State, workspace: &mut Workspace) -> f64 {
+    let model = problem.model;
+    workspace.contacts.refresh(model, state, &state.positions);
+    workspace.fill_gradient(model, &state.positions, Some(&problem.inertia));
+    dot(&workspace.gradient, &workspace.gradient).sqrt()
+}
+
+/// Shortens a direction so that no vertex near solid surfaces moves too far to find its contact.
+pub fn shorten(problem: &Problem, direction: &mut [Vec3]) {
+    let longest = direction.iter().map(Vec3::norm_squared).fold(0.0, f64::max);
+    if !problem.model.colliders.is_empty() && longest > LONGEST_MOVE * LONGEST_MOVE {
+        let scale = LONGEST_MOVE / longest.sqrt();
+        for d in direction {
+            *d *= scale;
+        }
+    }
+}
+
+/// Moves along a direction by the largest of 1, 1/2, 1/4 ... that lowers the potential enough;
+/// returns the share, 0 when none does. The positions before are left in `workspace.trial`.
+pub fn search(
+    problem: &Problem,
+    state: &mut State,
+    workspace: &mut Workspace,
+    direction: &[Vec3],
+    shares: usize,
+) -> f64 {
+    let model = problem.model;
+    let start = workspace.potential(model, &state.positions, &problem.inertia);
+    let slope = dot(&workspace.gradient, direction);
+    // Below rounding of the potential nothing can be told apart: take the step.
+    let noise = 1e-13 * start.abs().max(1.0);
+    let mut trial = std::mem::take(&mut workspace.trial);
+    let mut share = 1.0;
+    for _ in 0..shares.min(HALVINGS) {
+        for ((trial, x), d) in trial.iter_mut().zip(&state.positions).zip(direction) {
+            *trial = x + d * share;
+        }
+        let energy = workspace.potential(model, &trial, &problem.inertia);
+        if energy <= start + DECREASE * share * slope + noise {
+            std::mem::swap(&mut state.positions, &mut trial);
+            workspace.trial = trial;
+            return share;
+        }
+        share *= 0.5;
+    }
+    workspace.trial = trial;
+    0.0
+}
