@@ -88,7 +88,7 @@ mod tests {
         let model = Model::new("cloth", &cloth).unwrap();
         let mut colours = Colours::default();
         colours.fit(&model);
-        let mut seen = vec![false; 100];
+        let mut seen = [false; 100];
         for colour in 0..colours.count() {
             let own = colours.vertices(colour);
             for &v in own {
