@@ -1,0 +1,34 @@
+//! What can go wrong in the laboratory.
+
+/// Why an experiment could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum LabError {
+    /// Something asked for by name does not exist.
+    #[error("there is no {what} \"{name}\"; choose from {known}")]
+    Unknown {
+        /// Law, scene, benchmark.
+        what: &'static str,
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// A simulation stopped.
+    #[error(transparent)]
+    Drape(#[from] toile_drape::DrapeError),
+    /// A simulation ended before it was where it had to be.
+    #[error("{what}: {got:.2e} after {steps} steps, {asked:.0e} asked for")]
+    Unfinished {
+        /// What was to fall below a limit.
+        what: &'static str,
+        /// Its value.
+        got: f64,
+        /// The limit.
+        asked: f64,
+        /// Steps taken.
+        steps: usize,
+    },
+    /// The caller asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+}

@@ -1,0 +1,3 @@
+//! x
+pub fn fold_count(){} 
+pub fn shadow_area(){}
