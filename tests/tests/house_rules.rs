@@ -35,7 +35,7 @@ const LAYERS: [(&str, &[&str]); 14] = [
     ("toile-picture", &["geometry"]),
     ("toile-interchange", lowest(8)),
     ("toile-session", lowest(9)),
-    ("toile", &["geometry", "measure", "session"]),
+    ("toile", &["geometry", "measure", "session", "lab"]),
     ("toile-ui", &["geometry", "pattern", "session", "picture"]),
     ("toile-tests", lowest(10)),
     ("toile-lab", lowest(10)),

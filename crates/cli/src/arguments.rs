@@ -51,6 +51,21 @@ pub enum Task {
     /// Writes the frames asked for and the last state as OBJ (m), report.json (SI units) and
     /// timing.json (s).
     Run(Run),
+    /// Hold the simulation against physical laws: expected, measured, error, pass (SI units).
+    ///
+    /// Exit status 1 if any law is not met.
+    Validate(Validate),
+}
+
+/// `toile validate`.
+#[derive(Debug, Args)]
+pub struct Validate {
+    /// Laws to measure. Default: all; `--list` names them.
+    #[arg(value_name = "LAW")]
+    pub laws: Vec<String>,
+    /// List the laws instead of measuring them.
+    #[arg(long)]
+    pub list: bool,
 }
 
 /// `toile run`.

@@ -6,6 +6,7 @@
 
 mod arguments;
 mod bar;
+mod lab_commands;
 mod output;
 mod session_commands;
 mod tool_commands;
@@ -51,5 +52,6 @@ fn run(task: Task, output: &Output) -> Result<serde_json::Value, Failure> {
         Task::Nest(nest) => tool_commands::nest(&nest, output),
         Task::Body(body) => tool_commands::body(&body, output),
         Task::Run(run) => tool_commands::run(&run, output),
+        Task::Validate(validate) => lab_commands::validate(&validate, output),
     }
 }

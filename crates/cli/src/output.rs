@@ -24,6 +24,15 @@ impl Failure {
         }
     }
 
+    /// Something was done and did not turn out as it must.
+    pub fn failed(message: impl Display) -> Self {
+        Self {
+            message: message.to_string(),
+            bad_input: false,
+            report: None,
+        }
+    }
+
     /// The same with what was found so far.
     pub fn with_report(self, report: Value) -> Self {
         Self {

@@ -91,10 +91,16 @@ mod tests {
     fn agrees_with_collocation() {
         for [gamma, ratio, drop, reach, tip] in TABLE {
             let shape = heavy_elastica(gamma);
-            assert!((shape.ratio() / ratio - 1.0).abs() < 2e-5, "{gamma} {shape:?}");
+            assert!(
+                (shape.ratio() / ratio - 1.0).abs() < 2e-5,
+                "{gamma} {shape:?}"
+            );
             assert!((shape.drop - drop).abs() < 2e-6, "{gamma} {shape:?}");
             assert!((shape.reach - reach).abs() < 2e-6, "{gamma} {shape:?}");
-            assert!((shape.tip.to_degrees() - tip).abs() < 0.01, "{gamma} {shape:?}");
+            assert!(
+                (shape.tip.to_degrees() - tip).abs() < 0.01,
+                "{gamma} {shape:?}"
+            );
         }
     }
 

@@ -61,8 +61,13 @@ impl Flat {
     }
 }
 
+/// Columns of cells at the start of a sheet that end on straight rows of points in every kind of
+/// mesh: a strip is clamped there. Bending looks two cells far, so that the clamp must be three
+/// wide to keep what lies behind it from bending.
+pub(crate) const STRAIGHT: usize = 3;
+
 /// A rectangle from `from` to `to` [m] in `cells` squares (or triangles of that size). The first
-/// column of cells, where strips are clamped, ends on a straight row of points in every kind.
+/// three columns of cells, where strips are clamped, end on straight rows of points.
 ///
 /// # Errors
 /// The outline cannot be meshed.
@@ -158,7 +163,7 @@ fn delaunay(from: Vec2, to: Vec2, [columns, rows]: [usize; 2]) -> Result<Flat, L
     for row in [0, rows] {
         run((0..=columns).map(|i| Vec2::new(x(i), y(row))).collect());
     }
-    for column in [0, 1, columns] {
+    for column in (0..=STRAIGHT.min(columns)).chain([columns]) {
         run((0..=rows).map(|j| Vec2::new(x(column), y(j))).collect());
     }
     refined(points, edges, size.x / columns as f64)
@@ -239,7 +244,7 @@ mod tests {
             let count = flat.points.len();
             assert!((100..260).contains(&count), "{name} {count}");
             // The end of the clamp is a straight row.
-            let row = flat.chosen(|p| (p.x + 0.05).abs() < 1e-12);
+            let row = flat.chosen(|p| (p.x - 0.05).abs() < 1e-12);
             assert_eq!(row.len(), 6, "{name}");
         }
     }

@@ -15,5 +15,6 @@ pub use check::{Cases, Check, table};
 pub use elastica::{Elastica, heavy_elastica};
 pub use error::LabError;
 pub use flat::{Flat, MeshKind, disc, rectangle};
-pub use laws::{LAWS, Law, validate};
-pub use outline::{fold_count, shadow_area};
+pub use laws::{Drape, LAWS, Law, Resolved, cusick, locking, validate};
+pub use outline::{fold_count, shadow, shadow_area};
+pub use settle::{in_time, to_rest};

@@ -8,7 +8,7 @@ use toile_geometry::Vec3;
 
 /// Net force over weight at which a static law is read: errors from it are far below those of any
 /// mesh used.
-pub(crate) const TIGHT: f64 = 1e-7;
+pub(crate) const TIGHT: f64 = 1e-6;
 
 /// Steps to rest at the most.
 const MOST_STEPS: usize = 3000;
@@ -27,12 +27,12 @@ pub fn to_rest(model: &Model, state: &mut State, residual: f64) -> Result<usize,
     while !run.finished() {
         match run.advance(model, state, &mut workspace) {
             Ok(()) => {}
-            // Rounding may forbid the last digit; a thousand times more is still below any mesh.
-            Err(DrapeError::NoProgress { .. }) if run.residual() < 1e3 * residual => break,
+            // Rounding may forbid the last digit; a hundred times more is still below any mesh.
+            Err(DrapeError::NoProgress { .. }) if run.residual() < 1e2 * residual => break,
             Err(error) => return Err(error.into()),
         }
     }
-    if run.residual() > 1e3 * residual {
+    if run.residual() > 1e2 * residual {
         return Err(LabError::Unfinished {
             what: "net force over weight",
             got: run.residual(),
@@ -74,6 +74,60 @@ pub fn in_time(
         watch(state);
     }
     Ok(())
+}
+
+/// Steps of a trial run: an unstable method multiplies a disturbance by far more in as many.
+const TRIAL: usize = 150;
+
+/// Halvings of a step before a method counts as unfit.
+const HALVINGS: usize = 20;
+
+/// The longest step, halved from the one wanted, with which a method keeps a small disturbance of
+/// a resting state small; half of it again where it had to be halved.
+///
+/// # Errors
+/// No step is sound.
+pub(crate) fn sound_step(
+    model: &Model,
+    resting: &State,
+    settings: MethodSettings,
+    wanted: f64,
+) -> Result<f64, LabError> {
+    let mut start = resting.clone();
+    for (v, velocity) in start.velocities.iter_mut().enumerate() {
+        let k = v as f64;
+        let noise = Vec3::new((7.1 * k).sin(), (3.3 * k).cos(), (5.7 * k + 1.0).sin());
+        *velocity = if model.pinned[v] {
+            Vec3::zeros()
+        } else {
+            noise * 1e-4
+        };
+    }
+    let energy = start.kinetic_energy(model);
+    let mut step = wanted;
+    for _ in 0..HALVINGS {
+        let mut state = start.clone();
+        let mut highest = 0.0f64;
+        let outcome = in_time(
+            model,
+            &mut state,
+            settings,
+            [step, TRIAL as f64 * step],
+            |s| {
+                highest = highest.max(s.kinetic_energy(model));
+            },
+        );
+        if outcome.is_ok() && highest < 100.0 * energy {
+            return Ok(if step < wanted { 0.5 * step } else { step });
+        }
+        step *= 0.5;
+    }
+    Err(LabError::Unfinished {
+        what: "growth of a small disturbance",
+        got: f64::INFINITY,
+        asked: 100.0,
+        steps: TRIAL,
+    })
 }
 
 /// Mean place of some vertices [m].

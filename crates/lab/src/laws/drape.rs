@@ -1,1 +1,93 @@
-//! x
+//! The drape test of Cusick (1968; ISO 9073-9, BS 5058).
+
+use crate::check::{Cases, Expected};
+use crate::outline::{fold_count, shadow};
+use crate::{LabError, disc};
+use toile_drape::{Material, MethodKind, Model, State};
+use toile_geometry::{Vec3, total_area};
+
+/// Radius of the specimen and of the discs that hold it [m].
+const SPECIMEN: f64 = 0.15;
+const DISC: f64 = 0.09;
+
+/// What a drape test gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drape {
+    /// Drape coefficient: the share of the free ring's area that its shadow still covers.
+    pub coefficient: f64,
+    /// Folds of the shadow.
+    pub folds: usize,
+}
+
+/// Drapes a specimen of a material in triangles of a size [m].
+///
+/// # Errors
+/// The drape did not come to rest.
+pub fn cusick(material: Material, cell: f64) -> Result<Drape, LabError> {
+    let flat = disc(SPECIMEN, DISC, cell)?;
+    // A slight wave to start from, of no single number of folds: flat, the disc would not know
+    // where to fold.
+    let cloth = flat.cloth(material, |p| {
+        let (r, angle) = (p.norm(), p.y.atan2(p.x));
+        let wave: f64 = (3..12)
+            .map(|n| (f64::from(n) * angle + f64::from(n * n)).cos())
+            .sum();
+        let out = ((r - DISC) / (SPECIMEN - DISC)).max(0.0);
+        Vec3::new(p.x, 2e-4 * wave * out, p.y)
+    });
+    let mut model = Model::new("specimen", &cloth)?;
+    for v in flat.chosen(|p| p.norm() < DISC + 0.51 * cell) {
+        model.pinned[v as usize] = true;
+    }
+    let mut state = State::at_rest(&model, cloth.positions);
+    // It falls in time through damping air, as a specimen does, and then comes to rest.
+    model.air_drag = 8.0;
+    let settings = MethodKind::ImplicitEuler.into();
+    crate::settle::in_time(&model, &mut state, settings, [0.02, 0.6], |_| {})?;
+    crate::settle::to_rest(&model, &mut state, 1e-4)?;
+    let shape = shadow(&state.positions, &model.triangles);
+    let area = |r: f64| std::f64::consts::PI * r * r;
+    Ok(Drape {
+        coefficient: (total_area(&shape) - area(DISC)) / (area(SPECIMEN) - area(DISC)),
+        folds: fold_count(&shape, 4e-3),
+    })
+}
+
+/// A cloth of a bending length [m]: c = (D / (rho g))^(1/3).
+fn of_length(length: f64) -> Material {
+    Material {
+        density: 0.15,
+        stretch: [500.0; 2],
+        shear: 50.0,
+        poisson: 0.0,
+        bend: [0.15 * 9.81 * length.powi(3); 3],
+        ..Material::default()
+    }
+}
+
+/// The drape coefficient rises with the bending length, and stands near 1 for a stiff disc.
+pub(super) fn rising(cases: &mut Cases) -> Result<(), LabError> {
+    let mut last: Option<f64> = None;
+    for length in [0.010, 0.015, 0.020, 0.025, 0.030, 0.040] {
+        let start = std::time::Instant::now();
+        cases.tell(0.0, &format!("bending length {:.0} mm", length * 1e3))?;
+        let drape = cusick(of_length(length), 8e-3);
+        let found = drape.as_ref().ok().map(|d| d.coefficient);
+        // Two in a hundred may be lost to another number of folds.
+        let lost = drape.map(|d| (last.unwrap_or(0.0) - d.coefficient).max(0.0));
+        let shown = found.map_or("-".to_owned(), |f| format!("{:.1}", 100.0 * f));
+        cases.add(
+            format!("bending length {:.0} mm, DC {shown} %", length * 1e3),
+            Expected::zero("fall below the last", 1.0, 0.02),
+            lost,
+            start,
+        )?;
+        last = found.or(last);
+    }
+    cases.measure(
+        "a stiff disc, bending length 200 mm",
+        Expected::value("drape coefficient", 1.0, 0.03),
+        || cusick(of_length(0.2), 8e-3).map(|d| d.coefficient),
+    )?;
+    Ok(())
+}

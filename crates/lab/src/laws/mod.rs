@@ -1,14 +1,17 @@
 //! The laws: small scenes with a known outcome.
 
+mod buckling;
 mod cantilever;
 mod drape;
-mod fabric;
+mod friction;
 mod hang;
 mod motion;
 mod order;
 mod strain;
 mod swing;
-mod buckling;
+
+pub use cantilever::{Resolved, locking};
+pub use drape::{Drape, cusick};
 
 use crate::LabError;
 use crate::check::{Cases, Check};
@@ -24,7 +27,7 @@ pub struct Law {
 }
 
 /// Every law.
-pub const LAWS: [Law; 4] = [
+pub const LAWS: [Law; 20] = [
     Law {
         name: "cantilever",
         title: "a strip clamped horizontally bends by its weight: drop over reach against the heavy elastica, four kinds of mesh",
@@ -32,7 +35,7 @@ pub const LAWS: [Law; 4] = [
     },
     Law {
         name: "resolution",
-        title: "the same at 5 to 40 elements and membrane stiffness Y L^2 / D of 1e4 to 1e8",
+        title: "the strip and the hang at 5 to 40 elements and membrane stiffness Y L^2 / D of 1e4 to 1e8",
         run: cantilever::resolution,
     },
     Law {
@@ -45,6 +48,86 @@ pub const LAWS: [Law; 4] = [
         title: "bending length: the overhang whose chord falls by 41.5 degrees (ASTM D1388)",
         run: cantilever::peirce,
     },
+    Law {
+        name: "patch",
+        title: "a linear displacement gives the same stress everywhere",
+        run: strain::patch,
+    },
+    Law {
+        name: "rigid",
+        title: "a rigid motion makes no force",
+        run: strain::rigid,
+    },
+    Law {
+        name: "uniaxial",
+        title: "a strip drawn out pulls by Saint Venant and Kirchhoff's law",
+        run: strain::uniaxial,
+    },
+    Law {
+        name: "picture-frame",
+        title: "a sheared frame works by the shear stiffness",
+        run: strain::picture_frame,
+    },
+    Law {
+        name: "hang",
+        title: "a hung strip lengthens by its weight and carries it",
+        run: hang::elastic,
+    },
+    Law {
+        name: "catenary",
+        title: "a strip slung between two supports hangs as a catenary",
+        run: hang::catenary,
+    },
+    Law {
+        name: "swing",
+        title: "frequencies of a hung strip: half the zeros of J0",
+        run: swing::hanging,
+    },
+    Law {
+        name: "vibration",
+        title: "frequency of a clamped strip",
+        run: swing::vibrating,
+    },
+    Law {
+        name: "buckling",
+        title: "a strip on edge gives way sideways at 12.85 sqrt(2)",
+        run: buckling::lateral,
+    },
+    Law {
+        name: "flight",
+        title: "momentum is kept in free flight",
+        run: motion::flight,
+    },
+    Law {
+        name: "fall",
+        title: "a cloth let go falls by g t^2 / 2",
+        run: motion::fall,
+    },
+    Law {
+        name: "terminal",
+        title: "a cloth falling through air reaches a terminal velocity",
+        run: motion::terminal,
+    },
+    Law {
+        name: "corner",
+        title: "a cloth held at one corner comes to rest",
+        run: motion::corner,
+    },
+    Law {
+        name: "order-in-time",
+        title: "errors fall with the order of the method",
+        run: order::in_time_order,
+    },
+    Law {
+        name: "incline",
+        title: "a cloth on an incline sticks or slides by Coulomb's law",
+        run: friction::incline,
+    },
+    Law {
+        name: "cusick",
+        title: "the drape coefficient rises with the bending length",
+        run: drape::rising,
+    },
 ];
 
 /// Measures the laws named, or all.
@@ -53,7 +136,10 @@ pub const LAWS: [Law; 4] = [
 /// A name that is no law; the watcher asked to stop. Failed simulations are failed checks.
 pub fn validate(names: &[String], watcher: &mut dyn Watcher) -> Result<Vec<Check>, LabError> {
     let known = || LAWS.map(|law| law.name).join(", ");
-    if let Some(name) = names.iter().find(|n| LAWS.iter().all(|law| law.name != **n)) {
+    if let Some(name) = names
+        .iter()
+        .find(|n| LAWS.iter().all(|law| law.name != **n))
+    {
         return Err(LabError::Unknown {
             what: "law",
             name: name.clone(),

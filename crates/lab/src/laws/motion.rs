@@ -1,1 +1,201 @@
-//! x
+//! Laws of motion: free flight, free fall, terminal velocity, coming to rest.
+
+use crate::check::{Cases, Expected};
+use crate::settle::{in_time, methods_in_time, sound_step, to_rest};
+use crate::{LabError, MeshKind, rectangle};
+use toile_drape::{Material, MethodSettings, Model, State};
+use toile_geometry::{Vec2, Vec3};
+
+/// A small square of soft cloth, free and without gravity.
+fn square(material: Material) -> Result<(Model, State), LabError> {
+    let flat = rectangle(
+        MeshKind::Delaunay,
+        Vec2::zeros(),
+        Vec2::new(0.2, 0.2),
+        [8, 8],
+    )?;
+    let cloth = flat.cloth(material, |p| Vec3::new(p.x, 1.0, p.y));
+    let mut model = Model::new("square", &cloth)?;
+    model.gravity = Vec3::zeros();
+    let state = State::at_rest(&model, cloth.positions);
+    Ok((model, state))
+}
+
+fn soft() -> Material {
+    Material {
+        density: 0.2,
+        stretch: [100.0; 2],
+        shear: 30.0,
+        bend: [1e-5; 3],
+        ..Material::default()
+    }
+}
+
+fn momentum(model: &Model, state: &State) -> Vec3 {
+    let terms = state.velocities.iter().zip(&model.mass);
+    terms.map(|(v, m)| v * *m).sum()
+}
+
+fn angular_momentum(model: &Model, state: &State) -> Vec3 {
+    let terms = state.positions.iter().zip(&state.velocities);
+    terms
+        .zip(&model.mass)
+        .map(|((x, v), m)| x.cross(v) * *m)
+        .sum()
+}
+
+/// Methods that keep angular momentum exactly: symplectic, or implicit midpoint.
+const SPINNING: [&str; 4] = [
+    "symplectic-euler",
+    "velocity-verlet",
+    "implicit-midpoint",
+    "newmark",
+];
+
+/// A spinning, trembling cloth in free flight keeps its momentum.
+pub(super) fn flight(cases: &mut Cases) -> Result<(), LabError> {
+    for (name, kind) in methods_in_time() {
+        let (model, mut state) = square(soft())?;
+        let settings = MethodSettings {
+            tolerance: Some(1e-13),
+            ..kind.into()
+        };
+        let step = sound_step(&model, &state, settings, 2e-3)?;
+        for (k, (v, x)) in state
+            .velocities
+            .iter_mut()
+            .zip(&state.positions)
+            .enumerate()
+        {
+            let k = k as f64;
+            let spin = Vec3::new(0.5, 2.0, 1.0).cross(&(x - Vec3::new(0.1, 1.0, 0.1)));
+            let tremble = Vec3::new((1.1 * k).sin(), (2.3 * k).cos(), (0.7 * k).sin()) * 0.05;
+            *v = Vec3::new(1.0, -0.5, 0.3) + spin + tremble;
+        }
+        let before = momentum(&model, &state);
+        let spin = angular_momentum(&model, &state);
+        let outcome = in_time(&model, &mut state, settings, [step, 1000.0 * step], |_| {});
+        let failed = outcome.err();
+        let word = failed.as_ref().map(ToString::to_string);
+        cases.measure(
+            format!("{name}, 1000 steps of {step:.1e} s"),
+            Expected::zero("momentum lost, share", before.norm(), 1e-9),
+            || match failed {
+                Some(error) => Err(error),
+                None => Ok((momentum(&model, &state) - before).norm()),
+            },
+        )?;
+        if SPINNING.contains(&name) && word.is_none() {
+            let (after, kind) = (angular_momentum(&model, &state), name);
+            cases.measure(
+                format!("{kind}, 1000 steps of {step:.1e} s"),
+                Expected::zero("spin lost, share", spin.norm(), 1e-8),
+                || Ok((after - spin).norm()),
+            )?;
+        }
+    }
+    Ok(())
+}
+
+/// A cloth let go falls by g t^2 / 2; a method of first order is out by half a step.
+pub(super) fn fall(cases: &mut Cases) -> Result<(), LabError> {
+    let (time, wanted) = (0.5, 1e-3);
+    for (name, kind) in methods_in_time() {
+        let (mut model, mut state) = square(soft())?;
+        let settings = kind.into();
+        let step = sound_step(&model, &state, settings, wanted)?;
+        model.gravity = Vec3::new(0.0, -9.81, 0.0);
+        let drop = 0.5 * 9.81 * time * time;
+        cases.measure(
+            format!("{name}, steps of {step:.1e} s"),
+            Expected::value("fallen, m", drop, 1.2 * step / time + 1e-6),
+            || {
+                in_time(&model, &mut state, settings, [step, time], |_| {})?;
+                let mean: f64 = state.positions.iter().map(|p| p.y).sum();
+                // The run ends on a whole number of steps.
+                let taken = (time / step).round() * step;
+                Ok((1.0 - mean / state.positions.len() as f64) * (time / taken).powi(2))
+            },
+        )?;
+    }
+    Ok(())
+}
+
+/// A cloth falling through air that takes a share of its velocity per time ends at g / drag.
+pub(super) fn terminal(cases: &mut Cases) -> Result<(), LabError> {
+    for (name, kind) in methods_in_time() {
+        let (mut model, mut state) = square(soft())?;
+        let settings: MethodSettings = kind.into();
+        let step = sound_step(&model, &state, settings, 5e-3)?;
+        model.gravity = Vec3::new(0.0, -9.81, 0.0);
+        model.air_drag = 4.0;
+        cases.measure(
+            format!("{name}, drag 4 per s"),
+            Expected::value("velocity, m/s", 9.81 / 4.0, 0.01),
+            || {
+                in_time(&model, &mut state, settings, [step, 3.0], |_| {})?;
+                let total = momentum(&model, &state).y;
+                Ok(-total / model.mass.iter().sum::<f64>())
+            },
+        )?;
+    }
+    Ok(())
+}
+
+/// A cloth held at one corner comes to rest: by the way to rest, and in time with drag.
+pub(super) fn corner(cases: &mut Cases) -> Result<(), LabError> {
+    let material = Material {
+        poisson: 0.2,
+        ..Material::default()
+    };
+    let (mut model, start) = square(material)?;
+    model.gravity = Vec3::new(0.0, -9.81, 0.0);
+    model.pinned[0] = true;
+    cases.measure(
+        "way to rest",
+        Expected::zero("net force/weight", 1.0, 1e-5),
+        || {
+            let mut state = start.clone();
+            to_rest(&model, &mut state, 1e-6)?;
+            let mut workspace = toile_drape::Workspace::default();
+            Ok(toile_drape::residual(&model, &state, &mut workspace))
+        },
+    )?;
+    // The energy to lose: the weight times the size.
+    let fall = model.mass.iter().sum::<f64>() * 9.81 * 0.2;
+    model.air_drag = 3.0;
+    for (name, kind) in methods_in_time() {
+        let settings: MethodSettings = kind.into();
+        cases.measure(
+            format!("{name}, 6 s with drag 3 per s"),
+            Expected::zero("kinetic energy/fall", fall, 1e-6),
+            || swing_out(&model, &start, settings),
+        )?;
+    }
+    Ok(())
+}
+
+fn swing_out(model: &Model, start: &State, settings: MethodSettings) -> Result<f64, LabError> {
+    let mut state = start.clone();
+    let mut still = Model::new("square", &cloth_of(model, start))?;
+    still.gravity = Vec3::zeros();
+    let step = sound_step(&still, start, settings, 5e-3)?;
+    in_time(model, &mut state, settings, [step, 6.0], |_| {})?;
+    Ok(state.kinetic_energy(model))
+}
+
+/// The cloth of a flat model, its present shape as rest.
+fn cloth_of(model: &Model, state: &State) -> toile_drape::Cloth {
+    let place = |v: u32| state.positions[v as usize];
+    toile_drape::Cloth {
+        positions: state.positions.clone(),
+        triangles: model.triangles.clone(),
+        rest: model
+            .triangles
+            .iter()
+            .map(|t| t.map(|v| Vec2::new(place(v).x, place(v).z)))
+            .collect(),
+        material: model.material.clone(),
+        materials: model.materials.clone(),
+    }
+}
