@@ -1,6 +1,6 @@
 //! The laboratory: physical laws as small scenes, speed against accuracy, stability, benchmarks.
 //! It works through the public interfaces only, and tries every method there is.
-#![cfg_attr(test, allow(clippy::unwrap_used))]
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::print_stdout))]
 
 mod check;
 mod elastica;

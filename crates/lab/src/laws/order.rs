@@ -47,6 +47,7 @@ pub(super) fn in_time_order(cases: &mut Cases) -> Result<(), LabError> {
         let settings = MethodSettings {
             tolerance: Some(1e-14),
             iterations: Some(200),
+            substeps: Some(1),
             ..kind.into()
         };
         model.gravity = Vec3::zeros();

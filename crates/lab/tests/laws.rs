@@ -1,0 +1,53 @@
+//! A few laws, quick enough for every test run; `toile validate` measures all.
+
+use toile_lab::{Check, LAWS, LabError, validate};
+use toile_session::Silent;
+
+fn checks(names: &[&str]) -> Vec<Check> {
+    let names: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
+    validate(&names, &mut Silent).expect("known laws")
+}
+
+#[test]
+fn the_quick_laws_hold_for_every_method() {
+    let quick = [
+        "patch",
+        "rigid",
+        "picture-frame",
+        "uniaxial",
+        "flight",
+        "incline",
+        "fall",
+    ];
+    let checks = checks(&quick);
+    for name in quick {
+        assert!(checks.iter().any(|check| check.law == name), "{name}");
+    }
+    let failed: Vec<&Check> = checks.iter().filter(|check| !check.passed()).collect();
+    assert!(failed.is_empty(), "{}", toile_lab::table(&checks));
+}
+
+#[test]
+fn no_law_allows_more_than_three_per_cent_and_names_are_unique() {
+    for check in checks(&["patch", "incline"]) {
+        assert!(check.tolerance <= 0.03, "{check:?}");
+    }
+    let mut names: Vec<_> = LAWS.iter().map(|law| law.name).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), LAWS.len());
+}
+
+#[test]
+fn an_unknown_law_is_named_with_those_there_are() {
+    let error = validate(&["gravity".to_owned()], &mut Silent).expect_err("no such law");
+    assert!(matches!(error, LabError::Unknown { .. }));
+    assert!(error.to_string().contains("cantilever"), "{error}");
+}
+
+#[test]
+fn long_work_can_be_stopped() {
+    let mut stop = |_: &str, _: f64, _: &str| std::ops::ControlFlow::Break(());
+    let error = validate(&["patch".to_owned()], &mut stop).expect_err("stopped");
+    assert!(matches!(error, LabError::Cancelled));
+}
