@@ -15,13 +15,15 @@ pub struct Cloth {
     pub rest: Vec<[Vec2; 3]>,
     /// Index into `materials` for each triangle.
     pub material: Vec<u16>,
+    /// Panel each triangle belongs to: triangles of one panel share a material plane.
+    pub panel: Vec<u32>,
     /// The materials used.
     pub materials: Vec<Material>,
 }
 
 impl Cloth {
     /// A cloth whose rest shape is the mesh itself: every triangle keeps its own size and shape,
-    /// and lies flat at rest. The warp runs along the mesh's first axis, projected.
+    /// and lies flat at rest, a panel of its own. The warp runs along the mesh's first axis, projected.
     ///
     /// # Errors
     /// Bad indices, coordinates that are not finite, triangles without area.
@@ -57,6 +59,7 @@ impl Cloth {
             positions: mesh.positions.clone(),
             triangles: mesh.triangles.clone(),
             material: vec![0; rest.len()],
+            panel: (0..rest.len() as u32).collect(),
             materials: vec![material],
             rest,
         })
@@ -93,6 +96,7 @@ impl Cloth {
                 merged.triangles.push(corners);
                 merged.rest.push(self.rest[t]);
                 merged.material.push(self.material[t]);
+                merged.panel.push(self.panel[t]);
             }
         }
         merged

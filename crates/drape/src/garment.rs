@@ -1,22 +1,31 @@
-//! A garment's whole way: sewn, merged, draped to rest. One `advance` is one step, so that a
-//! command line, a window and a test drive it alike.
+//! A garment's whole way: sewn, merged, draped to rest, from the coarsest mesh of its panels to
+//! the finest. One `advance` is one step, so that a command line, a window and a test drive it
+//! alike.
 
 use crate::measure::{Measures, measure};
 use crate::{
-    Cloth, Collider, ContactSettings, DrapeError, Model, RestRun, RestSettings, SewRun,
+    Carry, Cloth, Collider, ContactSettings, DrapeError, Model, RestRun, RestSettings, SewRun,
     SewSettings, State, Workspace, merge_map,
 };
 use std::sync::Arc;
-use toile_geometry::{SurfaceTree, Vec3};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
+
+/// One mesh of a garment's panels and how it is sewn.
+#[derive(Clone, Debug, Default)]
+pub struct GarmentLevel {
+    /// Panels, not yet merged; the coarsest is placed round the body.
+    pub cloth: Cloth,
+    /// Vertex pairs the seams join.
+    pub stitches: Vec<[u32; 2]>,
+}
 
 /// What a garment's drape is made from.
 #[derive(Clone)]
 pub struct GarmentSetup {
-    /// Panels, not yet merged, placed round the body.
-    pub cloth: Cloth,
-    /// Vertex pairs the seams join.
-    pub stitches: Vec<[u32; 2]>,
-    /// Triangles (one flag each) where strain counts: away from gathers.
+    /// The same panels ever finer; the last is the garment wanted. Only the first needs to be
+    /// placed: the others take over the shape of the one before.
+    pub levels: Vec<GarmentLevel>,
+    /// Triangles of the last level (one flag each) where strain counts: away from gathers.
     pub counted: Vec<bool>,
     /// The body and other solid surfaces.
     pub colliders: Vec<Arc<SurfaceTree>>,
@@ -62,8 +71,9 @@ pub struct GarmentRun {
     pub model: Model,
     /// The state of the present stage.
     pub state: State,
-    /// New index of every vertex of the setup's cloth; the identity until merged.
+    /// New index of every vertex of the present level's cloth; the identity until merged.
     pub target: Vec<u32>,
+    level: usize,
     workspace: Workspace,
     setup: GarmentSetup,
     sew: SewRun,
@@ -73,7 +83,12 @@ pub struct GarmentRun {
     refinements: usize,
     share: f64,
     warnings: Vec<String>,
+    /// Steps of sewing and of settling on the levels left behind.
+    steps: [usize; 2],
 }
+
+/// Net force over weight at which a coarser level is left.
+const COARSE_RESIDUAL: f64 = 2e-2;
 
 /// Rounds of finer contact testing before crossings of the body are left and reported.
 const MOST_REFINEMENTS: usize = 12;
@@ -82,35 +97,73 @@ impl GarmentRun {
     /// Prepares the first step.
     ///
     /// # Errors
-    /// Meshes and materials that cannot be simulated.
+    /// Meshes and materials that cannot be simulated, a setup without any level.
     pub fn new(setup: GarmentSetup) -> Result<Self, DrapeError> {
-        let mut model = Model::new("garment", &setup.cloth)?;
-        model.colliders = setup.colliders.iter().cloned().map(Collider::new).collect();
-        model.contact = ContactSettings {
-            friction: false,
-            ..setup.contact
+        let Some(first) = setup.levels.first() else {
+            return Err(DrapeError::Scene {
+                place: "garment".to_owned(),
+                what: "it has no mesh".to_owned(),
+                remedy: "give at least one level".to_owned(),
+            });
         };
-        model.gravity = Vec3::zeros();
-        let state = State::at_rest(&model, setup.cloth.positions.clone());
-        let sew = SewRun::new(&mut model, setup.stitches.clone(), setup.sew);
+        let mut model = Model::new("garment", &first.cloth)?;
+        model.colliders = setup.colliders.iter().cloned().map(Collider::new).collect();
         let mut run = Self {
-            target: (0..state.positions.len() as u32).collect(),
+            target: Vec::new(),
+            level: 0,
+            state: State::default(),
             rest: RestRun::new(setup.rest),
+            sew: SewRun::new(&mut model, Vec::new(), setup.sew),
             workspace: Workspace::default(),
             stage: Stage::Sewing,
             gap_before_merging: 0.0,
             refinements: 0,
             share: 0.0,
             warnings: Vec::new(),
+            steps: [0; 2],
             model,
-            state,
             setup,
-            sew,
         };
-        if run.setup.stitches.is_empty() {
-            run.merge()?;
-        }
+        let placed = run.setup.levels[0].cloth.positions.clone();
+        run.begin(0, placed)?;
         Ok(run)
+    }
+
+    /// Starts on a level with its panels at some positions; seams that are closed there already
+    /// are merged at once.
+    fn begin(&mut self, level: usize, positions: Vec<Vec3>) -> Result<(), DrapeError> {
+        let GarmentLevel { cloth, stitches } = &self.setup.levels[level];
+        let mut model = Model::new("garment", cloth)?;
+        model.colliders = std::mem::take(&mut self.model.colliders);
+        model.contact = ContactSettings {
+            friction: false,
+            ..self.setup.contact
+        };
+        model.gravity = Vec3::zeros();
+        self.target = (0..positions.len() as u32).collect();
+        self.state = State::at_rest(&model, positions);
+        self.sew = SewRun::new(&mut model, stitches.clone(), self.setup.sew);
+        self.sew.look(&self.state);
+        self.level = level;
+        self.model = model;
+        self.workspace = Workspace::default();
+        self.stage = Stage::Sewing;
+        self.rest = RestRun::new(self.rest_settings());
+        self.refinements = 0;
+        if self.sew.closed() {
+            self.merge()?;
+        }
+        Ok(())
+    }
+
+    /// Whether the present level is the garment wanted.
+    fn is_finest(&self) -> bool {
+        self.level + 1 == self.setup.levels.len()
+    }
+
+    /// Level of the mesh in hand, and how many there are.
+    pub fn level(&self) -> [usize; 2] {
+        [self.level, self.setup.levels.len()]
     }
 
     /// Where it is.
@@ -148,7 +201,10 @@ impl GarmentRun {
 
     /// Steps of sewing and of settling.
     pub fn steps(&self) -> [usize; 2] {
-        [self.sew.steps(), self.rest.steps()]
+        [
+            self.steps[0] + self.sew.steps(),
+            self.steps[1] + self.rest.steps(),
+        ]
     }
 
     /// What went less than well, in plain words.
@@ -170,7 +226,6 @@ impl GarmentRun {
                 let shown = 0.5 * (1.0 - (self.sew.last_gap() / start).min(1.0));
                 self.share = self.share.max(shown);
                 if self.sew.closed() {
-                    self.gap_before_merging = self.sew.last_gap();
                     self.merge()?;
                 }
             }
@@ -189,6 +244,9 @@ impl GarmentRun {
             .max((0.5 + 0.5 * decades.clamp(0.0, 1.0)).min(0.99));
         if !self.rest.finished() {
             return Ok(());
+        }
+        if !self.is_finest() {
+            return self.refine();
         }
         let offenders = self.body_crossings();
         if !offenders.is_empty() && self.refinements < MOST_REFINEMENTS {
@@ -214,6 +272,22 @@ impl GarmentRun {
         Ok(())
     }
 
+    /// Goes on to the next finer level with the shape reached.
+    fn refine(&mut self) -> Result<(), DrapeError> {
+        let [coarse, fine] = [0, 1].map(|k| &self.setup.levels[self.level + k].cloth);
+        let shape = TriangleMesh {
+            positions: self.state.positions.clone(),
+            triangles: coarse
+                .triangles
+                .iter()
+                .map(|t| t.map(|v| self.target[v as usize]))
+                .collect(),
+        };
+        let carried = Carry::new(coarse, fine)?.apply(&shape);
+        self.steps = self.steps();
+        self.begin(self.level + 1, carried)
+    }
+
     /// Cloth triangles that cross a solid surface, exactly.
     fn body_crossings(&self) -> Vec<u32> {
         let mesh = self.model.mesh(&self.state.positions);
@@ -234,11 +308,12 @@ impl GarmentRun {
 
     /// Joins the stitched vertices; gravity and friction act from here on.
     fn merge(&mut self) -> Result<(), DrapeError> {
+        let GarmentLevel { cloth, stitches } = &self.setup.levels[self.level];
         let placed = Cloth {
             positions: self.state.positions.clone(),
-            ..self.setup.cloth.clone()
+            ..cloth.clone()
         };
-        let pairs = self.setup.stitches.iter().copied();
+        let pairs = stitches.iter().copied();
         let (target, count) = merge_map(placed.positions.len(), pairs);
         let merged = placed.merged(&target, count);
         let mut model = Model::new("garment", &merged)?;
@@ -249,9 +324,23 @@ impl GarmentRun {
         self.model = model;
         self.target = target;
         self.workspace = Workspace::default();
+        self.gap_before_merging = self.sew.last_gap();
         self.stage = Stage::Settling;
         self.share = self.share.max(0.5);
         Ok(())
+    }
+
+    /// The way to rest on the present level: a coarser one is left when its large motion is over.
+    fn rest_settings(&self) -> RestSettings {
+        let settings = self.setup.rest;
+        if self.is_finest() {
+            settings
+        } else {
+            RestSettings {
+                residual: settings.residual.max(COARSE_RESIDUAL),
+                ..settings
+            }
+        }
     }
 
     /// Measures the present state. Strain counts only where the setup says so.

@@ -5,6 +5,7 @@
 //! recomputed, [`Workspace`] is private memory sized once.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod carry;
 mod cloth;
 mod contacts;
 mod error;
@@ -27,10 +28,11 @@ mod sparse;
 mod state;
 mod step;
 
+pub use carry::Carry;
 pub use cloth::Cloth;
 pub use contacts::{Contact, Contacts};
 pub use error::DrapeError;
-pub use garment::{GarmentRun, GarmentSetup, Progress, Stage};
+pub use garment::{GarmentLevel, GarmentRun, GarmentSetup, Progress, Stage};
 pub use material::Material;
 pub use measure::{Measures, measure, residual, stretch_per_triangle};
 pub use merge::merge_map;

@@ -8,6 +8,7 @@
 
 use crate::contacts::Contacts;
 use crate::hessian::{Direct, Hessian};
+use crate::laws::membrane::Curvature;
 use crate::pcg::{BlockJacobi, Pcg, PcgLimits, System};
 use crate::sparse::dot;
 use crate::{ElasticEnd, Model, State};
@@ -34,6 +35,10 @@ pub struct NewtonSettings {
     pub longest_move: f64,
     /// Limits of the linear solver.
     pub linear: LinearSolver,
+    /// Which Hessian is tried first; the convex one is always safe, the exact one converges
+    /// quadratically near rest and leaves saddles at once. Only factorisation can tell whether it
+    /// is positive definite: an iterative solver always takes the convex one.
+    pub curvature: Curvature,
 }
 
 /// How the linear system of a Newton step is solved.
@@ -62,6 +67,8 @@ pub struct NewtonReport {
     pub moved: f64,
     /// Share of the last Newton step that the line search took.
     pub fraction: f64,
+    /// Whether the last direction came from the exact Hessian.
+    pub exact: bool,
     /// Whether every number stayed finite and the potential could be lowered.
     pub sound: bool,
 }
@@ -151,9 +158,8 @@ impl Workspace {
             if report.gradient <= settings.tolerance {
                 break;
             }
-            self.fill_hessian(model, &state.positions, inertia);
             report.iterations += 1;
-            report.linear_iterations += self.solve_linear(model, settings.linear);
+            self.find_direction(model, &state.positions, inertia, settings, &mut report);
             self.limit_moves(settings.longest_move);
             let fraction = self.line_search(model, &state.positions, inertia);
             report.fraction = fraction;
@@ -266,7 +272,13 @@ impl Workspace {
 
     /// A positive semidefinite Hessian of the potential at `x`, but for the bending part, which is
     /// constant and stays in the model.
-    pub(crate) fn fill_hessian(&mut self, model: &Model, x: &[Vec3], inertia: &Inertia) {
+    pub(crate) fn fill_hessian(
+        &mut self,
+        model: &Model,
+        x: &[Vec3],
+        inertia: &Inertia,
+        curvature: Curvature,
+    ) {
         self.elements
             .par_chunks_mut(CHUNK)
             .enumerate()
@@ -274,8 +286,11 @@ impl Workspace {
                 for (k, out) in out.iter_mut().enumerate() {
                     let t = chunk * CHUNK + k;
                     let law = &model.laws[model.material[t] as usize];
-                    *out =
-                        model.elements[t].hessian(law, model.triangles[t].map(|v| x[v as usize]));
+                    *out = model.elements[t].hessian(
+                        law,
+                        model.triangles[t].map(|v| x[v as usize]),
+                        curvature,
+                    );
                 }
             });
         for (v, d) in self.diagonal.iter_mut().enumerate() {
@@ -324,29 +339,52 @@ impl Workspace {
         model.pattern.row_entries(row, &self.blocks)
     }
 
+    /// Finds the Newton direction: with the exact Hessian where that is asked for and is positive
+    /// definite, else with its convex part. `gradient` then holds its negative.
+    fn find_direction(
+        &mut self,
+        model: &Model,
+        x: &[Vec3],
+        inertia: &Inertia,
+        settings: &NewtonSettings,
+        report: &mut NewtonReport,
+    ) {
+        report.exact = false;
+        let direct = matches!(settings.linear, LinearSolver::Direct { .. });
+        if direct && settings.curvature == Curvature::Exact {
+            self.fill_hessian(model, x, inertia, Curvature::Exact);
+            report.exact = self.solve_directly(model);
+        }
+        if !report.exact {
+            self.fill_hessian(model, x, inertia, Curvature::Convex);
+            report.linear_iterations += self.solve_linear(model, settings.linear);
+            return;
+        }
+        for (g, d) in self.gradient.iter_mut().zip(&mut self.direction) {
+            *g = -*g;
+            *d = -*d;
+        }
+    }
+
     /// Solves for the Newton direction; returns the iterations taken. `gradient` then holds its
     /// negative.
     pub(crate) fn solve_linear(&mut self, model: &Model, limits: LinearSolver) -> usize {
         for g in &mut self.gradient {
             *g = -*g;
         }
-        let hessian = Hessian {
-            model,
-            blocks: &self.blocks,
-            secants: &self.secants,
-        };
         let limits = match limits {
             LinearSolver::Iterative(limits) => limits,
             LinearSolver::Direct { otherwise } => {
-                let direct = match self.direct.take().filter(|direct| direct.fits(model)) {
-                    Some(direct) => self.direct.insert(direct),
-                    None => self.direct.insert(Direct::new(model, &model.layout)),
-                };
-                if direct.solve(&hessian, &self.gradient, &mut self.direction) {
+                if self.solve_directly(model) {
                     return 0;
                 }
                 otherwise
             }
+        };
+        let hessian = Hessian {
+            model,
+            blocks: &self.blocks,
+            secants: &self.secants,
         };
         self.jacobi
             .refresh(&model.pinned, |row| hessian.diagonal(row));
@@ -357,6 +395,20 @@ impl Workspace {
         };
         self.pcg
             .solve(&system, &mut self.jacobi, limits, &mut self.direction)
+    }
+
+    /// Solves for `gradient` by factorisation; false when the matrix is not positive definite.
+    fn solve_directly(&mut self, model: &Model) -> bool {
+        let direct = match self.direct.take().filter(|direct| direct.fits(model)) {
+            Some(direct) => self.direct.insert(direct),
+            None => self.direct.insert(Direct::new(model, &model.layout)),
+        };
+        let hessian = Hessian {
+            model,
+            blocks: &self.blocks,
+            secants: &self.secants,
+        };
+        direct.solve(&hessian, &self.gradient, &mut self.direction)
     }
 
     /// Shortens the whole direction so that no vertex moves farther than `longest` [m].

@@ -3,6 +3,7 @@
 //! well and shrinks when the line search has to cut the step, so far from rest it creeps safely
 //! and near rest it is Newton's method.
 
+use crate::laws::membrane::Curvature;
 use crate::{
     DrapeError, Inertia, LinearSolver, Model, NewtonSettings, PcgLimits, State, Workspace,
 };
@@ -43,6 +44,9 @@ pub struct RestRun {
     linear_iterations: usize,
 }
 
+/// Below this net force over weight the exact Hessian is tried first: farther off it is hardly
+/// ever positive definite, and the try would be lost.
+const NEAR: f64 = 0.3;
 /// Steps without a new low of the residual before a cycle is suspected.
 const PATIENCE: usize = 60;
 /// First pseudo time step [s]: a drop of 4 mm under gravity.
@@ -124,6 +128,11 @@ impl RestRun {
                 iterations: 1,
                 tolerance: 0.0,
                 longest_move: self.settings.longest_move,
+                curvature: if self.residual < NEAR {
+                    Curvature::Exact
+                } else {
+                    Curvature::Convex
+                },
                 linear: LinearSolver::Direct {
                     otherwise: PcgLimits {
                         tolerance: 1e-3,

@@ -304,5 +304,7 @@ fn append(cloth: &mut Cloth, part: Cloth) {
     cloth
         .material
         .extend(part.material.iter().map(|m| m + material));
+    let panel = cloth.panel.iter().max().map_or(0, |p| p + 1);
+    cloth.panel.extend(part.panel.iter().map(|p| p + panel));
     cloth.materials.extend(part.materials);
 }

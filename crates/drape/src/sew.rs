@@ -2,6 +2,7 @@
 //! merged. No gravity and no friction act meanwhile; the motion is damped.
 
 use crate::laws::elastic::ElasticLaw;
+use crate::laws::membrane::Curvature;
 use crate::step::{StepSettings, step_in_time};
 use crate::{
     DrapeError, Elastic, ElasticEnd, LinearSolver, Model, NewtonSettings, PcgLimits, State,
@@ -103,6 +104,11 @@ impl SewRun {
         self.gap
     }
 
+    /// Measures the gap without a step.
+    pub fn look(&mut self, state: &State) {
+        self.gap = self.gap(state);
+    }
+
     /// Steps taken.
     pub fn steps(&self) -> usize {
         self.steps
@@ -137,6 +143,7 @@ impl SewRun {
                 iterations: 2,
                 tolerance: 0.0,
                 longest_move: 1.2 * SPEED_LIMIT * STEP,
+                curvature: Curvature::Convex,
                 linear: LinearSolver::Iterative(PcgLimits {
                     tolerance: 0.05,
                     iterations: 150,

@@ -1,6 +1,7 @@
 //! Steps in time by implicit Euler, with recovery: a failed step is undone and tried with half
 //! the size; if that goes on failing it is an error, never a result.
 
+use crate::laws::membrane::Curvature;
 use crate::{
     DrapeError, Inertia, LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State,
     Workspace,
@@ -31,6 +32,7 @@ impl Default for StepSettings {
                 iterations: 8,
                 tolerance: 1e-8,
                 longest_move: 0.05,
+                curvature: Curvature::Convex,
                 linear: LinearSolver::Iterative(PcgLimits {
                     tolerance: 1e-6,
                     iterations: 1000,

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 use toile_drape::{
-    Cloth, ContactSettings, GarmentRun, GarmentSetup, Material, RestSettings, SewSettings, Stage,
+    Cloth, ContactSettings, GarmentLevel, GarmentRun, GarmentSetup, Material, RestSettings,
+    SewSettings, Stage,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 
@@ -85,6 +86,7 @@ fn setup(n: usize) -> GarmentSetup {
                     cloth.triangles.push(corners.map(|(i, j)| at(i, j)));
                     cloth.rest.push(corners.map(|(i, j)| flat(i, j)));
                     cloth.material.push(0);
+                    cloth.panel.push(panel as u32);
                 }
             }
         }
@@ -102,8 +104,7 @@ fn setup(n: usize) -> GarmentSetup {
     }
     let body = SurfaceTree::new(ball(0.16, Vec3::new(0.0, 1.1, 0.0), 32));
     GarmentSetup {
-        cloth,
-        stitches,
+        levels: vec![GarmentLevel { cloth, stitches }],
         counted: Vec::new(),
         colliders: vec![Arc::new(body)],
         contact: ContactSettings {

@@ -333,8 +333,10 @@ impl Builder<'_> {
         for command in commands {
             session.execute(command, watcher)?;
         }
-        let setup = session.garment_setup()?.setup;
-        let mut cloth = setup.cloth.clone();
+        let mut setup = session.garment_setup()?.setup;
+        // Only the sewing is wanted: the finest level alone.
+        setup.levels.drain(..setup.levels.len() - 1);
+        let mut cloth = setup.levels[0].cloth.clone();
         let mut run = GarmentRun::new(setup)?;
         while run.progress().stage == Stage::Sewing {
             let progress = run.advance()?;

@@ -4,7 +4,9 @@ use crate::Quality;
 use std::sync::Arc;
 use toile_assembly::{Garment, Levels, Limb, Wearer};
 use toile_body::{Mannequin, Part};
-use toile_drape::{Cloth, ContactSettings, GarmentSetup, Material, RestSettings, SewSettings};
+use toile_drape::{
+    Cloth, ContactSettings, GarmentLevel, GarmentSetup, Material, RestSettings, SewSettings,
+};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 use toile_pattern::{BodyPart, Draft, Fabric, PieceId};
 
@@ -55,8 +57,7 @@ pub(crate) fn job(
         })
         .collect();
     let setup = GarmentSetup {
-        cloth: cloth(draft, &garment),
-        stitches: garment.stitches.iter().map(|s| s.vertices).collect(),
+        levels: vec![level(draft, &garment)],
         counted: counted(draft, &garment, 2.0 * quality.edge_length()),
         colliders: vec![skin],
         contact: ContactSettings::default(),
@@ -73,6 +74,13 @@ pub(crate) fn job(
         setup,
         garment,
         panels: Arc::new(panels),
+    }
+}
+
+fn level(draft: &Draft, garment: &Garment) -> GarmentLevel {
+    GarmentLevel {
+        cloth: cloth(draft, garment),
+        stitches: garment.stitches.iter().map(|s| s.vertices).collect(),
     }
 }
 
@@ -93,12 +101,14 @@ fn material(fabric: &Fabric) -> Material {
 fn cloth(draft: &Draft, garment: &Garment) -> Cloth {
     let mut rest = vec![[Vec2::zeros(); 3]; garment.triangles.len()];
     let mut material_of = vec![0; garment.triangles.len()];
-    for panel in &garment.panels {
+    let mut panel_of = vec![0; garment.triangles.len()];
+    for (index, panel) in garment.panels.iter().enumerate() {
         let (sine, cosine) = panel.grain.sin_cos();
         let turned = |p: Vec2| Vec2::new(cosine * p.x + sine * p.y, cosine * p.y - sine * p.x);
         for t in panel.triangles.clone() {
             rest[t] = garment.triangles[t].map(|v| turned(garment.flat[v as usize]));
             material_of[t] = panel.fabric as u16;
+            panel_of[t] = index as u32;
         }
     }
     Cloth {
@@ -106,6 +116,7 @@ fn cloth(draft: &Draft, garment: &Garment) -> Cloth {
         triangles: garment.triangles.clone(),
         rest,
         material: material_of,
+        panel: panel_of,
         materials: draft.fabrics.iter().map(material).collect(),
     }
 }

@@ -1,5 +1,6 @@
 //! The fastest vibration of a model, which bounds the substep of every explicit method.
 
+use crate::laws::membrane::Curvature;
 use crate::{Inertia, Model, State, Workspace};
 use toile_geometry::Vec3;
 
@@ -83,7 +84,7 @@ impl FrequencySearch {
             target: &state.positions,
         };
         workspace.fill_gradient(model, &state.positions, Some(&inertia));
-        workspace.fill_hessian(model, &state.positions, &inertia);
+        workspace.fill_hessian(model, &state.positions, &inertia, Curvature::Convex);
         let (mut diagonal, mut off_diagonal) = (Vec::new(), Vec::new());
         let mut beta = normalise(&mut self.present);
         for _ in 0..iterations.min(3 * n) {

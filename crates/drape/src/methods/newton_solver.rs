@@ -1,6 +1,7 @@
 //! Lowering the potential by Newton's method: to its minimum, or by one linear solve.
 
 use super::implicit::{Limits, Problem, Solver};
+use crate::laws::membrane::Curvature;
 use crate::sparse::dot;
 use crate::{LinearSolver, NewtonReport, NewtonSettings, PcgLimits, State, Workspace};
 
@@ -47,6 +48,7 @@ impl Solver for Newton {
             } else {
                 LONGEST_MOVE
             },
+            curvature: Curvature::Convex,
             linear: LINEAR,
         };
         workspace.solve(problem.model, state, &problem.inertia, &settings)
@@ -81,7 +83,7 @@ impl Solver for OneSolve {
         workspace.fit(model);
         workspace.contacts.refresh(model, state, &state.positions);
         workspace.fill_gradient(model, &state.positions, Some(&problem.inertia));
-        workspace.fill_hessian(model, &state.positions, &problem.inertia);
+        workspace.fill_hessian(model, &state.positions, &problem.inertia, Curvature::Convex);
         let gradient = dot(&workspace.gradient, &workspace.gradient).sqrt();
         let linear_iterations = workspace.solve_linear(model, ONE_SOLVE);
         for (x, d) in state.positions.iter_mut().zip(&workspace.direction) {

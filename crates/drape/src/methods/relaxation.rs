@@ -2,6 +2,7 @@
 
 use super::explicit::forces_and_settle;
 use super::{Method, MethodSettings, StepReport};
+use crate::laws::membrane::Curvature;
 use crate::measure::weight_norm;
 use crate::sparse::dot;
 use crate::{DrapeError, Inertia, Memory, Model, State, Workspace};
@@ -94,7 +95,7 @@ impl Relaxation {
         workspace.fit(model);
         workspace.contacts.refresh(model, state, &state.positions);
         workspace.fill_gradient(model, &state.positions, Some(&inertia));
-        workspace.fill_hessian(model, &state.positions, &inertia);
+        workspace.fill_hessian(model, &state.positions, &inertia, Curvature::Convex);
         masses.clear();
         for v in 0..model.vertex_count() {
             let mut sums =

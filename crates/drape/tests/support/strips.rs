@@ -50,6 +50,7 @@ pub fn strip(
             .map(|t| t.map(|v| points[v as usize]))
             .collect(),
         material: vec![0; triangles.len()],
+        panel: vec![0; triangles.len()],
         materials: vec![material],
         triangles,
     };
