@@ -49,6 +49,7 @@ impl Flat {
             triangles: self.triangles.clone(),
             rest: self.triangles.iter().map(|t| t.map(corner)).collect(),
             material: vec![0; self.triangles.len()],
+            panel: vec![0; self.triangles.len()],
             materials: vec![material],
         }
     }

@@ -196,6 +196,7 @@ fn cloth_of(model: &Model, state: &State) -> toile_drape::Cloth {
             .map(|t| t.map(|v| Vec2::new(place(v).x, place(v).z)))
             .collect(),
         material: model.material.clone(),
+        panel: vec![0; model.triangles.len()],
         materials: model.materials.clone(),
     }
 }
