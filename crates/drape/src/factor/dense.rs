@@ -38,11 +38,11 @@ impl Number for f32 {
 }
 
 /// Columns factorised at once: small enough for the first-level cache.
-const PANEL: usize = 96;
+const PANEL: usize = 48;
 /// Rows and columns of a tile: a tile's operands fit the second-level cache.
 const TILE: usize = 256;
-/// Halves are rounded to this many columns, a whole number of vector registers.
-const ROUND: usize = 16;
+/// Halves are rounded to this many rows, those of the kernel of a product; not above `PANEL`.
+const ROUND: usize = 48;
 
 fn half(n: usize) -> usize {
     (n / 2).next_multiple_of(ROUND).min(n)
@@ -75,8 +75,8 @@ pub fn factorise<T: Number>(front: MatMut<'_, T>) -> Result<(), usize> {
     let (square, rest) = right.rb_mut().split_at_row_mut(columns - first);
     let (done_top, done_rest) = done.split_at_row(columns - first);
     rayon::join(
-        || subtract_square(square, done_top),
-        || subtract_product(rest, done_rest, done_top),
+        || subtract_square(square, done_top, Accum::Add),
+        || subtract_product(rest, done_rest, done_top, Accum::Add),
     );
     factorise(right).map_err(|at| at + first)
 }
@@ -92,14 +92,15 @@ fn divide<T: Number>(rows: MatMut<'_, T>, triangle: MatRef<'_, T>) {
     rayon::join(|| divide(top, triangle), || divide(bottom, triangle));
 }
 
-/// square <- square - rows rows^T, at and below the diagonal.
-pub fn subtract_square<T: Number>(square: MatMut<'_, T>, rows: MatRef<'_, T>) {
+/// square <- square - rows rows^T, at and below the diagonal; with `Accum::Replace` what was there
+/// does not count.
+pub fn subtract_square<T: Number>(square: MatMut<'_, T>, rows: MatRef<'_, T>, into: Accum) {
     let count = square.nrows();
     if count <= TILE {
         triangular::matmul(
             square,
             BlockStructure::TriangularLower,
-            Accum::Add,
+            into,
             rows,
             BlockStructure::Rectangular,
             rows.transpose(),
@@ -113,41 +114,39 @@ pub fn subtract_square<T: Number>(square: MatMut<'_, T>, rows: MatRef<'_, T>) {
     let (top, _, below, bottom) = square.split_at_mut(first, first);
     let (rows_top, rows_bottom) = rows.split_at_row(first);
     rayon::join(
-        || subtract_product(below, rows_bottom, rows_top),
+        || subtract_product(below, rows_bottom, rows_top, into),
         || {
             rayon::join(
-                || subtract_square(top, rows_top),
-                || subtract_square(bottom, rows_bottom),
+                || subtract_square(top, rows_top, into),
+                || subtract_square(bottom, rows_bottom, into),
             )
         },
     );
 }
 
 /// out <- out - a b^T
-fn subtract_product<T: Number>(out: MatMut<'_, T>, a: MatRef<'_, T>, b: MatRef<'_, T>) {
+fn subtract_product<T: Number>(
+    out: MatMut<'_, T>,
+    a: MatRef<'_, T>,
+    b: MatRef<'_, T>,
+    into: Accum,
+) {
     let (rows, columns) = (out.nrows(), out.ncols());
     if rows.max(columns) <= TILE {
-        matmul(
-            out,
-            Accum::Add,
-            a,
-            b.transpose(),
-            -T::rounded(1.0),
-            Par::Seq,
-        );
+        matmul(out, into, a, b.transpose(), -T::rounded(1.0), Par::Seq);
     } else if rows >= columns {
         let (top, bottom) = out.split_at_row_mut(half(rows));
         let (a_top, a_bottom) = a.split_at_row(half(rows));
         rayon::join(
-            || subtract_product(top, a_top, b),
-            || subtract_product(bottom, a_bottom, b),
+            || subtract_product(top, a_top, b, into),
+            || subtract_product(bottom, a_bottom, b, into),
         );
     } else {
         let (left, right) = out.split_at_col_mut(half(columns));
         let (b_left, b_right) = b.split_at_row(half(columns));
         rayon::join(
-            || subtract_product(left, a, b_left),
-            || subtract_product(right, a, b_right),
+            || subtract_product(left, a, b_left, into),
+            || subtract_product(right, a, b_right, into),
         );
     }
 }

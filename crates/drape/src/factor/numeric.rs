@@ -5,9 +5,9 @@ use super::dense::{self, Number};
 use super::layout::{Layout, stride};
 use super::symbolic::Symbolic;
 use super::{Block, Graph, NotPositive};
-use faer::MatMut;
 use faer::prelude::Reborrow;
 use faer::prelude::ReborrowMut;
+use faer::{Accum, MatMut};
 
 /// What a task needs to read.
 pub struct Elimination<'a, F, const D: usize> {
@@ -171,16 +171,20 @@ impl<F: Fn(usize, &[u32], &mut [Block<D>]) + Sync, const D: usize> Elimination<'
         );
         let rows = &mut part.rows[..self.longest_row];
         self.enter(f, panel, rows);
-        self.assemble(
-            f,
-            Columns {
-                first: front.pivots as usize,
-                top: front.pivots as usize,
-                stride: stride(boundary),
-                values: own,
-            },
-            &handed,
-        );
+        // Nothing is handed on to a leaf: its own part is written, not added to.
+        let leaf = front.children.is_empty();
+        if !leaf {
+            self.assemble(
+                f,
+                Columns {
+                    first: front.pivots as usize,
+                    top: front.pivots as usize,
+                    stride: stride(boundary),
+                    values: own,
+                },
+                &handed,
+            );
+        }
         if pivots == 0 {
             return Ok(());
         }
@@ -198,7 +202,8 @@ impl<F: Fn(usize, &[u32], &mut [Block<D>]) + Sync, const D: usize> Elimination<'
                 boundary,
                 stride(boundary),
             );
-            dense::subtract_square(own, panel.rb().split_at_row(pivots).1);
+            let into = if leaf { Accum::Replace } else { Accum::Add };
+            dense::subtract_square(own, panel.rb().split_at_row(pivots).1, into);
         }
         Ok(())
     }

@@ -220,7 +220,7 @@ pub fn operations(pivots: usize, boundary: usize, unknowns: usize) -> f64 {
 fn front_time(pivots: usize, boundary: usize, unknowns: usize) -> f64 {
     const EACH: f64 = 3e-6;
     const PER_OPERATION: f64 = 1.0 / 40e9;
-    const PER_ENTRY: f64 = 0.6e-9;
+    const PER_ENTRY: f64 = 0.3e-9;
     if pivots + boundary == 0 {
         return 0.0;
     }
