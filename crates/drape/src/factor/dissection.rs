@@ -48,6 +48,11 @@ impl Piece {
         self.vertices.len()
     }
 
+    /// Number of pairs of neighbours, both ways.
+    pub fn entries(&self) -> usize {
+        self.adjacent.len()
+    }
+
     /// Neighbours of a vertex.
     pub fn neighbours(&self, v: usize) -> &[u32] {
         &self.adjacent[self.start[v] as usize..self.start[v + 1] as usize]

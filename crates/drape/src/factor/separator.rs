@@ -9,39 +9,58 @@ use toile_geometry::Vec3;
 /// Label of vertices in the separator; the sides are 0 and 1.
 pub const SEPARATOR: u32 = 2;
 
-/// Work below a cut relative to the cube of the separator: a square sheet of n vertices, each
-/// coupled two rings far, has separators of 2 sqrt(n), and its factorisation costs W = K n^1.5 with
-/// K n^1.5 = (2 sqrt(n))^3 + 2 K (n/2)^1.5, so K = 27.
-const WORK_BELOW: f64 = 27.0;
-
 /// Share of the vertices that the smaller side must have at least.
 const BALANCE: f64 = 0.2;
 
 /// Share of the vertices above which a separator saves nothing.
 const LARGEST_SEPARATOR: f64 = 0.5;
 
+/// Sweeps of which the separator is straightened.
+const STRAIGHTENED: usize = 2;
+
 /// Passes of straightening at the most; two or three find nothing any more.
 const PASSES: usize = 6;
 
-/// Estimated work of factorising with a separator of `s` vertices between sides of `a` and `b`.
-fn work(s: usize, a: usize, b: usize) -> f64 {
-    let [s, a, b] = [s, a, b].map(|n| n as f64);
-    s * s * s + WORK_BELOW * (a * a.sqrt() + b * b.sqrt())
+/// Estimate of the work that a cut leaves.
+#[derive(Clone, Copy)]
+struct Estimate {
+    /// Work of a part of n vertices, as a multiple of n^1.5.
+    below: f64,
+}
+
+impl Estimate {
+    /// A sheet whose vertices are coupled r rings far has rows of 3 r (r + 1) others, a square one
+    /// of n vertices has separators of r sqrt(n), and factorising it costs K n^1.5 with
+    /// K n^1.5 = (r sqrt(n))^3 + 2 K (n/2)^1.5.
+    fn new(piece: &Piece) -> Self {
+        let others = piece.entries() as f64 / piece.len() as f64;
+        let reach = ((1.0 + 4.0 / 3.0 * others).sqrt() - 1.0) / 2.0;
+        Self {
+            below: reach.powi(3) / (1.0 - std::f64::consts::FRAC_1_SQRT_2),
+        }
+    }
+
+    /// With a separator of `s` vertices between sides of `a` and `b`.
+    fn work(self, s: usize, a: usize, b: usize) -> f64 {
+        let [s, a, b] = [s, a, b].map(|n| n as f64);
+        s * s * s + self.below * (a * a.sqrt() + b * b.sqrt())
+    }
 }
 
 /// A label for every vertex and the separator, in order along its longest direction; nothing when
 /// no separator is worth it.
 pub fn separate(piece: &Piece) -> Option<(Vec<u32>, Vec<u32>)> {
-    let mut best: Option<(f64, Vec<u32>)> = None;
-    for keys in candidate_keys(piece) {
-        let Some(mut side) = sweep(piece, &keys) else {
-            continue;
-        };
-        let found = straighten(piece, &mut side);
-        if best.as_ref().is_none_or(|(work, _)| found < *work) {
-            best = Some((found, side));
-        }
+    let estimate = Estimate::new(piece);
+    let mut swept: Vec<(f64, Vec<u32>)> = candidate_keys(piece)
+        .iter()
+        .filter_map(|keys| sweep(piece, estimate, keys))
+        .collect();
+    swept.sort_by(|a, b| a.0.total_cmp(&b.0));
+    swept.truncate(STRAIGHTENED);
+    for (work, side) in &mut swept {
+        *work = straighten(piece, estimate, side);
     }
+    let best = swept.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
     let (_, side) = best?;
     let mut separator: Vec<u32> = (0..piece.len() as u32)
         .filter(|&v| side[v as usize] == SEPARATOR)
@@ -110,7 +129,7 @@ fn farthest(steps: &[f64]) -> usize {
 
 /// Moves the vertices from right to left in the order of their keys, and keeps the moment at
 /// which the rim of one side makes the cheapest separator.
-fn sweep(piece: &Piece, keys: &[f64]) -> Option<Vec<u32>> {
+fn sweep(piece: &Piece, estimate: Estimate, keys: &[f64]) -> Option<(f64, Vec<u32>)> {
     let n = piece.len();
     let mut order: Vec<u32> = (0..n as u32).collect();
     order.sort_unstable_by(|&a, &b| {
@@ -145,13 +164,13 @@ fn sweep(piece: &Piece, keys: &[f64]) -> Option<Vec<u32>> {
             if a < least || b < least {
                 continue;
             }
-            let found = work(s, a, b);
+            let found = estimate.work(s, a, b);
             if best.is_none_or(|(work, _, _)| found < work) {
                 best = Some((found, at + 1, from_left));
             }
         }
     }
-    let (_, cut, from_left) = best?;
+    let (work, cut, from_left) = best?;
     let mut side = vec![1; n];
     for &v in &order[..cut] {
         side[v as usize] = 0;
@@ -169,19 +188,19 @@ fn sweep(piece: &Piece, keys: &[f64]) -> Option<Vec<u32>> {
     for v in rim {
         side[v] = SEPARATOR;
     }
-    Some(side)
+    Some((work, side))
 }
 
 /// Moves vertices out of the separator, drawing in those that would then touch the other side, as
 /// long as that pays; passes go uphill too and keep the best moment. Returns the work estimated.
-fn straighten(piece: &Piece, side: &mut [u32]) -> f64 {
+fn straighten(piece: &Piece, estimate: Estimate, side: &mut [u32]) -> f64 {
     let mut count = [0usize; 3];
     for &s in side.iter() {
         count[s as usize] += 1;
     }
-    let mut best = work(count[2], count[0], count[1]);
+    let mut best = estimate.work(count[2], count[0], count[1]);
     for _ in 0..PASSES {
-        let found = pass(piece, side, &mut count);
+        let found = pass(piece, estimate, side, &mut count);
         if found >= best {
             break;
         }
@@ -191,7 +210,7 @@ fn straighten(piece: &Piece, side: &mut [u32]) -> f64 {
 }
 
 /// One pass; leaves the best moment in `side` and `count` and returns its work.
-fn pass(piece: &Piece, side: &mut [u32], count: &mut [usize; 3]) -> f64 {
+fn pass(piece: &Piece, estimate: Estimate, side: &mut [u32], count: &mut [usize; 3]) -> f64 {
     let mut rim: Vec<u32> = (0..side.len() as u32)
         .filter(|&v| side[v as usize] == SEPARATOR)
         .collect();
@@ -210,7 +229,7 @@ fn pass(piece: &Piece, side: &mut [u32], count: &mut [usize; 3]) -> f64 {
     let mut locked = vec![false; side.len()];
     let mut moves: Vec<(u32, u32)> = Vec::new();
     let least = ((side.len() as f64 * BALANCE) as usize).max(1);
-    let (mut best, mut best_moves) = (work(count[2], count[0], count[1]), 0);
+    let (mut best, mut best_moves) = (estimate.work(count[2], count[0], count[1]), 0);
     let mut best_count = *count;
     let patience = 20 + rim.len() / 2;
     let mut since = 0;
@@ -260,7 +279,7 @@ fn pass(piece: &Piece, side: &mut [u32], count: &mut [usize; 3]) -> f64 {
                 }
             }
         }
-        let found = work(count[2], count[0], count[1]);
+        let found = estimate.work(count[2], count[0], count[1]);
         since += 1;
         if found < best {
             (best, best_moves, best_count, since) = (found, moves.len(), *count, 0);
