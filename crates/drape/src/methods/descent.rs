@@ -33,17 +33,28 @@ pub fn shorten(problem: &Problem, direction: &mut [Vec3]) {
     }
 }
 
-/// Moves along a direction by the largest of 1, 1/2, 1/4 ... that lowers the potential enough;
+/// What a search goes along.
+pub struct Line<'a> {
+    /// The whole step [m].
+    pub direction: &'a [Vec3],
+    /// How many shares of it are tried.
+    pub shares: usize,
+    /// Potential where it starts, where known, and then where it ended [J].
+    pub energy: &'a mut Option<f64>,
+}
+
+/// Moves along `line.direction` by the largest of 1, 1/2, 1/4 ... that lowers the potential enough;
 /// returns the share, 0 when none does. The positions before are left in `workspace.trial`.
-pub fn search(
-    problem: &Problem,
-    state: &mut State,
-    workspace: &mut Workspace,
-    direction: &[Vec3],
-    shares: usize,
-) -> f64 {
+pub fn search(problem: &Problem, state: &mut State, workspace: &mut Workspace, line: Line) -> f64 {
     let model = problem.model;
-    let start = workspace.potential(model, &state.positions, &problem.inertia);
+    let Line {
+        direction,
+        shares,
+        energy: known,
+    } = line;
+    let start = known
+        .take()
+        .unwrap_or_else(|| workspace.potential(model, &state.positions, &problem.inertia));
     let slope = dot(&workspace.gradient, direction);
     // Below rounding of the potential nothing can be told apart: take the step.
     let noise = 1e-13 * start.abs().max(1.0);
@@ -55,6 +66,8 @@ pub fn search(
         }
         let energy = workspace.potential(model, &trial, &problem.inertia);
         if energy <= start + DECREASE * share * slope + noise {
+            // With solid surfaces the planes, and with them the potential, are found anew.
+            *known = model.colliders.is_empty().then_some(energy);
             std::mem::swap(&mut state.positions, &mut trial);
             workspace.trial = trial;
             return share;
@@ -62,5 +75,6 @@ pub fn search(
         share *= 0.5;
     }
     workspace.trial = trial;
+    *known = Some(start);
     0.0
 }

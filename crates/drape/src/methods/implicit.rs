@@ -81,7 +81,7 @@ pub struct Implicit<R, S> {
 }
 
 /// Halvings of a step before it is an error.
-const HALVINGS: u32 = 8;
+const HALVINGS: u32 = 6;
 
 /// Gradient over weight up to which a minimum counts as reached although the tolerance is not:
 /// rounding alone leaves more than the tolerance in very stiff cloth.

@@ -1,6 +1,6 @@
 //! L-BFGS that starts from the metric of projective dynamics.
 
-use super::descent::{search, shorten, slope};
+use super::descent::{Line, search, shorten, slope};
 use super::implicit::{Limits, Problem, Solver};
 use super::metric::Metric;
 use crate::sparse::dot;
@@ -87,6 +87,14 @@ impl Lbfgs {
     }
 }
 
+fn line<'a>(direction: &'a [Vec3], energy: &'a mut Option<f64>) -> Line<'a> {
+    Line {
+        direction,
+        shares: usize::MAX,
+        energy,
+    }
+}
+
 impl Solver for Lbfgs {
     const STAGE: &'static str = "L-BFGS";
     const LIMITS: Limits = Limits {
@@ -109,6 +117,7 @@ impl Solver for Lbfgs {
             sound: self.metric.fit(problem.model, problem.weight),
             ..NewtonReport::default()
         };
+        let mut energy = None;
         while report.sound && report.iterations < problem.limits.iterations {
             report.gradient = slope(problem, state, workspace);
             report.sound = report.gradient.is_finite();
@@ -122,14 +131,24 @@ impl Solver for Lbfgs {
             self.aim(problem);
             shorten(problem, &mut self.direction);
             self.before.clone_from(&state.positions);
-            report.fraction = search(problem, state, workspace, &self.direction, usize::MAX);
+            report.fraction = search(
+                problem,
+                state,
+                workspace,
+                line(&self.direction, &mut energy),
+            );
             if report.fraction == 0.0 && !self.pairs.is_empty() {
                 // The memory misleads: once more from the metric alone.
                 self.pairs.clear();
                 self.aim(problem);
                 shorten(problem, &mut self.direction);
                 self.before.clone_from(&state.positions);
-                report.fraction = search(problem, state, workspace, &self.direction, usize::MAX);
+                report.fraction = search(
+                    problem,
+                    state,
+                    workspace,
+                    line(&self.direction, &mut energy),
+                );
             }
             if report.fraction == 0.0 {
                 report.sound = report.iterations > 0;

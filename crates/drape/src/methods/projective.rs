@@ -1,6 +1,6 @@
 //! Projective dynamics as descent in a constant metric, with Anderson acceleration.
 
-use super::descent::{search, shorten, slope};
+use super::descent::{Line, search, shorten, slope};
 use super::implicit::{Limits, Problem, Solver};
 use super::metric::Metric;
 use crate::sparse::dot;
@@ -104,7 +104,13 @@ impl Projective {
     }
 
     /// One iteration from the gradient in the workspace; the share of the step taken.
-    fn iterate(&mut self, problem: &Problem, state: &mut State, workspace: &mut Workspace) -> f64 {
+    fn iterate(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        workspace: &mut Workspace,
+        energy: &mut Option<f64>,
+    ) -> f64 {
         self.negative.clear();
         self.negative.extend(workspace.gradient.iter().map(|g| -g));
         self.metric
@@ -113,7 +119,16 @@ impl Projective {
         if self.accelerate() {
             let mut direction = std::mem::take(&mut self.accelerated);
             shorten(problem, &mut direction);
-            let share = search(problem, state, workspace, &direction, 1);
+            let share = search(
+                problem,
+                state,
+                workspace,
+                Line {
+                    direction: &direction,
+                    shares: 1,
+                    energy,
+                },
+            );
             self.accelerated = direction;
             if share > 0.0 {
                 return share;
@@ -122,7 +137,16 @@ impl Projective {
         }
         let mut step = std::mem::take(&mut self.step);
         shorten(problem, &mut step);
-        let share = search(problem, state, workspace, &step, usize::MAX);
+        let share = search(
+            problem,
+            state,
+            workspace,
+            Line {
+                direction: &step,
+                shares: usize::MAX,
+                energy,
+            },
+        );
         self.step = step;
         if share < 1.0 {
             self.forget();
@@ -158,13 +182,14 @@ impl Solver for Projective {
             sound: self.metric.fit(problem.model, problem.weight),
             ..NewtonReport::default()
         };
+        let mut energy = None;
         while report.sound && report.iterations < problem.limits.iterations {
             report.gradient = slope(problem, state, workspace);
             report.sound = report.gradient.is_finite();
             if report.gradient <= problem.limits.tolerance || !report.sound {
                 break;
             }
-            report.fraction = self.iterate(problem, state, workspace);
+            report.fraction = self.iterate(problem, state, workspace, &mut energy);
             if report.fraction == 0.0 {
                 // Nothing lowers Phi any more: a failure only when nothing ever did.
                 report.sound = report.iterations > 0;
