@@ -102,7 +102,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             rule: PhantomData,
             solver: S::default(),
             limits: Limits {
-                iterations: settings.iterations.unwrap_or(S::LIMITS.iterations),
+                iterations: settings.iterations.unwrap_or(S::LIMITS.iterations).max(1),
                 tolerance: settings.tolerance.unwrap_or(S::LIMITS.tolerance),
             },
             substeps: settings.substeps.unwrap_or(1).max(1),

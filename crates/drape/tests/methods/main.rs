@@ -2,5 +2,6 @@
 
 mod explicit;
 mod fixtures;
+mod hard;
 mod order;
 mod table;
