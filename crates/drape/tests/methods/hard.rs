@@ -93,7 +93,7 @@ fn contrasts_of_stiffness_and_mass() {
             shear: 5.0,
             ..Material::default()
         };
-        let mut cloth = Cloth::from_mesh("cloth", &mesh, soft.clone()).unwrap();
+        let mut cloth = Cloth::from_mesh("cloth", &mesh, soft.clone()).expect("sound");
         cloth.materials.push(Material {
             stretch: [20.0 * stiff, 20.0 * stiff],
             shear: 5.0 * stiff,
@@ -103,7 +103,7 @@ fn contrasts_of_stiffness_and_mass() {
         for material in cloth.material.iter_mut().skip(36) {
             *material = 1;
         }
-        let mut model = Model::new("cloth", &cloth).unwrap();
+        let mut model = Model::new("cloth", &cloth).expect("sound");
         model.pinned[..7].fill(true);
         let state = State::at_rest(&model, mesh.positions.clone());
         (model, state)
