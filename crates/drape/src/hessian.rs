@@ -4,6 +4,7 @@
 
 use crate::factor::{Block, Factor, Graph};
 use crate::newton::elastics_of;
+use crate::sparse::ScalarMatrix;
 use crate::{ElasticEnd, Model};
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
@@ -11,6 +12,8 @@ use toile_geometry::Vec3;
 /// A symmetric positive semidefinite Hessian; rows of pinned vertices are those of the identity.
 pub struct Hessian<'a> {
     pub model: &'a Model,
+    /// Bending, with what viscosity adds to it in a step.
+    pub bending: &'a ScalarMatrix,
     /// Blocks over the mesh's pattern, everything on the diagonal but bending included.
     pub blocks: &'a [Matrix3<f64>],
     /// Stiffness of each elastic [N/m].
@@ -42,8 +45,7 @@ impl Hessian<'_> {
     /// A row times a vector, pins not heeded.
     pub fn row_times(&self, row: usize, p: &[Vec3]) -> Vec3 {
         let model = self.model;
-        let mut sum =
-            model.pattern.row_times(row, self.blocks, p) + model.bending.row_times(row, p);
+        let mut sum = model.pattern.row_times(row, self.blocks, p) + self.bending.row_times(row, p);
         for (e, other) in elastics_of(model, row) {
             if let ElasticEnd::Vertex(other) = other {
                 sum -= p[other as usize] * self.secants[e];
@@ -55,7 +57,7 @@ impl Hessian<'_> {
     /// The block on the diagonal.
     pub fn diagonal(&self, row: usize) -> Matrix3<f64> {
         self.model.pattern.diagonal_block(row, self.blocks)
-            + Matrix3::identity() * self.model.bending.diagonal(row)
+            + Matrix3::identity() * self.bending.diagonal(row)
     }
 
     /// Writes a row as the factorisation wants it; `columns` are all that the row may have.
@@ -75,7 +77,7 @@ impl Hessian<'_> {
             // Matrix3 holds columns, a block rows.
             out[at] = block.transpose().into();
         }
-        let (bent, values) = model.bending.row_entries(row);
+        let (bent, values) = self.bending.row_entries(row);
         let mut at = 0;
         for (&column, &value) in bent.iter().zip(values) {
             at = seek(columns, at, column);

@@ -27,12 +27,15 @@ mod sew;
 mod sparse;
 mod state;
 mod step;
+mod step_terms;
 
 pub use carry::Carry;
 pub use cloth::Cloth;
 pub use contacts::{Contact, Contacts};
 pub use error::DrapeError;
 pub use garment::{GarmentLevel, GarmentRun, GarmentSetup, Progress, Stage};
+pub use laws::air::Air;
+pub use laws::stretch::Compression;
 pub use material::Material;
 pub use measure::{Measures, measure, residual, stretch_per_triangle};
 pub use merge::merge_map;
@@ -43,8 +46,9 @@ pub use model::{Collider, ContactSample, ContactSettings, Elastic, ElasticEnd, M
 pub use newton::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 pub use pcg::PcgLimits;
 pub use rest::{RestRun, RestSettings};
-pub use scene::{ObjectKind, Scene, SceneElastic, SceneEnd, SceneObject};
+pub use scene::{Damping, ObjectKind, Scene, SceneElastic, SceneEnd, SceneObject};
 pub use scene_run::SceneRun;
 pub use sew::{SewRun, SewSettings};
 pub use state::{Memory, State};
 pub use step::{StepSettings, step_in_time};
+pub use step_terms::SettledStrain;

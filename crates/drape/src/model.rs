@@ -1,6 +1,7 @@
 //! The model: everything about a simulation that does not change while it runs.
 
-use crate::laws::bending::RestSheet;
+use crate::laws::air::Air;
+use crate::laws::bending::{BendingMatrix, BendingStencil, RestSheet};
 use crate::laws::elastic::ElasticLaw;
 use crate::laws::membrane::MembraneElement;
 use crate::laws::stretch::MembraneLaw;
@@ -130,10 +131,17 @@ pub struct Model {
     pub samples: Vec<ContactSample>,
     /// Acceleration of gravity [m/s2].
     pub gravity: Vec3,
-    /// Drag of the air per mass [1/s]: a free velocity falls by exp(-drag t).
+    /// Drag per mass, of the air and of Rayleigh damping together [1/s]: a free velocity falls by
+    /// exp(-drag t).
     pub air_drag: f64,
+    /// What the air does to triangles; its own `drag` is in [`Model::air_drag`].
+    pub air: Air,
     pub(crate) elements: Vec<MembraneElement>,
     pub(crate) bending: ScalarMatrix,
+    /// Viscous matrix of bending, where any cloth has one: the pattern of `bending`.
+    pub(crate) viscous_bending: Option<ScalarMatrix>,
+    /// Curvatures of each triangle; empty unless folds are viscous or kept.
+    pub(crate) stencils: Vec<BendingStencil>,
     /// Where the vertices lay when the model was built [m]: what orders of elimination follow.
     pub(crate) layout: Vec<Vec3>,
     pub(crate) pattern: BlockPattern,
@@ -168,7 +176,7 @@ impl Model {
         }
         let count = cloth.positions.len();
         let (corner_start, corners) = corner_lists(count, &cloth.triangles);
-        let bending = bending_matrix(cloth, &mesh, &elements);
+        let bending = Bending::new(cloth, &mesh, &elements);
         let mut model = Self {
             pattern: BlockPattern::new(count, &cloth.triangles),
             triangles: cloth.triangles.clone(),
@@ -183,8 +191,11 @@ impl Model {
             samples: Vec::new(),
             gravity: Vec3::new(0.0, -9.81, 0.0),
             air_drag: 0.0,
+            air: Air::default(),
             elements,
-            bending,
+            bending: bending.elastic,
+            viscous_bending: bending.viscous,
+            stencils: bending.stencils,
             layout: cloth.positions.clone(),
             corner_start,
             corners,
@@ -226,6 +237,16 @@ impl Model {
                 self.mass[v] = 1.0;
             }
         }
+    }
+
+    /// Whether stretch of any cloth is viscous.
+    pub(crate) fn has_viscous_stretch(&self) -> bool {
+        self.materials.iter().any(|m| m.is_viscous()[0])
+    }
+
+    /// Whether any cloth keeps stretch or folds.
+    pub(crate) fn keeps_strain(&self) -> bool {
+        self.materials.iter().any(Material::keeps_strain)
     }
 
     /// Number of vertices.
@@ -330,31 +351,52 @@ fn corner_lists(count: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<u32>) {
     (start, corners)
 }
 
-fn bending_matrix(
-    cloth: &Cloth,
-    mesh: &TriangleMesh,
-    elements: &[MembraneElement],
-) -> ScalarMatrix {
-    let topology = mesh.topology();
-    let sheet = RestSheet {
-        triangles: &cloth.triangles,
-        rest: &cloth.rest,
-        topology: &topology,
-    };
-    let laws: Vec<_> = cloth
-        .materials
-        .iter()
-        .map(Material::bending_matrix)
-        .collect();
-    let mut entries = Vec::with_capacity(100 * cloth.triangles.len());
-    for (t, stencil) in sheet.stencils().iter().enumerate() {
-        let stiffness = stencil.stiffness(laws[cloth.material[t] as usize]) * elements[t].area;
-        for (&i, p) in stencil.vertices.iter().zip(&stencil.weights) {
-            let moment = stiffness * Vector3::from(*p);
-            for (&j, q) in stencil.vertices.iter().zip(&stencil.weights) {
-                entries.push((i, j, moment.dot(&Vector3::from(*q))));
+/// The bending of a cloth.
+struct Bending {
+    elastic: ScalarMatrix,
+    viscous: Option<ScalarMatrix>,
+    stencils: Vec<BendingStencil>,
+}
+
+impl Bending {
+    fn new(cloth: &Cloth, mesh: &TriangleMesh, elements: &[MembraneElement]) -> Self {
+        let topology = mesh.topology();
+        let sheet = RestSheet {
+            triangles: &cloth.triangles,
+            rest: &cloth.rest,
+            topology: &topology,
+        };
+        let stencils = sheet.stencils();
+        let sum = |of: fn(&Material) -> BendingMatrix| {
+            let laws: Vec<_> = cloth.materials.iter().map(of).collect();
+            let mut entries = Vec::with_capacity(100 * stencils.len());
+            for (t, stencil) in stencils.iter().enumerate() {
+                let law = laws[cloth.material[t] as usize];
+                let stiffness = stencil.stiffness(law) * elements[t].area;
+                for (&i, p) in stencil.vertices.iter().zip(&stencil.weights) {
+                    let moment = stiffness * Vector3::from(*p);
+                    for (&j, q) in stencil.vertices.iter().zip(&stencil.weights) {
+                        entries.push((i, j, moment.dot(&Vector3::from(*q))));
+                    }
+                }
             }
+            ScalarMatrix::from_entries(cloth.positions.len(), &entries)
+        };
+        let elastic = sum(Material::bending_matrix);
+        let viscous = cloth
+            .materials
+            .iter()
+            .any(|m| m.is_viscous()[1])
+            .then(|| sum(Material::viscous_bend));
+        let kept = cloth.materials.iter().any(|m| m.kept[1] > 0.0);
+        Self {
+            elastic,
+            stencils: if kept || viscous.is_some() {
+                stencils
+            } else {
+                Vec::new()
+            },
+            viscous,
         }
     }
-    ScalarMatrix::from_entries(cloth.positions.len(), &entries)
 }

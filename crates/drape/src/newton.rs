@@ -11,6 +11,7 @@ use crate::hessian::{Direct, Hessian};
 use crate::laws::membrane::Curvature;
 use crate::pcg::{BlockJacobi, Pcg, PcgLimits, System};
 use crate::sparse::dot;
+use crate::step_terms::{StepTerms, add_forces_of_motion};
 use crate::{ElasticEnd, Model, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -77,6 +78,7 @@ pub struct NewtonReport {
 #[derive(Default)]
 pub struct Workspace {
     pub(crate) contacts: Contacts,
+    pub(crate) terms: StepTerms,
     pub(crate) gradient: Vec<Vec3>,
     pub(crate) direction: Vec<Vec3>,
     pub(crate) trial: Vec<Vec3>,
@@ -119,10 +121,24 @@ impl Workspace {
     /// Contact and friction (inside its cone) are part of it.
     pub fn net_force(&mut self, model: &Model, state: &State) -> &[Vec3] {
         self.fit(model);
+        self.terms.hold_still(model, state);
         self.contacts.refresh(model, state, &state.positions);
         self.fill_gradient(model, &state.positions, None);
         for g in &mut self.gradient {
             *g = -*g;
+        }
+        &self.gradient
+    }
+
+    /// The same with the forces that depend on velocity, viscosity and the drag of the air on
+    /// triangles, taken at the state's velocities [N]. Drag per mass is left to the caller.
+    pub(crate) fn force_in_motion(&mut self, model: &Model, state: &State) -> &[Vec3] {
+        self.net_force(model, state);
+        add_forces_of_motion(model, state, &mut self.gradient);
+        for (force, &pinned) in self.gradient.iter_mut().zip(&model.pinned) {
+            if pinned {
+                *force = Vec3::zeros();
+            }
         }
         &self.gradient
     }
@@ -189,8 +205,8 @@ impl Workspace {
                 let mut energy = 0.0;
                 for (k, corners) in triangles.iter().enumerate() {
                     let t = chunk * CHUNK + k;
-                    let law = &model.laws[model.material[t] as usize];
-                    energy += model.elements[t].energy(law, corners.map(|v| x[v as usize]));
+                    let law = self.terms.law(model, t);
+                    energy += model.elements[t].energy(&law, corners.map(|v| x[v as usize]));
                 }
                 energy
             })
@@ -216,20 +232,20 @@ impl Workspace {
             let place = model.samples[contact.sample as usize].place(x);
             energy += contact.law.energy(&contact.plane, place);
         }
-        energy
+        energy + self.terms.energy(model, x)
     }
 
     /// Gradient of the potential at `x`; zero at pins.
     pub(crate) fn fill_gradient(&mut self, model: &Model, x: &[Vec3], inertia: Option<&Inertia>) {
+        let terms = &self.terms;
         self.corner_gradients
             .par_chunks_mut(CHUNK)
             .enumerate()
             .for_each(|(chunk, out)| {
                 for (k, out) in out.iter_mut().enumerate() {
                     let t = chunk * CHUNK + k;
-                    let law = &model.laws[model.material[t] as usize];
                     let corners = model.triangles[t].map(|v| x[v as usize]);
-                    *out = model.elements[t].gradient(law, corners).1;
+                    *out = model.elements[t].gradient(&terms.law(model, t), corners).1;
                 }
             });
         for (secant, elastic) in self.secants.iter_mut().zip(&model.elastics) {
@@ -263,6 +279,7 @@ impl Workspace {
                 self.gradient[v as usize] += gradient * w;
             }
         }
+        self.terms.add_gradient(model, x, &mut self.gradient);
         for (g, &pinned) in self.gradient.iter_mut().zip(&model.pinned) {
             if pinned {
                 *g = Vec3::zeros();
@@ -279,18 +296,17 @@ impl Workspace {
         inertia: &Inertia,
         curvature: Curvature,
     ) {
+        let terms = &self.terms;
         self.elements
             .par_chunks_mut(CHUNK)
             .enumerate()
             .for_each(|(chunk, out)| {
                 for (k, out) in out.iter_mut().enumerate() {
                     let t = chunk * CHUNK + k;
-                    let law = &model.laws[model.material[t] as usize];
-                    *out = model.elements[t].hessian(
-                        law,
-                        model.triangles[t].map(|v| x[v as usize]),
-                        curvature,
-                    );
+                    let corners = model.triangles[t].map(|v| x[v as usize]);
+                    let law = terms.law(model, t);
+                    *out = model.elements[t].hessian(&law, corners, curvature);
+                    terms.add_hessian(t, out);
                 }
             });
         for (v, d) in self.diagonal.iter_mut().enumerate() {
@@ -319,6 +335,7 @@ impl Workspace {
     fn hessian<'a>(&'a self, model: &'a Model) -> Hessian<'a> {
         Hessian {
             model,
+            bending: self.terms.bending(model),
             blocks: &self.blocks,
             secants: &self.secants,
         }
@@ -383,6 +400,7 @@ impl Workspace {
         };
         let hessian = Hessian {
             model,
+            bending: self.terms.bending(model),
             blocks: &self.blocks,
             secants: &self.secants,
         };
@@ -405,6 +423,7 @@ impl Workspace {
         };
         let hessian = Hessian {
             model,
+            bending: self.terms.bending(model),
             blocks: &self.blocks,
             secants: &self.secants,
         };

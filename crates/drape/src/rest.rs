@@ -117,6 +117,7 @@ impl RestRun {
         workspace: &mut Workspace,
     ) -> Result<(), DrapeError> {
         let start = state.clone();
+        workspace.terms.hold_still(model, state);
         loop {
             let h = self.pseudo_step;
             let weight: Vec<f64> = model.mass.iter().map(|m| m / (h * h)).collect();

@@ -1,15 +1,27 @@
 //! The scene: every object of a simulation in one form, whatever file it came from.
 
-use crate::{Cloth, DrapeError, Material, MethodSettings};
+use crate::{Air, Cloth, DrapeError, Material, MethodSettings};
 use toile_geometry::{TriangleMesh, Vec3};
+
+/// Rayleigh damping (Rayleigh 1877): forces -(mass M + stiffness K) v. The stiffness part acts on
+/// strain rates of membrane and bending, so that no rigid motion feels it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Damping {
+    /// In proportion to mass [1/s].
+    pub mass: f64,
+    /// In proportion to stiffness, beside each material's own [s].
+    pub stiffness: f64,
+}
 
 /// Objects, elastics, gravity and air: one simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Acceleration of gravity [m/s2].
     pub gravity: Vec3,
-    /// Drag of the air per mass [1/s]: a free velocity falls by exp(-drag t).
-    pub air_drag: f64,
+    /// The air.
+    pub air: Air,
+    /// Damping of everything alike.
+    pub damping: Damping,
     /// Simulated time [s].
     pub duration: f64,
     /// Step in time [s].
@@ -31,7 +43,8 @@ impl Default for Scene {
     fn default() -> Self {
         Self {
             gravity: Vec3::new(0.0, -9.81, 0.0),
-            air_drag: 0.0,
+            air: Air::default(),
+            damping: Damping::default(),
             duration: 1.0,
             step: 1.0 / 120.0,
             frame_step: None,
@@ -116,7 +129,16 @@ impl Scene {
         for (field, value, least) in [
             ("duration", self.duration, 0.0),
             ("step", self.step, f64::MIN_POSITIVE),
-            ("air drag", self.air_drag, 0.0),
+            ("air drag", self.air.drag, 0.0),
+            ("air density", self.air.density, 0.0),
+            ("drag coefficient of the air across", self.air.normal, 0.0),
+            (
+                "drag coefficient of the air along",
+                self.air.tangential,
+                0.0,
+            ),
+            ("mass damping", self.damping.mass, 0.0),
+            ("stiffness damping", self.damping.stiffness, 0.0),
             ("contact offset", self.contact.offset, 0.0),
             ("contact stiffness", self.contact.stiffness, 0.0),
         ] {
@@ -149,6 +171,13 @@ impl Scene {
                 "gravity".to_owned(),
                 "it is not finite".to_owned(),
                 "give three finite numbers in m/s2",
+            );
+        }
+        if !self.air.wind.iter().all(|x| x.is_finite()) {
+            return refuse(
+                "wind".to_owned(),
+                "it is not finite".to_owned(),
+                "give three finite numbers in m/s",
             );
         }
         self.check_objects()?;

@@ -56,6 +56,9 @@ impl SceneRun {
             };
             append(&mut cloth, part);
         }
+        for material in &mut cloth.materials {
+            material.stiffness_damping += scene.damping.stiffness;
+        }
         if cloth.triangles.is_empty() {
             return Err(DrapeError::Scene {
                 place: "objects".to_owned(),
@@ -102,7 +105,8 @@ impl SceneRun {
         }
         self.model.contact = self.scene.contact;
         self.model.gravity = self.scene.gravity;
-        self.model.air_drag = self.scene.air_drag;
+        self.model.air_drag = self.scene.air.drag + self.scene.damping.mass;
+        self.model.air = self.scene.air;
         for &pin in &self.pins {
             self.model.pinned[self.target[pin as usize] as usize] = true;
         }
@@ -228,8 +232,13 @@ impl SceneRun {
         model.colliders = std::mem::take(&mut self.model.colliders);
         self.model = model;
         let time = self.state.time;
+        let settled = std::mem::take(&mut self.state.settled);
         self.state = State::at_rest(&self.model, merged.positions.clone());
         self.state.time = time;
+        // A triangle whose corners became one is gone: then nothing remembers.
+        if settled.len() == self.model.triangles.len() {
+            self.state.settled = settled;
+        }
         for (velocity, (momentum, mass)) in self
             .state
             .velocities

@@ -61,6 +61,18 @@ impl ScalarMatrix {
         matrix
     }
 
+    /// This plus `factor` times a matrix of the same pattern.
+    pub fn plus(&self, other: &Self, factor: f64) -> Self {
+        assert_eq!(self.columns, other.columns, "matrices of one pattern");
+        let add = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + factor * b).collect();
+        Self {
+            row_start: self.row_start.clone(),
+            columns: self.columns.clone(),
+            values: add(&self.values, &other.values),
+            diagonal: add(&self.diagonal, &other.diagonal),
+        }
+    }
+
     /// The entry on the diagonal of a row.
     pub fn diagonal(&self, row: usize) -> f64 {
         self.diagonal[row]

@@ -1,5 +1,6 @@
 //! The state: what changes as a simulation runs; a complete checkpoint.
 
+use crate::step_terms::SettledStrain;
 use crate::{Model, RelaxationRun, RestRun};
 use toile_geometry::Vec3;
 
@@ -36,6 +37,8 @@ pub struct State {
     pub anchors: Vec<Option<Vec3>>,
     /// Normal force on each contact sample in the last step [N].
     pub normal_forces: Vec<f64>,
+    /// What each triangle has settled into; empty unless a cloth keeps strain.
+    pub settled: Vec<SettledStrain>,
     /// Simulated time [s].
     pub time: f64,
     /// What the method remembers.
@@ -56,6 +59,7 @@ impl Clone for State {
             velocities,
             anchors,
             normal_forces,
+            settled,
             time,
             memory,
         } = from;
@@ -63,6 +67,7 @@ impl Clone for State {
         self.velocities.clone_from(velocities);
         self.anchors.clone_from(anchors);
         self.normal_forces.clone_from(normal_forces);
+        self.settled.clone_from(settled);
         self.time = *time;
         self.memory.clone_from(memory);
     }
@@ -76,6 +81,7 @@ impl State {
             positions,
             anchors: vec![None; model.samples.len()],
             normal_forces: vec![0.0; model.samples.len()],
+            settled: Vec::new(),
             time: 0.0,
             memory: Memory::Nothing,
         }

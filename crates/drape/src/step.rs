@@ -119,6 +119,7 @@ fn implicit_euler(
         weight: &weight,
         target: &target,
     };
+    workspace.terms.hold(model, state, 1.0 / h);
     let report = workspace.solve(model, state, &inertia, &settings.newton);
     for ((v, x), old) in state
         .velocities

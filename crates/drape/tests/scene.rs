@@ -134,7 +134,10 @@ fn elastics_merge_what_they_draw_together_and_keep_momentum() {
         objects: vec![cloth_object(mesh, vec![]), other],
         elastics,
         duration: 1.0,
-        air_drag: 5.0,
+        air: toile_drape::Air {
+            drag: 5.0,
+            ..toile_drape::Air::default()
+        },
         ..Scene::default()
     };
     let run = finish(SceneRun::new(scene).expect("sound"));

@@ -7,7 +7,7 @@ use crate::FormatError;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use toile_drape::{ContactSettings, Material, MethodKind, MethodSettings, Scene};
+use toile_drape::{Air, ContactSettings, Damping, Material, MethodKind, MethodSettings, Scene};
 use toile_geometry::Vec3;
 
 /// A scene as written.
@@ -19,6 +19,9 @@ pub struct SceneFile {
     /// The air.
     #[serde(default)]
     pub air: AirFile,
+    /// Damping of everything alike.
+    #[serde(default)]
+    pub damping: DampingFile,
     /// Simulated time [s].
     #[serde(default = "one")]
     pub duration: f64,
@@ -51,8 +54,59 @@ pub struct AirFile {
     /// Drag per mass [1/s].
     #[serde(default)]
     pub drag: f64,
+    /// Density [kg/m3]; that of sea level when a coefficient or the wind is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<f64>,
+    /// Drag coefficient across the cloth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub normal: Option<f64>,
+    /// Drag coefficient along the cloth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tangential: Option<f64>,
+    /// Velocity of the wind [m/s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wind: Option<[f64; 3]>,
     #[serde(flatten)]
     unknown: Unknown,
+}
+
+impl AirFile {
+    /// The air, with defaults where nothing is written.
+    pub fn air(&self) -> Air {
+        let usual = Air::default();
+        let acts = self.normal.is_some() || self.tangential.is_some() || self.wind.is_some();
+        let density = if acts { Air::SEA_LEVEL } else { usual.density };
+        Air {
+            drag: self.drag,
+            density: self.density.unwrap_or(density),
+            normal: self.normal.unwrap_or(usual.normal),
+            tangential: self.tangential.unwrap_or(usual.tangential),
+            wind: self.wind.map_or(usual.wind, Vec3::from),
+        }
+    }
+}
+
+/// Rayleigh damping of a scene.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct DampingFile {
+    /// In proportion to mass [1/s].
+    #[serde(default)]
+    pub mass: f64,
+    /// In proportion to stiffness [s].
+    #[serde(default)]
+    pub stiffness: f64,
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+impl DampingFile {
+    /// The damping.
+    pub fn damping(&self) -> Damping {
+        Damping {
+            mass: self.mass,
+            stiffness: self.stiffness,
+        }
+    }
 }
 
 /// The method of a scene.
@@ -198,6 +252,7 @@ impl MaterialFile {
             poisson: self.poisson.unwrap_or(usual.poisson),
             bend: self.bend.unwrap_or(usual.bend),
             friction: self.friction.unwrap_or(usual.friction),
+            ..usual
         }
     }
 }
@@ -304,6 +359,7 @@ impl SceneFile {
         };
         add(String::new(), &self.unknown);
         add("air".to_owned(), &self.air.unknown);
+        add("damping".to_owned(), &self.damping.unknown);
         add("method".to_owned(), &self.method.unknown);
         add("collision".to_owned(), &self.collision.unknown);
         for (k, object) in self.objects.iter().enumerate() {

@@ -190,7 +190,8 @@ impl Builder<'_> {
         }
         Ok(Scene {
             gravity: Vec3::from(file.gravity),
-            air_drag: file.air.drag,
+            air: file.air.air(),
+            damping: file.damping.damping(),
             duration: file.duration,
             step: file.step,
             frame_step: file.frame_step,

@@ -93,6 +93,7 @@ fn material(fabric: &Fabric) -> Material {
         poisson: fabric.poisson,
         bend: fabric.bend,
         friction: fabric.friction,
+        ..Material::default()
     }
 }
 

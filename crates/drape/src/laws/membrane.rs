@@ -2,10 +2,10 @@
 //!
 //! With warp and weft tangents f_u = sum a_i x_i and f_v = sum b_i x_i, Green strain
 //! E_uu = (f_u.f_u - 1) / 2, E_vv = (f_v.f_v - 1) / 2, gamma = f_u.f_v, the energy per area is
-//! W = 1/2 (C11 E_uu^2 + C22 E_vv^2 + 2 C12 E_uu E_vv + G gamma^2), or what [`MembraneLaw`] makes of
+//! W = 1/2 (C11 E_uu^2 + C22 E_vv^2 + 2 C12 E_uu E_vv + G gamma^2), or what [`crate::laws::stretch`] makes of
 //! it (Volino, Magnenat-Thalmann and Faure 2009, section 3).
 
-use crate::laws::stretch::MembraneLaw;
+use crate::laws::stretch::StrainLaw;
 use nalgebra::Matrix3;
 use toile_geometry::{Vec2, Vec3};
 
@@ -70,12 +70,12 @@ impl MembraneElement {
     }
 
     /// Energy [J].
-    pub fn energy(&self, law: &MembraneLaw, x: [Vec3; 3]) -> f64 {
+    pub fn energy(&self, law: &impl StrainLaw, x: [Vec3; 3]) -> f64 {
         self.area * law.stress(green_strain(self.tangents(x))).1
     }
 
     /// Energy [J] and its gradient by the corners [N].
-    pub fn gradient(&self, law: &MembraneLaw, x: [Vec3; 3]) -> (f64, [Vec3; 3]) {
+    pub fn gradient(&self, law: &impl StrainLaw, x: [Vec3; 3]) -> (f64, [Vec3; 3]) {
         let [fu, fv] = self.tangents(x);
         let ([s_uu, s_vv, s_uv], density) = law.stress(green_strain([fu, fv]));
         let by_u = (fu * s_uu + fv * s_uv) * self.area;
@@ -86,7 +86,7 @@ impl MembraneElement {
 
     /// Gradient by one corner [N] and the positive semidefinite block of the Hessian there [N/m]:
     /// one corner of what [`Self::gradient`] and [`Self::hessian`] give for all three.
-    pub fn corner(&self, law: &MembraneLaw, x: [Vec3; 3], i: usize) -> (Vec3, Matrix3<f64>) {
+    pub fn corner(&self, law: &impl StrainLaw, x: [Vec3; 3], i: usize) -> (Vec3, Matrix3<f64>) {
         let [fu, fv] = self.tangents(x);
         let strain = green_strain([fu, fv]);
         let (s, _) = law.stress(strain);
@@ -113,7 +113,7 @@ impl MembraneElement {
     /// it buckles.
     pub fn hessian(
         &self,
-        law: &MembraneLaw,
+        law: &impl StrainLaw,
         x: [Vec3; 3],
         curvature: Curvature,
     ) -> [Matrix3<f64>; 6] {
@@ -197,6 +197,7 @@ fn tension_part([uu, vv, uv]: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::laws::stretch::MembraneLaw;
     use nalgebra::SMatrix;
 
     const STIFFNESS: [f64; 4] = [700.0, 450.0, 120.0, 60.0];

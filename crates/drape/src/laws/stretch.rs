@@ -12,6 +12,13 @@
 //! r(x) = 0 below zero, x^2 / (2 d) up to d = L / 50, then x - d / 2. Energy and stress are smooth,
 //! the stiffness is continuous and bounded, so a cloth may start far beyond its limit. How soft it
 //! is: at twice the load that reaches the limit, the strain is beyond it by 2 % of itself.
+//!
+//! In a tension field the first line is replaced by the least energy over all finer wrinkles (Pipkin
+//! 1986): min over A >= 0 of W(E + A), whose dual is max over stresses S >= 0 of
+//! S : E - 1/2 S : C^-1 : S. Taut where C E is a tension in every direction; slack where E shortens
+//! every direction: no energy; between, one tension T along the direction t that makes
+//! (t.E.t)^2 / (2 q(t)) largest, q(t) = t t : C^-1 : t t, T = t.E.t / q. The stress is never
+//! compressive and the energy is convex, so its Hessian is exact and positive semidefinite.
 
 /// Stiffness of a strain limit as a multiple of the membrane's own.
 const LIMIT_STIFFNESS: f64 = 100.0;
@@ -27,6 +34,16 @@ pub enum Compression {
     Full,
     /// It buckles finer than the mesh can show and carries nothing: the tension field.
     TensionField,
+}
+
+/// Stress and energy as functions of Green strain (E_uu, E_vv, gamma).
+pub trait StrainLaw {
+    /// Stress S_uu, S_vv, S_uv [N/m] and energy per area [J/m2].
+    fn stress(&self, strain: [f64; 3]) -> ([f64; 3], f64);
+
+    /// Slope of the stress by the strain, a symmetric positive semidefinite matrix given as
+    /// uu-uu, vv-vv, uu-vv, gamma-gamma, uu-gamma, vv-gamma [N/m].
+    fn slope(&self, strain: [f64; 3]) -> [f64; 6];
 }
 
 /// How a membrane resists stretch and shear.
@@ -60,38 +77,6 @@ impl MembraneLaw {
             && self.compression == Compression::Full
     }
 
-    /// Stress S_uu, S_vv, S_uv [N/m] and energy per area [J/m2] at a Green strain
-    /// E_uu, E_vv, gamma.
-    #[inline]
-    pub fn stress(&self, strain: [f64; 3]) -> ([f64; 3], f64) {
-        let [c11, c22, c12, g] = self.stiffness;
-        let [e_uu, e_vv, gamma] = strain;
-        let mut s = [c11 * e_uu + c12 * e_vv, c22 * e_vv + c12 * e_uu, g * gamma];
-        let mut energy = 0.5 * (s[0] * e_uu + s[1] * e_vv + s[2] * gamma);
-        if !self.is_linear() {
-            for direction in 0..2 {
-                let (stress, part, _) = self.beyond_line(direction, strain[direction]);
-                s[direction] += stress;
-                energy += part;
-            }
-        }
-        (s, energy)
-    }
-
-    /// Slope of the stress by the strain, a symmetric positive semidefinite matrix given as
-    /// uu-uu, vv-vv, uu-vv, gamma-gamma, uu-gamma, vv-gamma [N/m].
-    #[inline]
-    pub fn slope(&self, strain: [f64; 3]) -> [f64; 6] {
-        let [c11, c22, c12, g] = self.stiffness;
-        let mut slope = [c11, c22, c12, g, 0.0, 0.0];
-        if !self.is_linear() {
-            for direction in 0..2 {
-                slope[direction] += self.beyond_line(direction, strain[direction]).2;
-            }
-        }
-        slope
-    }
-
     /// What hardening and limit add along one direction: stress [N/m], energy [J/m2] and slope
     /// [N/m].
     fn beyond_line(&self, direction: usize, strain: f64) -> (f64, f64, f64) {
@@ -116,5 +101,287 @@ impl MembraneLaw {
             }
         }
         (stress, energy, slope)
+    }
+}
+
+impl StrainLaw for MembraneLaw {
+    #[inline]
+    fn stress(&self, strain: [f64; 3]) -> ([f64; 3], f64) {
+        let [c11, c22, c12, g] = self.stiffness;
+        let [e_uu, e_vv, gamma] = strain;
+        let mut s = [c11 * e_uu + c12 * e_vv, c22 * e_vv + c12 * e_uu, g * gamma];
+        let mut energy = 0.5 * (s[0] * e_uu + s[1] * e_vv + s[2] * gamma);
+        if !self.is_linear() {
+            if self.compression == Compression::TensionField {
+                match Field::of(self.stiffness, strain, s) {
+                    Field::Taut => {}
+                    Field::Slack => (s, energy) = ([0.0; 3], 0.0),
+                    Field::Wrinkled(wrinkle) => {
+                        s = wrinkle.along.map(|m| wrinkle.tension * m);
+                        energy = 0.5 * wrinkle.tension * wrinkle.tension * wrinkle.give;
+                    }
+                }
+            }
+            for direction in 0..2 {
+                let (stress, part, _) = self.beyond_line(direction, strain[direction]);
+                s[direction] += stress;
+                energy += part;
+            }
+        }
+        (s, energy)
+    }
+
+    #[inline]
+    fn slope(&self, strain: [f64; 3]) -> [f64; 6] {
+        let [c11, c22, c12, g] = self.stiffness;
+        let mut slope = [c11, c22, c12, g, 0.0, 0.0];
+        if !self.is_linear() {
+            if self.compression == Compression::TensionField {
+                let [e_uu, e_vv, gamma] = strain;
+                let s = [c11 * e_uu + c12 * e_vv, c22 * e_vv + c12 * e_uu, g * gamma];
+                match Field::of(self.stiffness, strain, s) {
+                    Field::Taut => {}
+                    Field::Slack => slope = [0.0; 6],
+                    Field::Wrinkled(wrinkle) => slope = wrinkle.slope(),
+                }
+            }
+            for direction in 0..2 {
+                slope[direction] += self.beyond_line(direction, strain[direction]).2;
+            }
+        }
+        slope
+    }
+}
+
+/// The state of a tension field.
+enum Field {
+    Taut,
+    Slack,
+    Wrinkled(Wrinkle),
+}
+
+/// One tension along a direction t.
+struct Wrinkle {
+    /// T [N/m].
+    tension: f64,
+    /// t t as (uu, vv, uv).
+    along: [f64; 3],
+    /// q = t t : C^-1 : t t [m/N].
+    give: f64,
+    /// dT/dtheta m + T dm/dtheta, and minus the second derivative of the energy by theta.
+    turn: ([f64; 3], f64),
+}
+
+/// Directions tried before the best is refined; between two of them q has one extremum at most
+/// unless warp and bias differ by more than a factor of 10^4.
+const DIRECTIONS: usize = 32;
+
+/// Newton and bisection steps of the refinement: 60 halvings reach rounding.
+const REFINEMENTS: usize = 60;
+
+impl Field {
+    fn of(stiffness: [f64; 4], [e_uu, e_vv, gamma]: [f64; 3], s: [f64; 3]) -> Self {
+        if s[0] + s[1] >= 0.0 && s[0] * s[1] >= s[2] * s[2] {
+            return Self::Taut;
+        }
+        if e_uu + e_vv <= 0.0 && e_uu * e_vv >= 0.25 * gamma * gamma {
+            return Self::Slack;
+        }
+        let [c11, c22, c12, g] = stiffness;
+        let determinant = c11 * c22 - c12 * c12;
+        let (s11, s22, s12, sg) = (
+            c22 / determinant,
+            c11 / determinant,
+            -c12 / determinant,
+            1.0 / g,
+        );
+        let a0 = (3.0 * (s11 + s22) + 2.0 * s12 + sg) / 8.0;
+        let a2 = 0.5 * (s11 - s22);
+        let a4 = (s11 + s22 - 2.0 * s12 - sg) / 8.0;
+        let (mean, half) = (0.5 * (e_uu + e_vv), 0.5 * (e_uu - e_vv));
+        // p = t.E.t and q with their first two derivatives by the angle.
+        let at = |angle: f64| {
+            let (sin, cos) = (2.0 * angle).sin_cos();
+            let (sin2, cos2) = (2.0 * sin * cos, cos * cos - sin * sin);
+            let p = [
+                mean + half * cos + 0.5 * gamma * sin,
+                gamma * cos - 2.0 * half * sin,
+                -4.0 * half * cos - 2.0 * gamma * sin,
+            ];
+            let q = [
+                a0 + a2 * cos + a4 * cos2,
+                -2.0 * a2 * sin - 4.0 * a4 * sin2,
+                -4.0 * a2 * cos - 16.0 * a4 * cos2,
+            ];
+            (p, q)
+        };
+        let width = std::f64::consts::PI / DIRECTIONS as f64;
+        let mut best = (f64::NEG_INFINITY, 0.0);
+        for k in 0..DIRECTIONS {
+            let angle = k as f64 * width;
+            let (p, q) = at(angle);
+            let value = p[0].max(0.0).powi(2) / q[0];
+            if value > best.0 {
+                best = (value, angle);
+            }
+        }
+        if !(best.0 > 0.0) {
+            return Self::Slack;
+        }
+        // d(p^2/q) = p (2 p' q - p q') / q^2 falls through zero at the best angle.
+        let (mut low, mut high) = (best.1 - width, best.1 + width);
+        let mut angle = best.1;
+        for _ in 0..REFINEMENTS {
+            let (p, q) = at(angle);
+            let rise = 2.0 * p[1] * q[0] - p[0] * q[1];
+            let slope = 2.0 * p[2] * q[0] + p[1] * q[1] - p[0] * q[2];
+            if rise > 0.0 {
+                low = angle;
+            } else {
+                high = angle;
+            }
+            let newton = angle - rise / slope;
+            let next = if slope < 0.0 && newton > low && newton < high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+            let done = (next - angle).abs() <= 1e-16;
+            angle = next;
+            if done {
+                break;
+            }
+        }
+        let (p, q) = at(angle);
+        let (sin, cos) = angle.sin_cos();
+        let tension = (p[0] / q[0]).max(0.0);
+        let turning = -p[1] / q[0];
+        let along = [cos * cos, sin * sin, sin * cos];
+        let turned = [-2.0 * sin * cos, 2.0 * sin * cos, cos * cos - sin * sin];
+        // The second derivative by theta of p^2 / (2 q) where the first is zero.
+        let bend = turning * p[1] + tension * p[2]
+            - tension * turning * q[1]
+            - 0.5 * tension * tension * q[2];
+        Self::Wrinkled(Wrinkle {
+            tension,
+            along,
+            give: q[0],
+            turn: (
+                [0, 1, 2].map(|k| turning * along[k] + tension * turned[k]),
+                -bend,
+            ),
+        })
+    }
+}
+
+impl Wrinkle {
+    /// dS/dE = m m / q + s s / (-d2W/dtheta2), s the change of stress as t turns.
+    fn slope(&self) -> [f64; 6] {
+        let (m, (s, b)) = (self.along, self.turn);
+        let soft = if b > 0.0 { 1.0 / b } else { 0.0 };
+        [(0, 0), (1, 1), (0, 1), (2, 2), (0, 2), (1, 2)]
+            .map(|(i, j)| m[i] * m[j] / self.give + s[i] * s[j] * soft)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix3;
+    use proptest::prelude::*;
+
+    fn laws() -> Vec<MembraneLaw> {
+        let plain = MembraneLaw::linear([700.0, 450.0, 120.0, 60.0]);
+        let hard = MembraneLaw {
+            hardening: [300.0, 90.0],
+            ..plain
+        };
+        let limited = MembraneLaw {
+            limit: [0.03, 0.1],
+            ..hard
+        };
+        let field = |law: MembraneLaw| MembraneLaw {
+            compression: Compression::TensionField,
+            ..law
+        };
+        vec![plain, hard, limited, field(plain), field(limited)]
+    }
+
+    fn full([a, b, c, d, e, f]: [f64; 6]) -> Matrix3<f64> {
+        Matrix3::new(a, c, e, c, b, f, e, f, d)
+    }
+
+    proptest! {
+        #[test]
+        fn stress_is_the_slope_of_the_energy_and_slope_that_of_the_stress(
+            strain in prop::array::uniform3(-0.6f64..0.6), which in 0usize..5,
+        ) {
+            let law = laws()[which];
+            let (stress, energy) = law.stress(strain);
+            let slope = full(law.slope(strain));
+            prop_assert!(energy >= 0.0);
+            prop_assert!(slope.symmetric_eigenvalues().min() >= -1e-6 * slope.norm());
+            let step = 1e-6;
+            for k in 0..3 {
+                let (mut up, mut down) = (strain, strain);
+                up[k] += step;
+                down[k] -= step;
+                let (high, low) = (law.stress(up), law.stress(down));
+                let got = (high.1 - low.1) / (2.0 * step);
+                prop_assert!((got - stress[k]).abs() < 1e-4 * (1.0 + stress[k].abs()), "{} {}", got, stress[k]);
+                // Slopes jump where taut meets wrinkled and where a limit sets in.
+                let smooth = full(law.slope(up)) - full(law.slope(down));
+                if smooth.norm() < 0.01 * slope.norm() {
+                    for i in 0..3 {
+                        let got = (high.0[i] - low.0[i]) / (2.0 * step);
+                        prop_assert!((got - slope[(i, k)]).abs() < 0.02 * slope.norm() + 1e-3);
+                    }
+                }
+            }
+        }
+
+        #[test]
+        fn a_tension_field_never_pushes_and_is_the_least_energy_over_wrinkles(
+            strain in prop::array::uniform3(-0.3f64..0.3),
+            wrinkle in prop::array::uniform3(-0.5f64..0.5),
+        ) {
+            let plain = laws()[0];
+            let field = laws()[3];
+            let (s, energy) = field.stress(strain);
+            prop_assert!(s[0] + s[1] >= -1e-9 && s[0] * s[1] - s[2] * s[2] >= -1e-6);
+            // Any wrinkle strain w w^T, here of rank one or two, costs at least as much.
+            let [a, b, c] = wrinkle;
+            let over = [
+                strain[0] + a * a + c * c,
+                strain[1] + b * b,
+                strain[2] + 2.0 * a * b,
+            ];
+            prop_assert!(energy <= plain.stress(over).1 + 1e-9);
+            prop_assert!(energy <= plain.stress(strain).1 + 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_limit_is_as_soft_as_it_says() {
+        let c = 1000.0;
+        let law = MembraneLaw {
+            limit: [0.05, f64::INFINITY],
+            ..MembraneLaw::linear([c, c, 0.0, 100.0])
+        };
+        let limit = 0.05 + 0.5 * 0.05 * 0.05;
+        // Bisection for the strain at twice the stress of the limit.
+        let (mut low, mut high) = (limit, 2.0 * limit);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if law.stress([middle, 0.0, 0.0]).0[0] < 2.0 * c * limit {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        assert!((low / limit - 1.02).abs() < 2e-3, "{}", low / limit);
+        let (stress, energy) = law.stress([40.0, 0.0, 0.0]);
+        assert!(stress[0].is_finite() && energy.is_finite());
+        assert!(law.slope([40.0, 0.0, 0.0])[0] < 102.0 * c);
     }
 }

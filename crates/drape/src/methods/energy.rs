@@ -44,7 +44,13 @@ impl EnergyWatch {
             .filter(|&(_, &pinned)| !pinned)
             .map(|(m, _)| m)
             .sum();
-        let root = self.before.max(0.0).sqrt() + model.gravity.norm() * (0.5 * mass).sqrt() * step;
+        let lightest = model
+            .materials
+            .iter()
+            .map(|m| m.density)
+            .fold(f64::INFINITY, f64::min);
+        let push = model.gravity.norm() + model.air.push(lightest);
+        let root = self.before.max(0.0).sqrt() + push * (0.5 * mass).sqrt() * step;
         let bound = SWING * (root * root + 0.5 * mass * STILL * STILL);
         self.energy(model, state, workspace) <= bound
     }
@@ -57,6 +63,7 @@ impl EnergyWatch {
             target: &state.positions,
         };
         workspace.fit(model);
+        workspace.terms.hold_still(model, state);
         workspace.contacts.refresh(model, state, &state.positions);
         let gravity: f64 = state
             .positions

@@ -54,7 +54,7 @@ const MOST_SUBSTEPS: f64 = 1e6;
 
 /// Net force on every vertex: all forces of the model at a state, zero at pins [N].
 pub fn forces<'a>(model: &Model, state: &State, workspace: &'a mut Workspace) -> &'a [Vec3] {
-    workspace.net_force(model, state)
+    workspace.force_in_motion(model, state)
 }
 
 /// The same, and slides the friction anchors to where the cloth is now. Once a substep.

@@ -1,6 +1,7 @@
 //! The guard round every method: bad states are refused, failed steps undone, results checked.
 
 use super::{Method, StepReport};
+use crate::step_terms::relax;
 use crate::{DrapeError, Model, State};
 
 /// A method whose steps either end finite or leave the state as it was.
@@ -32,6 +33,9 @@ impl<M: Method> Method for Guarded<M> {
         }
         self.start.clone_from(state);
         let result = self.method.advance(model, state, step);
+        if result.is_ok() {
+            relax(model, state, state.time - self.start.time);
+        }
         let result = match (result, state.first_not_finite()) {
             (Ok(_), Some(vertex)) => {
                 let stage = "end of a step";

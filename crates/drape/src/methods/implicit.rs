@@ -14,6 +14,11 @@ use toile_geometry::Vec3;
 
 /// A rule of time integration, as a minimum and what follows from it.
 pub trait TimeRule: Send {
+    /// How long after the start of the step its unknown lies [s].
+    fn reach(h: f64) -> f64 {
+        h
+    }
+
     /// Inertia's weight per mass b [1/s2].
     fn weight(model: &Model, state: &State, h: f64) -> f64;
 
@@ -169,7 +174,10 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             weight,
             limits: self.limits,
         };
+        let rate = 1.0 / R::reach(h);
+        self.workspace.terms.hold(model, state, rate);
         let report = self.solver.lower(&problem, state, &mut self.workspace);
+        self.workspace.terms.hold_still(model, state);
         R::finish(&self.before, state, h);
         if let Some(vertex) = state.first_not_finite().or_else(|| runaway(state)) {
             return Err(Failure::Runaway(vertex));

@@ -46,6 +46,10 @@ impl TimeRule for Euler {
 pub struct Midpoint;
 
 impl TimeRule for Midpoint {
+    fn reach(h: f64) -> f64 {
+        0.5 * h
+    }
+
     fn weight(model: &Model, _state: &State, h: f64) -> f64 {
         (4.0 + 2.0 * model.air_drag * h) / (h * h)
     }
