@@ -31,6 +31,7 @@ pub struct BlockDescent<const CHEBYSHEV: bool> {
     before: Vec<Vec3>,
     two_before: Vec<Vec3>,
     best: Vec<Vec3>,
+    lagged: Vec<Vec3>,
 }
 
 /// Contacts by the vertices they act on.
@@ -95,24 +96,34 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
     fn local(
         &self,
         problem: &Problem,
-        contacts: &Contacts,
+        workspace: &Workspace,
         x: &[Vec3],
         v: usize,
     ) -> (Vec3, Matrix3<f64>) {
-        let model = problem.model;
+        let (model, terms) = (problem.model, &workspace.terms);
         let weight = problem.inertia.weight[v];
-        let bend = model.bending.row_times(v, x);
-        let mut gradient =
-            bend - model.gravity * model.mass[v] + (x[v] - problem.inertia.target[v]) * weight;
-        let mut hessian = Matrix3::identity() * (weight + model.bending.diagonal(v));
+        let bending = terms.bending(model);
+        let mut gradient = bending.row_times(v, x) - model.gravity * model.mass[v]
+            + (x[v] - problem.inertia.target[v]) * weight;
+        let mut hessian = Matrix3::identity() * (weight + bending.diagonal(v));
+        if let Some(lagged) = self.lagged.get(v) {
+            gradient += lagged;
+        }
         let uses = model.corner_start[v] as usize..model.corner_start[v + 1] as usize;
         for &corner in &model.corners[uses] {
             let (t, i) = (corner as usize / 3, corner as usize % 3);
-            let law = &model.laws[model.material[t] as usize];
             let places = model.triangles[t].map(|u| x[u as usize]);
-            let (g, h) = model.elements[t].corner(law, places, i);
+            let (g, h) = model.elements[t].corner(&terms.law(model, t), places, i);
             gradient += g;
             hessian += h;
+            if model.air.acts() {
+                let mut blocks = [Matrix3::zeros(); 6];
+                terms.add_hessian(t, &mut blocks);
+                let starts = model.triangles[t].map(|u| self.before[u as usize]);
+                let moved = places.iter().sum::<Vec3>() - starts.iter().sum::<Vec3>();
+                gradient += blocks[0] * moved;
+                hessian += blocks[0];
+            }
         }
         for (e, other) in elastics_of(model, v) {
             let gap = x[v] - end_place(other, x);
@@ -121,7 +132,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
             hessian += Matrix3::identity() * secant;
         }
         for &(at, w) in self.touching.of(v) {
-            let contact = &contacts.active[at as usize];
+            let contact = &workspace.contacts.active[at as usize];
             let place = model.samples[contact.sample as usize].place(x);
             let (_, g, h) = contact.law.evaluate(&contact.plane, place);
             gradient += g * w;
@@ -130,11 +141,26 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
         (-gradient, hessian)
     }
 
+    /// Gradient of folds and air where the sweep starts, less what [`Self::local`] finds itself of
+    /// it: their part that is linear about there.
+    fn lag(&mut self, model: &Model, workspace: &Workspace) {
+        self.lagged.clear();
+        let plain = model.viscous_bending.is_none() && !model.keeps_strain();
+        if plain && !model.air.acts() {
+            return;
+        }
+        let (terms, x) = (&workspace.terms, &self.before);
+        let (held, elastic) = (terms.bending(model), &model.bending);
+        self.lagged
+            .extend((0..x.len()).map(|v| elastic.row_times(v, x) - held.row_times(v, x)));
+        terms.add_gradient(model, x, &mut self.lagged);
+    }
+
     /// Every vertex once; returns the sum of the squared forces met [N2].
     fn sweep(
         &mut self,
         problem: &Problem,
-        contacts: &Contacts,
+        workspace: &Workspace,
         x: &mut [Vec3],
         longest: f64,
     ) -> f64 {
@@ -153,7 +179,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
                             (Vec3::zeros(), 0.0)
                         } else {
                             let (force, hessian) =
-                                this.local(problem, contacts, places, v as usize);
+                                this.local(problem, workspace, places, v as usize);
                             let step = hessian.cholesky().map(|c| c.solve(&force));
                             let step = step.unwrap_or_else(Vec3::zeros);
                             (step.cap_magnitude(longest), force.norm_squared())
@@ -254,7 +280,8 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
             }
             self.two_before.clone_from(&self.before);
             self.before.clone_from(&state.positions);
-            let squares = self.sweep(problem, &workspace.contacts, &mut state.positions, longest);
+            self.lag(model, workspace);
+            let squares = self.sweep(problem, workspace, &mut state.positions, longest);
             report.iterations += 1;
             report.gradient = squares.sqrt();
             if report.gradient <= problem.limits.tolerance || !squares.is_finite() {

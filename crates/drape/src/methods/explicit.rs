@@ -46,9 +46,6 @@ pub struct Explicit<S> {
 /// stiffens as it stretches (10 % of stretch raises the frequency by 8 %).
 const SHARE: f64 = 0.9;
 
-/// Products with the stiffness that automatic substeps take to find the largest frequency.
-const SEARCH: usize = 30;
-
 /// Substeps of one step at the most: more is a mesh with slivers, not a simulation.
 const MOST_SUBSTEPS: f64 = 1e6;
 
@@ -92,13 +89,15 @@ impl<S: Scheme> Explicit<S> {
         if let Some(given) = self.substeps {
             return Ok(given.max(1));
         }
-        let fastest = self.search.run(model, state, &mut self.workspace, SEARCH);
-        let frequency = fastest.frequency.hypot(contact_frequency(model));
-        let substeps = (step * frequency / (SHARE * S::LIMIT)).ceil();
+        let limits = [S::LIMIT, contact_frequency(model)];
+        let (longest, vertex) = self
+            .search
+            .stable_step(model, state, &mut self.workspace, limits);
+        let substeps = (step / (SHARE * longest)).ceil();
         if substeps > MOST_SUBSTEPS || !substeps.is_finite() {
             return Err(DrapeError::TooStiff {
                 stage: S::STAGE,
-                vertex: fastest.vertex,
+                vertex,
                 substeps,
             });
         }

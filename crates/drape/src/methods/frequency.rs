@@ -28,6 +28,9 @@ pub struct Fastest {
 /// meshes tried.
 const THOROUGH: usize = 160;
 
+/// Iterations of a search before every step of an explicit method: right to a few per mille.
+const QUICK: usize = 30;
+
 /// The largest angular frequency of the free vertices about a state [rad/s]: the square root of
 /// the largest eigenvalue of M^-1 K, K the positive semidefinite Hessian of membrane, bending,
 /// elastics and the contacts that press at that state. At rest it is exact.
@@ -69,6 +72,42 @@ impl FrequencySearch {
     /// Searches with a fixed start and at most `iterations` products with K; the result is a
     /// lower bound that is within a few per mille after 30.
     pub fn run(
+        &mut self,
+        model: &Model,
+        state: &State,
+        workspace: &mut Workspace,
+        iterations: usize,
+    ) -> Fastest {
+        workspace.terms.hold_still(model, state);
+        self.search(model, state, workspace, iterations)
+    }
+
+    /// A substep of w h = `limit` undamped, shortened for viscosity [s]: with the damping ratio
+    /// xi of the fastest vibration, h = limit / w (sqrt(1 + xi^2) - xi), the limit of a leapfrog
+    /// whose damping lags (Belytschko, Liu and Moran 2000, section 6.2). `extra` is a frequency to
+    /// be added, as of contact.
+    pub fn stable_step(
+        &mut self,
+        model: &Model,
+        state: &State,
+        workspace: &mut Workspace,
+        [limit, extra]: [f64; 2],
+    ) -> (f64, usize) {
+        let still = self.run(model, state, workspace, QUICK);
+        let w = still.frequency.hypot(extra);
+        let mut ratio = 0.0;
+        if w > 0.0 && (model.has_viscous_stretch() || model.viscous_bending.is_some()) {
+            // K + w C has the eigenvalue w^2 + 2 xi w^2 for the same vibration.
+            workspace.terms.hold(model, state, w);
+            let damped = self.search(model, state, workspace, QUICK).frequency;
+            ratio = (damped * damped - still.frequency * still.frequency).max(0.0) / (2.0 * w * w);
+            workspace.terms.hold_still(model, state);
+        }
+        let shortened = (1.0 + ratio * ratio).sqrt() - ratio;
+        (limit / w * shortened, still.vertex)
+    }
+
+    fn search(
         &mut self,
         model: &Model,
         state: &State,

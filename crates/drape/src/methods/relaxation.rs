@@ -93,6 +93,7 @@ impl Relaxation {
             target: &state.positions,
         };
         workspace.fit(model);
+        workspace.terms.hold_still(model, state);
         workspace.contacts.refresh(model, state, &state.positions);
         workspace.fill_gradient(model, &state.positions, Some(&inertia));
         workspace.fill_hessian(model, &state.positions, &inertia, Curvature::Convex);
@@ -173,6 +174,7 @@ impl Method for Relaxation {
         _step: f64,
     ) -> Result<StepReport, DrapeError> {
         state.follow_samples(model);
+        state.velocities.fill(Vec3::zeros());
         let mut run = self.resume(model, state);
         let first = run.iterations;
         for _ in 0..SWING {
@@ -184,7 +186,6 @@ impl Method for Relaxation {
         if let Some(vertex) = state.first_not_finite() {
             return Err(DrapeError::NotFinite { stage, vertex });
         }
-        state.velocities.fill(Vec3::zeros());
         let report = StepReport {
             pieces: 1,
             iterations: run.iterations - first,
