@@ -28,6 +28,7 @@ mod sparse;
 mod state;
 mod step;
 mod step_terms;
+mod xpbd;
 
 pub use carry::Carry;
 pub use cloth::Cloth;
@@ -52,3 +53,4 @@ pub use sew::{SewRun, SewSettings};
 pub use state::{Memory, State};
 pub use step::{StepSettings, step_in_time};
 pub use step_terms::SettledStrain;
+pub use xpbd::{ConstraintCount, Xpbd, XpbdReport, XpbdSettings};

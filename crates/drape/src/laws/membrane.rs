@@ -60,6 +60,16 @@ impl MembraneElement {
         })
     }
 
+    /// Corners in the material plane, the first at the origin [m]: what [`Self::new`] was made
+    /// from, but for its place.
+    pub fn rest(&self) -> [Vec2; 3] {
+        // The gradients of the weights of corners 1 and 2 are dual to the edges from corner 0.
+        let determinant = self.warp[1] * self.weft[2] - self.warp[2] * self.weft[1];
+        let first = Vec2::new(self.weft[2], -self.warp[2]) / determinant;
+        let second = Vec2::new(-self.weft[1], self.warp[1]) / determinant;
+        [Vec2::zeros(), first, second]
+    }
+
     /// The tangents f_u and f_v.
     pub fn tangents(&self, x: [Vec3; 3]) -> [Vec3; 2] {
         let [a, b] = [self.warp, self.weft];
@@ -320,6 +330,9 @@ mod tests {
             Vec2::new(0.11, 0.24),
         ];
         let element = MembraneElement::new(rest).expect("has area");
+        for (got, corner) in element.rest().iter().zip(rest) {
+            assert!((got - (corner - rest[0])).norm() < 1e-15);
+        }
         let turn = nalgebra::Rotation3::from_euler_angles(0.3, -1.1, 2.0);
         let rigid = rest.map(|p| turn * Vec3::new(p.x, p.y, 0.0) + Vec3::new(1.0, 2.0, 3.0));
         assert!(element.energy(&law(), rigid) < 1e-20);

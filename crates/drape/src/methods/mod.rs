@@ -105,11 +105,13 @@ pub enum MethodKind {
     DynamicRelaxation,
     /// Straight to rest by pseudo-transient continuation; time does not run.
     Rest,
+    /// Extended position based dynamics: [`crate::Xpbd`].
+    Xpbd,
 }
 
 impl MethodKind {
     /// Every method with its name in files.
-    pub const ALL: [(&'static str, Self); 14] = [
+    pub const ALL: [(&'static str, Self); 15] = [
         ("forward-euler", Self::ForwardEuler),
         ("symplectic-euler", Self::SymplecticEuler),
         ("velocity-verlet", Self::VelocityVerlet),
@@ -124,6 +126,7 @@ impl MethodKind {
         ("chebyshev-block-descent", Self::ChebyshevBlockDescent),
         ("dynamic-relaxation", Self::DynamicRelaxation),
         ("rest", Self::Rest),
+        ("xpbd", Self::Xpbd),
     ];
 
     /// Its name in files.
@@ -210,6 +213,7 @@ impl MethodSettings {
             MethodKind::DynamicRelaxation => Guarded::boxed(relaxation::Relaxation::new(self)),
             MethodKind::ImplicitEuler => Guarded::boxed(implicit_euler::ImplicitEuler::new(self)),
             MethodKind::Rest => Guarded::boxed(rest::Rest::new(self)),
+            MethodKind::Xpbd => Guarded::boxed(crate::xpbd::XpbdMethod::new(self)),
         }
     }
 }

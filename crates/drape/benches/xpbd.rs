@@ -1,0 +1,104 @@
+//! How long a frame of XPBD takes: 20 substeps of 1/1200 s on sheets of some sizes, free and on a
+//! floor, with one thread and two.
+#![allow(missing_docs, clippy::print_stdout, clippy::unwrap_used)]
+
+use std::sync::Arc;
+use std::time::Instant;
+use toile_drape::{Cloth, Collider, Material, Model, State, Xpbd};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
+
+fn sheet(n: usize, cell: f64) -> TriangleMesh {
+    let mut mesh = TriangleMesh::default();
+    for j in 0..=n {
+        for i in 0..=n {
+            let (u, v) = (cell * i as f64, cell * j as f64);
+            let bump = 0.2 * cell * (9.0 * u + 7.0 * v).sin();
+            mesh.positions.push(Vec3::new(u, 6e-3 + bump, v));
+        }
+    }
+    let at = |i: usize, j: usize| (j * (n + 1) + i) as u32;
+    for j in 0..n {
+        for i in 0..n {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            if (i + j) % 2 == 0 {
+                mesh.triangles.extend([[a, b, c], [a, c, d]]);
+            } else {
+                mesh.triangles.extend([[a, b, d], [b, c, d]]);
+            }
+        }
+    }
+    mesh
+}
+
+fn floor() -> Collider {
+    let mesh = TriangleMesh {
+        positions: vec![
+            Vec3::new(-2.0, 0.0, -2.0),
+            Vec3::new(-2.0, 0.0, 2.0),
+            Vec3::new(2.0, 0.0, 2.0),
+            Vec3::new(2.0, 0.0, -2.0),
+        ],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    };
+    Collider::new(Arc::new(SurfaceTree::new(mesh)))
+}
+
+/// Median milliseconds of a frame.
+fn time(model: &Model, threads: usize, frames: usize) -> f64 {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
+    pool.install(|| {
+        let positions = sheet_positions(model);
+        let mut state = State::at_rest(model, positions);
+        let mut solver = Xpbd::new(model);
+        let mut times = Vec::new();
+        for _ in 0..frames {
+            let start = Instant::now();
+            solver
+                .advance(model, &mut state, 1.0 / 1200.0, 20, 0.1)
+                .unwrap();
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+        }
+        times.sort_by(f64::total_cmp);
+        times[times.len() / 2]
+    })
+}
+
+fn sheet_positions(model: &Model) -> Vec<Vec3> {
+    let n = (model.vertex_count() as f64).sqrt() as usize - 1;
+    sheet(n, 1.0 / n as f64).positions
+}
+
+fn main() {
+    println!("vertices  triangles  scene       1 thread [ms]  2 threads [ms]  ratio  triangles/s");
+    for n in [31, 99, 172] {
+        for (name, bend, contact) in [
+            ("hang", 1.5e-5, false),
+            ("floor", 1.5e-5, true),
+            ("stiff bend", 2e-3, false),
+        ] {
+            let material = Material {
+                bend: [bend; 3],
+                ..Material::default()
+            };
+            let cloth = Cloth::from_mesh("sheet", &sheet(n, 1.0 / n as f64), material).unwrap();
+            let mut model = Model::new("sheet", &cloth).unwrap();
+            model.pinned[0] = true;
+            model.pinned[n] = true;
+            if contact {
+                model.colliders.push(floor());
+            }
+            let frames = 400_000 / model.vertex_count();
+            let (one, two) = (time(&model, 1, frames), time(&model, 2, frames));
+            let triangles = model.triangles.len();
+            println!(
+                "{:8}  {triangles:9}  {name:10}  {one:13.3}  {two:14.3}  {:5.2}  {:.2e}",
+                model.vertex_count(),
+                one / two,
+                triangles as f64 * 20.0 / (two * 1e-3)
+            );
+        }
+    }
+}

@@ -1,0 +1,258 @@
+//! Bending: a force where that is stable, constraints where it is not.
+//!
+//! The energy is x . K x / 2 with a constant K that is the same for x, y and z. As a force it costs
+//! one row of K a vertex, but a substep h must keep h w_max < 2, w_max^2 the largest eigenvalue of
+//! W K. Where it does not, each triangle's curvatures kappa = B x are constraints with compliance
+//! (A D)^-1: the 3x3 system B W B^T + (A D)^-1 / h^2 is constant, one for x, y and z, and is
+//! inverted before the run (Macklin, Müller and Chentanez 2016, equation 18, for the block).
+
+use super::lanes::{Corner, LANES, Point, Row, Triple, add_scaled, gather, parts, scatter, sub};
+use super::membrane::inverse_mass;
+use crate::Model;
+use crate::laws::bending::{BendingStencil, RestSheet};
+use nalgebra::Matrix3;
+use pulp::Simd;
+use toile_geometry::Vec2;
+
+/// K as rows over the slots of the vertices, without its diagonal.
+#[derive(Clone, Debug, Default)]
+pub struct BendingForce {
+    start: Vec<u32>,
+    /// Slot of the other vertex and the entry of K [N/m].
+    entries: Vec<(u32, f32)>,
+    /// Bound of w_max [1/s].
+    pub frequency: f64,
+}
+
+impl BendingForce {
+    /// From the model; `vertex_of` names the vertex in each slot, `slot_of` the slot of each
+    /// vertex.
+    pub fn new(model: &Model, vertex_of: &[Option<u32>], slot_of: &[u32]) -> Self {
+        let mut force = Self {
+            start: vec![0],
+            ..Self::default()
+        };
+        let mut largest = 0f64;
+        for vertex in vertex_of {
+            if let Some(v) = *vertex
+                && !model.pinned[v as usize]
+            {
+                let (columns, values) = model.bending.row_entries(v as usize);
+                let mut sum = 0.0;
+                for (&column, &value) in columns.iter().zip(values) {
+                    sum += value.abs();
+                    if column != v && value != 0.0 {
+                        force
+                            .entries
+                            .push((slot_of[column as usize], value as f32));
+                    }
+                }
+                // Gershgorin's bound of the eigenvalues of W K.
+                largest = largest.max(sum * inverse_mass(model, v));
+            }
+            force.start.push(force.entries.len() as u32);
+        }
+        force.frequency = largest.sqrt();
+        force
+    }
+
+    /// Minus the force on the vertex in a slot [N]: K x, taken over differences because the rows of
+    /// K sum to zero.
+    #[inline(always)]
+    pub fn row(&self, slot: usize, points: &[Point]) -> Point {
+        let here = points[slot];
+        let mut sum = [0.0f32; 4];
+        for &(other, value) in
+            &self.entries[self.start[slot] as usize..self.start[slot + 1] as usize]
+        {
+            let there = points[other as usize];
+            for k in 0..4 {
+                sum[k] += value * (there[k] - here[k]);
+            }
+        }
+        sum
+    }
+
+    /// Number of entries.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+}
+
+/// The curvature stencils of a model, those without stiffness left out: triangle and stencil.
+pub fn stencils(model: &Model) -> Vec<(u32, BendingStencil)> {
+    let rest: Vec<[Vec2; 3]> = model.elements.iter().map(|e| e.rest()).collect();
+    let positions = vec![toile_geometry::Vec3::zeros(); model.vertex_count()];
+    let topology = model.mesh(&positions).topology();
+    let sheet = RestSheet {
+        triangles: &model.triangles,
+        rest: &rest,
+        topology: &topology,
+    };
+    (0..model.triangles.len())
+        .filter(|&t| stiffness(model, t).is_some())
+        .filter_map(|t| Some((t as u32, sheet.stencil(t)?)))
+        .collect()
+}
+
+/// Least bending stiffness of a direction as a share of the largest: its compliance must be finite.
+const LEAST_SHARE: f64 = 1e-6;
+
+/// A D of a triangle for x_uu, x_uv, x_vv [N m3]; nothing where it has none.
+fn stiffness(model: &Model, triangle: usize) -> Option<[f64; 3]> {
+    let [warp, weft, twist] = model.materials[model.material[triangle] as usize].bending();
+    let rows = [warp, 2.0 * twist, weft].map(|d| d * model.elements[triangle].area);
+    let largest = rows.iter().copied().fold(0.0, f64::max);
+    (largest > 0.0).then(|| rows.map(|d| d.max(LEAST_SHARE * largest)))
+}
+
+/// Sixteen stencils of the same size without a shared vertex.
+#[derive(Clone, Debug)]
+pub struct BendingBatch {
+    corners: Vec<Corner>,
+    /// Weights of each corner in the three curvatures [1/m2].
+    weights: Vec<[Row; 3]>,
+    /// Inverse of the system: 11, 22, 33, 12, 13, 23.
+    inverse: [Row; 6],
+    /// (A D)^-1.
+    compliance: [Row; 3],
+    /// B W B^T of each lane, and its compliance, in double precision.
+    exact: Vec<(Matrix3<f64>, [f64; 3])>,
+}
+
+/// What a batch has summed up to in a substep: three curvatures for x, y and z.
+pub type Sums = [Triple<Row>; 3];
+
+impl BendingBatch {
+    /// A batch of up to sixteen stencils; `local` as for membranes.
+    pub fn new(
+        model: &Model,
+        members: &[&(u32, BendingStencil)],
+        local: impl Fn(u32) -> u32,
+    ) -> Self {
+        let size = members.first().map_or(0, |(_, s)| s.vertices.len());
+        let mut batch = Self {
+            corners: vec![Corner([0; LANES]); size],
+            weights: vec![[Row::splat(0.0); 3]; size],
+            inverse: [Row::splat(0.0); 6],
+            compliance: [Row::splat(0.0); 3],
+            exact: Vec::with_capacity(members.len()),
+        };
+        for (lane, (triangle, stencil)) in members.iter().enumerate() {
+            let mut matrix = Matrix3::zeros();
+            for (k, (&v, weights)) in stencil.vertices.iter().zip(&stencil.weights).enumerate() {
+                batch.corners[k].0[lane] = local(v);
+                let b = nalgebra::Vector3::from(*weights);
+                matrix += b * b.transpose() * inverse_mass(model, v);
+                for row in 0..3 {
+                    batch.weights[k][row].0[lane] = weights[row] as f32;
+                }
+            }
+            let stiffness = stiffness(model, *triangle as usize).unwrap_or([1.0; 3]);
+            let compliance = stiffness.map(|d| 1.0 / d);
+            for row in 0..3 {
+                batch.compliance[row].0[lane] = compliance[row] as f32;
+            }
+            batch.exact.push((matrix, compliance));
+        }
+        batch
+    }
+
+    /// Stencils in it.
+    pub fn len(&self) -> usize {
+        self.exact.len()
+    }
+
+    /// Inverts the systems for a substep.
+    pub fn set_step(&mut self, kappa: f64) {
+        for (lane, (matrix, compliance)) in self.exact.iter().enumerate() {
+            let mut matrix = *matrix;
+            for k in 0..3 {
+                matrix[(k, k)] += compliance[k] * kappa;
+            }
+            let inverse = matrix.try_inverse().unwrap_or_else(Matrix3::zeros);
+            for (row, (i, j)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
+                .into_iter()
+                .enumerate()
+            {
+                self.inverse[row].0[lane] = inverse[(i, j)] as f32;
+            }
+        }
+    }
+}
+
+/// Solves every batch once, in order; arguments as for membranes.
+#[inline(always)]
+pub fn solve<S: Simd>(
+    simd: S,
+    batches: &[BendingBatch],
+    mut sums: Option<&mut [Sums]>,
+    kappa: f32,
+    points: &mut [Point],
+) {
+    for (at, batch) in batches.iter().enumerate() {
+        for part in 0..parts::<S>() {
+            let sums = sums.as_deref_mut().map(|sums| &mut sums[at]);
+            solve_part(simd, batch, part, sums, kappa, points);
+        }
+    }
+}
+
+#[inline(always)]
+fn solve_part<S: Simd>(
+    simd: S,
+    batch: &BendingBatch,
+    part: usize,
+    mut sums: Option<&mut Sums>,
+    kappa: f32,
+    points: &mut [Point],
+) {
+    let Some(first) = batch.corners.first() else {
+        return;
+    };
+    let row = |row: &Row| row.part::<S>(part);
+    let zero = simd.splat_f32s(0.0);
+    let mut curvature = [[zero; 3]; 3];
+    let [x, y, z, _] = gather(simd, points, first, part);
+    let origin = [x, y, z];
+    for (corner, weights) in batch.corners.iter().zip(&batch.weights).skip(1) {
+        let [x, y, z, _] = gather(simd, points, corner, part);
+        let d = sub(simd, [x, y, z], origin);
+        for k in 0..3 {
+            curvature[k] = add_scaled(simd, curvature[k], d, row(&weights[k]));
+        }
+    }
+    if let Some(sums) = &sums {
+        for k in 0..3 {
+            let soft = simd.mul_f32s(row(&batch.compliance[k]), simd.splat_f32s(kappa));
+            let sum = sums[k].each_ref().map(row);
+            curvature[k] = add_scaled(simd, curvature[k], sum, soft);
+        }
+    }
+    let [t11, t22, t33, t12, t13, t23] = batch.inverse.each_ref().map(row);
+    let lines = [[t11, t12, t13], [t12, t22, t23], [t13, t23, t33]];
+    let change = lines.map(|line| {
+        let sum = curvature[0].map(|c| simd.mul_f32s(c, line[0]));
+        let sum = add_scaled(simd, sum, curvature[1], line[1]);
+        add_scaled(simd, sum, curvature[2], line[2])
+    });
+    if let Some(sums) = &mut sums {
+        for k in 0..3 {
+            for axis in 0..3 {
+                let sum = simd.sub_f32s(row(&sums[k][axis]), change[k][axis]);
+                sums[k][axis].set_part::<S>(part, sum);
+            }
+        }
+    }
+    for (corner, weights) in batch.corners.iter().zip(&batch.weights) {
+        let [x, y, z, w] = gather(simd, points, corner, part);
+        let share = simd.sub_f32s(zero, w);
+        let mut p = [x, y, z];
+        for k in 0..3 {
+            let weight = simd.mul_f32s(share, row(&weights[k]));
+            p = add_scaled(simd, p, change[k], weight);
+        }
+        let [x, y, z] = p;
+        scatter(simd, points, corner, part, [x, y, z, w]);
+    }
+}

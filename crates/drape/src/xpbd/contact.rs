@@ -1,0 +1,290 @@
+//! Contact and friction as constraints on single points of the cloth, and elastics.
+//!
+//! A contact is the inequality C = n . sum a_i x_i - d >= 0 with compliance 1/k. Friction is
+//! position based (Müller et al. 2020, section 3.5): the tangential displacement since the substep
+//! began is taken back by an impulse of at most mu times the normal one, so a point that sticks does
+//! not creep. Contacts of cloth with cloth are stencils of the same form with other weights.
+
+use super::lanes::Point;
+use crate::Model;
+use toile_geometry::Vec3;
+
+/// A plane that a point may not cross.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Touch {
+    /// Outward unit normal; zero while nothing is near.
+    pub normal: [f32; 3],
+    /// d [m].
+    pub level: f32,
+    /// Where the surface was looked at [m].
+    pub place: [f32; 3],
+    /// Square of how far from there the plane still holds [m2]; negative: look again.
+    pub radius2: f32,
+    /// 1 / k [m/N].
+    pub softness: f32,
+    /// Friction coefficient.
+    pub friction: f32,
+    /// Distance kept from the surface [m].
+    pub offset: f32,
+    /// The sample of the model, or [`NO_SAMPLE`].
+    pub sample: u32,
+    /// Normal impulse of the substep over its square [N s2].
+    pub push: f32,
+    /// Tangential impulse likewise.
+    pub rub: [f32; 3],
+}
+
+/// No sample of the model stands behind a touch.
+pub const NO_SAMPLE: u32 = u32::MAX;
+
+/// Fastest that a contact throws cloth out that it found inside a surface [m/s].
+const OUTWARD_SPEED: f32 = 1.0;
+
+/// How far a plane holds at the least, as a share of the offset: after a millimetre on a limb of
+/// 30 mm radius the surface has left it by 0.02 mm.
+const PLANE_REACH: f64 = 0.25;
+
+/// Planes are kept from this many offsets away.
+const REACH_IN_OFFSETS: f64 = 2.0;
+
+/// Below this slope of the distance a point lies on a ridge: no direction leads out.
+const FLAT_SLOPE: f64 = 0.05;
+
+impl Touch {
+    /// That of a sample, still to be looked up.
+    pub fn of_sample(model: &Model, sample: usize) -> Self {
+        let found = &model.samples[sample];
+        let friction = if model.contact.friction {
+            found.friction
+        } else {
+            0.0
+        };
+        Self {
+            softness: (1.0 / (model.contact.stiffness * found.area)).min(1e30) as f32,
+            friction: friction as f32,
+            offset: (model.contact.offset + found.extra_offset) as f32,
+            sample: sample as u32,
+            ..Self::none()
+        }
+    }
+
+    /// One that touches nothing.
+    pub fn none() -> Self {
+        Self {
+            normal: [0.0; 3],
+            level: -1.0,
+            place: [0.0; 3],
+            radius2: f32::INFINITY,
+            softness: 1.0,
+            friction: 0.0,
+            offset: 0.0,
+            sample: NO_SAMPLE,
+            push: 0.0,
+            rub: [0.0; 3],
+        }
+    }
+
+    /// Forgets what was looked up.
+    pub fn forget(&mut self) {
+        if self.sample != NO_SAMPLE {
+            self.radius2 = -1.0;
+        }
+    }
+
+    /// Whether the surface has to be looked at again for a point.
+    #[inline(always)]
+    pub fn is_stale(&self, point: [f32; 3]) -> bool {
+        let d = [0, 1, 2].map(|k| point[k] - self.place[k]);
+        let distance2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        // Not `>=`: a place that is no number must not be looked up.
+        distance2 > self.radius2
+    }
+
+    /// Looks at the surfaces from a point; `origin` is that of the points' numbers.
+    #[inline(never)]
+    pub fn look(&mut self, model: &Model, origin: Vec3, point: [f32; 3]) {
+        let place = origin + Vec3::from(point.map(f64::from));
+        let offset = f64::from(self.offset);
+        let reach = crate::model::FIELD_REACH;
+        let mut nearest: Option<(f64, Vec3)> = None;
+        for collider in &model.colliders {
+            if let Some(found) = collider.field.distance(place)
+                && nearest.is_none_or(|(distance, _)| found.0 < distance)
+            {
+                nearest = Some(found);
+            }
+        }
+        self.place = point;
+        self.normal = [0.0; 3];
+        self.level = -1.0;
+        let (distance, slope) = nearest.unwrap_or((reach, Vec3::zeros()));
+        // The smooth distance may exceed the exact one by a fraction of a millimetre.
+        let gap = 0.9 * distance - offset;
+        let radius = (0.5 * gap).max(PLANE_REACH * offset).max(1e-5);
+        self.radius2 = (radius * radius) as f32;
+        if distance > REACH_IN_OFFSETS * offset && gap > 0.0 {
+            // Nothing can touch before the whole gap is crossed.
+            self.radius2 = (gap * gap) as f32;
+            return;
+        }
+        if slope.norm() < FLAT_SLOPE {
+            return;
+        }
+        let n = slope.normalize();
+        self.normal = [n.x as f32, n.y as f32, n.z as f32];
+        let here = Vec3::from(point.map(f64::from));
+        self.level = (n.dot(&here) + offset - distance) as f32;
+    }
+
+    /// What the touch moves a point by whose inverse mass is `weight`, the point being at `point`
+    /// now and at `start` when the substep began: dx = weight times the result.
+    #[inline(always)]
+    pub fn respond(
+        &mut self,
+        weight: f32,
+        point: [f32; 3],
+        start: [f32; 3],
+        step: &ContactStep,
+    ) -> [f32; 3] {
+        let n = self.normal;
+        let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let depth = dot(n, point) - self.level;
+        if (depth >= 0.0 && self.push == 0.0) || weight <= 0.0 {
+            return [0.0; 3];
+        }
+        let moved = [0, 1, 2].map(|k| point[k] - start[k]);
+        let soft = self.softness * step.kappa;
+        let mut change = -(depth + soft * self.push) / (weight + soft);
+        let outward = dot(n, moved);
+        let most = (step.outward - outward).max(0.0) / weight;
+        change = change.min(most).max(-self.push);
+        self.push += change;
+        let slip = [0, 1, 2].map(|k| moved[k] - n[k] * outward);
+        let wanted = [0, 1, 2].map(|k| self.rub[k] - slip[k] / weight);
+        let length = dot(wanted, wanted).sqrt();
+        let limit = self.friction * self.push;
+        let share = if length > limit { limit / length } else { 1.0 };
+        let mut out = [0.0; 3];
+        for k in 0..3 {
+            let rub = wanted[k] * share;
+            out[k] = n[k] * change + rub - self.rub[k];
+            self.rub[k] = rub;
+        }
+        out
+    }
+}
+
+/// The numbers of a substep that contacts need.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactStep {
+    /// (1 + drag h) / h^2 [1/s2].
+    pub kappa: f32,
+    /// Farthest that a contact throws cloth out in the substep [m].
+    pub outward: f32,
+}
+
+impl ContactStep {
+    /// For a substep [s].
+    pub fn new(kappa: f32, step: f32) -> Self {
+        Self {
+            kappa,
+            outward: OUTWARD_SPEED * step,
+        }
+    }
+}
+
+/// A contact of a point that hangs on up to four vertices: a sample within a triangle, and what
+/// collision of cloth with cloth finds (a vertex and a face, or two edges, with weights that sum
+/// to zero).
+#[derive(Clone, Copy, Debug)]
+pub struct ContactStencil {
+    /// The vertices, as indices into the points of the region.
+    pub vertices: [u32; 4],
+    /// Their weights.
+    pub weights: [f32; 4],
+    /// The plane.
+    pub touch: Touch,
+}
+
+impl ContactStencil {
+    /// The point.
+    #[inline(always)]
+    pub fn point(&self, points: &[Point]) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        for (&v, weight) in self.vertices.iter().zip(self.weights) {
+            for k in 0..3 {
+                sum[k] += weight * points[v as usize][k];
+            }
+        }
+        sum
+    }
+}
+
+/// Solves contact stencils in order, `points` being where vertices are and `starts` where they were
+/// when the substep began.
+pub fn solve_stencils(
+    stencils: &mut [ContactStencil],
+    points: &mut [Point],
+    starts: &[Point],
+    step: &ContactStep,
+) {
+    for stencil in stencils {
+        let weight: f32 = (stencil.vertices.iter().zip(stencil.weights))
+            .map(|(&v, a)| a * a * points[v as usize][3])
+            .sum();
+        let (point, start) = (stencil.point(points), stencil.point(starts));
+        let change = stencil.touch.respond(weight, point, start, step);
+        for (&v, a) in stencil.vertices.iter().zip(stencil.weights) {
+            let point = &mut points[v as usize];
+            let share = a * point[3];
+            for k in 0..3 {
+                point[k] += share * change[k];
+            }
+        }
+    }
+}
+
+/// An elastic as a constraint: the gap of its ends, three rows at once, with compliance 1/k and a
+/// largest force.
+#[derive(Clone, Copy, Debug)]
+pub struct Tie {
+    /// The vertex it pulls, as an index into the points of the region.
+    pub from: u32,
+    /// The vertex it pulls it to; with none, `place`.
+    pub to: Option<u32>,
+    /// Where it pulls it to [m].
+    pub place: [f32; 3],
+    /// Stiffness [N/m].
+    pub stiffness: f32,
+    /// Largest force [N].
+    pub most: f32,
+    /// Impulse of the substep over its square [N s2].
+    pub sum: [f32; 3],
+    /// The elastic in the model.
+    pub elastic: u32,
+}
+
+/// Solves elastics in order.
+pub fn solve_ties(ties: &mut [Tie], points: &mut [Point], kappa: f32) {
+    for tie in ties {
+        let a = points[tie.from as usize];
+        let [x, y, z] = tie.place;
+        let b = tie.to.map_or([x, y, z, 0.0], |to| points[to as usize]);
+        let soft = kappa / tie.stiffness;
+        let weight = a[3] + b[3] + soft;
+        let wanted = [0, 1, 2].map(|k| tie.sum[k] - (a[k] - b[k] + soft * tie.sum[k]) / weight);
+        let length = (wanted[0] * wanted[0] + wanted[1] * wanted[1] + wanted[2] * wanted[2]).sqrt();
+        let most = tie.most / kappa;
+        let share = if length > most { most / length } else { 1.0 };
+        for k in 0..3 {
+            let sum = wanted[k] * share;
+            let change = sum - tie.sum[k];
+            tie.sum[k] = sum;
+            points[tie.from as usize][k] += a[3] * change;
+            if let Some(to) = tie.to {
+                points[to as usize][k] -= b[3] * change;
+            }
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Sharing domains between cores: slices are halved down to single domains, each of which goes to
+//! whatever thread is free. Nothing depends on which.
+
+use super::lanes::Point;
+use super::particles::{Bound, Free};
+use super::region::Region;
+
+/// Something that holds one slice or more of the slots of some domains.
+pub trait Divide: Sized + Send {
+    /// Divides after some slots and some domains.
+    fn divide(self, slots: usize, domains: usize) -> (Self, Self);
+}
+
+/// Runs `work` for every domain with its index and its part of `all`; `starts` are the first slots
+/// of the domains, and the end.
+pub fn for_domains<T: Divide>(
+    starts: &[usize],
+    first: usize,
+    all: T,
+    work: &(impl Fn(usize, T) + Sync),
+) {
+    let count = starts.len().saturating_sub(1);
+    if count == 0 {
+        return;
+    }
+    if count == 1 {
+        return work(first, all);
+    }
+    let middle = count / 2;
+    let (left, right) = all.divide(starts[middle] - starts[0], middle);
+    rayon::join(
+        || for_domains(&starts[..=middle], first, left, work),
+        || for_domains(&starts[middle..], first + middle, right, work),
+    );
+}
+
+impl Divide for Free<'_> {
+    fn divide(self, slots: usize, _: usize) -> (Self, Self) {
+        let (now, now_) = self.now.split_at_mut(slots);
+        let (free, free_) = self.free.split_at_mut(slots);
+        let (low, low_) = self.low.split_at_mut(slots);
+        let (velocity, velocity_) = self.velocity.split_at_mut(slots);
+        (
+            Self {
+                now,
+                free,
+                low,
+                velocity,
+            },
+            Self {
+                now: now_,
+                free: free_,
+                low: low_,
+                velocity: velocity_,
+            },
+        )
+    }
+}
+
+impl Divide for Bound<'_> {
+    fn divide(self, slots: usize, _: usize) -> (Self, Self) {
+        let (start, start_) = self.start.split_at_mut(slots);
+        let (now, now_) = self.now.split_at_mut(slots);
+        let (free, free_) = self.free.split_at(slots);
+        let (velocity, velocity_) = self.velocity.split_at_mut(slots);
+        let (touch, touch_) = self.touch.split_at_mut(slots);
+        (
+            Self {
+                start,
+                now,
+                free,
+                velocity,
+                touch,
+            },
+            Self {
+                start: start_,
+                now: now_,
+                free: free_,
+                velocity: velocity_,
+                touch: touch_,
+            },
+        )
+    }
+}
+
+/// The regions of some domains or cuts, and the points they move.
+pub struct Swept<'a> {
+    /// The regions.
+    pub regions: &'a mut [Region],
+    /// The points.
+    pub now: &'a mut [Point],
+    /// Where the points were when the substep began.
+    pub start: &'a [Point],
+}
+
+impl Divide for Swept<'_> {
+    fn divide(self, slots: usize, domains: usize) -> (Self, Self) {
+        let (regions, regions_) = self.regions.split_at_mut(domains);
+        let (now, now_) = self.now.split_at_mut(slots);
+        let (start, start_) = self.start.split_at(slots);
+        (
+            Self {
+                regions,
+                now,
+                start,
+            },
+            Self {
+                regions: regions_,
+                now: now_,
+                start: start_,
+            },
+        )
+    }
+}
+
+/// The regions of some domains alone.
+pub struct Of<'a> {
+    /// The regions.
+    pub regions: &'a mut [Region],
+}
+
+impl Divide for Of<'_> {
+    fn divide(self, _: usize, domains: usize) -> (Self, Self) {
+        let (regions, regions_) = self.regions.split_at_mut(domains);
+        (Self { regions }, Self { regions: regions_ })
+    }
+}
+
+impl<A: Divide, B: Divide> Divide for (A, B) {
+    fn divide(self, slots: usize, domains: usize) -> (Self, Self) {
+        let (a, a_) = self.0.divide(slots, domains);
+        let (b, b_) = self.1.divide(slots, domains);
+        ((a, b), (a_, b_))
+    }
+}

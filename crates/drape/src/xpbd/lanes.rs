@@ -1,0 +1,199 @@
+//! Vectors as wide as the processor has, found at run time, and how points get into them.
+//!
+//! A point is four floats in memory (x, y, z and its inverse mass), so that one load fetches it;
+//! sixteen of them are turned into four vectors by shuffles in registers.
+
+use pulp::Simd;
+use pulp::bytemuck::cast;
+
+/// A point: x, y, z [m] relative to the origin of the step, and its inverse mass [1/kg].
+pub type Point = [f32; 4];
+
+/// Constraints solved side by side.
+pub const LANES: usize = 16;
+
+/// One number for each constraint of a batch.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Row(pub [f32; LANES]);
+
+impl Row {
+    /// The same number everywhere.
+    pub const fn splat(value: f32) -> Self {
+        Self([value; LANES])
+    }
+
+    /// The lanes of one part: parts are as wide as the processor's vectors.
+    #[inline(always)]
+    pub fn part<S: Simd>(&self, part: usize) -> S::f32s {
+        S::as_simd_f32s(&self.0).0[part]
+    }
+
+    /// Writes the lanes of one part.
+    #[inline(always)]
+    pub fn set_part<S: Simd>(&mut self, part: usize, value: S::f32s) {
+        S::as_mut_simd_f32s(&mut self.0).0[part] = value;
+    }
+}
+
+/// Indices of one corner of each constraint of a batch.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Corner(pub [u32; LANES]);
+
+/// Parts a batch is worked off in.
+#[inline(always)]
+pub const fn parts<S: Simd>() -> usize {
+    LANES / S::F32_LANES
+}
+
+/// Loads the points of one corner for one part: x, y, z and inverse mass.
+#[inline(always)]
+pub fn gather<S: Simd>(simd: S, points: &[Point], corner: &Corner, part: usize) -> [S::f32s; 4] {
+    let at = |lane: usize| points[corner.0[part * S::F32_LANES + lane] as usize];
+    // Slot l of register r holds lane 4 l + r: the shuffle then leaves lanes in their order.
+    if S::F32_LANES == 16 {
+        let register = |r: usize| [at(r), at(4 + r), at(8 + r), at(12 + r)];
+        let loaded = [register(0), register(1), register(2), register(3)];
+        simd.deinterleave_shfl_f32s(loaded.map(|four| cast::<[Point; 4], S::f32s>(four)))
+    } else if S::F32_LANES == 8 {
+        let register = |r: usize| [at(r), at(4 + r)];
+        let loaded = [register(0), register(1), register(2), register(3)];
+        simd.deinterleave_shfl_f32s(loaded.map(|two| cast::<[Point; 2], S::f32s>(two)))
+    } else if S::F32_LANES == 4 {
+        let loaded = [at(0), at(1), at(2), at(3)];
+        simd.deinterleave_shfl_f32s(loaded.map(|one| cast::<Point, S::f32s>(one)))
+    } else {
+        at(0).map(|x| simd.splat_f32s(x))
+    }
+}
+
+/// Stores the points of one corner for one part.
+#[inline(always)]
+pub fn scatter<S: Simd>(
+    simd: S,
+    points: &mut [Point],
+    corner: &Corner,
+    part: usize,
+    values: [S::f32s; 4],
+) {
+    let index = |lane: usize| corner.0[part * S::F32_LANES + lane] as usize;
+    if S::F32_LANES == 16 {
+        let registers = simd.interleave_shfl_f32s(values);
+        for (r, register) in registers.into_iter().enumerate() {
+            let four: [Point; 4] = cast(register);
+            for (slot, point) in four.into_iter().enumerate() {
+                points[index(4 * slot + r)] = point;
+            }
+        }
+    } else if S::F32_LANES == 8 {
+        let registers = simd.interleave_shfl_f32s(values);
+        for (r, register) in registers.into_iter().enumerate() {
+            let two: [Point; 2] = cast(register);
+            for (slot, point) in two.into_iter().enumerate() {
+                points[index(4 * slot + r)] = point;
+            }
+        }
+    } else if S::F32_LANES == 4 {
+        let registers = simd.interleave_shfl_f32s(values);
+        for (r, register) in registers.into_iter().enumerate() {
+            points[index(r)] = cast(register);
+        }
+    } else {
+        points[index(0)] = values.map(|x| simd.reduce_sum_f32s(x));
+    }
+}
+
+/// Three vectors: a vector of R3 in every lane.
+pub type Triple<F> = [F; 3];
+
+/// a - b.
+#[inline(always)]
+pub fn sub<S: Simd>(simd: S, a: Triple<S::f32s>, b: Triple<S::f32s>) -> Triple<S::f32s> {
+    [0, 1, 2].map(|k| simd.sub_f32s(a[k], b[k]))
+}
+
+/// a . b.
+#[inline(always)]
+pub fn dot<S: Simd>(simd: S, a: Triple<S::f32s>, b: Triple<S::f32s>) -> S::f32s {
+    let sum = simd.mul_f32s(a[0], b[0]);
+    let sum = simd.mul_add_e_f32s(a[1], b[1], sum);
+    simd.mul_add_e_f32s(a[2], b[2], sum)
+}
+
+/// a s + b t.
+#[inline(always)]
+pub fn blend<S: Simd>(
+    simd: S,
+    a: Triple<S::f32s>,
+    s: S::f32s,
+    b: Triple<S::f32s>,
+    t: S::f32s,
+) -> Triple<S::f32s> {
+    [0, 1, 2].map(|k| simd.mul_add_e_f32s(b[k], t, simd.mul_f32s(a[k], s)))
+}
+
+/// a + b s.
+#[inline(always)]
+pub fn add_scaled<S: Simd>(
+    simd: S,
+    a: Triple<S::f32s>,
+    b: Triple<S::f32s>,
+    s: S::f32s,
+) -> Triple<S::f32s> {
+    [0, 1, 2].map(|k| simd.mul_add_e_f32s(b[k], s, a[k]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Copy<'a> {
+        from: &'a [Point],
+        to: &'a mut [Point],
+        corner: &'a Corner,
+        sums: &'a mut Row,
+    }
+
+    impl pulp::WithSimd for Copy<'_> {
+        type Output = ();
+
+        fn with_simd<S: Simd>(self, simd: S) {
+            for part in 0..parts::<S>() {
+                let point = gather(simd, self.from, self.corner, part);
+                let [x, y, z, w] = point;
+                let sum = simd.add_f32s(simd.add_f32s(x, y), simd.add_f32s(z, w));
+                self.sums.set_part::<S>(part, sum);
+                scatter(simd, self.to, self.corner, part, point);
+            }
+        }
+    }
+
+    #[test]
+    fn points_come_back_where_they_were_and_lanes_keep_their_order() {
+        let from: Vec<Point> = (0..40)
+            .map(|i| [i as f32, 0.5 * i as f32, -3.0, 1e-3 * i as f32])
+            .collect();
+        let mut corner = Corner([0; LANES]);
+        for (lane, index) in corner.0.iter_mut().enumerate() {
+            *index = ((lane * 7 + 3) % 40) as u32;
+        }
+        let check = |run: &dyn Fn(Copy)| {
+            let mut to = vec![[0.0; 4]; 40];
+            let mut sums = Row::splat(0.0);
+            run(Copy {
+                from: &from,
+                to: &mut to,
+                corner: &corner,
+                sums: &mut sums,
+            });
+            for (lane, &index) in corner.0.iter().enumerate() {
+                let point = from[index as usize];
+                assert_eq!(to[index as usize], point);
+                assert!((sums.0[lane] - point.iter().sum::<f32>()).abs() < 1e-4);
+            }
+        };
+        check(&|copy| pulp::Arch::new().dispatch(copy));
+        check(&|copy| pulp::WithSimd::with_simd(copy, pulp::Scalar));
+    }
+}

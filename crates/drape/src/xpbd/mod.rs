@@ -1,0 +1,534 @@
+//! Extended position based dynamics: constraints with the stiffness of the material laws, solved
+//! one after the other in small steps.
+//!
+//! A substep of h (Macklin, Müller and Chentanez 2016, algorithm 1; Macklin et al. 2019 for many
+//! substeps of one iteration):
+//! ```text
+//! v = (v + h (g + f_bend / m)) / (1 + drag h),  x = x0 + h v
+//! for every constraint:  dlambda = -(J W J^T + alpha / h^2)^-1 (C + alpha / h^2 lambda)
+//!                        x = x + W J^T dlambda
+//! contacts and friction likewise
+//! v = (x - x0) / h
+//! ```
+//! Iterated to the end this is implicit Euler of the same potential that [`crate::Workspace`]
+//! minimises. Many substeps of one iteration are stable at any stiffness; what they leave unsolved
+//! acts as extra compliance of the order of h^2 / m.
+//!
+//! Inner loops run in single precision on positions relative to the middle of the cloth, with what
+//! rounding leaves out of them carried along; the state outside is in double precision.
+
+mod bending;
+mod contact;
+mod domains;
+mod lanes;
+mod membrane;
+mod order;
+mod particles;
+mod region;
+
+use crate::methods::{Method, MethodSettings, StepReport};
+use crate::{DrapeError, Model, State};
+use bending::BendingForce;
+use contact::{ContactStep, Touch};
+use domains::{Swept, for_domains};
+use membrane::{LawRow, inverse_mass};
+use order::Order;
+use particles::{Bound, Free, MotionStep, Particles};
+use region::{Regions, SweepStep};
+use toile_geometry::Vec3;
+
+/// How constraints are solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct XpbdSettings {
+    /// Sweeps over all constraints in a substep. One is best spent with many substeps; with one
+    /// substep a step, hundreds are needed.
+    pub iterations: u32,
+    /// Largest speed a vertex keeps [m/s].
+    pub speed_limit: f64,
+}
+
+impl Default for XpbdSettings {
+    /// One sweep, 100 m/s.
+    fn default() -> Self {
+        Self {
+            iterations: 1,
+            speed_limit: 100.0,
+        }
+    }
+}
+
+/// What some substeps took and left.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct XpbdReport {
+    /// Pieces each substep had to be cut into; 1 when none.
+    pub pieces: u32,
+    /// Kinetic energy at the end [J].
+    pub kinetic_energy: f64,
+    /// Speed of the fastest vertex at the end [m/s].
+    pub fastest: f64,
+}
+
+/// Constraints of one sweep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ConstraintCount {
+    /// Triangles with three strains each.
+    pub membrane: usize,
+    /// Entries of the bending force, or triangles with three curvatures for x, y and z each.
+    pub bending: usize,
+    /// Elastics, three rows each.
+    pub elastics: usize,
+    /// Samples held against surfaces.
+    pub contacts: usize,
+}
+
+/// Halvings of a substep before it is an error.
+const STEP_HALVINGS: u32 = 10;
+
+/// Bending is a force while h times its largest frequency is below this; symplectic Euler is
+/// stable up to 2.
+const FORCE_LIMIT: f64 = 1.5;
+
+/// XPBD on one model: its constraints in the order they are solved in, and private memory.
+pub struct Xpbd {
+    settings: XpbdSettings,
+    order: Order,
+    regions: Regions,
+    particles: Particles,
+    bending: BendingForce,
+    has_bending_constraints: bool,
+    laws: Vec<LawRow>,
+    /// Sizes that systems are inverted for.
+    kappa: f64,
+    built_for: Fingerprint,
+    domain_starts: Vec<usize>,
+    cut_starts: Vec<usize>,
+}
+
+/// What of a model the constraints were built from.
+#[derive(Clone, PartialEq)]
+struct Fingerprint {
+    triangles: Vec<[u32; 3]>,
+    elements: Vec<crate::laws::membrane::MembraneElement>,
+    material: Vec<u16>,
+    materials: Vec<crate::Material>,
+    laws: Vec<crate::laws::stretch::MembraneLaw>,
+    mass: Vec<f64>,
+    pinned: Vec<bool>,
+    elastics: Vec<crate::Elastic>,
+    contact: crate::ContactSettings,
+    samples: Vec<crate::ContactSample>,
+    solid: bool,
+}
+
+impl Fingerprint {
+    fn new(model: &Model) -> Self {
+        Self {
+            triangles: model.triangles.clone(),
+            elements: model.elements.clone(),
+            material: model.material.clone(),
+            materials: model.materials.clone(),
+            laws: model.laws.clone(),
+            mass: model.mass.clone(),
+            pinned: model.pinned.clone(),
+            elastics: model.elastics.clone(),
+            contact: model.contact,
+            samples: model.samples.clone(),
+            solid: !model.colliders.is_empty(),
+        }
+    }
+
+    fn fits(&self, model: &Model) -> bool {
+        self.triangles == model.triangles
+            && self.elements == model.elements
+            && self.material == model.material
+            && self.materials == model.materials
+            && self.laws == model.laws
+            && self.mass == model.mass
+            && self.pinned == model.pinned
+            && self.elastics == model.elastics
+            && self.contact == model.contact
+            && self.samples == model.samples
+            && self.solid != model.colliders.is_empty()
+    }
+}
+
+impl Xpbd {
+    /// Builds the constraints of a model.
+    pub fn new(model: &Model) -> Self {
+        Self::with_settings(model, XpbdSettings::default())
+    }
+
+    /// Builds the constraints of a model, to be solved as given.
+    pub fn with_settings(model: &Model, settings: XpbdSettings) -> Self {
+        let order = Order::new(model);
+        let mut regions = Regions::new(&order);
+        regions.add_membranes(model, &order);
+        regions.add_ties(model, &order);
+        let mut particles = Particles::new(order.len());
+        if !model.colliders.is_empty() {
+            regions.add_samples(model, &order);
+            for (index, sample) in model.samples.iter().enumerate() {
+                if sample.triangle.is_none() {
+                    let slot = order.slot_of[sample.vertices[0] as usize];
+                    particles.touch[slot as usize] = Touch::of_sample(model, index);
+                }
+            }
+        }
+        Self {
+            settings,
+            regions,
+            particles,
+            bending: BendingForce::new(model, &order.vertex_of, &order.slot_of),
+            has_bending_constraints: false,
+            laws: model.laws.iter().map(LawRow::new).collect(),
+            kappa: f64::NAN,
+            built_for: Fingerprint::new(model),
+            domain_starts: order.domain_starts(),
+            cut_starts: order.cut_starts(),
+            order,
+        }
+    }
+
+    /// Constraints of one sweep at the last substep's size.
+    pub fn constraints(&self) -> ConstraintCount {
+        let [membrane, bending] = self.regions.counts();
+        ConstraintCount {
+            membrane,
+            bending: if bending == 0 {
+                self.bending.len()
+            } else {
+                bending
+            },
+            elastics: self.regions.tie_count(),
+            contacts: self.built_for.samples.len(),
+        }
+    }
+
+    /// Advances the state by `count` substeps of `substep` [s] under `drag` [1/s], a free velocity
+    /// falling by exp(-drag t). A model changed since the last call is taken up.
+    ///
+    /// # Errors
+    /// When a number is not finite at any size of substep; the state is then as it was.
+    pub fn advance(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        substep: f64,
+        count: u32,
+        drag: f64,
+    ) -> Result<XpbdReport, DrapeError> {
+        if !self.built_for.fits(model) {
+            *self = Self::with_settings(model, self.settings);
+        }
+        if let Some(vertex) = state.first_not_finite() {
+            let stage = "XPBD, before the step";
+            return Err(DrapeError::NotFinite { stage, vertex });
+        }
+        state.follow_samples(model);
+        let origin = middle(&state.positions);
+        let mut failed = 0;
+        for halvings in 0..=STEP_HALVINGS {
+            let pieces = 1u32 << halvings;
+            self.load(model, state, origin);
+            let h = substep / f64::from(pieces);
+            self.run(model, origin, h, count * pieces, drag);
+            match self.first_not_finite() {
+                Some(vertex) => failed = vertex,
+                None => {
+                    let mut report = self.store(model, state, origin);
+                    report.pieces = pieces;
+                    state.time += substep * f64::from(count);
+                    return Ok(report);
+                }
+            }
+        }
+        Err(DrapeError::NotFinite {
+            stage: "XPBD step",
+            vertex: failed,
+        })
+    }
+
+    /// Reads a state.
+    fn load(&mut self, model: &Model, state: &State, origin: Vec3) {
+        let particles = &mut self.particles;
+        for (slot, vertex) in self.order.vertex_of.iter().enumerate() {
+            let Some(v) = *vertex else {
+                continue;
+            };
+            let place = state.positions[v as usize] - origin;
+            let velocity = state.velocities[v as usize];
+            let weight = inverse_mass(model, v);
+            let mut start = [0.0, 0.0, 0.0, weight as f32];
+            for k in 0..3 {
+                start[k] = place[k] as f32;
+                particles.low[slot][k] = (place[k] - f64::from(start[k])) as f32;
+                particles.velocity[slot][k] = if weight > 0.0 { velocity[k] as f32 } else { 0.0 };
+            }
+            particles.start[slot] = start;
+            particles.now[slot] = start;
+        }
+        particles.forget_touches();
+        let iterated = self.settings.iterations > 1;
+        for region in self.regions.all_mut() {
+            region.begin(model, origin, iterated);
+        }
+    }
+
+    /// Writes the state.
+    fn store(&self, model: &Model, state: &mut State, origin: Vec3) -> XpbdReport {
+        let particles = &self.particles;
+        let mut fastest = 0f64;
+        for (slot, vertex) in self.order.vertex_of.iter().enumerate() {
+            let Some(v) = *vertex else {
+                continue;
+            };
+            if model.pinned[v as usize] {
+                state.velocities[v as usize] = Vec3::zeros();
+                continue;
+            }
+            let (start, low, velocity) = (
+                particles.start[slot],
+                particles.low[slot],
+                particles.velocity[slot],
+            );
+            let wide = |p: [f32; 4]| Vec3::new(p[0].into(), p[1].into(), p[2].into());
+            state.positions[v as usize] = origin + (wide(start) + wide(low));
+            state.velocities[v as usize] = wide(velocity);
+            fastest = fastest.max(wide(velocity).norm_squared());
+        }
+        let kappa = self.kappa;
+        let vertices = particles.touch.iter();
+        let within = self.regions.all().flat_map(|r| &r.contacts);
+        for touch in vertices.chain(within.map(|c| &c.touch)) {
+            let at = touch.sample as usize;
+            if touch.sample == contact::NO_SAMPLE {
+                continue;
+            }
+            state.normal_forces[at] = kappa * f64::from(touch.push);
+            state.anchors[at] = (touch.push > 0.0).then(|| {
+                let stiffness = 0.5 * model.contact.stiffness * model.samples[at].area;
+                let rub = Vec3::from(touch.rub.map(f64::from)) * kappa;
+                model.samples[at].place(&state.positions) + rub / stiffness
+            });
+        }
+        XpbdReport {
+            pieces: 1,
+            kinetic_energy: state.kinetic_energy(model),
+            fastest: fastest.sqrt(),
+        }
+    }
+
+    /// The vertex of the first point whose numbers are not finite.
+    fn first_not_finite(&self) -> Option<usize> {
+        let particles = &self.particles;
+        let bad = |p: &[f32; 4]| !(p[0] + p[1] + p[2]).is_finite();
+        (particles.start.iter().zip(&particles.velocity))
+            .zip(&self.order.vertex_of)
+            .filter(|((x, v), _)| bad(x) || bad(v))
+            .find_map(|(_, vertex)| vertex.map(|v| v as usize))
+    }
+
+    fn run(&mut self, model: &Model, origin: Vec3, h: f64, count: u32, drag: f64) {
+        let kappa = (1.0 + drag * h) / (h * h);
+        let iterated = self.settings.iterations > 1;
+        let as_force = !iterated && h * self.bending.frequency <= FORCE_LIMIT;
+        if !as_force && !self.has_bending_constraints {
+            self.regions.add_bending(model, &self.order);
+            self.has_bending_constraints = true;
+            self.kappa = f64::NAN;
+            for region in self.regions.all_mut() {
+                region.begin(model, origin, iterated);
+            }
+        }
+        if self.kappa != kappa {
+            self.kappa = kappa;
+            for region in self.regions.all_mut() {
+                region.set_step(kappa);
+            }
+        }
+        let g = model.gravity;
+        let motion = MotionStep {
+            step: h as f32,
+            gravity: [g.x as f32, g.y as f32, g.z as f32, 0.0],
+            kept: (1.0 / (1.0 + drag * h)) as f32,
+            speed_limit: self.settings.speed_limit as f32,
+        };
+        let contact = ContactStep::new(kappa as f32, h as f32);
+        let solid = !model.colliders.is_empty();
+        if self.domain_starts.len() <= 2 {
+            self.substeps(model, origin, &motion, contact, as_force, solid, count);
+        } else {
+            // One entry into the pool for all substeps.
+            rayon::scope(|_| {
+                self.substeps(model, origin, &motion, contact, as_force, solid, count);
+            });
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn substeps(
+        &mut self,
+        model: &Model,
+        origin: Vec3,
+        motion: &MotionStep,
+        contact: ContactStep,
+        as_force: bool,
+        solid: bool,
+        count: u32,
+    ) {
+        let iterations = self.settings.iterations.max(1);
+        let Self {
+            regions,
+            particles,
+            bending,
+            laws,
+            domain_starts,
+            cut_starts,
+            ..
+        } = self;
+        let sweep = SweepStep {
+            model,
+            laws,
+            origin,
+            contact,
+            iterated: iterations > 1,
+            bends: !as_force,
+        };
+        let bending = as_force.then_some(&*bending);
+        let slots = particles.now.len();
+        for _ in 0..count {
+            for region in regions.all_mut() {
+                region.clear();
+            }
+            for iteration in 0..iterations {
+                let Particles {
+                    start,
+                    now,
+                    free,
+                    low,
+                    velocity,
+                    touch,
+                } = &mut *particles;
+                let (first, last) = (iteration == 0, iteration + 1 == iterations);
+                if first {
+                    let fields = Free {
+                        now,
+                        free,
+                        low,
+                        velocity,
+                    };
+                    // Free motion and the domain's own constraints, in one go.
+                    let all = (
+                        fields,
+                        domains::Of {
+                            regions: &mut regions.domains,
+                        },
+                    );
+                    for_domains(domain_starts, 0, all, &|d, (mut fields, own)| {
+                        let at = domain_starts[d];
+                        fields.predict(at, start, bending, motion);
+                        let end = at + fields.now.len();
+                        own.regions[0].sweep(&sweep, fields.now, &start[at..end]);
+                    });
+                } else {
+                    let all = Swept {
+                        regions: &mut regions.domains,
+                        now,
+                        start,
+                    };
+                    for_domains(domain_starts, 0, all, &|_, all| {
+                        all.regions[0].sweep(&sweep, all.now, all.start);
+                    });
+                }
+                if let (Some(&from), Some(&to)) = (cut_starts.first(), cut_starts.last()) {
+                    let all = Swept {
+                        regions: &mut regions.cuts,
+                        now: &mut now[from..to],
+                        start: &start[from..to],
+                    };
+                    for_domains(cut_starts, 0, all, &|_, all| {
+                        all.regions[0].sweep(&sweep, all.now, all.start);
+                    });
+                }
+                regions.rest.sweep(&sweep, now, &start[..slots]);
+                let all = Bound {
+                    start,
+                    now,
+                    free,
+                    velocity,
+                    touch,
+                };
+                for_domains(domain_starts, 0, all, &|_, mut all| {
+                    if solid {
+                        if first {
+                            all.clear_touches();
+                        }
+                        all.touch(model, origin, &sweep.contact);
+                    }
+                    if last {
+                        all.finish(motion);
+                    }
+                });
+            }
+        }
+    }
+}
+
+/// Middle of the box round some places, on a grid of an eighth of a metre.
+fn middle(places: &[Vec3]) -> Vec3 {
+    let mut low = Vec3::repeat(f64::INFINITY);
+    let mut high = Vec3::repeat(f64::NEG_INFINITY);
+    for place in places {
+        low = low.inf(place);
+        high = high.sup(place);
+    }
+    if places.is_empty() {
+        return Vec3::zeros();
+    }
+    ((low + high) * 4.0).map(f64::round) / 8.0
+}
+
+/// XPBD as a method in time.
+pub(crate) struct XpbdMethod {
+    settings: XpbdSettings,
+    substeps: u32,
+    solver: Option<Xpbd>,
+}
+
+/// Substeps of a step when none are asked for.
+const SUBSTEPS: u32 = 20;
+
+impl XpbdMethod {
+    /// From settings: substeps and iterations.
+    pub(crate) fn new(settings: &MethodSettings) -> Self {
+        let iterations = settings.iterations.unwrap_or(1).clamp(1, 1_000_000) as u32;
+        Self {
+            settings: XpbdSettings {
+                iterations,
+                ..XpbdSettings::default()
+            },
+            substeps: settings.substeps.unwrap_or(SUBSTEPS).max(1),
+            solver: None,
+        }
+    }
+}
+
+impl Method for XpbdMethod {
+    fn advance(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        step: f64,
+    ) -> Result<StepReport, DrapeError> {
+        let settings = self.settings;
+        let solver = (self.solver).get_or_insert_with(|| Xpbd::with_settings(model, settings));
+        let substep = step / f64::from(self.substeps);
+        let report = solver.advance(model, state, substep, self.substeps, model.air_drag)?;
+        let iterations = self.substeps * self.settings.iterations * report.pieces;
+        Ok(StepReport {
+            pieces: report.pieces,
+            iterations: iterations as usize,
+            linear_iterations: 0,
+        })
+    }
+}

@@ -1,0 +1,216 @@
+//! The order of vertices in memory, and the fixed regions that cores share.
+//!
+//! Vertices are sorted so that neighbours lie close (reverse Cuthill-McKee), and the row is cut
+//! into domains. A constraint that lies within a domain is solved with it; one that straddles a cut
+//! is solved in a second round, over ranges shifted by half a domain; what fits neither (an
+//! elastic across the garment) comes last, alone. Two rounds are two barriers whatever the number
+//! of colours, and ranges are slices that two threads may hold at once.
+
+use crate::{ElasticEnd, Model};
+
+/// Vertices of a domain: two a side make a sheet of 10,000 vertices worth sharing.
+const DOMAIN: usize = 2500;
+
+/// Most domains.
+const MOST_DOMAINS: usize = 64;
+
+/// Slots of the vertices and cuts of the domains.
+#[derive(Clone, Debug, Default)]
+pub struct Order {
+    /// Slot of each vertex.
+    pub slot_of: Vec<u32>,
+    /// Vertex in each slot; none in the slot that begins each half domain, where a point stands
+    /// that nothing moves: idle lanes point at it.
+    pub vertex_of: Vec<Option<u32>>,
+    /// First slot of each half domain, and the end.
+    pub halves: Vec<usize>,
+}
+
+/// Where a constraint is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Within a domain.
+    Domain(usize),
+    /// Across the cut after a domain.
+    Cut(usize),
+    /// Alone.
+    Rest,
+}
+
+impl Order {
+    /// Sorts and cuts the vertices of a model.
+    pub fn new(model: &Model) -> Self {
+        let sorted = cuthill_mckee(model);
+        let count = sorted.len();
+        let domains = (count / DOMAIN).clamp(1, MOST_DOMAINS);
+        let halves = 2 * domains;
+        let mut order = Self {
+            slot_of: vec![0; count],
+            ..Self::default()
+        };
+        for half in 0..halves {
+            order.halves.push(order.vertex_of.len());
+            order.vertex_of.push(None);
+            for &v in &sorted[half * count / halves..(half + 1) * count / halves] {
+                order.slot_of[v as usize] = order.vertex_of.len() as u32;
+                order.vertex_of.push(Some(v));
+            }
+        }
+        order.halves.push(order.vertex_of.len());
+        order
+    }
+
+    /// Number of domains.
+    pub fn domains(&self) -> usize {
+        self.halves.len() / 2
+    }
+
+    /// Number of slots.
+    pub fn len(&self) -> usize {
+        self.vertex_of.len()
+    }
+
+    /// First slot of each domain, and the end.
+    pub fn domain_starts(&self) -> Vec<usize> {
+        self.halves.iter().copied().step_by(2).collect()
+    }
+
+    /// First slot of each range about a cut, and the end; empty with one domain.
+    pub fn cut_starts(&self) -> Vec<usize> {
+        if self.domains() == 1 {
+            return Vec::new();
+        }
+        self.halves.iter().copied().skip(1).step_by(2).collect()
+    }
+
+    /// Where a constraint on some vertices is solved.
+    pub fn place(&self, vertices: &[u32]) -> Place {
+        let slots = || vertices.iter().map(|&v| self.slot_of[v as usize] as usize);
+        let (Some(low), Some(high)) = (slots().min(), slots().max()) else {
+            return Place::Rest;
+        };
+        let half = |slot: usize| self.halves.partition_point(|&start| start <= slot) - 1;
+        let (low, high) = (half(low), half(high));
+        if low / 2 == high / 2 {
+            Place::Domain(low / 2)
+        } else if low % 2 == 1 && high == low + 1 {
+            Place::Cut(low / 2)
+        } else {
+            Place::Rest
+        }
+    }
+
+    /// First slot of the range where constraints of a place are solved.
+    pub fn start(&self, place: Place) -> usize {
+        match place {
+            Place::Domain(d) => self.halves[2 * d],
+            Place::Cut(d) => self.halves[2 * d + 1],
+            Place::Rest => 0,
+        }
+    }
+}
+
+/// Vertices in reverse Cuthill-McKee order over triangles and elastics (Cuthill and McKee 1969):
+/// breadth first from a vertex at the rim, neighbours by their number of neighbours.
+fn cuthill_mckee(model: &Model) -> Vec<u32> {
+    let count = model.vertex_count();
+    let mut pairs: Vec<(u32, u32)> = Vec::new();
+    for &[a, b, c] in &model.triangles {
+        pairs.extend([(a, b), (b, a), (b, c), (c, b), (c, a), (a, c)]);
+    }
+    for elastic in &model.elastics {
+        if let ElasticEnd::Vertex(to) = elastic.to {
+            pairs.extend([(elastic.from, to), (to, elastic.from)]);
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    let start = |v: u32| pairs.partition_point(|&(from, _)| from < v);
+    let starts: Vec<usize> = (0..=count as u32).map(start).collect();
+    let neighbours = |v: u32| &pairs[starts[v as usize]..starts[v as usize + 1]];
+    let mut sorted = Vec::with_capacity(count);
+    let mut seen = vec![false; count];
+    let mut front = Vec::new();
+    for seed in 0..count as u32 {
+        if seen[seed as usize] {
+            continue;
+        }
+        // The last vertex of a search lies far away from the seed: a good end to start from.
+        let mut far = seed;
+        for _ in 0..2 {
+            let first = sorted.len();
+            search(far, neighbours, &mut seen, &mut sorted, &mut front);
+            far = sorted[sorted.len() - 1];
+            for &v in &sorted[first..] {
+                seen[v as usize] = false;
+            }
+            sorted.truncate(first);
+        }
+        search(far, neighbours, &mut seen, &mut sorted, &mut front);
+    }
+    sorted.reverse();
+    sorted
+}
+
+fn search<'a>(
+    from: u32,
+    neighbours: impl Fn(u32) -> &'a [(u32, u32)],
+    seen: &mut [bool],
+    sorted: &mut Vec<u32>,
+    next: &mut Vec<u32>,
+) {
+    let mut at = sorted.len();
+    sorted.push(from);
+    seen[from as usize] = true;
+    while at < sorted.len() {
+        next.clear();
+        for &(_, v) in neighbours(sorted[at]) {
+            if !seen[v as usize] {
+                seen[v as usize] = true;
+                next.push(v);
+            }
+        }
+        next.sort_by_key(|&v| (neighbours(v).len(), v));
+        sorted.extend_from_slice(next);
+        at += 1;
+    }
+}
+
+/// Sorts constraints into batches of at most `size` of one kind without a shared vertex: greedy
+/// colouring in the order given, then each colour cut into batches. Returns lists of indices.
+pub fn batches<'a>(
+    count: usize,
+    size: usize,
+    vertices: impl Fn(usize) -> &'a [u32],
+    kind: impl Fn(usize) -> usize,
+) -> Vec<Vec<usize>> {
+    let mut used: std::collections::BTreeMap<u32, u128> = std::collections::BTreeMap::new();
+    let mut coloured: Vec<(u32, usize, usize)> = Vec::with_capacity(count);
+    for index in 0..count {
+        let taken = vertices(index)
+            .iter()
+            .fold(0u128, |all, v| all | used.get(v).copied().unwrap_or(0));
+        let colour = taken.trailing_ones();
+        // Beyond 128 colours each constraint is a colour of its own.
+        let colour = if colour < 128 {
+            for &v in vertices(index) {
+                *used.entry(v).or_default() |= 1 << colour;
+            }
+            colour
+        } else {
+            128 + index as u32
+        };
+        coloured.push((colour, kind(index), index));
+    }
+    coloured.sort_unstable();
+    let mut batches: Vec<Vec<usize>> = Vec::new();
+    let mut last = None;
+    for (colour, kind, index) in coloured {
+        match batches.last_mut() {
+            Some(batch) if last == Some((colour, kind)) && batch.len() < size => batch.push(index),
+            _ => batches.push(vec![index]),
+        }
+        last = Some((colour, kind));
+    }
+    batches
+}

@@ -1,0 +1,311 @@
+//! A region: the constraints that one core solves in one go, on one slice of the points.
+
+use super::bending::{self, BendingBatch};
+use super::contact::{ContactStencil, ContactStep, Tie, Touch, solve_stencils, solve_ties};
+use super::lanes::{LANES, Point, Row};
+use super::membrane::{self, LawRow, MembraneBatch};
+use super::order::{Order, Place, batches};
+use crate::laws::bending::BendingStencil;
+use crate::{ElasticEnd, Model};
+use pulp::{Simd, WithSimd};
+use toile_geometry::Vec3;
+
+/// Constraints of one place, indices being relative to its first slot.
+#[derive(Clone, Debug, Default)]
+pub struct Region {
+    membrane: Vec<MembraneBatch>,
+    membrane_sums: Vec<membrane::Sums>,
+    bending: Vec<BendingBatch>,
+    bending_sums: Vec<bending::Sums>,
+    ties: Vec<Tie>,
+    /// Contacts of points within triangles.
+    pub contacts: Vec<ContactStencil>,
+}
+
+/// The regions of a model.
+#[derive(Clone, Debug, Default)]
+pub struct Regions {
+    /// One for each domain.
+    pub domains: Vec<Region>,
+    /// One for each cut between two domains.
+    pub cuts: Vec<Region>,
+    /// What is solved alone.
+    pub rest: Region,
+}
+
+impl Regions {
+    /// Empty regions for an order.
+    pub fn new(order: &Order) -> Self {
+        let count = order.domains();
+        Self {
+            domains: vec![Region::default(); count],
+            cuts: vec![Region::default(); count - 1],
+            rest: Region::default(),
+        }
+    }
+
+    fn at(&mut self, place: Place) -> &mut Region {
+        match place {
+            Place::Domain(d) => &mut self.domains[d],
+            Place::Cut(d) => &mut self.cuts[d],
+            Place::Rest => &mut self.rest,
+        }
+    }
+
+    /// Every region.
+    pub fn all_mut(&mut self) -> impl Iterator<Item = &mut Region> {
+        (self.domains.iter_mut())
+            .chain(self.cuts.iter_mut())
+            .chain(std::iter::once(&mut self.rest))
+    }
+
+    /// Adds the membrane of every triangle that has a vertex to move.
+    pub fn add_membranes(&mut self, model: &Model, order: &Order) {
+        let moves = |t: &u32| {
+            let corners = model.triangles[*t as usize];
+            corners.iter().any(|&v| !model.pinned[v as usize])
+        };
+        let triangles: Vec<u32> = (0..model.triangles.len() as u32).filter(moves).collect();
+        let corners = |&t: &u32| &model.triangles[t as usize][..];
+        for (place, members) in by_place(order, &triangles, corners) {
+            let start = order.start(place) as u32;
+            let local = |v: u32| order.slot_of[v as usize] - start;
+            let region = self.at(place);
+            for batch in batches(
+                members.len(),
+                LANES,
+                |i| corners(members[i]),
+                |i| model.material[*members[i] as usize] as usize,
+            ) {
+                let batch: Vec<u32> = batch.iter().map(|&i| *members[i]).collect();
+                region
+                    .membrane
+                    .push(MembraneBatch::new(model, &batch, local));
+            }
+        }
+    }
+
+    /// Adds bending as constraints.
+    pub fn add_bending(&mut self, model: &Model, order: &Order) {
+        let mut stencils = bending::stencils(model);
+        stencils.retain(|(_, s)| s.vertices.iter().any(|&v| !model.pinned[v as usize]));
+        fn vertices(member: &(u32, BendingStencil)) -> &[u32] {
+            &member.1.vertices
+        }
+        for (place, members) in by_place(order, &stencils, vertices) {
+            let start = order.start(place) as u32;
+            let local = |v: u32| order.slot_of[v as usize] - start;
+            let region = self.at(place);
+            for batch in batches(
+                members.len(),
+                LANES,
+                |i| vertices(members[i]),
+                |i| vertices(members[i]).len(),
+            ) {
+                let batch: Vec<_> = batch.iter().map(|&i| members[i]).collect();
+                region.bending.push(BendingBatch::new(model, &batch, local));
+            }
+        }
+    }
+
+    /// Adds elastics.
+    pub fn add_ties(&mut self, model: &Model, order: &Order) {
+        for (index, elastic) in model.elastics.iter().enumerate() {
+            let to = match elastic.to {
+                ElasticEnd::Vertex(to) => Some(to),
+                ElasticEnd::Point(_) => None,
+            };
+            let free = |v: u32| !model.pinned[v as usize];
+            let moves = free(elastic.from) || to.is_some_and(free);
+            if elastic.law.stiffness <= 0.0 || !moves || to == Some(elastic.from) {
+                continue;
+            }
+            let ends = [elastic.from, to.unwrap_or(elastic.from)];
+            let place = order.place(&ends);
+            let start = order.start(place) as u32;
+            let local = |v: u32| order.slot_of[v as usize] - start;
+            self.at(place).ties.push(Tie {
+                from: local(elastic.from),
+                to: to.map(local),
+                place: [0.0; 3],
+                stiffness: elastic.law.stiffness as f32,
+                most: elastic.law.largest_force.min(1e30) as f32,
+                sum: [0.0; 3],
+                elastic: index as u32,
+            });
+        }
+    }
+
+    /// Adds the contact samples that lie within triangles.
+    pub fn add_samples(&mut self, model: &Model, order: &Order) {
+        for (index, sample) in model.samples.iter().enumerate() {
+            if sample.triangle.is_none() {
+                continue;
+            }
+            let place = order.place(&sample.vertices);
+            let start = order.start(place) as u32;
+            let [a, b, c] = sample.vertices.map(|v| order.slot_of[v as usize] - start);
+            let [p, q, r] = sample.weights.map(|x| x as f32);
+            self.at(place).contacts.push(ContactStencil {
+                vertices: [a, b, c, 0],
+                weights: [p, q, r, 0.0],
+                touch: Touch::of_sample(model, index),
+            });
+        }
+    }
+
+    /// Every region.
+    pub fn all(&self) -> impl Iterator<Item = &Region> {
+        (self.domains.iter())
+            .chain(&self.cuts)
+            .chain(std::iter::once(&self.rest))
+    }
+
+    /// Membrane constraints and bending constraints.
+    pub fn counts(&self) -> [usize; 2] {
+        [
+            self.all().flat_map(|r| &r.membrane).map(MembraneBatch::len).sum(),
+            self.all().flat_map(|r| &r.bending).map(BendingBatch::len).sum(),
+        ]
+    }
+
+    /// Elastics.
+    pub fn tie_count(&self) -> usize {
+        self.all().map(|r| r.ties.len()).sum()
+    }
+}
+
+/// Sorts constraints by where they are solved.
+fn by_place<'a, T>(
+    order: &Order,
+    all: &'a [T],
+    vertices: impl Fn(&'a T) -> &'a [u32],
+) -> Vec<(Place, Vec<&'a T>)> {
+    let count = order.domains();
+    let mut places: Vec<(Place, Vec<&T>)> = (0..count)
+        .map(|d| (Place::Domain(d), Vec::new()))
+        .chain((0..count - 1).map(|d| (Place::Cut(d), Vec::new())))
+        .chain(std::iter::once((Place::Rest, Vec::new())))
+        .collect();
+    for member in all {
+        let at = match order.place(vertices(member)) {
+            Place::Domain(d) => d,
+            Place::Cut(d) => count + d,
+            Place::Rest => 2 * count - 1,
+        };
+        places[at].1.push(member);
+    }
+    // Neighbours in memory come one after the other.
+    for (_, members) in &mut places {
+        let first = |member: &&'a T| {
+            let slots = vertices(member).iter().map(|&v| order.slot_of[v as usize]);
+            slots.min().unwrap_or(0)
+        };
+        members.sort_by_key(first);
+    }
+    places
+}
+
+/// What the constraints of a substep share.
+#[derive(Clone, Copy)]
+pub struct SweepStep<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// The laws of its materials.
+    pub laws: &'a [LawRow],
+    /// What the points' numbers are relative to [m].
+    pub origin: Vec3,
+    /// (1 + drag h) / h^2 [1/s2], and the like for contacts.
+    pub contact: ContactStep,
+    /// Whether forces are kept from iteration to iteration.
+    pub iterated: bool,
+    /// Whether bending is a constraint.
+    pub bends: bool,
+}
+
+impl Region {
+    /// Gets ready for a substep of new size.
+    pub fn set_step(&mut self, kappa: f64) {
+        for batch in &mut self.bending {
+            batch.set_step(kappa);
+        }
+    }
+
+    /// Gets ready for an advance: places of elastics, and contacts to be looked up.
+    pub fn begin(&mut self, model: &Model, origin: Vec3, iterated: bool) {
+        for tie in &mut self.ties {
+            if let ElasticEnd::Point(point) = model.elastics[tie.elastic as usize].to {
+                let place = point - origin;
+                tie.place = [place.x as f32, place.y as f32, place.z as f32];
+            }
+        }
+        for contact in &mut self.contacts {
+            contact.touch.forget();
+        }
+        if iterated {
+            self.membrane_sums
+                .resize(self.membrane.len(), [Row::splat(0.0); 3]);
+            self.bending_sums
+                .resize(self.bending.len(), [[Row::splat(0.0); 3]; 3]);
+        }
+    }
+
+    /// Forces start from zero.
+    pub fn clear(&mut self) {
+        self.membrane_sums.fill([Row::splat(0.0); 3]);
+        self.bending_sums.fill([[Row::splat(0.0); 3]; 3]);
+        for tie in &mut self.ties {
+            tie.sum = [0.0; 3];
+        }
+        for contact in &mut self.contacts {
+            contact.touch.push = 0.0;
+            contact.touch.rub = [0.0; 3];
+        }
+    }
+
+    /// Solves every constraint once.
+    pub fn sweep(&mut self, step: &SweepStep, points: &mut [Point], starts: &[Point]) {
+        for contact in &mut self.contacts {
+            let point = contact.point(points);
+            if contact.touch.is_stale(point) {
+                contact.touch.look(step.model, step.origin, point);
+            }
+        }
+        pulp::Arch::new().dispatch(Sweep {
+            region: self,
+            step,
+            points,
+        });
+        solve_ties(&mut self.ties, points, step.contact.kappa);
+        solve_stencils(&mut self.contacts, points, starts, &step.contact);
+    }
+}
+
+struct Sweep<'a> {
+    region: &'a mut Region,
+    step: &'a SweepStep<'a>,
+    points: &'a mut [Point],
+}
+
+impl WithSimd for Sweep<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let (region, kappa) = (self.region, self.step.contact.kappa);
+        let laws = self.step.laws;
+        if self.step.iterated {
+            let sums = Some(&mut region.membrane_sums[..]);
+            membrane::solve(simd, &region.membrane, sums, laws, kappa, self.points);
+            let sums = Some(&mut region.bending_sums[..]);
+            if self.step.bends {
+                bending::solve(simd, &region.bending, sums, kappa, self.points);
+            }
+        } else {
+            membrane::solve(simd, &region.membrane, None, laws, kappa, self.points);
+            if self.step.bends {
+                bending::solve(simd, &region.bending, None, kappa, self.points);
+            }
+        }
+    }
+}
