@@ -129,7 +129,7 @@ fn iterated_to_the_end_it_is_implicit_euler() {
             law,
         },
     ]);
-    let h = 0.004;
+    let h = 0.001;
     let mut reference = state.clone();
     let weight: Vec<f64> = (model.mass.iter())
         .map(|m| m * (1.0 + model.air_drag * h) / (h * h))
@@ -165,9 +165,14 @@ fn iterated_to_the_end_it_is_implicit_euler() {
     let gap = (got.positions.iter().zip(&reference.positions))
         .map(|(a, b)| (a - b).norm())
         .fold(0.0, f64::max);
-    // Single precision: a few 1e-8 m on moves of a tenth of a millimetre and more.
+    // XPBD keeps each iteration's direction of force (its first equation is left out, section 4
+    // of the paper): the error is the turn of the triangles in the step, a hundredth here.
     assert!(moved(&reference) > 1e-4);
-    assert!(gap < 2e-3 * moved(&reference), "{gap:e} {:e}", moved(&reference));
+    assert!(
+        gap < 1e-2 * moved(&reference),
+        "{gap:e} {:e}",
+        moved(&reference)
+    );
 }
 
 #[test]
@@ -208,26 +213,24 @@ fn a_hanging_strip_stretches_by_its_weight() {
         expected += (l - 1.0) * length / 10_000.0;
     }
     let got = -state.positions[cells].y - length;
-    assert!(
-        (got - expected).abs() < 0.01 * expected,
-        "{got} {expected}"
-    );
+    assert!((got - expected).abs() < 0.01 * expected, "{got} {expected}");
 }
 
 #[test]
 fn it_rests_where_newton_rests() {
-    let (mut model, state) = model_of(
-        &sheet(8, 8, 0.03, |u, v| Vec3::new(u, 0.0, v)),
-        Material {
-            bend: [2e-5; 3],
-            ..Material::default()
-        },
-    );
-    model.pinned[0] = true;
-    model.pinned[8] = true;
+    // A cantilever of Gamma = rho g L^3 / D = 2.3, clamped by its first two rows.
+    let material = Material {
+        bend: [1.5e-3; 3],
+        ..Material::default()
+    };
+    let (mut model, state) = model_of(&sheet(9, 2, 0.015, |u, v| Vec3::new(u, 0.0, v)), material);
+    for row in 0..3 {
+        model.pinned[10 * row] = true;
+        model.pinned[10 * row + 1] = true;
+    }
     let mut reference = state.clone();
     let mut rest = RestRun::new(RestSettings {
-        residual: 1e-6,
+        residual: 1e-7,
         ..RestSettings::default()
     });
     let mut workspace = Workspace::default();
@@ -235,21 +238,27 @@ fn it_rests_where_newton_rests() {
         rest.advance(&model, &mut reference, &mut workspace)
             .expect("sound");
     }
-    let mut got = state;
-    let settings = XpbdSettings {
-        iterations: 50,
-        ..XpbdSettings::default()
-    };
-    let mut solver = Xpbd::with_settings(&model, settings);
-    for _ in 0..400 {
-        solver
-            .advance(&model, &mut got, 1.0 / 240.0, 4, 6.0)
+    let sunk = -reference.positions[9].y;
+    assert!(sunk > 0.02, "{sunk}");
+    // As a force, and as constraints in steps where the force would not be stable.
+    for (substep, iterations, tolerance) in [(1.0 / 12_000.0, 1, 2e-3), (1.0 / 600.0, 40, 2e-2)] {
+        let mut got = state.clone();
+        let settings = XpbdSettings {
+            iterations,
+            ..XpbdSettings::default()
+        };
+        let mut solver = Xpbd::with_settings(&model, settings);
+        // Long after everything that moves has been damped.
+        let count = (4.0 / substep) as u32;
+        let report = solver
+            .advance(&model, &mut got, substep, count, 10.0)
             .expect("sound");
+        assert!(report.kinetic_energy < 1e-8, "{report:?}");
+        let gap = (got.positions.iter().zip(&reference.positions))
+            .map(|(a, b)| (a - b).norm())
+            .fold(0.0, f64::max);
+        assert!(gap < tolerance * sunk, "{substep}: {gap} of {sunk}");
     }
-    let gap = (got.positions.iter().zip(&reference.positions))
-        .map(|(a, b)| (a - b).norm())
-        .fold(0.0, f64::max);
-    assert!(gap < 1e-3, "{gap}");
 }
 
 #[test]
@@ -280,7 +289,10 @@ fn friction_holds_below_its_angle_and_slides_as_coulomb_says_above() {
         if slides {
             let a = 9.81 * (angle.sin() - friction * angle.cos());
             let expected = 0.5 * a * h * h * steps * (steps + 1.0);
-            assert!((moved - expected).abs() < 0.01 * expected, "{moved} {expected}");
+            assert!(
+                (moved - expected).abs() < 0.01 * expected,
+                "{moved} {expected}"
+            );
         } else {
             assert!(moved.abs() < 1e-5, "{moved}");
         }
@@ -356,7 +368,10 @@ fn what_is_no_number_is_an_error_and_the_state_stays() {
     state.velocities[40].x = 1e300;
     let before = state.clone();
     let found = solver.advance(&model, &mut state, 1e-3, 5, 0.0);
-    assert!(matches!(found, Err(DrapeError::NotFinite { .. })), "{found:?}");
+    assert!(
+        matches!(found, Err(DrapeError::NotFinite { .. })),
+        "{found:?}"
+    );
     assert_eq!(state.positions, before.positions);
     assert_eq!(state.velocities, before.velocities);
 }

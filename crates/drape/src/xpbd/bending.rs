@@ -42,9 +42,7 @@ impl BendingForce {
                 for (&column, &value) in columns.iter().zip(values) {
                     sum += value.abs();
                     if column != v && value != 0.0 {
-                        force
-                            .entries
-                            .push((slot_of[column as usize], value as f32));
+                        force.entries.push((slot_of[column as usize], value as f32));
                     }
                 }
                 // Gershgorin's bound of the eigenvalues of W K.
@@ -192,7 +190,10 @@ pub fn solve<S: Simd>(
 ) {
     for (at, batch) in batches.iter().enumerate() {
         for part in 0..parts::<S>() {
-            let sums = sums.as_deref_mut().map(|sums| &mut sums[at]);
+            let sums = match &mut sums {
+                Some(sums) => Some(&mut sums[at]),
+                None => None,
+            };
             solve_part(simd, batch, part, sums, kappa, points);
         }
     }
@@ -210,7 +211,6 @@ fn solve_part<S: Simd>(
     let Some(first) = batch.corners.first() else {
         return;
     };
-    let row = |row: &Row| row.part::<S>(part);
     let zero = simd.splat_f32s(0.0);
     let mut curvature = [[zero; 3]; 3];
     let [x, y, z, _] = gather(simd, points, first, part);
@@ -219,27 +219,31 @@ fn solve_part<S: Simd>(
         let [x, y, z, _] = gather(simd, points, corner, part);
         let d = sub(simd, [x, y, z], origin);
         for k in 0..3 {
-            curvature[k] = add_scaled(simd, curvature[k], d, row(&weights[k]));
+            curvature[k] = add_scaled(simd, curvature[k], d, weights[k].part::<S>(part));
         }
     }
     if let Some(sums) = &sums {
         for k in 0..3 {
-            let soft = simd.mul_f32s(row(&batch.compliance[k]), simd.splat_f32s(kappa));
-            let sum = sums[k].each_ref().map(row);
+            let soft = simd.mul_f32s(batch.compliance[k].part::<S>(part), simd.splat_f32s(kappa));
+            let sum = triple::<S>(&sums[k], part);
             curvature[k] = add_scaled(simd, curvature[k], sum, soft);
         }
     }
-    let [t11, t22, t33, t12, t13, t23] = batch.inverse.each_ref().map(row);
-    let lines = [[t11, t12, t13], [t12, t22, t23], [t13, t23, t33]];
-    let change = lines.map(|line| {
-        let sum = curvature[0].map(|c| simd.mul_f32s(c, line[0]));
-        let sum = add_scaled(simd, sum, curvature[1], line[1]);
-        add_scaled(simd, sum, curvature[2], line[2])
-    });
+    let t11 = batch.inverse[0].part::<S>(part);
+    let t22 = batch.inverse[1].part::<S>(part);
+    let t33 = batch.inverse[2].part::<S>(part);
+    let t12 = batch.inverse[3].part::<S>(part);
+    let t13 = batch.inverse[4].part::<S>(part);
+    let t23 = batch.inverse[5].part::<S>(part);
+    let change = [
+        mixed(simd, &curvature, [t11, t12, t13]),
+        mixed(simd, &curvature, [t12, t22, t23]),
+        mixed(simd, &curvature, [t13, t23, t33]),
+    ];
     if let Some(sums) = &mut sums {
         for k in 0..3 {
             for axis in 0..3 {
-                let sum = simd.sub_f32s(row(&sums[k][axis]), change[k][axis]);
+                let sum = simd.sub_f32s(sums[k][axis].part::<S>(part), change[k][axis]);
                 sums[k][axis].set_part::<S>(part, sum);
             }
         }
@@ -249,10 +253,33 @@ fn solve_part<S: Simd>(
         let share = simd.sub_f32s(zero, w);
         let mut p = [x, y, z];
         for k in 0..3 {
-            let weight = simd.mul_f32s(share, row(&weights[k]));
+            let weight = simd.mul_f32s(share, weights[k].part::<S>(part));
             p = add_scaled(simd, p, change[k], weight);
         }
         let [x, y, z] = p;
         scatter(simd, points, corner, part, [x, y, z, w]);
     }
+}
+
+/// Three rows of one part.
+#[inline(always)]
+fn triple<S: Simd>(rows: &Triple<Row>, part: usize) -> Triple<S::f32s> {
+    [
+        rows[0].part::<S>(part),
+        rows[1].part::<S>(part),
+        rows[2].part::<S>(part),
+    ]
+}
+
+/// The sum of three vectors with weights.
+#[inline(always)]
+fn mixed<S: Simd>(
+    simd: S,
+    vectors: &[Triple<S::f32s>; 3],
+    weights: [S::f32s; 3],
+) -> Triple<S::f32s> {
+    let zero = simd.splat_f32s(0.0);
+    let sum = add_scaled(simd, [zero; 3], vectors[0], weights[0]);
+    let sum = add_scaled(simd, sum, vectors[1], weights[1]);
+    add_scaled(simd, sum, vectors[2], weights[2])
 }

@@ -47,25 +47,69 @@ pub const fn parts<S: Simd>() -> usize {
     LANES / S::F32_LANES
 }
 
+/// The point that a lane of a part points at.
+#[inline(always)]
+fn at<S: Simd>(points: &[Point], corner: &Corner, part: usize, lane: usize) -> Point {
+    points[corner.0[part * S::F32_LANES + lane] as usize]
+}
+
 /// Loads the points of one corner for one part: x, y, z and inverse mass.
+///
+/// Everything that works on vectors is inlined by force, closures are avoided: a function that is
+/// not inlined into the one compiled for the processor is compiled without its vectors.
 #[inline(always)]
 pub fn gather<S: Simd>(simd: S, points: &[Point], corner: &Corner, part: usize) -> [S::f32s; 4] {
-    let at = |lane: usize| points[corner.0[part * S::F32_LANES + lane] as usize];
     // Slot l of register r holds lane 4 l + r: the shuffle then leaves lanes in their order.
     if S::F32_LANES == 16 {
-        let register = |r: usize| [at(r), at(4 + r), at(8 + r), at(12 + r)];
-        let loaded = [register(0), register(1), register(2), register(3)];
-        simd.deinterleave_shfl_f32s(loaded.map(|four| cast::<[Point; 4], S::f32s>(four)))
+        simd.deinterleave_shfl_f32s([
+            four::<S>(points, corner, part, 0),
+            four::<S>(points, corner, part, 1),
+            four::<S>(points, corner, part, 2),
+            four::<S>(points, corner, part, 3),
+        ])
     } else if S::F32_LANES == 8 {
-        let register = |r: usize| [at(r), at(4 + r)];
-        let loaded = [register(0), register(1), register(2), register(3)];
-        simd.deinterleave_shfl_f32s(loaded.map(|two| cast::<[Point; 2], S::f32s>(two)))
+        simd.deinterleave_shfl_f32s([
+            two::<S>(points, corner, part, 0),
+            two::<S>(points, corner, part, 1),
+            two::<S>(points, corner, part, 2),
+            two::<S>(points, corner, part, 3),
+        ])
     } else if S::F32_LANES == 4 {
-        let loaded = [at(0), at(1), at(2), at(3)];
-        simd.deinterleave_shfl_f32s(loaded.map(|one| cast::<Point, S::f32s>(one)))
+        simd.deinterleave_shfl_f32s([
+            cast::<Point, S::f32s>(at::<S>(points, corner, part, 0)),
+            cast::<Point, S::f32s>(at::<S>(points, corner, part, 1)),
+            cast::<Point, S::f32s>(at::<S>(points, corner, part, 2)),
+            cast::<Point, S::f32s>(at::<S>(points, corner, part, 3)),
+        ])
     } else {
-        at(0).map(|x| simd.splat_f32s(x))
+        let [x, y, z, w] = at::<S>(points, corner, part, 0);
+        [
+            simd.splat_f32s(x),
+            simd.splat_f32s(y),
+            simd.splat_f32s(z),
+            simd.splat_f32s(w),
+        ]
     }
+}
+
+/// Register `r` of sixteen lanes.
+#[inline(always)]
+fn four<S: Simd>(points: &[Point], corner: &Corner, part: usize, r: usize) -> S::f32s {
+    cast::<[Point; 4], S::f32s>([
+        at::<S>(points, corner, part, r),
+        at::<S>(points, corner, part, 4 + r),
+        at::<S>(points, corner, part, 8 + r),
+        at::<S>(points, corner, part, 12 + r),
+    ])
+}
+
+/// Register `r` of eight lanes.
+#[inline(always)]
+fn two<S: Simd>(points: &[Point], corner: &Corner, part: usize, r: usize) -> S::f32s {
+    cast::<[Point; 2], S::f32s>([
+        at::<S>(points, corner, part, r),
+        at::<S>(points, corner, part, 4 + r),
+    ])
 }
 
 /// Stores the points of one corner for one part.
@@ -77,30 +121,35 @@ pub fn scatter<S: Simd>(
     part: usize,
     values: [S::f32s; 4],
 ) {
-    let index = |lane: usize| corner.0[part * S::F32_LANES + lane] as usize;
+    let first = part * S::F32_LANES;
     if S::F32_LANES == 16 {
         let registers = simd.interleave_shfl_f32s(values);
-        for (r, register) in registers.into_iter().enumerate() {
-            let four: [Point; 4] = cast(register);
-            for (slot, point) in four.into_iter().enumerate() {
-                points[index(4 * slot + r)] = point;
-            }
+        for r in 0..4 {
+            let four: [Point; 4] = cast(registers[r]);
+            points[corner.0[first + r] as usize] = four[0];
+            points[corner.0[first + 4 + r] as usize] = four[1];
+            points[corner.0[first + 8 + r] as usize] = four[2];
+            points[corner.0[first + 12 + r] as usize] = four[3];
         }
     } else if S::F32_LANES == 8 {
         let registers = simd.interleave_shfl_f32s(values);
-        for (r, register) in registers.into_iter().enumerate() {
-            let two: [Point; 2] = cast(register);
-            for (slot, point) in two.into_iter().enumerate() {
-                points[index(4 * slot + r)] = point;
-            }
+        for r in 0..4 {
+            let two: [Point; 2] = cast(registers[r]);
+            points[corner.0[first + r] as usize] = two[0];
+            points[corner.0[first + 4 + r] as usize] = two[1];
         }
     } else if S::F32_LANES == 4 {
         let registers = simd.interleave_shfl_f32s(values);
-        for (r, register) in registers.into_iter().enumerate() {
-            points[index(r)] = cast(register);
+        for r in 0..4 {
+            points[corner.0[first + r] as usize] = cast(registers[r]);
         }
     } else {
-        points[index(0)] = values.map(|x| simd.reduce_sum_f32s(x));
+        points[corner.0[first] as usize] = [
+            simd.reduce_sum_f32s(values[0]),
+            simd.reduce_sum_f32s(values[1]),
+            simd.reduce_sum_f32s(values[2]),
+            simd.reduce_sum_f32s(values[3]),
+        ];
     }
 }
 
@@ -110,7 +159,11 @@ pub type Triple<F> = [F; 3];
 /// a - b.
 #[inline(always)]
 pub fn sub<S: Simd>(simd: S, a: Triple<S::f32s>, b: Triple<S::f32s>) -> Triple<S::f32s> {
-    [0, 1, 2].map(|k| simd.sub_f32s(a[k], b[k]))
+    [
+        simd.sub_f32s(a[0], b[0]),
+        simd.sub_f32s(a[1], b[1]),
+        simd.sub_f32s(a[2], b[2]),
+    ]
 }
 
 /// a . b.
@@ -130,7 +183,11 @@ pub fn blend<S: Simd>(
     b: Triple<S::f32s>,
     t: S::f32s,
 ) -> Triple<S::f32s> {
-    [0, 1, 2].map(|k| simd.mul_add_e_f32s(b[k], t, simd.mul_f32s(a[k], s)))
+    [
+        simd.mul_add_e_f32s(b[0], t, simd.mul_f32s(a[0], s)),
+        simd.mul_add_e_f32s(b[1], t, simd.mul_f32s(a[1], s)),
+        simd.mul_add_e_f32s(b[2], t, simd.mul_f32s(a[2], s)),
+    ]
 }
 
 /// a + b s.
@@ -141,7 +198,11 @@ pub fn add_scaled<S: Simd>(
     b: Triple<S::f32s>,
     s: S::f32s,
 ) -> Triple<S::f32s> {
-    [0, 1, 2].map(|k| simd.mul_add_e_f32s(b[k], s, a[k]))
+    [
+        simd.mul_add_e_f32s(b[0], s, a[0]),
+        simd.mul_add_e_f32s(b[1], s, a[1]),
+        simd.mul_add_e_f32s(b[2], s, a[2]),
+    ]
 }
 
 #[cfg(test)]

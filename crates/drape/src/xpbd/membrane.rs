@@ -15,7 +15,9 @@
 //! A law that is no straight line is linearised where the triangle is: with stress s and slope D,
 //! C becomes D^-1 s and S becomes D.
 
-use super::lanes::{Corner, LANES, Point, Row, add_scaled, blend, dot, gather, parts, scatter, sub};
+use super::lanes::{
+    Corner, LANES, Point, Row, add_scaled, blend, dot, gather, parts, scatter, sub,
+};
 use crate::Model;
 use crate::laws::stretch::MembraneLaw;
 use pulp::Simd;
@@ -150,7 +152,10 @@ pub fn solve<S: Simd>(
     for (at, batch) in batches.iter().enumerate() {
         let law = &laws[batch.law as usize];
         for part in 0..parts::<S>() {
-            let sums = sums.as_deref_mut().map(|sums| &mut sums[at]);
+            let sums = match &mut sums {
+                Some(sums) => Some(&mut sums[at]),
+                None => None,
+            };
             solve_part(simd, batch, part, sums, law, kappa, points);
         }
     }
@@ -167,13 +172,13 @@ fn solve_part<S: Simd>(
     kappa: f32,
     points: &mut [Point],
 ) {
-    let row = |row: &Row| row.part::<S>(part);
-    let corner = |k: usize| gather(simd, points, &batch.corners[k], part);
-    let ([x0, y0, z0, w0], [x1, y1, z1, w1], [x2, y2, z2, w2]) = (corner(0), corner(1), corner(2));
+    let [x0, y0, z0, w0] = gather(simd, points, &batch.corners[0], part);
+    let [x1, y1, z1, w1] = gather(simd, points, &batch.corners[1], part);
+    let [x2, y2, z2, w2] = gather(simd, points, &batch.corners[2], part);
     let (p0, p1, p2) = ([x0, y0, z0], [x1, y1, z1], [x2, y2, z2]);
     let (d1, d2) = (sub(simd, p1, p0), sub(simd, p2, p0));
-    let [a1, a2] = [row(&batch.warp[0]), row(&batch.warp[1])];
-    let [b1, b2] = [row(&batch.weft[0]), row(&batch.weft[1])];
+    let [a1, a2] = [batch.warp[0].part::<S>(part), batch.warp[1].part::<S>(part)];
+    let [b1, b2] = [batch.weft[0].part::<S>(part), batch.weft[1].part::<S>(part)];
     let fu = blend(simd, d1, a1, d2, a2);
     let fv = blend(simd, d1, b1, d2, b2);
     let (uu, vv, uv) = (dot(simd, fu, fu), dot(simd, fv, fv), dot(simd, fu, fv));
@@ -184,12 +189,26 @@ fn solve_part<S: Simd>(
         uv,
     ];
     let (target, compliance) = linearise(simd, law, strain);
-    let softness = simd.mul_f32s(row(&batch.softness), simd.splat_f32s(kappa));
-    let soft = compliance.map(|c| simd.mul_f32s(softness, c));
-    let matrix = system(simd, batch.products.each_ref().map(row), [uu, vv, uv], soft);
+    let softness = simd.mul_f32s(batch.softness.part::<S>(part), simd.splat_f32s(kappa));
+    let soft = [
+        simd.mul_f32s(softness, compliance[0]),
+        simd.mul_f32s(softness, compliance[1]),
+        simd.mul_f32s(softness, compliance[2]),
+        simd.mul_f32s(softness, compliance[3]),
+    ];
+    let products = [
+        batch.products[0].part::<S>(part),
+        batch.products[1].part::<S>(part),
+        batch.products[2].part::<S>(part),
+    ];
+    let matrix = system(simd, products, [uu, vv, uv], soft);
     let mut residual = target;
     if let Some(sums) = &sums {
-        let [l0, l1, l2] = [row(&sums[0]), row(&sums[1]), row(&sums[2])];
+        let [l0, l1, l2] = [
+            sums[0].part::<S>(part),
+            sums[1].part::<S>(part),
+            sums[2].part::<S>(part),
+        ];
         residual[0] = simd.mul_add_e_f32s(soft[0], l0, residual[0]);
         residual[0] = simd.mul_add_e_f32s(soft[2], l1, residual[0]);
         residual[1] = simd.mul_add_e_f32s(soft[1], l1, residual[1]);
@@ -199,19 +218,20 @@ fn solve_part<S: Simd>(
     let z = solve_system(simd, matrix, residual);
     if let Some(sums) = sums {
         for k in 0..3 {
-            let sum = simd.sub_f32s(row(&sums[k]), z[k]);
+            let sum = simd.sub_f32s(sums[k].part::<S>(part), z[k]);
             sums[k].set_part::<S>(part, sum);
         }
     }
     // dx_i = -w_i sigma (a_i (f_u z_0 + f_v z_2) + b_i (f_v z_1 + f_u z_2)).
     let by_u = blend(simd, fu, z[0], fv, z[2]);
     let by_v = blend(simd, fv, z[1], fu, z[2]);
-    let scale = row(&batch.scale);
+    let scale = batch.scale.part::<S>(part);
     let zero = simd.splat_f32s(0.0);
     let a0 = simd.sub_f32s(simd.sub_f32s(zero, a1), a2);
     let b0 = simd.sub_f32s(simd.sub_f32s(zero, b1), b2);
     let corners = [(p0, w0, a0, b0), (p1, w1, a1, b1), (p2, w2, a2, b2)];
-    for (k, (p, w, a, b)) in corners.into_iter().enumerate() {
+    for k in 0..3 {
+        let (p, w, a, b) = corners[k];
         let share = simd.sub_f32s(zero, simd.mul_f32s(w, scale));
         let p = add_scaled(simd, p, by_u, simd.mul_f32s(share, a));
         let [x, y, z] = add_scaled(simd, p, by_v, simd.mul_f32s(share, b));
@@ -221,13 +241,16 @@ fn solve_part<S: Simd>(
 
 /// The strain that a linear law would need for the stress, and the compliance 11, 22, 12, 33.
 #[inline(always)]
-fn linearise<S: Simd>(
-    simd: S,
-    law: &LawRow,
-    strain: [S::f32s; 3],
-) -> ([S::f32s; 3], [S::f32s; 4]) {
+fn linearise<S: Simd>(simd: S, law: &LawRow, strain: [S::f32s; 3]) -> ([S::f32s; 3], [S::f32s; 4]) {
     let Some(curve) = &law.curve else {
-        return (strain, law.compliance.map(|c| simd.splat_f32s(c)));
+        let [c11, c22, c12, c33] = law.compliance;
+        let compliance = [
+            simd.splat_f32s(c11),
+            simd.splat_f32s(c22),
+            simd.splat_f32s(c12),
+            simd.splat_f32s(c33),
+        ];
+        return (strain, compliance);
     };
     curve_of(simd, law, curve, strain)
 }
@@ -254,7 +277,12 @@ fn curve_of<S: Simd>(
         let [d11, d22, d12, d33, ..] = curve.slope(strain);
         let (d11, d22, d33) = (d11 + least, d22 + least, d33 + least);
         let determinant = d11 * d22 - d12 * d12;
-        let inverse = [d22 / determinant, d11 / determinant, -d12 / determinant, 1.0 / d33];
+        let inverse = [
+            d22 / determinant,
+            d11 / determinant,
+            -d12 / determinant,
+            1.0 / d33,
+        ];
         let goal = [
             inverse[0] * stress[0] + inverse[2] * stress[1],
             inverse[1] * stress[1] + inverse[2] * stress[0],
@@ -307,19 +335,24 @@ fn solve_system<S: Simd>(
 ) -> [S::f32s; 3] {
     let one = simd.splat_f32s(1.0);
     let least = simd.splat_f32s(LEAST_PIVOT);
-    let less = |a, b, c| simd.negate_mul_add_e_f32s(b, c, a);
     let i1 = simd.div_f32s(one, m11);
     let (l21, l31) = (simd.mul_f32s(m12, i1), simd.mul_f32s(m13, i1));
-    let d2 = simd.max_f32s(less(m22, l21, m12), simd.mul_f32s(least, m22));
-    let t = less(m23, l31, m12);
+    let d2 = simd.max_f32s(less(simd, m22, l21, m12), simd.mul_f32s(least, m22));
+    let t = less(simd, m23, l31, m12);
     let i2 = simd.div_f32s(one, d2);
     let l32 = simd.mul_f32s(t, i2);
-    let d3 = less(less(m33, l31, m13), l32, t);
+    let d3 = less(simd, less(simd, m33, l31, m13), l32, t);
     let d3 = simd.max_f32s(d3, simd.mul_f32s(least, m33));
-    let y2 = less(c2, l21, c1);
-    let y3 = less(less(c3, l31, c1), l32, y2);
+    let y2 = less(simd, c2, l21, c1);
+    let y3 = less(simd, less(simd, c3, l31, c1), l32, y2);
     let z3 = simd.div_f32s(y3, d3);
-    let z2 = less(simd.mul_f32s(y2, i2), l32, z3);
-    let z1 = less(less(simd.mul_f32s(c1, i1), l21, z2), l31, z3);
+    let z2 = less(simd, simd.mul_f32s(y2, i2), l32, z3);
+    let z1 = less(simd, less(simd, simd.mul_f32s(c1, i1), l21, z2), l31, z3);
     [z1, z2, z3]
+}
+
+/// a - b c.
+#[inline(always)]
+fn less<S: Simd>(simd: S, a: S::f32s, b: S::f32s, c: S::f32s) -> S::f32s {
+    simd.negate_mul_add_e_f32s(b, c, a)
 }

@@ -82,7 +82,7 @@ pub struct ConstraintCount {
 }
 
 /// Halvings of a substep before it is an error.
-const STEP_HALVINGS: u32 = 10;
+const STEP_HALVINGS: u32 = 6;
 
 /// Bending is a force while h times its largest frequency is below this; symplectic Euler is
 /// stable up to 2.
@@ -262,7 +262,11 @@ impl Xpbd {
             for k in 0..3 {
                 start[k] = place[k] as f32;
                 particles.low[slot][k] = (place[k] - f64::from(start[k])) as f32;
-                particles.velocity[slot][k] = if weight > 0.0 { velocity[k] as f32 } else { 0.0 };
+                particles.velocity[slot][k] = if weight > 0.0 {
+                    velocity[k] as f32
+                } else {
+                    0.0
+                };
             }
             particles.start[slot] = start;
             particles.now[slot] = start;

@@ -154,7 +154,9 @@ impl Bound<'_> {
         let per_step = 1.0 / step.step;
         let most2 = step.speed_limit * step.speed_limit;
         let points = self.now.iter().zip(self.free);
-        for ((now, free), (start, velocity)) in points.zip(self.start.iter_mut().zip(&mut *self.velocity)) {
+        for ((now, free), (start, velocity)) in
+            points.zip(self.start.iter_mut().zip(&mut *self.velocity))
+        {
             for k in 0..4 {
                 velocity[k] += (now[k] - free[k]) * per_step;
             }

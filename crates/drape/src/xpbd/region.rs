@@ -164,8 +164,14 @@ impl Regions {
     /// Membrane constraints and bending constraints.
     pub fn counts(&self) -> [usize; 2] {
         [
-            self.all().flat_map(|r| &r.membrane).map(MembraneBatch::len).sum(),
-            self.all().flat_map(|r| &r.bending).map(BendingBatch::len).sum(),
+            self.all()
+                .flat_map(|r| &r.membrane)
+                .map(MembraneBatch::len)
+                .sum(),
+            self.all()
+                .flat_map(|r| &r.bending)
+                .map(BendingBatch::len)
+                .sum(),
         ]
     }
 
