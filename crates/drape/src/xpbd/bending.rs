@@ -8,8 +8,8 @@
 
 use super::lanes::{Corner, LANES, Point, Row, Triple, add_scaled, gather, parts, scatter, sub};
 use super::membrane::inverse_mass;
-use crate::Model;
-use crate::laws::bending::{BendingStencil, RestSheet};
+use crate::laws::bending::RestSheet;
+use crate::{Material, Model};
 use nalgebra::Matrix3;
 use pulp::Simd;
 use toile_geometry::Vec2;
@@ -77,8 +77,22 @@ impl BendingForce {
     }
 }
 
-/// The curvature stencils of a model, those without stiffness left out: triangle and stencil.
-pub fn stencils(model: &Model) -> Vec<(u32, BendingStencil)> {
+/// The curvatures of a triangle along the principal directions of its stiffness.
+#[derive(Clone, Debug)]
+pub struct Stencil {
+    /// Vertices taking part.
+    pub vertices: Vec<u32>,
+    /// Weights of each in the three curvatures [1/m2].
+    weights: Vec<[f64; 3]>,
+    /// A D [N m3].
+    stiffness: [f64; 3],
+}
+
+/// Least bending stiffness of a direction as a share of the largest: its compliance must be finite.
+const LEAST_SHARE: f64 = 1e-6;
+
+/// The curvature stencils of a model, those without stiffness left out.
+pub fn stencils(model: &Model) -> Vec<Stencil> {
     let rest: Vec<[Vec2; 3]> = model.elements.iter().map(|e| e.rest()).collect();
     let positions = vec![toile_geometry::Vec3::zeros(); model.vertex_count()];
     let topology = model.mesh(&positions).topology();
@@ -87,21 +101,23 @@ pub fn stencils(model: &Model) -> Vec<(u32, BendingStencil)> {
         rest: &rest,
         topology: &topology,
     };
-    (0..model.triangles.len())
-        .filter(|&t| stiffness(model, t).is_some())
-        .filter_map(|t| Some((t as u32, sheet.stencil(t)?)))
-        .collect()
-}
-
-/// Least bending stiffness of a direction as a share of the largest: its compliance must be finite.
-const LEAST_SHARE: f64 = 1e-6;
-
-/// A D of a triangle for x_uu, x_uv, x_vv [N m3]; nothing where it has none.
-fn stiffness(model: &Model, triangle: usize) -> Option<[f64; 3]> {
-    let [warp, weft, twist] = model.materials[model.material[triangle] as usize].bending();
-    let rows = [warp, 2.0 * twist, weft].map(|d| d * model.elements[triangle].area);
-    let largest = rows.iter().copied().fold(0.0, f64::max);
-    (largest > 0.0).then(|| rows.map(|d| d.max(LEAST_SHARE * largest)))
+    let laws: Vec<_> = (model.materials.iter())
+        .map(Material::bending_matrix)
+        .collect();
+    let mut stencils = Vec::with_capacity(model.triangles.len());
+    for (t, stencil) in sheet.stencils().into_iter().enumerate() {
+        let (weights, stiffness) = stencil.principal(laws[model.material[t] as usize]);
+        let largest = stiffness.iter().copied().fold(0.0, f64::max);
+        if largest > 0.0 {
+            let area = model.elements[t].area;
+            stencils.push(Stencil {
+                vertices: stencil.vertices,
+                weights,
+                stiffness: stiffness.map(|d| area * d.max(LEAST_SHARE * largest)),
+            });
+        }
+    }
+    stencils
 }
 
 /// Sixteen stencils of the same size without a shared vertex.
@@ -123,12 +139,8 @@ pub type Sums = [Triple<Row>; 3];
 
 impl BendingBatch {
     /// A batch of up to sixteen stencils; `local` as for membranes.
-    pub fn new(
-        model: &Model,
-        members: &[&(u32, BendingStencil)],
-        local: impl Fn(u32) -> u32,
-    ) -> Self {
-        let size = members.first().map_or(0, |(_, s)| s.vertices.len());
+    pub fn new(model: &Model, members: &[&Stencil], local: impl Fn(u32) -> u32) -> Self {
+        let size = members.first().map_or(0, |s| s.vertices.len());
         let mut batch = Self {
             corners: vec![Corner([0; LANES]); size],
             weights: vec![[Row::splat(0.0); 3]; size],
@@ -136,7 +148,7 @@ impl BendingBatch {
             compliance: [Row::splat(0.0); 3],
             exact: Vec::with_capacity(members.len()),
         };
-        for (lane, (triangle, stencil)) in members.iter().enumerate() {
+        for (lane, stencil) in members.iter().enumerate() {
             let mut matrix = Matrix3::zeros();
             for (k, (&v, weights)) in stencil.vertices.iter().zip(&stencil.weights).enumerate() {
                 batch.corners[k].0[lane] = local(v);
@@ -146,8 +158,7 @@ impl BendingBatch {
                     batch.weights[k][row].0[lane] = weights[row] as f32;
                 }
             }
-            let stiffness = stiffness(model, *triangle as usize).unwrap_or([1.0; 3]);
-            let compliance = stiffness.map(|d| 1.0 / d);
+            let compliance = stencil.stiffness.map(|d| 1.0 / d);
             for row in 0..3 {
                 batch.compliance[row].0[lane] = compliance[row] as f32;
             }

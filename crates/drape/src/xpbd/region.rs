@@ -1,11 +1,10 @@
 //! A region: the constraints that one core solves in one go, on one slice of the points.
 
-use super::bending::{self, BendingBatch};
+use super::bending::{self, BendingBatch, Stencil};
 use super::contact::{ContactStencil, ContactStep, Tie, Touch, solve_stencils, solve_ties};
 use super::lanes::{LANES, Point, Row};
 use super::membrane::{self, LawRow, MembraneBatch};
 use super::order::{Order, Place, batches};
-use crate::laws::bending::BendingStencil;
 use crate::{ElasticEnd, Model};
 use pulp::{Simd, WithSimd};
 use toile_geometry::Vec3;
@@ -88,9 +87,9 @@ impl Regions {
     /// Adds bending as constraints.
     pub fn add_bending(&mut self, model: &Model, order: &Order) {
         let mut stencils = bending::stencils(model);
-        stencils.retain(|(_, s)| s.vertices.iter().any(|&v| !model.pinned[v as usize]));
-        fn vertices(member: &(u32, BendingStencil)) -> &[u32] {
-            &member.1.vertices
+        stencils.retain(|s| s.vertices.iter().any(|&v| !model.pinned[v as usize]));
+        fn vertices(member: &Stencil) -> &[u32] {
+            &member.vertices
         }
         for (place, members) in by_place(order, &stencils, vertices) {
             let start = order.start(place) as u32;
