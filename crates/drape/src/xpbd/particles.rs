@@ -6,6 +6,10 @@ use super::lanes::Point;
 use crate::Model;
 use toile_geometry::Vec3;
 
+/// Times the speed limit at which a substep has failed: a fall stops at the limit and stays there,
+/// only what is thrown goes so far beyond it at once.
+const RUNAWAY: f32 = 1.2;
+
 /// Points by slot. Fourth numbers: inverse mass in `start` and `now`, zero elsewhere.
 #[derive(Clone, Debug, Default)]
 pub struct Particles {
@@ -162,7 +166,9 @@ impl Bound<'_> {
             }
             let speed2 =
                 velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2];
-            if speed2 > most2 {
+            if speed2 > RUNAWAY * RUNAWAY * most2 {
+                *velocity = [f32::NAN; 4];
+            } else if speed2 > most2 {
                 let share = step.speed_limit / speed2.sqrt();
                 for part in &mut *velocity {
                     *part *= share;
