@@ -2,7 +2,8 @@
 //!
 //! The energy is x . K x / 2 with a constant K that is the same for x, y and z. As a force it costs
 //! one row of K a vertex, but a substep h must keep h w_max < 2, w_max^2 the largest eigenvalue of
-//! W K. Where it does not, each triangle's curvatures kappa = B x are constraints with compliance
+//! W K. Where it does not, the force is filtered by a few more products with K ([`Filter`]); where
+//! that takes too many, and where constraints are iterated, each triangle's curvatures kappa = B x are constraints with compliance
 //! (A D)^-1: the 3x3 system B W B^T + (A D)^-1 / h^2 is constant, one for x, y and z, and is
 //! inverted before the run (Macklin, Müller and Chentanez 2016, equation 18, for the block).
 
@@ -14,14 +15,19 @@ use nalgebra::Matrix3;
 use pulp::Simd;
 use toile_geometry::Vec2;
 
-/// K as rows over the slots of the vertices, without its diagonal.
+/// K as rows over the slots of the vertices, without its diagonal: sixteen rows side by side, as
+/// many entries each as the longest has.
 #[derive(Clone, Debug, Default)]
 pub struct BendingForce {
     start: Vec<u32>,
-    /// Slot of the other vertex and the entry of K [N/m].
-    entries: Vec<(u32, f32)>,
+    /// Slots of the other vertices.
+    columns: Vec<Corner>,
+    /// Entries of K [N/m].
+    values: Vec<Row>,
     /// Bound of w_max [1/s].
     pub frequency: f64,
+    /// Entries that are not zero.
+    pub count: usize,
 }
 
 impl BendingForce {
@@ -33,47 +39,120 @@ impl BendingForce {
             ..Self::default()
         };
         let mut largest = 0f64;
-        for vertex in vertex_of {
-            if let Some(v) = *vertex
-                && !model.pinned[v as usize]
-            {
+        for (block, vertices) in vertex_of.chunks(LANES).enumerate() {
+            let first = force.columns.len();
+            for (lane, vertex) in vertices.iter().enumerate() {
+                let Some(v) = vertex.filter(|&v| !model.pinned[v as usize]) else {
+                    continue;
+                };
                 let (columns, values) = model.bending.row_entries(v as usize);
-                let mut sum = 0.0;
-                for (&column, &value) in columns.iter().zip(values) {
-                    sum += value.abs();
-                    if column != v && value != 0.0 {
-                        force.entries.push((slot_of[column as usize], value as f32));
-                    }
-                }
+                let sum: f64 = values.iter().map(|value| value.abs()).sum();
                 // Gershgorin's bound of the eigenvalues of W K.
                 largest = largest.max(sum * inverse_mass(model, v));
+                let others = columns.iter().zip(values);
+                for (at, (&column, &value)) in others
+                    .filter(|&(&column, &value)| column != v && value != 0.0)
+                    .enumerate()
+                {
+                    if first + at == force.columns.len() {
+                        // Idle lanes look at their own row.
+                        let own = |lane: usize| (block * LANES + lane) as u32;
+                        force.columns.push(Corner(std::array::from_fn(own)));
+                        force.values.push(Row::splat(0.0));
+                    }
+                    force.columns[first + at].0[lane] = slot_of[column as usize];
+                    force.values[first + at].0[lane] = value as f32;
+                    force.count += 1;
+                }
             }
-            force.start.push(force.entries.len() as u32);
+            force.start.push(force.columns.len() as u32);
         }
         force.frequency = largest.sqrt();
         force
     }
 
-    /// Minus the force on the vertex in a slot [N]: K x, taken over differences because the rows of
-    /// K sum to zero.
+    /// K times points for the rows from `slot` on, a multiple of sixteen [N]: taken over differences
+    /// from `here`, the points of the rows themselves, because the rows of K sum to zero.
     #[inline(always)]
-    pub fn row(&self, slot: usize, points: &[Point]) -> Point {
-        let here = points[slot];
-        let mut sum = [0.0f32; 4];
-        for &(other, value) in
-            &self.entries[self.start[slot] as usize..self.start[slot + 1] as usize]
+    pub fn times<S: Simd>(
+        &self,
+        simd: S,
+        slot: usize,
+        points: &[Point],
+        here: [S::f32s; 4],
+        part: usize,
+    ) -> Triple<S::f32s> {
+        let [x, y, z, _] = here;
+        let mut sum = [simd.splat_f32s(0.0); 3];
+        let block = slot / LANES;
+        let entries = self.start[block] as usize..self.start[block + 1] as usize;
+        for (column, value) in self.columns[entries.clone()]
+            .iter()
+            .zip(&self.values[entries])
         {
-            let there = points[other as usize];
-            for k in 0..4 {
-                sum[k] += value * (there[k] - here[k]);
-            }
+            let there = gather(simd, points, column, part);
+            let d = sub(simd, [there[0], there[1], there[2]], [x, y, z]);
+            sum = add_scaled(simd, sum, d, value.part::<S>(part));
         }
         sum
     }
+}
 
-    /// Number of entries.
-    pub fn len(&self) -> usize {
-        self.entries.len()
+/// How bending is filtered where its force alone is not stable: the move of a substep is
+/// -q(h^2 W K) x instead of -h^2 W K x, with the polynomial
+/// q(z) = c (1 - T_s(w0 - w1 z / c) / T_s(w0)), q'(0) = 1, of s stages: slow modes feel their own
+/// stiffness, fast ones no more than is stable, rest is where it was and momentum is kept. The
+/// recursion is that of Runge-Kutta-Chebyshev methods (van der Houwen and Sommeijer 1980).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Filter {
+    /// Numbers of each stage: d = mu d - nu d_before - kappa h^2 W K (x + d).
+    pub stages: Vec<[f32; 3]>,
+    /// c, by which the last d is multiplied.
+    pub factor: f32,
+}
+
+/// Largest q, but for the damping: symplectic Euler is stable up to 4.
+const FILTER_HEIGHT: f64 = 1.1;
+/// How far q stays above zero between its bumps, over s^2.
+const FILTER_DAMPING: f64 = 0.1;
+/// Most stages; beyond them bending is cheaper as constraints.
+const MOST_STAGES: usize = 16;
+/// h w_max up to which the force alone is used; symplectic Euler is stable up to 2.
+const PLAIN_LIMIT: f64 = 1.5;
+
+impl Filter {
+    /// The cheapest filter that is stable at h w_max; nothing when there is none.
+    pub fn new(frequency_step: f64) -> Option<Self> {
+        if frequency_step <= PLAIN_LIMIT {
+            return Some(Self::default());
+        }
+        (2..=MOST_STAGES).find_map(|count| Self::of_stages(count, frequency_step))
+    }
+
+    fn of_stages(count: usize, frequency_step: f64) -> Option<Self> {
+        let w0 = 1.0 + FILTER_DAMPING / (count * count) as f64;
+        // T_j and its slope at w0.
+        let (mut t, mut slope) = (vec![1.0, w0], vec![0.0, 1.0]);
+        for j in 1..count {
+            t.push(2.0 * w0 * t[j] - t[j - 1]);
+            slope.push(2.0 * t[j] + 2.0 * w0 * slope[j] - slope[j - 1]);
+        }
+        let w1 = t[count] / slope[count];
+        if frequency_step * frequency_step > FILTER_HEIGHT * (1.0 + w0) / w1 {
+            return None;
+        }
+        let pace = w1 / FILTER_HEIGHT;
+        let mut stages = vec![[0.0, 0.0, (pace / w0) as f32]];
+        for j in 1..count {
+            // Before the first stage nothing has moved.
+            let before = if j == 1 { 0.0 } else { t[j - 1] };
+            let numbers = [2.0 * w0 * t[j], before, 2.0 * pace * t[j]];
+            stages.push(numbers.map(|x| (x / t[j + 1]) as f32));
+        }
+        Some(Self {
+            stages,
+            factor: FILTER_HEIGHT as f32,
+        })
     }
 }
 
@@ -201,10 +280,7 @@ pub fn solve<S: Simd>(
 ) {
     for (at, batch) in batches.iter().enumerate() {
         for part in 0..parts::<S>() {
-            let sums = match &mut sums {
-                Some(sums) => Some(&mut sums[at]),
-                None => None,
-            };
+            let sums = sums.as_mut().map(|sums| &mut sums[at]);
             solve_part(simd, batch, part, sums, kappa, points);
         }
     }
@@ -293,4 +369,30 @@ fn mixed<S: Simd>(
     let sum = add_scaled(simd, [zero; 3], vectors[0], weights[0]);
     let sum = add_scaled(simd, sum, vectors[1], weights[1]);
     add_scaled(simd, sum, vectors[2], weights[2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_filter_keeps_slow_modes_and_bounds_fast_ones() {
+        for limit in [1.6, 2.9, 5.0, 12.0, 20.0] {
+            let filter = Filter::new(limit).expect("within the stages there are");
+            let q = |z: f64| {
+                let (mut before, mut d) = (0.0, 0.0);
+                for [mu, nu, kappa] in filter.stages.iter().map(|n| n.map(f64::from)) {
+                    (before, d) = (d, mu * d - nu * before - kappa * z * (1.0 + d));
+                }
+                -d * f64::from(filter.factor)
+            };
+            assert!((q(1e-4) / 1e-4 - 1.0).abs() < 1e-3, "{limit}");
+            for k in 1..=1000 {
+                let z = limit * limit * f64::from(k) / 1000.0;
+                assert!(q(z) > 0.0 && q(z) < 2.5, "{limit}: {z} {}", q(z));
+            }
+        }
+        assert!(Filter::new(1.0).expect("plain").is_plain());
+        assert_eq!(Filter::new(1e3), None);
+    }
 }

@@ -5,8 +5,9 @@
 //! began is taken back by an impulse of at most mu times the normal one, so a point that sticks does
 //! not creep. Contacts of cloth with cloth are stencils of the same form with other weights.
 
-use super::lanes::Point;
+use super::lanes::{LANES, Point, Row, add_scaled, dot, load, store, sub};
 use crate::Model;
+use pulp::Simd;
 use toile_geometry::Vec3;
 
 /// A plane that a point may not cross.
@@ -173,6 +174,192 @@ impl Touch {
         }
         out
     }
+}
+
+/// Touches of sixteen vertices side by side; rows as in [`Touch`].
+#[derive(Clone, Debug)]
+pub struct TouchBlock {
+    normal: [Row; 3],
+    level: Row,
+    place: [Row; 3],
+    radius2: Row,
+    softness: Row,
+    friction: Row,
+    offset: Row,
+    push: Row,
+    rub: [Row; 3],
+    sample: [u32; LANES],
+}
+
+impl TouchBlock {
+    /// One that touches nothing.
+    pub fn none() -> Self {
+        let zero = Row::splat(0.0);
+        let mut block = Self {
+            normal: [zero; 3],
+            level: zero,
+            place: [zero; 3],
+            radius2: zero,
+            softness: zero,
+            friction: zero,
+            offset: zero,
+            push: zero,
+            rub: [zero; 3],
+            sample: [NO_SAMPLE; LANES],
+        };
+        for lane in 0..LANES {
+            block.set(lane, &Touch::none());
+        }
+        block
+    }
+
+    /// The touch of a lane.
+    pub fn get(&self, lane: usize) -> Touch {
+        let three = |rows: &[Row; 3]| rows.map(|row| row.0[lane]);
+        Touch {
+            normal: three(&self.normal),
+            level: self.level.0[lane],
+            place: three(&self.place),
+            radius2: self.radius2.0[lane],
+            softness: self.softness.0[lane],
+            friction: self.friction.0[lane],
+            offset: self.offset.0[lane],
+            sample: self.sample[lane],
+            push: self.push.0[lane],
+            rub: three(&self.rub),
+        }
+    }
+
+    /// Sets the touch of a lane.
+    pub fn set(&mut self, lane: usize, touch: &Touch) {
+        for k in 0..3 {
+            self.normal[k].0[lane] = touch.normal[k];
+            self.place[k].0[lane] = touch.place[k];
+            self.rub[k].0[lane] = touch.rub[k];
+        }
+        self.level.0[lane] = touch.level;
+        self.radius2.0[lane] = touch.radius2;
+        self.softness.0[lane] = touch.softness;
+        self.friction.0[lane] = touch.friction;
+        self.offset.0[lane] = touch.offset;
+        self.sample[lane] = touch.sample;
+        self.push.0[lane] = touch.push;
+    }
+
+    /// Forgets what was looked up.
+    pub fn forget(&mut self) {
+        for (radius2, &sample) in self.radius2.0.iter_mut().zip(&self.sample) {
+            if sample != NO_SAMPLE {
+                *radius2 = -1.0;
+            }
+        }
+    }
+
+    /// Impulses start from zero.
+    pub fn clear(&mut self) {
+        self.push = Row::splat(0.0);
+        self.rub = [Row::splat(0.0); 3];
+    }
+
+    /// Whether the surface has to be looked at again for one of the points of a part.
+    #[inline(always)]
+    pub fn is_stale<S: Simd>(&self, simd: S, points: &[Point; LANES], part: usize) -> bool {
+        let [x, y, z, _] = load(simd, points, part);
+        let place = [
+            self.place[0].part::<S>(part),
+            self.place[1].part::<S>(part),
+            self.place[2].part::<S>(part),
+        ];
+        let d = sub(simd, [x, y, z], place);
+        let beyond = simd.sub_f32s(dot(simd, d, d), self.radius2.part::<S>(part));
+        simd.reduce_max_f32s(beyond) > 0.0
+    }
+
+    /// Looks at the surfaces from those of some lanes that have to.
+    #[inline(never)]
+    pub fn look(
+        &mut self,
+        model: &Model,
+        origin: Vec3,
+        points: &[Point; LANES],
+        first: usize,
+        count: usize,
+    ) {
+        for lane in first..first + count {
+            let [x, y, z, _] = points[lane];
+            let mut touch = self.get(lane);
+            if touch.is_stale([x, y, z]) {
+                touch.look(model, origin, [x, y, z]);
+                self.set(lane, &touch);
+            }
+        }
+    }
+}
+
+/// [`Touch::respond`] for one part of a block; moves the points.
+#[inline(always)]
+pub fn press<S: Simd>(
+    simd: S,
+    touch: &mut TouchBlock,
+    points: &mut [Point; LANES],
+    starts: &[Point; LANES],
+    step: &ContactStep,
+    part: usize,
+) {
+    let [x, y, z, weight] = load(simd, points, part);
+    let [x0, y0, z0, _] = load(simd, starts, part);
+    let n = [
+        touch.normal[0].part::<S>(part),
+        touch.normal[1].part::<S>(part),
+        touch.normal[2].part::<S>(part),
+    ];
+    let zero = simd.splat_f32s(0.0);
+    let push = touch.push.part::<S>(part);
+    let depth = simd.sub_f32s(dot(simd, n, [x, y, z]), touch.level.part::<S>(part));
+    let touching = simd.or_m32s(
+        simd.less_than_f32s(depth, zero),
+        simd.less_than_f32s(zero, push),
+    );
+    let active = simd.and_m32s(touching, simd.less_than_f32s(zero, weight));
+    let flag = simd.select_f32s(active, simd.splat_f32s(1.0), zero);
+    if simd.reduce_max_f32s(flag) == 0.0 {
+        return;
+    }
+    let moved = sub(simd, [x, y, z], [x0, y0, z0]);
+    let soft = simd.mul_f32s(touch.softness.part::<S>(part), simd.splat_f32s(step.kappa));
+    let per_weight = simd.div_f32s(simd.splat_f32s(1.0), weight);
+    let wanted = simd.mul_add_e_f32s(soft, push, depth);
+    let change = simd.div_f32s(simd.sub_f32s(zero, wanted), simd.add_f32s(weight, soft));
+    let outward = dot(simd, n, moved);
+    let most = simd.sub_f32s(simd.splat_f32s(step.outward), outward);
+    let most = simd.mul_f32s(simd.max_f32s(most, zero), per_weight);
+    let change = simd.max_f32s(simd.min_f32s(change, most), simd.sub_f32s(zero, push));
+    let change = simd.select_f32s(active, change, zero);
+    let push = simd.add_f32s(push, change);
+    touch.push.set_part::<S>(part, push);
+    let slip = add_scaled(simd, moved, n, simd.sub_f32s(zero, outward));
+    let rub = [
+        touch.rub[0].part::<S>(part),
+        touch.rub[1].part::<S>(part),
+        touch.rub[2].part::<S>(part),
+    ];
+    let wanted = add_scaled(simd, rub, slip, simd.sub_f32s(zero, per_weight));
+    let length = simd.sqrt_f32s(dot(simd, wanted, wanted));
+    let limit = simd.mul_f32s(touch.friction.part::<S>(part), push);
+    let share = simd.select_f32s(
+        simd.less_than_f32s(limit, length),
+        simd.div_f32s(limit, length),
+        simd.splat_f32s(1.0),
+    );
+    let mut out = [x, y, z];
+    for k in 0..3 {
+        let new = simd.mul_f32s(wanted[k], share);
+        let new = simd.select_f32s(active, new, rub[k]);
+        touch.rub[k].set_part::<S>(part, new);
+        let total = simd.mul_add_e_f32s(n[k], change, simd.sub_f32s(new, rub[k]));
+        out[k] = simd.mul_add_e_f32s(weight, total, out[k]);
+    }
+    store(simd, points, part, [out[0], out[1], out[2], weight]);
 }
 
 /// The numbers of a substep that contacts need.

@@ -1,8 +1,8 @@
 //! Sharing domains between cores: slices are halved down to single domains, each of which goes to
 //! whatever thread is free. Nothing depends on which.
 
-use super::lanes::Point;
-use super::particles::{Bound, Free};
+use super::lanes::{LANES, Point};
+use super::particles::{Bound, Free, Stage};
 use super::region::Region;
 
 /// Something that holds one slice or more of the slots of some domains.
@@ -63,7 +63,7 @@ impl Divide for Bound<'_> {
         let (now, now_) = self.now.split_at_mut(slots);
         let (free, free_) = self.free.split_at(slots);
         let (velocity, velocity_) = self.velocity.split_at_mut(slots);
-        let (touch, touch_) = self.touch.split_at_mut(slots);
+        let (touch, touch_) = self.touch.split_at_mut(slots / LANES);
         (
             Self {
                 start,
@@ -78,6 +78,20 @@ impl Divide for Bound<'_> {
                 free: free_,
                 velocity: velocity_,
                 touch: touch_,
+            },
+        )
+    }
+}
+
+impl Divide for Stage<'_> {
+    fn divide(self, slots: usize, _: usize) -> (Self, Self) {
+        let (pull, pull_) = self.pull.split_at_mut(slots);
+        let (moves, moves_) = self.moves.split_at_mut(slots);
+        (
+            Self { pull, moves },
+            Self {
+                pull: pull_,
+                moves: moves_,
             },
         )
     }

@@ -41,6 +41,9 @@ impl Row {
 #[repr(C, align(64))]
 pub struct Corner(pub [u32; LANES]);
 
+/// The corner of points that lie side by side.
+const SIDE_BY_SIDE: Corner = Corner([0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
+
 /// Parts a batch is worked off in.
 #[inline(always)]
 pub const fn parts<S: Simd>() -> usize {
@@ -110,6 +113,18 @@ fn two<S: Simd>(points: &[Point], corner: &Corner, part: usize, r: usize) -> S::
         at::<S>(points, corner, part, r),
         at::<S>(points, corner, part, 4 + r),
     ])
+}
+
+/// Loads sixteen points that lie side by side, one part of them.
+#[inline(always)]
+pub fn load<S: Simd>(simd: S, points: &[Point; LANES], part: usize) -> [S::f32s; 4] {
+    gather(simd, points, &SIDE_BY_SIDE, part)
+}
+
+/// Stores points that lie side by side.
+#[inline(always)]
+pub fn store<S: Simd>(simd: S, points: &mut [Point; LANES], part: usize, values: [S::f32s; 4]) {
+    scatter(simd, points, &SIDE_BY_SIDE, part, values);
 }
 
 /// Stores the points of one corner for one part.

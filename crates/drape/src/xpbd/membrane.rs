@@ -152,10 +152,7 @@ pub fn solve<S: Simd>(
     for (at, batch) in batches.iter().enumerate() {
         let law = &laws[batch.law as usize];
         for part in 0..parts::<S>() {
-            let sums = match &mut sums {
-                Some(sums) => Some(&mut sums[at]),
-                None => None,
-            };
+            let sums = sums.as_mut().map(|sums| &mut sums[at]);
             solve_part(simd, batch, part, sums, law, kappa, points);
         }
     }

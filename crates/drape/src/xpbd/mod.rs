@@ -17,6 +17,9 @@
 //! Inner loops run in single precision on positions relative to the middle of the cloth, with what
 //! rounding leaves out of them carried along; the state outside is in double precision.
 
+// Lanes and axes are gone through by index, so that loops unroll into vectors.
+#![allow(clippy::needless_range_loop)]
+
 mod bending;
 mod contact;
 mod domains;
@@ -25,16 +28,18 @@ mod membrane;
 mod order;
 mod particles;
 mod region;
+mod run;
 
 use crate::methods::{Method, MethodSettings, StepReport};
 use crate::{DrapeError, Model, State};
-use bending::BendingForce;
+use bending::{BendingForce, Filter};
 use contact::{ContactStep, Touch};
-use domains::{Swept, for_domains};
+use lanes::LANES;
 use membrane::{LawRow, inverse_mass};
 use order::Order;
-use particles::{Bound, Free, MotionStep, Particles};
+use particles::{MotionStep, Particles};
 use region::{Regions, SweepStep};
+use run::Run;
 use toile_geometry::Vec3;
 
 /// How constraints are solved.
@@ -84,10 +89,6 @@ pub struct ConstraintCount {
 /// Halvings of a substep before it is an error.
 const STEP_HALVINGS: u32 = 6;
 
-/// Bending is a force while h times its largest frequency is below this; symplectic Euler is
-/// stable up to 2.
-const FORCE_LIMIT: f64 = 1.5;
-
 /// XPBD on one model: its constraints in the order they are solved in, and private memory.
 pub struct Xpbd {
     settings: XpbdSettings,
@@ -96,8 +97,11 @@ pub struct Xpbd {
     particles: Particles,
     bending: BendingForce,
     has_bending_constraints: bool,
+    /// Filter of the bending force; none where bending is constraints.
+    filter: Option<Filter>,
     laws: Vec<LawRow>,
-    /// Sizes that systems are inverted for.
+    /// The substep all is set up for [s], and its (1 + drag h) / h^2.
+    step: f64,
     kappa: f64,
     built_for: Fingerprint,
     domain_starts: Vec<usize>,
@@ -170,7 +174,8 @@ impl Xpbd {
             for (index, sample) in model.samples.iter().enumerate() {
                 if sample.triangle.is_none() {
                     let slot = order.slot_of[sample.vertices[0] as usize];
-                    particles.touch[slot as usize] = Touch::of_sample(model, index);
+                    let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
+                    particles.touch[block].set(lane, &Touch::of_sample(model, index));
                 }
             }
         }
@@ -180,7 +185,9 @@ impl Xpbd {
             particles,
             bending: BendingForce::new(model, &order.vertex_of, &order.slot_of),
             has_bending_constraints: false,
+            filter: None,
             laws: model.laws.iter().map(LawRow::new).collect(),
+            step: f64::NAN,
             kappa: f64::NAN,
             built_for: Fingerprint::new(model),
             domain_starts: order.domain_starts(),
@@ -195,7 +202,7 @@ impl Xpbd {
         ConstraintCount {
             membrane,
             bending: if bending == 0 {
-                self.bending.len()
+                self.bending.count
             } else {
                 bending
             },
@@ -271,7 +278,12 @@ impl Xpbd {
             particles.start[slot] = start;
             particles.now[slot] = start;
         }
-        particles.forget_touches();
+        for touch in &mut particles.touch {
+            touch.forget();
+        }
+        for moves in &mut particles.bend {
+            moves.fill([0.0; 4]);
+        }
         let iterated = self.settings.iterations > 1;
         for region in self.regions.all_mut() {
             region.begin(model, origin, iterated);
@@ -302,8 +314,9 @@ impl Xpbd {
         }
         let kappa = self.kappa;
         let vertices = particles.touch.iter();
+        let vertices = vertices.flat_map(|block| (0..LANES).map(|lane| block.get(lane)));
         let within = self.regions.all().flat_map(|r| &r.contacts);
-        for touch in vertices.chain(within.map(|c| &c.touch)) {
+        for touch in vertices.chain(within.map(|c| c.touch)) {
             let at = touch.sample as usize;
             if touch.sample == contact::NO_SAMPLE {
                 continue;
@@ -334,9 +347,52 @@ impl Xpbd {
 
     fn run(&mut self, model: &Model, origin: Vec3, h: f64, count: u32, drag: f64) {
         let kappa = (1.0 + drag * h) / (h * h);
+        self.set_step(model, origin, h, kappa);
+        let g = model.gravity;
+        let motion = MotionStep {
+            step: h as f32,
+            gravity: [g.x as f32, g.y as f32, g.z as f32, 0.0],
+            kept: (1.0 / (1.0 + drag * h)) as f32,
+            speed_limit: self.settings.speed_limit as f32,
+        };
+        let run = Run {
+            sweep: SweepStep {
+                model,
+                laws: &self.laws,
+                origin,
+                contact: ContactStep::new(kappa as f32, h as f32),
+                iterated: self.settings.iterations > 1,
+                bends: self.filter.is_none(),
+            },
+            motion,
+            bending: &self.bending,
+            filter: self.filter.as_ref(),
+            solid: (!model.colliders.is_empty()).then_some((model, origin)),
+            iterations: self.settings.iterations.max(1),
+            domain_starts: &self.domain_starts,
+            cut_starts: &self.cut_starts,
+            arch: pulp::Arch::new(),
+        };
+        let (regions, particles) = (&mut self.regions, &mut self.particles);
+        if self.domain_starts.len() <= 2 {
+            run.substeps(regions, particles, count);
+        } else {
+            // One entry into the pool for all substeps.
+            rayon::scope(|_| run.substeps(regions, particles, count));
+        }
+    }
+
+    /// Sets up what depends on the size of the substep.
+    fn set_step(&mut self, model: &Model, origin: Vec3, h: f64, kappa: f64) {
         let iterated = self.settings.iterations > 1;
-        let as_force = !iterated && h * self.bending.frequency <= FORCE_LIMIT;
-        if !as_force && !self.has_bending_constraints {
+        if self.step != h {
+            self.step = h;
+            self.filter = match iterated {
+                true => None,
+                false => Filter::new(h * self.bending.frequency),
+            };
+        }
+        if self.filter.is_none() && !self.has_bending_constraints {
             self.regions.add_bending(model, &self.order);
             self.has_bending_constraints = true;
             self.kappa = f64::NAN;
@@ -348,131 +404,6 @@ impl Xpbd {
             self.kappa = kappa;
             for region in self.regions.all_mut() {
                 region.set_step(kappa);
-            }
-        }
-        let g = model.gravity;
-        let motion = MotionStep {
-            step: h as f32,
-            gravity: [g.x as f32, g.y as f32, g.z as f32, 0.0],
-            kept: (1.0 / (1.0 + drag * h)) as f32,
-            speed_limit: self.settings.speed_limit as f32,
-        };
-        let contact = ContactStep::new(kappa as f32, h as f32);
-        let solid = !model.colliders.is_empty();
-        if self.domain_starts.len() <= 2 {
-            self.substeps(model, origin, &motion, contact, as_force, solid, count);
-        } else {
-            // One entry into the pool for all substeps.
-            rayon::scope(|_| {
-                self.substeps(model, origin, &motion, contact, as_force, solid, count);
-            });
-        }
-    }
-
-    #[allow(clippy::too_many_arguments)]
-    fn substeps(
-        &mut self,
-        model: &Model,
-        origin: Vec3,
-        motion: &MotionStep,
-        contact: ContactStep,
-        as_force: bool,
-        solid: bool,
-        count: u32,
-    ) {
-        let iterations = self.settings.iterations.max(1);
-        let Self {
-            regions,
-            particles,
-            bending,
-            laws,
-            domain_starts,
-            cut_starts,
-            ..
-        } = self;
-        let sweep = SweepStep {
-            model,
-            laws,
-            origin,
-            contact,
-            iterated: iterations > 1,
-            bends: !as_force,
-        };
-        let bending = as_force.then_some(&*bending);
-        let slots = particles.now.len();
-        for _ in 0..count {
-            for region in regions.all_mut() {
-                region.clear();
-            }
-            for iteration in 0..iterations {
-                let Particles {
-                    start,
-                    now,
-                    free,
-                    low,
-                    velocity,
-                    touch,
-                } = &mut *particles;
-                let (first, last) = (iteration == 0, iteration + 1 == iterations);
-                if first {
-                    let fields = Free {
-                        now,
-                        free,
-                        low,
-                        velocity,
-                    };
-                    // Free motion and the domain's own constraints, in one go.
-                    let all = (
-                        fields,
-                        domains::Of {
-                            regions: &mut regions.domains,
-                        },
-                    );
-                    for_domains(domain_starts, 0, all, &|d, (mut fields, own)| {
-                        let at = domain_starts[d];
-                        fields.predict(at, start, bending, motion);
-                        let end = at + fields.now.len();
-                        own.regions[0].sweep(&sweep, fields.now, &start[at..end]);
-                    });
-                } else {
-                    let all = Swept {
-                        regions: &mut regions.domains,
-                        now,
-                        start,
-                    };
-                    for_domains(domain_starts, 0, all, &|_, all| {
-                        all.regions[0].sweep(&sweep, all.now, all.start);
-                    });
-                }
-                if let (Some(&from), Some(&to)) = (cut_starts.first(), cut_starts.last()) {
-                    let all = Swept {
-                        regions: &mut regions.cuts,
-                        now: &mut now[from..to],
-                        start: &start[from..to],
-                    };
-                    for_domains(cut_starts, 0, all, &|_, all| {
-                        all.regions[0].sweep(&sweep, all.now, all.start);
-                    });
-                }
-                regions.rest.sweep(&sweep, now, &start[..slots]);
-                let all = Bound {
-                    start,
-                    now,
-                    free,
-                    velocity,
-                    touch,
-                };
-                for_domains(domain_starts, 0, all, &|_, mut all| {
-                    if solid {
-                        if first {
-                            all.clear_touches();
-                        }
-                        all.touch(model, origin, &sweep.contact);
-                    }
-                    if last {
-                        all.finish(motion);
-                    }
-                });
             }
         }
     }

@@ -6,6 +6,7 @@
 //! elastic across the garment) comes last, alone. Two rounds are two barriers whatever the number
 //! of colours, and ranges are slices that two threads may hold at once.
 
+use super::lanes::LANES;
 use crate::{ElasticEnd, Model};
 
 /// Vertices of a domain: two a side make a sheet of 10,000 vertices worth sharing.
@@ -20,7 +21,7 @@ pub struct Order {
     /// Slot of each vertex.
     pub slot_of: Vec<u32>,
     /// Vertex in each slot; none in the slot that begins each half domain, where a point stands
-    /// that nothing moves: idle lanes point at it.
+    /// that nothing moves (idle lanes point at it), and in those that fill its last block.
     pub vertex_of: Vec<Option<u32>>,
     /// First slot of each half domain, and the end.
     pub halves: Vec<usize>,
@@ -55,6 +56,9 @@ impl Order {
                 order.slot_of[v as usize] = order.vertex_of.len() as u32;
                 order.vertex_of.push(Some(v));
             }
+            // Halves are whole blocks of lanes.
+            let padded = order.vertex_of.len().next_multiple_of(LANES);
+            order.vertex_of.resize(padded, None);
         }
         order.halves.push(order.vertex_of.len());
         order

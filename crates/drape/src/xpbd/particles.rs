@@ -1,14 +1,16 @@
 //! The points: where they go by themselves, and what the constraints did to their velocities.
 
-use super::bending::BendingForce;
-use super::contact::{ContactStep, Touch};
-use super::lanes::Point;
+use super::bending::{BendingForce, Filter};
+use super::contact::{ContactStep, TouchBlock, press};
+use super::lanes::{LANES, Point, load, parts, store};
 use crate::Model;
+use pulp::bytemuck::cast_slice;
+use pulp::{Simd, WithSimd};
 use toile_geometry::Vec3;
 
-/// Times the speed limit at which a substep has failed: a fall stops at the limit and stays there,
-/// only what is thrown goes so far beyond it at once.
-const RUNAWAY: f32 = 1.2;
+/// Farthest that a vertex may go in one substep [m]: what goes farther was thrown by a substep that
+/// is too large.
+const FARTHEST_MOVE: f32 = 10.0;
 
 /// Points by slot. Fourth numbers: inverse mass in `start` and `now`, zero elsewhere.
 #[derive(Clone, Debug, Default)]
@@ -23,12 +25,17 @@ pub struct Particles {
     pub low: Vec<Point>,
     /// Velocities [m/s].
     pub velocity: Vec<Point>,
-    /// Contact of each vertex with the surfaces.
-    pub touch: Vec<Touch>,
+    /// Contact of each vertex with the surfaces, sixteen a block.
+    pub touch: Vec<TouchBlock>,
+    /// h^2 W K x [m].
+    pub pull: Vec<Point>,
+    /// How far bending moves them in the substep, by the present stage of its filter and the last
+    /// one [m].
+    pub bend: [Vec<Point>; 2],
 }
 
 impl Particles {
-    /// Room for some slots.
+    /// Room for some slots, a multiple of sixteen.
     pub fn new(count: usize) -> Self {
         let points = vec![[0.0; 4]; count];
         Self {
@@ -36,15 +43,10 @@ impl Particles {
             now: points.clone(),
             free: points.clone(),
             low: points.clone(),
+            pull: points.clone(),
+            bend: [points.clone(), points.clone()],
             velocity: points,
-            touch: vec![Touch::none(); count],
-        }
-    }
-
-    /// Forgets contacts.
-    pub fn forget_touches(&mut self) {
-        for touch in &mut self.touch {
-            touch.forget();
+            touch: vec![TouchBlock::none(); count / LANES],
         }
     }
 }
@@ -62,6 +64,17 @@ pub struct MotionStep {
     pub speed_limit: f32,
 }
 
+/// How bending enters free motion.
+#[derive(Clone, Copy)]
+pub enum Bend<'a> {
+    /// It does not.
+    None,
+    /// As the force at the start.
+    Force(&'a BendingForce),
+    /// As moves found before, times a factor.
+    Moves(&'a [Point], f32),
+}
+
 /// Slices of the points of a domain that its core alone may change while all read `start`.
 pub struct Free<'a> {
     /// As in [`Particles`].
@@ -74,44 +87,181 @@ pub struct Free<'a> {
     pub velocity: &'a mut [Point],
 }
 
-impl Free<'_> {
-    /// Free motion: v = (v + h (g - W K x)) / (1 + drag h), x = x + h v. `first` is the slot of
-    /// the first point; `bending` is nothing where bending is a constraint.
-    pub fn predict(
-        &mut self,
-        first: usize,
-        start: &[Point],
-        bending: Option<&BendingForce>,
-        step: &MotionStep,
-    ) {
-        let h = step.step;
-        for i in 0..self.now.len() {
-            let here = start[first + i];
-            let weight = here[3];
-            let mut velocity = self.velocity[i];
-            if weight > 0.0 {
-                let force = bending.map_or([0.0; 4], |b| b.row(first + i, start));
-                for k in 0..4 {
-                    let gain = step.gravity[k] - weight * force[k];
-                    velocity[k] = (velocity[k] + h * gain) * step.kept;
-                }
-                velocity[3] = 0.0;
-            } else {
-                velocity = [0.0; 4];
+/// Free motion of a domain: v = (v + h (g - W K x)) / (1 + drag h), x = x + h v.
+pub struct Predict<'a, 'b> {
+    /// The domain.
+    pub fields: &'b mut Free<'a>,
+    /// Slot of its first point.
+    pub first: usize,
+    /// All points at the start of the substep.
+    pub start: &'a [Point],
+    /// Bending.
+    pub bend: Bend<'a>,
+    /// The substep.
+    pub step: &'a MotionStep,
+}
+
+impl WithSimd for Predict<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let first = self.first / LANES;
+        let (starts, _) = self.start.as_chunks::<LANES>();
+        let (now, _) = self.fields.now.as_chunks_mut::<LANES>();
+        let (free, _) = self.fields.free.as_chunks_mut::<LANES>();
+        let (low, _) = self.fields.low.as_chunks_mut::<LANES>();
+        let (velocity, _) = self.fields.velocity.as_chunks_mut::<LANES>();
+        for b in 0..now.len() {
+            for part in 0..parts::<S>() {
+                let block = [&mut now[b], &mut free[b], &mut low[b], &mut velocity[b]];
+                self.step.predict(simd, &starts[first + b], block, part, {
+                    let slot = LANES * (first + b);
+                    match self.bend {
+                        Bend::None => [simd.splat_f32s(0.0); 3],
+                        Bend::Force(force) => {
+                            let here = load(simd, &starts[first + b], part);
+                            let sum = force.times(simd, slot, self.start, here, part);
+                            let scale = simd.mul_f32s(here[3], simd.splat_f32s(-self.step.step));
+                            scaled(simd, sum, scale)
+                        }
+                        Bend::Moves(moves, factor) => {
+                            let (moves, _) = moves.as_chunks::<LANES>();
+                            let [x, y, z, _] = load(simd, &moves[first + b], part);
+                            let factor = simd.splat_f32s(factor / self.step.step);
+                            scaled(simd, [x, y, z], factor)
+                        }
+                    }
+                });
             }
-            let mut now = here;
-            for k in 0..3 {
-                // The sum and what rounding leaves out of it (Knuth's two-sum).
-                let d = h * velocity[k] + self.low[i][k];
-                let sum = here[k] + d;
-                let part = sum - here[k];
-                self.low[i][k] = (here[k] - (sum - part)) + (d - part);
-                now[k] = sum;
-            }
-            self.velocity[i] = velocity;
-            self.free[i] = now;
-            self.now[i] = now;
         }
+    }
+}
+
+#[inline(always)]
+fn scaled<S: Simd>(simd: S, a: [S::f32s; 3], s: S::f32s) -> [S::f32s; 3] {
+    [
+        simd.mul_f32s(a[0], s),
+        simd.mul_f32s(a[1], s),
+        simd.mul_f32s(a[2], s),
+    ]
+}
+
+impl MotionStep {
+    /// `gain` is the velocity that bending adds.
+    #[inline(always)]
+    fn predict<S: Simd>(
+        &self,
+        simd: S,
+        start: &[Point; LANES],
+        block: [&mut [Point; LANES]; 4],
+        part: usize,
+        gain: [S::f32s; 3],
+    ) {
+        let [now, free, low, velocity] = block;
+        let (h, kept) = (simd.splat_f32s(self.step), simd.splat_f32s(self.kept));
+        let zero = simd.splat_f32s(0.0);
+        let here = load(simd, start, part);
+        let weight = here[3];
+        let moves = simd.less_than_f32s(zero, weight);
+        let mut speed = load(simd, velocity, part);
+        let mut rest = load(simd, low, part);
+        let mut there = here;
+        for k in 0..3 {
+            let fall = simd.splat_f32s(self.step * self.gravity[k]);
+            let gained = simd.add_f32s(simd.add_f32s(speed[k], fall), gain[k]);
+            let v = simd.select_f32s(moves, simd.mul_f32s(gained, kept), zero);
+            // The sum and what rounding leaves out of it (Knuth's two-sum).
+            let d = simd.mul_add_e_f32s(h, v, rest[k]);
+            let sum = simd.add_f32s(here[k], d);
+            let share = simd.sub_f32s(sum, here[k]);
+            let lost = simd.sub_f32s(here[k], simd.sub_f32s(sum, share));
+            rest[k] = simd.add_f32s(lost, simd.sub_f32s(d, share));
+            speed[k] = v;
+            there[k] = sum;
+        }
+        store(simd, now, part, there);
+        store(simd, free, part, there);
+        store(simd, low, part, rest);
+        store(simd, velocity, part, speed);
+    }
+}
+
+/// Slices of a domain that a stage of the bending filter writes.
+pub struct Stage<'a> {
+    /// h^2 W K x.
+    pub pull: &'a mut [Point],
+    /// The stage before the last; overwritten by the new one.
+    pub moves: &'a mut [Point],
+}
+
+/// One stage of the bending filter on a domain; see [`Filter`].
+pub struct RunStage<'a, 'b> {
+    /// The domain.
+    pub fields: &'b mut Stage<'a>,
+    /// Slot of its first point.
+    pub first: usize,
+    /// All points at the start of the substep.
+    pub start: &'a [Point],
+    /// The moves of the last stage; none before the first.
+    pub last: Option<&'a [Point]>,
+    /// K.
+    pub force: &'a BendingForce,
+    /// The filter's numbers for the stage: mu, nu, kappa.
+    pub numbers: [f32; 3],
+    /// h^2 [s2].
+    pub step2: f32,
+}
+
+impl WithSimd for RunStage<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let first = self.first / LANES;
+        let (starts, _) = self.start.as_chunks::<LANES>();
+        let (pull, _) = self.fields.pull.as_chunks_mut::<LANES>();
+        let (moves, _) = self.fields.moves.as_chunks_mut::<LANES>();
+        let [mu, nu, kappa] = self.numbers.map(|x| simd.splat_f32s(x));
+        let zero = simd.splat_f32s(0.0);
+        for b in 0..pull.len() {
+            let slot = LANES * (first + b);
+            for part in 0..parts::<S>() {
+                let here = load(simd, &starts[first + b], part);
+                let scale = simd.mul_f32s(here[3], simd.splat_f32s(self.step2));
+                let new = match self.last {
+                    None => {
+                        let sum = self.force.times(simd, slot, self.start, here, part);
+                        let [x, y, z] = scaled(simd, sum, scale);
+                        store(simd, &mut pull[b], part, [x, y, z, zero]);
+                        scaled(simd, [x, y, z], simd.sub_f32s(zero, kappa))
+                    }
+                    Some(last) => {
+                        let (lasts, _) = last.as_chunks::<LANES>();
+                        let moved = load(simd, &lasts[first + b], part);
+                        let before = load(simd, &moves[b], part);
+                        let pulled = load(simd, &pull[b], part);
+                        let sum = self.force.times(simd, slot, last, moved, part);
+                        let mut new = [zero; 3];
+                        for k in 0..3 {
+                            let all = simd.mul_add_e_f32s(sum[k], scale, pulled[k]);
+                            let kept = simd.mul_f32s(mu, moved[k]);
+                            let kept = simd.negate_mul_add_e_f32s(nu, before[k], kept);
+                            new[k] = simd.negate_mul_add_e_f32s(kappa, all, kept);
+                        }
+                        new
+                    }
+                };
+                store(simd, &mut moves[b], part, [new[0], new[1], new[2], zero]);
+            }
+        }
+    }
+}
+
+impl Filter {
+    /// Whether the force alone is stable.
+    pub fn is_plain(&self) -> bool {
+        self.stages.is_empty()
     }
 }
 
@@ -126,55 +276,91 @@ pub struct Bound<'a> {
     /// As in [`Particles`].
     pub velocity: &'a mut [Point],
     /// As in [`Particles`].
-    pub touch: &'a mut [Touch],
+    pub touch: &'a mut [TouchBlock],
 }
 
-impl Bound<'_> {
-    /// Keeps vertices outside the surfaces.
-    pub fn touch(&mut self, model: &Model, origin: Vec3, step: &ContactStep) {
-        for ((now, start), touch) in self.now.iter_mut().zip(&*self.start).zip(&mut *self.touch) {
-            let point = [now[0], now[1], now[2]];
-            if touch.is_stale(point) {
-                touch.look(model, origin, point);
-            }
-            let change = touch.respond(now[3], point, [start[0], start[1], start[2]], step);
-            for k in 0..3 {
-                now[k] += now[3] * change[k];
-            }
-        }
-    }
+/// The end of an iteration on a domain: vertices are kept outside the surfaces; after the last one
+/// velocities follow from what the constraints moved, v = v + (x - free) / h, so that rounding of
+/// positions does not reach points that nothing touches.
+pub struct Settle<'a, 'b> {
+    /// The domain.
+    pub fields: &'b mut Bound<'a>,
+    /// The model and the origin of the points' numbers, where there are surfaces.
+    pub solid: Option<(&'a Model, Vec3)>,
+    /// Contact's numbers.
+    pub contact: &'a ContactStep,
+    /// The substep, at its end.
+    pub finish: Option<&'a MotionStep>,
+}
 
-    /// Contact impulses start from zero.
-    pub fn clear_touches(&mut self) {
-        for touch in &mut *self.touch {
-            touch.push = 0.0;
-            touch.rub = [0.0; 3];
-        }
-    }
+impl WithSimd for Settle<'_, '_> {
+    type Output = ();
 
-    /// Velocities from what the constraints moved: v = v + (x - free) / h, so that rounding of
-    /// positions does not reach points that nothing touches.
-    pub fn finish(&mut self, step: &MotionStep) {
-        let per_step = 1.0 / step.step;
-        let most2 = step.speed_limit * step.speed_limit;
-        let points = self.now.iter().zip(self.free);
-        for ((now, free), (start, velocity)) in
-            points.zip(self.start.iter_mut().zip(&mut *self.velocity))
-        {
-            for k in 0..4 {
-                velocity[k] += (now[k] - free[k]) * per_step;
-            }
-            let speed2 =
-                velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2];
-            if speed2 > RUNAWAY * RUNAWAY * most2 {
-                *velocity = [f32::NAN; 4];
-            } else if speed2 > most2 {
-                let share = step.speed_limit / speed2.sqrt();
-                for part in &mut *velocity {
-                    *part *= share;
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let (start, _) = self.fields.start.as_chunks_mut::<LANES>();
+        let (now, _) = self.fields.now.as_chunks_mut::<LANES>();
+        let (free, _) = self.fields.free.as_chunks::<LANES>();
+        let (velocity, _) = self.fields.velocity.as_chunks_mut::<LANES>();
+        for b in 0..now.len() {
+            if let Some((model, origin)) = self.solid {
+                for part in 0..parts::<S>() {
+                    let touch = &mut self.fields.touch[b];
+                    let now = &mut now[b];
+                    if touch.is_stale(simd, now, part) {
+                        touch.look(model, origin, now, part * S::F32_LANES, S::F32_LANES);
+                    }
+                    press(simd, touch, now, &start[b], self.contact, part);
                 }
             }
-            *start = *now;
+            if let Some(step) = self.finish {
+                step.finish(simd, &now[b], &free[b], &mut velocity[b]);
+                start[b] = now[b];
+            }
+        }
+    }
+}
+
+impl MotionStep {
+    #[inline(always)]
+    fn finish<S: Simd>(
+        &self,
+        simd: S,
+        now: &[Point; LANES],
+        free: &[Point; LANES],
+        velocity: &mut [Point; LANES],
+    ) {
+        let per_step = simd.splat_f32s(1.0 / self.step);
+        let (now, _) = S::as_simd_f32s(cast_slice(&now[..]));
+        let (free, _) = S::as_simd_f32s(cast_slice(&free[..]));
+        let mut largest = simd.splat_f32s(0.0);
+        {
+            let flat = pulp::bytemuck::cast_slice_mut(&mut velocity[..]);
+            let (velocity, _) = S::as_mut_simd_f32s(flat);
+            for k in 0..velocity.len() {
+                let moved = simd.sub_f32s(now[k], free[k]);
+                velocity[k] = simd.mul_add_e_f32s(moved, per_step, velocity[k]);
+                largest = simd.max_f32s(largest, simd.mul_f32s(velocity[k], velocity[k]));
+            }
+        }
+        // Only a component beyond limit / 2 can belong to a speed beyond the limit.
+        let limit = self.speed_limit.min(FARTHEST_MOVE / self.step);
+        if simd.reduce_max_f32s(largest) > 0.25 * limit * limit {
+            self.limit(velocity);
+        }
+    }
+
+    #[inline(never)]
+    fn limit(&self, velocity: &mut [Point; LANES]) {
+        let most2 = self.speed_limit * self.speed_limit;
+        for v in velocity {
+            let speed2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+            if speed2 * self.step * self.step > FARTHEST_MOVE * FARTHEST_MOVE {
+                *v = [f32::NAN; 4];
+            } else if speed2 > most2 {
+                let share = self.speed_limit / speed2.sqrt();
+                *v = v.map(|part| part * share);
+            }
         }
     }
 }

@@ -116,8 +116,10 @@ fn momentum_is_kept_in_free_flight() {
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
         }
         let off = (momentum(&model, &state) - before).norm() / before.norm();
-        // Iterative methods keep it to their tolerance of 1e-8 N over 80 ms.
-        assert!(off < 1e-6, "{name}: {off}");
+        // Iterative methods keep it to their tolerance of 1e-8 N over 80 ms, XPBD to the rounding
+        // of single precision.
+        let most = if kind == MethodKind::Xpbd { 1e-5 } else { 1e-6 };
+        assert!(off < most, "{name}: {off}");
     }
 }
 

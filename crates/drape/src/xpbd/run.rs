@@ -1,0 +1,183 @@
+//! Substeps: free motion, constraints, contact, velocities, each shared between cores.
+
+use super::bending::{BendingForce, Filter};
+use super::domains::{Of, Swept, for_domains};
+use super::particles::{
+    Bend, Bound, Free, MotionStep, Particles, Predict, RunStage, Settle, Stage,
+};
+use super::region::{Regions, SweepStep};
+use crate::Model;
+use toile_geometry::Vec3;
+
+/// What substeps of one size share.
+pub struct Run<'a> {
+    /// For constraints.
+    pub sweep: SweepStep<'a>,
+    /// For free motion.
+    pub motion: MotionStep,
+    /// K.
+    pub bending: &'a BendingForce,
+    /// How its force is filtered; none where bending is constraints.
+    pub filter: Option<&'a Filter>,
+    /// The model and the origin of the points' numbers, where there are surfaces.
+    pub solid: Option<(&'a Model, Vec3)>,
+    /// Sweeps a substep.
+    pub iterations: u32,
+    /// First slots of the domains, and the end.
+    pub domain_starts: &'a [usize],
+    /// First slots of the ranges about cuts, and the end.
+    pub cut_starts: &'a [usize],
+    /// The processor's vectors.
+    pub arch: pulp::Arch,
+}
+
+impl Run<'_> {
+    /// Takes some substeps.
+    pub fn substeps(&self, regions: &mut Regions, particles: &mut Particles, count: u32) {
+        for _ in 0..count {
+            for region in regions.all_mut() {
+                region.clear();
+            }
+            if self.solid.is_some() {
+                for touch in &mut particles.touch {
+                    touch.clear();
+                }
+            }
+            self.filter_bending(particles);
+            for iteration in 0..self.iterations {
+                self.domains(regions, particles, iteration == 0);
+                self.cuts(regions, particles);
+                let Particles { start, now, .. } = &mut *particles;
+                regions.rest.sweep(&self.sweep, now, start);
+                self.settle(particles, iteration + 1 == self.iterations);
+            }
+        }
+    }
+
+    /// Finds the moves of the bending filter, stage by stage.
+    fn filter_bending(&self, particles: &mut Particles) {
+        let stages = self.filter.map_or(&[][..], |filter| &filter.stages);
+        let Particles {
+            start, pull, bend, ..
+        } = particles;
+        let [mut moves, mut last] = bend.each_mut();
+        for (stage, &numbers) in stages.iter().enumerate() {
+            let known = (stage > 0).then_some(&last[..]);
+            let all = Stage {
+                pull: &mut pull[..],
+                moves: &mut moves[..],
+            };
+            for_domains(self.domain_starts, 0, all, &|d, mut fields| {
+                self.arch.dispatch(RunStage {
+                    fields: &mut fields,
+                    first: self.domain_starts[d],
+                    start,
+                    last: known,
+                    force: self.bending,
+                    numbers,
+                    step2: self.motion.step * self.motion.step,
+                });
+            });
+            std::mem::swap(&mut moves, &mut last);
+        }
+    }
+
+    /// Free motion and the domains' own constraints, in one go.
+    fn domains(&self, regions: &mut Regions, particles: &mut Particles, first: bool) {
+        let Particles {
+            start,
+            now,
+            free,
+            low,
+            velocity,
+            bend,
+            ..
+        } = particles;
+        let regions = &mut regions.domains[..];
+        if !first {
+            let all = Swept {
+                regions,
+                now,
+                start,
+            };
+            for_domains(self.domain_starts, 0, all, &|_, all| {
+                all.regions[0].sweep(&self.sweep, all.now, all.start);
+            });
+            return;
+        }
+        let bend = match self.filter {
+            None => Bend::None,
+            Some(filter) if filter.is_plain() => Bend::Force(self.bending),
+            // Stages take turns in two places; the first one writes the first.
+            Some(filter) => {
+                let last = (filter.stages.len() + 1) % 2;
+                Bend::Moves(&bend[last], filter.factor)
+            }
+        };
+        let fields = Free {
+            now,
+            free,
+            low,
+            velocity,
+        };
+        for_domains(
+            self.domain_starts,
+            0,
+            (fields, Of { regions }),
+            &|d, (mut fields, own)| {
+                let at = self.domain_starts[d];
+                self.arch.dispatch(Predict {
+                    fields: &mut fields,
+                    first: at,
+                    start,
+                    bend,
+                    step: &self.motion,
+                });
+                let end = at + fields.now.len();
+                own.regions[0].sweep(&self.sweep, fields.now, &start[at..end]);
+            },
+        );
+    }
+
+    /// Constraints across cuts.
+    fn cuts(&self, regions: &mut Regions, particles: &mut Particles) {
+        let (Some(&from), Some(&to)) = (self.cut_starts.first(), self.cut_starts.last()) else {
+            return;
+        };
+        let all = Swept {
+            regions: &mut regions.cuts,
+            now: &mut particles.now[from..to],
+            start: &particles.start[from..to],
+        };
+        for_domains(self.cut_starts, 0, all, &|_, all| {
+            all.regions[0].sweep(&self.sweep, all.now, all.start);
+        });
+    }
+
+    /// Contacts of vertices and, at the end of the substep, velocities.
+    fn settle(&self, particles: &mut Particles, last: bool) {
+        let Particles {
+            start,
+            now,
+            free,
+            velocity,
+            touch,
+            ..
+        } = particles;
+        let all = Bound {
+            start,
+            now,
+            free,
+            velocity,
+            touch,
+        };
+        for_domains(self.domain_starts, 0, all, &|_, mut fields| {
+            self.arch.dispatch(Settle {
+                fields: &mut fields,
+                solid: self.solid,
+                contact: &self.sweep.contact,
+                finish: last.then_some(&self.motion),
+            });
+        });
+    }
+}
