@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use toile_drape::{
     Cloth, Collider, DrapeError, Elastic, ElasticEnd, Inertia, LinearSolver, Material, MethodKind,
-    Model, NewtonSettings, PcgLimits, RestRun, RestSettings, State, Workspace, Xpbd, XpbdSettings,
-    laws::elastic::ElasticLaw,
+    Model, NewtonSettings, PcgLimits, RestRun, RestSettings, State, StepSettings, Workspace, Xpbd,
+    XpbdSettings, laws::elastic::ElasticLaw,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
@@ -143,6 +143,7 @@ fn iterated_to_the_end_it_is_implicit_euler() {
             tolerance: 1e-10,
             iterations: 2000,
         }),
+        ..StepSettings::default().newton
     };
     let target = reference.positions.clone();
     let inertia = Inertia {

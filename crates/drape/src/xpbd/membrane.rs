@@ -19,7 +19,7 @@ use super::lanes::{
     Corner, LANES, Point, Row, add_scaled, blend, dot, gather, parts, scatter, sub,
 };
 use crate::Model;
-use crate::laws::stretch::MembraneLaw;
+use crate::laws::stretch::{MembraneLaw, StrainLaw};
 use pulp::Simd;
 
 /// Sixteen triangles of one law without a shared vertex.

@@ -15,7 +15,8 @@
 //! acts as extra compliance of the order of h^2 / m.
 //!
 //! Inner loops run in single precision on positions relative to the middle of the cloth, with what
-//! rounding leaves out of them carried along; the state outside is in double precision.
+//! rounding leaves out of them carried along; the state outside is in double precision. Viscosity,
+//! kept strain and the air's forces on triangles do not act here; drag per mass does.
 
 // Lanes and axes are gone through by index, so that loops unroll into vectors.
 #![allow(clippy::needless_range_loop)]
