@@ -51,7 +51,7 @@ pub trait StrainLaw {
 pub struct MembraneLaw {
     /// C11, C22, C12 and the shear stiffness G [N/m].
     pub stiffness: [f64; 4],
-    /// k along warp and weft: S = C (E + k E^3) in tension; 0 is a straight line.
+    /// The number k along warp and weft: S = C (E + k E^3) in tension; 0 is a straight line.
     pub hardening: [f64; 2],
     /// Stretch (share of the length at rest) that warp and weft hardly exceed; infinite for none.
     pub limit: [f64; 2],
