@@ -1,7 +1,6 @@
 //! The `toile` command: sewing patterns checked, laid out, sewn and draped.
 //!
 //! Exit status: 0 on success, 2 on bad input, 1 on failure.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod arguments;

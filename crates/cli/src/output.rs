@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 use std::fmt::Display;
+use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 use toile_session::{Event, SessionError};
@@ -11,6 +12,8 @@ use toile_session::{Event, SessionError};
 pub struct Failure {
     message: String,
     bad_input: bool,
+    /// Whether the message names the file at fault.
+    names_file: bool,
     report: Option<Value>,
 }
 
@@ -20,6 +23,7 @@ impl Failure {
         Self {
             message: message.to_string(),
             bad_input: true,
+            names_file: false,
             report: None,
         }
     }
@@ -44,7 +48,7 @@ impl Failure {
     /// The same with the file it is about, unless it names it already.
     pub fn about(mut self, file: &Path) -> Self {
         let file = file.display().to_string();
-        if !self.message.contains(&file) {
+        if !self.names_file && !self.message.contains(&file) {
             self.message = format!("{file}: {}", self.message);
         }
         self
@@ -55,6 +59,10 @@ impl From<SessionError> for Failure {
     fn from(error: SessionError) -> Self {
         Self {
             bad_input: error.is_bad_input(),
+            names_file: matches!(
+                error,
+                SessionError::File(_) | SessionError::Format { .. } | SessionError::Faults { .. }
+            ),
             message: error.to_string(),
             report: None,
         }
@@ -75,14 +83,14 @@ impl Output {
     /// Says something to a person.
     pub fn say(&self, words: impl Display) {
         if !self.json {
-            println!("{words}");
+            print_line(words);
         }
     }
 
     /// Warns a person.
     pub fn warn(&self, words: impl Display) {
         if !self.json {
-            eprintln!("{words}");
+            complain(words);
         }
     }
 
@@ -103,22 +111,33 @@ impl Output {
     /// Ends with a report.
     pub fn finish(&self, report: Value) {
         if self.json {
-            println!("{:#}", merged(json!({ "ok": true }), report));
+            print_line(format_args!("{:#}", merged(json!({ "ok": true }), report)));
         }
     }
 
     /// Ends with a failure.
     pub fn fail(&self, failure: &Failure) -> ExitCode {
         for line in failure.message.lines() {
-            eprintln!("error: {line}");
+            complain(format_args!("error: {line}"));
         }
         if self.json {
             let report = failure.report.clone().unwrap_or_else(|| json!({}));
             let start = json!({ "ok": false, "error": failure.message });
-            println!("{:#}", merged(start, report));
+            print_line(format_args!("{:#}", merged(start, report)));
         }
         ExitCode::from(if failure.bad_input { 2 } else { 1 })
     }
+}
+
+/// A line on stdout. Nothing happens when nobody reads it any more, as after `toile ... | head`:
+/// the files are written all the same.
+fn print_line(words: impl Display) {
+    let _ = writeln!(std::io::stdout(), "{words}");
+}
+
+/// A line on stderr.
+fn complain(words: impl Display) {
+    let _ = writeln!(std::io::stderr(), "{words}");
 }
 
 fn merged(mut first: Value, second: Value) -> Value {

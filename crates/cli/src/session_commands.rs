@@ -26,6 +26,7 @@ pub fn drape(make: &Make, output: &Output) -> Result<Value, Failure> {
 
 fn run(make: &Make, work: &[Command], output: &Output) -> Result<Value, Failure> {
     let mut commands = make.choices();
+    refuse_nobody(&commands)?;
     commands.extend_from_slice(work);
     commands.push(Command::Export {
         dir: make.out.clone(),
@@ -43,6 +44,25 @@ fn run(make: &Make, work: &[Command], output: &Output) -> Result<Value, Failure>
     ));
     output.tell(&events);
     Ok(outcome(&events, &make.out))
+}
+
+/// Refuses a body that is neither a figure nor a file.
+fn refuse_nobody(commands: &[Command]) -> Result<(), Failure> {
+    for command in commands {
+        if let Command::SetBody {
+            measurements: Some(file),
+            ..
+        } = command
+            && !file.exists()
+        {
+            return Err(Failure::bad_input(format!(
+                "--body: there is no file {}; give woman, man, mean, a file of measurements, or \
+                 FIGURE:FILE",
+                file.display()
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Faults of a pattern.

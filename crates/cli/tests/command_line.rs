@@ -57,8 +57,14 @@ fn bad_input_exits_with_2_and_says_what_to_do() {
         (&["make", "broken.json"], &["broken.json", "line 1"]),
         (&["make", shirt, "--size", "XXL"], &["XXL", "S, M, L, XL"]),
         (&["make", shirt, "--fabric", "silk"], &["silk", "jersey"]),
-        (&["make", shirt, "--body", "nobody"], &["nobody"]),
-        (&["make", shirt, "--width", "12"], &["12", "mm, cm, m, in"]),
+        (
+            &["make", shirt, "--body", "nobody"],
+            &["error: --body", "no file nobody", "woman, man, mean"],
+        ),
+        (
+            &["make", shirt, "--width", "12"],
+            &["\"12\" has no unit", "mm, cm, m, in"],
+        ),
         (
             &["mesh", shirt, "--edge", "9m", "--out", "m.obj"],
             &["edge length"],
@@ -74,6 +80,25 @@ fn bad_input_exits_with_2_and_says_what_to_do() {
     }
     let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
     assert_eq!(left.len(), 1, "nothing was written");
+}
+
+#[test]
+fn a_reader_that_goes_away_does_no_harm() {
+    let folder = tempfile::tempdir().unwrap();
+    let shirt = patterns().join("t-shirt.toile.json");
+    for flag in ["--size=M", "--json"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_toile"))
+            .args(["check", shirt.to_str().unwrap(), flag])
+            .current_dir(folder.path())
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", words(&output.stderr));
+        assert!(output.stderr.is_empty(), "{}", words(&output.stderr));
+    }
 }
 
 #[test]

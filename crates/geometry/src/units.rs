@@ -20,6 +20,9 @@ pub enum UnitError {
     /// The number is followed by a unit that is not known here.
     #[error("\"{0}\" is not a unit known here; use one of {1}")]
     UnknownUnit(String, &'static str),
+    /// The number stands alone.
+    #[error("\"{0}\" has no unit; write it with one of {1}")]
+    NoUnit(String, &'static str),
     /// The number is not finite.
     #[error("\"{0}\" is not a finite number")]
     NotFinite(String),
@@ -97,6 +100,14 @@ fn split(text: &str) -> Result<(f64, &str), UnitError> {
     Ok((number, text[end..].trim()))
 }
 
+/// What is wrong with the unit of a text.
+fn unit_error(text: &str, unit: &str, known: &'static str) -> UnitError {
+    match unit {
+        "" => UnitError::NoUnit(text.trim().to_owned(), known),
+        unit => UnitError::UnknownUnit(unit.to_owned(), known),
+    }
+}
+
 impl FromStr for Length {
     type Err = UnitError;
 
@@ -109,7 +120,7 @@ impl FromStr for Length {
             "m" => Ok(Self::metres(number)),
             "in" | "\"" => Ok(Self::inches(number)),
             "" if number == 0.0 => Ok(Self(0.0)),
-            other => Err(UnitError::UnknownUnit(other.to_owned(), "mm, cm, m, in")),
+            other => Err(unit_error(text, other, "mm, cm, m, in")),
         }
     }
 }
@@ -124,7 +135,7 @@ impl FromStr for Angle {
             "deg" | "°" => Ok(Self::degrees(number)),
             "rad" => Ok(Self::radians(number)),
             "" if number == 0.0 => Ok(Self(0.0)),
-            other => Err(UnitError::UnknownUnit(other.to_owned(), "deg, rad")),
+            other => Err(unit_error(text, other, "deg, rad")),
         }
     }
 }
