@@ -222,8 +222,7 @@ pub fn first_frame(job: &GarmentJob) -> LiveFrame {
     let garment = &job.garment;
     LiveFrame {
         positions: garment.positions.clone(),
-        triangles: Arc::new(garment.triangles.clone()),
-        target: Arc::new((0..garment.positions.len() as u32).collect()),
+        target: (0..garment.positions.len() as u32).collect(),
         stage: Stage::Sewing,
         residual: f64::INFINITY,
         gap: 0.0,

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use std::fmt::Display;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use toile_session::{Event, SessionError};
 
@@ -33,6 +33,7 @@ impl Failure {
         Self {
             message: message.to_string(),
             bad_input: false,
+            names_file: false,
             report: None,
         }
     }
@@ -186,13 +187,15 @@ fn words(event: &Event) -> Option<String> {
             drape.strain_max[0] * 100.0,
             drape.strain_max[1] * 100.0,
         )),
-        Event::FilesWritten { paths } => Some(
-            paths
-                .iter()
-                .map(|path| format!("wrote {:<24} {}", path.display().to_string(), meaning(path)))
-                .collect::<Vec<_>>()
-                .join("\n"),
-        ),
+        Event::FilesWritten { paths } => {
+            let name = |path: &PathBuf| path.display().to_string();
+            let width = paths.iter().map(|path| name(path).chars().count()).max();
+            let line = |path: &PathBuf| {
+                let width = width.unwrap_or_default();
+                format!("wrote {:<width$}  {}", name(path), meaning(path))
+            };
+            Some(paths.iter().map(line).collect::<Vec<_>>().join("\n"))
+        }
         Event::PatternOpened | Event::ProjectChanged { .. } | Event::Warned { .. } => None,
     }
 }

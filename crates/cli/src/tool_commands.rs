@@ -4,6 +4,7 @@ use crate::arguments::{Body, Convert, FormatName, Mesh, Nest, Run};
 use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
+use std::path::PathBuf;
 use std::sync::Arc;
 use toile_session::{
     BodyChoice, Event, Project, convert as convert_file, figure_named, make_body, mesh_panels,
@@ -148,7 +149,34 @@ fn rounded(value: f64) -> f64 {
 pub fn run(run: &Run, output: &Output) -> Result<Value, Failure> {
     let outcome = run_scene(&run.scene, &run.out, &mut Bar::new())
         .map_err(|error| Failure::from(error).about(&run.scene))?;
-    for file in &outcome.files {
+    let report = &outcome.report;
+    for warning in report["warnings"].as_array().into_iter().flatten() {
+        output.warn(format!("note: {}", warning.as_str().unwrap_or_default()));
+    }
+    let number = |name: &str| report[name].as_f64().unwrap_or_default();
+    output.say(format!(
+        "simulated {:.2} s by {} in {:.0} steps: net force {:.1e} of the weight; {:.0} pairs of cloth and body triangles cross, {:.0} of cloth and cloth",
+        number("time_s"),
+        report["method"].as_str().unwrap_or_default(),
+        number("steps"),
+        number("residual"),
+        number("body_intersections"),
+        number("self_intersections"),
+    ));
+    let is_frame = |file: &&PathBuf| {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with("frame-")
+    };
+    let frames = outcome.files.iter().filter(is_frame).count();
+    if frames > 0 {
+        let all = run.out.join("frame-*.obj");
+        output.say(format!(
+            "wrote {} ({})",
+            all.display(),
+            count(frames, "file")
+        ));
+    }
+    for file in outcome.files.iter().filter(|file| !is_frame(file)) {
         output.say(format!("wrote {}", file.display()));
     }
     Ok(json!({ "files": outcome.files, "report": outcome.report }))

@@ -189,8 +189,8 @@ impl GarmentRun {
         if self.stage != Stage::Sewing {
             self.stage = Stage::Settling;
             self.warnings.clear();
-            self.rest
-                .go_on(self.setup.rest.residual, self.setup.rest.steps);
+            let settings = self.rest_settings();
+            self.rest.go_on(settings.residual, settings.steps);
         }
     }
 

@@ -31,9 +31,9 @@ pub(crate) struct Drape {
 
 impl Drape {
     /// A finished run as a product.
-    pub fn of(job: GarmentJob, handled: HandledRun) -> Self {
+    pub fn of(handled: HandledRun) -> Self {
         let held = handled.is_held();
-        let (mut run, inputs) = handled.into_parts();
+        let (job, mut run, inputs) = handled.into_parts();
         let measures = run.measure();
         let mesh = run.model.mesh(&run.state.positions);
         let origin = (0..job.garment.triangles.len() as u32)
@@ -146,9 +146,11 @@ pub(crate) fn drape(
     watcher: &mut dyn Watcher,
 ) -> Result<Drape, SessionError> {
     tell(watcher, "sewing", 0.0, "")?;
-    let mut run = HandledRun::new(&job)?;
     for stamped in inputs {
         stamped.input.check(&job)?;
+    }
+    let mut run = HandledRun::new(job)?;
+    for stamped in inputs {
         run.give(stamped.input, Some(stamped.step));
     }
     loop {
@@ -163,7 +165,7 @@ pub(crate) fn drape(
             break;
         }
     }
-    Ok(Drape::of(job, run))
+    Ok(Drape::of(run))
 }
 
 /// What a finished garment ought not to have, in plain words.

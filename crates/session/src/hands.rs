@@ -4,8 +4,8 @@ use crate::{GarmentJob, SessionError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use toile_drape::laws::elastic::ElasticLaw;
-use toile_drape::{DrapeError, Elastic, ElasticEnd, GarmentRun, Progress, Stage};
-use toile_geometry::Vec3;
+use toile_drape::{Carry, Cloth, DrapeError, Elastic, ElasticEnd, GarmentRun, Progress, Stage};
+use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
 /// Something done to cloth while it is draped. Vertices are those of the job's garment, before
 /// seams are merged.
@@ -81,9 +81,10 @@ impl LiveInput {
 
 /// A garment being sewn and draped while inputs come.
 pub(crate) struct HandledRun {
+    job: GarmentJob,
     run: GarmentRun,
-    /// Elastics of the seams while they are sewn; they come first.
-    seams: usize,
+    /// From the mesh of a level to the garment's.
+    carry: Option<(usize, Carry)>,
     /// Where each held vertex is drawn to.
     held: BTreeMap<u32, Vec3>,
     /// Inputs to come, by step; those of one step in the order given.
@@ -95,11 +96,11 @@ pub(crate) struct HandledRun {
 
 impl HandledRun {
     /// Prepares the first step.
-    pub fn new(job: &GarmentJob) -> Result<Self, DrapeError> {
-        let run = GarmentRun::new(job.setup.clone())?;
+    pub fn new(job: GarmentJob) -> Result<Self, DrapeError> {
         Ok(Self {
-            seams: run.model.elastics.len(),
-            run,
+            run: GarmentRun::new(job.setup.clone())?,
+            job,
+            carry: None,
             held: BTreeMap::new(),
             waiting: BTreeMap::new(),
             applied: Vec::new(),
@@ -113,14 +114,9 @@ impl HandledRun {
         self.waiting.entry(step).or_default().push(input);
     }
 
-    /// The garment.
-    pub fn run(&self) -> &GarmentRun {
-        &self.run
-    }
-
-    /// The garment, and the inputs it was made with.
-    pub fn into_parts(self) -> (GarmentRun, Vec<StampedInput>) {
-        (self.run, self.applied)
+    /// What it is made from, the garment, and the inputs it was made with.
+    pub fn into_parts(self) -> (GarmentJob, GarmentRun, Vec<StampedInput>) {
+        (self.job, self.run, self.applied)
     }
 
     /// The inputs applied so far.
@@ -192,17 +188,76 @@ impl HandledRun {
         changed
     }
 
-    /// Gives the model the elastics of the hands beside those of the seams.
+    /// Gives the model the elastics of the hands beside those of the seams, which come first.
     fn pull(&mut self) {
+        let stitches = &self.job.setup.levels[self.run.level()[0]].stitches;
         let sewing = self.run.progress().stage == Stage::Sewing;
         let mut elastics = std::mem::take(&mut self.run.model.elastics);
-        elastics.truncate(if sewing { self.seams } else { 0 });
-        let target = &self.run.target;
+        elastics.truncate(if sewing { stitches.len() } else { 0 });
         elastics.extend(self.held.iter().map(|(&vertex, &place)| Elastic {
-            from: target[vertex as usize],
+            from: self.run.target[self.handle(vertex) as usize],
             to: ElasticEnd::Point(place),
             law: HAND,
         }));
         self.run.model.set_elastics(elastics);
     }
+
+    /// The vertex of the mesh in hand that stands for one of the garment: the same on the finest
+    /// mesh, the nearest of its panel on a coarser one.
+    fn handle(&self, vertex: u32) -> u32 {
+        let levels = &self.job.setup.levels;
+        let [level, count] = self.run.level();
+        if level + 1 == count {
+            return vertex;
+        }
+        let (coarse, fine) = (&levels[level].cloth, &levels[count - 1].cloth);
+        let Some((panel, at)) =
+            corners(fine).find_map(|(v, panel, at)| (v == vertex).then_some((panel, at)))
+        else {
+            return 0;
+        };
+        let near = corners(coarse)
+            .filter(|corner| corner.1 == panel)
+            .min_by(|a, b| {
+                (a.2 - at)
+                    .norm_squared()
+                    .total_cmp(&(b.2 - at).norm_squared())
+            });
+        near.map_or(0, |corner| corner.0)
+    }
+
+    /// The garment as it lies: positions [m] and, for every vertex of the job's garment, its
+    /// index among them. While a coarser mesh is in hand, its shape carried to the garment's.
+    pub fn shape(&mut self) -> Result<(Vec<Vec3>, Vec<u32>), DrapeError> {
+        let levels = &self.job.setup.levels;
+        let [level, count] = self.run.level();
+        if level + 1 == count {
+            return Ok((self.run.state.positions.clone(), self.run.target.clone()));
+        }
+        let (coarse, fine) = (&levels[level].cloth, &levels[count - 1].cloth);
+        let joined = |t: &[u32; 3]| t.map(|v| self.run.target[v as usize]);
+        let shape = TriangleMesh {
+            positions: self.run.state.positions.clone(),
+            triangles: coarse.triangles.iter().map(joined).collect(),
+        };
+        let carry = match self.carry.take() {
+            Some((of, carry)) if of == level => carry,
+            _ => Carry::new(coarse, fine)?,
+        };
+        let positions = carry.apply(&shape);
+        self.carry = Some((level, carry));
+        let target = (0..positions.len() as u32).collect();
+        Ok((positions, target))
+    }
+}
+
+/// Every corner of every triangle of a cloth: its vertex, panel and place at rest [m].
+fn corners(cloth: &Cloth) -> impl Iterator<Item = (u32, u32, Vec2)> + '_ {
+    let triangles = cloth.triangles.iter().zip(&cloth.panel).zip(&cloth.rest);
+    triangles.flat_map(|((vertices, &panel), rest)| {
+        vertices
+            .iter()
+            .zip(rest)
+            .map(move |(&v, &at)| (v, panel, at))
+    })
 }

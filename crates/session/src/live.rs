@@ -15,10 +15,8 @@ use toile_geometry::Vec3;
 pub struct LiveFrame {
     /// Positions of the vertices [m]; fewer after merging.
     pub positions: Vec<Vec3>,
-    /// Corners of the triangles; the same list until merging.
-    pub triangles: Arc<Vec<[u32; 3]>>,
     /// Vertex of this frame for every vertex of the job's garment.
-    pub target: Arc<Vec<u32>>,
+    pub target: Vec<u32>,
     /// What is being done.
     pub stage: Stage,
     /// Net force over weight; infinite while sewing.
@@ -194,34 +192,25 @@ impl Shared {
 /// Runs to rest; nothing means that it was stopped.
 fn run(shared: &Shared, job: GarmentJob) -> Result<Option<DrapeResult>, DrapeError> {
     let start = Instant::now();
-    let mut run = HandledRun::new(&job)?;
+    let mut run = HandledRun::new(job)?;
     let mut seconds = start.elapsed().as_secs_f64();
-    let mut triangles = Arc::new(run.run().model.triangles.clone());
-    let mut target = Arc::new(run.run().target.clone());
-    let mut merged = run.run().progress().stage != Stage::Sewing;
     while shared.wait_for_turn(&mut run) {
+        let start = Instant::now();
         if run.at_rest() {
-            let start = Instant::now();
-            let drape = Arc::new(Drape::of(job, run));
+            let drape = Arc::new(Drape::of(run));
             seconds += start.elapsed().as_secs_f64();
             return Ok(Some(DrapeResult { drape, seconds }));
         }
-        let start = Instant::now();
         let progress = run.advance()?;
         seconds += start.elapsed().as_secs_f64();
-        if !merged && progress.stage != Stage::Sewing {
-            merged = true;
-            triangles = Arc::new(run.run().model.triangles.clone());
-            target = Arc::new(run.run().target.clone());
-        }
         let mut applied = lock(&shared.applied);
         let known = applied.len();
         applied.extend_from_slice(&run.applied()[known..]);
         drop(applied);
+        let (positions, target) = run.shape()?;
         *lock(&shared.latest) = Some(LiveFrame {
-            positions: run.run().state.positions.clone(),
-            triangles: triangles.clone(),
-            target: target.clone(),
+            positions,
+            target,
             stage: progress.stage,
             residual: progress.residual,
             gap: progress.gap,

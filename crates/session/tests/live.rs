@@ -9,8 +9,8 @@ use support::{band, lasting, make};
 use toile_drape::GarmentRun;
 use toile_geometry::Vec3;
 use toile_session::{
-    Command, DrapeResult, GarmentJob, LiveInput, LiveRun, Session, Silent, Stage, StampedInput,
-    read_journal,
+    Command, DrapeResult, GarmentJob, LiveInput, LiveRun, Quality, Session, Silent, Stage,
+    StampedInput, read_journal,
 };
 
 /// A session with the band in it, meshed coarsely.
@@ -184,6 +184,55 @@ fn cloth_that_is_held_goes_to_the_hand_and_falls_back() {
         .unwrap();
     assert!(!events.is_empty());
     assert_eq!(session.draped(), Some(released.summary()));
+}
+
+#[test]
+fn cloth_is_held_on_coarse_meshes_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = prepared(folder.path());
+    let coarse = session.garment_setup().unwrap();
+    let quality = Quality::Fit;
+    session
+        .execute(Command::SetQuality { quality }, &mut Silent)
+        .unwrap();
+    let mut job = session.garment_setup().unwrap();
+    job.setup.levels = vec![
+        coarse.setup.levels.last().unwrap().clone(),
+        job.setup.levels.last().unwrap().clone(),
+    ];
+    let (vertex, to) = handle(&job);
+    let drag = LiveInput::Drag { vertex, to };
+    let live = LiveRun::start(job.clone());
+    live.give(drag).unwrap();
+    let mut levels = Vec::new();
+    while !live.is_finished() {
+        let Some(frame) = live.latest() else {
+            std::thread::sleep(Duration::from_millis(1));
+            continue;
+        };
+        assert_eq!(frame.target.len(), job.garment.positions.len());
+        assert!(
+            frame
+                .target
+                .iter()
+                .all(|&v| (v as usize) < frame.positions.len())
+        );
+        if levels.last() != Some(&frame.positions.len()) {
+            levels.push(frame.positions.len());
+        }
+        if frame.stage == Stage::Finished {
+            live.give(LiveInput::Release { vertex }).unwrap();
+        }
+    }
+    let first = finished(&live);
+    assert!(levels.contains(&first.mesh().positions.len()));
+    let again = LiveRun::start(job);
+    for stamped in first.inputs() {
+        again.give_at(*stamped).unwrap();
+    }
+    let again = finished(&again);
+    assert_eq!(again.inputs(), first.inputs());
+    assert_eq!(bits(&again.mesh().positions), bits(&first.mesh().positions));
 }
 
 #[test]
