@@ -22,6 +22,7 @@ const TASK: usize = 1000;
 /// A part of the graph, with vertices numbered anew and itself left out of its rows.
 pub struct Piece {
     vertices: Vec<u32>,
+    /// Where each vertex is [m].
     pub places: Vec<Vec3>,
     start: Vec<u32>,
     adjacent: Vec<u32>,
