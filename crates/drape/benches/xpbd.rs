@@ -89,7 +89,7 @@ fn main() {
             if contact {
                 model.colliders.push(floor());
             }
-            let frames = 200_000 / model.vertex_count();
+            let frames = (200_000 / model.vertex_count()).max(40);
             let (one, two) = (time(&model, 1, frames), time(&model, 2, frames));
             let triangles = model.triangles.len();
             println!(
