@@ -393,7 +393,8 @@ fn slivers_stiff_cloth_huge_steps_and_collapse_stay_sound() {
     let sliver = |u: f64, v: f64| Vec3::new(u, 0.05, if v > 0.019 && v < 0.021 { 1e-4 } else { v });
     let flat = |u: f64, v: f64| Vec3::new(u, 0.05, v);
     let crushed = |_: f64, _: f64| Vec3::new(0.1, 0.05, 0.1);
-    let cases: [(Material, &dyn Fn(f64, f64) -> Vec3, f64, bool); 4] = [
+    type Shape<'a> = &'a dyn Fn(f64, f64) -> Vec3;
+    let cases: [(Material, Shape, f64, bool); 4] = [
         (stiff.clone(), &flat, 1.0 / 1200.0, false),
         (stiff.clone(), &sliver, 1.0 / 1200.0, false),
         (Material::default(), &sliver, 1.0 / 60.0, false),
