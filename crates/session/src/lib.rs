@@ -48,6 +48,7 @@ pub use project::Project;
 pub use scene::{SceneOutcome, run_scene};
 pub use session::Session;
 pub use setup::{GarmentJob, JobPanel};
+pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
 pub use toile_drape::Stage;
 pub use tools::{BodyRow, convert, make_body, mesh_panels, nest_patterns};
