@@ -7,7 +7,8 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use toile_drape::{
-    Cloth, MethodKind, MethodSettings, Model, RestRun, RestSettings, State, Workspace,
+    GarmentLevel, GarmentRun, GarmentSetup, MethodKind, MethodSettings, Model, RestSettings,
+    SewSettings, Stage, State,
 };
 use toile_session::Watcher;
 
@@ -118,28 +119,27 @@ pub fn bench(names: &[String], watcher: &mut dyn Watcher) -> Result<Vec<Timed>, 
 }
 
 fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
-    let (scene, resolution, cuts) = match work {
-        Work::Frames(_, cuts) => ("hang", 1, cuts),
-        Work::Rest(cuts, _) => ("shirt", 0, cuts),
-    };
-    let card = card(scene)?;
-    let mut cloth: Cloth = card.cloth(resolution)?;
-    for _ in 0..cuts {
-        cloth = subdivided(&cloth);
-    }
-    let (model, state) = card.model(&cloth, &card.cloths[resolution].pins)?;
     let mut result = Timed {
         name: name.to_owned(),
         threads,
-        vertices: model.vertex_count(),
+        vertices: 0,
         wall_s: 0.0,
         cpu_s: None,
         counted: BTreeMap::new(),
         failure: None,
     };
     match work {
-        Work::Frames(kind, _) => frames(&model, state, kind, &mut result),
-        Work::Rest(_, residual) => rest(&model, state, residual, &mut result),
+        Work::Frames(kind, cuts) => {
+            let card = card("hang")?;
+            let mut cloth = card.cloth(1)?;
+            for _ in 0..cuts {
+                cloth = subdivided(&cloth);
+            }
+            let (model, state) = card.model(&cloth, &card.cloths[1].pins)?;
+            result.vertices = model.vertex_count();
+            frames(&model, state, kind, &mut result);
+        }
+        Work::Rest(cuts, residual) => rest(cuts, residual, &mut result)?,
     }
     Ok(result)
 }
@@ -167,19 +167,47 @@ fn frames(model: &Model, mut state: State, kind: MethodKind, result: &mut Timed)
     result.counted.insert("ms_per_frame".to_owned(), per_frame);
 }
 
-fn rest(model: &Model, mut state: State, residual: f64, result: &mut Timed) {
-    let mut workspace = Workspace::default();
-    let mut run = RestRun::new(RestSettings {
-        residual,
-        steps: MOST_STEPS,
-        ..RestSettings::default()
-    });
+/// The sewn shirt to rest, from its coarsest mesh to the finest; times of each mesh apart.
+fn rest(cuts: usize, residual: f64, result: &mut Timed) -> Result<(), LabError> {
+    let card = card("shirt")?;
+    let mut cloth = card.cloth(0)?;
+    let (model, _) = card.model(&cloth, &[])?;
+    let mut levels = Vec::new();
+    for cut in 0..=cuts {
+        if cut > 0 {
+            cloth = subdivided(&cloth);
+        }
+        levels.push(GarmentLevel {
+            cloth: cloth.clone(),
+            stitches: Vec::new(),
+        });
+    }
+    result.vertices = cloth.positions.len();
+    let setup = GarmentSetup {
+        levels,
+        counted: Vec::new(),
+        colliders: model.colliders.iter().map(|c| c.surface.clone()).collect(),
+        contact: model.contact,
+        gravity: model.gravity,
+        sew: SewSettings::default(),
+        rest: RestSettings {
+            residual,
+            steps: MOST_STEPS,
+            ..RestSettings::default()
+        },
+    };
     let clock = Clock::start();
-    while !run.finished() {
-        if let Err(error) = run.advance(model, &mut state, &mut workspace) {
+    let mut run = GarmentRun::new(setup)?;
+    while run.progress().stage != Stage::Finished {
+        let [level, _] = run.level();
+        let before = clock.wall();
+        if let Err(error) = run.advance() {
             result.failure = Some(error.to_string());
             break;
         }
+        let spent = clock.wall() - before;
+        *result.counted.entry(format!("level_{level}_s")).or_default() += spent;
+        *result.counted.entry(format!("level_{level}_steps")).or_default() += 1.0;
         if clock.wall() > BUDGET {
             result.failure = Some(format!("not done in {BUDGET} s"));
             break;
@@ -187,17 +215,12 @@ fn rest(model: &Model, mut state: State, residual: f64, result: &mut Timed) {
     }
     result.wall_s = clock.wall();
     result.cpu_s = clock.cpu();
-    result
-        .counted
-        .insert("steps".to_owned(), run.steps() as f64);
-    result.counted.insert("residual".to_owned(), run.residual());
-    if run.residual() > residual && result.failure.is_none() {
-        result.failure = Some(format!(
-            "net force {:.1e} of the weight after {} steps",
-            run.residual(),
-            run.steps()
-        ));
+    let reached = run.progress().residual;
+    result.counted.insert("residual".to_owned(), reached);
+    if reached > residual && result.failure.is_none() {
+        result.failure = Some(format!("net force {reached:.1e} of the weight at the end"));
     }
+    Ok(())
 }
 
 /// The benchmarks as a table for people.

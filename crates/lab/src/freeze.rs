@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use toile_drape::{Cloth, GarmentRun, Material, MethodKind, MethodSettings, Stage};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
-use toile_interchange::{ObjMesh, write_all_atomically, write_obj};
+use toile_interchange::{ObjGroup, ObjMesh, write_all_atomically, write_obj};
 use toile_session::{Command, Quality, Session, Silent, Watcher};
 
 type File = (String, String);
@@ -41,6 +41,16 @@ fn cloth_obj(cloth: &Cloth) -> Result<String, LabError> {
                     (mesh.texture.len() - 1) as u32
                 })
         }));
+    }
+    for (t, &panel) in cloth.panel.iter().enumerate() {
+        let name = format!("panel-{panel}");
+        match mesh.groups.last_mut() {
+            Some(group) if group.name == name => group.triangles.end = t + 1,
+            _ => mesh.groups.push(ObjGroup {
+                name,
+                triangles: t..t + 1,
+            }),
+        }
     }
     write_obj(&mesh).map_err(failed)
 }
@@ -196,6 +206,7 @@ pub(crate) fn ball(radius: f64, cuts: usize) -> TriangleMesh {
             positions: mesh.positions,
             rest: vec![[Vec2::zeros(); 3]; mesh.triangles.len()],
             material: vec![0; mesh.triangles.len()],
+            panel: vec![0; mesh.triangles.len()],
             triangles: mesh.triangles,
             materials: Vec::new(),
         };
@@ -291,18 +302,22 @@ fn shirt(files: &mut Vec<File>) -> Result<(), LabError> {
         .execute_all(&commands, &mut Silent)
         .map_err(failed)?;
     let job = session.garment_setup().map_err(failed)?;
-    let setup = job.setup;
-    let material = setup.cloth.materials[0].clone();
+    let mut setup = job.setup;
+    setup.levels.truncate(1);
+    let Some(placed) = setup.levels.first().map(|level| level.cloth.clone()) else {
+        return Err(failed("the shirt has no mesh"));
+    };
+    let material = placed.materials[0].clone();
     let mut card = blank("shirt", title, 0.1, &material);
     card.collider = Some("body.obj".to_owned());
     if let Some(body) = setup.colliders.first() {
         files.push(("body.obj".to_owned(), solid_obj(body.mesh())?));
     }
-    let mut run = GarmentRun::new(setup.clone())?;
+    let mut run = GarmentRun::new(setup)?;
     while run.progress().stage == Stage::Sewing {
         run.advance()?;
     }
-    let mut sewn = setup.cloth.merged(&run.target, run.state.positions.len());
+    let mut sewn = placed.merged(&run.target, run.state.positions.len());
     sewn.positions.clone_from(&run.state.positions);
     files.push(("shirt-a.obj".to_owned(), cloth_obj(&sewn)?));
     card.cloths.push(ClothCard {

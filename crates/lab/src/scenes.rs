@@ -158,9 +158,15 @@ impl Card {
             .iter()
             .map(|t| t.map(|k| mesh.texture[k as usize]))
             .collect::<Vec<[Vec2; 3]>>();
+        // Groups are panels: triangles of one share a plane at rest.
+        let mut panel = vec![0; rest.len()];
+        for (number, group) in mesh.groups.iter().enumerate() {
+            panel[group.triangles.clone()].fill(number as u32);
+        }
         Ok(Cloth {
             positions: mesh.positions,
             material: vec![0; rest.len()],
+            panel,
             triangles: mesh.triangles,
             rest,
             materials: vec![self.material()],
@@ -236,6 +242,7 @@ pub fn subdivided(cloth: &Cloth) -> Cloth {
             [half[0], half[1], half[2]],
         ]);
         fine.material.extend([cloth.material[t]; 4]);
+        fine.panel.extend([cloth.panel[t]; 4]);
     }
     fine
 }
