@@ -206,8 +206,14 @@ fn rest(cuts: usize, residual: f64, result: &mut Timed) -> Result<(), LabError> 
             break;
         }
         let spent = clock.wall() - before;
-        *result.counted.entry(format!("level_{level}_s")).or_default() += spent;
-        *result.counted.entry(format!("level_{level}_steps")).or_default() += 1.0;
+        *result
+            .counted
+            .entry(format!("level_{level}_s"))
+            .or_default() += spent;
+        *result
+            .counted
+            .entry(format!("level_{level}_steps"))
+            .or_default() += 1.0;
         if clock.wall() > BUDGET {
             result.failure = Some(format!("not done in {BUDGET} s"));
             break;

@@ -57,7 +57,7 @@ fn mesh_chart(points: &[&Point], title: String, note: String, across: &str) -> C
     let mut front: Vec<[f64; 2]> = points
         .iter()
         .filter(|p| p.best)
-        .filter_map(|p| Some([p.wall_ms, p.error_mm?]))
+        .filter_map(|p| Some([p.cost(), p.error_mm?]))
         .collect();
     front.sort_by(|a, b| a[0].total_cmp(&b[0]));
     series.push(Series {
@@ -75,7 +75,7 @@ fn mesh_chart(points: &[&Point], title: String, note: String, across: &str) -> C
         }
         let good = own.iter().filter(|p| p.failure.is_none());
         let mut places: Vec<(f64, [f64; 2])> = good
-            .filter_map(|p| Some((p.step, [p.wall_ms, p.error_mm?.max(floor)])))
+            .filter_map(|p| Some((p.step, [p.cost(), p.error_mm?.max(floor)])))
             .collect();
         places.sort_by(|a, b| a.0.total_cmp(&b.0));
         series.push(Series::numbered(
@@ -92,7 +92,7 @@ fn mesh_chart(points: &[&Point], title: String, note: String, across: &str) -> C
             points: own
                 .iter()
                 .filter(|p| p.failure.is_some())
-                .map(|p| [p.wall_ms, row])
+                .map(|p| [p.cost(), row])
                 .collect(),
         });
     }
@@ -128,9 +128,9 @@ pub fn chart_files(data: &ChartData) -> Result<Vec<(String, String)>, LabError> 
         (
             &data.motion,
             "motion",
-            "wall time per simulated second [ms]",
+            "processor time per simulated second [ms]",
         ),
-        (&data.rest, "rest", "wall time to rest [ms]"),
+        (&data.rest, "rest", "processor time to rest [ms]"),
     ] {
         let mut meshes: Vec<&str> = points.iter().map(|p| p.mesh.as_str()).collect();
         meshes.dedup();
@@ -230,14 +230,14 @@ pub fn when_to_use(data: &ChartData) -> String {
             let good = own
                 .iter()
                 .filter(|p| p.failure.is_none() && p.error_mm.is_some_and(|e| e <= asked));
-            let fastest = good.min_by(|a, b| a.wall_ms.total_cmp(&b.wall_ms));
+            let fastest = good.min_by(|a, b| a.cost().total_cmp(&b.cost()));
             let _ = match fastest {
                 Some(p) => write!(
                     text,
                     " {}, step {} ms: {} ms/s |",
                     p.method,
                     significant(1e3 * p.step, 2),
-                    significant(p.wall_ms, 3)
+                    significant(p.cost(), 3)
                 ),
                 None => write!(text, " none |"),
             };
@@ -245,7 +245,7 @@ pub fn when_to_use(data: &ChartData) -> String {
         let failed = own.iter().filter(|p| p.failure.is_some()).count();
         let _ = writeln!(text, " {failed} of {} |", own.len());
     }
-    text.push_str("\nTo rest (net force 1e-3 of the weight or less):\n\n| scene | vertices | fastest | wall ms | distance to rest, mm |\n|---|---|---|---|---|\n");
+    text.push_str("\nTo rest (net force 1e-3 of the weight or less):\n\n| scene | vertices | fastest | processor ms | wall ms | distance to rest, mm |\n|---|---|---|---|---|---|\n");
     let mut meshes: Vec<&str> = data.rest.iter().map(|p| p.mesh.as_str()).collect();
     meshes.dedup();
     for mesh in meshes {
@@ -259,19 +259,20 @@ pub fn when_to_use(data: &ChartData) -> String {
         let good = own
             .iter()
             .filter(|p| p.failure.is_none() && p.step == asked);
-        let _ = match good.min_by(|a, b| a.wall_ms.total_cmp(&b.wall_ms)) {
+        let _ = match good.min_by(|a, b| a.cost().total_cmp(&b.cost())) {
             Some(p) => writeln!(
                 text,
-                "| {} | {} | {} | {} | {} |",
+                "| {} | {} | {} | {} | {} | {} |",
                 p.scene,
                 p.vertices,
                 p.method,
+                significant(p.cost(), 3),
                 significant(p.wall_ms, 3),
                 p.error_mm.map_or("-".to_owned(), |e| significant(e, 2))
             ),
             None => writeln!(
                 text,
-                "| {} | {} | none | - | - |",
+                "| {} | {} | none | - | - | - |",
                 own[0].scene, own[0].vertices
             ),
         };

@@ -14,7 +14,7 @@ impl Clock {
     pub fn start() -> Self {
         Self {
             wall: Instant::now(),
-            cpu: cpu_seconds(),
+            cpu: processor_seconds(),
         }
     }
 
@@ -23,8 +23,28 @@ impl Clock {
         self.wall.elapsed().as_secs_f64()
     }
 
+    /// Processor time so far, or wall time where the system does not tell it [s].
+    pub fn spent(&self) -> f64 {
+        self.cpu().unwrap_or_else(|| self.wall())
+    }
+
     /// Processor time of the whole process so far [s], where the system tells it.
     pub fn cpu(&self) -> Option<f64> {
-        Some(cpu_seconds()? - self.cpu?)
+        Some((processor_seconds()? - self.cpu?).max(0.0))
     }
+}
+
+/// Processor time of the threads of this process [s]: to the microsecond where the system tells
+/// it of each thread (Linux: the first field of `/proc/self/task/N/schedstat`, in nanoseconds).
+fn processor_seconds() -> Option<f64> {
+    let exact = || -> Option<f64> {
+        let mut sum = 0.0;
+        for task in std::fs::read_dir("/proc/self/task").ok()? {
+            let text = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
+            let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
+            sum += 1e-9 * nanoseconds;
+        }
+        Some(sum)
+    };
+    exact().or_else(cpu_seconds)
 }

@@ -25,7 +25,7 @@ fn map(method: &'static str, limit: Option<f64>, cells: &[Cell]) -> Result<Drawi
             name: name.to_owned(),
             colour,
             marker: Marker::Square,
-            size: 17.0,
+            size: 24.0,
             joined: Joined::Not,
             points: own.map(|c| [c.stiffness, c.step]).collect(),
         });
