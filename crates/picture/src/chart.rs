@@ -202,7 +202,7 @@ impl Laid {
     fn ticks(&self) -> Vec<f64> {
         if self.logarithmic {
             let span = self.to - self.from;
-            let factors: &[f64] = if span < 1.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+            let factors: &[f64] = if span < 2.2 { &[1.0, 2.0, 5.0] } else { &[1.0] };
             let stride = (span / 8.0).ceil().max(1.0) as i32;
             let decades = self.from.floor() as i32..=self.to.ceil() as i32;
             return decades
