@@ -172,7 +172,8 @@ pub struct Make {
     /// size, or the body's own measurements where --body is given.
     #[arg(long, value_name = "NAME")]
     pub size: Option<String>,
-    /// Cut every panel from this fabric: one of the pattern's, jersey or poplin. Default: each
+    /// Cut every panel from this fabric: one of the pattern's, or of the library: silk,
+    /// chiffon, poplin, cotton, jersey, wool, denim, leather, felt, flag-nylon. Default: each
     /// panel's own.
     #[arg(long, value_name = "NAME")]
     pub fabric: Option<String>,

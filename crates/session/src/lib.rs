@@ -13,6 +13,7 @@ mod drape;
 mod error;
 mod event;
 mod export;
+mod fabrics;
 mod hands;
 mod history;
 mod journal;
