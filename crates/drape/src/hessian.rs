@@ -141,3 +141,160 @@ impl Direct {
         x.iter().all(|x| x.iter().all(|x| x.is_finite()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::elastic::ElasticLaw;
+    use crate::laws::membrane::Curvature;
+    use crate::{Cloth, Elastic, Inertia, Material, State, Workspace};
+    use toile_geometry::{TriangleMesh, Vec2};
+
+    /// Two sheets of 20 x 20 squares above each other, the second of another material.
+    fn sheets(second: Material) -> Cloth {
+        let mut cloth = Cloth {
+            materials: vec![Material::default(), second],
+            ..Cloth::default()
+        };
+        for sheet in 0..2u32 {
+            let at = |i: u32, j: u32| sheet * 441 + j * 21 + i;
+            let flat = |[i, j]: [u32; 2]| Vec2::new(0.015 * f64::from(i), 0.015 * f64::from(j));
+            for v in 0..441 {
+                let p = flat([v % 21, v / 21]);
+                let wave = 0.004 * (40.0 * p.x).sin() * (30.0 * p.y).cos();
+                let place = Vec3::new(p.x, p.y, 0.02 * f64::from(sheet) + wave);
+                cloth.positions.push(place);
+            }
+            for (i, j) in (0..400).map(|q| (q % 20, q / 20)) {
+                let [a, b, c, d] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
+                for corners in [[a, b, c], [a, c, d]] {
+                    cloth.triangles.push(corners.map(|[i, j]| at(i, j)));
+                    cloth.rest.push(corners.map(flat));
+                    cloth.material.push(sheet as u16);
+                }
+            }
+        }
+        cloth
+    }
+
+    /// Norm of A x - b, b the weights, over that of b; and over what rounding x alone leaves,
+    /// |A| |x| + |b|, with pseudo steps of `step` seconds.
+    fn residuals(model: &Model, places: &[Vec3], step: f64) -> [f64; 2] {
+        let state = State::at_rest(model, places.to_vec());
+        let mut workspace = Workspace::default();
+        workspace.net_force(model, &state);
+        let weight: Vec<f64> = model.mass.iter().map(|m| m / (step * step)).collect();
+        let inertia = Inertia {
+            weight: &weight,
+            target: places,
+        };
+        workspace.fill_hessian(model, places, &inertia, Curvature::Convex);
+        let hessian = workspace.hessian(model);
+        let free = |v: usize, p: Vec3| if model.pinned[v] { Vec3::zeros() } else { p };
+        let b: Vec<Vec3> = (0..places.len())
+            .map(|v| free(v, model.gravity * model.mass[v]))
+            .collect();
+        let mut x = vec![Vec3::zeros(); b.len()];
+        let mut direct = Direct::new(model, &model.layout);
+        assert!(direct.fits(model));
+        assert!(direct.solve(&hessian, &b, &mut x));
+        let (mut off, mut whole, mut found, mut largest) = (0.0, 0.0, 0.0, 0.0f64);
+        for v in 0..b.len() {
+            found += x[v].norm_squared();
+            largest = largest.max(hessian.diagonal(v).norm());
+            assert!(!model.pinned[v] || x[v] == Vec3::zeros());
+            off += free(v, hessian.row_times(v, &x) - b[v]).norm_squared();
+            whole += b[v].norm_squared();
+        }
+        let [off, whole, found]: [f64; 3] = [off, whole, found].map(f64::sqrt);
+        [off / whole, off / (largest * found + whole)]
+    }
+
+    fn check(model: &Model, places: &[Vec3], step: f64) {
+        let [relative, rounding] = residuals(model, places, step);
+        assert!(rounding < 1e-14, "{step} s: {rounding:e}");
+        assert!(relative < 1e-3, "{step} s: {relative:e}");
+    }
+
+    fn stiff(by: f64) -> Material {
+        let soft = Material::default();
+        Material {
+            stretch: soft.stretch.map(|k| k * by),
+            shear: soft.shear * by,
+            bend: soft.bend.map(|k| k * by),
+            ..soft
+        }
+    }
+
+    #[test]
+    fn ill_conditioned_systems_are_solved() {
+        let cloth = sheets(stiff(1e4));
+        let mut model = Model::new("sheets", &cloth).unwrap();
+        // Pseudo steps from the first to the longest of the way to rest; sheets that hang by one
+        // corner, and sheets that float, held by inertia alone.
+        for (pins, step) in [
+            (vec![], 0.02),
+            (vec![], 1.0),
+            (vec![0, 441], 0.02),
+            (vec![0, 441], 100.0),
+        ] {
+            model.pinned.fill(false);
+            pins.iter().for_each(|&v: &usize| model.pinned[v] = true);
+            check(&model, &cloth.positions, step);
+        }
+    }
+
+    #[test]
+    fn crushed_and_stretched_cloth_is_solved() {
+        let cloth = sheets(stiff(1.0));
+        let model = Model::new("sheets", &cloth).unwrap();
+        for scale in [0.0, 0.1, 4.0] {
+            let places: Vec<Vec3> = cloth.positions.iter().map(|p| p * scale).collect();
+            check(&model, &places, 0.02);
+        }
+    }
+
+    #[test]
+    fn sewn_sheets_are_solved_and_other_seams_need_another_structure() {
+        let cloth = sheets(stiff(1.0));
+        let mut model = Model::new("sheets", &cloth).unwrap();
+        let unsewn = Direct::new(&model, &model.layout);
+        let law = ElasticLaw {
+            stiffness: 2e3,
+            largest_force: 1.0,
+        };
+        let seam = |v: u32| Elastic {
+            from: v,
+            to: ElasticEnd::Vertex(v + 441),
+            law,
+        };
+        let hold = Elastic {
+            from: 440,
+            to: ElasticEnd::Point(Vec3::zeros()),
+            law,
+        };
+        model.set_elastics((0..21).map(seam).chain([hold]).collect());
+        assert!(!unsewn.fits(&model));
+        check(&model, &cloth.positions, 1.0 / 60.0);
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_positive_is_refused() {
+        let mesh = TriangleMesh {
+            positions: vec![Vec3::zeros(), Vec3::x(), Vec3::y()],
+            triangles: vec![[0, 1, 2]],
+        };
+        let cloth = Cloth::from_mesh("triangle", &mesh, Material::default()).unwrap();
+        let model = Model::new("triangle", &cloth).unwrap();
+        let blocks = vec![Matrix3::identity() * -1.0; model.pattern.block_count()];
+        let hessian = Hessian {
+            model: &model,
+            bending: &model.bending,
+            blocks: &blocks,
+            secants: &[],
+        };
+        let mut x = [Vec3::zeros(); 3];
+        let mut direct = Direct::new(&model, &model.layout);
+        assert!(!direct.solve(&hessian, &[Vec3::x(); 3], &mut x));
+    }
+}

@@ -332,7 +332,8 @@ impl Workspace {
             .gather(&self.elements, &self.diagonal, &mut self.blocks);
     }
 
-    fn hessian<'a>(&'a self, model: &'a Model) -> Hessian<'a> {
+    /// The Hessian filled last.
+    pub(crate) fn hessian<'a>(&'a self, model: &'a Model) -> Hessian<'a> {
         Hessian {
             model,
             bending: self.terms.bending(model),

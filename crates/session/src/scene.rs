@@ -266,15 +266,7 @@ impl Builder<'_> {
         }
         let kind = if deformable {
             let material = match (&object.material, &cloth) {
-                (Some(material), _) => {
-                    let place = format!("{place}.material");
-                    material
-                        .material(&place)
-                        .map_err(|error| SessionError::Format {
-                            path: self.path.to_owned(),
-                            error,
-                        })?
-                }
+                (Some(material), _) => material.material(),
                 (None, Some(cloth)) => cloth.materials.first().cloned().unwrap_or_default(),
                 (None, None) => Material::default(),
             };
