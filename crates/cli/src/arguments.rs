@@ -55,6 +55,63 @@ pub enum Task {
     ///
     /// Exit status 1 if any law is not met.
     Validate(Validate),
+    /// Chart speed against accuracy: every method at several steps on standard scenes.
+    ///
+    /// Writes motion.csv and rest.csv (times in ms, errors in mm), an SVG for each scene and mesh,
+    /// and locking.svg (error by resolution).
+    Chart(ChartTask),
+    /// Map where each method is stable, by step (s) and stiffness (N/m), with the theoretical
+    /// limits, and meet the hard cases: stability.csv, stability.svg, limits.csv, hard-cases.csv.
+    ///
+    /// Exit status 1 if a method goes on with an impossible state.
+    Stability(StabilityTask),
+    /// Time benchmarks on frozen scenes, each with one thread and with two (s).
+    Bench(BenchTask),
+}
+
+/// `toile chart`.
+#[derive(Debug, Args)]
+pub struct ChartTask {
+    /// Scenes: cantilever, hang, sphere, tube, shirt. Default: all.
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<String>,
+    /// Two steps on coarse meshes: under a minute.
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder to write into; it is made if need be.
+    #[arg(long, value_name = "DIR", default_value = "out/chart")]
+    pub out: PathBuf,
+    /// Also put the table of which method to use into this document, between its markers.
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub into: Option<PathBuf>,
+    /// Make the standard scenes anew in this folder instead.
+    #[arg(long, value_name = "DIR", hide = true)]
+    pub freeze: Option<PathBuf>,
+    /// Compute where the motions converge to, into this folder, instead.
+    #[arg(long, value_name = "DIR", hide = true)]
+    pub reference: Option<PathBuf>,
+}
+
+/// `toile stability`.
+#[derive(Debug, Args)]
+pub struct StabilityTask {
+    /// Folder to write into; it is made if need be.
+    #[arg(long, value_name = "DIR", default_value = "out/stability")]
+    pub out: PathBuf,
+    /// Also put the tables into this document, between its markers.
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub into: Option<PathBuf>,
+}
+
+/// `toile bench`.
+#[derive(Debug, Args)]
+pub struct BenchTask {
+    /// Benchmarks; `--list` names them. Default: those that take seconds.
+    #[arg(value_name = "NAME")]
+    pub names: Vec<String>,
+    /// List the benchmarks instead.
+    #[arg(long)]
+    pub list: bool,
 }
 
 /// `toile validate`.
@@ -115,7 +172,8 @@ pub struct Make {
     /// size, or the body's own measurements where --body is given.
     #[arg(long, value_name = "NAME")]
     pub size: Option<String>,
-    /// Cut every panel from this fabric: one of the pattern's, jersey or poplin. Default: each
+    /// Cut every panel from this fabric: one of the pattern's, or of the library: silk,
+    /// chiffon, poplin, cotton, jersey, wool, denim, leather, felt, flag-nylon. Default: each
     /// panel's own.
     #[arg(long, value_name = "NAME")]
     pub fabric: Option<String>,

@@ -52,5 +52,8 @@ fn run(task: Task, output: &Output) -> Result<serde_json::Value, Failure> {
         Task::Body(body) => tool_commands::body(&body, output),
         Task::Run(run) => tool_commands::run(&run, output),
         Task::Validate(validate) => lab_commands::validate(&validate, output),
+        Task::Chart(chart) => lab_commands::chart(&chart, output),
+        Task::Stability(stability) => lab_commands::stability(&stability, output),
+        Task::Bench(bench) => lab_commands::bench(&bench, output),
     }
 }

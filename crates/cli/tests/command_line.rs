@@ -56,7 +56,10 @@ fn bad_input_exits_with_2_and_says_what_to_do() {
         (&["make", "gone.json"], &["gone.json", "spelling"]),
         (&["make", "broken.json"], &["broken.json", "line 1"]),
         (&["make", shirt, "--size", "XXL"], &["XXL", "S, M, L, XL"]),
-        (&["make", shirt, "--fabric", "silk"], &["silk", "jersey"]),
+        (
+            &["make", shirt, "--fabric", "tweed"],
+            &["tweed", "jersey, leather"],
+        ),
         (
             &["make", shirt, "--body", "nobody"],
             &["error: --body", "no file nobody", "woman, man, mean"],

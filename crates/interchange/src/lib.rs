@@ -7,6 +7,7 @@
 
 mod atomic;
 mod error;
+mod fabric_test;
 mod garmentcode;
 mod gltf;
 mod marker_json;
@@ -20,6 +21,7 @@ mod scene;
 
 pub use atomic::{write_all_atomically, write_atomically};
 pub use error::{FileError, FormatError, read_text};
+pub use fabric_test::{FabricTest, read_fabric_test};
 pub use garmentcode::{
     GarmentCodeReading, GarmentCodeWriting, read_garmentcode, write_garmentcode,
 };
@@ -35,5 +37,6 @@ pub use native::{read_pattern, write_pattern};
 pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;
 pub use scene::{
-    ElasticFile, EndFile, MaterialFile, ObjectFile, SceneFile, TransformFile, read_scene,
+    AirFile, DampingFile, ElasticFile, EndFile, MaterialFile, ObjectFile, SceneFile, TransformFile,
+    read_scene,
 };

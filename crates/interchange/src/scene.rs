@@ -7,7 +7,10 @@ use crate::FormatError;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use toile_drape::{Air, ContactSettings, Damping, Material, MethodKind, MethodSettings, Scene};
+use toile_drape::{
+    Air, Compression, ContactSettings, Damping, LIBRARY, LibraryFabric, Material, MethodKind,
+    MethodSettings, Scene,
+};
 use toile_geometry::Vec3;
 
 /// A scene as written.
@@ -219,9 +222,13 @@ impl TransformFile {
     }
 }
 
-/// A cloth in a scene; what is left out is that of [`Material::default`].
+/// A cloth in a scene; what is left out is that of the fabric named, else of
+/// [`Material::default`].
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct MaterialFile {
+    /// Name of a fabric of the library.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fabric: Option<String>,
     /// Mass per area [kg/m2].
     pub density: Option<f64>,
     /// Thickness [m].
@@ -232,8 +239,35 @@ pub struct MaterialFile {
     pub shear: Option<f64>,
     /// Poisson ratio.
     pub poisson: Option<f64>,
+    /// Hardening along warp and weft.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hardening: Option<[f64; 2]>,
+    /// Stretch that warp and weft hardly exceed, as a share; nothing for none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strain_limit: Option<[Option<f64>; 2]>,
+    /// `full` or `tension-field`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compression: Option<String>,
     /// Bending stiffness along warp, weft and bias [N m].
     pub bend: Option<[f64; 3]>,
+    /// Poisson ratio in bending.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bend_poisson: Option<f64>,
+    /// Viscosity of stretch [N s/m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub viscosity: Option<f64>,
+    /// Viscosity of bending [N m s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bend_viscosity: Option<f64>,
+    /// Viscosity in proportion to stiffness [s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness_damping: Option<f64>,
+    /// Share of stretch and of folds that is kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kept: Option<[f64; 2]>,
+    /// Time in which it settles [s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relaxation_time: Option<f64>,
     /// Friction coefficient.
     pub friction: Option<f64>,
     #[serde(flatten)]
@@ -241,19 +275,61 @@ pub struct MaterialFile {
 }
 
 impl MaterialFile {
-    /// The material, with defaults where nothing is written.
-    pub fn material(&self) -> Material {
-        let usual = Material::default();
-        Material {
+    /// The material, with the fabric's figures or defaults where nothing is written.
+    ///
+    /// # Errors
+    /// A fabric or a kind of compression that is not known; `place` says where it stands.
+    pub fn material(&self, place: &str) -> Result<Material, FormatError> {
+        let usual = match &self.fabric {
+            None => Material::default(),
+            Some(name) => LibraryFabric::named(name)
+                .map(LibraryFabric::material)
+                .ok_or_else(|| {
+                    let known: Vec<_> = LIBRARY.iter().map(|fabric| fabric.name).collect();
+                    FormatError::new(
+                        format!("{place}.fabric"),
+                        format!("\"{name}\" is not a fabric of the library"),
+                        format!("write one of {}", known.join(", ")),
+                    )
+                })?,
+        };
+        let compression = match self.compression.as_deref() {
+            None => usual.compression,
+            Some("full") => Compression::Full,
+            Some("tension-field") => Compression::TensionField,
+            Some(other) => {
+                return Err(FormatError::new(
+                    format!("{place}.compression"),
+                    format!("\"{other}\" is not known"),
+                    "write \"full\" or \"tension-field\"".to_owned(),
+                ));
+            }
+        };
+        let limit = |limit: [Option<f64>; 2]| limit.map(|l| l.unwrap_or(f64::INFINITY));
+        // Stretch given anew makes the fabric's curve its own no longer.
+        let hardening = if self.stretch.is_some() {
+            [0.0; 2]
+        } else {
+            usual.hardening
+        };
+        Ok(Material {
             density: self.density.unwrap_or(usual.density),
             thickness: self.thickness.unwrap_or(usual.thickness),
             stretch: self.stretch.unwrap_or(usual.stretch),
             shear: self.shear.unwrap_or(usual.shear),
             poisson: self.poisson.unwrap_or(usual.poisson),
+            hardening: self.hardening.unwrap_or(hardening),
+            strain_limit: self.strain_limit.map_or(usual.strain_limit, limit),
+            compression,
             bend: self.bend.unwrap_or(usual.bend),
+            bend_poisson: self.bend_poisson.unwrap_or(usual.bend_poisson),
+            viscosity: self.viscosity.unwrap_or(usual.viscosity),
+            bend_viscosity: self.bend_viscosity.unwrap_or(usual.bend_viscosity),
+            stiffness_damping: self.stiffness_damping.unwrap_or(usual.stiffness_damping),
+            kept: self.kept.unwrap_or(usual.kept),
+            relaxation_time: self.relaxation_time.unwrap_or(usual.relaxation_time),
             friction: self.friction.unwrap_or(usual.friction),
-            ..usual
-        }
+        })
     }
 }
 
@@ -414,13 +490,42 @@ mod tests {
             MethodKind::ImplicitEuler
         );
         let flag = &file.objects[0];
-        assert!((flag.material.as_ref().expect("given").material().density - 0.1).abs() < 1e-15);
+        let material = flag.material.as_ref().expect("given");
+        let density = material.material("flag").expect("known").density;
+        assert!((density - 0.1).abs() < 1e-15);
         assert_eq!(
             flag.transform.apply(Vec3::new(1.0, 1.0, 1.0)),
             Vec3::new(2.0, 3.0, 2.0)
         );
         assert!(matches!(&file.elastics[0].from, EndFile::Vertex(name, 2) if name == "flag"));
         assert!(matches!(file.elastics[0].to, EndFile::Point([_, 1.0, _])));
+    }
+
+    #[test]
+    fn materials_name_fabrics_and_air_and_damping_are_read() {
+        let text = r#"{ "air": { "wind": [3, 0, 0] }, "damping": { "mass": 0.5, "stiffness": 1e-4 },
+            "objects": [ { "name": "a", "kind": "deformable", "mesh": "a.obj", "material":
+                { "fabric": "denim", "density": 0.5, "strain_limit": [0.05, null],
+                  "compression": "tension-field", "kept": [0, 0.2] } } ] }"#;
+        let (file, unknown) = read_scene(text).expect("good");
+        assert!(unknown.is_empty(), "{unknown:?}");
+        let air = file.air.air();
+        assert!((air.density - Air::SEA_LEVEL).abs() < 1e-12 && air.wind.x == 3.0);
+        assert!((file.damping.damping().stiffness - 1e-4).abs() < 1e-15);
+        let written = file.objects[0].material.as_ref().expect("given");
+        let material = written.material("a").expect("known");
+        let denim = LibraryFabric::named("denim").expect("known").material();
+        assert_eq!(material.bend, denim.bend);
+        assert_eq!(material.hardening, denim.hardening);
+        assert!((material.density - 0.5).abs() < 1e-15);
+        assert_eq!(material.strain_limit, [0.05, f64::INFINITY]);
+        assert_eq!(material.compression, Compression::TensionField);
+        assert!(material.check("a").is_ok());
+        for wrong in [r#"{"fabric":"gold"}"#, r#"{"compression":"half"}"#] {
+            let file: MaterialFile = serde_json::from_str(wrong).expect("readable");
+            let error = file.material("objects[0].material").expect_err("unknown");
+            assert!(error.place.starts_with("objects[0].material."), "{error}");
+        }
     }
 
     #[test]

@@ -28,6 +28,23 @@ pub enum LabError {
         /// Steps taken.
         steps: usize,
     },
+    /// A file of the laboratory itself is not what it must be.
+    #[error("{file} of the laboratory is damaged: {what}; build Toile again")]
+    Damaged {
+        /// Its name.
+        file: String,
+        /// What is wrong.
+        what: String,
+    },
+    /// Something could not be read, made or written.
+    #[error("{what}")]
+    Files {
+        /// What went wrong, with place and remedy.
+        what: String,
+    },
+    /// A picture could not be drawn.
+    #[error(transparent)]
+    Picture(#[from] toile_picture::PictureError),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,

@@ -2,19 +2,38 @@
 //! It works through the public interfaces only, and tries every method there is.
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::print_stdout))]
 
+mod bench;
+mod chart;
+mod chart_report;
 mod check;
+mod clock;
 mod elastica;
 mod error;
 mod flat;
+mod freeze;
+mod hard;
 mod laws;
 mod outline;
 mod root;
+mod scenes;
 mod settle;
+mod stability;
+mod stability_report;
 
+pub use bench::{Timed, bench, bench_names, bench_table};
+pub use chart::{Agreement, ChartData, ChartPlan, Point, chart};
+pub use chart_report::{
+    chart_files, locking_files, when_to_use, with_section, write_files, write_section,
+};
 pub use check::{Cases, Check, table};
 pub use elastica::{Elastica, heavy_elastica};
 pub use error::LabError;
 pub use flat::{Flat, MeshKind, disc, rectangle};
+pub use freeze::{freeze, reference};
+pub use hard::{HardRun, Outcome, hard_cases};
 pub use laws::{Drape, LAWS, Law, Resolved, cusick, locking, validate};
 pub use outline::{fold_count, shadow, shadow_area};
+pub use scenes::{Card, ClothCard, Reference, SCENES, card, subdivided};
 pub use settle::{in_time, to_rest};
+pub use stability::{Cell, Limit, Verdict, limits, stability_map};
+pub use stability_report::{stability_files, stability_table};

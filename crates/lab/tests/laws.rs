@@ -9,16 +9,8 @@ fn checks(names: &[&str]) -> Vec<Check> {
 }
 
 #[test]
-fn the_quick_laws_hold_for_every_method() {
-    let quick = [
-        "patch",
-        "rigid",
-        "picture-frame",
-        "uniaxial",
-        "flight",
-        "incline",
-        "fall",
-    ];
+fn the_quick_laws_hold() {
+    let quick = ["patch", "rigid", "picture-frame", "uniaxial", "incline"];
     let checks = checks(&quick);
     for name in quick {
         assert!(checks.iter().any(|check| check.law == name), "{name}");

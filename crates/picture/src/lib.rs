@@ -5,9 +5,11 @@
 
 mod backdrop;
 mod camera;
+mod chart;
 mod colour;
 mod colour_map;
 mod depth_map;
+mod drawing;
 mod error;
 mod floor;
 mod font;
@@ -25,8 +27,10 @@ mod text;
 
 pub use backdrop::Backdrop;
 pub use camera::{Camera, Projection, View};
+pub use chart::{Axis, Chart, Joined, Marker, Series, palette};
 pub use colour::Rgb;
 pub use colour_map::{ColourMap, ColourScale};
+pub use drawing::Drawing;
 pub use error::PictureError;
 pub use image::Image;
 pub use legend::Legend;

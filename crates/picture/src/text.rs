@@ -51,21 +51,36 @@ impl Image {
     /// Writes a line of ASCII text with its baseline through a point in pixels; other characters
     /// show as question marks.
     pub fn write(&mut self, at: [f64; 2], text: &str, style: &TextStyle) {
+        self.write_turned(at, text, style, [[1.0, 0.0], [0.0, 1.0]]);
+    }
+
+    /// The same, turned a quarter to the left: words run upwards.
+    pub fn write_upright(&mut self, at: [f64; 2], text: &str, style: &TextStyle) {
+        self.write_turned(at, text, style, [[0.0, 1.0], [-1.0, 0.0]]);
+    }
+
+    /// Writes along the first row of `turn` (x and y parts of a pixel to the right and down).
+    fn write_turned(&mut self, at: [f64; 2], text: &str, style: &TextStyle, turn: [[f64; 2]; 2]) {
         let unit = style.height / CAPITAL;
         let width = text_width(text, style.height);
-        let mut x = at[0]
-            - match style.align {
-                Align::Left => 0.0,
-                Align::Middle => 0.5 * width,
-                Align::Right => width,
-            };
+        let mut x = match style.align {
+            Align::Left => 0.0,
+            Align::Middle => -0.5 * width,
+            Align::Right => -width,
+        };
         let mut ink = Ink::default();
         for character in text.chars() {
             let (strokes, advance) = glyph(character);
             for stroke in strokes {
                 let points: Vec<[f64; 2]> = stroke
                     .iter()
-                    .map(|p| [x + unit * p[0], at[1] - unit * p[1]])
+                    .map(|p| [x + unit * p[0], -unit * p[1]])
+                    .map(|[along, down]| {
+                        [
+                            at[0] + turn[0][0] * along + turn[0][1] * down,
+                            at[1] + turn[1][0] * along + turn[1][1] * down,
+                        ]
+                    })
                     .collect();
                 let dot = if points.len() == 1 { 1.3 } else { 1.0 };
                 ink.path(&points, 0.5 * dot * style.weight * style.height);

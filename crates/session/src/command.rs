@@ -49,7 +49,7 @@ pub enum Command {
     },
     /// Cuts every panel from one fabric, or each from its own.
     SetFabric {
-        /// Name of a fabric of the pattern, or `jersey` or `poplin`.
+        /// Name of a fabric of the pattern, or one of the library.
         fabric: Option<String>,
     },
     /// Chooses the width of the fabric, or the fabric's own.

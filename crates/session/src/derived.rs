@@ -2,6 +2,7 @@
 
 use crate::choice::BodyChoice;
 use crate::drape::{Drape, drape};
+use crate::fabrics::fabric_named;
 use crate::laying::{Laying, lay};
 use crate::setup::{self, GarmentJob};
 use crate::{Project, SessionError, StampedInput, Watcher};
@@ -11,7 +12,7 @@ use toile_body::{Figure, Mannequin};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
 use toile_measure::Measurements;
-use toile_pattern::{Diagnostic, Draft, Fabric, FabricId};
+use toile_pattern::{Diagnostic, Draft};
 
 /// A mannequin and what it was made from.
 #[derive(Clone)]
@@ -196,16 +197,5 @@ fn body_error(project: &Project, error: toile_body::BodyError) -> SessionError {
             error: FormatError::new("measurements", error.to_string(), "correct the file"),
         },
         _ => SessionError::Body(error),
-    }
-}
-
-/// A fabric by name: one of the pattern's, else `jersey` or `poplin`.
-pub(crate) fn fabric_named(project: &Project, name: &str) -> Option<Fabric> {
-    let own = project.pattern.fabrics.iter().find(|f| f.name == name);
-    match (own, name) {
-        (Some(own), _) => Some((**own).clone()),
-        (None, "jersey") => Some(Fabric::jersey(FabricId(0))),
-        (None, "poplin") => Some(Fabric::poplin(FabricId(0))),
-        (None, _) => None,
     }
 }

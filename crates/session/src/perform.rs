@@ -1,7 +1,7 @@
 //! What each command does.
 
-use crate::derived::fabric_named;
 use crate::export::{files, portable};
+use crate::fabrics::{fabric_named, fabric_names};
 use crate::history::History;
 use crate::open::{open_measurements, open_pattern};
 use crate::watcher::{Part, tell};
@@ -173,10 +173,7 @@ impl Session {
         if let Some(name) = &fabric
             && fabric_named(&self.project, name).is_none()
         {
-            let own = self.project.pattern.fabrics.iter().map(|f| &*f.name);
-            let mut names: Vec<&str> = own.chain(["jersey", "poplin"]).collect();
-            names.sort_unstable();
-            names.dedup();
+            let names = fabric_names(&self.project);
             return Err(SessionError::Unknown {
                 kind: "fabric",
                 name: name.clone(),

@@ -266,7 +266,15 @@ impl Builder<'_> {
         }
         let kind = if deformable {
             let material = match (&object.material, &cloth) {
-                (Some(material), _) => material.material(),
+                (Some(material), _) => {
+                    let place = format!("{place}.material");
+                    material
+                        .material(&place)
+                        .map_err(|error| SessionError::Format {
+                            path: self.path.to_owned(),
+                            error,
+                        })?
+                }
                 (None, Some(cloth)) => cloth.materials.first().cloned().unwrap_or_default(),
                 (None, None) => Material::default(),
             };

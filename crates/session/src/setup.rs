@@ -5,7 +5,8 @@ use std::sync::Arc;
 use toile_assembly::{Garment, Levels, Limb, Wearer};
 use toile_body::{Mannequin, Part};
 use toile_drape::{
-    Cloth, ContactSettings, GarmentLevel, GarmentSetup, Material, RestSettings, SewSettings,
+    Cloth, ContactSettings, GarmentLevel, GarmentSetup, LibraryFabric, Material, RestSettings,
+    SewSettings,
 };
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 use toile_pattern::{BodyPart, Draft, Fabric, PieceId};
@@ -85,6 +86,11 @@ fn level(draft: &Draft, garment: &Garment) -> GarmentLevel {
 }
 
 fn material(fabric: &Fabric) -> Material {
+    // A library fabric as it stands keeps the curve of its stretch, which patterns do not hold.
+    let library = LibraryFabric::named(&fabric.name).map(LibraryFabric::material);
+    let hardening = library
+        .filter(|material| material.stretch == fabric.stretch)
+        .map_or([0.0; 2], |material| material.hardening);
     Material {
         density: fabric.density,
         thickness: fabric.thickness,
@@ -93,6 +99,7 @@ fn material(fabric: &Fabric) -> Material {
         poisson: fabric.poisson,
         bend: fabric.bend,
         friction: fabric.friction,
+        hardening,
         ..Material::default()
     }
 }

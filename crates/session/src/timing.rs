@@ -56,7 +56,7 @@ impl Timing {
 
 /// Processor time of this process so far [s], where the system tells it (Linux: fields 14 and 15 of
 /// `/proc/self/stat`, in hundredths of a second).
-fn cpu_seconds() -> Option<f64> {
+pub fn cpu_seconds() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/stat").ok()?;
     // The second field is a name in brackets that may hold spaces.
     let after_name = text.rsplit_once(')')?.1;

@@ -42,9 +42,9 @@ pub const NO_SAMPLE: u32 = u32::MAX;
 /// Fastest that a contact throws cloth out that it found inside a surface [m/s].
 const OUTWARD_SPEED: f32 = 1.0;
 
-/// How far a plane holds at the least, as a share of the offset: after a millimetre on a limb of
-/// 30 mm radius the surface has left it by 0.02 mm.
-const PLANE_REACH: f64 = 0.25;
+/// How far a plane holds at the least, as a share of the offset: after two millimetres on a limb of
+/// 30 mm radius the surface has left it by 0.07 mm.
+const PLANE_REACH: f64 = 0.5;
 
 /// Planes are kept from this many offsets away.
 const REACH_IN_OFFSETS: f64 = 2.0;

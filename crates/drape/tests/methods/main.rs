@@ -1,6 +1,5 @@
 //! Every method against closed forms, its own limits and the promises all methods make.
 
-mod contact;
 mod explicit;
 mod fixtures;
 mod hard;

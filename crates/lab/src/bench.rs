@@ -1,0 +1,281 @@
+//! Timed benchmarks on frozen scenes.
+
+use crate::clock::Clock;
+use crate::scenes::card;
+use crate::{LabError, subdivided};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use toile_drape::{
+    GarmentLevel, GarmentRun, GarmentSetup, MethodKind, MethodSettings, Model, RestSettings,
+    SewSettings, Stage, State,
+};
+use toile_session::Watcher;
+
+/// One benchmark at one number of threads.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Timed {
+    /// Its name.
+    pub name: String,
+    /// Threads it was given.
+    pub threads: usize,
+    /// Vertices of the cloth.
+    pub vertices: usize,
+    /// Wall time [s].
+    pub wall_s: f64,
+    /// Processor time of the process [s].
+    pub cpu_s: Option<f64>,
+    /// What else was counted: steps, residual, times of stages [s].
+    pub counted: BTreeMap<String, f64>,
+    /// Why it did not end.
+    pub failure: Option<String>,
+}
+
+/// What a benchmark does.
+#[derive(Clone, Copy)]
+enum Work {
+    /// Ten frames of 1/60 s of the hang scene by a method, the mesh divided so many times.
+    Frames(MethodKind, usize),
+    /// The shirt to rest, its mesh divided so many times, to a net force over weight.
+    Rest(usize, f64),
+}
+
+/// Frames of a benchmark of motion.
+const FRAMES: usize = 10;
+
+/// The benchmarks by name: those of motion for every method there is.
+fn all() -> Vec<(String, Work)> {
+    let mut list: Vec<(String, Work)> = MethodKind::ALL
+        .into_iter()
+        .filter(|(_, kind)| !kind.is_equilibrium())
+        .map(|(name, kind)| (format!("frame-1k-{name}"), Work::Frames(kind, 0)))
+        .collect();
+    list.push((
+        "frame-13k-implicit-euler".to_owned(),
+        Work::Frames(MethodKind::ImplicitEuler, 2),
+    ));
+    list.push(("rest-shirt-1k".to_owned(), Work::Rest(0, 1e-2)));
+    list.push(("rest-shirt-6k".to_owned(), Work::Rest(1, 1e-3)));
+    list.push(("rest-shirt-22k".to_owned(), Work::Rest(2, 1e-3)));
+    list.push(("rest-shirt-90k".to_owned(), Work::Rest(3, 1e-3)));
+    list
+}
+
+/// Names of the benchmarks.
+pub fn bench_names() -> Vec<String> {
+    all().into_iter().map(|(name, _)| name).collect()
+}
+
+/// Those run when none is named: what takes seconds, not minutes.
+const LONG: [&str; 2] = ["rest-shirt-22k", "rest-shirt-90k"];
+
+/// Threads a benchmark is given in turn.
+const THREADS: [usize; 2] = [1, 2];
+
+/// Steps to rest at the most, and wall time after which it is given up [s].
+const MOST_STEPS: usize = 2000;
+const BUDGET: f64 = 300.0;
+
+/// Runs the benchmarks named, or all that take seconds.
+///
+/// # Errors
+/// An unknown name; the watcher asked to stop.
+pub fn bench(names: &[String], watcher: &mut dyn Watcher) -> Result<Vec<Timed>, LabError> {
+    let list = all();
+    for name in names {
+        if list.iter().all(|(known, _)| known != name) {
+            return Err(LabError::Unknown {
+                what: "benchmark",
+                name: name.clone(),
+                known: bench_names().join(", "),
+            });
+        }
+    }
+    let chosen: Vec<&(String, Work)> = list
+        .iter()
+        .filter(|(name, _)| match names.is_empty() {
+            true => !LONG.contains(&name.as_str()),
+            false => names.contains(name),
+        })
+        .collect();
+    let mut found = Vec::new();
+    for (k, (name, work)) in chosen.iter().enumerate() {
+        for threads in THREADS {
+            let share = k as f64 / chosen.len() as f64;
+            let detail = format!("{name}, {threads} threads");
+            if watcher.progress("bench", share, &detail) == ControlFlow::Break(()) {
+                return Err(LabError::Cancelled);
+            }
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .map_err(|error| LabError::Files {
+                    what: format!("cannot start {threads} threads: {error}"),
+                })?;
+            found.push(pool.install(|| timed(name, *work, threads))?);
+        }
+    }
+    Ok(found)
+}
+
+fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
+    let mut result = Timed {
+        name: name.to_owned(),
+        threads,
+        vertices: 0,
+        wall_s: 0.0,
+        cpu_s: None,
+        counted: BTreeMap::new(),
+        failure: None,
+    };
+    match work {
+        Work::Frames(kind, cuts) => {
+            let card = card("hang")?;
+            let mut cloth = card.cloth(1)?;
+            for _ in 0..cuts {
+                cloth = subdivided(&cloth);
+            }
+            let (model, state) = card.model(&cloth, &card.cloths[1].pins)?;
+            result.vertices = model.vertex_count();
+            frames(&model, state, kind, &mut result);
+        }
+        Work::Rest(cuts, residual) => rest(cuts, residual, &mut result)?,
+    }
+    Ok(result)
+}
+
+fn frames(model: &Model, mut state: State, kind: MethodKind, result: &mut Timed) {
+    let mut method = MethodSettings::from(kind).build();
+    let step = 1.0 / 60.0;
+    // The first frame sizes the workspace.
+    let mut clock = Clock::start();
+    for frame in 0..=FRAMES {
+        if frame == 1 {
+            result
+                .counted
+                .insert("first_frame_s".to_owned(), clock.wall());
+            clock = Clock::start();
+        }
+        if let Err(error) = method.advance(model, &mut state, step) {
+            result.failure = Some(error.to_string());
+            break;
+        }
+    }
+    result.wall_s = clock.wall();
+    result.cpu_s = clock.cpu();
+    let per_frame = 1e3 * result.wall_s / FRAMES as f64;
+    result.counted.insert("ms_per_frame".to_owned(), per_frame);
+}
+
+/// The sewn shirt to rest, from its coarsest mesh to the finest; times of each mesh apart.
+fn rest(cuts: usize, residual: f64, result: &mut Timed) -> Result<(), LabError> {
+    let card = card("shirt")?;
+    let mut cloth = card.cloth(0)?;
+    let (model, _) = card.model(&cloth, &[])?;
+    let mut levels = Vec::new();
+    for cut in 0..=cuts {
+        if cut > 0 {
+            cloth = subdivided(&cloth);
+        }
+        levels.push(GarmentLevel {
+            cloth: cloth.clone(),
+            stitches: Vec::new(),
+        });
+    }
+    result.vertices = cloth.positions.len();
+    let setup = GarmentSetup {
+        levels,
+        counted: Vec::new(),
+        colliders: model.colliders.iter().map(|c| c.surface.clone()).collect(),
+        contact: model.contact,
+        gravity: model.gravity,
+        sew: SewSettings::default(),
+        rest: RestSettings {
+            residual,
+            steps: MOST_STEPS,
+            ..RestSettings::default()
+        },
+    };
+    let clock = Clock::start();
+    let mut run = GarmentRun::new(setup)?;
+    while run.progress().stage != Stage::Finished {
+        let [level, _] = run.level();
+        let before = clock.wall();
+        if let Err(error) = run.advance() {
+            result.failure = Some(error.to_string());
+            break;
+        }
+        let spent = clock.wall() - before;
+        *result
+            .counted
+            .entry(format!("level_{level}_s"))
+            .or_default() += spent;
+        *result
+            .counted
+            .entry(format!("level_{level}_steps"))
+            .or_default() += 1.0;
+        if clock.wall() > BUDGET {
+            result.failure = Some(format!("not done in {BUDGET} s"));
+            break;
+        }
+    }
+    result.wall_s = clock.wall();
+    result.cpu_s = clock.cpu();
+    let reached = run.progress().residual;
+    result.counted.insert("residual".to_owned(), reached);
+    if reached > residual && result.failure.is_none() {
+        result.failure = Some(format!("net force {reached:.1e} of the weight at the end"));
+    }
+    Ok(())
+}
+
+/// The benchmarks as a table for people.
+pub fn bench_table(found: &[Timed]) -> String {
+    use std::fmt::Write;
+    let mut text = format!(
+        "{:<34} {:>7} {:>9} {:>10} {:>10}  counted\n",
+        "benchmark", "threads", "vertices", "wall, s", "cpu, s"
+    );
+    for t in found {
+        let counted: Vec<String> = t
+            .counted
+            .iter()
+            .map(|(name, value)| format!("{name} {}", crate::check::significant(*value, 3)))
+            .collect();
+        let _ = writeln!(
+            text,
+            "{:<34} {:>7} {:>9} {:>10.3} {:>10}  {}{}",
+            t.name,
+            t.threads,
+            t.vertices,
+            t.wall_s,
+            t.cpu_s.map_or("-".to_owned(), |c| format!("{c:.2}")),
+            counted.join(", "),
+            t.failure
+                .as_ref()
+                .map_or(String::new(), |f| format!("; {f}")),
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_benchmark_counts_what_it_does_at_every_number_of_threads() {
+        let found = bench(
+            &["frame-1k-semi-implicit-euler".to_owned()],
+            &mut toile_session::Silent,
+        )
+        .unwrap();
+        assert_eq!(found.len(), THREADS.len());
+        for timed in &found {
+            assert!(timed.failure.is_none() && timed.wall_s > 0.0, "{timed:?}");
+            assert!(timed.counted["ms_per_frame"] > 0.0);
+        }
+        assert!(bench_table(&found).lines().count() == 3);
+        assert!(bench(&["nothing".to_owned()], &mut toile_session::Silent).is_err());
+    }
+}

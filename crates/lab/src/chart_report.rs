@@ -1,0 +1,339 @@
+//! The chart as files: CSV, SVG, and the table of which method to use when.
+
+use crate::chart::{ChartData, Point};
+use crate::check::significant;
+use crate::{LabError, Resolved};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use toile_drape::MethodKind;
+use toile_interchange::{write_all_atomically, write_atomically};
+use toile_picture::{Axis, Chart, Joined, Marker, Series, palette};
+use toile_session::read_text_file;
+
+/// A field of a CSV file.
+pub(crate) fn field(text: &str) -> String {
+    if text.contains([',', '"', '\n']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+fn csv(points: &[Point], step: &str, wall: &str) -> String {
+    let mut text =
+        format!("scene,mesh,vertices,method,{step},{wall},cpu_ms,error_mm,best,failure\n");
+    for p in points {
+        let number = |x: Option<f64>| x.map_or(String::new(), |x| significant(x, 5));
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{:.4e},{},{},{},{},{}",
+            p.scene,
+            p.mesh,
+            p.vertices,
+            p.method,
+            p.step,
+            significant(p.wall_ms, 5),
+            number(p.cpu_ms),
+            number(p.error_mm),
+            if p.best { "yes" } else { "" },
+            field(p.failure.as_deref().unwrap_or("")),
+        );
+    }
+    text
+}
+
+/// A chart of the runs on one mesh.
+fn mesh_chart(points: &[&Point], title: String, note: String, across: &str) -> Chart {
+    let errors = points
+        .iter()
+        .filter(|p| p.failure.is_none())
+        .filter_map(|p| p.error_mm);
+    let highest = errors.clone().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = errors.filter(|e| *e > 0.0).fold(f64::INFINITY, f64::min);
+    // Failures stand in a row of their own above the rest.
+    let row = if highest > 0.0 { 4.0 * highest } else { 1.0 };
+    let floor = (0.5 * lowest).min(0.25 * row).max(1e-9);
+    let mut series = Vec::new();
+    let mut front: Vec<[f64; 2]> = points
+        .iter()
+        .filter(|p| p.best)
+        .filter_map(|p| Some([p.cost(), p.error_mm?]))
+        .collect();
+    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    series.push(Series {
+        name: "front: nothing faster is nearer".to_owned(),
+        colour: [0.86, 0.90, 0.80],
+        marker: Marker::None,
+        size: 0.0,
+        joined: Joined::Band,
+        points: front,
+    });
+    for (number, (name, _)) in MethodKind::ALL.into_iter().enumerate() {
+        let own: Vec<&&Point> = points.iter().filter(|p| p.method == name).collect();
+        if own.is_empty() {
+            continue;
+        }
+        let good = own.iter().filter(|p| p.failure.is_none());
+        let mut places: Vec<(f64, [f64; 2])> = good
+            .filter_map(|p| Some((p.step, [p.cost(), p.error_mm?.max(floor)])))
+            .collect();
+        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        series.push(Series::numbered(
+            number,
+            name,
+            places.iter().map(|p| p.1).collect(),
+        ));
+        series.push(Series {
+            name: String::new(),
+            colour: palette(number),
+            marker: Marker::Cross,
+            size: 9.0,
+            joined: Joined::Not,
+            points: own
+                .iter()
+                .filter(|p| p.failure.is_some())
+                .map(|p| [p.cost(), row])
+                .collect(),
+        });
+    }
+    Chart {
+        title,
+        x: Axis::logarithmic(across),
+        y: Axis::logarithmic("RMS distance to the converged end [mm]"),
+        series,
+        notes: vec![
+            note,
+            "crosses in the top row: failed or wrong; the reason stands in the CSV".to_owned(),
+        ],
+        size: [860.0, 520.0],
+    }
+}
+
+/// Name and content of every file of the chart.
+///
+/// # Errors
+/// A chart cannot be drawn.
+pub fn chart_files(data: &ChartData) -> Result<Vec<(String, String)>, LabError> {
+    let mut files = vec![
+        (
+            "motion.csv".to_owned(),
+            csv(&data.motion, "step_s", "wall_ms_per_simulated_s"),
+        ),
+        (
+            "rest.csv".to_owned(),
+            csv(&data.rest, "residual", "wall_ms"),
+        ),
+    ];
+    for (points, kind, across) in [
+        (
+            &data.motion,
+            "motion",
+            "processor time per simulated second [ms]",
+        ),
+        (&data.rest, "rest", "processor time to rest [ms]"),
+    ] {
+        let mut meshes: Vec<&str> = points.iter().map(|p| p.mesh.as_str()).collect();
+        meshes.dedup();
+        for mesh in meshes {
+            let own: Vec<&Point> = points.iter().filter(|p| p.mesh == mesh).collect();
+            let title = format!("{} ({} vertices): {kind}", own[0].scene, own[0].vertices);
+            let known = data.agreement.iter().find(|a| a.mesh == mesh);
+            let note = match (kind, known) {
+                ("motion", Some(a)) => format!(
+                    "converged end: {} at fine steps end {} mm apart",
+                    a.by,
+                    a.apart_mm.map_or("?".to_owned(), |x| significant(x, 2))
+                ),
+                _ => {
+                    "converged end: the way to rest at a net force of 1e-4 of the weight".to_owned()
+                }
+            };
+            let chart = mesh_chart(&own, title, note, across);
+            // A mesh on which everything failed has no axes to show it on.
+            if let Ok(drawing) = chart.draw() {
+                files.push((
+                    format!("{kind}-{}.svg", mesh.trim_end_matches(".obj")),
+                    drawing.to_svg(),
+                ));
+            }
+        }
+    }
+    Ok(files)
+}
+
+/// How discretisation stiffens, as a chart and a table.
+///
+/// # Errors
+/// The chart cannot be drawn.
+pub fn locking_files(found: &[Resolved]) -> Result<Vec<(String, String)>, LabError> {
+    let mut text = "scene,mesh,Y_L2_over_D,elements,relative_error\n".to_owned();
+    for point in found {
+        let error = point
+            .error
+            .map_or("failed".to_owned(), |e| format!("{e:.4e}"));
+        let _ = writeln!(
+            text,
+            "{},{},{:e},{},{error}",
+            point.scene, point.mesh, point.stiffness, point.elements
+        );
+    }
+    let mut drawings = Vec::new();
+    for scene in ["cantilever", "hang"] {
+        let mut series = Vec::new();
+        let mut keys: Vec<(&str, f64)> = found.iter().map(|p| (p.mesh, p.stiffness)).collect();
+        keys.sort_by(|a, b| a.0.cmp(b.0).then(a.1.total_cmp(&b.1)));
+        keys.dedup();
+        for (number, (mesh, stiffness)) in keys.into_iter().enumerate() {
+            let own = found
+                .iter()
+                .filter(|p| p.scene == scene && p.mesh == mesh && p.stiffness == stiffness);
+            let points = own
+                .filter_map(|p| Some([p.elements as f64, p.error?.abs().max(1e-6)]))
+                .collect();
+            series.push(Series::numbered(
+                number,
+                format!("{mesh}, Y L2/D {stiffness:.0e}"),
+                points,
+            ));
+        }
+        let chart = Chart {
+            title: format!("{scene}: error by elements along"),
+            x: Axis::logarithmic("elements along"),
+            y: Axis::logarithmic("relative error"),
+            series,
+            notes: vec![],
+            size: [760.0, 440.0],
+        };
+        drawings.push(chart.draw()?);
+    }
+    let sheet = toile_picture::Drawing::sheet(&drawings, 1);
+    Ok(vec![
+        ("locking.csv".to_owned(), text),
+        ("locking.svg".to_owned(), sheet.to_svg()),
+    ])
+}
+
+/// Errors a reader may ask for [mm].
+const ASKED: [f64; 3] = [10.0, 3.0, 1.0];
+
+/// Which method to use when: for each mesh the fastest run within an error, as Markdown.
+pub fn when_to_use(data: &ChartData) -> String {
+    let mut text = String::from(
+        "| scene | vertices | within 10 mm | within 3 mm | within 1 mm | failed runs |\n|---|---|---|---|---|---|\n",
+    );
+    let mut meshes: Vec<&str> = data.motion.iter().map(|p| p.mesh.as_str()).collect();
+    meshes.dedup();
+    for mesh in meshes {
+        let own: Vec<&Point> = data.motion.iter().filter(|p| p.mesh == mesh).collect();
+        let _ = write!(text, "| {} | {} |", own[0].scene, own[0].vertices);
+        for asked in ASKED {
+            let good = own
+                .iter()
+                .filter(|p| p.failure.is_none() && p.error_mm.is_some_and(|e| e <= asked));
+            let fastest = good.min_by(|a, b| a.cost().total_cmp(&b.cost()));
+            let _ = match fastest {
+                Some(p) => write!(
+                    text,
+                    " {}, step {} ms: {} ms/s |",
+                    p.method,
+                    significant(1e3 * p.step, 2),
+                    significant(p.cost(), 3)
+                ),
+                None => write!(text, " none |"),
+            };
+        }
+        let failed = own.iter().filter(|p| p.failure.is_some()).count();
+        let _ = writeln!(text, " {failed} of {} |", own.len());
+    }
+    text.push_str("\nTo rest (net force 1e-3 of the weight or less):\n\n| scene | vertices | fastest | processor ms | wall ms | distance to rest, mm |\n|---|---|---|---|---|---|\n");
+    let mut meshes: Vec<&str> = data.rest.iter().map(|p| p.mesh.as_str()).collect();
+    meshes.dedup();
+    for mesh in meshes {
+        let own: Vec<&Point> = data.rest.iter().filter(|p| p.mesh == mesh).collect();
+        let tightest = own.iter().map(|p| p.step).fold(f64::INFINITY, f64::min);
+        let asked = own
+            .iter()
+            .map(|p| p.step)
+            .filter(|s| *s <= 1.01e-3)
+            .fold(tightest, f64::max);
+        let good = own
+            .iter()
+            .filter(|p| p.failure.is_none() && p.step == asked);
+        let _ = match good.min_by(|a, b| a.cost().total_cmp(&b.cost())) {
+            Some(p) => writeln!(
+                text,
+                "| {} | {} | {} | {} | {} | {} |",
+                p.scene,
+                p.vertices,
+                p.method,
+                significant(p.cost(), 3),
+                significant(p.wall_ms, 3),
+                p.error_mm.map_or("-".to_owned(), |e| significant(e, 2))
+            ),
+            None => writeln!(
+                text,
+                "| {} | {} | none | - | - | - |",
+                own[0].scene, own[0].vertices
+            ),
+        };
+    }
+    text
+}
+
+/// A document with the part between two markers, `<!-- NAME -->` and `<!-- /NAME -->`, replaced;
+/// the part is added at the end where there are none.
+pub fn with_section(document: &str, name: &str, section: &str) -> String {
+    let (open, close) = (format!("<!-- {name} -->"), format!("<!-- /{name} -->"));
+    let whole = format!("{open}\n{}\n{close}", section.trim_end());
+    match (document.find(&open), document.find(&close)) {
+        (Some(from), Some(to)) if from < to => {
+            format!(
+                "{}{whole}{}",
+                &document[..from],
+                &document[to + close.len()..]
+            )
+        }
+        _ => format!("{}\n\n{whole}\n", document.trim_end()),
+    }
+}
+
+/// Writes named texts into a folder, whole or not at all.
+///
+/// # Errors
+/// The folder cannot be written.
+pub fn write_files(folder: &Path, files: &[(String, String)]) -> Result<Vec<PathBuf>, LabError> {
+    write_all_atomically(folder, files).map_err(|error| LabError::Files {
+        what: error.to_string(),
+    })?;
+    Ok(files.iter().map(|(name, _)| folder.join(name)).collect())
+}
+
+/// Replaces a section of a document on the disk, see [`with_section`].
+///
+/// # Errors
+/// The document cannot be read or written.
+pub fn write_section(path: &Path, name: &str, section: &str) -> Result<(), LabError> {
+    let failed = |what: String| LabError::Files { what };
+    let text = read_text_file(path).map_err(|error| failed(error.to_string()))?;
+    write_atomically(path, with_section(&text, name, section).as_bytes())
+        .map_err(|error| failed(error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_section_is_added_once_and_replaced_after() {
+        let once = with_section("# Title\n", "chart", "one");
+        assert_eq!(once, "# Title\n\n<!-- chart -->\none\n<!-- /chart -->\n");
+        let twice = with_section(&once, "chart", "two\n");
+        assert_eq!(twice, "# Title\n\n<!-- chart -->\ntwo\n<!-- /chart -->\n");
+    }
+
+    #[test]
+    fn fields_with_commas_are_quoted() {
+        assert_eq!(field("a,\"b\""), "\"a,\"\"b\"\"\"");
+        assert_eq!(field("a"), "a");
+    }
+}
