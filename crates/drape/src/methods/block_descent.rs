@@ -2,6 +2,7 @@
 
 use super::colours::Colours;
 use super::implicit::{Limits, Problem, Solver};
+use super::pieces::Pieces;
 use crate::contacts::Contacts;
 use crate::newton::{elastics_of, end_place};
 use crate::{Model, NewtonReport, State, Workspace};
@@ -22,10 +23,14 @@ use toile_geometry::Vec3;
 /// out at vertices that touch a surface and given up when the potential rises.
 ///
 /// Converges linearly, slowly where stiffness is large against b m: a stiff cloth at a long step is
-/// left softer than it is. Momentum is kept only as far as it converged.
+/// left softer than it is. What sweeps move least is a piece as a whole; so each unpinned piece is
+/// shifted by its own Newton step before the sweeps, every eight of them and after them
+/// ([`Pieces::shift`]; not in the paper), which keeps linear momentum. Angular momentum is kept only
+/// as far as the sweeps converged.
 #[derive(Default)]
 pub struct BlockDescent<const CHEBYSHEV: bool> {
     colours: Colours,
+    pieces: Pieces,
     touching: Touching,
     results: Vec<(Vec3, f64)>,
     before: Vec<Vec3>,
@@ -44,7 +49,8 @@ struct Touching {
 /// Estimate of the sweeps' spectral radius.
 const RADIUS: f64 = 0.95;
 
-/// Sweeps between two checks that an accelerated descent still descends.
+/// Sweeps between two shifts of the pieces, and between two checks that an accelerated descent
+/// still descends.
 const CHECK: usize = 8;
 
 /// Longest move of a vertex near solid surfaces in one sweep [m]: twice what contact is found
@@ -251,7 +257,9 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
     ) -> NewtonReport {
         let model = problem.model;
         workspace.fit(model);
-        self.colours.fit(model);
+        if self.colours.fit(model) {
+            self.pieces.fit(model);
+        }
         let first = state.positions.clone();
         self.start(problem, state, workspace);
         let longest = if model.colliders.is_empty() {
@@ -268,6 +276,9 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
         let mut accelerating = CHEBYSHEV;
         self.best.clone_from(&state.positions);
         for sweep in 0..problem.limits.iterations {
+            if sweep % CHECK == 0 {
+                self.pieces.shift(problem, state, workspace);
+            }
             workspace.contacts.refresh(model, state, &state.positions);
             self.touching.gather(model, &workspace.contacts);
             if accelerating && sweep % CHECK == 0 {
@@ -297,6 +308,7 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
                 self.accelerate(factor, &mut state.positions);
             }
         }
+        self.pieces.shift(problem, state, workspace);
         workspace.contacts.refresh(model, state, &state.positions);
         let before = workspace.potential(model, &first, &problem.inertia);
         let after = workspace.potential(model, &state.positions, &problem.inertia);

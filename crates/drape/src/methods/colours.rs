@@ -11,10 +11,10 @@ pub struct Colours {
 }
 
 impl Colours {
-    /// Makes the colours those of a model; nothing to do when they are.
-    pub fn fit(&mut self, model: &Model) {
+    /// Makes the colours those of a model; false when they already were.
+    pub fn fit(&mut self, model: &Model) -> bool {
         if self.vertices.len() == model.vertex_count() && self.elastics == model.elastics {
-            return;
+            return false;
         }
         let n = model.vertex_count();
         self.elastics.clone_from(&model.elastics);
@@ -52,6 +52,7 @@ impl Colours {
             self.vertices.extend(own);
             self.start.push(self.vertices.len());
         }
+        true
     }
 
     /// Number of colours.
@@ -87,7 +88,7 @@ mod tests {
         let cloth = Cloth::from_mesh("cloth", &mesh, Material::default()).unwrap();
         let model = Model::new("cloth", &cloth).unwrap();
         let mut colours = Colours::default();
-        colours.fit(&model);
+        assert!(colours.fit(&model) && !colours.fit(&model));
         let mut seen = [false; 100];
         for colour in 0..colours.count() {
             let own = colours.vertices(colour);

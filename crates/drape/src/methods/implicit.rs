@@ -19,6 +19,11 @@ pub trait TimeRule: Send {
         h
     }
 
+    /// Substeps a step of `step` [s] is cut into where the settings say nothing.
+    fn substeps(_model: &Model, _step: f64) -> u32 {
+        1
+    }
+
     /// Inertia's weight per mass b [1/s2].
     fn weight(model: &Model, state: &State, h: f64) -> f64;
 
@@ -76,7 +81,7 @@ pub struct Implicit<R, S> {
     rule: PhantomData<R>,
     solver: S,
     limits: Limits,
-    substeps: u32,
+    substeps: Option<u32>,
     workspace: Workspace,
     weights: Vec<f64>,
     target: Vec<Vec3>,
@@ -110,7 +115,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
                 iterations: settings.iterations.unwrap_or(S::LIMITS.iterations).max(1),
                 tolerance: settings.tolerance.unwrap_or(S::LIMITS.tolerance),
             },
-            substeps: settings.substeps.unwrap_or(1).max(1),
+            substeps: settings.substeps,
             workspace: Workspace::default(),
             weights: Vec::new(),
             target: Vec::new(),
@@ -226,8 +231,10 @@ impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
         state.follow_samples(model);
         let mut total = StepReport::default();
         let end = state.time + step;
-        for _ in 0..self.substeps {
-            self.whole(model, state, step / f64::from(self.substeps), &mut total)?;
+        let automatic = || R::substeps(model, step);
+        let substeps = self.substeps.unwrap_or_else(automatic).max(1);
+        for _ in 0..substeps {
+            self.whole(model, state, step / f64::from(substeps), &mut total)?;
         }
         state.time = end;
         Ok(total)

@@ -13,6 +13,7 @@ mod implicit_euler;
 mod lbfgs;
 mod metric;
 mod newton_solver;
+mod pieces;
 mod projective;
 mod relaxation;
 mod rest;

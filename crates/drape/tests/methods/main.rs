@@ -1,5 +1,6 @@
 //! Every method against closed forms, its own limits and the promises all methods make.
 
+mod contact;
 mod explicit;
 mod fixtures;
 mod hard;
