@@ -10,7 +10,7 @@ mod cloth;
 mod contacts;
 mod error;
 pub mod fabrics;
-mod factor;
+pub mod factor;
 mod garment;
 mod hessian;
 pub mod kes;
