@@ -225,7 +225,7 @@ impl Field {
                 best = (value, angle);
             }
         }
-        if !(best.0 > 0.0) {
+        if best.0.is_nan() || best.0 <= 0.0 {
             return Self::Slack;
         }
         // d(p^2/q) = p (2 p' q - p q') / q^2 falls through zero at the best angle.
