@@ -1,6 +1,6 @@
 //! The heavy cantilever: a strip clamped level at one end, bent by its own weight. Its shape
 //! depends on Gamma = rho g L^3 / D alone (theta'' = -Gamma (1 - s) cos theta).
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 #[path = "support/strips.rs"]
 mod strips;
