@@ -26,7 +26,7 @@ pub struct LibraryFabric {
     pub poisson: f64,
     /// Bending stiffness along warp, weft and bias [N m].
     pub bend: [f64; 3],
-    /// Coulomb friction.
+    /// Coulomb friction coefficient \[1\].
     pub friction: f64,
     /// Where each figure comes from.
     pub sources: FabricSources,

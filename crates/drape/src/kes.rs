@@ -28,7 +28,7 @@ pub struct KesValues {
     pub shear_hysteresis: f64,
     /// EM or EMT: extension at 500 gf/cm [%].
     pub extension: [f64; 2],
-    /// LT: linearity of the load-extension curve, above 0.5 to 1.
+    /// LT: linearity of the load-extension curve \[1\], above 0.5 to 1.
     pub linearity: [f64; 2],
     /// RT: share of the tensile energy given back [%].
     pub resilience: [f64; 2],

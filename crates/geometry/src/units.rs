@@ -171,7 +171,7 @@ mod tests {
         }
         assert_eq!(
             "12".parse::<Length>(),
-            Err(UnitError::UnknownUnit(String::new(), "mm, cm, m, in"))
+            Err(UnitError::NoUnit("12".into(), "mm, cm, m, in"))
         );
         assert!(matches!(
             "cm".parse::<Length>(),

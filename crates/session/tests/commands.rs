@@ -76,7 +76,7 @@ fn refused_commands_change_nothing() {
             size: Some("XXL".into()),
         },
         Command::SetFabric {
-            fabric: Some("silk".into()),
+            fabric: Some("gossamer of nowhere".into()),
         },
         Command::SetWidth {
             width: Some(f64::NAN),
