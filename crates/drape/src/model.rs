@@ -1,5 +1,6 @@
 //! The model: everything about a simulation that does not change while it runs.
 
+use crate::caps::without_caps;
 use crate::laws::air::Air;
 use crate::laws::bending::{BendingMatrix, BendingStencil, RestSheet};
 use crate::laws::elastic::ElasticLaw;
@@ -109,8 +110,11 @@ impl ContactSample {
 
 /// The constant part of a simulation.
 pub struct Model {
-    /// Corners of the triangles.
+    /// Corners of the triangles: those of the cloth, but that caps (an angle near 180 degrees)
+    /// have exchanged their long edge for the other diagonal of their pair.
     pub triangles: Vec<[u32; 3]>,
+    /// Triangles of the surface as it was given, where caps were exchanged.
+    surface: Option<Vec<[u32; 3]>>,
     /// Material of each triangle.
     pub material: Vec<u16>,
     /// The materials.
@@ -166,6 +170,10 @@ impl Model {
         for material in &cloth.materials {
             material.check(object)?;
         }
+        let cloth = &*without_caps(cloth);
+        let exchanged = cloth.triangles != mesh.triangles;
+        let surface = exchanged.then(|| mesh.triangles.clone());
+        let mesh = cloth.mesh();
         let mut elements = Vec::with_capacity(cloth.triangles.len());
         for (triangle, &rest) in cloth.rest.iter().enumerate() {
             let empty = || DrapeError::EmptyTriangle {
@@ -180,6 +188,7 @@ impl Model {
         let mut model = Self {
             pattern: BlockPattern::new(count, &cloth.triangles),
             triangles: cloth.triangles.clone(),
+            surface,
             material: cloth.material.clone(),
             laws: cloth.materials.iter().map(Material::membrane).collect(),
             materials: cloth.materials.clone(),
@@ -328,7 +337,7 @@ impl Model {
     pub fn mesh(&self, positions: &[Vec3]) -> TriangleMesh {
         TriangleMesh {
             positions: positions.to_vec(),
-            triangles: self.triangles.clone(),
+            triangles: self.surface.as_ref().unwrap_or(&self.triangles).clone(),
         }
     }
 }

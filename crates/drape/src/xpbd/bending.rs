@@ -13,7 +13,7 @@ use crate::laws::bending::RestSheet;
 use crate::{Material, Model};
 use nalgebra::Matrix3;
 use pulp::Simd;
-use toile_geometry::Vec2;
+use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
 /// K as rows over the slots of the vertices, without its diagonal: sixteen rows side by side, as
 /// many entries each as the longest has.
@@ -173,8 +173,11 @@ const LEAST_SHARE: f64 = 1e-6;
 /// The curvature stencils of a model, those without stiffness left out.
 pub fn stencils(model: &Model) -> Vec<Stencil> {
     let rest: Vec<[Vec2; 3]> = model.elements.iter().map(|e| e.rest()).collect();
-    let positions = vec![toile_geometry::Vec3::zeros(); model.vertex_count()];
-    let topology = model.mesh(&positions).topology();
+    let mesh = TriangleMesh {
+        positions: vec![Vec3::zeros(); model.vertex_count()],
+        triangles: model.triangles.clone(),
+    };
+    let topology = mesh.topology();
     let sheet = RestSheet {
         triangles: &model.triangles,
         rest: &rest,

@@ -60,7 +60,9 @@ impl Strip {
         };
         let cloth = flat.cloth(material, |p| Vec3::new(p.x, 0.0, p.y));
         let mut model = Model::new("strip", &cloth)?;
-        for v in flat.chosen(|p| p.x < 0.51 * cell) {
+        // Points planted between the last two held rows stay free: held at 0 they would forbid
+        // the curve that the rows leave open.
+        for v in flat.chosen(|p| p.x < -0.49 * cell || (p.x / cell - 0.5).abs() < 0.01) {
             model.pinned[v as usize] = true;
         }
         let mut state = State::at_rest(&model, cloth.positions);

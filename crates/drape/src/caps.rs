@@ -1,0 +1,278 @@
+//! Triangles with an angle near 180 degrees, taken out of a cloth before it is simulated.
+//!
+//! Linear triangles follow a curved surface only while their largest angle stays away from 180
+//! degrees (the maximum angle condition, Babuska and Aziz 1976). A cap whose three corners lie
+//! nearly on a line holds the middle one to the chord of the other two as stiffly as the
+//! membrane is stiff, and a bent sheet with caps comes out several per cent too stiff (membrane
+//! locking). Its long edge is exchanged for the other diagonal of the two triangles there (an
+//! intrinsic flip, Bobenko and Springborn 2007): the vertices, the area and the rest metric stay
+//! as they were. Cloth without caps is left untouched.
+
+use crate::Cloth;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use toile_geometry::Vec2;
+
+/// Cosine of the angle from which a triangle is a cap: 150 degrees.
+const CAP: f64 = -0.866_025_403_784_438_6;
+
+/// Least cosine between the warps of two triangles whose common edge may be exchanged: 10 degrees.
+const SAME_WARP: f64 = 0.985;
+
+/// Largest difference of the common edge's two lengths at rest, a share: beyond it the edge is a
+/// seam with ease.
+const SAME_LENGTH: f64 = 1e-6;
+
+/// Flips for every triangle at the most; each lowers the largest angle of its pair.
+const MOST_FLIPS: usize = 8;
+
+/// The cloth with the long edges of its caps exchanged where that makes the pair's largest angle
+/// smaller. Triangles keep their indices, material and panel; a pair shares its area anew.
+pub(crate) fn without_caps(cloth: &Cloth) -> Cow<'_, Cloth> {
+    let caps: Vec<u32> = (0..cloth.triangles.len() as u32)
+        .filter(|&t| largest_angle(cloth.rest[t as usize]).1 < CAP)
+        .collect();
+    if caps.is_empty() {
+        return Cow::Borrowed(cloth);
+    }
+    let mut flipper = Flipper::new(cloth.clone());
+    let mut left = MOST_FLIPS * caps.len();
+    let mut open = caps;
+    while let Some(t) = open.pop() {
+        if left == 0 {
+            break;
+        }
+        if let Some(other) = flipper.flip(t) {
+            left -= 1;
+            open.extend([t, other]);
+        }
+    }
+    Cow::Owned(flipper.cloth)
+}
+
+/// The corner with the largest angle and the cosine there.
+fn largest_angle(corners: [Vec2; 3]) -> (usize, f64) {
+    let cosine = |k: usize| {
+        let (u, v) = (
+            corners[(k + 1) % 3] - corners[k],
+            corners[(k + 2) % 3] - corners[k],
+        );
+        u.dot(&v) / (u.norm() * v.norm())
+    };
+    let mut found = (0, cosine(0));
+    for k in 1..3 {
+        let c = cosine(k);
+        if c < found.1 {
+            found = (k, c);
+        }
+    }
+    found
+}
+
+/// Twice the signed area.
+fn twice_area([a, b, c]: [Vec2; 3]) -> f64 {
+    (b - a).perp(&(c - a))
+}
+
+struct Flipper {
+    cloth: Cloth,
+    /// Triangles at every edge, its smaller vertex first.
+    edges: BTreeMap<[u32; 2], Vec<u32>>,
+}
+
+fn key(a: u32, b: u32) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+impl Flipper {
+    fn new(cloth: Cloth) -> Self {
+        let mut edges: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
+        for (t, v) in cloth.triangles.iter().enumerate() {
+            for k in 0..3 {
+                let edge = edges.entry(key(v[k], v[(k + 1) % 3])).or_default();
+                edge.push(t as u32);
+            }
+        }
+        Self { cloth, edges }
+    }
+
+    /// Exchanges the long edge of a cap; the other triangle that was changed, nothing where the
+    /// triangle is no cap, its long edge is free, sewn or between unlike cloths, or where the
+    /// exchange would help nothing.
+    fn flip(&mut self, t: u32) -> Option<u32> {
+        let (k, cosine) = largest_angle(self.cloth.rest[t as usize]);
+        if cosine >= CAP {
+            return None;
+        }
+        // The cap n a b with its large angle at n, and the far corner d behind a b.
+        let [n, a, b] = [0, 1, 2].map(|i| self.cloth.triangles[t as usize][(k + i) % 3]);
+        let [pn, pa, pb] = [0, 1, 2].map(|i| self.cloth.rest[t as usize][(k + i) % 3]);
+        let &[first, second] = self.edges.get(&key(a, b))?.as_slice() else {
+            return None;
+        };
+        let s = if first == t { second } else { first };
+        if self.cloth.material[t as usize] != self.cloth.material[s as usize] {
+            return None;
+        }
+        let corners = self.cloth.triangles[s as usize];
+        let at = (0..3).find(|&i| corners[i] == b && corners[(i + 1) % 3] == a)?;
+        let d = corners[(at + 2) % 3];
+        if d == n || self.edges.contains_key(&key(n, d)) {
+            return None;
+        }
+        let pd = self.unfolded(s, at, [pa, pb])?;
+        let hand = twice_area([pn, pa, pb]);
+        let pair = [[pn, pa, pd], [pd, pb, pn]];
+        let before = cosine.min(largest_angle([pb, pa, pd]).1);
+        let convex = pair.iter().all(|&p| twice_area(p) * hand > 0.0);
+        if !convex || pair.iter().any(|&p| largest_angle(p).1 <= before) {
+            return None;
+        }
+        for (triangle, vertices, rest) in [(t, [n, a, d], pair[0]), (s, [d, b, n], pair[1])] {
+            self.cloth.triangles[triangle as usize] = vertices;
+            self.cloth.rest[triangle as usize] = rest;
+        }
+        self.edges.remove(&key(a, b));
+        self.edges.insert(key(n, d), vec![t, s]);
+        for (edge, old, new) in [(key(b, n), t, s), (key(a, d), s, t)] {
+            for triangle in self.edges.get_mut(&edge).into_iter().flatten() {
+                if *triangle == old {
+                    *triangle = new;
+                }
+            }
+        }
+        Some(s)
+    }
+
+    /// The far corner of triangle `s` moved rigidly so that its edge from corner `at` lies on
+    /// `pb`, `pa`; nothing where that would turn the warp or take it to the other side.
+    fn unfolded(&self, s: u32, at: usize, [pa, pb]: [Vec2; 2]) -> Option<Vec2> {
+        let [qb, qa, qd] = [0, 1, 2].map(|i| self.cloth.rest[s as usize][(at + i) % 3]);
+        let (from, to) = ((qb - qa).try_normalize(0.0)?, (pb - pa).try_normalize(0.0)?);
+        let lengths = (qb - qa).norm() / (pb - pa).norm();
+        if from.dot(&to) < SAME_WARP || (lengths - 1.0).abs() > SAME_LENGTH {
+            return None;
+        }
+        let left = |d: Vec2| Vec2::new(-d.y, d.x);
+        let off = qd - (qa + qb) * 0.5;
+        Some((pa + pb) * 0.5 + to * off.dot(&from) + left(to) * off.dot(&left(from)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Material, Model, State, Workspace};
+    use toile_geometry::Vec3;
+
+    /// A square of 4 x 4 cells with a cap planted on the first edge of some triangles.
+    fn square(planted: &[usize]) -> Cloth {
+        let mut points: Vec<Vec2> = (0..25)
+            .map(|k| Vec2::new(f64::from(k % 5), f64::from(k / 5)) * 0.01)
+            .collect();
+        let mut triangles = Vec::new();
+        for (i, j) in (0..16u32).map(|q| (q % 4, q / 4)) {
+            let at = |a: u32, b: u32| (j + b) * 5 + i + a;
+            triangles.push([at(1, 1), at(0, 0), at(1, 0)]);
+            triangles.push([at(0, 0), at(1, 1), at(0, 1)]);
+        }
+        for &t in planted {
+            let [a, b, c]: [u32; 3] = triangles[t];
+            let [pa, pb, pc] = triangles[t].map(|v| points[v as usize]);
+            let middle = (pa + pb) * 0.5;
+            let new = points.len() as u32;
+            points.push(middle + (pc - middle) * 0.02);
+            triangles[t] = [a, b, new];
+            triangles.extend([[b, c, new], [c, a, new]]);
+        }
+        let count = triangles.len();
+        Cloth {
+            positions: points.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect(),
+            rest: triangles
+                .iter()
+                .map(|t| t.map(|v| points[v as usize]))
+                .collect(),
+            triangles,
+            material: vec![0; count],
+            panel: vec![0; count],
+            materials: vec![Material::default()],
+        }
+    }
+
+    fn widest(cloth: &Cloth) -> f64 {
+        let cosines = cloth.rest.iter().map(|&rest| largest_angle(rest).1);
+        cosines.fold(1.0, f64::min).acos().to_degrees()
+    }
+
+    #[test]
+    fn cloth_without_caps_is_left_alone() {
+        let cloth = square(&[]);
+        assert!(matches!(without_caps(&cloth), Cow::Borrowed(_)));
+    }
+
+    #[test]
+    fn caps_inside_are_exchanged_and_nothing_else_changes() {
+        let cloth = square(&[2, 9, 21]);
+        assert!(widest(&cloth) > 170.0);
+        let eased = without_caps(&cloth);
+        assert!(widest(&eased) < 120.0, "{}", widest(&eased));
+        let area = |cloth: &Cloth| {
+            let areas = cloth.rest.iter().map(|&rest| 0.5 * twice_area(rest));
+            areas.inspect(|&a| assert!(a > 0.0)).sum::<f64>()
+        };
+        assert!((area(&eased) - area(&cloth)).abs() < 1e-15);
+        // Rest and surface agree at every corner, and the mesh is whole.
+        for (rest, corners) in eased.rest.iter().zip(&eased.triangles) {
+            for (p, &v) in rest.iter().zip(corners) {
+                let place = cloth.positions[v as usize];
+                assert!((Vec3::new(p.x, p.y, 0.0) - place).norm() < 1e-15);
+            }
+        }
+        assert!(eased.mesh().check().is_ok());
+        assert_eq!(eased.mesh().component_count(), 1);
+        assert_eq!(
+            eased.mesh().euler_characteristic(),
+            cloth.mesh().euler_characteristic()
+        );
+    }
+
+    #[test]
+    fn a_cap_on_a_free_edge_or_across_cloths_stays() {
+        let mut cloth = square(&[]);
+        // A corner pulled close to the free edge below it.
+        cloth.rest = vec![[
+            Vec2::zeros(),
+            Vec2::new(0.01, 0.0),
+            Vec2::new(0.005, 0.0001),
+        ]];
+        cloth.triangles = vec![[0, 1, 5]];
+        assert_eq!(without_caps(&cloth).triangles, cloth.triangles);
+        let mut two = square(&[2]);
+        two.materials.push(Material::default());
+        two.material[3] = 1;
+        assert_eq!(without_caps(&two).triangles, two.triangles);
+    }
+
+    #[test]
+    fn a_model_keeps_the_surface_and_an_even_stretch_pulls_on_no_inner_vertex() {
+        let cloth = square(&[2, 9, 21]);
+        let model = Model::new("square", &cloth).unwrap();
+        assert_ne!(model.triangles, cloth.triangles);
+        assert_eq!(model.mesh(&cloth.positions).triangles, cloth.triangles);
+        let mut model = model;
+        model.gravity = Vec3::zeros();
+        let stretched: Vec<Vec3> = cloth
+            .positions
+            .iter()
+            .map(|p| Vec3::new(1.03 * p.x + 0.02 * p.y, 0.98 * p.y, 0.0))
+            .collect();
+        let state = State::at_rest(&model, stretched);
+        let mut workspace = Workspace::default();
+        let force = workspace.net_force(&model, &state);
+        let most = force.iter().map(Vec3::norm).fold(0.0, f64::max);
+        for (p, f) in cloth.positions.iter().zip(force) {
+            let inside = [p.x, p.y].iter().all(|&c| c > 1e-9 && c < 0.04 - 1e-9);
+            assert!(!inside || f.norm() < 1e-10 * most, "{p:?} {f:?}");
+        }
+    }
+}
