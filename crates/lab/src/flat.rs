@@ -67,6 +67,13 @@ impl Flat {
 /// wide to keep what lies behind it from bending.
 pub(crate) const STRAIGHT: usize = 3;
 
+/// Whether a point is held where a strip of cells of a size is clamped at 0 [m]: up to half a cell
+/// before it, and half a cell behind it. What was planted between these two rows stays free: held
+/// at 0 it would forbid the curve that they leave open.
+pub(crate) fn clamped(x: f64, cell: f64) -> bool {
+    x < -0.49 * cell || (x - 0.5 * cell).abs() < 0.01 * cell
+}
+
 /// A rectangle from `from` to `to` [m] in `cells` squares (or triangles of that size). The first
 /// three columns of cells, where strips are clamped, end on straight rows of points.
 ///

@@ -3,7 +3,7 @@
 use crate::check::{Cases, Expected};
 use crate::settle::{in_time, methods_in_time, sound_step};
 use crate::{LabError, MeshKind, rectangle};
-use toile_drape::{Material, MethodSettings, Model, State};
+use toile_drape::{Material, MethodKind, MethodSettings, Model, State};
 use toile_geometry::{Vec2, Vec3};
 
 /// Methods whose error falls with the square of the step; the others are of first order, but for
@@ -51,7 +51,9 @@ pub(super) fn in_time_order(cases: &mut Cases) -> Result<(), LabError> {
             ..kind.into()
         };
         model.gravity = Vec3::zeros();
-        let sound = sound_step(&model, &start, settings, 1e-3)?;
+        // Single precision drowns the differences of smaller steps.
+        let wanted = if kind == MethodKind::Xpbd { 4e-3 } else { 1e-3 };
+        let sound = sound_step(&model, &start, settings, wanted)?;
         model.gravity = Vec3::new(0.0, -9.81, 0.0);
         let expected = order_of(name);
         let duration = 0.064;
