@@ -22,6 +22,7 @@ mod merge;
 mod methods;
 mod model;
 mod newton;
+mod patches;
 mod pcg;
 mod rest;
 mod scene;

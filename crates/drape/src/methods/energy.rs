@@ -27,9 +27,7 @@ impl EnergyWatch {
         self.before = self.energy(model, state, workspace);
     }
 
-    /// Whether the energy after `step` [s] is one the cloth can have. All potentials but gravity's
-    /// are above zero, so the energy H of motion, strain, elastics and contact obeys
-    /// dH/dt = sum m g.v <= |g| sqrt(2 M H), and sqrt(H) grows by |g| sqrt(M/2) a second at most.
+    /// Whether the energy after `step` [s] is one the cloth can have.
     pub fn is_possible(
         &mut self,
         model: &Model,
@@ -37,21 +35,7 @@ impl EnergyWatch {
         workspace: &mut Workspace,
         step: f64,
     ) -> bool {
-        let mass: f64 = model
-            .mass
-            .iter()
-            .zip(&model.pinned)
-            .filter(|&(_, &pinned)| !pinned)
-            .map(|(m, _)| m)
-            .sum();
-        let lightest = model
-            .materials
-            .iter()
-            .map(|m| m.density)
-            .fold(f64::INFINITY, f64::min);
-        let push = model.gravity.norm() + model.air.push(lightest);
-        let root = self.before.max(0.0).sqrt() + push * (0.5 * mass).sqrt() * step;
-        let bound = SWING * (root * root + 0.5 * mass * STILL * STILL);
+        let bound = energy_bound(model, self.before, step);
         self.energy(model, state, workspace) <= bound
     }
 
@@ -75,6 +59,32 @@ impl EnergyWatch {
             + gravity
             + state.kinetic_energy(model)
     }
+}
+
+/// The most energy of motion, strain, elastics and contact [J] that a cloth with `before` [J] of it
+/// can show after `step` [s]. All potentials but gravity's are above zero, so this energy H obeys
+/// dH/dt = sum m g.v <= |g| sqrt(2 M H), and sqrt(H) grows by |g| sqrt(M/2) a second at most.
+pub fn energy_bound(model: &Model, before: f64, step: f64) -> f64 {
+    let mass: f64 = model
+        .mass
+        .iter()
+        .zip(&model.pinned)
+        .filter(|&(_, &pinned)| !pinned)
+        .map(|(m, _)| m)
+        .sum();
+    let lightest = model
+        .materials
+        .iter()
+        .map(|m| m.density)
+        .fold(f64::INFINITY, f64::min);
+    let push = model.gravity.norm() + model.air.push(lightest);
+    let root = before.max(0.0).sqrt() + push * (0.5 * mass).sqrt() * step;
+    SWING * (root * root + 0.5 * mass * STILL * STILL)
+}
+
+/// Whether a vertex can move at a speed [m/s].
+pub fn is_possible_speed(speed: f64) -> bool {
+    speed <= FASTEST
 }
 
 /// The first vertex faster than anything can be, or not finite.

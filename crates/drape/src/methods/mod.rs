@@ -22,9 +22,12 @@ mod runge_kutta;
 mod symplectic_euler;
 mod velocity_verlet;
 
+pub(crate) use energy::{energy_bound, is_possible_speed};
+pub(crate) use frequency::contact_frequency;
 pub use frequency::largest_frequency;
 pub use relaxation::RelaxationRun;
 
+use crate::patches::PatchVerlet;
 use crate::{DrapeError, Model, State};
 use block_descent::BlockDescent;
 use explicit::Explicit;
@@ -85,6 +88,8 @@ pub enum MethodKind {
     VelocityVerlet,
     /// The classical Runge-Kutta method: explicit, order 4.
     RungeKutta4,
+    /// The same in patches, for cloth of the plain laws: explicit, order 2, fast.
+    PatchVerlet,
     /// Semi-implicit Euler: one linear solve a step (Baraff and Witkin 1998), order 1.
     SemiImplicitEuler,
     /// Implicit Euler by full Newton with line search.
@@ -112,11 +117,12 @@ pub enum MethodKind {
 
 impl MethodKind {
     /// Every method with its name in files.
-    pub const ALL: [(&'static str, Self); 15] = [
+    pub const ALL: [(&'static str, Self); 16] = [
         ("forward-euler", Self::ForwardEuler),
         ("symplectic-euler", Self::SymplecticEuler),
         ("velocity-verlet", Self::VelocityVerlet),
         ("runge-kutta-4", Self::RungeKutta4),
+        ("patch-verlet", Self::PatchVerlet),
         ("semi-implicit-euler", Self::SemiImplicitEuler),
         ("implicit-euler", Self::ImplicitEuler),
         ("bdf2", Self::Bdf2),
@@ -143,7 +149,7 @@ impl MethodKind {
     pub fn stability_limit(self) -> Option<f64> {
         match self {
             Self::ForwardEuler => Some(0.0),
-            Self::SymplecticEuler | Self::VelocityVerlet => Some(2.0),
+            Self::SymplecticEuler | Self::VelocityVerlet | Self::PatchVerlet => Some(2.0),
             Self::RungeKutta4 => Some(2.0 * std::f64::consts::SQRT_2),
             _ => None,
         }
@@ -193,6 +199,10 @@ impl MethodSettings {
             }
             MethodKind::RungeKutta4 => {
                 Guarded::boxed(Explicit::<runge_kutta::RungeKutta4>::new(self))
+            }
+            MethodKind::PatchVerlet => {
+                let general = Explicit::<velocity_verlet::VelocityVerlet>::new(self);
+                Guarded::boxed(PatchVerlet::new(self, Box::new(general)))
             }
             MethodKind::SemiImplicitEuler => {
                 Guarded::boxed(Implicit::<rules::Euler, OneSolve>::new(self))

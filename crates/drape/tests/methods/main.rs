@@ -5,4 +5,5 @@ mod explicit;
 mod fixtures;
 mod hard;
 mod order;
+mod patches;
 mod table;

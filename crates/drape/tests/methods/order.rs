@@ -59,6 +59,7 @@ fn methods_converge_at_their_order() {
         (MethodKind::ForwardEuler, 1.0, 2000),
         (MethodKind::SymplecticEuler, 1.0, 400),
         (MethodKind::VelocityVerlet, 2.0, 400),
+        (MethodKind::PatchVerlet, 2.0, 400),
         (MethodKind::RungeKutta4, 4.0, 200),
         (MethodKind::SemiImplicitEuler, 1.0, 200),
         (MethodKind::ImplicitEuler, 1.0, 200),
@@ -144,6 +145,7 @@ fn angular_momentum_hardly_drifts_in_free_flight() {
     for (kind, substeps, most) in [
         (MethodKind::SymplecticEuler, 40, 1e-10),
         (MethodKind::VelocityVerlet, 40, 1e-10),
+        (MethodKind::PatchVerlet, 40, 1e-10),
         (MethodKind::ImplicitMidpoint, 1, 1e-8),
     ] {
         let mesh = sheet([4, 4], [0.2, 0.2], |u, v| Vec3::new(u - 0.1, 0.0, v - 0.1));

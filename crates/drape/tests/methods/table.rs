@@ -53,9 +53,10 @@ fn fallen(kind: MethodKind, h: f64, n: u32) -> f64 {
     let unit = 9.81 * h * h / 2.0;
     match kind {
         MethodKind::ForwardEuler => unit * n * (n - 1.0),
-        MethodKind::VelocityVerlet | MethodKind::RungeKutta4 | MethodKind::ImplicitMidpoint => {
-            unit * n * n
-        }
+        MethodKind::VelocityVerlet
+        | MethodKind::PatchVerlet
+        | MethodKind::RungeKutta4
+        | MethodKind::ImplicitMidpoint => unit * n * n,
         // One step of implicit Euler, then the recurrence of the formula itself.
         MethodKind::Bdf2 => {
             let (mut before, mut now) = ([0.0, 0.0], [2.0 * unit, 2.0 * unit / h]);

@@ -46,9 +46,10 @@ fn angular_momentum(model: &Model, state: &State) -> Vec3 {
 }
 
 /// Methods that keep angular momentum exactly: symplectic, or implicit midpoint.
-const SPINNING: [&str; 4] = [
+const SPINNING: [&str; 5] = [
     "symplectic-euler",
     "velocity-verlet",
+    "patch-verlet",
     "implicit-midpoint",
     "newmark",
 ];

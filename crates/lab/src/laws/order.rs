@@ -8,7 +8,13 @@ use toile_geometry::{Vec2, Vec3};
 
 /// Methods whose error falls with the square of the step; the others are of first order, but for
 /// Runge and Kutta's, which is of fourth.
-const SECOND: [&str; 4] = ["velocity-verlet", "bdf2", "implicit-midpoint", "newmark"];
+const SECOND: [&str; 5] = [
+    "velocity-verlet",
+    "patch-verlet",
+    "bdf2",
+    "implicit-midpoint",
+    "newmark",
+];
 
 fn order_of(name: &str) -> f64 {
     if name.starts_with("runge") || name.starts_with("rk") {

@@ -1,0 +1,63 @@
+//! Vectors that fill a register.
+
+use toile_geometry::Vec3;
+
+/// A vector with a fourth component that stays zero, so that it fills a register and never lies
+/// across two cache lines.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(32))]
+pub struct Lane([f64; 4]);
+
+impl From<Vec3> for Lane {
+    fn from(v: Vec3) -> Self {
+        Self([v.x, v.y, v.z, 0.0])
+    }
+}
+
+impl From<Lane> for Vec3 {
+    fn from(Lane([x, y, z, _]): Lane) -> Self {
+        Self::new(x, y, z)
+    }
+}
+
+impl Lane {
+    /// This plus `s` times another.
+    #[inline(always)]
+    pub fn add_scaled(self, b: Self, s: f64) -> Self {
+        let (a, b) = (self.0, b.0);
+        Self([
+            b[0].mul_add(s, a[0]),
+            b[1].mul_add(s, a[1]),
+            b[2].mul_add(s, a[2]),
+            b[3].mul_add(s, a[3]),
+        ])
+    }
+
+    /// This less another.
+    #[inline(always)]
+    pub fn minus(self, b: Self) -> Self {
+        let (a, b) = (self.0, b.0);
+        Self([a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]])
+    }
+
+    /// This plus another.
+    #[inline(always)]
+    pub fn plus(self, b: Self) -> Self {
+        let (a, b) = (self.0, b.0);
+        Self([a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]])
+    }
+
+    /// `s` times this.
+    #[inline(always)]
+    pub fn scaled(self, s: f64) -> Self {
+        let a = self.0;
+        Self([a[0] * s, a[1] * s, a[2] * s, a[3] * s])
+    }
+
+    /// The inner product with another.
+    #[inline(always)]
+    pub fn dot(self, b: Self) -> f64 {
+        let (a, b) = (self.0, b.0);
+        a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
+    }
+}

@@ -1,0 +1,281 @@
+//! Contact within substeps: planes measured every few of them, the laws of
+//! [`crate::laws::contact`] at every one.
+
+use super::Lane;
+use crate::model::FIELD_REACH;
+use crate::{Model, State};
+use rayon::prelude::*;
+use toile_geometry::Vec3;
+
+/// A vertex near a surface for some substeps.
+#[derive(Clone, Copy)]
+pub struct Touching {
+    /// The vertex.
+    pub vertex: u32,
+    /// Its place among those watched.
+    place: u32,
+    /// Outward unit normal of the surface.
+    normal: Lane,
+    /// Where the offset surface lies along the normal [m].
+    level: f64,
+    /// Normal stiffness [N/m]; along the surface half of it.
+    stiffness: f64,
+    friction: f64,
+    /// Where it sticks to the surface [m]; meaningless while no force presses it.
+    anchor: Lane,
+    /// Normal force [N].
+    force: f64,
+}
+
+/// Stiffness along a surface by that across it, as for every other method.
+const TANGENTIAL: f64 = 0.5;
+
+impl Touching {
+    /// The force of push and friction at a place [N]; its anchor slides after it.
+    ///
+    /// Push: N = k d of depth d. Friction: a spring to the anchor, k_t s, held to mu N by sliding
+    /// the anchor (return mapping, Wriggers 2006, section 5.2).
+    #[inline(always)]
+    pub fn press(&mut self, place: Lane) -> Lane {
+        let depth = self.level - self.normal.dot(place);
+        if depth <= 0.0 {
+            self.force = 0.0;
+            return Lane::default();
+        }
+        if self.force == 0.0 {
+            self.anchor = place;
+        }
+        self.force = self.stiffness * depth;
+        let away = place.minus(self.anchor);
+        let slip = away.add_scaled(self.normal, -away.dot(self.normal));
+        let length = slip.dot(slip).sqrt();
+        let (tangential, most) = (TANGENTIAL * self.stiffness, self.friction * self.force);
+        let kept = if tangential * length > most {
+            most / (tangential * length)
+        } else {
+            1.0
+        };
+        self.anchor = place.add_scaled(slip, -kept);
+        self.normal
+            .scaled(self.force)
+            .add_scaled(slip, -tangential * kept)
+    }
+
+    /// Energy of its push and friction [J].
+    fn energy(&self, place: Lane) -> f64 {
+        let depth = (self.level - self.normal.dot(place)).max(0.0);
+        let slip = self.friction * self.stiffness * depth;
+        0.5 * self.stiffness * depth * depth + 0.5 * slip * slip / (TANGENTIAL * self.stiffness)
+    }
+}
+
+/// Vertices that may meet a surface, and how far each was when last measured.
+#[derive(Default)]
+pub struct Touch {
+    places: Vec<Sample>,
+    /// Those near enough to meet it before the next look.
+    pub near: Vec<Touching>,
+    chunks: Vec<Vec<Touching>>,
+}
+
+#[derive(Clone, Copy)]
+struct Sample {
+    vertex: u32,
+    number: u32,
+    stiffness: f64,
+    friction: f64,
+    offset: f64,
+    last: Vec3,
+    /// Distance beyond the offset at `last` [m]: until the vertex has moved that far it is free.
+    clearance: f64,
+    /// Distance [m] and outward normal at `last`; nothing where there is none.
+    plane: Option<(f64, Vec3)>,
+    /// Where it sticks to a surface [m] and how much presses it there [N].
+    anchor: Lane,
+    force: f64,
+}
+
+/// Below this slope of the distance no direction leads out.
+const FLAT_SLOPE: f64 = 0.05;
+
+/// How far a vertex may move [m] before its surface is measured again: on a limb of 30 mm radius
+/// the plane is then 1 um off.
+const PLANE_REACH: f64 = 0.25e-3;
+
+/// Nearer than this to the offset a vertex is watched however slow it is [m].
+const WATCHED: f64 = 1e-3;
+
+/// Nearer than this to a surface its smooth distance is asked, not the exact one [m].
+const SMOOTH_WITHIN: f64 = 0.012;
+
+/// Vertices looked at by one task.
+const CHUNK: usize = 1024;
+
+impl Touch {
+    /// Takes over the vertices of a model and what a state remembers of their contacts.
+    pub fn start(&mut self, model: &Model, state: &State) {
+        self.places.clear();
+        if model.colliders.is_empty() {
+            self.near.clear();
+            return;
+        }
+        for (number, sample) in model.samples.iter().enumerate() {
+            let vertex = sample.vertices[0];
+            if sample.triangle.is_some() || model.pinned[vertex as usize] {
+                continue;
+            }
+            let anchor = state.anchors[number];
+            self.places.push(Sample {
+                vertex,
+                number: number as u32,
+                stiffness: model.contact.stiffness * sample.area,
+                friction: if model.contact.friction {
+                    sample.friction
+                } else {
+                    0.0
+                },
+                offset: model.contact.offset + sample.extra_offset,
+                last: Vec3::repeat(f64::INFINITY),
+                clearance: 0.0,
+                plane: None,
+                anchor: anchor.map_or(Lane::default(), Lane::from),
+                force: if anchor.is_some() {
+                    state.normal_forces[number]
+                } else {
+                    0.0
+                },
+            });
+        }
+    }
+
+    /// Hands over what a state remembers of its contacts.
+    pub fn finish(&self, state: &mut State) {
+        state.anchors.fill(None);
+        state.normal_forces.fill(0.0);
+        for sample in self.places.iter().filter(|sample| sample.force > 0.0) {
+            state.anchors[sample.number as usize] = Some(sample.anchor.into());
+            state.normal_forces[sample.number as usize] = sample.force;
+        }
+    }
+
+    /// Finds the vertices that can meet a surface within `time` [s].
+    pub fn look(&mut self, model: &Model, positions: &[Lane], velocities: &[Lane], time: f64) {
+        if self.places.is_empty() {
+            return;
+        }
+        self.chunks
+            .resize_with(self.places.len().div_ceil(CHUNK), Vec::new);
+        self.places
+            .par_chunks_mut(CHUNK)
+            .zip(&mut self.chunks)
+            .enumerate()
+            .for_each(|(chunk, (samples, near))| {
+                near.clear();
+                for (k, sample) in samples.iter_mut().enumerate() {
+                    let at = sample.vertex as usize;
+                    if let Some(contact) = sample.near(model, positions[at], velocities[at], time) {
+                        near.push(Touching {
+                            place: (chunk * CHUNK + k) as u32,
+                            ..contact
+                        });
+                    }
+                }
+            });
+        self.near.clear();
+        for chunk in &self.chunks {
+            self.near.extend_from_slice(chunk);
+        }
+    }
+
+    /// Takes back what a contact has become after some substeps.
+    pub fn take_back(&mut self, contact: &Touching) {
+        let sample = &mut self.places[contact.place as usize];
+        (sample.anchor, sample.force) = (contact.anchor, contact.force);
+    }
+
+    /// Energy of the contacts [J].
+    pub fn energy(&self, positions: &[Lane]) -> f64 {
+        let energies = self
+            .near
+            .iter()
+            .map(|c| c.energy(positions[c.vertex as usize]));
+        energies.sum()
+    }
+
+    /// What a step undone must put back.
+    pub fn remember(&self, into: &mut Vec<(Lane, f64)>) {
+        into.clear();
+        into.extend(self.places.iter().map(|s| (s.anchor, s.force)));
+    }
+
+    /// Puts it back.
+    pub fn recall(&mut self, from: &[(Lane, f64)]) {
+        for (sample, &(anchor, force)) in self.places.iter_mut().zip(from) {
+            (sample.anchor, sample.force) = (anchor, force);
+        }
+    }
+}
+
+impl Sample {
+    fn near(&mut self, model: &Model, place: Lane, velocity: Lane, time: f64) -> Option<Touching> {
+        let place = Vec3::from(place);
+        let moved = (place - self.last).norm();
+        // Twice the way at its present speed: it may be pushed on meanwhile.
+        let way = 2.0 * time * Vec3::from(velocity).norm() + WATCHED;
+        if moved.is_finite() && moved + way < self.clearance {
+            self.force = 0.0;
+            return None;
+        }
+        if !moved.is_finite() || moved >= PLANE_REACH {
+            self.measure(model, place);
+        }
+        let Some((distance, n)) = self.plane else {
+            self.force = 0.0;
+            return None;
+        };
+        let above = distance - self.offset + (place - self.last).dot(&n);
+        if above > way {
+            self.force = 0.0;
+            return None;
+        }
+        Some(Touching {
+            vertex: self.vertex,
+            place: 0,
+            normal: n.into(),
+            level: place.dot(&n) - above,
+            stiffness: self.stiffness,
+            friction: self.friction,
+            anchor: self.anchor,
+            force: self.force,
+        })
+    }
+
+    /// Measures the nearest surface at a place.
+    fn measure(&mut self, model: &Model, place: Vec3) {
+        let was_near = self.plane.is_some();
+        (self.last, self.plane, self.clearance) = (place, None, FIELD_REACH);
+        for collider in &model.colliders {
+            // Far away the exact distance is enough, and spares sampling the smooth one there.
+            if !was_near {
+                let exact = collider.surface.closest_point(place, FIELD_REACH);
+                let distance = exact.map_or(FIELD_REACH, |found| found.signed_distance);
+                if distance > self.offset + SMOOTH_WITHIN {
+                    self.clearance = self.clearance.min(0.9 * (distance - self.offset));
+                    continue;
+                }
+            }
+            let Some((distance, slope)) = collider.field.distance(place) else {
+                continue;
+            };
+            // The smooth distance may exceed the exact one by a fraction of a millimetre.
+            let beyond = 0.9 * (distance - self.offset);
+            self.clearance = self.clearance.min(beyond.max(0.0));
+            if distance < self.offset + SMOOTH_WITHIN
+                && self.plane.is_none_or(|(nearest, _)| distance < nearest)
+                && let Some(normal) = slope.try_normalize(FLAT_SLOPE)
+            {
+                self.plane = Some((distance, normal));
+            }
+        }
+    }
+}
