@@ -4,7 +4,7 @@
 use crate::{SurfaceTree, Vec3};
 use std::sync::{Arc, OnceLock};
 
-/// Nodes of a block along each axis.
+/// Nodes of a block along each axis, a power of two.
 const SIDE: usize = 8;
 
 /// Blocks a field may be divided into; the cells grow until it has no more (a floor of a hundred
@@ -29,6 +29,14 @@ pub struct DistanceField {
     blocks: [usize; 3],
     /// Values of each block; none where it is far outside.
     samples: Vec<OnceLock<Option<Box<[f64]>>>>,
+}
+
+/// A triangle that may hold the closest point, in a ball round its centre.
+#[derive(Clone, Copy)]
+struct Candidate {
+    triangle: u32,
+    centre: Vec3,
+    radius: f64,
 }
 
 impl DistanceField {
@@ -74,28 +82,89 @@ impl DistanceField {
         if middle.signed_distance > near {
             return None;
         }
-        let mut values = Vec::with_capacity(SIDE * SIDE * SIDE);
-        // A neighbour's distance bounds the next one's: distance changes by at most the step.
-        let mut bound = f64::INFINITY;
-        for k in 0..SIDE {
-            for j in 0..SIDE {
-                for i in 0..SIDE {
-                    // Every second row runs back, so that each step is to a neighbour.
-                    let i = if j.is_multiple_of(2) { i } else { SIDE - 1 - i };
-                    let j = if k.is_multiple_of(2) { j } else { SIDE - 1 - j };
-                    let place = corner + Vec3::new(i as f64, j as f64, k as f64) * self.cell;
-                    let closest = self
-                        .surface
-                        .closest_point(place, bound)
-                        .or_else(|| self.surface.closest_point(place, f64::INFINITY));
-                    let distance = closest.map_or(f64::INFINITY, |c| c.signed_distance);
-                    bound = distance.abs() + 1.001 * self.cell + 1e-9;
-                    values.push((i + SIDE * (j + SIDE * k), distance));
+        let mut values = vec![0.0; SIDE * SIDE * SIDE].into_boxed_slice();
+        // Whatever is closest to any node is within the distance from the middle and the way
+        // there and back.
+        let reach = middle.signed_distance.abs() + width * 3f64.sqrt();
+        let mut near = self.surface.near_box(centre, centre, reach);
+        near.sort_unstable();
+        let candidates: Vec<Candidate> = near.into_iter().map(|t| self.candidate(t)).collect();
+        self.fill(corner, [0; 3], SIDE, &candidates, &mut values);
+        Some(values)
+    }
+
+    fn candidate(&self, triangle: u32) -> Candidate {
+        let corners = self.surface.mesh().corners(triangle as usize);
+        let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let radius = corners.map(|p| (p - centre).norm());
+        Candidate {
+            triangle,
+            centre,
+            radius: radius.into_iter().fold(0.0, f64::max),
+        }
+    }
+
+    /// Fills a cube of `side` nodes from `first` on: of the candidates those go on to its eighths
+    /// that may be closest to any of its nodes.
+    fn fill(
+        &self,
+        corner: Vec3,
+        first: [usize; 3],
+        side: usize,
+        candidates: &[Candidate],
+        values: &mut [f64],
+    ) {
+        let reach = 0.5 * (side - 1) as f64 * self.cell;
+        let middle = corner + Vec3::from(first.map(|k| k as f64)) * self.cell + Vec3::repeat(reach);
+        // The centre of a triangle is a point of it, so no closest point is farther.
+        let mut nearest = (f64::INFINITY, 0);
+        for (at, candidate) in candidates.iter().enumerate() {
+            let distance = (candidate.centre - middle).norm_squared();
+            if distance < nearest.0 {
+                nearest = (distance, at);
+            }
+        }
+        if side == 1 {
+            let [i, j, k] = first;
+            values[i + SIDE * (j + SIDE * k)] = self.closest_of(candidates, nearest.1, middle);
+            return;
+        }
+        // There and back, and what rounding may add.
+        let least = nearest.0.sqrt();
+        let most = least + 2.0 * reach * 3f64.sqrt() + 1e-9 * (least + self.cell);
+        let kept: Vec<Candidate> = candidates
+            .iter()
+            .filter(|c| (c.centre - middle).norm_squared() <= (most + c.radius).powi(2))
+            .copied()
+            .collect();
+        let half = side / 2;
+        for eighth in 0..8 {
+            let next = [0, 1, 2].map(|axis| first[axis] + half * (eighth >> axis & 1));
+            self.fill(corner, next, half, &kept, values);
+        }
+    }
+
+    /// Signed distance from the closest of some triangles, the one at `guess` tried first.
+    fn closest_of(&self, candidates: &[Candidate], guess: usize, point: Vec3) -> f64 {
+        let Some(guess) = candidates.get(guess) else {
+            return f64::INFINITY;
+        };
+        let mut least = (
+            self.surface.distance_to(guess.triangle, point),
+            guess.triangle,
+        );
+        for candidate in candidates {
+            let most = least.0 + candidate.radius;
+            if candidate.triangle != guess.triangle
+                && (candidate.centre - point).norm_squared() < most * most
+            {
+                let distance = self.surface.distance_to(candidate.triangle, point);
+                if distance < least.0 {
+                    least = (distance, candidate.triangle);
                 }
             }
         }
-        values.sort_unstable_by_key(|&(at, _)| at);
-        Some(values.into_iter().map(|(_, distance)| distance).collect())
+        self.surface.closest_on(least.1, point).signed_distance
     }
 
     fn node(&self, at: [usize; 3]) -> Option<f64> {
@@ -253,6 +322,49 @@ mod tests {
                 "{last:?} {gradient:?}"
             );
             last = Some(gradient);
+        }
+    }
+
+    #[test]
+    fn nodes_hold_the_exact_distance() {
+        let surface = Arc::new(SurfaceTree::new(ball(0.05, 3)));
+        let field = DistanceField::new(surface.clone(), 0.004, 0.02);
+        let mut tried = 0;
+        for block in (0..field.samples.len()).step_by(3) {
+            let Some(values) = field.sample_block(block) else {
+                continue;
+            };
+            let corner = field.block_corner(block);
+            for (at, &value) in values.iter().enumerate().step_by(7) {
+                let node = [at % SIDE, at / SIDE % SIDE, at / (SIDE * SIDE)];
+                let place = corner + Vec3::from(node.map(|k| k as f64)) * field.cell;
+                let exact = surface.closest_point(place, f64::INFINITY).unwrap();
+                assert!((value - exact.signed_distance).abs() < 1e-12, "{place}");
+                tried += 1;
+            }
+        }
+        assert!(tried > 500, "{tried}");
+    }
+
+    #[test]
+    fn over_a_plane_it_is_the_height() {
+        let plane = TriangleMesh {
+            positions: [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)]
+                .map(|(x, z)| Vec3::new(x, 0.0, z))
+                .to_vec(),
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+        };
+        let field = DistanceField::new(Arc::new(SurfaceTree::new(plane)), 0.006, 0.03);
+        for k in 0..200 {
+            let t = f64::from(k) / 200.0;
+            let place = Vec3::new(
+                0.1 * t - 0.02,
+                0.02 * (7.0 * t).sin().abs(),
+                0.06 * (1.0 - t),
+            );
+            let (distance, slope) = field.distance(place).unwrap();
+            assert!((distance - place.y).abs() < 1e-12, "{place} {distance}");
+            assert!((slope - Vec3::y()).norm() < 1e-10, "{slope}");
         }
     }
 }

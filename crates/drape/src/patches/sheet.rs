@@ -14,9 +14,15 @@ use toile_geometry::Vec3;
 /// Width of a patch's halo; it lasts half as many substeps.
 const RINGS: usize = 8;
 
+/// The same for a small cloth, of which a wide halo would be a large part.
+const FEW_RINGS: usize = 4;
+
+/// Vertices below which a cloth is small.
+const SMALL: usize = 2500;
+
 /// Vertices from which on a cloth is cut into patches: below, the halo would cost more than a
 /// second core brings.
-const CUT_FROM: usize = 3000;
+const CUT_FROM: usize = 800;
 
 /// Vertices of a patch at the most: two megabytes of positions, velocities and triangles.
 const PATCH: usize = 12_000;
@@ -30,6 +36,8 @@ pub struct Sheet {
     pub frequency: f64,
     key: Key,
     patches: Vec<Patch>,
+    /// Width of their halos.
+    rings: usize,
     touch: Touch,
     positions: Vec<Lane>,
     velocities: Vec<Lane>,
@@ -79,7 +87,11 @@ impl Sheet {
 
     /// A sheet of `count` patches.
     fn cut_into(model: &Model, count: usize) -> Self {
-        let rings = if count > 1 { RINGS } else { 0 };
+        let rings = match count {
+            1 => 0,
+            _ if model.vertex_count() < SMALL => FEW_RINGS,
+            _ => RINGS,
+        };
         let patches: Vec<Patch> = cut(&model.layout, count)
             .into_iter()
             .map(|owned| Patch::new(model, owned, rings))
@@ -97,6 +109,7 @@ impl Sheet {
                 contact: contact_frequency(model),
             },
             patches,
+            rings,
             touch: Touch::default(),
             positions: Vec::new(),
             velocities: Vec::new(),
@@ -164,7 +177,7 @@ impl Sheet {
     pub fn advance(&mut self, model: &Model, h: f64, count: usize) {
         let mut most = match self.patches.len() {
             1 => count,
-            _ => RINGS / SPOILED,
+            _ => self.rings / SPOILED,
         };
         if !model.colliders.is_empty() {
             most = most.min((LOOK_STEP / h) as usize).max(1);
