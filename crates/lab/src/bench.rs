@@ -2,6 +2,7 @@
 
 use crate::clock::Clock;
 use crate::scenes::card;
+use crate::square::{SIDES, Square};
 use crate::{LabError, subdivided};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -36,12 +37,17 @@ pub struct Timed {
 enum Work {
     /// Ten frames of 1/60 s of the hang scene by a method, the mesh divided so many times.
     Frames(MethodKind, usize),
+    /// Forty frames of 1/60 s of a square of a metre with so many vertices along a side.
+    Square(Square, u32, MethodKind),
     /// The shirt to rest, its mesh divided so many times, to a net force over weight.
     Rest(usize, f64),
 }
 
 /// Frames of a benchmark of motion.
 const FRAMES: usize = 10;
+
+/// Frames of a square, long enough to swing down or to lie on the ball.
+const SQUARE_FRAMES: usize = 40;
 
 /// The benchmarks by name: those of motion for every method there is.
 fn all() -> Vec<(String, Work)> {
@@ -54,6 +60,16 @@ fn all() -> Vec<(String, Work)> {
         "frame-13k-implicit-euler".to_owned(),
         Work::Frames(MethodKind::ImplicitEuler, 2),
     ));
+    for (scene, square) in Square::ALL {
+        for side in SIDES {
+            for (name, kind) in MethodKind::ALL {
+                if !kind.is_equilibrium() {
+                    let work = Work::Square(square, side, kind);
+                    list.push((format!("{scene}-{side}-{name}"), work));
+                }
+            }
+        }
+    }
     list.push(("rest-shirt-1k".to_owned(), Work::Rest(0, 1e-2)));
     list.push(("rest-shirt-6k".to_owned(), Work::Rest(1, 1e-3)));
     list.push(("rest-shirt-22k".to_owned(), Work::Rest(2, 1e-3)));
@@ -66,8 +82,14 @@ pub fn bench_names() -> Vec<String> {
     all().into_iter().map(|(name, _)| name).collect()
 }
 
-/// Those run when none is named: what takes seconds, not minutes.
-const LONG: [&str; 2] = ["rest-shirt-22k", "rest-shirt-90k"];
+/// Whether a benchmark is run only when it is named: what takes more than seconds, and the squares
+/// by other methods than the fastest.
+fn is_long(name: &str, work: Work) -> bool {
+    match work {
+        Work::Square(_, side, kind) => side > SIDES[1] || kind != MethodKind::PatchVerlet,
+        _ => matches!(name, "rest-shirt-22k" | "rest-shirt-90k"),
+    }
+}
 
 /// Threads a benchmark is given in turn.
 const THREADS: [usize; 2] = [1, 2];
@@ -93,8 +115,8 @@ pub fn bench(names: &[String], watcher: &mut dyn Watcher) -> Result<Vec<Timed>, 
     }
     let chosen: Vec<&(String, Work)> = list
         .iter()
-        .filter(|(name, _)| match names.is_empty() {
-            true => !LONG.contains(&name.as_str()),
+        .filter(|(name, work)| match names.is_empty() {
+            true => !is_long(name, *work),
             false => names.contains(name),
         })
         .collect();
@@ -137,33 +159,50 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
             }
             let (model, state) = card.model(&cloth, &card.cloths[1].pins)?;
             result.vertices = model.vertex_count();
-            frames(&model, state, kind, &mut result);
+            frames(&model, state, (kind, FRAMES), &mut result);
+        }
+        Work::Square(square, side, kind) => {
+            let (model, state) = square.build(side)?;
+            result.vertices = model.vertex_count();
+            frames(&model, state, (kind, SQUARE_FRAMES), &mut result);
         }
         Work::Rest(cuts, residual) => rest(cuts, residual, &mut result)?,
     }
     Ok(result)
 }
 
-fn frames(model: &Model, mut state: State, kind: MethodKind, result: &mut Timed) {
+fn frames(model: &Model, mut state: State, (kind, count): (MethodKind, usize), result: &mut Timed) {
     let mut method = MethodSettings::from(kind).build();
     let step = 1.0 / 60.0;
     // The first frame sizes the workspace.
+    let mut substeps = 0;
     let mut clock = Clock::start();
-    for frame in 0..=FRAMES {
+    for frame in 0..=count {
         if frame == 1 {
             result
                 .counted
                 .insert("first_frame_s".to_owned(), clock.wall());
             clock = Clock::start();
         }
-        if let Err(error) = method.advance(model, &mut state, step) {
-            result.failure = Some(error.to_string());
-            break;
+        match method.advance(model, &mut state, step) {
+            Ok(report) => substeps = report.iterations,
+            Err(error) => {
+                result.failure = Some(error.to_string());
+                break;
+            }
         }
     }
     result.wall_s = clock.wall();
     result.cpu_s = clock.cpu();
-    let per_frame = 1e3 * result.wall_s / FRAMES as f64;
+    let iterations = result.counted.entry("iterations_last_frame".to_owned());
+    iterations.or_insert(substeps as f64);
+    if let Some(cpu) = result.cpu_s {
+        let per_frame = 1e3 * cpu / count as f64;
+        result
+            .counted
+            .insert("cpu_ms_per_frame".to_owned(), per_frame);
+    }
+    let per_frame = 1e3 * result.wall_s / count as f64;
     result.counted.insert("ms_per_frame".to_owned(), per_frame);
 }
 

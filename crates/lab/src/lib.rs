@@ -17,6 +17,7 @@ mod outline;
 mod root;
 mod scenes;
 mod settle;
+mod square;
 mod stability;
 mod stability_report;
 
