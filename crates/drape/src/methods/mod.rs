@@ -9,7 +9,6 @@ mod forward_euler;
 mod frequency;
 mod guard;
 mod implicit;
-mod implicit_euler;
 mod lbfgs;
 mod metric;
 mod newton_solver;
@@ -222,7 +221,9 @@ impl MethodSettings {
                 Guarded::boxed(Implicit::<rules::Euler, BlockDescent<true>>::new(self))
             }
             MethodKind::DynamicRelaxation => Guarded::boxed(relaxation::Relaxation::new(self)),
-            MethodKind::ImplicitEuler => Guarded::boxed(implicit_euler::ImplicitEuler::new(self)),
+            MethodKind::ImplicitEuler => {
+                Guarded::boxed(Implicit::<rules::Euler, Newton>::new(self))
+            }
             MethodKind::Rest => Guarded::boxed(rest::Rest::new(self)),
             MethodKind::Xpbd => Guarded::boxed(crate::xpbd::XpbdMethod::new(self)),
         }
