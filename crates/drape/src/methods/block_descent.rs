@@ -204,7 +204,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
     /// Puts the state at the lowest of where it is, where inertia takes it, and that with gravity.
     fn start(&self, problem: &Problem, state: &mut State, workspace: &mut Workspace) {
         let model = problem.model;
-        let near = !model.colliders.is_empty();
+        let farthest = problem.longest_move(LONGEST_MOVE);
         let here = state.positions.clone();
         let lowest = |workspace: &mut Workspace, state: &State, x: &[Vec3]| {
             workspace.contacts.refresh(model, state, x);
@@ -220,7 +220,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
                 }
                 longest = longest.max((*x - here[v]).norm());
             }
-            if near && longest > LONGEST_MOVE {
+            if longest > farthest {
                 continue;
             }
             let energy = lowest(workspace, state, &there);
@@ -262,11 +262,7 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
         }
         let first = state.positions.clone();
         self.start(problem, state, workspace);
-        let longest = if model.colliders.is_empty() {
-            f64::INFINITY
-        } else {
-            LONGEST_MOVE
-        };
+        let longest = problem.longest_move(LONGEST_MOVE);
         let mut report = NewtonReport {
             sound: true,
             fraction: 1.0,

@@ -2,7 +2,7 @@
 
 use super::implicit::Problem;
 use crate::sparse::dot;
-use crate::{State, Workspace};
+use crate::{NewtonReport, State, Workspace};
 use toile_geometry::Vec3;
 
 /// Sufficient decrease (Armijo's constant; Nocedal and Wright 2006, 3.1).
@@ -12,7 +12,7 @@ const DECREASE: f64 = 1e-4;
 const HALVINGS: usize = 16;
 
 /// Longest move of a vertex in one iteration near solid surfaces [m].
-const LONGEST_MOVE: f64 = 0.05;
+pub const LONGEST_MOVE: f64 = 0.05;
 
 /// Contacts and gradient at the state's positions; returns the gradient's norm [N].
 pub fn slope(problem: &Problem, state: &State, workspace: &mut Workspace) -> f64 {
@@ -22,11 +22,41 @@ pub fn slope(problem: &Problem, state: &State, workspace: &mut Workspace) -> f64
     dot(&workspace.gradient, &workspace.gradient).sqrt()
 }
 
+/// Iterates until the gradient is below the tolerance. `iterate` lowers the potential from the
+/// gradient in the workspace and returns the share of its step that was taken; where nothing
+/// lowers it any more the descent ends, a failure only when nothing ever did.
+pub fn descend(
+    problem: &Problem,
+    state: &mut State,
+    workspace: &mut Workspace,
+    mut iterate: impl FnMut(&mut State, &mut Workspace, usize) -> f64,
+) -> NewtonReport {
+    let mut report = NewtonReport {
+        sound: true,
+        ..NewtonReport::default()
+    };
+    while report.iterations < problem.limits.iterations {
+        report.gradient = slope(problem, state, workspace);
+        report.sound = report.gradient.is_finite();
+        if report.gradient <= problem.limits.tolerance || !report.sound {
+            break;
+        }
+        report.fraction = iterate(state, workspace, report.iterations);
+        if report.fraction == 0.0 {
+            report.sound = report.iterations > 0;
+            break;
+        }
+        report.iterations += 1;
+    }
+    report
+}
+
 /// Shortens a direction so that no vertex near solid surfaces moves too far to find its contact.
 pub fn shorten(problem: &Problem, direction: &mut [Vec3]) {
-    let longest = direction.iter().map(Vec3::norm_squared).fold(0.0, f64::max);
-    if !problem.model.colliders.is_empty() && longest > LONGEST_MOVE * LONGEST_MOVE {
-        let scale = LONGEST_MOVE / longest.sqrt();
+    let moved = direction.iter().map(Vec3::norm_squared).fold(0.0, f64::max);
+    let longest = problem.longest_move(LONGEST_MOVE);
+    if moved > longest * longest {
+        let scale = longest / moved.sqrt();
         for d in direction {
             *d *= scale;
         }

@@ -56,6 +56,18 @@ pub struct Problem<'a> {
     pub limits: Limits,
 }
 
+impl Problem<'_> {
+    /// Longest move of a vertex in one iteration [m]: `near` where there are solid surfaces, whose
+    /// contact is found within 10 mm only, so that a longer one may pass through a limb.
+    pub fn longest_move(&self, near: f64) -> f64 {
+        if self.model.colliders.is_empty() {
+            f64::INFINITY
+        } else {
+            near
+        }
+    }
+}
+
 /// A way to lower Phi.
 pub trait Solver: Default + Send {
     /// The method's name, for errors.

@@ -1,6 +1,6 @@
 //! L-BFGS that starts from the metric of projective dynamics.
 
-use super::descent::{Line, search, shorten, slope};
+use super::descent::{Line, descend, search, shorten};
 use super::implicit::{Limits, Problem, Solver};
 use super::metric::Metric;
 use crate::sparse::dot;
@@ -85,13 +85,24 @@ impl Lbfgs {
         }
         self.before = q;
     }
-}
 
-fn line<'a>(direction: &'a [Vec3], energy: &'a mut Option<f64>) -> Line<'a> {
-    Line {
-        direction,
-        shares: usize::MAX,
-        energy,
+    /// A step along the direction for the present gradient; the share of it that was taken.
+    fn step(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        workspace: &mut Workspace,
+        energy: &mut Option<f64>,
+    ) -> f64 {
+        self.aim(problem);
+        shorten(problem, &mut self.direction);
+        self.before.clone_from(&state.positions);
+        let line = Line {
+            direction: &self.direction,
+            shares: usize::MAX,
+            energy,
+        };
+        search(problem, state, workspace, line)
     }
 }
 
@@ -113,49 +124,22 @@ impl Solver for Lbfgs {
         self.direction
             .resize(problem.model.vertex_count(), Vec3::zeros());
         self.pairs.clear();
-        let mut report = NewtonReport {
-            sound: self.metric.fit(problem.model, problem.weight),
-            ..NewtonReport::default()
-        };
+        if !self.metric.fit(problem.model, problem.weight) {
+            return NewtonReport::default();
+        }
         let mut energy = None;
-        while report.sound && report.iterations < problem.limits.iterations {
-            report.gradient = slope(problem, state, workspace);
-            report.sound = report.gradient.is_finite();
-            if report.gradient <= problem.limits.tolerance || !report.sound {
-                break;
-            }
-            if report.iterations > 0 {
+        descend(problem, state, workspace, |state, workspace, iteration| {
+            if iteration > 0 {
                 self.learn(&state.positions, &workspace.gradient);
             }
             self.gradient.clone_from(&workspace.gradient);
-            self.aim(problem);
-            shorten(problem, &mut self.direction);
-            self.before.clone_from(&state.positions);
-            report.fraction = search(
-                problem,
-                state,
-                workspace,
-                line(&self.direction, &mut energy),
-            );
-            if report.fraction == 0.0 && !self.pairs.is_empty() {
-                // The memory misleads: once more from the metric alone.
-                self.pairs.clear();
-                self.aim(problem);
-                shorten(problem, &mut self.direction);
-                self.before.clone_from(&state.positions);
-                report.fraction = search(
-                    problem,
-                    state,
-                    workspace,
-                    line(&self.direction, &mut energy),
-                );
+            let share = self.step(problem, state, workspace, &mut energy);
+            if share > 0.0 || self.pairs.is_empty() {
+                return share;
             }
-            if report.fraction == 0.0 {
-                report.sound = report.iterations > 0;
-                break;
-            }
-            report.iterations += 1;
-        }
-        report
+            // The memory misleads: once more from the metric alone.
+            self.pairs.clear();
+            self.step(problem, state, workspace, &mut energy)
+        })
     }
 }

@@ -1,13 +1,10 @@
 //! Lowering the potential by Newton's method: to its minimum, or by one linear solve.
 
+use super::descent::LONGEST_MOVE;
 use super::implicit::{Limits, Problem, Solver};
 use crate::laws::membrane::Curvature;
 use crate::sparse::dot;
 use crate::{LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State, Workspace};
-
-/// Longest move of a vertex in one iteration near solid surfaces [m]: contact is found within
-/// 10 mm only, so a longer one may pass through a limb.
-const LONGEST_MOVE: f64 = 0.05;
 
 /// Block conjugate gradients, as [`crate::step_in_time`] uses them.
 const LINEAR: LinearSolver = LinearSolver::Iterative(PcgLimits {
@@ -74,11 +71,7 @@ impl Solver for Newton {
         let settings = NewtonSettings {
             iterations: problem.limits.iterations,
             tolerance: problem.limits.tolerance,
-            longest_move: if problem.model.colliders.is_empty() {
-                f64::INFINITY
-            } else {
-                LONGEST_MOVE
-            },
+            longest_move: problem.longest_move(LONGEST_MOVE),
             curvature,
             linear,
         };

@@ -1,6 +1,6 @@
 //! Projective dynamics as descent in a constant metric, with Anderson acceleration.
 
-use super::descent::{Line, search, shorten, slope};
+use super::descent::{Line, descend, search, shorten};
 use super::implicit::{Limits, Problem, Solver};
 use super::metric::Metric;
 use crate::sparse::dot;
@@ -178,25 +178,12 @@ impl Solver for Projective {
         self.step
             .resize(problem.model.vertex_count(), Vec3::zeros());
         self.forget();
-        let mut report = NewtonReport {
-            sound: self.metric.fit(problem.model, problem.weight),
-            ..NewtonReport::default()
-        };
-        let mut energy = None;
-        while report.sound && report.iterations < problem.limits.iterations {
-            report.gradient = slope(problem, state, workspace);
-            report.sound = report.gradient.is_finite();
-            if report.gradient <= problem.limits.tolerance || !report.sound {
-                break;
-            }
-            report.fraction = self.iterate(problem, state, workspace, &mut energy);
-            if report.fraction == 0.0 {
-                // Nothing lowers Phi any more: a failure only when nothing ever did.
-                report.sound = report.iterations > 0;
-                break;
-            }
-            report.iterations += 1;
+        if !self.metric.fit(problem.model, problem.weight) {
+            return NewtonReport::default();
         }
-        report
+        let mut energy = None;
+        descend(problem, state, workspace, |state, workspace, _| {
+            self.iterate(problem, state, workspace, &mut energy)
+        })
     }
 }
