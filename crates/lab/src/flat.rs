@@ -4,6 +4,7 @@ use crate::LabError;
 use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation,
 };
+use std::collections::BTreeMap;
 use toile_drape::{Cloth, Material};
 use toile_geometry::{Vec2, Vec3};
 
@@ -16,7 +17,7 @@ pub enum MeshKind {
     Alternating,
     /// Constrained Delaunay, refined to angles of 25 degrees and more.
     Delaunay,
-    /// The same with slivers planted in it: flat triangles a fiftieth of their edge high.
+    /// The same with slivers planted inside: flat triangles a fiftieth of their neighbour high.
     Slivers,
 }
 
@@ -197,12 +198,26 @@ pub fn disc(radius: f64, inner: f64, cell: f64) -> Result<Flat, LabError> {
     refined(points, edges, cell)
 }
 
-/// Plants a sliver into every seventh triangle: a point a fiftieth of an edge from its middle.
+/// Plants a sliver into every seventh triangle: a point a fiftieth of the height from the middle of
+/// an edge. The edge is one between two triangles: on the border such a triangle stays a cap (the
+/// model can exchange no edge there) and holds the border to its chord.
 fn with_slivers(mut flat: Flat) -> Flat {
+    let key = |a: u32, b: u32| [a.min(b), a.max(b)];
+    let mut uses: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+    for v in &flat.triangles {
+        for k in 0..3 {
+            *uses.entry(key(v[k], v[(k + 1) % 3])).or_default() += 1;
+        }
+    }
     let count = flat.triangles.len();
     for t in (3..count).step_by(7) {
-        let [a, b, c] = flat.triangles[t];
-        let [pa, pb, pc] = flat.triangles[t].map(|v| flat.points[v as usize]);
+        let v = flat.triangles[t];
+        let inside = |&k: &usize| uses.get(&key(v[k], v[(k + 1) % 3])) == Some(&2);
+        let Some(first) = (0..3).find(inside) else {
+            continue;
+        };
+        let [a, b, c] = [0, 1, 2].map(|k| v[(first + k) % 3]);
+        let [pa, pb, pc] = [a, b, c].map(|v| flat.points[v as usize]);
         let middle = (pa + pb) * 0.5;
         let new = flat.points.len() as u32;
         flat.points.push(middle + (pc - middle) * 0.02);
