@@ -69,10 +69,9 @@ impl Flat {
 pub(crate) const STRAIGHT: usize = 3;
 
 /// Whether a point is held where a strip of cells of a size is clamped at 0 [m]: up to half a cell
-/// before it, and half a cell behind it. What was planted between these two rows stays free: held
-/// at 0 it would forbid the curve that they leave open.
+/// behind it.
 pub(crate) fn clamped(x: f64, cell: f64) -> bool {
-    x < -0.49 * cell || (x - 0.5 * cell).abs() < 0.01 * cell
+    x < 0.51 * cell
 }
 
 /// A rectangle from `from` to `to` [m] in `cells` squares (or triangles of that size). The first
@@ -89,7 +88,11 @@ pub fn rectangle(
     match kind {
         MeshKind::Right | MeshKind::Alternating => Ok(grid(kind, from, to, cells)),
         MeshKind::Delaunay => delaunay(from, to, cells),
-        MeshKind::Slivers => Ok(with_slivers(delaunay(from, to, cells)?)),
+        MeshKind::Slivers => {
+            let cell = (to.x - from.x) / cells[0] as f64;
+            let clamp = from.x + STRAIGHT as f64 * cell;
+            Ok(with_slivers(delaunay(from, to, cells)?, clamp))
+        }
     }
 }
 
@@ -200,8 +203,9 @@ pub fn disc(radius: f64, inner: f64, cell: f64) -> Result<Flat, LabError> {
 
 /// Plants a sliver into every seventh triangle: a point a fiftieth of the height from the middle of
 /// an edge. The edge is one between two triangles: on the border such a triangle stays a cap (the
-/// model can exchange no edge there) and holds the border to its chord.
-fn with_slivers(mut flat: Flat) -> Flat {
+/// model can exchange no edge there) and holds the border to its chord. Columns before `clamp` [m]
+/// stay plain: a point between the two last held rows would be held to their chord.
+fn with_slivers(mut flat: Flat, clamp: f64) -> Flat {
     let key = |a: u32, b: u32| [a.min(b), a.max(b)];
     let mut uses: BTreeMap<[u32; 2], u32> = BTreeMap::new();
     for v in &flat.triangles {
@@ -218,6 +222,9 @@ fn with_slivers(mut flat: Flat) -> Flat {
         };
         let [a, b, c] = [0, 1, 2].map(|k| v[(first + k) % 3]);
         let [pa, pb, pc] = [a, b, c].map(|v| flat.points[v as usize]);
+        if pa.x.min(pb.x).min(pc.x) < clamp - 1e-9 {
+            continue;
+        }
         let middle = (pa + pb) * 0.5;
         let new = flat.points.len() as u32;
         flat.points.push(middle + (pc - middle) * 0.02);
