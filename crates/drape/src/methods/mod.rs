@@ -206,9 +206,9 @@ impl MethodSettings {
             MethodKind::SemiImplicitEuler => {
                 Guarded::boxed(Implicit::<rules::Euler, OneSolve>::new(self))
             }
-            MethodKind::Bdf2 => Guarded::boxed(Implicit::<rules::Bdf2, Newton>::new(self)),
+            MethodKind::Bdf2 => Guarded::boxed(Implicit::<rules::Bdf2, Newton<true>>::new(self)),
             MethodKind::ImplicitMidpoint => {
-                Guarded::boxed(Implicit::<rules::Midpoint, Newton>::new(self))
+                Guarded::boxed(Implicit::<rules::Midpoint, Newton<true>>::new(self))
             }
             MethodKind::ProjectiveDynamics => {
                 Guarded::boxed(Implicit::<rules::Euler, Projective>::new(self))
@@ -222,7 +222,7 @@ impl MethodSettings {
             }
             MethodKind::DynamicRelaxation => Guarded::boxed(relaxation::Relaxation::new(self)),
             MethodKind::ImplicitEuler => {
-                Guarded::boxed(Implicit::<rules::Euler, Newton>::new(self))
+                Guarded::boxed(Implicit::<rules::Euler, Newton<false>>::new(self))
             }
             MethodKind::Rest => Guarded::boxed(rest::Rest::new(self)),
             MethodKind::Xpbd => Guarded::boxed(crate::xpbd::XpbdMethod::new(self)),

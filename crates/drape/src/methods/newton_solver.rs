@@ -46,16 +46,20 @@ const ONE_SOLVE: LinearSolver = LinearSolver::Iterative(PcgLimits {
 });
 
 /// Newton's method with line search to the minimum: see [`Workspace::solve`].
+///
+/// Rules that extrapolate from the minimum (midpoint, BDF2) are `STRICT`: a step counts only when
+/// it was reached. Implicit Euler ends at the minimum itself: a step cut short lost more energy
+/// than it should, and is still sound.
 #[derive(Default)]
-pub struct Newton;
+pub struct Newton<const STRICT: bool>;
 
-impl Solver for Newton {
+impl<const STRICT: bool> Solver for Newton<STRICT> {
     const STAGE: &'static str = "implicit step";
     const LIMITS: Limits = Limits {
         iterations: 40,
         tolerance: 1e-8,
     };
-    const CONVERGES: bool = true;
+    const CONVERGES: bool = STRICT;
 
     fn lower(
         &mut self,
