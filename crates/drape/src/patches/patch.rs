@@ -242,7 +242,9 @@ impl Patch {
 
     #[inline(always)]
     fn add_membrane(&mut self, ring: usize) {
-        let (x, gradient) = (&self.positions[..], &mut self.gradient[..]);
+        // Of one length, so that an index is checked once.
+        let x = &self.positions[..];
+        let gradient = &mut self.gradient[..x.len()];
         let membranes = &self.membranes[..];
         for triangle in &self.triangles[..self.triangle_end[ring]] {
             let edges = triangle.edges(x);
