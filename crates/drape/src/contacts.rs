@@ -3,6 +3,7 @@
 use crate::laws::contact::{ContactLaw, ContactPlane};
 use crate::model::FIELD_REACH;
 use crate::{Model, State};
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
@@ -110,11 +111,13 @@ fn find(
         return;
     }
     let mut nearest: Option<(f64, Vec3)> = None;
+    let mut owner = None;
     for collider in &model.colliders {
         if let Some(found) = collider.field.distance(place)
             && nearest.is_none_or(|(distance, _)| found.0 < distance)
         {
             nearest = Some(found);
+            owner = Some(collider);
         }
     }
     let Some((distance, slope)) = nearest else {
@@ -132,11 +135,19 @@ fn find(
     if distance > reach || slope.norm() < FLAT_SLOPE {
         return;
     }
-    let n = slope.normalize();
+    let depth = offset - distance;
+    let bent = owner.filter(|_| depth > 0.0);
+    let [hollow, bulge] = bent
+        .and_then(|collider| collider.field.curvature(place))
+        .map_or([Matrix3::zeros(); 2], parts);
     let normal = model.contact.stiffness * sample.area;
     let plane = ContactPlane {
-        origin: place + n * (offset - distance),
-        normal: n,
+        point: place,
+        depth,
+        gradient: slope,
+        normal: slope.normalize(),
+        hollow,
+        bulge,
         anchor: state.anchors[at].unwrap_or(place),
         lagged_normal_force: state.normal_forces[at],
     };
@@ -155,4 +166,15 @@ fn find(
         plane,
         law,
     });
+}
+
+/// A symmetric matrix as the difference of two positive semidefinite ones: the one it lacks, the
+/// one it has.
+fn parts(matrix: Matrix3<f64>) -> [Matrix3<f64>; 2] {
+    let eigen = matrix.symmetric_eigen();
+    let part = |sign: f64| {
+        let kept = eigen.eigenvalues.map(|value| (sign * value).max(0.0));
+        eigen.eigenvectors * Matrix3::from_diagonal(&kept) * eigen.eigenvectors.transpose()
+    };
+    [part(-1.0), part(1.0)]
 }

@@ -3,6 +3,7 @@
 //! alike.
 
 use crate::measure::{Measures, measure};
+use crate::swing::SwingRun;
 use crate::{
     Carry, Cloth, Collider, ContactSettings, DrapeError, Model, RestRun, RestSettings, SewRun,
     SewSettings, State, Workspace, merge_map,
@@ -44,7 +45,9 @@ pub struct GarmentSetup {
 pub enum Stage {
     /// Elastics draw the panels together.
     Sewing,
-    /// The merged garment settles under gravity.
+    /// The merged garment swings under gravity until it is calm.
+    Swinging,
+    /// It settles to rest.
     Settling,
     /// At rest.
     Finished,
@@ -77,6 +80,7 @@ pub struct GarmentRun {
     workspace: Workspace,
     setup: GarmentSetup,
     sew: SewRun,
+    swing: Option<SwingRun>,
     rest: RestRun,
     stage: Stage,
     gap_before_merging: f64,
@@ -112,6 +116,7 @@ impl GarmentRun {
             target: Vec::new(),
             level: 0,
             state: State::default(),
+            swing: None,
             rest: RestRun::new(setup.rest),
             sew: SewRun::new(&mut model, Vec::new(), setup.sew),
             workspace: Workspace::default(),
@@ -186,7 +191,7 @@ impl GarmentRun {
     /// elastics of [`GarmentRun::model`] were changed from outside. While it is sewn nothing
     /// changes.
     pub fn unsettle(&mut self) {
-        if self.stage != Stage::Sewing {
+        if matches!(self.stage, Stage::Settling | Stage::Finished) {
             self.stage = Stage::Settling;
             self.warnings.clear();
             let settings = self.rest_settings();
@@ -199,7 +204,7 @@ impl GarmentRun {
         self.gap_before_merging
     }
 
-    /// Steps of sewing and of settling.
+    /// Steps of sewing and of settling; the swing is not counted.
     pub fn steps(&self) -> [usize; 2] {
         [
             self.steps[0] + self.sew.steps(),
@@ -229,10 +234,22 @@ impl GarmentRun {
                     self.merge()?;
                 }
             }
+            Stage::Swinging => self.swing()?,
             Stage::Settling => self.settle()?,
             Stage::Finished => {}
         }
         Ok(self.progress())
+    }
+
+    fn swing(&mut self) -> Result<(), DrapeError> {
+        let swing = (self.swing).get_or_insert_with(|| SwingRun::new(&self.model));
+        swing.advance(&self.model, &mut self.state)?;
+        self.share = self.share.max(0.5 + 0.2 * swing.share());
+        if swing.finished() {
+            self.swing = None;
+            self.stage = Stage::Settling;
+        }
+        Ok(())
     }
 
     fn settle(&mut self) -> Result<(), DrapeError> {
@@ -241,7 +258,7 @@ impl GarmentRun {
         let decades = (1.0 / self.rest.residual().max(1e-9)).log10() / 3.0;
         self.share = self
             .share
-            .max((0.5 + 0.5 * decades.clamp(0.0, 1.0)).min(0.99));
+            .max((0.7 + 0.3 * decades.clamp(0.0, 1.0)).min(0.99));
         if !self.rest.finished() {
             return Ok(());
         }
@@ -325,7 +342,9 @@ impl GarmentRun {
         self.target = target;
         self.workspace = Workspace::default();
         self.gap_before_merging = self.sew.last_gap();
-        self.stage = Stage::Settling;
+        self.swing = None;
+        self.rest = RestRun::near(self.rest_settings());
+        self.stage = Stage::Swinging;
         self.share = self.share.max(0.5);
         Ok(())
     }

@@ -188,7 +188,7 @@ mod tests {
             weight: &weight,
             target: places,
         };
-        workspace.fill_hessian(model, places, &inertia, Curvature::Convex);
+        workspace.fill_hessian(model, places, &inertia, Curvature::CONVEX);
         let hessian = workspace.hessian(model);
         let free = |v: usize, p: Vec3| if model.pinned[v] { Vec3::zeros() } else { p };
         let b: Vec<Vec3> = (0..places.len())

@@ -32,6 +32,7 @@ mod sparse;
 mod state;
 mod step;
 mod step_terms;
+mod swing;
 mod xpbd;
 
 pub use carry::Carry;

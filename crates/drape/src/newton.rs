@@ -315,7 +315,9 @@ impl Workspace {
         }
         for contact in &self.contacts.active {
             let sample = &model.samples[contact.sample as usize];
-            let (_, _, hessian) = contact.law.evaluate(&contact.plane, sample.place(x));
+            let place = sample.place(x);
+            let (_, _, mut hessian) = contact.law.evaluate(&contact.plane, place);
+            hessian -= contact.law.missing_curvature(&contact.plane, place) * curvature.0;
             match sample.triangle {
                 None => self.diagonal[sample.vertices[0] as usize] += hessian,
                 Some(t) => {
@@ -369,12 +371,12 @@ impl Workspace {
     ) {
         report.exact = false;
         let direct = matches!(settings.linear, LinearSolver::Direct { .. });
-        if direct && settings.curvature == Curvature::Exact {
-            self.fill_hessian(model, x, inertia, Curvature::Exact);
+        if direct && settings.curvature != Curvature::CONVEX {
+            self.fill_hessian(model, x, inertia, settings.curvature);
             report.exact = self.solve_directly(model);
         }
         if !report.exact {
-            self.fill_hessian(model, x, inertia, Curvature::Convex);
+            self.fill_hessian(model, x, inertia, Curvature::CONVEX);
             report.linear_iterations += self.solve_linear(model, settings.linear);
             return;
         }

@@ -1,11 +1,13 @@
 //! The way to rest: pseudo-transient continuation (Kelley and Keyes 1998). Each step is one
 //! Newton iteration held back by inertia m/h^2 towards where the cloth is; h grows while all goes
 //! well and shrinks when the line search has to cut the step, so far from rest it creeps safely
-//! and near rest it is Newton's method.
+//! and near rest it is Newton's method. How much of the curvature that compression takes away is
+//! kept in the Hessian is found in the same way: as much as leaves it positive definite.
 
 use crate::laws::membrane::Curvature;
 use crate::{
-    DrapeError, Inertia, LinearSolver, Model, NewtonSettings, PcgLimits, State, Workspace,
+    DrapeError, Inertia, LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State,
+    Workspace,
 };
 use toile_geometry::Vec3;
 
@@ -42,15 +44,22 @@ pub struct RestRun {
     best: f64,
     waited: usize,
     linear_iterations: usize,
+    /// Share of the destabilising curvature left out of the Hessian.
+    left_out: f64,
 }
 
-/// Below this net force over weight the exact Hessian is tried first: farther off it is hardly
-/// ever positive definite, and the try would be lost.
-const NEAR: f64 = 0.3;
+/// Share of the destabilising curvature left out after a step that went well, over that before
+/// it; below the least none is left out.
+const LESS: f64 = 0.7;
+const LEAST: f64 = 0.02;
+/// A direction of which the line search takes less than this is as bad as none.
+const CUT: f64 = 0.2;
 /// Steps without a new low of the residual before a cycle is suspected.
 const PATIENCE: usize = 60;
 /// First pseudo time step [s]: a drop of 4 mm under gravity.
 const FIRST_STEP: f64 = 0.02;
+/// The same where a swing has brought the cloth near rest.
+const NEAR_STEP: f64 = 0.1;
 /// Bounds of the pseudo time step [s]: at the upper one inertia is 1e-6 of gravity over a metre.
 const SHORTEST_STEP: f64 = 1e-6;
 const LONGEST_STEP: f64 = 100.0;
@@ -67,6 +76,15 @@ impl RestRun {
             best: f64::INFINITY,
             waited: 0,
             linear_iterations: 0,
+            left_out: 1.0,
+        }
+    }
+
+    /// A new way that starts near rest, where a swing ended.
+    pub fn near(settings: RestSettings) -> Self {
+        Self {
+            pseudo_step: NEAR_STEP,
+            ..Self::new(settings)
         }
     }
 
@@ -129,11 +147,7 @@ impl RestRun {
                 iterations: 1,
                 tolerance: 0.0,
                 longest_move: self.settings.longest_move,
-                curvature: if self.residual < NEAR {
-                    Curvature::Exact
-                } else {
-                    Curvature::Convex
-                },
+                curvature: Curvature(1.0 - self.left_out),
                 linear: LinearSolver::Direct {
                     otherwise: PcgLimits {
                         tolerance: 1e-3,
@@ -148,7 +162,7 @@ impl RestRun {
                 workspace.contacts.settle(model, state);
                 let before = self.residual;
                 self.residual = crate::measure::residual(model, state, workspace);
-                self.adapt(report.fraction, report.moved, before);
+                self.adapt(&report, before);
                 break;
             }
             let vertex = state.first_not_finite();
@@ -174,7 +188,9 @@ impl RestRun {
 
     /// Grows the pseudo step while the full step is taken and the residual does not rise; shrinks
     /// it when the line search or the limit on moves cut the step short.
-    fn adapt(&mut self, fraction: f64, moved: f64, residual_before: f64) {
+    fn adapt(&mut self, report: &NewtonReport, residual_before: f64) {
+        let (fraction, moved) = (report.fraction, report.moved);
+        self.adapt_curvature(report);
         let free = moved < 0.5 * self.settings.longest_move;
         if fraction >= 1.0 && free && self.residual < 1.05 * residual_before {
             self.pseudo_step = (self.pseudo_step * 1.5).min(self.longest_step);
@@ -182,6 +198,19 @@ impl RestRun {
             self.pseudo_step = (self.pseudo_step * 0.7).max(SHORTEST_STEP);
         }
         self.break_cycles();
+    }
+
+    /// Keeps more of the destabilising curvature after a step that went well, less after one whose
+    /// matrix was not positive definite or whose direction had to be cut. With too little of it
+    /// cloth that is about to buckle creeps away from its saddle by a few per cent a step.
+    fn adapt_curvature(&mut self, report: &NewtonReport) {
+        let tried = report.exact || self.left_out == 1.0;
+        self.left_out = if tried && report.fraction > CUT {
+            let less = LESS * self.left_out;
+            if less < LEAST { 0.0 } else { less }
+        } else {
+            (2.0 * self.left_out).clamp(LEAST, 1.0)
+        };
     }
 
     /// Newton's method can go round in a cycle between two sets of contacts. When the residual has

@@ -143,7 +143,7 @@ impl SewRun {
                 iterations: 2,
                 tolerance: 0.0,
                 longest_move: 1.2 * SPEED_LIMIT * STEP,
-                curvature: Curvature::Convex,
+                curvature: Curvature::CONVEX,
                 linear: LinearSolver::Iterative(PcgLimits {
                     tolerance: 0.05,
                     iterations: 150,

@@ -32,7 +32,7 @@ impl Default for StepSettings {
                 iterations: 8,
                 tolerance: 1e-8,
                 longest_move: 0.05,
-                curvature: Curvature::Convex,
+                curvature: Curvature::CONVEX,
                 linear: LinearSolver::Iterative(PcgLimits {
                     tolerance: 1e-6,
                     iterations: 1000,

@@ -2,6 +2,7 @@
 //! B-splines.
 
 use crate::{SurfaceTree, Vec3};
+use nalgebra::Matrix3;
 use std::sync::{Arc, OnceLock};
 
 /// Nodes of a block along each axis, a power of two.
@@ -183,38 +184,93 @@ impl DistanceField {
     /// Smooth signed distance \[m\] and its gradient at a point; nothing farther outside than the
     /// field reaches.
     pub fn distance(&self, point: Vec3) -> Option<(f64, Vec3)> {
+        let stencil = self.stencil(point)?;
+        let mut distance = 0.0;
+        let mut gradient = Vec3::zeros();
+        let [x, y, z] = stencil.weights;
+        let [dx, dy, dz] = stencil.slopes;
+        for [i, j, k] in PLACES {
+            let value = self.node(stencil.at([i, j, k]))?;
+            distance += value * x[i] * y[j] * z[k];
+            gradient += Vec3::new(
+                dx[i] * y[j] * z[k],
+                x[i] * dy[j] * z[k],
+                x[i] * y[j] * dz[k],
+            ) * value;
+        }
+        Some((distance, gradient / self.cell))
+    }
+
+    /// Second derivative of the distance at a point \[1/m\]: the curvatures of the surface through
+    /// it, negative where it is hollow. It jumps from cell to cell.
+    pub fn curvature(&self, point: Vec3) -> Option<Matrix3<f64>> {
+        let stencil = self.stencil(point)?;
+        let mut sum = Matrix3::zeros();
+        let [x, y, z] = stencil.weights;
+        let [dx, dy, dz] = stencil.slopes;
+        // Second differences of a quadratic B-spline.
+        const BEND: [f64; 3] = [1.0, -2.0, 1.0];
+        for [i, j, k] in PLACES {
+            let value = self.node(stencil.at([i, j, k]))?;
+            let xy = dx[i] * dy[j] * z[k];
+            let xz = dx[i] * y[j] * dz[k];
+            let yz = x[i] * dy[j] * dz[k];
+            sum += Matrix3::new(
+                BEND[i] * y[j] * z[k],
+                xy,
+                xz,
+                xy,
+                x[i] * BEND[j] * z[k],
+                yz,
+                xz,
+                yz,
+                x[i] * y[j] * BEND[k],
+            ) * value;
+        }
+        Some(sum / (self.cell * self.cell))
+    }
+
+    /// The splines that do not vanish at a point; nothing off the grid.
+    fn stencil(&self, point: Vec3) -> Option<Stencil> {
         let local = (point - self.origin) / self.cell;
         if !local.iter().all(|x| *x >= 1.0 && *x < 1e9) {
             return None;
         }
-        let mut first = [0usize; 3];
-        let mut weights = [[0.0; 3]; 3];
-        let mut slopes = [[0.0; 3]; 3];
+        let mut stencil = Stencil::default();
         for axis in 0..3 {
             let nearest = local[axis].round();
             let t = local[axis] - nearest;
-            first[axis] = nearest as usize - 1;
             let (before, after) = (0.5 - t, 0.5 + t);
-            weights[axis] = [0.5 * before * before, 0.75 - t * t, 0.5 * after * after];
-            slopes[axis] = [-before, -2.0 * t, after];
+            stencil.first[axis] = nearest as usize - 1;
+            stencil.weights[axis] = [0.5 * before * before, 0.75 - t * t, 0.5 * after * after];
+            stencil.slopes[axis] = [-before, -2.0 * t, after];
         }
-        let mut distance = 0.0;
-        let mut gradient = Vec3::zeros();
-        for k in 0..3 {
-            for j in 0..3 {
-                for i in 0..3 {
-                    let value = self.node([first[0] + i, first[1] + j, first[2] + k])?;
-                    let (x, y, z) = (weights[0][i], weights[1][j], weights[2][k]);
-                    distance += value * x * y * z;
-                    gradient += Vec3::new(
-                        slopes[0][i] * y * z,
-                        x * slopes[1][j] * z,
-                        x * y * slopes[2][k],
-                    ) * value;
-                }
-            }
-        }
-        Some((distance, gradient / self.cell))
+        Some(stencil)
+    }
+}
+
+/// The 3 x 3 x 3 nodes of a stencil, the last axis slowest.
+const PLACES: [[usize; 3]; 27] = {
+    let mut places = [[0; 3]; 27];
+    let mut n = 0;
+    while n < 27 {
+        places[n] = [n % 3, n / 3 % 3, n / 9];
+        n += 1;
+    }
+    places
+};
+
+/// Splines around a point: first node along each axis, values and slopes (per cell) of three.
+#[derive(Default)]
+struct Stencil {
+    first: [usize; 3],
+    weights: [[f64; 3]; 3],
+    slopes: [[f64; 3]; 3],
+}
+
+impl Stencil {
+    fn at(&self, [i, j, k]: [usize; 3]) -> [usize; 3] {
+        [self.first[0] + i, self.first[1] + j, self.first[2] + k]
     }
 }
 
@@ -366,5 +422,30 @@ mod tests {
             assert!((distance - place.y).abs() < 1e-12, "{place} {distance}");
             assert!((slope - Vec3::y()).norm() < 1e-10, "{slope}");
         }
+    }
+
+    #[test]
+    fn curvature_is_the_slope_of_the_gradient_and_that_of_a_ball() {
+        let field = DistanceField::new(Arc::new(SurfaceTree::new(ball(0.05, 5))), 6e-3, 0.02);
+        let mut mean = 0.0;
+        for s in 0..200 {
+            let s = f64::from(s);
+            let direction =
+                Vec3::new((s * 0.7).sin(), (s * 1.3).cos(), (s * 2.9).sin()).normalize();
+            let place = direction * (0.05 + 0.01 * (s * 0.37).sin());
+            let curvature = field.curvature(place).expect("near");
+            for axis in 0..3 {
+                let step = Vec3::ith(axis, 1e-8);
+                let slope = (field.distance(place + step).expect("near").1
+                    - field.distance(place - step).expect("near").1)
+                    / 2e-8;
+                let error = (slope - curvature.column(axis)).norm();
+                assert!(error < 1e-3, "{slope:?} {curvature:?}");
+            }
+            // Two curvatures of 1/r and none along the radius.
+            mean += curvature.trace() * place.norm() / 400.0;
+        }
+        assert!((mean - 1.0).abs() < 0.03, "{mean}");
+        assert!(field.curvature(Vec3::repeat(1.0)).is_none());
     }
 }

@@ -157,6 +157,7 @@ pub(crate) fn drape(
         let progress = run.advance()?;
         let (stage, detail) = match progress.stage {
             Stage::Sewing => ("sewing", format!("gap {:.1} mm", progress.gap * 1e3)),
+            Stage::Swinging => ("draping", "swinging".to_owned()),
             Stage::Settling => ("draping", format!("net force {:.1e}", progress.residual)),
             Stage::Finished => ("measuring", String::new()),
         };

@@ -16,17 +16,33 @@ pub struct ContactLaw {
     pub friction: f64,
 }
 
-/// A point near a surface, linearised there.
+/// A point near a surface, and the surface as seen from there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPlane {
-    /// A point of the offset surface [m]: the point is free on the outer side of it.
-    pub origin: Vec3,
-    /// Outward unit normal.
+    /// The point [m].
+    pub point: Vec3,
+    /// How deep it lies below the offset surface, negative above it [m].
+    pub depth: f64,
+    /// Gradient of the distance there. Its length is 1 but where two walls are equally near.
+    pub gradient: Vec3,
+    /// Outward unit normal: the gradient's direction.
     pub normal: Vec3,
+    /// Second derivative of the distance there, its negative eigenvalues alone, sign turned: how
+    /// hollow the surface is [1/m].
+    pub hollow: Matrix3<f64>,
+    /// Its positive eigenvalues: how the surface bulges [1/m].
+    pub bulge: Matrix3<f64>,
     /// Where the point stuck to the surface [m].
     pub anchor: Vec3,
     /// Normal force that limits friction [N], taken from the last iteration.
     pub lagged_normal_force: f64,
+}
+
+impl ContactPlane {
+    /// Depth of a point below the offset surface, to first order [m].
+    pub fn depth_of(&self, point: Vec3) -> f64 {
+        self.depth - self.gradient.dot(&(point - self.point))
+    }
 }
 
 /// From this share of the friction limit on a point counts as sliding for the Hessian: a point
@@ -36,16 +52,19 @@ const AT_LIMIT: f64 = 0.99;
 impl ContactLaw {
     /// Energy [J], gradient [N] and a positive semidefinite Hessian [N/m] at a point.
     ///
-    /// Normal part: k d^2 / 2 for depth d > 0. Tangential part: the Huber function of the slip
+    /// Normal part: k d^2 / 2 for depth d > 0. Its Hessian has k g g' and, where the surface is
+    /// hollow, the turning of the normal as the point slides along: without that Newton's steps in
+    /// an armpit are too long by several times and never settle. Tangential part: the Huber function of the slip
     /// from the anchor with limit mu N, N lagged, so that it has an energy.
     pub fn evaluate(&self, plane: &ContactPlane, point: Vec3) -> (f64, Vec3, Matrix3<f64>) {
         let n = plane.normal;
-        let depth = (plane.origin - point).dot(&n);
+        let depth = plane.depth_of(point);
         let (mut energy, mut gradient, mut hessian) = (0.0, Vec3::zeros(), Matrix3::zeros());
         if depth > 0.0 {
             energy += 0.5 * self.normal * depth * depth;
-            gradient -= n * (self.normal * depth);
-            hessian += n * n.transpose() * self.normal;
+            gradient -= plane.gradient * (self.normal * depth);
+            hessian += plane.gradient * plane.gradient.transpose() * self.normal
+                + plane.hollow * (self.normal * depth);
         }
         let limit = self.friction * plane.lagged_normal_force;
         if limit > 0.0 {
@@ -72,10 +91,16 @@ impl ContactLaw {
         (energy, gradient, hessian)
     }
 
+    /// What the exact Hessian lacks against the one of [`Self::evaluate`]: a point on a bulge is
+    /// pushed off it the more the farther it slides down [N/m].
+    pub fn missing_curvature(&self, plane: &ContactPlane, point: Vec3) -> Matrix3<f64> {
+        plane.bulge * (self.normal * plane.depth_of(point).max(0.0))
+    }
+
     /// Energy alone [J].
     pub fn energy(&self, plane: &ContactPlane, point: Vec3) -> f64 {
         let n = plane.normal;
-        let depth = (plane.origin - point).dot(&n).max(0.0);
+        let depth = plane.depth_of(point).max(0.0);
         let mut energy = 0.5 * self.normal * depth * depth;
         let limit = self.friction * plane.lagged_normal_force;
         if limit > 0.0 {
@@ -92,7 +117,7 @@ impl ContactLaw {
 
     /// Normal force at a point [N].
     pub fn normal_force(&self, plane: &ContactPlane, point: Vec3) -> f64 {
-        self.normal * (plane.origin - point).dot(&plane.normal).max(0.0)
+        self.normal * plane.depth_of(point).max(0.0) * plane.gradient.norm()
     }
 
     /// The anchor after a step: it stays while the tangential spring is inside the friction cone
@@ -122,9 +147,14 @@ mod tests {
     };
 
     fn plane() -> ContactPlane {
+        let normal = Vec3::new(0.48, 0.6, 0.64);
         ContactPlane {
-            origin: Vec3::new(0.1, 0.2, 0.3),
-            normal: Vec3::new(0.48, 0.6, 0.64),
+            point: Vec3::new(0.1, 0.2, 0.3),
+            depth: 0.0,
+            gradient: normal,
+            normal,
+            hollow: Matrix3::zeros(),
+            bulge: Matrix3::zeros(),
             anchor: Vec3::new(0.101, 0.2, 0.299),
             lagged_normal_force: 0.3,
         }
@@ -137,7 +167,7 @@ mod tests {
             Vec3::new(-4e-3, 2e-3, -1e-3),
             Vec3::new(0.01, 0.01, 0.0),
         ] {
-            let point = plane().origin + offset;
+            let point = plane().point + offset;
             let (_, gradient, hessian) = LAW.evaluate(&plane(), point);
             for axis in 0..3 {
                 let step = Vec3::ith(axis, 1e-8);
@@ -159,9 +189,9 @@ mod tests {
         let plane = plane();
         let along = Vec3::new(0.02, -0.01, 0.0);
         let tangent = along - plane.normal * along.dot(&plane.normal);
-        let point = plane.origin + tangent - plane.normal * 1e-3;
+        let point = plane.point + tangent - plane.normal * 1e-3;
         let force = LAW.normal_force(&plane, point);
-        assert!((force - LAW.normal * (plane.origin - point).dot(&plane.normal)).abs() < 1e-12);
+        assert!((force - LAW.normal * 1e-3).abs() < 1e-12);
         let anchor = LAW.slide(&plane, point, force);
         let offset = point - anchor;
         let slip = offset - plane.normal * offset.dot(&plane.normal);

@@ -20,13 +20,16 @@ pub struct MembraneElement {
     pub area: f64,
 }
 
-/// What a Hessian keeps of the energy's curvature.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Curvature {
-    /// All of it: indefinite where cloth is about to buckle.
-    Exact,
-    /// Its positive semidefinite part.
-    Convex,
+/// Share of the destabilising curvature that a Hessian keeps, 0..=1: with all of it it is exact,
+/// and indefinite where cloth is about to buckle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Curvature(pub f64);
+
+impl Curvature {
+    /// All of the energy's curvature.
+    pub const EXACT: Self = Self(1.0);
+    /// None that could make the Hessian indefinite.
+    pub const CONVEX: Self = Self(0.0);
 }
 
 /// Strain of a triangle along its directions.
@@ -118,9 +121,9 @@ impl MembraneElement {
     /// The Hessian: blocks of the corner pairs 00, 01, 02, 11, 12, 22 [N/m].
     ///
     /// The material part is positive semidefinite as it stands. The geometric part is the 2x2
-    /// stress times the identity. With [`Curvature::Convex`] its negative (compressive) principal
-    /// stresses are dropped, so the matrix is exact where the cloth is in tension and safe where
-    /// it buckles.
+    /// stress times the identity. Of its negative (compressive) principal stresses only the share
+    /// asked for is kept: with none the matrix is exact where the cloth is in tension and safe
+    /// where it buckles.
     pub fn hessian(
         &self,
         law: &impl StrainLaw,
@@ -131,10 +134,8 @@ impl MembraneElement {
         let strain = green_strain([fu, fv]);
         let (s, _) = law.stress(strain);
         let [c11, c22, c12, g, c13, c23] = law.slope(strain);
-        let [s_uu, s_vv, s_uv] = match curvature {
-            Curvature::Exact => s,
-            Curvature::Convex => tension_part(s),
-        };
+        let tension = tension_part(s);
+        let [s_uu, s_vv, s_uv] = [0, 1, 2].map(|k| tension[k] + curvature.0 * (s[k] - tension[k]));
         let (uu, vv, uv) = (
             fu * fu.transpose(),
             fv * fv.transpose(),
@@ -273,7 +274,7 @@ mod tests {
         for scale in [0.6, 1.0, 1.3] {
             let x = deformed(scale);
             let gradient = element.gradient(&law, x).1;
-            let hessian = element.hessian(&law, x, Curvature::Convex);
+            let hessian = element.hessian(&law, x, Curvature::CONVEX);
             for (i, block) in [(0, 0), (1, 3), (2, 5)] {
                 let (g, h) = element.corner(&law, x, i);
                 assert!((g - gradient[i]).norm() < 1e-12 * (1.0 + g.norm()));
@@ -285,7 +286,7 @@ mod tests {
     #[test]
     fn hessian_is_exact_in_tension() {
         let (element, x) = (element(), deformed(1.3));
-        let hessian = full(element.hessian(&law(), x, Curvature::Convex));
+        let hessian = full(element.hessian(&law(), x, Curvature::CONVEX));
         for corner in 0..3 {
             for axis in 0..3 {
                 let step = 1e-7;
@@ -313,7 +314,7 @@ mod tests {
     fn hessian_stays_positive_in_compression_and_collapse() {
         let stiff = MembraneLaw::linear([1e8, 1e8, 2e7, 1e6]);
         for scale in [1.0, 0.9, 0.5, 0.1, 0.0] {
-            let hessian = full(element().hessian(&stiff, deformed(scale), Curvature::Convex));
+            let hessian = full(element().hessian(&stiff, deformed(scale), Curvature::CONVEX));
             let smallest = hessian.symmetric_eigenvalues().min();
             assert!(
                 smallest > -1e-9 * hessian.norm().max(1.0),

@@ -123,7 +123,7 @@ impl FrequencySearch {
             target: &state.positions,
         };
         workspace.fill_gradient(model, &state.positions, Some(&inertia));
-        workspace.fill_hessian(model, &state.positions, &inertia, Curvature::Convex);
+        workspace.fill_hessian(model, &state.positions, &inertia, Curvature::CONVEX);
         let (mut diagonal, mut off_diagonal) = (Vec::new(), Vec::new());
         let mut beta = normalise(&mut self.present);
         for _ in 0..iterations.min(3 * n) {

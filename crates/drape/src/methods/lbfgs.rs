@@ -129,6 +129,7 @@ impl Solver for Lbfgs {
         }
         let mut energy = None;
         descend(problem, state, workspace, |state, workspace, iteration| {
+            self.metric.press(problem, state, workspace);
             if iteration > 0 {
                 self.learn(&state.positions, &workspace.gradient);
             }

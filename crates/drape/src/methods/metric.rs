@@ -1,9 +1,10 @@
 //! The constant metric of projective dynamics: one scalar matrix for x, y and z, factorised once.
 
+use super::implicit::Problem;
 use crate::factor::{Factor, Graph};
 use crate::laws::stretch::MembraneLaw;
 use crate::sparse::ScalarMatrix;
-use crate::{Elastic, ElasticEnd, Model};
+use crate::{Elastic, ElasticEnd, Model, State, Workspace};
 use toile_geometry::Vec3;
 
 /// A = b M + sum_t A_t (k_u a a^T + k_v b b^T) + bending + elastics, pins held.
@@ -11,11 +12,18 @@ use toile_geometry::Vec3;
 /// a and b are the weights of a triangle's tangents ([`crate::laws::membrane`]),
 /// k_u = max(C11 + C12 sqrt(C11/C22), 2 G) and k_v likewise: with them A is at no vector below the
 /// Hessian of the membrane at rest, since 2 C12 p q <= C12 (s p^2 + q^2 / s) and
-/// (p + q)^2 <= 2 p^2 + 2 q^2. Contact is left out: it changes with every step.
+/// (p + q)^2 <= 2 p^2 + 2 q^2.
+///
+/// Contact changes with every step and is a thousand times stiffer than inertia w, so A does not
+/// hold it: what is solved with is S A^-1 S, with S = 1 along the surface and (w / (w + k))^1/2
+/// along the normal of a vertex that presses on it with stiffness k. For a piece that moves as a
+/// whole that is exact.
 #[derive(Default)]
 pub struct Metric {
     made: Option<Made>,
     right: Vec<Vec3>,
+    /// Vertices that press on something, its normal, and 1 less the scale along it.
+    pressing: Vec<(u32, Vec3, f64)>,
 }
 
 struct Made {
@@ -104,7 +112,23 @@ impl Metric {
         true
     }
 
-    /// x = A^-1 b, zero at pins; A must fit.
+    /// Looks which vertices press on something.
+    pub fn press(&mut self, problem: &Problem, state: &State, workspace: &Workspace) {
+        self.pressing.clear();
+        for contact in &workspace.contacts.active {
+            let sample = &problem.model.samples[contact.sample as usize];
+            let vertex = sample.vertices[0];
+            let place = sample.place(&state.positions);
+            if sample.triangle.is_none() && contact.plane.depth_of(place) > 0.0 {
+                let inertia = problem.inertia.weight[vertex as usize];
+                let scale = (inertia / (inertia + contact.law.normal)).sqrt();
+                self.pressing
+                    .push((vertex, contact.plane.normal, 1.0 - scale));
+            }
+        }
+    }
+
+    /// x = S A^-1 S b, zero at pins; A must fit.
     pub fn solve(&mut self, model: &Model, b: &[Vec3], x: &mut [Vec3]) {
         self.right.clear();
         self.right.extend(b.iter().zip(&model.pinned).map(
@@ -112,9 +136,19 @@ impl Metric {
                 if pinned { Vec3::zeros() } else { *b }
             },
         ));
+        shrink(&self.pressing, &mut self.right);
         if let Some(made) = &mut self.made {
             made.factor.solve(&self.right, x);
         }
+        shrink(&self.pressing, x);
+    }
+}
+
+/// Scales the parts along the normals of pressing vertices.
+fn shrink(pressing: &[(u32, Vec3, f64)], vectors: &mut [Vec3]) {
+    for &(vertex, normal, less) in pressing {
+        let vector = &mut vectors[vertex as usize];
+        *vector -= normal * (less * vector.dot(&normal));
     }
 }
 

@@ -68,9 +68,9 @@ impl<const STRICT: bool> Solver for Newton<STRICT> {
         workspace: &mut Workspace,
     ) -> NewtonReport {
         let (curvature, linear) = if is_stiff(problem.model, problem.weight) {
-            (Curvature::Exact, FACTORISED)
+            (Curvature::EXACT, FACTORISED)
         } else {
-            (Curvature::Convex, LINEAR)
+            (Curvature::CONVEX, LINEAR)
         };
         let settings = NewtonSettings {
             iterations: problem.limits.iterations,
@@ -111,7 +111,7 @@ impl Solver for OneSolve {
         workspace.fit(model);
         workspace.contacts.refresh(model, state, &state.positions);
         workspace.fill_gradient(model, &state.positions, Some(&problem.inertia));
-        workspace.fill_hessian(model, &state.positions, &problem.inertia, Curvature::Convex);
+        workspace.fill_hessian(model, &state.positions, &problem.inertia, Curvature::CONVEX);
         let gradient = dot(&workspace.gradient, &workspace.gradient).sqrt();
         let linear_iterations = workspace.solve_linear(model, ONE_SOLVE);
         for (x, d) in state.positions.iter_mut().zip(&workspace.direction) {

@@ -113,6 +113,7 @@ impl Projective {
     ) -> f64 {
         self.negative.clear();
         self.negative.extend(workspace.gradient.iter().map(|g| -g));
+        self.metric.press(problem, state, workspace);
         self.metric
             .solve(problem.model, &self.negative, &mut self.step);
         self.remember(&state.positions);

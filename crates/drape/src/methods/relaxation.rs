@@ -96,7 +96,7 @@ impl Relaxation {
         workspace.terms.hold_still(model, state);
         workspace.contacts.refresh(model, state, &state.positions);
         workspace.fill_gradient(model, &state.positions, Some(&inertia));
-        workspace.fill_hessian(model, &state.positions, &inertia, Curvature::Convex);
+        workspace.fill_hessian(model, &state.positions, &inertia, Curvature::CONVEX);
         masses.clear();
         for v in 0..model.vertex_count() {
             let mut sums =
