@@ -23,9 +23,9 @@ pub struct ContactPlane {
     pub point: Vec3,
     /// How deep it lies below the offset surface, negative above it [m].
     pub depth: f64,
-    /// Gradient of the distance there. Its length is 1 but where two walls are equally near.
+    /// Gradient of the distance there \[1\]. Its length is 1 but where two walls are equally near.
     pub gradient: Vec3,
-    /// Outward unit normal: the gradient's direction.
+    /// Outward unit normal: the gradient's direction \[1\].
     pub normal: Vec3,
     /// Second derivative of the distance there, its negative eigenvalues alone, sign turned: how
     /// hollow the surface is [1/m].
