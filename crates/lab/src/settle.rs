@@ -51,15 +51,13 @@ pub(crate) fn methods_in_time() -> impl Iterator<Item = (&'static str, MethodKin
         .filter(|(_, kind)| !kind.is_equilibrium() && kind.stability_limit() != Some(0.0))
 }
 
-/// Iterations that leave less than the tolerance, whatever the method.
-const PLENTY: usize = 400;
-
-/// A method that goes on iterating until its gradient is below `tolerance` [N]. XPBD is left as
+/// A method that goes on until its gradient is below `tolerance` [N] or it has iterated `most`
+/// times. XPBD is left as
 /// it is used, one sweep a substep: it has no gradient to stop at.
-pub(crate) fn converged(kind: MethodKind, tolerance: f64) -> MethodSettings {
+pub(crate) fn converged(kind: MethodKind, tolerance: f64, most: usize) -> MethodSettings {
     MethodSettings {
         tolerance: Some(tolerance),
-        iterations: (kind != MethodKind::Xpbd).then_some(PLENTY),
+        iterations: (kind != MethodKind::Xpbd).then_some(most),
         ..kind.into()
     }
 }

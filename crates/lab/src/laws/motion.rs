@@ -79,7 +79,7 @@ fn momentum_left(kind: MethodKind) -> f64 {
 pub(super) fn flight(cases: &mut Cases) -> Result<(), LabError> {
     for (name, kind) in methods_in_time() {
         let (model, mut state) = square(soft())?;
-        let settings = converged(kind, SOLVED);
+        let settings = converged(kind, SOLVED, 100);
         let step = sound_step(&model, &state, settings, 2e-3)?;
         for (k, (v, x)) in state
             .velocities

@@ -195,7 +195,7 @@ pub(super) fn vibrating(cases: &mut Cases) -> Result<(), LabError> {
             cases.measure(
                 format!("{mesh_name}, {name}"),
                 Expected::value("frequency, rad/s", expected, 0.02),
-                || swing.measure(converged(kind, SOLVED), expected),
+                || swing.measure(converged(kind, SOLVED, 400), expected),
             )?;
         }
     }
