@@ -9,7 +9,8 @@ use serde::Serialize;
 use toile_pattern::{Draft, DraftSpan};
 
 /// How a garment comes to rest, in words.
-const METHOD: &str = "implicit Newton: damped sewing, then pseudo-transient continuation to rest";
+const METHOD: &str =
+    "implicit Newton for sewing, XPBD for the swing, pseudo-transient Newton continuation to rest";
 
 #[derive(Serialize)]
 pub(crate) struct Report {
