@@ -403,6 +403,7 @@ fn moment_words(moment: &Moment) -> String {
             let gap = moment.gap * 1000.0;
             format!("Sewing, step {step}: seams up to {gap:.1} mm apart")
         }
+        Stage::Swinging => "Swinging under its own weight".to_owned(),
         Stage::Settling => {
             let force = match moment.residual {
                 many if many >= 1.0 => format!("{many:.0} times the weight"),
