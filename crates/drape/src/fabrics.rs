@@ -235,16 +235,15 @@ pub static LIBRARY: [LibraryFabric; 10] = [
         stretch: [(8.0e3, 0.0), (8.0e3, 0.0)],
         shear: 2.9e3,
         poisson: 0.4,
-        bend: [1.56e-5, 1.56e-5, 1.56e-5],
+        bend: [1.56e-4, 1.56e-4, 1.56e-4],
         friction: 0.4,
         sources: sources(
             "range: garment leathers of 0.6-0.7 g/cm3",
             "middle of 0.64-0.96 mm: Memon et al. 2021, Materials 14(16) 4553",
             "range: initial modulus of garment nappa about 10 MPa, times the thickness",
             "isotropic: Y / (2 (1 + nu))",
-            "middle of 9.2-22: Memon et al. 2021, Materials 14(16) 4553, abstract, which names no unit; \
-             read as uN m, that of the FAST test: as mN cm the bending lengths of its leathers would be \
-             27 to 36 mm, with which nothing drapes as these did",
+            "middle of 9.2-22: Memon et al. 2021, Materials 14(16) 4553, abstract; read as mN cm, the \
+             unit of the cantilever test",
         ),
     },
     LibraryFabric {

@@ -62,20 +62,20 @@ impl SwingRun {
             let mass: f64 = model.mass.iter().sum();
             self.calm = self.energy < 0.5 * mass * CALM * CALM;
             self.energy = 0.0;
-            self.stop(state);
+            stop(state);
         } else {
             self.energy = report.kinetic_energy;
         }
         if self.finished() {
-            self.stop(state);
+            stop(state);
         }
         Ok(())
     }
+}
 
-    fn stop(&self, state: &mut State) {
-        for v in &mut state.velocities {
-            *v = Vec3::zeros();
-        }
+fn stop(state: &mut State) {
+    for v in &mut state.velocities {
+        *v = Vec3::zeros();
     }
 }
 

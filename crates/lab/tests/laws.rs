@@ -9,8 +9,16 @@ fn checks(names: &[&str]) -> Vec<Check> {
 }
 
 #[test]
-fn the_quick_laws_hold() {
-    let quick = ["patch", "rigid", "picture-frame", "uniaxial", "incline"];
+fn the_quick_laws_hold_for_every_method() {
+    let quick = [
+        "patch",
+        "rigid",
+        "picture-frame",
+        "uniaxial",
+        "flight",
+        "incline",
+        "fall",
+    ];
     let checks = checks(&quick);
     for name in quick {
         assert!(checks.iter().any(|check| check.law == name), "{name}");

@@ -38,12 +38,9 @@ fn is_stiff(model: &Model, weight: f64) -> bool {
     })
 }
 
-/// The same for a step that is never corrected: what the solve leaves is lost momentum, 1e-7 of
-/// it a step.
-const ONE_SOLVE: LinearSolver = LinearSolver::Iterative(PcgLimits {
-    tolerance: 1e-8,
-    iterations: 1000,
-});
+/// Relative tolerance of a step that is never corrected: what the solve leaves is lost momentum,
+/// 1e-7 of it a step. A caller's own tolerance [N] may ask for less, down to rounding.
+const ONE_SOLVE: [f64; 2] = [1e-14, 1e-8];
 
 /// Newton's method with line search to the minimum: see [`Workspace::solve`].
 ///
@@ -113,7 +110,17 @@ impl Solver for OneSolve {
         workspace.fill_gradient(model, &state.positions, Some(&problem.inertia));
         workspace.fill_hessian(model, &state.positions, &problem.inertia, Curvature::CONVEX);
         let gradient = dot(&workspace.gradient, &workspace.gradient).sqrt();
-        let linear_iterations = workspace.solve_linear(model, ONE_SOLVE);
+        let [rounding, usual] = ONE_SOLVE;
+        let asked = problem.limits.tolerance;
+        let linear = LinearSolver::Iterative(PcgLimits {
+            tolerance: if asked > 0.0 && gradient > 0.0 {
+                (asked / gradient).clamp(rounding, usual)
+            } else {
+                usual
+            },
+            iterations: 1000,
+        });
+        let linear_iterations = workspace.solve_linear(model, linear);
         for (x, d) in state.positions.iter_mut().zip(&workspace.direction) {
             *x += d;
         }

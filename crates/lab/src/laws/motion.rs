@@ -62,9 +62,8 @@ fn momentum_left(kind: MethodKind) -> f64 {
     match kind {
         // Forces cancel to rounding.
         _ if kind.stability_limit().is_some() => 1e-12,
-        // One solve to 1e-8 a step, errors of either sign: 1e-8 sqrt(1000), and as much again for
-        // steps whose forces exceed their momentum.
-        MethodKind::SemiImplicitEuler => 1e-6,
+        // One linear solve a step, to the gradient asked for or to rounding.
+        MethodKind::SemiImplicitEuler => 1e-9,
         // Single precision rounds positions of 0.2 m to 2^-25 of it; over a substep of 0.1 ms that
         // is 6e-5 m/s a vertex, of either sign: with 20000 substeps and 100 vertices 1e-3 m/s of
         // 1.2 m/s, and contributions of each of the substep's passes.
