@@ -4,6 +4,7 @@ use crate::LabError;
 use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation,
 };
+use std::collections::BTreeMap;
 use toile_drape::{Cloth, Material};
 use toile_geometry::{Vec2, Vec3};
 
@@ -16,7 +17,7 @@ pub enum MeshKind {
     Alternating,
     /// Constrained Delaunay, refined to angles of 25 degrees and more.
     Delaunay,
-    /// The same with slivers planted in it: flat triangles a fiftieth of their edge high.
+    /// The same with slivers planted inside: flat triangles a fiftieth of their neighbour high.
     Slivers,
 }
 
@@ -87,7 +88,11 @@ pub fn rectangle(
     match kind {
         MeshKind::Right | MeshKind::Alternating => Ok(grid(kind, from, to, cells)),
         MeshKind::Delaunay => delaunay(from, to, cells),
-        MeshKind::Slivers => Ok(with_slivers(delaunay(from, to, cells)?)),
+        MeshKind::Slivers => {
+            let cell = (to.x - from.x) / cells[0] as f64;
+            let clamp = from.x + STRAIGHT as f64 * cell;
+            Ok(with_slivers(delaunay(from, to, cells)?, clamp))
+        }
     }
 }
 
@@ -196,12 +201,30 @@ pub fn disc(radius: f64, inner: f64, cell: f64) -> Result<Flat, LabError> {
     refined(points, edges, cell)
 }
 
-/// Plants a sliver into every seventh triangle: a point a fiftieth of an edge from its middle.
-fn with_slivers(mut flat: Flat) -> Flat {
+/// Plants a sliver into every seventh triangle: a point a fiftieth of the height from the middle of
+/// an edge. The edge is one between two triangles: on the border such a triangle stays a cap (the
+/// model can exchange no edge there) and holds the border to its chord. Columns before `clamp` [m]
+/// stay plain: a point between the two last held rows would be held to their chord.
+fn with_slivers(mut flat: Flat, clamp: f64) -> Flat {
+    let key = |a: u32, b: u32| [a.min(b), a.max(b)];
+    let mut uses: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+    for v in &flat.triangles {
+        for k in 0..3 {
+            *uses.entry(key(v[k], v[(k + 1) % 3])).or_default() += 1;
+        }
+    }
     let count = flat.triangles.len();
     for t in (3..count).step_by(7) {
-        let [a, b, c] = flat.triangles[t];
-        let [pa, pb, pc] = flat.triangles[t].map(|v| flat.points[v as usize]);
+        let v = flat.triangles[t];
+        let inside = |&k: &usize| uses.get(&key(v[k], v[(k + 1) % 3])) == Some(&2);
+        let Some(first) = (0..3).find(inside) else {
+            continue;
+        };
+        let [a, b, c] = [0, 1, 2].map(|k| v[(first + k) % 3]);
+        let [pa, pb, pc] = [a, b, c].map(|v| flat.points[v as usize]);
+        if pa.x.min(pb.x).min(pc.x) < clamp - 1e-9 {
+            continue;
+        }
         let middle = (pa + pb) * 0.5;
         let new = flat.points.len() as u32;
         flat.points.push(middle + (pc - middle) * 0.02);
