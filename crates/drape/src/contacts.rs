@@ -1,6 +1,6 @@
 //! Finding where the cloth touches solid surfaces: recomputed as it moves.
 
-use crate::laws::contact::{ContactLaw, ContactPlane};
+use crate::laws::contact::{ContactLaw, ContactPlane, damped_push};
 use crate::model::FIELD_REACH;
 use crate::{Model, State};
 use nalgebra::Matrix3;
@@ -75,6 +75,28 @@ impl Contacts {
             .collect();
         self.active.clear();
         self.active.extend(found.into_iter().flatten());
+    }
+
+    /// Adds what damps the push of the surfaces, for explicit methods [N].
+    pub fn damp(&self, model: &Model, state: &State, force: &mut [Vec3]) {
+        for contact in &self.active {
+            let sample = &model.samples[contact.sample as usize];
+            let (plane, law) = (&contact.plane, &contact.law);
+            let push = law.normal_force(plane, sample.place(&state.positions));
+            if push <= 0.0 {
+                continue;
+            }
+            let corners = sample.vertices.iter().zip(sample.weights);
+            let [mut leaving, mut mass] = [0.0; 2];
+            for (&v, w) in corners.clone() {
+                leaving += w * plane.normal.dot(&state.velocities[v as usize]);
+                mass += w * model.mass[v as usize];
+            }
+            let change = damped_push(push, law.normal, mass, leaving) - push;
+            for (&v, w) in corners {
+                force[v as usize] += plane.normal * (w * change);
+            }
+        }
     }
 
     /// Moves the friction anchors after a step, and remembers the normal forces.

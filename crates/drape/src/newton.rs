@@ -135,6 +135,7 @@ impl Workspace {
     pub(crate) fn force_in_motion(&mut self, model: &Model, state: &State) -> &[Vec3] {
         self.net_force(model, state);
         add_forces_of_motion(model, state, &mut self.gradient);
+        self.contacts.damp(model, state, &mut self.gradient);
         for (force, &pinned) in self.gradient.iter_mut().zip(&model.pinned) {
             if pinned {
                 *force = Vec3::zeros();

@@ -20,6 +20,8 @@ pub enum Memory {
         /// Length of the step that followed [s].
         step: f64,
     },
+    /// Contact samples that a surface was put over and that have not come out since, in order.
+    Buried(Vec<u32>),
     /// How the way to rest stands.
     Rest(RestRun),
     /// How dynamic relaxation stands.

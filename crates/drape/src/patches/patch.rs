@@ -1,7 +1,8 @@
 //! A patch: vertices that one task moves on its own for several substeps, with a halo round them.
 //!
-//! What a halo vertex lacks (triangles and bending rows beyond the halo) spoils two rings a
-//! substep, so a halo of 2 k rings leaves the patch's own vertices exact for k substeps. Patches
+//! A ring is what the forces at the last one's vertices look at: their bending rows and triangles.
+//! What a halo vertex lacks spoils one ring a substep, so a halo of k rings leaves the patch's own
+//! vertices exact for k substeps. Patches
 //! then need to meet only once every k substeps, and stay in the fast memory of their core
 //! meanwhile. Rings that are spoiled already are not moved any more.
 
@@ -11,9 +12,6 @@ use super::rows::Rows;
 use super::touch::Touching;
 use crate::{Elastic, ElasticEnd, Model};
 use std::collections::BTreeMap;
-
-/// Rings that a substep spoils: as far as a bending row looks.
-pub const SPOILED: usize = 2;
 
 /// Vertices moved by one task.
 pub struct Patch {
@@ -74,7 +72,7 @@ struct Inertia {
 pub struct Course {
     /// Length of a substep [s].
     pub h: f64,
-    /// How many: [`SPOILED`] times that is no more than the halo has rings.
+    /// How many: no more than the halo has rings.
     pub count: usize,
     /// Gravity [m/s2].
     pub gravity: Lane,
@@ -214,12 +212,7 @@ impl Patch {
             let edges = triangle.edges(&self.positions);
             let membrane = &self.membranes[triangle.membrane as usize];
             let [high, low] = membrane.squared_stretch(edges);
-            let [most, least] = self.stretch;
-            // Written so that a value that is no number is kept.
-            self.stretch = [
-                if high <= most { most } else { high },
-                if low >= least { least } else { low },
-            ];
+            self.stretch = wider(self.stretch, [high, low]);
             if (triangle.corners[0] as usize) < owned {
                 self.energy += membrane.energy(edges);
             }
@@ -257,11 +250,12 @@ impl Patch {
     }
 
     #[inline(always)]
-    fn add_contacts(&mut self, ring: usize) {
+    fn add_contacts(&mut self, ring: usize, h: f64) {
         for contact in &mut self.touching {
             let at = contact.vertex as usize;
             if at < self.vertex_end[ring] {
-                let force = contact.press(self.positions[at]);
+                let (x, v) = (self.positions[at], self.velocities[at]);
+                let force = contact.press(x, v, 1.0 / self.inertia[at].inverse_mass, h);
                 self.gradient[at] = self.gradient[at].minus(force);
             }
         }
@@ -304,6 +298,16 @@ impl Patch {
     }
 }
 
+/// Two pairs of largest and smallest as one; what is no number stays.
+#[inline(always)]
+pub fn wider([most, least]: [f64; 2], [high, low]: [f64; 2]) -> [f64; 2] {
+    let lost = most.is_nan() || least.is_nan();
+    [
+        if high <= most || lost { most } else { high },
+        if low >= least || lost { least } else { low },
+    ]
+}
+
 /// Where an elastic ends [m].
 pub fn end_of(elastic: &Elastic, positions: &[Lane]) -> Lane {
     match elastic.to {
@@ -312,8 +316,8 @@ pub fn end_of(elastic: &Elastic, positions: &[Lane]) -> Lane {
     }
 }
 
-/// Some vertices and those within `rings` edges of them, ring by ring, with how many lie within
-/// each ring.
+/// Some vertices and those that forces at them look at, `rings` times, ring by ring, with how many
+/// lie within each ring.
 fn with_halo(model: &Model, mut vertices: Vec<u32>, rings: usize) -> (Vec<u32>, Vec<usize>) {
     let mut inside = vec![false; model.vertex_count()];
     for &v in &vertices {
@@ -326,11 +330,12 @@ fn with_halo(model: &Model, mut vertices: Vec<u32>, rings: usize) -> (Vec<u32>, 
         for at in front..end {
             let v = vertices[at] as usize;
             let uses = model.corner_start[v] as usize..model.corner_start[v + 1] as usize;
-            for &corner in &model.corners[uses] {
-                for u in model.triangles[corner as usize / 3] {
-                    if !std::mem::replace(&mut inside[u as usize], true) {
-                        vertices.push(u);
-                    }
+            let corners = model.corners[uses].iter();
+            let triangles = corners.flat_map(|&corner| model.triangles[corner as usize / 3]);
+            let (columns, _) = model.bending.row_entries(v);
+            for u in triangles.chain(columns.iter().copied()) {
+                if !std::mem::replace(&mut inside[u as usize], true) {
+                    vertices.push(u);
                 }
             }
         }
@@ -363,10 +368,10 @@ impl pulp::WithSimd for Run<'_> {
         let outermost = patch.vertex_end.len() - 1;
         patch.drift(0.5 * course.h);
         for left in (0..course.count).rev() {
-            let ring = (SPOILED * left).min(outermost);
+            let ring = left.min(outermost);
             let drift = if left == 0 { 0.5 * course.h } else { course.h };
             patch.add_membrane(ring);
-            patch.add_contacts(ring);
+            patch.add_contacts(ring, course.h);
             patch.add_elastics();
             patch.kick_and_drift(ring, course, drift);
         }

@@ -2,7 +2,9 @@
 //! [`crate::laws::contact`] at every one.
 
 use super::Lane;
+use crate::laws::contact::damped_push;
 use crate::model::FIELD_REACH;
+use crate::state::Memory;
 use crate::{Model, State};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -25,7 +27,16 @@ pub struct Touching {
     anchor: Lane,
     /// Normal force [N].
     force: f64,
+    /// Depth [m] that only a surface which was put there reaches: the offset, so that the cloth
+    /// lies inside it.
+    inside: f64,
+    /// Whether it was that deep and has not come out since.
+    buried: bool,
 }
+
+/// Speed [m/s] at which a surface that was put over cloth lets it go: faster, the push that no
+/// motion has stored would throw it.
+const LEAVING: f64 = 1.0;
 
 /// Stiffness along a surface by that across it, as for every other method.
 const TANGENTIAL: f64 = 0.5;
@@ -35,17 +46,28 @@ impl Touching {
     ///
     /// Push: N = k d of depth d. Friction: a spring to the anchor, k_t s, held to mu N by sliding
     /// the anchor (return mapping, Wriggers 2006, section 5.2).
+    ///
+    /// Cloth that a surface was put over is pushed out no faster than [`LEAVING`]. Its `mass` is
+    /// in kg, the substep `h` in s.
     #[inline(always)]
-    pub fn press(&mut self, place: Lane) -> Lane {
+    pub fn press(&mut self, place: Lane, velocity: Lane, mass: f64, h: f64) -> Lane {
         let depth = self.level - self.normal.dot(place);
         if depth <= 0.0 {
             self.force = 0.0;
+            self.buried = false;
             return Lane::default();
         }
         if self.force == 0.0 {
             self.anchor = place;
         }
+        let leaving = self.normal.dot(velocity);
         self.force = self.stiffness * depth;
+        let mut push = damped_push(self.force, self.stiffness, mass, leaving);
+        self.buried |= depth > self.inside;
+        if self.buried {
+            push = push.min((mass / h * (LEAVING - leaving)).max(0.0));
+            self.force = push;
+        }
         let away = place.minus(self.anchor);
         let slip = away.add_scaled(self.normal, -away.dot(self.normal));
         let length = slip.dot(slip).sqrt();
@@ -57,7 +79,7 @@ impl Touching {
         };
         self.anchor = place.add_scaled(slip, -kept);
         self.normal
-            .scaled(self.force)
+            .scaled(push)
             .add_scaled(slip, -tangential * kept)
     }
 
@@ -93,6 +115,8 @@ struct Sample {
     /// Where it sticks to a surface [m] and how much presses it there [N].
     anchor: Lane,
     force: f64,
+    /// Whether a surface was put over it and it has not come out since.
+    buried: bool,
 }
 
 /// Below this slope of the distance no direction leads out.
@@ -119,6 +143,10 @@ impl Touch {
             self.near.clear();
             return;
         }
+        let buried: &[u32] = match &state.memory {
+            Memory::Buried(samples) => samples,
+            _ => &[],
+        };
         for (number, sample) in model.samples.iter().enumerate() {
             let vertex = sample.vertices[0];
             if sample.triangle.is_some() || model.pinned[vertex as usize] {
@@ -144,6 +172,7 @@ impl Touch {
                 } else {
                     0.0
                 },
+                buried: buried.binary_search(&(number as u32)).is_ok(),
             });
         }
     }
@@ -152,6 +181,12 @@ impl Touch {
     pub fn finish(&self, state: &mut State) {
         state.anchors.fill(None);
         state.normal_forces.fill(0.0);
+        let buried = self.places.iter().filter(|sample| sample.buried);
+        let buried: Vec<u32> = buried.map(|sample| sample.number).collect();
+        state.memory = match buried.is_empty() {
+            true => Memory::Nothing,
+            false => Memory::Buried(buried),
+        };
         for sample in self.places.iter().filter(|sample| sample.force > 0.0) {
             state.anchors[sample.number as usize] = Some(sample.anchor.into());
             state.normal_forces[sample.number as usize] = sample.force;
@@ -191,6 +226,7 @@ impl Touch {
     pub fn take_back(&mut self, contact: &Touching) {
         let sample = &mut self.places[contact.place as usize];
         (sample.anchor, sample.force) = (contact.anchor, contact.force);
+        sample.buried = contact.buried;
     }
 
     /// Energy of the contacts [J].
@@ -203,15 +239,15 @@ impl Touch {
     }
 
     /// What a step undone must put back.
-    pub fn remember(&self, into: &mut Vec<(Lane, f64)>) {
+    pub fn remember(&self, into: &mut Vec<(Lane, f64, bool)>) {
         into.clear();
-        into.extend(self.places.iter().map(|s| (s.anchor, s.force)));
+        into.extend(self.places.iter().map(|s| (s.anchor, s.force, s.buried)));
     }
 
     /// Puts it back.
-    pub fn recall(&mut self, from: &[(Lane, f64)]) {
-        for (sample, &(anchor, force)) in self.places.iter_mut().zip(from) {
-            (sample.anchor, sample.force) = (anchor, force);
+    pub fn recall(&mut self, from: &[(Lane, f64, bool)]) {
+        for (sample, &(anchor, force, buried)) in self.places.iter_mut().zip(from) {
+            (sample.anchor, sample.force, sample.buried) = (anchor, force, buried);
         }
     }
 }
@@ -247,6 +283,8 @@ impl Sample {
             friction: self.friction,
             anchor: self.anchor,
             force: self.force,
+            inside: self.offset,
+            buried: self.buried,
         })
     }
 
