@@ -90,6 +90,9 @@ pub enum ItemProblem {
     },
 }
 
+/// Where within its tolerance the grain is tried.
+const TILTS: [f64; 5] = [0.0, -0.5, 0.5, -1.0, 1.0];
+
 /// Turns and sides an item's copy may take on a strip, without repeats.
 pub(crate) fn orientations(item: &Item, strip: &Strip, copy: u32) -> Vec<(f64, bool)> {
     let sides: &[bool] = match item.allowed.mirror {
@@ -99,8 +102,16 @@ pub(crate) fn orientations(item: &Item, strip: &Strip, copy: u32) -> Vec<(f64, b
         Mirror::Free => &[false, true],
     };
     let mut found: Vec<(f64, bool)> = Vec::new();
-    for &turn in &item.allowed.turns {
-        if strip.nap == Nap::OneWay && turn != 0.0 {
+    let tilt = item.allowed.tilt;
+    let tilts: &[f64] = if tilt > 0.0 { &TILTS } else { &[0.0] };
+    for (base, part) in item.allowed.turns.iter().flat_map(|b| tilts.iter().map(move |t| (b, t))) {
+        let turn = base + part * tilt;
+        let runs_off = match strip.nap {
+            Nap::None => false,
+            Nap::OneWay => *base != 0.0,
+            Nap::PerBundle => base.sin().abs() > 1e-9,
+        };
+        if runs_off {
             continue;
         }
         for &side in sides {

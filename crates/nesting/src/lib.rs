@@ -9,15 +9,23 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod check;
-mod fit;
+mod explore;
+mod job;
+mod layout;
 mod marker;
-mod order;
-mod place;
+mod nofit;
+mod raster;
 mod referee;
+mod refine;
 mod search;
+mod separate;
+mod sequence;
 mod simplify;
 
 pub use check::{ItemProblem, NestingError, Refusal};
-pub use marker::{Allowed, Item, Marker, Mirror, Nap, Placement, Pose, Strip, Unplaced};
+pub use marker::{
+    Allowed, Defect, Fold, FoldEdge, Item, Locked, Marker, MatchPoint, Mirror, Nap, Phase,
+    Placement, Pose, Strip, Stripes, Unplaced,
+};
 pub use referee::{PENETRATION_LIMIT, Side, Verdict, Violation, judge};
-pub use search::{Control, Progress, Search, make_marker};
+pub use search::{Budget, Control, Progress, Search, make_marker};

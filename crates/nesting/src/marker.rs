@@ -1,6 +1,6 @@
 //! What is laid, on what, and the result.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use toile_geometry::{Polygon, Vec2};
 
 /// How copies of a piece may be turned over.
@@ -22,22 +22,27 @@ pub struct Allowed {
     pub turns: Vec<f64>,
     /// Whether it may be turned over.
     pub mirror: Mirror,
+    /// How far the grain may lie off each of the angles, to either side \[rad\].
+    pub tilt: f64,
 }
 
 impl Allowed {
     /// Grain along the warp, one way only.
     pub fn one_way() -> Self {
-        Self {
-            turns: vec![0.0],
-            mirror: Mirror::Never,
-        }
+        Self::turned(vec![0.0])
     }
 
     /// Grain along the warp, either way.
     pub fn two_way() -> Self {
+        Self::turned(vec![0.0, PI])
+    }
+
+    /// A list of angles \[rad\], as drawn, without tilt.
+    pub fn turned(turns: Vec<f64>) -> Self {
         Self {
-            turns: vec![0.0, PI],
+            turns,
             mirror: Mirror::Never,
+            tilt: 0.0,
         }
     }
 
@@ -62,6 +67,58 @@ pub struct Item {
     pub allowed: Allowed,
     /// Free fabric this piece needs to any other \[m\]; the strip's gap holds where it is larger.
     pub gap: f64,
+    /// The garment each copy belongs to, for a nap that runs one way in each garment; copies
+    /// beyond the list belong to garment 0.
+    pub bundles: Vec<u32>,
+    /// The side of the outline, grain along +x and as drawn, that must lie on a fold of the
+    /// fabric. The outline is then half of the piece.
+    pub fold_edge: Option<FoldEdge>,
+    /// The point that must lie on the stripes.
+    pub match_point: Option<MatchPoint>,
+    /// Whether it may be cut from flawed fabric (a pocket bag, an inner yoke).
+    pub over_defects: bool,
+    /// Copies that have their place already.
+    pub locked: Vec<Locked>,
+}
+
+/// A side of an outline that lies along the grain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FoldEdge {
+    /// At its least y, once the grain lies along +x.
+    Lower,
+    /// At its greatest y.
+    Upper,
+}
+
+/// A point of a piece that must lie where the print of the fabric wants it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MatchPoint {
+    /// In the plane of the outline \[m\].
+    pub point: Vec2,
+    /// Where in the repeat.
+    pub phase: Phase,
+}
+
+/// A place within the repeat of a print.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Phase {
+    /// This far after the lines of the print, along the warp and across \[m\].
+    At(Vec2),
+    /// The same place for all pieces of this set, wherever that is: what is sewn together matches.
+    Set(u32),
+}
+
+/// A copy that must stay where it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Locked {
+    /// Number of the copy, from 0.
+    pub copy: u32,
+    /// Angle from the warp to the piece's grain \[rad\].
+    pub turn: f64,
+    /// Whether it lies face down.
+    pub mirrored: bool,
+    /// Move after turning \[m\].
+    pub translation: Vec2,
 }
 
 impl Item {
@@ -74,7 +131,27 @@ impl Item {
             quantity: 1,
             allowed: Allowed::two_way(),
             gap: 0.0,
+            bundles: Vec::new(),
+            fold_edge: None,
+            match_point: None,
+            over_defects: false,
+            locked: Vec::new(),
         }
+    }
+
+    /// The garment a copy belongs to.
+    pub fn bundle(&self, copy: u32) -> u32 {
+        self.bundles.get(copy as usize).copied().unwrap_or(0)
+    }
+
+    /// The least turn of the piece's grain from one of its angles, counter-clockwise \[rad\].
+    pub(crate) fn tilt_of(&self, turn: f64) -> f64 {
+        let off = |allowed: &f64| {
+            let apart = (turn - allowed).rem_euclid(TAU);
+            if apart > PI { apart - TAU } else { apart }
+        };
+        let nearer = |a: f64, b: f64| if b.abs() < a.abs() { b } else { a };
+        self.allowed.turns.iter().map(off).fold(PI, nearer)
     }
 }
 
@@ -86,10 +163,42 @@ pub enum Nap {
     None,
     /// It has a nap or a one-way print: every piece keeps turn 0.
     OneWay,
+    /// It has a nap, and each garment may run either way, but all its pieces the same.
+    PerBundle,
+}
+
+/// Where the fabric is folded in two along the warp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Fold {
+    /// Nowhere: it lies open.
+    #[default]
+    Open,
+    /// At y = 0; the selvedges lie on each other at y = width.
+    Lower,
+    /// At y = 0 and at y = width: tubular fabric.
+    Both,
+}
+
+/// A print that repeats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stripes {
+    /// Length of a repeat along the warp and across \[m\]; 0 where it does not repeat.
+    pub repeat: Vec2,
+    /// A point where lines of the print cross \[m\].
+    pub origin: Vec2,
+}
+
+/// A flaw in the fabric.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Defect {
+    /// What is flawed \[m\], in the plane of the strip.
+    pub outline: Polygon,
+    /// Distance pieces keep from it \[m\].
+    pub clearance: f64,
 }
 
 /// The fabric.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Strip {
     /// Full width, selvedges included \[m\].
     pub width: f64,
@@ -103,6 +212,13 @@ pub struct Strip {
     pub max_length: Option<f64>,
     /// Nap.
     pub nap: Nap,
+    /// Folds; where the fabric is folded, width is that of the folded fabric, and there is no
+    /// selvedge at a fold.
+    pub fold: Fold,
+    /// Print that pieces with a match point must meet.
+    pub stripes: Option<Stripes>,
+    /// Flaws.
+    pub defects: Vec<Defect>,
 }
 
 impl Strip {
@@ -115,12 +231,31 @@ impl Strip {
             gap: 0.0,
             max_length: None,
             nap: Nap::None,
+            fold: Fold::Open,
+            stripes: None,
+            defects: Vec::new(),
+        }
+    }
+
+    /// Least y a piece may reach \[m\].
+    pub fn lower(&self) -> f64 {
+        match self.fold {
+            Fold::Open => self.selvedge,
+            Fold::Lower | Fold::Both => 0.0,
+        }
+    }
+
+    /// Greatest y a piece may reach \[m\].
+    pub fn upper(&self) -> f64 {
+        match self.fold {
+            Fold::Open | Fold::Lower => self.width - self.selvedge,
+            Fold::Both => self.width,
         }
     }
 
     /// Width between the selvedges \[m\].
     pub fn usable_width(&self) -> f64 {
-        self.width - 2.0 * self.selvedge
+        self.upper() - self.lower()
     }
 
     /// Least distance two items must keep \[m\].
@@ -180,6 +315,17 @@ impl Pose {
     }
 }
 
+/// A ring turned over across the x axis if `mirrored`, then turned \[rad\].
+pub(crate) fn turned(ring: &[Vec2], turn: f64, mirrored: bool) -> Vec<Vec2> {
+    let pose = Pose {
+        grain: 0.0,
+        turn,
+        mirrored,
+        translation: Vec2::zeros(),
+    };
+    ring.iter().map(|&p| pose.apply(p)).collect()
+}
+
 /// One piece laid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
@@ -231,6 +377,26 @@ pub struct Marker {
     pub utilisation: f64,
     /// Copies that found no place.
     pub unplaced: Vec<Unplaced>,
+}
+
+impl Marker {
+    /// Sets length, efficiency and utilisation from what is laid.
+    pub fn measure(&mut self, items: &[Item], strip: &Strip) {
+        let laid = || self.placements.iter().filter_map(|p| Some((p, items.get(p.item)?)));
+        let end = |(p, item): (&Placement, &Item)| p.pose(item).lay(&item.outline).bounds().max.x;
+        let reach = laid().map(end).fold(strip.end_margin, f64::max);
+        let area: f64 = laid().map(|(_, item)| item.outline.area()).sum();
+        let share = |length: f64| {
+            if length > 0.0 {
+                area / (strip.width * length)
+            } else {
+                0.0
+            }
+        };
+        self.length = reach + strip.end_margin;
+        self.efficiency = share(reach - strip.end_margin);
+        self.utilisation = share(self.length);
+    }
 }
 
 #[cfg(test)]

@@ -1,27 +1,58 @@
-//! Several orders are tried within a budget of positions weighed, not of time; the best one is kept.
+//! A marker within a budget: islands search side by side, now and then the best layout is shared.
 
 use crate::check::{NestingError, check};
-use crate::fit::Fit;
-use crate::order::{CRITERIA, Copy, Sequence, ordered, shuffled};
-use crate::place::{Layout, Preference, lay};
-use crate::{Item, Marker, Strip, Unplaced};
-use std::sync::atomic::AtomicBool;
+use crate::explore::Island;
+use crate::job::Job;
+use crate::layout::Layout;
+use crate::separate::Limit;
+use crate::{Item, Marker, Placement, Strip, Unplaced, judge};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// When a search ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Budget {
+    /// After so many evaluations of a pair of pieces: the same job gives the same marker.
+    Evaluations(u64),
+    /// After so many seconds \[s\]: for a person who waits.
+    Seconds(f64),
+}
 
 /// How hard to search.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Search {
-    /// Positions of pieces weighed before the search ends; at least a few whole markers are laid.
-    /// The default takes about a second. Ten times as many shorten the marker by a percent or so.
-    pub positions: u64,
-    /// Start of the sequence that shuffles orders; the same seed gives the same marker.
+    /// When it ends.
+    pub budget: Budget,
+    /// Start of the sequences of chance; the same seed gives the same marker.
     pub seed: u64,
+    /// Searches side by side; their number changes the marker, the number of processors does not.
+    pub islands: usize,
 }
 
 impl Default for Search {
     fn default() -> Self {
         Self {
-            positions: 10_000_000,
+            budget: Budget::Evaluations(10_000_000),
             seed: 1,
+            islands: 2,
+        }
+    }
+}
+
+impl Search {
+    /// The default search with a budget in seconds.
+    pub fn seconds(seconds: f64) -> Self {
+        Self {
+            budget: Budget::Seconds(seconds),
+            ..Self::default()
+        }
+    }
+
+    /// The default search with a budget in evaluations.
+    pub fn evaluations(evaluations: u64) -> Self {
+        Self {
+            budget: Budget::Evaluations(evaluations),
+            ..Self::default()
         }
     }
 }
@@ -31,25 +62,64 @@ impl Default for Search {
 pub struct Progress {
     /// Part of the budget used, 0..=1.
     pub done: f64,
-    /// Markers laid.
-    pub markers: u64,
+    /// Pairs of pieces evaluated.
+    pub evaluations: u64,
     /// Length of the best so far, end margins included \[m\].
     pub length: f64,
 }
 
 /// How the outside follows and stops a search.
 pub struct Control<'a> {
-    /// Told after every few markers.
+    /// Told now and then.
     pub progress: &'a mut dyn FnMut(Progress),
     /// Set from anywhere to stop: the search ends with [`NestingError::Cancelled`].
     pub cancel: &'a AtomicBool,
 }
 
+/// Part of the budget spent on new layouts; the rest presses the best one.
+const EXPLORING: f64 = 0.8;
+/// Evaluations of an island between two exchanges.
+const EPOCH: u64 = 3_000_000;
+
+/// What was used and what is at hand.
+struct Meter<'a> {
+    search: Search,
+    cancel: &'a AtomicBool,
+    started: Instant,
+}
+
+impl Meter<'_> {
+    /// Part of the budget used.
+    fn done(&self, queries: u64) -> f64 {
+        match self.search.budget {
+            Budget::Evaluations(all) => queries as f64 / all.max(1) as f64,
+            Budget::Seconds(all) => self.started.elapsed().as_secs_f64() / all.max(1e-3),
+        }
+    }
+
+    /// Whether the clock says that a part of the budget is used up.
+    fn stops(&self, part: f64) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+            || match self.search.budget {
+                Budget::Evaluations(_) => false,
+                Budget::Seconds(all) => self.started.elapsed() > Duration::from_secs_f64((all * part).clamp(0.0, 1e9)),
+            }
+    }
+
+    /// Evaluations of one island when a part of the budget is used up.
+    fn share(&self, part: f64) -> u64 {
+        match self.search.budget {
+            Budget::Evaluations(all) => (all as f64 * part / self.search.islands.max(1) as f64) as u64,
+            Budget::Seconds(_) => u64::MAX,
+        }
+    }
+}
+
 /// Lays all pieces on the strip in little length.
 ///
-/// Deterministic: the same input gives the same marker. Refuses a job that cannot be done, naming
-/// every piece and the remedy. Copies that find no place on a strip of limited length are listed
-/// in the marker.
+/// With a budget in evaluations the same input gives the same marker. Refuses a job that cannot be
+/// done, naming every piece and the remedy. Copies that find no place on a strip of limited length
+/// are listed in the marker.
 ///
 /// ```
 /// use std::sync::atomic::AtomicBool;
@@ -61,7 +131,7 @@ pub struct Control<'a> {
 /// let items = [Item { quantity: 3, ..Item::new("pocket", piece) }];
 /// let strip = Strip::of_width(1.5);
 /// let mut control = Control { progress: &mut |_| {}, cancel: &AtomicBool::new(false) };
-/// let marker = make_marker(&items, &strip, Search::default(), &mut control)?;
+/// let marker = make_marker(&items, &strip, Search::evaluations(100_000), &mut control)?;
 /// assert!((marker.length - 0.6).abs() < 1e-6);
 /// assert!(judge(&items, &strip, &marker).is_sound());
 /// # Ok::<(), toile_nesting::NestingError>(())
@@ -73,161 +143,138 @@ pub fn make_marker(
     control: &mut Control<'_>,
 ) -> Result<Marker, NestingError> {
     check(items, strip)?;
-    let fit = Fit::new(items, strip);
-    let mut best: Option<Trial> = None;
-    let mut sequence = Sequence(search.seed);
-    let (mut positions, mut markers) = (0, 0);
-    loop {
-        let batch: Vec<Plan> = (markers..markers + BATCH)
-            .map(|number| plan(items, number, best.as_ref(), &mut sequence))
-            .collect();
-        let trials = lay_batch((items, strip, &fit), batch, control.cancel);
-        for trial in trials {
-            let trial = trial.ok_or(NestingError::Cancelled)?;
-            positions += trial.layout.positions;
-            if best.as_ref().is_none_or(|known| trial.score < known.score) {
-                best = Some(trial);
-            }
-        }
-        markers += BATCH;
-        let Some(known) = &best else {
-            return Err(NestingError::NoItems);
-        };
-        let most = STARTS + MARKERS_PER_COPY * known.plan.order.len() as u64;
-        let done = (positions as f64 / search.positions.max(1) as f64)
-            .max(markers as f64 / most as f64)
-            .min(1.0);
-        (control.progress)(Progress {
-            done,
-            markers,
-            length: known.layout.reach + strip.end_margin,
+    let meter = Meter {
+        search,
+        cancel: control.cancel,
+        started: Instant::now(),
+    };
+    let copies: Vec<(usize, u32)> = (0..items.len())
+        .flat_map(|k| (0..items[k].quantity).map(move |copy| (k, copy)))
+        .collect();
+    let job = Job::new(items, strip, &copies);
+    job.prepare(threads(), &|| control.cancel.load(Ordering::Relaxed));
+    let best = hunt(&job, &meter, control)?;
+    Ok(finish(&job, &best))
+}
+
+fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+fn hunt(
+    job: &Job<'_>,
+    meter: &Meter<'_>,
+    control: &mut Control<'_>,
+) -> Result<Layout, NestingError> {
+    let count = meter.search.islands.max(1) as u64;
+    let seeds = (0..count).map(|k| meter.search.seed.wrapping_mul(0x1000_0000_01b3).wrapping_add(k));
+    let mut islands: Vec<Island<'_>> = seeds.map(|seed| Island::new(job, seed)).collect();
+    each(&mut islands, &|island| {
+        island.start(&Limit {
+            queries: u64::MAX,
+            stop: &|| meter.cancel.load(Ordering::Relaxed),
         });
-        if done >= 1.0 {
-            break;
-        }
-    }
-    let best = best.ok_or(NestingError::NoItems)?;
-    Ok(finish(items, strip, best.layout))
-}
-
-/// Markers laid between two looks at the best: they may be laid at the same time, and their number
-/// is fixed so that the number of threads does not matter.
-const BATCH: u64 = 4;
-/// Orders that are always tried first, budget permitting.
-const STARTS: u64 = 2 * CRITERIA.len() as u64;
-/// Shuffles after which a small job is taken to be settled, per copy.
-const MARKERS_PER_COPY: u64 = 60;
-
-/// A marker to lay.
-struct Plan {
-    order: Vec<Copy>,
-    preference: Preference,
-}
-
-/// A marker laid.
-struct Trial {
-    score: (f64, f64, f64),
-    layout: Layout,
-    plan: Plan,
-}
-
-/// First the orders by size, then shuffles of the best.
-fn plan(items: &[Item], number: u64, best: Option<&Trial>, sequence: &mut Sequence) -> Plan {
-    match best {
-        Some(best) if number >= STARTS => Plan {
-            order: shuffled(&best.plan.order, sequence),
-            preference: best.plan.preference,
-        },
-        _ => Plan {
-            order: ordered(items, CRITERIA[(number / 2) as usize % CRITERIA.len()]),
-            preference: [Preference::ShortestReach, Preference::EarliestStart]
-                [(number % 2) as usize],
-        },
-    }
-}
-
-/// Lays all plans, on as many threads as there are; results in the order of the plans.
-fn lay_batch(
-    job: (&[Item], &Strip, &Fit),
-    plans: Vec<Plan>,
-    cancel: &AtomicBool,
-) -> Vec<Option<Trial>> {
-    let one = |plan: Plan| {
-        let layout = lay(job, &plan.order, plan.preference, cancel)?;
-        Some(Trial {
-            score: score(job.0, &layout),
-            layout,
-            plan,
-        })
-    };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let share = plans.len().div_ceil(threads.max(1)).max(1);
-    let mut shares: Vec<Vec<Plan>> = Vec::new();
-    for plan in plans {
-        match shares.last_mut() {
-            Some(last) if last.len() < share => last.push(plan),
-            _ => shares.push(vec![plan]),
-        }
-    }
-    std::thread::scope(|scope| {
-        let mine = shares.pop().unwrap_or_default();
-        let others: Vec<_> = shares
-            .into_iter()
-            .map(|share| scope.spawn(|| share.into_iter().map(one).collect::<Vec<_>>()))
-            .collect();
-        let last: Vec<Option<Trial>> = mine.into_iter().map(one).collect();
-        let mut all = Vec::new();
-        for other in others {
-            match other.join() {
-                Ok(trials) => all.extend(trials),
-                Err(panic) => std::panic::resume_unwind(panic),
+    });
+    for (part, press) in [(EXPLORING, false), (1.0, true)] {
+        loop {
+            if meter.cancel.load(Ordering::Relaxed) {
+                return Err(NestingError::Cancelled);
+            }
+            share(&mut islands);
+            tell(&islands, meter, control);
+            let queries = |island: &Island<'_>| island.queries();
+            let most = islands.iter().map(queries).max().unwrap_or(0);
+            if meter.stops(part) || most >= meter.share(part) {
+                break;
+            }
+            each(&mut islands, &|island| {
+                let limit = Limit {
+                    queries: (island.queries() + EPOCH).min(meter.share(part)),
+                    stop: &|| meter.stops(part),
+                };
+                if press {
+                    let done = |queries: u64| {
+                        (meter.done(queries * count) - EXPLORING) / (1.0 - EXPLORING)
+                    };
+                    island.press(&limit, &done);
+                } else {
+                    island.explore(&limit);
+                }
+            });
+            let now = islands.iter().map(queries).max().unwrap_or(0);
+            if now == most {
+                // Nothing is left to try.
+                break;
             }
         }
-        all.extend(last);
-        all
-    })
-}
-
-/// Less is better: area left over \[m2\], then length \[m\], then the sum of all right ends \[m\].
-fn score(items: &[Item], layout: &Layout) -> (f64, f64, f64) {
-    let area = |&(item, _): &Copy| items[item].outline.area();
-    let left_over = layout.left_over.iter().map(area).sum();
-    (left_over, layout.reach, layout.spread)
-}
-
-fn finish(items: &[Item], strip: &Strip, mut layout: Layout) -> Marker {
-    layout.placements.sort_by_key(|p| (p.item, p.copy));
-    layout.left_over.sort_unstable();
-    let area: f64 = layout
-        .placements
-        .iter()
-        .map(|p| items[p.item].outline.area())
-        .sum();
-    let length = layout.reach + strip.end_margin;
-    let share = |of: f64| {
-        if of > 0.0 {
-            area / (strip.width * of)
-        } else {
-            0.0
-        }
-    };
-    let reason = format!(
-        "no room is left on {:.0} mm of fabric; take more fabric or lay it on another marker",
-        strip.max_length.unwrap_or(length) * 1e3
-    );
-    Marker {
-        efficiency: share(layout.reach - strip.end_margin),
-        utilisation: share(length),
-        length,
-        unplaced: layout
-            .left_over
-            .iter()
-            .map(|&(item, copy)| Unplaced {
-                item,
-                copy,
-                reason: reason.clone(),
-            })
-            .collect(),
-        placements: layout.placements,
     }
+    let best = islands.into_iter().filter_map(|island| island.best);
+    best.min_by(|a, b| a.length.total_cmp(&b.length)).ok_or(NestingError::Cancelled)
+}
+
+/// Works on all islands, on as many threads as there are.
+fn each<'a>(islands: &mut [Island<'a>], work: &(dyn Fn(&mut Island<'a>) + Sync)) {
+    let share = islands.len().div_ceil(threads());
+    std::thread::scope(|scope| {
+        let mut chunks = islands.chunks_mut(share);
+        let own = chunks.next();
+        for chunk in chunks {
+            scope.spawn(move || chunk.iter_mut().for_each(work));
+        }
+        own.into_iter().flatten().for_each(work);
+    });
+}
+
+/// The best layout goes to islands that are clearly behind.
+fn share(islands: &mut [Island<'_>]) {
+    let lengths: Vec<f64> = islands.iter().map(Island::length).collect();
+    let Some(first) = (0..lengths.len()).min_by(|&a, &b| lengths[a].total_cmp(&lengths[b])) else {
+        return;
+    };
+    let Some(best) = islands[first].best.clone() else {
+        return;
+    };
+    for island in islands.iter_mut() {
+        if island.length() > best.length {
+            island.adopt(&best);
+        }
+    }
+}
+
+fn tell(islands: &[Island<'_>], meter: &Meter<'_>, control: &mut Control<'_>) {
+    let evaluations: u64 = islands.iter().map(Island::queries).sum();
+    let length = islands.iter().map(Island::length).fold(f64::INFINITY, f64::min);
+    let margin = islands.first().map_or(0.0, |i| 2.0 * i.end_margin());
+    (control.progress)(Progress {
+        done: meter.done(evaluations).min(1.0),
+        evaluations,
+        length: length + margin,
+    });
+}
+
+fn finish(job: &Job<'_>, layout: &Layout) -> Marker {
+    let strip = job.strip;
+    let mut placements: Vec<Placement> = Vec::new();
+    for (k, piece) in job.pieces.iter().enumerate() {
+        let Some(item) = piece.item else {
+            continue;
+        };
+        let shape = &job.shapes[layout.shape[k]];
+        placements.push(Placement {
+            item,
+            copy: piece.copy,
+            turn: shape.turn,
+            mirrored: shape.mirrored,
+            translation: layout.at[k] - shape.offset + job.corner(),
+        });
+    }
+    placements.sort_by_key(|p| (p.item, p.copy));
+    let mut marker = Marker {
+        placements,
+        unplaced: Vec::<Unplaced>::new(),
+        ..Marker::default()
+    };
+    marker.measure(job.items, strip);
+    debug_assert!(judge(job.items, strip, &marker).is_sound());
+    marker
 }

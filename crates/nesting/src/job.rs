@@ -1,0 +1,464 @@
+//! A job made ready: every piece in every orientation, and what each pair may not do.
+//!
+//! Shapes are moved so that their boxes start at the origin. Moves are measured from the corner of
+//! the usable fabric.
+
+use crate::check::orientations;
+use crate::marker::{Phase, turned};
+use crate::nofit::{NoFit, Probe};
+use crate::raster::DepthRaster;
+use crate::simplify::simplify_outward;
+use crate::{Fold, FoldEdge, Item, Nap, Pose, Strip};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use toile_geometry::{Polygon, Vec2, no_fit_polygon};
+
+/// How far outlines may grow when they are simplified, over the width of the fabric: a tenth of a
+/// millimetre on the roll.
+const SIMPLIFY: f64 = 6e-5;
+/// Distance kept between touching pieces over the width of the fabric: above the rounding of the
+/// no-fit polygons, far under what can be cut.
+const SAFE: f64 = 6e-8;
+/// How far outside of a no-fit polygon its edges are still found, over the width of the fabric.
+const WINDOW: f64 = 0.02;
+/// Most rows of the loss maps.
+const ROWS: f64 = 128.0;
+/// Most numbers in all depth rasters together: 128 MB.
+const RASTER_NUMBERS: f64 = 32e6;
+
+/// A piece in one orientation.
+#[derive(Clone, Debug)]
+pub(crate) struct Shape {
+    /// Index of the item, or of the defect after all items.
+    pub kind: usize,
+    /// Angle from the warp to the grain \[rad\].
+    pub turn: f64,
+    pub mirrored: bool,
+    /// From the box's corner to the origin of the posed outline, negated \[m\].
+    pub offset: Vec2,
+    /// Extent \[m\].
+    pub size: Vec2,
+    /// Whether the grain points along +x rather than -x.
+    pub forward: bool,
+    /// The match point from the box's corner \[m\].
+    pub anchor: Option<Vec2>,
+    /// The only y it may have \[m\]: that of the fold.
+    pub on_fold: Option<f64>,
+}
+
+/// One copy to lay, or something that lies already.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    /// The item; nothing for a defect.
+    pub item: Option<usize>,
+    pub copy: u32,
+    /// Orientations it may take.
+    pub shapes: Vec<usize>,
+    /// The only place it may have.
+    pub locked: Option<(usize, Vec2)>,
+    /// Number of its garment, if that must run one way.
+    pub bundle: Option<usize>,
+    /// Number of its set of matched pieces.
+    pub set: Option<usize>,
+    /// Area of the outline \[m2\].
+    pub area: f64,
+}
+
+/// How the no-fit polygon of two shapes follows from one that is kept.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    no_fit: u32,
+    /// Columns of the map from the kept polygon's plane.
+    axes: [Vec2; 2],
+    shift: Vec2,
+    /// Distance the shapes keep \[m\]; minus infinity if they may overlap.
+    gap: f64,
+}
+
+/// Kinds, angle between them \[rad\], and whether one of them is turned over.
+type Key = (usize, usize, f64, bool);
+
+/// What a coordinate of a piece's place may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Axis {
+    Free,
+    Only(f64),
+    Every { first: f64, step: f64 },
+}
+
+impl Axis {
+    /// The allowed value nearest to one, from 0 to `end`.
+    pub fn nearest(self, value: f64, end: f64) -> Option<f64> {
+        match self {
+            Self::Free => Some(value.clamp(0.0, end)),
+            Self::Only(only) => (only <= end + 1e-9).then_some(only),
+            Self::Every { first, step } => {
+                let first = first.rem_euclid(step);
+                let last = ((end - first) / step).floor();
+                let number = ((value - first) / step).round().clamp(0.0, last.max(0.0));
+                (last >= 0.0).then_some(first + number * step)
+            }
+        }
+    }
+}
+
+/// A job with its tables; shared by threads.
+pub(crate) struct Job<'a> {
+    pub items: &'a [Item],
+    pub strip: &'a Strip,
+    pub shapes: Vec<Shape>,
+    pub pieces: Vec<Piece>,
+    /// Usable width \[m\].
+    pub height: f64,
+    /// Greatest gap \[m\].
+    pub widest_gap: f64,
+    /// Spacing of the loss maps \[m\].
+    pub spacing: f64,
+    /// Numbers of garments and of matched sets.
+    pub bundles: usize,
+    pub sets: usize,
+    pairs: Vec<Pair>,
+    keys: Vec<Key>,
+    rings: Vec<Vec<Vec2>>,
+    no_fits: Vec<OnceLock<NoFit>>,
+    rasters: Vec<OnceLock<DepthRaster>>,
+}
+
+impl<'a> Job<'a> {
+    /// Poses every copy in every allowed orientation. Items and strip are sound.
+    pub fn new(items: &'a [Item], strip: &'a Strip, copies: &[(usize, u32)]) -> Self {
+        let mut job = Self {
+            items,
+            strip,
+            shapes: Vec::new(),
+            pieces: Vec::new(),
+            height: strip.usable_width(),
+            widest_gap: 0.0,
+            spacing: 0.0,
+            bundles: 0,
+            sets: 0,
+            pairs: Vec::new(),
+            keys: Vec::new(),
+            rings: Vec::new(),
+            no_fits: Vec::new(),
+            rasters: Vec::new(),
+        };
+        job.add_items(copies);
+        job.add_defects();
+        job.pair_up();
+        let area = |(a, b): (&Shape, &Shape)| (a.size + b.size).x * (a.size + b.size).y;
+        let all = job.shapes.iter();
+        let total: f64 = all.flat_map(|a| job.shapes.iter().map(move |b| area((a, b)))).sum();
+        job.spacing = (job.height / ROWS).max((total / RASTER_NUMBERS).sqrt());
+        job
+    }
+
+    fn add_items(&mut self, copies: &[(usize, u32)]) {
+        let mut bundles = BTreeMap::new();
+        let mut sets = BTreeMap::new();
+        let mut known: BTreeMap<(usize, i64, bool), usize> = BTreeMap::new();
+        for (kind, item) in self.items.iter().enumerate() {
+            let straight = Polygon::new(turned(&item.outline.outer, -item.grain, false)).oriented();
+            let ring = simplify_outward(&straight.outer, SIMPLIFY * self.height);
+            self.rings.push(ring);
+            let own = copies.iter().filter(|c| c.0 == kind).map(|c| c.1);
+            for copy in own {
+                let lock = item.locked.iter().find(|l| l.copy == copy);
+                let ways = match lock {
+                    Some(lock) => vec![(lock.turn, lock.mirrored)],
+                    None => orientations(item, self.strip, copy),
+                };
+                let shapes: Vec<usize> = ways
+                    .into_iter()
+                    .filter_map(|way| {
+                        let key = (kind, (way.0.rem_euclid(TAU) * 1e9).round() as i64, way.1);
+                        if let Some(&shape) = known.get(&key) {
+                            return Some(shape);
+                        }
+                        let shape = Shape::new(kind, item, way, self.strip)?;
+                        self.shapes.push(shape);
+                        known.insert(key, self.shapes.len() - 1);
+                        Some(self.shapes.len() - 1)
+                    })
+                    .collect();
+                let locked = lock.zip(shapes.first()).map(|(lock, &shape)| {
+                    let at = lock.translation + self.shapes[shape].offset - self.corner();
+                    (shape, at)
+                });
+                let bundle = (self.strip.nap == Nap::PerBundle && lock.is_none()).then(|| {
+                    let count = bundles.len();
+                    *bundles.entry(item.bundle(copy)).or_insert(count)
+                });
+                let set = match item.match_point.map(|m| m.phase) {
+                    Some(Phase::Set(set)) if self.strip.stripes.is_some() => {
+                        let count = sets.len();
+                        Some(*sets.entry(set).or_insert(count))
+                    }
+                    _ => None,
+                };
+                self.pieces.push(Piece {
+                    item: Some(kind),
+                    copy,
+                    shapes,
+                    locked,
+                    bundle,
+                    set,
+                    area: item.outline.area(),
+                });
+            }
+        }
+        (self.bundles, self.sets) = (bundles.len(), sets.len());
+    }
+
+    /// Defects lie where they lie.
+    fn add_defects(&mut self) {
+        for (k, defect) in self.strip.defects.iter().enumerate() {
+            let outline = defect.outline.oriented();
+            let bounds = outline.bounds();
+            self.rings.push(outline.outer);
+            self.shapes.push(Shape {
+                kind: self.items.len() + k,
+                turn: 0.0,
+                mirrored: false,
+                offset: bounds.min,
+                size: bounds.size(),
+                forward: true,
+                anchor: None,
+                on_fold: None,
+            });
+            self.pieces.push(Piece {
+                item: None,
+                copy: 0,
+                shapes: Vec::new(),
+                locked: Some((self.shapes.len() - 1, bounds.min - self.corner())),
+                bundle: None,
+                set: None,
+                area: 0.0,
+            });
+        }
+    }
+
+    /// Lower left corner of the usable fabric \[m\].
+    pub fn corner(&self) -> Vec2 {
+        Vec2::new(self.strip.end_margin, self.strip.lower())
+    }
+
+    /// Greatest length between the end margins \[m\].
+    pub fn longest(&self) -> f64 {
+        self.strip.max_length.map_or(f64::INFINITY, |l| l - 2.0 * self.strip.end_margin)
+    }
+
+    fn gap(&self, a: usize, b: usize) -> f64 {
+        let count = self.items.len();
+        let gap = match (self.items.get(a), self.items.get(b)) {
+            (Some(one), Some(other)) => self.strip.gap_between(one, other),
+            (Some(item), None) if !item.over_defects => self.strip.defects[b - count].clearance,
+            (None, Some(item)) if !item.over_defects => self.strip.defects[a - count].clearance,
+            _ => return f64::NEG_INFINITY,
+        };
+        gap + self.safe()
+    }
+
+    /// What touching pieces are kept apart \[m\].
+    pub fn safe(&self) -> f64 {
+        SAFE * self.height
+    }
+
+    /// How far from touching two shapes are still seen \[m\].
+    pub fn window(&self) -> f64 {
+        WINDOW * self.height
+    }
+
+    /// How much larger than its outline a shape may be taken \[m\].
+    pub fn growth(&self) -> f64 {
+        2.0 * SIMPLIFY * self.height
+    }
+
+    /// With N(a, b) = a + (-b) and an isometry Q: N(Qa, Qb) = Q N(a, b) and N(b, a) = -N(a, b), so
+    /// one polygon serves all pairs that lie alike.
+    fn pair_up(&mut self) {
+        let count = self.shapes.len();
+        let mut known: BTreeMap<(usize, usize, i64, bool), u32> = BTreeMap::new();
+        let mut pairs = Vec::with_capacity(count * count);
+        for a in &self.shapes {
+            for b in &self.shapes {
+                let swapped = b.kind < a.kind;
+                let (fixed, moving) = if swapped { (b, a) } else { (a, b) };
+                let apart = moving.turn - fixed.turn;
+                let apart = if fixed.mirrored { -apart } else { apart };
+                let angle = (apart.rem_euclid(TAU) * 1e9).round() as i64;
+                let angle = angle % (TAU * 1e9).round() as i64;
+                let mirrored = fixed.mirrored != moving.mirrored;
+                let key = (fixed.kind, moving.kind, angle, mirrored);
+                let next = known.len() as u32;
+                let no_fit = *known.entry(key).or_insert(next);
+                if no_fit == next {
+                    self.keys.push((fixed.kind, moving.kind, apart, mirrored));
+                }
+                let sign = if swapped { -1.0 } else { 1.0 };
+                let pose = Pose {
+                    grain: 0.0,
+                    turn: fixed.turn,
+                    mirrored: fixed.mirrored,
+                    translation: Vec2::zeros(),
+                };
+                let axes = pose.axes().map(|axis| axis * sign);
+                let between = a.offset - b.offset;
+                pairs.push(Pair {
+                    no_fit,
+                    axes,
+                    shift: Vec2::new(between.dot(&axes[0]), between.dot(&axes[1])),
+                    gap: self.gap(a.kind, b.kind),
+                });
+            }
+        }
+        let gaps = pairs.iter().map(|p| p.gap);
+        self.widest_gap = gaps.filter(|g| g.is_finite()).fold(0.0, f64::max);
+        self.no_fits = known.iter().map(|_| OnceLock::new()).collect();
+        self.rasters = pairs.iter().map(|_| OnceLock::new()).collect();
+        self.pairs = pairs;
+    }
+
+    fn no_fit(&self, number: u32) -> &NoFit {
+        self.no_fits[number as usize].get_or_init(|| {
+            let (fixed, moving, angle, mirrored) = self.keys[number as usize];
+            let ring = turned(&self.rings[moving], angle, mirrored);
+            let reach = self.gap(fixed, moving).max(0.0) + self.window();
+            NoFit::new(&no_fit_polygon(&self.rings[fixed], &ring), reach)
+        })
+    }
+
+    /// Where a moving shape lies to a fixed one at a move from it, and the gap they need; nothing
+    /// if they are farther apart than the window, or may overlap.
+    #[inline]
+    pub fn probe(&self, fixed: usize, moving: usize, apart: Vec2) -> Option<(Probe, f64)> {
+        let pair = &self.pairs[fixed * self.shapes.len() + moving];
+        if pair.gap < 0.0 {
+            return None;
+        }
+        let [x, y] = pair.axes;
+        let at = Vec2::new(apart.dot(&x), apart.dot(&y)) + pair.shift;
+        let mut probe = self.no_fit(pair.no_fit).probe(at)?;
+        probe.normal = x * probe.normal.x + y * probe.normal.y;
+        Some((probe, pair.gap))
+    }
+
+    /// How much nearer than allowed a moving shape lies to a fixed one \[m\], 0 or more.
+    #[inline]
+    pub fn loss(&self, fixed: usize, moving: usize, apart: Vec2) -> f64 {
+        let pair = &self.pairs[fixed * self.shapes.len() + moving];
+        if pair.gap < 0.0 {
+            return 0.0;
+        }
+        let [x, y] = pair.axes;
+        let at = Vec2::new(apart.dot(&x), apart.dot(&y)) + pair.shift;
+        match self.no_fit(pair.no_fit).probe(at) {
+            Some(probe) => (probe.depth + pair.gap).max(0.0),
+            None => 0.0,
+        }
+    }
+
+    /// The losses of a moving shape at regular moves from a fixed one.
+    pub fn raster(&self, fixed: usize, moving: usize) -> &DepthRaster {
+        self.rasters[fixed * self.shapes.len() + moving]
+            .get_or_init(|| DepthRaster::new(self, fixed, moving))
+    }
+
+    /// Makes all no-fit polygons, on as many threads as asked; stops early if `stop` says so.
+    pub fn prepare(&self, threads: usize, stop: &(dyn Fn() -> bool + Sync)) {
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while !stop() {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                if number >= self.no_fits.len() {
+                    break;
+                }
+                self.no_fit(number as u32);
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(work);
+            }
+            work();
+        });
+    }
+
+    /// What the coordinates of a piece's place may be, for the phases chosen for the sets.
+    pub fn axes(&self, piece: usize, shape: usize, phases: &[Vec2]) -> [Axis; 2] {
+        let (piece, shape) = (&self.pieces[piece], &self.shapes[shape]);
+        let mut axes = [Axis::Free; 2];
+        if let (Some(anchor), Some(stripes)) = (shape.anchor, self.strip.stripes) {
+            let phase = match (piece.set, piece.item.and_then(|i| self.items[i].match_point)) {
+                (Some(set), _) => phases[set],
+                (_, Some(point)) => match point.phase {
+                    Phase::At(phase) => phase,
+                    Phase::Set(_) => Vec2::zeros(),
+                },
+                _ => Vec2::zeros(),
+            };
+            let first = stripes.origin - self.corner() + phase - anchor;
+            for k in 0..2 {
+                if stripes.repeat[k] > 0.0 {
+                    axes[k] = Axis::Every { first: first[k], step: stripes.repeat[k] };
+                }
+            }
+        }
+        if let Some(y) = shape.on_fold {
+            axes[1] = Axis::Only(y);
+        }
+        axes
+    }
+}
+
+impl Shape {
+    /// Nothing if the orientation does not bring the fold edge to a fold.
+    fn new(kind: usize, item: &Item, (turn, mirrored): (f64, bool), strip: &Strip) -> Option<Self> {
+        let pose = Pose {
+            grain: item.grain,
+            turn,
+            mirrored,
+            translation: Vec2::zeros(),
+        };
+        let bounds = pose.lay(&item.outline).bounds();
+        let forward = turn.cos() >= 0.0;
+        let on_fold = match item.fold_edge {
+            None => None,
+            Some(edge) => {
+                let lower = (edge == FoldEdge::Lower) != (mirrored == forward);
+                let at_top = strip.usable_width() - bounds.size().y;
+                match (strip.fold, lower) {
+                    (Fold::Lower | Fold::Both, true) => Some(0.0),
+                    (Fold::Both, false) => Some(at_top),
+                    _ => return None,
+                }
+            }
+        };
+        Some(Self {
+            kind,
+            turn,
+            mirrored,
+            offset: bounds.min,
+            size: bounds.size(),
+            forward,
+            anchor: item.match_point.map(|m| pose.apply(m.point) - bounds.min),
+            on_fold,
+        })
+    }
+}
+
+/// The polygon of a shape from the box's corner \[m\], as the search takes it.
+#[cfg(test)]
+pub(crate) fn exact_outline(job: &Job<'_>, shape: usize) -> Polygon {
+    let shape = &job.shapes[shape];
+    let item = &job.items[shape.kind];
+    let pose = Pose {
+        grain: item.grain,
+        turn: shape.turn,
+        mirrored: shape.mirrored,
+        translation: -shape.offset,
+    };
+    pose.lay(&item.outline)
+}

@@ -1,0 +1,100 @@
+//! Where all pieces lie, overlaps allowed.
+
+use crate::job::{Axis, Job};
+use toile_geometry::Vec2;
+
+/// A layout on a strip of some length.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Layout {
+    /// The shape of every piece.
+    pub shape: Vec<usize>,
+    /// Where the corner of its box lies \[m\].
+    pub at: Vec<Vec2>,
+    /// Extents of the boxes \[m\].
+    pub size: Vec<Vec2>,
+    /// Length of the strip between the end margins \[m\].
+    pub length: f64,
+    /// Which way each garment runs: whether along +x.
+    pub forward: Vec<bool>,
+    /// Where in the repeat each matched set lies \[m\].
+    pub phases: Vec<Vec2>,
+}
+
+impl Layout {
+    /// All pieces in their first orientation at the corner, locked ones in their place.
+    pub fn new(job: &Job<'_>, length: f64) -> Self {
+        let first = |p: &crate::job::Piece| p.locked.map_or(p.shapes[0], |l| l.0);
+        let shape: Vec<usize> = job.pieces.iter().map(first).collect();
+        let place = |p: &crate::job::Piece| p.locked.map_or_else(Vec2::zeros, |l| l.1);
+        Self {
+            at: job.pieces.iter().map(place).collect(),
+            size: shape.iter().map(|&s| job.shapes[s].size).collect(),
+            shape,
+            length,
+            forward: vec![true; job.bundles],
+            phases: vec![Vec2::zeros(); job.sets],
+        }
+    }
+
+    /// Puts a piece somewhere.
+    pub fn put(&mut self, job: &Job<'_>, piece: usize, shape: usize, at: Vec2) {
+        self.shape[piece] = shape;
+        self.size[piece] = job.shapes[shape].size;
+        self.at[piece] = at;
+    }
+
+    /// Greatest moves of a shape on this strip \[m\]; nothing if it does not fit.
+    pub fn room(&self, job: &Job<'_>, shape: usize) -> Option<Vec2> {
+        let room = Vec2::new(self.length, job.height) - job.shapes[shape].size;
+        let snug = -crate::check::SNUG;
+        (room.x >= snug && room.y >= snug).then(|| room.sup(&Vec2::zeros()))
+    }
+
+    /// Whether a piece may take a shape as its garment runs now.
+    pub fn allows(&self, job: &Job<'_>, piece: usize, shape: usize) -> bool {
+        let bundle = job.pieces[piece].bundle;
+        bundle.is_none_or(|b| self.forward[b] == job.shapes[shape].forward)
+    }
+
+    /// The allowed place of a shape of a piece nearest to one.
+    pub fn settle(&self, job: &Job<'_>, piece: usize, shape: usize, at: Vec2) -> Option<Vec2> {
+        let room = self.room(job, shape)?;
+        let axes = job.axes(piece, shape, &self.phases);
+        if axes == [Axis::Free; 2] {
+            return Some(at.sup(&Vec2::zeros()).inf(&room));
+        }
+        let (x, y) = (axes[0].nearest(at.x, room.x)?, axes[1].nearest(at.y, room.y)?);
+        Some(Vec2::new(x, y))
+    }
+
+    /// How far the pieces reach \[m\].
+    pub fn reach(&self, job: &Job<'_>) -> f64 {
+        let ends = (0..self.at.len()).filter(|&k| job.pieces[k].item.is_some());
+        ends.map(|k| self.at[k].x + self.size[k].x).fold(0.0, f64::max)
+    }
+
+    /// Where the movable pieces must at least reach because of locked ones \[m\].
+    pub fn least_reach(&self, job: &Job<'_>) -> f64 {
+        let locked = |k: &usize| job.pieces[*k].item.is_some() && job.pieces[*k].locked.is_some();
+        let ends = (0..self.at.len()).filter(locked);
+        ends.map(|k| self.at[k].x + self.size[k].x).fold(0.0, f64::max)
+    }
+
+    /// Shortens or lengthens the strip: what lies beyond `cut` moves along \[m\].
+    pub fn resize(&mut self, job: &Job<'_>, length: f64, cut: f64) {
+        let by = length - self.length;
+        self.length = length;
+        for piece in 0..self.at.len() {
+            if job.pieces[piece].locked.is_some() {
+                continue;
+            }
+            let mut at = self.at[piece];
+            if at.x + 0.5 * self.size[piece].x > cut {
+                at.x += by;
+            }
+            if let Some(at) = self.settle(job, piece, self.shape[piece], at) {
+                self.at[piece] = at;
+            }
+        }
+    }
+}

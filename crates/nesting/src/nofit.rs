@@ -1,0 +1,262 @@
+//! One no-fit polygon with a grid that answers signed distances at once.
+//!
+//! Each cell of the grid lists the edges that can be the nearest to some point in it, so a query
+//! looks at two or three edges whatever the polygon, and is exact.
+
+use toile_geometry::{Bounds2, Polygon, Vec2};
+
+/// Cells along either side of the grid.
+const CELLS: usize = 64;
+/// Points of an outline nearer to each other than this part of its extent are one: rounding of the
+/// polygon operations leaves such pairs.
+const REPEATED: f64 = 8e-9;
+
+/// An edge with the region at its left.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    start: Vec2,
+    /// Unit direction.
+    along: Vec2,
+    length: f64,
+    /// Directions of the edges before and after it.
+    beside: [Vec2; 2],
+}
+
+/// Where a move lies with respect to a no-fit polygon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Probe {
+    /// Distance to the boundary, positive inside \[m\]: the shortest move that ends the overlap.
+    pub depth: f64,
+    /// Direction of that move.
+    pub normal: Vec2,
+}
+
+/// The moves of one shape at which it overlaps another that stays.
+#[derive(Clone, Debug)]
+pub(crate) struct NoFit {
+    edges: Vec<Edge>,
+    /// For every cell where its list starts and ends.
+    cells: Vec<[u32; 2]>,
+    lists: Vec<u32>,
+    corner: Vec2,
+    per_metre: Vec2,
+}
+
+impl NoFit {
+    /// Prepares the polygon for queries as far as `reach` \[m\] outside of it.
+    pub fn new(regions: &[Polygon], reach: f64) -> Self {
+        let mut edges = Vec::new();
+        for region in regions {
+            let region = region.oriented();
+            let least = REPEATED * region.bounds().size().norm();
+            for ring in region.rings() {
+                edges.extend(ring_edges(ring, least));
+            }
+        }
+        let bounds = Bounds2::of(regions.iter().flat_map(|r| r.outer.iter().copied()));
+        let bounds = bounds.grown(reach);
+        let size = bounds.size();
+        let mut no_fit = Self {
+            edges,
+            cells: vec![[0, 0]; CELLS * CELLS],
+            lists: Vec::new(),
+            corner: bounds.min,
+            per_metre: Vec2::new(CELLS as f64 / size.x, CELLS as f64 / size.y),
+        };
+        let all: Vec<u32> = (0..no_fit.edges.len() as u32).collect();
+        if !all.is_empty() {
+            no_fit.divide([0, 0], CELLS, &all, reach);
+        }
+        no_fit
+    }
+
+    /// Fills the lists of a square block of cells from the edges that matter to it.
+    fn divide(&mut self, [column, row]: [usize; 2], count: usize, edges: &[u32], reach: f64) {
+        let cell = Vec2::new(1.0 / self.per_metre.x, 1.0 / self.per_metre.y);
+        let half = cell * (count as f64 / 2.0);
+        let centre = self.corner + cell.component_mul(&Vec2::new(column as f64, row as f64)) + half;
+        let radius = half.norm() * (1.0 + 1e-9);
+        let apart: Vec<f64> = edges
+            .iter()
+            .map(|&e| self.edges[e as usize].distance(centre))
+            .collect();
+        let nearest = apart.iter().copied().fold(f64::INFINITY, f64::min);
+        let outside = nearest > reach + radius && self.side(edges, centre).depth < 0.0;
+        let kept: Vec<u32> = if outside {
+            Vec::new()
+        } else {
+            let near = |k: &usize| apart[*k] <= nearest + 2.0 * radius;
+            (0..edges.len()).filter(near).map(|k| edges[k]).collect()
+        };
+        if count > 1 && kept.len() > 1 {
+            let half = count / 2;
+            for (x, y) in [(0, 0), (half, 0), (0, half), (half, half)] {
+                self.divide([column + x, row + y], half, &kept, reach);
+            }
+            return;
+        }
+        let start = self.lists.len() as u32;
+        self.lists.extend(&kept);
+        let range = [start, self.lists.len() as u32];
+        for y in row..row + count {
+            self.cells[y * CELLS + column..y * CELLS + column + count].fill(range);
+        }
+    }
+
+    /// The signed distance to the nearest of some edges.
+    #[inline]
+    fn side(&self, list: &[u32], at: Vec2) -> Probe {
+        let mut best = (f64::INFINITY, 0, 0.0);
+        for &e in list {
+            let edge = &self.edges[e as usize];
+            let from = at - edge.start;
+            let t = from.dot(&edge.along).clamp(0.0, edge.length);
+            let squared = (from - edge.along * t).norm_squared();
+            if squared < best.0 {
+                best = (squared, e, t);
+            }
+        }
+        let (squared, e, t) = best;
+        let edge = &self.edges[e as usize];
+        let away = at - edge.start - edge.along * t;
+        let inside = if t <= 0.0 {
+            in_corner([edge.beside[0], edge.along], away)
+        } else if t >= edge.length {
+            in_corner([edge.along, edge.beside[1]], away)
+        } else {
+            edge.along.perp(&away) > 0.0
+        };
+        let distance = squared.sqrt();
+        let outward = Vec2::new(edge.along.y, -edge.along.x);
+        let sign = if inside { 1.0 } else { -1.0 };
+        Probe {
+            depth: sign * distance,
+            normal: if distance > 1e-12 {
+                away * (-sign / distance)
+            } else {
+                outward
+            },
+        }
+    }
+
+    /// Where a move lies; nothing if it is farther outside than the reach. Exact but for rounding.
+    #[inline]
+    pub fn probe(&self, at: Vec2) -> Option<Probe> {
+        let cell = (at - self.corner).component_mul(&self.per_metre);
+        let inside = cell.x >= 0.0 && cell.y >= 0.0 && cell.x < CELLS as f64 && cell.y < CELLS as f64;
+        if !inside {
+            return None;
+        }
+        let [start, end] = self.cells[cell.y as usize * CELLS + cell.x as usize];
+        (start < end).then(|| self.side(&self.lists[start as usize..end as usize], at))
+    }
+}
+
+impl Edge {
+    fn distance(&self, at: Vec2) -> f64 {
+        let from = at - self.start;
+        let t = from.dot(&self.along).clamp(0.0, self.length);
+        (from - self.along * t).norm()
+    }
+}
+
+/// Whether a point seen from a corner lies at the left of the outline that turns there.
+fn in_corner([before, after]: [Vec2; 2], away: Vec2) -> bool {
+    let (first, second) = (before.perp(&away) > 0.0, after.perp(&away) > 0.0);
+    if before.perp(&after) >= 0.0 {
+        first && second
+    } else {
+        first || second
+    }
+}
+
+/// The points of a ring without those that repeat but for rounding, and without whiskers: slits of
+/// no width, which a shape fits only in theory.
+fn cleaned(ring: &[Vec2], least: f64) -> Vec<Vec2> {
+    let superfluous = |points: &[Vec2], k: usize| {
+        let n = points.len();
+        let (a, b, c) = (points[(k + n - 1) % n], points[k], points[(k + 1) % n]);
+        let (back, on) = (a - b, c - b);
+        let (shorter, longer) = if back.norm() < on.norm() { (back, on) } else { (on, back) };
+        let width = shorter.perp(&longer).abs() / longer.norm();
+        shorter.norm() <= least || (shorter.dot(&longer) > 0.0 && width <= 2.0 * least)
+    };
+    let mut points = ring.to_vec();
+    let mut k = 0;
+    while k < points.len() && points.len() > 2 {
+        if superfluous(&points, k) {
+            points.remove(k);
+            k = k.saturating_sub(2);
+        } else {
+            k += 1;
+        }
+    }
+    points
+}
+
+/// The edges of a ring whose points are right to about `least` \[m\].
+fn ring_edges(ring: &[Vec2], least: f64) -> Vec<Edge> {
+    let points = cleaned(ring, least);
+    let n = points.len();
+    if n < 3 {
+        return Vec::new();
+    }
+    let along = |k: usize| (points[(k + 1) % n] - points[k % n]).normalize();
+    let edge = |k: usize| Edge {
+        start: points[k],
+        along: along(k),
+        length: (points[(k + 1) % n] - points[k]).norm(),
+        beside: [along(k + n - 1), along(k + 1)],
+    };
+    (0..n).map(edge).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use toile_geometry::{Location, no_fit_polygon, point_segment_distance};
+
+    fn star(radii: &[f64], turn: f64) -> Vec<Vec2> {
+        let n = radii.len() as f64;
+        let point = |(k, &r): (usize, &f64)| {
+            let angle = turn + std::f64::consts::TAU * k as f64 / n;
+            Vec2::new(r * angle.cos(), r * angle.sin())
+        };
+        radii.iter().enumerate().map(point).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn probes_are_the_distance_to_the_boundary(
+            a in prop::collection::vec(0.2..1.0f64, 3..12),
+            b in prop::collection::vec(0.2..1.0f64, 3..12),
+            points in prop::collection::vec((-2.2..2.2f64, -2.2..2.2f64), 50),
+        ) {
+            let regions = no_fit_polygon(&star(&a, 0.1), &star(&b, 0.7));
+            let reach = 0.3;
+            let no_fit = NoFit::new(&regions, reach);
+            for (x, y) in points {
+                let at = Vec2::new(x, y);
+                let edges = regions.iter().flat_map(|r| r.edges());
+                let apart = edges
+                    .map(|e| point_segment_distance(at, e))
+                    .fold(f64::INFINITY, f64::min);
+                let inside = regions.iter().any(|r| r.locate(at) == Location::Inside);
+                let want = if inside { apart } else { -apart };
+                match no_fit.probe(at) {
+                    Some(probe) => {
+                        prop_assert!((probe.depth - want).abs() < 1e-9, "{} {want}", probe.depth);
+                        let moved = at + probe.normal * probe.depth;
+                        let edges = regions.iter().flat_map(|r| r.edges());
+                        let left = edges
+                            .map(|e| point_segment_distance(moved, e))
+                            .fold(f64::INFINITY, f64::min);
+                        prop_assert!(left < 1e-9, "{left}");
+                    }
+                    None => prop_assert!(!inside && apart > reach),
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! The weighted loss of a piece at all places at once, on a coarse grid (after Sato, Martins, Gomes
+//! and Tsuzuki 2019): rasters of the pairs' losses, computed once each, are added up.
+
+use crate::job::Job;
+use crate::sequence::Sequence;
+use pulp::Arch;
+use toile_geometry::Vec2;
+
+/// Side of the blocks of which each yields its best cell.
+const BLOCK: usize = 8;
+
+/// Losses of one shape at regular moves from another.
+#[derive(Clone, Debug)]
+pub(crate) struct DepthRaster {
+    /// First column and row, in cells from no move.
+    first: [i32; 2],
+    columns: usize,
+    values: Vec<f32>,
+}
+
+impl DepthRaster {
+    /// Samples a pair of shapes at every cell where it may lose.
+    pub fn new(job: &Job<'_>, fixed: usize, moving: usize) -> Self {
+        let (a, b) = (&job.shapes[fixed], &job.shapes[moving]);
+        let more = job.widest_gap + job.growth();
+        let low = |k: usize| ((-b.size[k] - more) / job.spacing).floor() as i32;
+        let high = |k: usize| ((a.size[k] + more) / job.spacing).ceil() as i32;
+        let (columns, rows) = ((high(0) - low(0) + 1) as usize, (high(1) - low(1) + 1) as usize);
+        let mut values = Vec::with_capacity(columns * rows);
+        for row in 0..rows {
+            for column in 0..columns {
+                let cell = Vec2::new(
+                    f64::from(low(0) + column as i32),
+                    f64::from(low(1) + row as i32),
+                );
+                values.push(job.loss(fixed, moving, cell * job.spacing) as f32);
+            }
+        }
+        Self {
+            first: [low(0), low(1)],
+            columns,
+            values,
+        }
+    }
+}
+
+/// The weighted loss of a shape at every cell of the room it may move in.
+pub(crate) struct LossMap {
+    columns: usize,
+    rows: usize,
+    values: Vec<f32>,
+    arch: Arch,
+}
+
+/// A cell worth a closer look.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Candidate {
+    /// Loss there, about.
+    pub score: f32,
+    pub shape: usize,
+    /// Move there \[m\].
+    pub at: Vec2,
+}
+
+impl LossMap {
+    pub fn new() -> Self {
+        Self {
+            columns: 0,
+            rows: 0,
+            values: Vec::new(),
+            arch: Arch::new(),
+        }
+    }
+
+    /// No loss anywhere in a room of an extent \[cells\].
+    pub fn clear(&mut self, columns: usize, rows: usize) {
+        (self.columns, self.rows) = (columns, rows);
+        self.values.clear();
+        self.values.resize(columns * rows, 0.0);
+    }
+
+    /// Adds a raster times a weight, with no move at a cell.
+    pub fn add(&mut self, raster: &DepthRaster, cell: [i32; 2], weight: f32) {
+        let left = raster.first[0] + cell[0];
+        let low = raster.first[1] + cell[1];
+        let start = left.max(0);
+        let end = (left + raster.columns as i32).min(self.columns as i32);
+        let rows = (raster.values.len() / raster.columns) as i32;
+        let (first, last) = (low.max(0), (low + rows).min(self.rows as i32));
+        if start >= end || first >= last {
+            return;
+        }
+        let (columns, values) = (self.columns, &mut self.values);
+        self.arch.dispatch(|| {
+            for row in first..last {
+                let to = row as usize * columns + start as usize;
+                let from = (row - low) as usize * raster.columns + (start - left) as usize;
+                let count = (end - start) as usize;
+                let target = &mut values[to..to + count];
+                let source = &raster.values[from..from + count];
+                for (value, add) in target.iter_mut().zip(source) {
+                    *value += weight * add;
+                }
+            }
+        });
+    }
+
+    /// The best cell of every block, with a trifle of chance between equal ones.
+    pub fn collect(
+        &self,
+        (shape, spacing, room): (usize, f64, Vec2),
+        sequence: &mut Sequence,
+        found: &mut Vec<Candidate>,
+    ) {
+        for low in (0..self.rows).step_by(BLOCK) {
+            for left in (0..self.columns).step_by(BLOCK) {
+                let right = (left + BLOCK).min(self.columns);
+                let mut best = (f32::INFINITY, 0, 0);
+                for row in low..(low + BLOCK).min(self.rows) {
+                    let line = &self.values[row * self.columns + left..row * self.columns + right];
+                    for (k, &value) in line.iter().enumerate() {
+                        if value < best.0 {
+                            best = (value, left + k, row);
+                        }
+                    }
+                }
+                let cell = Vec2::new(best.1 as f64, best.2 as f64) * spacing;
+                let chance = sequence.unit() as f32 * 0.1;
+                found.push(Candidate {
+                    score: (best.0 + 0.1 * spacing as f32) * (1.0 + chance),
+                    shape,
+                    at: cell.inf(&room),
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! Overlaps are taken apart by guided local search (Voudouris and Tsang 1999; for nesting Umetani
+//! and others 2009, Gardeyn and Wauters 2025): pieces that overlap move where the weighted loss is
+//! least, and pairs that stay overlapping gain weight until one of them has to go elsewhere.
+
+use crate::job::Job;
+use crate::layout::Layout;
+use crate::raster::{Candidate, LossMap};
+use crate::refine::Mover;
+use crate::sequence::Sequence;
+use toile_geometry::Vec2;
+
+/// Cells of the loss maps that get a closer look, for every move.
+const LOOKS: usize = 4;
+/// How weights of overlapping pairs grow, the least and the deepest overlap, and how others decay.
+const GROWTH: [f64; 2] = [1.2, 2.0];
+const DECAY: f64 = 0.95;
+
+/// When to give up.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Patience {
+    /// Rounds without a better layout before one strike.
+    pub rounds: usize,
+    /// Strikes in a row.
+    pub strikes: usize,
+}
+
+/// How far a search may go.
+pub(crate) struct Limit<'a> {
+    /// Queries after which it stops.
+    pub queries: u64,
+    /// Whether it is to stop at once.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// A layout under repair.
+pub(crate) struct Separator<'a> {
+    pub job: &'a Job<'a>,
+    pub layout: Layout,
+    /// Queries made so far.
+    pub queries: u64,
+    pub sequence: Sequence,
+    /// Loss that counts as none \[m\].
+    pub tolerance: f64,
+    weights: Vec<f64>,
+    losses: Vec<f64>,
+    map: LossMap,
+    found: Vec<Candidate>,
+}
+
+impl<'a> Separator<'a> {
+    pub fn new(job: &'a Job<'a>, layout: Layout, seed: u64) -> Self {
+        let mut separator = Self {
+            job,
+            queries: 0,
+            sequence: Sequence(seed),
+            tolerance: 2.0 * job.safe(),
+            weights: Vec::new(),
+            losses: Vec::new(),
+            map: LossMap::new(),
+            found: Vec::new(),
+            layout: layout.clone(),
+        };
+        separator.load(layout);
+        separator
+    }
+
+    /// Takes another layout, with all weights even.
+    pub fn load(&mut self, layout: Layout) {
+        let count = layout.at.len();
+        self.layout = layout;
+        self.weights = vec![1.0; count * count];
+        self.measure();
+    }
+
+    fn measure(&mut self) {
+        let count = self.layout.at.len();
+        self.losses = vec![0.0; count * count];
+        for piece in 0..count {
+            self.measure_piece(piece);
+        }
+    }
+
+    fn measure_piece(&mut self, piece: usize) {
+        let count = self.layout.at.len();
+        let (shape, at) = (self.layout.shape[piece], self.layout.at[piece]);
+        for other in 0..count {
+            let apart = at - self.layout.at[other];
+            let loss = if other == piece {
+                0.0
+            } else {
+                self.job.loss(self.layout.shape[other], shape, apart)
+            };
+            self.losses[piece * count + other] = loss;
+            self.losses[other * count + piece] = loss;
+        }
+        self.queries += count as u64;
+    }
+
+    fn overlaps(&self, piece: usize) -> bool {
+        let count = self.layout.at.len();
+        let row = &self.losses[piece * count..][..count];
+        row.iter().any(|&loss| loss > self.tolerance)
+    }
+
+    /// Sum of all losses that count \[m\].
+    pub fn total(&self) -> f64 {
+        let counts = self.losses.iter().filter(|&&loss| loss > self.tolerance);
+        0.5 * counts.sum::<f64>()
+    }
+
+    /// Sum of the losses of one piece that count \[m\].
+    pub fn loss_of(&self, piece: usize) -> f64 {
+        let count = self.layout.at.len();
+        let row = self.losses[piece * count..][..count].iter();
+        row.filter(|&&loss| loss > self.tolerance).sum()
+    }
+
+    /// Moves pieces until nothing overlaps, or patience or the limit is at its end; then the best
+    /// layout found is in place. Whether nothing overlaps.
+    pub fn separate(&mut self, patience: Patience, limit: &Limit<'_>) -> bool {
+        let mut best = (self.total(), self.layout.clone());
+        let mut strikes = 0;
+        while best.0 > 0.0 && strikes < patience.strikes && !self.is_over(limit) {
+            let before = best.0;
+            let mut rounds = 0;
+            while rounds < patience.rounds && !self.is_over(limit) {
+                self.round();
+                let total = self.total();
+                if total < best.0 {
+                    if total < 0.98 * best.0 {
+                        rounds = 0;
+                    }
+                    best = (total, self.layout.clone());
+                    if total == 0.0 {
+                        break;
+                    }
+                }
+                rounds += 1;
+                self.reweigh();
+            }
+            strikes = if best.0 < 0.98 * before { 0 } else { strikes + 1 };
+            if best.0 > 0.0 {
+                self.layout = best.1.clone();
+                self.measure();
+            }
+        }
+        self.layout = best.1;
+        self.measure();
+        self.total() == 0.0
+    }
+
+    fn is_over(&self, limit: &Limit<'_>) -> bool {
+        self.queries >= limit.queries || (limit.stop)()
+    }
+
+    /// Moves every piece that overlaps once.
+    fn round(&mut self) {
+        let movable = |&k: &usize| self.job.pieces[k].locked.is_none() && self.overlaps(k);
+        let mut order: Vec<usize> = (0..self.layout.at.len()).filter(movable).collect();
+        self.sequence.shuffle(&mut order);
+        for piece in order {
+            if self.overlaps(piece) {
+                self.move_piece(piece, 0.0);
+            }
+        }
+    }
+
+    /// Moves a piece to the best place found: of the best cells of its loss maps and the place
+    /// where it is, each made exact. `bias` is added for every metre from the start of the strip.
+    pub fn move_piece(&mut self, piece: usize, bias: f64) {
+        let count = self.layout.at.len();
+        self.survey(piece, bias);
+        let mut mover = Mover {
+            job: self.job,
+            layout: &self.layout,
+            piece,
+            weights: &self.weights[piece * count..][..count],
+            queries: 0,
+        };
+        let here = (self.layout.shape[piece], self.layout.at[piece]);
+        let mut best: Option<(f64, usize, Vec2)> = None;
+        let looks = self.found.iter().map(|c| (c.shape, c.at));
+        for (shape, from) in looks.chain([here]) {
+            if let Some((loss, at)) = mover.refine(shape, from) {
+                let loss = loss + bias * at.x;
+                if best.is_none_or(|b| loss < b.0) {
+                    best = Some((loss, shape, at));
+                }
+            }
+        }
+        self.queries += mover.queries;
+        if let Some((_, shape, at)) = best {
+            self.layout.put(self.job, piece, shape, at);
+            self.measure_piece(piece);
+        }
+    }
+
+    /// The best cells of a piece's loss maps.
+    fn survey(&mut self, piece: usize, bias: f64) {
+        let count = self.layout.at.len();
+        let spacing = self.job.spacing;
+        self.found.clear();
+        let job = self.job;
+        for &shape in &job.pieces[piece].shapes {
+            if !self.layout.allows(job, piece, shape) {
+                continue;
+            }
+            let Some(room) = self.layout.room(job, shape) else {
+                continue;
+            };
+            let cells = room.map(|r| (r / spacing).ceil() as usize + 1);
+            self.map.clear(cells.x, cells.y);
+            for other in (0..count).filter(|&o| o != piece) {
+                let cell = self.layout.at[other].map(|c| (c / spacing).round() as i32);
+                let weight = self.weights[piece * count + other] as f32;
+                let raster = job.raster(self.layout.shape[other], shape);
+                self.map.add(raster, [cell.x, cell.y], weight);
+            }
+            self.queries += count as u64;
+            self.map.collect((shape, spacing, room), &mut self.sequence, &mut self.found);
+        }
+        if bias > 0.0 {
+            for candidate in &mut self.found {
+                candidate.score += (bias * candidate.at.x) as f32;
+            }
+        }
+        let looks = LOOKS.min(self.found.len());
+        if looks > 0 {
+            let by_score = |a: &Candidate, b: &Candidate| a.score.total_cmp(&b.score);
+            self.found.select_nth_unstable_by(looks - 1, by_score);
+            self.found.truncate(looks);
+            self.found.sort_by(by_score);
+        }
+    }
+
+    /// Pairs that overlap gain weight in proportion, the others lose some.
+    fn reweigh(&mut self) {
+        let deepest = self.losses.iter().copied().fold(0.0, f64::max);
+        if deepest <= 0.0 {
+            return;
+        }
+        for (weight, &loss) in self.weights.iter_mut().zip(&self.losses) {
+            *weight = if loss > self.tolerance {
+                *weight * (GROWTH[0] + (GROWTH[1] - GROWTH[0]) * loss / deepest)
+            } else {
+                (*weight * DECAY).max(1.0)
+            };
+        }
+    }
+}
