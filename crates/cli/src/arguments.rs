@@ -260,18 +260,106 @@ pub struct Check {
 /// `toile nest`.
 #[derive(Debug, Args)]
 pub struct Nest {
-    /// The patterns: native or GarmentCode. Pieces of one fabric share a marker.
+    /// The patterns: native or GarmentCode. Pieces of one fabric share a marker. Or one nesting
+    /// instance in the JSON of jagua-rs: its solution is written to DIR/NAME.json.
     #[arg(required = true)]
     pub patterns: Vec<PathBuf>,
-    /// Width of the fabric, as in 150cm. Default: the fabric's own.
+    /// Full width of the fabric, as in 150cm. Default: the fabric's own.
     #[arg(long, value_name = "LENGTH")]
     pub width: Option<Length>,
+    /// Length of fabric at hand. Default: as long as it takes.
+    #[arg(long, value_name = "LENGTH")]
+    pub length: Option<Length>,
+    /// Unusable edge at either side. Default: 10mm.
+    #[arg(long, value_name = "LENGTH")]
+    pub selvedge: Option<Length>,
+    /// Fabric left free at either end. Default: 0mm.
+    #[arg(long, value_name = "LENGTH")]
+    pub end_margin: Option<Length>,
+    /// Least distance between pieces. Default: 2mm.
+    #[arg(long, value_name = "LENGTH")]
+    pub gap: Option<Length>,
+    /// Nap of the fabric. Default: the fabric's own.
+    #[arg(long, value_enum)]
+    pub nap: Option<NapName>,
+    /// How far the grain may lie off the warp (degrees).
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0)]
+    pub tilt: f64,
+    /// Repeat of stripes or checks along the warp and across, as in 50mm,40mm; 0mm where it does
+    /// not repeat. The hem and the middle of every piece lie on its lines.
+    #[arg(long, value_name = "L,L", value_delimiter = ',', num_args = 1..=2)]
+    pub repeat: Vec<Length>,
+    /// A flaw no piece may lie on: x along the warp, y across, length, width. May be given again.
+    #[arg(long, value_name = "L,L,L,L", value_parser = four_lengths)]
+    pub defect: Vec<[f64; 4]>,
     /// Named size. Default: each pattern's base size.
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", conflicts_with = "sizes")]
     pub size: Option<String>,
+    /// Several sizes in a ratio, as in S:1,M:2,L:1. Each garment is a bundle.
+    #[arg(long, value_name = "NAME:COUNT", value_delimiter = ',', value_parser = size_count)]
+    pub sizes: Vec<(String, u32)>,
+    /// Time to search (s). The result depends on the machine; see --evaluations.
+    #[arg(long, value_name = "SECONDS", conflicts_with = "evaluations")]
+    pub time: Option<f64>,
+    /// Evaluations of pairs of pieces to search for: the same ones give the same bytes.
+    #[arg(long, value_name = "COUNT", default_value_t = 10_000_000)]
+    pub evaluations: u64,
+    /// Start of the sequence of chance.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    pub seed: u64,
     /// Folder to write into; it is made if need be.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+}
+
+/// Nap of a fabric.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum NapName {
+    /// Pieces may point either way.
+    None,
+    /// All pieces point one way.
+    OneWay,
+    /// All pieces of a garment point one way.
+    PerGarment,
+}
+
+impl From<NapName> for toile_session::Nap {
+    fn from(name: NapName) -> Self {
+        match name {
+            NapName::None => Self::None,
+            NapName::OneWay => Self::OneWay,
+            NapName::PerGarment => Self::PerBundle,
+        }
+    }
+}
+
+/// A size and how many garments of it, as in M:2.
+fn size_count(text: &str) -> Result<(String, u32), String> {
+    let (name, count) = text.rsplit_once(':').unwrap_or((text, "1"));
+    match count.parse() {
+        Ok(count @ 1..) => Ok((name.to_owned(), count)),
+        _ => Err(format!(
+            "{count:?} is no number of garments; write NAME:COUNT"
+        )),
+    }
+}
+
+/// Four lengths with commas between [m].
+fn four_lengths(text: &str) -> Result<[f64; 4], String> {
+    let lengths: Result<Vec<f64>, String> = text
+        .split(',')
+        .map(|part| {
+            let length: Result<Length, _> = part.trim().parse();
+            length
+                .map(|l| l.as_metres())
+                .map_err(|error| error.to_string())
+        })
+        .collect();
+    let lengths = lengths?;
+    let count = lengths.len();
+    lengths
+        .try_into()
+        .map_err(|_| format!("there are {count} lengths; give four"))
 }
 
 /// `toile mesh`.

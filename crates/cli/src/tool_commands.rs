@@ -4,11 +4,13 @@ use crate::arguments::{Body, Convert, FormatName, Mesh, Nest, Run};
 use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use toile_geometry::Length;
 use toile_session::{
-    BodyChoice, Event, Project, convert as convert_file, figure_named, make_body, mesh_panels,
-    nest_patterns, open_measurements, run_scene,
+    BodyChoice, Budget, Event, NestOptions, Project, convert as convert_file, figure_named,
+    is_nesting_instance, make_body, mesh_panels, nest_instance, nest_patterns, open_measurements,
+    run_scene,
 };
 
 /// A pattern in another format.
@@ -57,12 +59,97 @@ pub fn mesh(mesh: &Mesh, output: &Output) -> Result<Value, Failure> {
     }))
 }
 
+/// What the arguments ask for.
+fn nest_options(nest: &Nest) -> Result<NestOptions, Failure> {
+    let metres = |length: &Option<Length>| length.map(|l| l.as_metres());
+    if let Some(seconds) = nest.time.filter(|t| !t.is_finite() || *t <= 0.0) {
+        return Err(Failure::bad_input(format!(
+            "--time is {seconds}; give a number of seconds above 0"
+        )));
+    }
+    let sizes = match &nest.size {
+        Some(size) => vec![(size.clone(), 1)],
+        None => nest.sizes.clone(),
+    };
+    let repeat = nest
+        .repeat
+        .iter()
+        .map(|l| l.as_metres())
+        .collect::<Vec<_>>();
+    Ok(NestOptions {
+        sizes,
+        width: metres(&nest.width),
+        length: metres(&nest.length),
+        selvedge: metres(&nest.selvedge),
+        end_margin: metres(&nest.end_margin),
+        gap: metres(&nest.gap),
+        nap: nest.nap.map(Into::into),
+        tilt: nest.tilt.to_radians(),
+        repeat: (!repeat.is_empty()).then(|| [repeat[0], repeat.get(1).copied().unwrap_or(0.0)]),
+        defects: nest.defect.clone(),
+        budget: match nest.time {
+            Some(seconds) => Budget::Seconds(seconds),
+            None => Budget::Evaluations(nest.evaluations),
+        },
+        seed: nest.seed,
+    })
+}
+
+/// The solution of a nesting instance.
+fn solve(
+    path: &Path,
+    nest: &Nest,
+    options: &NestOptions,
+    output: &Output,
+) -> Result<Value, Failure> {
+    let lengths = [
+        &nest.width,
+        &nest.length,
+        &nest.selvedge,
+        &nest.end_margin,
+        &nest.gap,
+    ];
+    let own = lengths.iter().all(|l| l.is_none()) && options.repeat.is_none();
+    if !own || !options.defects.is_empty() || !options.sizes.is_empty() {
+        return Err(Failure::bad_input(
+            "an instance has its own strip and items; give only --time, --evaluations, --seed, --tilt and --out",
+        )
+        .about(path));
+    }
+    let (nested, notes, file) = nest_instance(path, options, (&nest.out, &mut Bar::new()))
+        .map_err(|error| Failure::from(error).about(path))?;
+    for note in &notes {
+        output.warn(format!("note: {note}"));
+    }
+    output.say(format!(
+        "{} laid on a strip of {:.4} by {:.4}, density {:.3} %",
+        count(nested.pieces, "item"),
+        nested.length,
+        nested.width,
+        nested.efficiency * 100.0
+    ));
+    output.say(format!("wrote {}", file.display()));
+    Ok(json!({
+        "files": [file],
+        "instance": nested.fabric,
+        "pieces": nested.pieces,
+        "unplaced": nested.unplaced,
+        "strip_width": nested.length,
+        "strip_height": nested.width,
+        "density": nested.efficiency,
+        "sound": nested.sound,
+    }))
+}
+
 /// Pieces laid on fabric.
 pub fn nest(nest: &Nest, output: &Output) -> Result<Value, Failure> {
-    let width = nest.width.map(|width| width.as_metres());
-    let size = nest.size.as_deref();
-    let (layings, paths) =
-        nest_patterns(&nest.patterns, size, width, (&nest.out, &mut Bar::new()))?;
+    let options = nest_options(nest)?;
+    if let [path] = &nest.patterns[..]
+        && is_nesting_instance(path)
+    {
+        return solve(path, nest, &options, output);
+    }
+    let (layings, paths) = nest_patterns(&nest.patterns, &options, (&nest.out, &mut Bar::new()))?;
     let listed: Vec<Value> = layings
         .iter()
         .map(|laying| {

@@ -10,6 +10,7 @@ mod error;
 mod fabric_test;
 mod garmentcode;
 mod gltf;
+mod jagua;
 mod marker_json;
 mod marker_svg;
 mod measurements;
@@ -26,6 +27,7 @@ pub use garmentcode::{
     GarmentCodeReading, GarmentCodeWriting, read_garmentcode, write_garmentcode,
 };
 pub use gltf::{GlbMesh, GlbPrimitive, GlbScene, write_glb};
+pub use jagua::{JaguaInstance, is_jagua_instance, read_jagua, write_jagua};
 pub use marker_json::{
     MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, read_marker_json,
     write_marker_json,

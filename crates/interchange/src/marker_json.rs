@@ -173,6 +173,7 @@ impl MarkerFile {
             } else {
                 Nap::None
             },
+            ..Strip::of_width(self.fabric.width)
         }
     }
 }
@@ -307,7 +308,7 @@ mod tests {
         let strip = Strip {
             selvedge: 0.01,
             gap: 0.003,
-            max_length: Some(1.8),
+            max_length: Some(1.3),
             ..Strip::of_width(1.5)
         };
         let items = vec![item];
@@ -315,10 +316,7 @@ mod tests {
             progress: &mut |_| {},
             cancel: &std::sync::atomic::AtomicBool::new(false),
         };
-        let search = Search {
-            positions: 1,
-            seed: 1,
-        };
+        let search = Search::evaluations(1);
         let marker = make_marker(&items, &strip, search, &mut control).unwrap();
         (items, strip, marker)
     }

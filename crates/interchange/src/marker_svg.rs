@@ -176,6 +176,7 @@ fn summary(drawing: &MarkerDrawing) -> Vec<String> {
     let nap = match strip.nap {
         Nap::None => "no nap: pieces may point either way",
         Nap::OneWay => "nap: all pieces point one way",
+        Nap::PerBundle => "nap: the pieces of a garment point one way",
     };
     lines.push(format!(
         "Warp runs along the length; selvedge {:.0} mm, end margin {:.0} mm, gap {:.0} mm; {nap}.",

@@ -1,10 +1,15 @@
 //! Jobs that cannot be done, said before any work.
 
-use crate::{Item, Mirror, Nap, Pose, Strip};
+use crate::{Fold, FoldEdge, Item, Mirror, Nap, Pose, Strip};
 use toile_geometry::{CrossingKind, PolygonDefect, Vec2};
 
 /// Rounding allowed when a piece is exactly as wide as the fabric \[m\].
 pub(crate) const SNUG: f64 = 1e-9;
+
+/// Most copies of a piece: more are a mistake.
+const MOST_COPIES: u32 = 10_000;
+/// Most points of an outline: more are a mistake, and no-fit polygons grow with their square.
+const MOST_POINTS: usize = 10_000;
 
 /// Why a marker was not made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -18,6 +23,9 @@ pub enum NestingError {
     /// Pieces that cannot be laid.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Refused(Vec<Refusal>),
+    /// The marker found does not pass the referee.
+    #[error("the marker found is not sound ({0}); try another seed, and report this job")]
+    Unsound(String),
     /// The search was told to stop.
     #[error("stopped before a marker was found")]
     Cancelled,
@@ -64,6 +72,33 @@ pub enum ItemProblem {
         "the fabric has a nap and the piece may not lie with its grain forward; allow turn 0 or use fabric without nap"
     )]
     AgainstNap,
+    /// More than one billion copies, or so many that the job cannot be held.
+    #[error("its quantity is {0}; at most {MOST_COPIES} pieces can be laid at once")]
+    TooMany(u32),
+    /// So many points that its no-fit polygons cannot be held.
+    #[error(
+        "its outline has {0} points; at most {MOST_POINTS} can be laid: draw curves with fewer points"
+    )]
+    TooManyPoints(usize),
+    /// It must lie on a fold and there is none.
+    #[error(
+        "it is cut on a fold and the fabric lies open; fold the fabric, or unfold the piece to its whole outline"
+    )]
+    NoFold,
+    /// No orientation brings its fold edge to the fold.
+    #[error(
+        "no allowed orientation brings its fold edge to the fold; allow half a turn, or turning over"
+    )]
+    WrongSide,
+    /// It may be tilted and must lie on a fold.
+    #[error("it is cut on a fold and may not be tilted; set its tilt to 0")]
+    TiltOnFold,
+    /// Tilt out of range.
+    #[error("its tilt is {:.1} degrees; give 0 to 45", .0.to_degrees())]
+    Tilt(f64),
+    /// A locked copy that does not exist, or not in an orientation it may take, or twice.
+    #[error("locked copy {0} does not exist, or may not lie so; unlock it or correct it")]
+    Locked(u32),
     /// Too wide for the fabric.
     #[error(
         "it is {:.0} mm across the fabric and {:.0} mm are usable; use fabric at least {:.0} mm wide, split the piece with a seam, or allow another orientation",
@@ -104,7 +139,12 @@ pub(crate) fn orientations(item: &Item, strip: &Strip, copy: u32) -> Vec<(f64, b
     let mut found: Vec<(f64, bool)> = Vec::new();
     let tilt = item.allowed.tilt;
     let tilts: &[f64] = if tilt > 0.0 { &TILTS } else { &[0.0] };
-    for (base, part) in item.allowed.turns.iter().flat_map(|b| tilts.iter().map(move |t| (b, t))) {
+    for (base, part) in item
+        .allowed
+        .turns
+        .iter()
+        .flat_map(|b| tilts.iter().map(move |t| (b, t)))
+    {
         let turn = base + part * tilt;
         let runs_off = match strip.nap {
             Nap::None => false,
@@ -135,6 +175,10 @@ fn extent(item: &Item, (turn, mirrored): (f64, bool)) -> Vec2 {
 }
 
 fn check_outline(item: &Item) -> Option<ItemProblem> {
+    let points = item.outline.rings().map(Vec::len).sum();
+    if points > MOST_POINTS {
+        return Some(ItemProblem::TooManyPoints(points));
+    }
     let problem = |defect: &PolygonDefect| match *defect {
         PolygonDefect::NotFinite { .. } => Some(ItemProblem::NotFinite("its outline")),
         PolygonDefect::TooFewPoints { .. } | PolygonDefect::NoArea { .. } => {
@@ -169,15 +213,81 @@ fn check_item(item: &Item, strip: &Strip) -> Option<ItemProblem> {
     if item.allowed.turns.is_empty() {
         return Some(ItemProblem::NoOrientation);
     }
+    if !(0.0..=std::f64::consts::FRAC_PI_4).contains(&item.allowed.tilt) {
+        return Some(ItemProblem::Tilt(item.allowed.tilt));
+    }
+    if item.quantity > MOST_COPIES {
+        return Some(ItemProblem::TooMany(item.quantity));
+    }
+    if let Some(problem) = check_fold(item, strip).or_else(|| check_locks(item)) {
+        return Some(problem);
+    }
     let copies = 0..item.quantity.min(2);
     copies
         .into_iter()
         .find_map(|copy| check_size(item, strip, copy))
 }
 
+fn check_fold(item: &Item, strip: &Strip) -> Option<ItemProblem> {
+    item.fold_edge?;
+    if strip.fold == Fold::Open {
+        return Some(ItemProblem::NoFold);
+    }
+    if item.allowed.tilt > 0.0 {
+        return Some(ItemProblem::TiltOnFold);
+    }
+    let copies = 0..item.quantity.min(2);
+    let lies = |copy: u32| {
+        let ways = orientations(item, strip, copy);
+        ways.iter()
+            .any(|&way| folds_up(item, strip, way) != Some(None))
+    };
+    (!copies.into_iter().all(lies)).then_some(ItemProblem::WrongSide)
+}
+
+/// Whether an orientation brings the fold edge of a piece to the lower or upper fold, if it has one
+/// and if there is such a fold: `Some(None)` if there is none.
+pub(crate) fn folds_up(
+    item: &Item,
+    strip: &Strip,
+    (turn, mirrored): (f64, bool),
+) -> Option<Option<FoldEdge>> {
+    let flipped = mirrored != (turn.cos() < 0.0);
+    let lower = (item.fold_edge? == FoldEdge::Lower) != flipped;
+    let along = turn.sin().abs() < 1e-9;
+    Some(match (strip.fold, lower) {
+        (Fold::Lower | Fold::Both, true) if along => Some(FoldEdge::Lower),
+        (Fold::Both, false) if along => Some(FoldEdge::Upper),
+        _ => None,
+    })
+}
+
+fn check_locks(item: &Item) -> Option<ItemProblem> {
+    let mut seen = Vec::new();
+    for lock in &item.locked {
+        let finite = [lock.turn, lock.translation.x, lock.translation.y];
+        let sided = match item.allowed.mirror {
+            Mirror::Never => !lock.mirrored,
+            Mirror::Pairs => lock.mirrored == (lock.copy % 2 == 1),
+            Mirror::Free => true,
+        };
+        let sound = finite.iter().all(|x| x.is_finite())
+            && lock.copy < item.quantity
+            && sided
+            && item.tilt_of(lock.turn).abs() <= item.allowed.tilt + 1e-9
+            && !seen.contains(&lock.copy);
+        if !sound {
+            return Some(ItemProblem::Locked(lock.copy));
+        }
+        seen.push(lock.copy);
+    }
+    None
+}
+
 fn check_size(item: &Item, strip: &Strip, copy: u32) -> Option<ItemProblem> {
     let ways = orientations(item, strip, copy);
-    if ways.is_empty() {
+    let forward = |way: &(f64, bool)| strip.nap != Nap::PerBundle || way.0.cos() >= 0.0;
+    if !ways.iter().any(forward) {
         return Some(ItemProblem::AgainstNap);
     }
     let sizes: Vec<Vec2> = ways.iter().map(|&way| extent(item, way)).collect();
@@ -215,6 +325,22 @@ fn check_strip(strip: &Strip) -> Option<String> {
             strip.width * 1e3,
             strip.selvedge * 1e3
         ));
+    }
+    if let Some(stripes) = &strip.stripes {
+        let numbers = [stripes.repeat, stripes.origin];
+        if !numbers.iter().all(|v| v.x.is_finite() && v.y.is_finite()) || stripes.repeat.min() < 0.0
+        {
+            return Some("the repeat of the print is not 0 or more; give lengths".into());
+        }
+    }
+    for (k, defect) in strip.defects.iter().enumerate() {
+        let sound = defect.outline.is_simple() && defect.outline.area() > 0.0;
+        if !sound || !defect.clearance.is_finite() || defect.clearance < 0.0 {
+            return Some(format!(
+                "defect {} has no sound outline, or a negative clearance; outline the flaw again",
+                k + 1
+            ));
+        }
     }
     None
 }

@@ -4,29 +4,30 @@
 use crate::job::Job;
 use crate::layout::Layout;
 use crate::separate::{Limit, Patience, Separator};
+use crate::sequence::Sequence;
 use toile_geometry::Vec2;
 
-/// Density at which the first layout is tried.
-const FIRST_DENSITY: f64 = 0.82;
 /// Patience while searching for shorter strips, and while pressing the best one.
 const EXPLORE: Patience = Patience {
-    rounds: 100,
+    rounds: 50,
     strikes: 3,
 };
 const PRESS: Patience = Patience {
-    rounds: 50,
+    rounds: 30,
     strikes: 2,
 };
 /// Parts by which the strip is shortened: at most, and at least.
 const STEPS: [f64; 2] = [0.02, 0.0005];
 /// Parts of the strip by which the best one is pressed, at first and at last.
 const PRESSES: [f64; 2] = [0.0005, 0.00002];
+/// Failures after which a job is settled, for every pair of pieces.
+const TRIES: usize = 25;
 /// Most failed layouts kept.
 const POOL: usize = 24;
 
 /// One line of search with its own chance.
 pub(crate) struct Island<'a> {
-    separator: Separator<'a>,
+    pub(crate) separator: Separator<'a>,
     /// The best layout without overlaps.
     pub best: Option<Layout>,
     /// What the next strip is shorter by, as a part.
@@ -35,6 +36,8 @@ pub(crate) struct Island<'a> {
     pool: Vec<(f64, Layout)>,
     /// Length now tried \[m\]; 0 before the first.
     target: f64,
+    /// Attempts that failed since the last that did not.
+    failures: usize,
 }
 
 impl<'a> Island<'a> {
@@ -45,12 +48,8 @@ impl<'a> Island<'a> {
             step: STEPS[0],
             pool: Vec::new(),
             target: 0.0,
+            failures: 0,
         }
-    }
-
-    /// Margin at either end of the strip \[m\].
-    pub fn end_margin(&self) -> f64 {
-        self.separator.job.strip.end_margin
     }
 
     /// Queries made so far.
@@ -58,9 +57,13 @@ impl<'a> Island<'a> {
         self.separator.queries
     }
 
-    /// Length of the best layout \[m\].
-    pub fn length(&self) -> f64 {
-        self.best.as_ref().map_or(f64::INFINITY, |b| b.length)
+    /// Area left over \[m2\], then length of the best layout \[m\]: less is better.
+    pub fn score(&self) -> (f64, f64) {
+        let job = self.separator.job;
+        let score = |b: &Layout| (b.left_over(job), b.length);
+        self.best
+            .as_ref()
+            .map_or((f64::INFINITY, f64::INFINITY), score)
     }
 
     /// Takes a better layout from elsewhere.
@@ -70,73 +73,30 @@ impl<'a> Island<'a> {
         self.target = 0.0;
     }
 
-    /// Finds a first layout: pieces are laid where they overlap least, the largest first, and taken
-    /// apart; on a longer strip where that fails.
-    pub fn start(&mut self, limit: &Limit<'_>) {
-        let job = self.separator.job;
-        let area: f64 = job.pieces.iter().map(|p| p.area).sum();
-        let least = |p: &crate::job::Piece| {
-            let lengths = p.shapes.iter().map(|&s| job.shapes[s].size.x);
-            lengths.fold(f64::INFINITY, f64::min)
-        };
-        let movable = job.pieces.iter().filter(|p| p.locked.is_none());
-        let needed = movable.map(least).fold(0.0, f64::max);
-        let mut length = (area / (FIRST_DENSITY * job.height)).max(needed);
-        length = length.max(Layout::new(job, 0.0).least_reach(job)).min(job.longest());
-        loop {
-            self.construct(length);
-            if self.separator.separate(EXPLORE, limit) {
-                self.keep();
-                return;
-            }
-            if (limit.stop)() || self.separator.queries >= limit.queries || length >= job.longest() {
-                return;
-            }
-            length = (length * 1.05).min(job.longest());
-        }
-    }
-
-    /// Lays one piece after the other, the largest first.
-    fn construct(&mut self, length: f64) {
-        let job = self.separator.job;
-        let far = Vec2::new(50.0, 0.0) * (job.height + length);
-        let mut layout = Layout::new(job, length);
-        let mut order: Vec<usize> = (0..job.pieces.len()).collect();
-        order.retain(|&k| job.pieces[k].locked.is_none());
-        order.sort_by(|&a, &b| job.pieces[b].area.total_cmp(&job.pieces[a].area).then(a.cmp(&b)));
-        for &piece in &order {
-            layout.at[piece] = far * (1.0 + piece as f64);
-        }
-        self.separator.load(layout);
-        for piece in order {
-            self.separator.move_piece(piece, 0.02);
-        }
-    }
-
-    fn keep(&mut self) {
+    /// Keeps the layout in hand as the best.
+    pub(crate) fn keep(&mut self) {
+        self.separator.slide();
         let mut layout = self.separator.layout.clone();
         layout.length = layout.reach(self.separator.job);
         self.best = Some(layout);
         self.pool.clear();
+        self.failures = 0;
     }
 
-    /// Tries shorter strips until the limit.
+    /// Tries to do better until the limit, or until nothing more can be hoped for: to lay what is
+    /// left over, then shorter strips.
     pub fn explore(&mut self, limit: &Limit<'_>) {
-        while !self.is_over(limit) {
+        while !self.is_over(limit) && !self.is_settled() {
             let Some(best) = &self.best else {
                 return;
             };
+            if best.present.contains(&false) {
+                self.insert(limit);
+                continue;
+            }
             if self.target <= 0.0 || self.target >= best.length {
-                let target = best.length * (1.0 - self.step);
-                let job = self.separator.job;
-                if target < best.least_reach(job) {
-                    return;
-                }
-                let mut layout = best.clone();
-                let cut = self.separator.sequence.unit() * layout.length;
-                layout.resize(job, target, cut);
-                self.separator.load(layout);
-                self.target = target;
+                self.target = best.length * (1.0 - self.step);
+                self.shorten(self.target);
             } else {
                 self.restart();
             }
@@ -145,88 +105,192 @@ impl<'a> Island<'a> {
                 self.target = 0.0;
                 self.step = (self.step * 1.25).min(STEPS[0]);
             } else if !self.is_over(limit) {
-                let failed = (self.separator.total(), self.separator.layout.clone());
-                let place = self.pool.partition_point(|known| known.0 <= failed.0);
-                self.pool.insert(place, failed);
-                self.pool.truncate(POOL);
-                if self.step > STEPS[1] {
-                    // Too much at once: from the best again, with less.
-                    self.step = (self.step * 0.5).max(STEPS[1]);
-                    self.pool.clear();
-                    self.target = 0.0;
-                }
+                self.fail();
             }
         }
     }
 
-    /// One of the better failed layouts with two of its large pieces exchanged.
+    /// Loads the best layout on a shorter strip, cut anywhere.
+    fn shorten(&mut self, target: f64) {
+        let Some(mut layout) = self.best.clone() else {
+            return;
+        };
+        let cut = self.separator.sequence.unit() * layout.length;
+        layout.resize(self.separator.job, target, cut);
+        self.separator.load(layout);
+    }
+
+    /// Counts a failure.
+    pub(crate) fn failed(&mut self) {
+        self.failures += 1;
+    }
+
+    /// Puts a layout that could not be taken apart aside.
+    fn fail(&mut self) {
+        self.failures += 1;
+        if self.step > STEPS[1] {
+            // Too much at once: from the best again, with less.
+            self.step = (self.step * 0.5).max(STEPS[1]);
+            self.pool.clear();
+            self.target = 0.0;
+            return;
+        }
+        let failed = (self.separator.total(), self.separator.layout.clone());
+        let place = self.pool.partition_point(|known| known.0 <= failed.0);
+        self.pool.insert(place, failed);
+        self.pool.truncate(POOL);
+    }
+
+    /// Whether no shorter strip is possible, or a small job was tried often enough.
+    fn is_settled(&self) -> bool {
+        let job = self.separator.job;
+        let Some(best) = &self.best else {
+            return true;
+        };
+        let count = best.present.len();
+        let whole = !best.present.contains(&false);
+        let shortest = job.shortest().max(best.least_reach(job));
+        (whole && best.length <= shortest * (1.0 + 1e-9)) || self.failures > TRIES * count * count
+    }
+
+    /// One of the better failed layouts with something changed.
     fn restart(&mut self) {
         let separator = &mut self.separator;
         let chance = separator.sequence.unit();
         let number = (chance * chance * self.pool.len() as f64) as usize;
-        let layout = match self.pool.get(number) {
+        let mut layout = match self.pool.get(number) {
             Some((_, layout)) => layout.clone(),
             None => separator.layout.clone(),
         };
-        separator.load(layout);
-        self.exchange();
-    }
-
-    fn exchange(&mut self) {
-        let separator = &mut self.separator;
-        let job = separator.job;
-        let movable = |&k: &usize| job.pieces[k].locked.is_none();
-        let mut large: Vec<usize> = (0..job.pieces.len()).filter(movable).collect();
-        large.sort_by(|&a, &b| job.pieces[b].area.total_cmp(&job.pieces[a].area).then(a.cmp(&b)));
-        large.truncate((large.len() / 2).max(2));
-        if large.len() < 2 {
-            return;
-        }
-        let a = large[separator.sequence.below(large.len())];
-        let different = |&k: &usize| job.pieces[k].item != job.pieces[a].item;
-        let others: Vec<usize> = large.iter().copied().filter(different).collect();
-        if others.is_empty() {
-            return;
-        }
-        let b = others[separator.sequence.below(others.len())];
-        let mut layout = separator.layout.clone();
-        let middle = |k: usize| layout.at[k] + layout.size[k] * 0.5;
-        let places = [(a, middle(b)), (b, middle(a))];
-        for (piece, middle) in places {
-            let shape = layout.shape[piece];
-            let at = middle - job.shapes[shape].size * 0.5;
-            if let Some(at) = layout.settle(job, piece, shape, at) {
-                layout.put(job, piece, shape, at);
-            }
-        }
+        disturb(separator.job, &mut layout, &mut separator.sequence);
         separator.load(layout);
     }
 
     /// Presses the best layout by less and less until the limit. `done` says how far the press is.
     pub fn press(&mut self, limit: &Limit<'_>, done: &dyn Fn(u64) -> f64) {
-        while !self.is_over(limit) {
+        while !self.is_over(limit) && !self.is_settled() {
             let Some(best) = &self.best else {
                 return;
             };
+            if best.present.contains(&false) {
+                self.insert(limit);
+                continue;
+            }
             let done = done(self.separator.queries).clamp(0.0, 1.0);
             let step = PRESSES[0] * (PRESSES[1] / PRESSES[0]).powf(done);
-            let job = self.separator.job;
             let target = best.length * (1.0 - step);
-            if target < best.least_reach(job) {
-                return;
-            }
-            let mut layout = best.clone();
-            let cut = self.separator.sequence.unit() * layout.length;
-            layout.resize(job, target, cut);
-            self.separator.load(layout);
+            self.shorten(target);
             if self.separator.separate(PRESS, limit) {
                 self.keep();
+            } else {
+                self.failures += 1;
             }
         }
         self.target = 0.0;
     }
 
-    fn is_over(&self, limit: &Limit<'_>) -> bool {
+    /// Moves the pieces of the best layout that touch within rounding truly apart, where there is
+    /// room for that.
+    pub fn polish(&mut self) {
+        let Some(mut layout) = self.best.clone() else {
+            return;
+        };
+        let job = self.separator.job;
+        // Rounding of the no-fit polygons stays under half of what touching pieces keep.
+        self.separator.tolerance = 0.5 * job.safe();
+        let longer = layout.length + 4.0 * job.safe();
+        if longer <= job.longest() {
+            layout.length = longer;
+        }
+        self.separator.load(layout);
+        let limit = Limit {
+            queries: u64::MAX,
+            stop: &|| false,
+        };
+        if self.separator.separate(PRESS, &limit) {
+            self.keep();
+        }
+        self.separator.tolerance = 2.0 * job.safe();
+    }
+
+    pub(crate) fn is_over(&self, limit: &Limit<'_>) -> bool {
         self.separator.queries >= limit.queries || (limit.stop)()
     }
+}
+
+/// Changes a layout thoroughly: a garment is turned round, a matched set moved within the repeat,
+/// or two large pieces exchanged.
+fn disturb(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
+    match sequence.below(4) {
+        0 if job.bundles > 0 => {
+            turn_round(job, layout, sequence.below(job.bundles));
+        }
+        1 if job.sets > 0 => {
+            let set = sequence.below(job.sets);
+            let repeat = job.strip.stripes.map_or_else(Vec2::zeros, |s| s.repeat);
+            let chance = Vec2::new(sequence.unit(), sequence.unit());
+            layout.phases[set] = repeat.component_mul(&chance);
+            for piece in (0..layout.at.len()).filter(|&k| job.pieces[k].set == Some(set)) {
+                let place = layout.settle(job, piece, layout.shape[piece], layout.at[piece]);
+                layout.at[piece] = place.unwrap_or(layout.at[piece]);
+            }
+        }
+        _ => exchange(job, layout, sequence),
+    }
+}
+
+/// Turns the pieces of a garment the other way, each about its middle, if all of them may.
+fn turn_round(job: &Job<'_>, layout: &mut Layout, bundle: usize) {
+    let mut turned = layout.clone();
+    turned.forward[bundle] = !turned.forward[bundle];
+    for piece in (0..layout.at.len()).filter(|&k| job.pieces[k].bundle == Some(bundle)) {
+        let old = &job.shapes[turned.shape[piece]];
+        let half = |s: &usize| {
+            let new = &job.shapes[*s];
+            turned.allows(job, piece, *s)
+                && new.mirrored == old.mirrored
+                && ((new.turn - old.turn).cos() + 1.0).abs() < 1e-9
+        };
+        let Some(&shape) = job.pieces[piece].shapes.iter().find(|s| half(s)) else {
+            return;
+        };
+        if turned.present[piece] {
+            let middle = turned.at[piece] + old.size * 0.5;
+            move_middle(job, &mut turned, (piece, shape), middle);
+        } else {
+            turned.shape[piece] = shape;
+        }
+    }
+    *layout = turned;
+}
+
+/// Puts a shape where its middle is near a point.
+fn move_middle(job: &Job<'_>, layout: &mut Layout, (piece, shape): (usize, usize), middle: Vec2) {
+    let at = middle - job.shapes[shape].size * 0.5;
+    if let Some(at) = layout.settle(job, piece, shape, at) {
+        layout.put(job, piece, shape, at);
+    }
+}
+
+/// Exchanges two of the larger pieces.
+fn exchange(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
+    let movable = |&k: &usize| job.pieces[k].locked.is_none() && layout.present[k];
+    let mut large: Vec<usize> = (0..job.pieces.len()).filter(movable).collect();
+    let area = |k: usize| job.pieces[k].area;
+    large.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
+    large.truncate((large.len() / 2).max(2));
+    if large.len() < 2 {
+        return;
+    }
+    let a = large[sequence.below(large.len())];
+    let different = |&k: &usize| job.pieces[k].item != job.pieces[a].item;
+    let others: Vec<usize> = large.iter().copied().filter(different).collect();
+    if others.is_empty() {
+        return;
+    }
+    let b = others[sequence.below(others.len())];
+    let middle = |k: usize| layout.at[k] + layout.size[k] * 0.5;
+    let middles = [middle(a), middle(b)];
+    move_middle(job, layout, (a, layout.shape[a]), middles[1]);
+    move_middle(job, layout, (b, layout.shape[b]), middles[0]);
 }

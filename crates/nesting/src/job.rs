@@ -3,12 +3,12 @@
 //! Shapes are moved so that their boxes start at the origin. Moves are measured from the corner of
 //! the usable fabric.
 
-use crate::check::orientations;
+use crate::check::{folds_up, orientations};
 use crate::marker::{Phase, turned};
 use crate::nofit::{NoFit, Probe};
 use crate::raster::DepthRaster;
 use crate::simplify::simplify_outward;
-use crate::{Fold, FoldEdge, Item, Nap, Pose, Strip};
+use crate::{FoldEdge, Item, Nap, Pose, Strip};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
@@ -24,7 +24,7 @@ const SAFE: f64 = 6e-8;
 /// How far outside of a no-fit polygon its edges are still found, over the width of the fabric.
 const WINDOW: f64 = 0.02;
 /// Most rows of the loss maps.
-const ROWS: f64 = 128.0;
+const ROWS: f64 = 64.0;
 /// Most numbers in all depth rasters together: 128 MB.
 const RASTER_NUMBERS: f64 = 32e6;
 
@@ -64,6 +64,14 @@ pub(crate) struct Piece {
     pub set: Option<usize>,
     /// Area of the outline \[m2\].
     pub area: f64,
+}
+
+impl Piece {
+    /// Whether some shape of it fits a strip of a length \[m\] by its box.
+    pub fn fits(&self, job: &Job<'_>, length: f64) -> bool {
+        let snug = length + crate::check::SNUG;
+        self.shapes.iter().any(|&s| job.shapes[s].size.x <= snug)
+    }
 }
 
 /// How the no-fit polygon of two shapes follows from one that is kept.
@@ -150,7 +158,9 @@ impl<'a> Job<'a> {
         job.pair_up();
         let area = |(a, b): (&Shape, &Shape)| (a.size + b.size).x * (a.size + b.size).y;
         let all = job.shapes.iter();
-        let total: f64 = all.flat_map(|a| job.shapes.iter().map(move |b| area((a, b)))).sum();
+        let total: f64 = all
+            .flat_map(|a| job.shapes.iter().map(move |b| area((a, b))))
+            .sum();
         job.spacing = (job.height / ROWS).max((total / RASTER_NUMBERS).sqrt());
         job
     }
@@ -247,7 +257,39 @@ impl<'a> Job<'a> {
 
     /// Greatest length between the end margins \[m\].
     pub fn longest(&self) -> f64 {
-        self.strip.max_length.map_or(f64::INFINITY, |l| l - 2.0 * self.strip.end_margin)
+        self.strip
+            .max_length
+            .map_or(f64::INFINITY, |l| l - 2.0 * self.strip.end_margin)
+    }
+
+    /// Least length on which all movable pieces could lie \[m\].
+    pub fn shortest(&self) -> f64 {
+        let least = |p: &Piece| {
+            let lengths = p.shapes.iter().map(|&s| self.shapes[s].size.x);
+            lengths.fold(f64::INFINITY, f64::min)
+        };
+        let movable = self.pieces.iter().filter(|p| p.locked.is_none());
+        let area: f64 = self.pieces.iter().map(|p| p.area).sum();
+        movable.map(least).fold(area / self.height, f64::max)
+    }
+
+    /// A length on which the pieces could lie one behind the other \[m\].
+    pub fn ample(&self) -> f64 {
+        let longest = |p: &Piece| {
+            let shapes = p.shapes.iter().chain(p.locked.as_ref().map(|l| &l.0));
+            shapes.map(|&s| self.shapes[s].size.x).fold(0.0, f64::max)
+        };
+        let repeat = self.strip.stripes.map_or(0.0, |s| s.repeat.x);
+        let each: f64 = self
+            .pieces
+            .iter()
+            .map(|p| longest(p) + self.widest_gap + repeat)
+            .sum();
+        let locked = self.pieces.iter().filter_map(|p| p.locked);
+        let end = locked
+            .map(|(s, at)| at.x + self.shapes[s].size.x)
+            .fold(0.0, f64::max);
+        2.0 * each + end
     }
 
     fn gap(&self, a: usize, b: usize) -> f64 {
@@ -391,7 +433,10 @@ impl<'a> Job<'a> {
         let (piece, shape) = (&self.pieces[piece], &self.shapes[shape]);
         let mut axes = [Axis::Free; 2];
         if let (Some(anchor), Some(stripes)) = (shape.anchor, self.strip.stripes) {
-            let phase = match (piece.set, piece.item.and_then(|i| self.items[i].match_point)) {
+            let phase = match (
+                piece.set,
+                piece.item.and_then(|i| self.items[i].match_point),
+            ) {
                 (Some(set), _) => phases[set],
                 (_, Some(point)) => match point.phase {
                     Phase::At(phase) => phase,
@@ -402,7 +447,10 @@ impl<'a> Job<'a> {
             let first = stripes.origin - self.corner() + phase - anchor;
             for k in 0..2 {
                 if stripes.repeat[k] > 0.0 {
-                    axes[k] = Axis::Every { first: first[k], step: stripes.repeat[k] };
+                    axes[k] = Axis::Every {
+                        first: first[k],
+                        step: stripes.repeat[k],
+                    };
                 }
             }
         }
@@ -424,17 +472,11 @@ impl Shape {
         };
         let bounds = pose.lay(&item.outline).bounds();
         let forward = turn.cos() >= 0.0;
-        let on_fold = match item.fold_edge {
+        let on_fold = match folds_up(item, strip, (turn, mirrored)) {
             None => None,
-            Some(edge) => {
-                let lower = (edge == FoldEdge::Lower) != (mirrored == forward);
-                let at_top = strip.usable_width() - bounds.size().y;
-                match (strip.fold, lower) {
-                    (Fold::Lower | Fold::Both, true) => Some(0.0),
-                    (Fold::Both, false) => Some(at_top),
-                    _ => return None,
-                }
-            }
+            Some(None) => return None,
+            Some(Some(FoldEdge::Lower)) => Some(0.0),
+            Some(Some(FoldEdge::Upper)) => Some(strip.usable_width() - bounds.size().y),
         };
         Some(Self {
             kind,

@@ -1,7 +1,17 @@
 //! Where all pieces lie, overlaps allowed.
 
-use crate::job::{Axis, Job};
+use crate::job::{Axis, Job, Piece};
 use toile_geometry::Vec2;
+
+/// Where a piece lies that is not laid: far from the strip and from all others.
+fn nowhere(job: &Job<'_>, piece: usize) -> Vec2 {
+    let extent = job
+        .shapes
+        .iter()
+        .map(|s| s.size.norm())
+        .fold(job.height, f64::max);
+    Vec2::new(-10.0 * extent * (2.0 + piece as f64), 0.0)
+}
 
 /// A layout on a strip of some length.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,16 +28,26 @@ pub(crate) struct Layout {
     pub forward: Vec<bool>,
     /// Where in the repeat each matched set lies \[m\].
     pub phases: Vec<Vec2>,
+    /// Which pieces are laid; the others lie far outside.
+    pub present: Vec<bool>,
 }
 
 impl Layout {
-    /// All pieces in their first orientation at the corner, locked ones in their place.
+    /// No piece laid but the locked ones.
     pub fn new(job: &Job<'_>, length: f64) -> Self {
-        let first = |p: &crate::job::Piece| p.locked.map_or(p.shapes[0], |l| l.0);
+        let runs_forward = |&&s: &&usize| job.shapes[s].forward;
+        let forward = |p: &Piece| p.shapes.iter().find(runs_forward).copied();
+        let first = |p: &Piece| {
+            p.locked
+                .map(|l| l.0)
+                .or_else(|| forward(p))
+                .unwrap_or(p.shapes[0])
+        };
         let shape: Vec<usize> = job.pieces.iter().map(first).collect();
-        let place = |p: &crate::job::Piece| p.locked.map_or_else(Vec2::zeros, |l| l.1);
+        let place = |(k, p): (usize, &Piece)| p.locked.map_or_else(|| nowhere(job, k), |l| l.1);
         Self {
-            at: job.pieces.iter().map(place).collect(),
+            present: job.pieces.iter().map(|p| p.locked.is_some()).collect(),
+            at: job.pieces.iter().enumerate().map(place).collect(),
             size: shape.iter().map(|&s| job.shapes[s].size).collect(),
             shape,
             length,
@@ -36,8 +56,21 @@ impl Layout {
         }
     }
 
+    /// Takes a piece off the strip.
+    pub fn remove(&mut self, job: &Job<'_>, piece: usize) {
+        self.present[piece] = false;
+        self.at[piece] = nowhere(job, piece);
+    }
+
+    /// Area of the pieces that are not laid \[m2\].
+    pub fn left_over(&self, job: &Job<'_>) -> f64 {
+        let missing = (0..self.at.len()).filter(|&k| !self.present[k]);
+        missing.map(|k| job.pieces[k].area).sum()
+    }
+
     /// Puts a piece somewhere.
     pub fn put(&mut self, job: &Job<'_>, piece: usize, shape: usize, at: Vec2) {
+        self.present[piece] = true;
         self.shape[piece] = shape;
         self.size[piece] = job.shapes[shape].size;
         self.at[piece] = at;
@@ -63,21 +96,27 @@ impl Layout {
         if axes == [Axis::Free; 2] {
             return Some(at.sup(&Vec2::zeros()).inf(&room));
         }
-        let (x, y) = (axes[0].nearest(at.x, room.x)?, axes[1].nearest(at.y, room.y)?);
+        let (x, y) = (
+            axes[0].nearest(at.x, room.x)?,
+            axes[1].nearest(at.y, room.y)?,
+        );
         Some(Vec2::new(x, y))
     }
 
     /// How far the pieces reach \[m\].
     pub fn reach(&self, job: &Job<'_>) -> f64 {
-        let ends = (0..self.at.len()).filter(|&k| job.pieces[k].item.is_some());
-        ends.map(|k| self.at[k].x + self.size[k].x).fold(0.0, f64::max)
+        let laid = |k: &usize| self.present[*k] && job.pieces[*k].item.is_some();
+        let ends = (0..self.at.len()).filter(laid);
+        ends.map(|k| self.at[k].x + self.size[k].x)
+            .fold(0.0, f64::max)
     }
 
     /// Where the movable pieces must at least reach because of locked ones \[m\].
     pub fn least_reach(&self, job: &Job<'_>) -> f64 {
         let locked = |k: &usize| job.pieces[*k].item.is_some() && job.pieces[*k].locked.is_some();
         let ends = (0..self.at.len()).filter(locked);
-        ends.map(|k| self.at[k].x + self.size[k].x).fold(0.0, f64::max)
+        ends.map(|k| self.at[k].x + self.size[k].x)
+            .fold(0.0, f64::max)
     }
 
     /// Shortens or lengthens the strip: what lies beyond `cut` moves along \[m\].
@@ -85,7 +124,7 @@ impl Layout {
         let by = length - self.length;
         self.length = length;
         for piece in 0..self.at.len() {
-            if job.pieces[piece].locked.is_some() {
+            if job.pieces[piece].locked.is_some() || !self.present[piece] {
                 continue;
             }
             let mut at = self.at[piece];

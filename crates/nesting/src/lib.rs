@@ -17,10 +17,13 @@ mod nofit;
 mod raster;
 mod referee;
 mod refine;
+mod rules;
 mod search;
 mod separate;
 mod sequence;
 mod simplify;
+mod slide;
+mod start;
 
 pub use check::{ItemProblem, NestingError, Refusal};
 pub use marker::{

@@ -382,7 +382,11 @@ pub struct Marker {
 impl Marker {
     /// Sets length, efficiency and utilisation from what is laid.
     pub fn measure(&mut self, items: &[Item], strip: &Strip) {
-        let laid = || self.placements.iter().filter_map(|p| Some((p, items.get(p.item)?)));
+        let laid = || {
+            self.placements
+                .iter()
+                .filter_map(|p| Some((p, items.get(p.item)?)))
+        };
         let end = |(p, item): (&Placement, &Item)| p.pose(item).lay(&item.outline).bounds().max.x;
         let reach = laid().map(end).fold(strip.end_margin, f64::max);
         let area: f64 = laid().map(|(_, item)| item.outline.area()).sum();

@@ -143,7 +143,8 @@ impl NoFit {
     #[inline]
     pub fn probe(&self, at: Vec2) -> Option<Probe> {
         let cell = (at - self.corner).component_mul(&self.per_metre);
-        let inside = cell.x >= 0.0 && cell.y >= 0.0 && cell.x < CELLS as f64 && cell.y < CELLS as f64;
+        let inside =
+            cell.x >= 0.0 && cell.y >= 0.0 && cell.x < CELLS as f64 && cell.y < CELLS as f64;
         if !inside {
             return None;
         }
@@ -177,7 +178,11 @@ fn cleaned(ring: &[Vec2], least: f64) -> Vec<Vec2> {
         let n = points.len();
         let (a, b, c) = (points[(k + n - 1) % n], points[k], points[(k + 1) % n]);
         let (back, on) = (a - b, c - b);
-        let (shorter, longer) = if back.norm() < on.norm() { (back, on) } else { (on, back) };
+        let (shorter, longer) = if back.norm() < on.norm() {
+            (back, on)
+        } else {
+            (on, back)
+        };
         let width = shorter.perp(&longer).abs() / longer.norm();
         shorter.norm() <= least || (shorter.dot(&longer) > 0.0 && width <= 2.0 * least)
     };

@@ -8,6 +8,8 @@ use toile_geometry::Vec2;
 
 /// Side of the blocks of which each yields its best cell.
 const BLOCK: usize = 8;
+/// Part by which chance may raise a cell's score.
+const CHANCE: f32 = 0.1;
 
 /// Losses of one shape at regular moves from another.
 #[derive(Clone, Debug)]
@@ -25,7 +27,10 @@ impl DepthRaster {
         let more = job.widest_gap + job.growth();
         let low = |k: usize| ((-b.size[k] - more) / job.spacing).floor() as i32;
         let high = |k: usize| ((a.size[k] + more) / job.spacing).ceil() as i32;
-        let (columns, rows) = ((high(0) - low(0) + 1) as usize, (high(1) - low(1) + 1) as usize);
+        let (columns, rows) = (
+            (high(0) - low(0) + 1) as usize,
+            (high(1) - low(1) + 1) as usize,
+        );
         let mut values = Vec::with_capacity(columns * rows);
         for row in 0..rows {
             for column in 0..columns {
@@ -49,6 +54,8 @@ pub(crate) struct LossMap {
     columns: usize,
     rows: usize,
     values: Vec<f32>,
+    /// Least value of each column of a row of blocks.
+    least: Vec<f32>,
     arch: Arch,
 }
 
@@ -68,6 +75,7 @@ impl LossMap {
             columns: 0,
             rows: 0,
             values: Vec::new(),
+            least: Vec::new(),
             arch: Arch::new(),
         }
     }
@@ -105,33 +113,70 @@ impl LossMap {
         });
     }
 
-    /// The best cell of every block, with a trifle of chance between equal ones.
+    /// The best cells, one of a block at most, with a trifle of chance between equal ones: those
+    /// better than the worst of the `most` already found replace it.
     pub fn collect(
-        &self,
+        &mut self,
         (shape, spacing, room): (usize, f64, Vec2),
+        bias: f64,
         sequence: &mut Sequence,
-        found: &mut Vec<Candidate>,
+        (found, most): (&mut Vec<Candidate>, usize),
     ) {
+        let small = 0.1 * spacing as f32;
         for low in (0..self.rows).step_by(BLOCK) {
+            let high = (low + BLOCK).min(self.rows);
+            self.least_of_rows(low, high);
             for left in (0..self.columns).step_by(BLOCK) {
                 let right = (left + BLOCK).min(self.columns);
-                let mut best = (f32::INFINITY, 0, 0);
-                for row in low..(low + BLOCK).min(self.rows) {
-                    let line = &self.values[row * self.columns + left..row * self.columns + right];
-                    for (k, &value) in line.iter().enumerate() {
-                        if value < best.0 {
-                            best = (value, left + k, row);
-                        }
-                    }
+                let least = self.least[left..right]
+                    .iter()
+                    .copied()
+                    .fold(f32::INFINITY, f32::min);
+                let full = found.len() >= most;
+                if full
+                    && found
+                        .last()
+                        .is_some_and(|worst| least + small >= worst.score)
+                {
+                    continue;
                 }
-                let cell = Vec2::new(best.1 as f64, best.2 as f64) * spacing;
-                let chance = sequence.unit() as f32 * 0.1;
-                found.push(Candidate {
-                    score: (best.0 + 0.1 * spacing as f32) * (1.0 + chance),
+                let score = (least + small + (bias * left as f64 * spacing) as f32)
+                    * (1.0 + CHANCE * sequence.unit() as f32);
+                let place = found.partition_point(|known| known.score <= score);
+                if place >= most {
+                    continue;
+                }
+                let is_it = |&(row, column): &(usize, usize)| {
+                    self.values[row * self.columns + column] == least
+                };
+                let mut cells = (low..high).flat_map(|row| (left..right).map(move |c| (row, c)));
+                let Some((row, column)) = cells.find(is_it) else {
+                    continue;
+                };
+                let cell = Vec2::new(column as f64, row as f64) * spacing;
+                let candidate = Candidate {
+                    score,
                     shape,
                     at: cell.inf(&room),
-                });
+                };
+                found.insert(place, candidate);
+                found.truncate(most);
             }
         }
+    }
+
+    /// The least value of each column between two rows.
+    fn least_of_rows(&mut self, low: usize, high: usize) {
+        let (columns, values, least) = (self.columns, &self.values, &mut self.least);
+        least.clear();
+        least.extend_from_slice(&values[low * columns..(low + 1) * columns]);
+        self.arch.dispatch(|| {
+            for row in low + 1..high {
+                let line = &values[row * columns..(row + 1) * columns];
+                for (least, &value) in least.iter_mut().zip(line) {
+                    *least = if value < *least { value } else { *least };
+                }
+            }
+        });
     }
 }

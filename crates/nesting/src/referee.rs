@@ -2,8 +2,9 @@
 //!
 //! Decided on the original outlines with exact predicates; nothing of the placing is used.
 
-use crate::{Item, Marker, Mirror, Nap, Placement, Strip};
-use toile_geometry::{PreparedPolygon, Vec2, intersection, total_area};
+use crate::rules::check_rules;
+use crate::{Item, Marker, Strip};
+use toile_geometry::{Polygon, PreparedPolygon, Vec2, intersection, total_area};
 
 /// Deepest overlap of two pieces, nearest they may come below their gap, and furthest they may
 /// stick out, that still counts as sound \[m\].
@@ -63,6 +64,41 @@ pub enum Violation {
         /// Whether it lies face down.
         mirrored: bool,
     },
+    /// Two pieces of one garment run opposite ways on fabric with a nap.
+    Nap {
+        /// The placements.
+        pair: [usize; 2],
+        /// Number of the garment.
+        bundle: u32,
+    },
+    /// A piece that must lie on a fold does not.
+    OffFold {
+        /// The placement.
+        placement: usize,
+        /// How far it is from the nearest fold \[m\]; infinite if there is none.
+        by: f64,
+    },
+    /// A match point lies beside the print.
+    OffPrint {
+        /// The placement.
+        placement: usize,
+        /// How far along the warp and across \[m\].
+        by: Vec2,
+    },
+    /// A piece lies on a flaw, or nearer to it than it may.
+    OnDefect {
+        /// The placement.
+        placement: usize,
+        /// Number of the defect.
+        defect: usize,
+        /// Flawed area in the piece \[m2\].
+        area: f64,
+    },
+    /// A locked copy does not lie where it must.
+    Moved {
+        /// The placement.
+        placement: usize,
+    },
     /// A copy is laid twice, or neither laid nor listed as unplaced, or does not exist.
     Copy {
         /// Index of the item.
@@ -95,6 +131,8 @@ pub struct Verdict {
     pub deepest: f64,
     /// Fabric used twice \[m2\].
     pub overlap_area: f64,
+    /// What is used twice, by the pairs of placements that share it.
+    pub overlaps: Vec<([usize; 2], Vec<Polygon>)>,
     /// Least distance between two pieces \[m\]; infinite for one piece.
     pub nearest: f64,
     /// Fabric used, end margins included \[m\].
@@ -122,9 +160,6 @@ pub fn judge(items: &[Item], strip: &Strip, marker: &Marker) -> Verdict {
         let finite = [at.x, at.y, placement.turn].iter().all(|x| x.is_finite());
         match items.get(placement.item) {
             Some(item) if finite => {
-                verdict
-                    .violations
-                    .extend(check_orientation(k, placement, item, strip));
                 let outline = placement.pose(item).lay(&item.outline);
                 laid.push((k, item, PreparedPolygon::new(&outline)));
             }
@@ -134,6 +169,7 @@ pub fn judge(items: &[Item], strip: &Strip, marker: &Marker) -> Verdict {
         }
     }
     check_copies(items, marker, &mut verdict);
+    check_rules(strip, &laid, marker, &mut verdict.violations);
     check_inside(strip, &laid, marker, &mut verdict);
     for (n, one) in laid.iter().enumerate() {
         for other in &laid[n + 1..] {
@@ -143,31 +179,8 @@ pub fn judge(items: &[Item], strip: &Strip, marker: &Marker) -> Verdict {
     verdict
 }
 
-type Laid<'a> = (usize, &'a Item, PreparedPolygon);
-
-fn check_orientation(
-    index: usize,
-    placement: &Placement,
-    item: &Item,
-    strip: &Strip,
-) -> Option<Violation> {
-    let full = std::f64::consts::TAU;
-    let same = |turn: &f64| {
-        let apart = (placement.turn - turn).rem_euclid(full);
-        apart.min(full - apart) < 1e-9
-    };
-    let turned = item.allowed.turns.iter().any(same) && (strip.nap == Nap::None || same(&0.0));
-    let sided = match item.allowed.mirror {
-        Mirror::Never => !placement.mirrored,
-        Mirror::Pairs => placement.mirrored == (placement.copy % 2 == 1),
-        Mirror::Free => true,
-    };
-    (!turned || !sided).then_some(Violation::Orientation {
-        placement: index,
-        turn: placement.turn,
-        mirrored: placement.mirrored,
-    })
-}
+/// Index of a placement, its item, and its outline on the strip.
+pub(crate) type Laid<'a> = (usize, &'a Item, PreparedPolygon);
 
 fn check_copies(items: &[Item], marker: &Marker, verdict: &mut Verdict) {
     let laid = marker.placements.iter().map(|p| (p.item, p.copy));
@@ -194,7 +207,7 @@ fn check_copies(items: &[Item], marker: &Marker, verdict: &mut Verdict) {
 }
 
 /// What is not a number counts as beyond.
-fn beyond_limit(excess: f64) -> bool {
+pub(crate) fn beyond_limit(excess: f64) -> bool {
     excess.is_nan() || excess > PENETRATION_LIMIT
 }
 
@@ -213,8 +226,8 @@ fn check_inside(strip: &Strip, laid: &[Laid<'_>], marker: &Marker, verdict: &mut
         let excess = [
             (Side::Start, strip.end_margin - bounds.min.x),
             (Side::End, bounds.max.x - end),
-            (Side::Lower, strip.selvedge - bounds.min.y),
-            (Side::Upper, bounds.max.y - (strip.width - strip.selvedge)),
+            (Side::Lower, strip.lower() - bounds.min.y),
+            (Side::Upper, bounds.max.y - strip.upper()),
         ];
         for (side, by) in excess {
             if beyond_limit(by) {
@@ -254,6 +267,7 @@ fn check_pair(one: &Laid<'_>, other: &Laid<'_>, needed: f64, verdict: &mut Verdi
     verdict.deepest = verdict.deepest.max(depth);
     verdict.overlap_area += area;
     if depth > PENETRATION_LIMIT {
+        verdict.overlaps.push((pair, shared.clone()));
         let at = shared.first().and_then(|p| p.outer.first());
         verdict.violations.push(Violation::Overlap {
             pair,

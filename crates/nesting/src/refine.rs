@@ -139,7 +139,11 @@ impl Mover<'_> {
 
 /// Points near a place where lines end or cross.
 fn propose(lines: &[Line], at: Vec2, (room, axes): (Vec2, [Axis; 2]), targets: &mut Vec<Vec2>) {
-    let farthest = lines.iter().filter(|l| l.loss > 0.0).map(|l| l.apart).fold(0.0, f64::max);
+    let farthest = lines
+        .iter()
+        .filter(|l| l.loss > 0.0)
+        .map(|l| l.apart)
+        .fold(0.0, f64::max);
     let radius = 4.0 * farthest;
     let near = |p: &Vec2| (p - at).norm_squared() <= radius * radius;
     for (k, line) in lines.iter().enumerate() {
@@ -174,8 +178,7 @@ fn propose(lines: &[Line], at: Vec2, (room, axes): (Vec2, [Axis; 2]), targets: &
                 if line.loss > 0.0 && line.normal[other].abs() > 1e-3 {
                     let mut target = Vec2::zeros();
                     target[axis] = wall;
-                    target[other] =
-                        (line.level - line.normal[axis] * wall) / line.normal[other];
+                    target[other] = (line.level - line.normal[axis] * wall) / line.normal[other];
                     targets.extend(Some(target).filter(near));
                 }
             }

@@ -102,14 +102,18 @@ impl Meter<'_> {
         self.cancel.load(Ordering::Relaxed)
             || match self.search.budget {
                 Budget::Evaluations(_) => false,
-                Budget::Seconds(all) => self.started.elapsed() > Duration::from_secs_f64((all * part).clamp(0.0, 1e9)),
+                Budget::Seconds(all) => {
+                    self.started.elapsed() > Duration::from_secs_f64((all * part).clamp(0.0, 1e9))
+                }
             }
     }
 
     /// Evaluations of one island when a part of the budget is used up.
     fn share(&self, part: f64) -> u64 {
         match self.search.budget {
-            Budget::Evaluations(all) => (all as f64 * part / self.search.islands.max(1) as f64) as u64,
+            Budget::Evaluations(all) => {
+                (all as f64 * part / self.search.islands.max(1) as f64) as u64
+            }
             Budget::Seconds(_) => u64::MAX,
         }
     }
@@ -119,7 +123,7 @@ impl Meter<'_> {
 ///
 /// With a budget in evaluations the same input gives the same marker. Refuses a job that cannot be
 /// done, naming every piece and the remedy. Copies that find no place on a strip of limited length
-/// are listed in the marker.
+/// are listed in the marker. Every marker has passed the referee on the original outlines.
 ///
 /// ```
 /// use std::sync::atomic::AtomicBool;
@@ -154,7 +158,11 @@ pub fn make_marker(
     let job = Job::new(items, strip, &copies);
     job.prepare(threads(), &|| control.cancel.load(Ordering::Relaxed));
     let best = hunt(&job, &meter, control)?;
-    Ok(finish(&job, &best))
+    let marker = finish(&job, &best);
+    match judge(items, strip, &marker).violations.first() {
+        None => Ok(marker),
+        Some(violation) => Err(NestingError::Unsound(format!("{violation:?}"))),
+    }
 }
 
 fn threads() -> usize {
@@ -167,7 +175,13 @@ fn hunt(
     control: &mut Control<'_>,
 ) -> Result<Layout, NestingError> {
     let count = meter.search.islands.max(1) as u64;
-    let seeds = (0..count).map(|k| meter.search.seed.wrapping_mul(0x1000_0000_01b3).wrapping_add(k));
+    let seeds = (0..count).map(|k| {
+        meter
+            .search
+            .seed
+            .wrapping_mul(0x1000_0000_01b3)
+            .wrapping_add(k)
+    });
     let mut islands: Vec<Island<'_>> = seeds.map(|seed| Island::new(job, seed)).collect();
     each(&mut islands, &|island| {
         island.start(&Limit {
@@ -175,6 +189,7 @@ fn hunt(
             stop: &|| meter.cancel.load(Ordering::Relaxed),
         });
     });
+    let epoch = EPOCH.min(meter.share(1.0) / 16 + 1);
     for (part, press) in [(EXPLORING, false), (1.0, true)] {
         loop {
             if meter.cancel.load(Ordering::Relaxed) {
@@ -189,7 +204,7 @@ fn hunt(
             }
             each(&mut islands, &|island| {
                 let limit = Limit {
-                    queries: (island.queries() + EPOCH).min(meter.share(part)),
+                    queries: (island.queries() + epoch).min(meter.share(part)),
                     stop: &|| meter.stops(part),
                 };
                 if press {
@@ -208,8 +223,11 @@ fn hunt(
             }
         }
     }
-    let best = islands.into_iter().filter_map(|island| island.best);
-    best.min_by(|a, b| a.length.total_cmp(&b.length)).ok_or(NestingError::Cancelled)
+    let mut best = best_of(&islands)
+        .map(|k| islands.swap_remove(k))
+        .ok_or(NestingError::NoItems)?;
+    best.polish();
+    best.best.ok_or(NestingError::Cancelled)
 }
 
 /// Works on all islands, on as many threads as there are.
@@ -227,24 +245,29 @@ fn each<'a>(islands: &mut [Island<'a>], work: &(dyn Fn(&mut Island<'a>) + Sync))
 
 /// The best layout goes to islands that are clearly behind.
 fn share(islands: &mut [Island<'_>]) {
-    let lengths: Vec<f64> = islands.iter().map(Island::length).collect();
-    let Some(first) = (0..lengths.len()).min_by(|&a, &b| lengths[a].total_cmp(&lengths[b])) else {
+    let Some(first) = best_of(islands) else {
         return;
     };
-    let Some(best) = islands[first].best.clone() else {
-        return;
-    };
-    for island in islands.iter_mut() {
-        if island.length() > best.length {
-            island.adopt(&best);
+    let (score, best) = (islands[first].score(), islands[first].best.clone());
+    for island in islands.iter_mut().filter(|i| i.score() > score) {
+        if let Some(best) = &best {
+            island.adopt(best);
         }
     }
 }
 
+/// The island with the best layout, the first of equal ones.
+fn best_of(islands: &[Island<'_>]) -> Option<usize> {
+    let order = |a: (f64, f64), b: (f64, f64)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
+    (0..islands.len()).min_by(|&a, &b| order(islands[a].score(), islands[b].score()))
+}
+
 fn tell(islands: &[Island<'_>], meter: &Meter<'_>, control: &mut Control<'_>) {
     let evaluations: u64 = islands.iter().map(Island::queries).sum();
-    let length = islands.iter().map(Island::length).fold(f64::INFINITY, f64::min);
-    let margin = islands.first().map_or(0.0, |i| 2.0 * i.end_margin());
+    let length = best_of(islands).map_or(f64::INFINITY, |k| islands[k].score().1);
+    let margin = islands
+        .first()
+        .map_or(0.0, |i| 2.0 * i.separator.job.strip.end_margin);
     (control.progress)(Progress {
         done: meter.done(evaluations).min(1.0),
         evaluations,
@@ -254,11 +277,27 @@ fn tell(islands: &[Island<'_>], meter: &Meter<'_>, control: &mut Control<'_>) {
 
 fn finish(job: &Job<'_>, layout: &Layout) -> Marker {
     let strip = job.strip;
-    let mut placements: Vec<Placement> = Vec::new();
+    let (mut placements, mut unplaced) = (Vec::new(), Vec::new());
+    let reason = match strip.max_length {
+        Some(length) => format!(
+            "no room is left on {:.0} mm of fabric; take more fabric or lay it on another marker",
+            length * 1e3
+        ),
+        None => "no place was found between defects, locked pieces and stripes; free some of them"
+            .to_owned(),
+    };
     for (k, piece) in job.pieces.iter().enumerate() {
         let Some(item) = piece.item else {
             continue;
         };
+        if !layout.present[k] {
+            unplaced.push(Unplaced {
+                item,
+                copy: piece.copy,
+                reason: reason.clone(),
+            });
+            continue;
+        }
         let shape = &job.shapes[layout.shape[k]];
         placements.push(Placement {
             item,
@@ -268,13 +307,11 @@ fn finish(job: &Job<'_>, layout: &Layout) -> Marker {
             translation: layout.at[k] - shape.offset + job.corner(),
         });
     }
-    placements.sort_by_key(|p| (p.item, p.copy));
     let mut marker = Marker {
         placements,
-        unplaced: Vec::<Unplaced>::new(),
+        unplaced,
         ..Marker::default()
     };
     marker.measure(job.items, strip);
-    debug_assert!(judge(job.items, strip, &marker).is_sound());
     marker
 }

@@ -15,6 +15,11 @@ const LOOKS: usize = 4;
 const GROWTH: [f64; 2] = [1.2, 2.0];
 const DECAY: f64 = 0.95;
 
+/// Cells of a loss map that cost as much as one query.
+const CELLS_A_QUERY: usize = 64;
+/// Large pieces are harder to move, so their pairs weigh more: area over the mean to this power.
+const AREA_POWER: f64 = 0.3;
+
 /// When to give up.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Patience {
@@ -42,6 +47,7 @@ pub(crate) struct Separator<'a> {
     /// Loss that counts as none \[m\].
     pub tolerance: f64,
     weights: Vec<f64>,
+    least_weights: Vec<f64>,
     losses: Vec<f64>,
     map: LossMap,
     found: Vec<Candidate>,
@@ -55,6 +61,7 @@ impl<'a> Separator<'a> {
             sequence: Sequence(seed),
             tolerance: 2.0 * job.safe(),
             weights: Vec::new(),
+            least_weights: least_weights(job),
             losses: Vec::new(),
             map: LossMap::new(),
             found: Vec::new(),
@@ -66,13 +73,12 @@ impl<'a> Separator<'a> {
 
     /// Takes another layout, with all weights even.
     pub fn load(&mut self, layout: Layout) {
-        let count = layout.at.len();
         self.layout = layout;
-        self.weights = vec![1.0; count * count];
+        self.weights = self.least_weights.clone();
         self.measure();
     }
 
-    fn measure(&mut self) {
+    pub(crate) fn measure(&mut self) {
         let count = self.layout.at.len();
         self.losses = vec![0.0; count * count];
         for piece in 0..count {
@@ -138,7 +144,11 @@ impl<'a> Separator<'a> {
                 rounds += 1;
                 self.reweigh();
             }
-            strikes = if best.0 < 0.98 * before { 0 } else { strikes + 1 };
+            strikes = if best.0 < 0.98 * before {
+                0
+            } else {
+                strikes + 1
+            };
             if best.0 > 0.0 {
                 self.layout = best.1.clone();
                 self.measure();
@@ -178,9 +188,10 @@ impl<'a> Separator<'a> {
             queries: 0,
         };
         let here = (self.layout.shape[piece], self.layout.at[piece]);
+        let here = Some(here).filter(|_| self.layout.present[piece]);
         let mut best: Option<(f64, usize, Vec2)> = None;
         let looks = self.found.iter().map(|c| (c.shape, c.at));
-        for (shape, from) in looks.chain([here]) {
+        for (shape, from) in looks.chain(here) {
             if let Some((loss, at)) = mover.refine(shape, from) {
                 let loss = loss + bias * at.x;
                 if best.is_none_or(|b| loss < b.0) {
@@ -216,20 +227,10 @@ impl<'a> Separator<'a> {
                 let raster = job.raster(self.layout.shape[other], shape);
                 self.map.add(raster, [cell.x, cell.y], weight);
             }
-            self.queries += count as u64;
-            self.map.collect((shape, spacing, room), &mut self.sequence, &mut self.found);
-        }
-        if bias > 0.0 {
-            for candidate in &mut self.found {
-                candidate.score += (bias * candidate.at.x) as f32;
-            }
-        }
-        let looks = LOOKS.min(self.found.len());
-        if looks > 0 {
-            let by_score = |a: &Candidate, b: &Candidate| a.score.total_cmp(&b.score);
-            self.found.select_nth_unstable_by(looks - 1, by_score);
-            self.found.truncate(looks);
-            self.found.sort_by(by_score);
+            self.queries += (count + cells.x * cells.y / CELLS_A_QUERY) as u64;
+            let found = (&mut self.found, LOOKS);
+            let of = (shape, spacing, room);
+            self.map.collect(of, bias, &mut self.sequence, found);
         }
     }
 
@@ -239,12 +240,29 @@ impl<'a> Separator<'a> {
         if deepest <= 0.0 {
             return;
         }
-        for (weight, &loss) in self.weights.iter_mut().zip(&self.losses) {
+        for ((weight, &loss), &base) in self
+            .weights
+            .iter_mut()
+            .zip(&self.losses)
+            .zip(&self.least_weights)
+        {
             *weight = if loss > self.tolerance {
                 *weight * (GROWTH[0] + (GROWTH[1] - GROWTH[0]) * loss / deepest)
             } else {
-                (*weight * DECAY).max(1.0)
+                (*weight * DECAY).max(base)
             };
         }
     }
+}
+
+/// What each pair weighs at least.
+fn least_weights(job: &Job<'_>) -> Vec<f64> {
+    let count = job.pieces.len();
+    let mean = job.pieces.iter().map(|p| p.area).sum::<f64>() / count as f64;
+    let weight = |k: usize| match job.pieces[k].locked {
+        Some(_) => 1.0,
+        None => (job.pieces[k].area / mean).powf(AREA_POWER),
+    };
+    let pairs = (0..count * count).map(|k| weight(k / count) * weight(k % count));
+    pairs.collect()
 }

@@ -10,12 +10,12 @@ use toile_nesting::{
     make_marker,
 };
 
-fn make(items: &[Item], strip: &Strip, positions: u64) -> Result<Marker, NestingError> {
+fn make(items: &[Item], strip: &Strip, evaluations: u64) -> Result<Marker, NestingError> {
     let mut control = Control {
         progress: &mut |_| {},
         cancel: &AtomicBool::new(false),
     };
-    make_marker(items, strip, Search { positions, seed: 1 }, &mut control)
+    make_marker(items, strip, Search::evaluations(evaluations), &mut control)
 }
 
 fn box_of(length: f64, width: f64) -> Polygon {
@@ -111,7 +111,7 @@ fn nap_keeps_every_piece_one_way() {
     assert!(marker.placements.iter().all(|p| p.turn == 0.0));
     let free = Strip {
         nap: Nap::None,
-        ..strip
+        ..strip.clone()
     };
     let turned = make(&items, &free, 1).unwrap();
     assert!(turned.placements.iter().any(|p| p.turn != 0.0));
@@ -125,7 +125,7 @@ fn boxes_tile_without_waste() {
         ..Item::new("third", box_of(0.3, 0.5))
     }];
     let strip = Strip::of_width(1.5);
-    let marker = make(&items, &strip, 1).unwrap();
+    let marker = make(&items, &strip, 2_000_000).unwrap();
     sound(&items, &strip, &marker);
     assert!(marker.efficiency > 1.0 - 2e-6, "{}", marker.efficiency);
     assert!((marker.length - 0.9).abs() < 2e-6);
@@ -210,7 +210,7 @@ fn progress_is_told_and_cancelling_stops() {
         cancel: &cancel,
     };
     let search = Search::default();
-    let result = make_marker(&shirt(1), &Strip::of_width(1.5), search, &mut control);
+    let result = make_marker(&shirt(3), &Strip::of_width(1.5), search, &mut control);
     assert_eq!(result, Err(NestingError::Cancelled));
     assert_eq!(seen.len(), 3);
     assert!(
@@ -269,10 +269,7 @@ fn impossible_pieces_are_refused_by_name() {
         ),
         (
             Item {
-                allowed: Allowed {
-                    turns: vec![],
-                    mirror: Mirror::Never,
-                },
+                allowed: Allowed::turned(vec![]),
                 ..good()
             },
             |p| *p == ItemProblem::NoOrientation,
@@ -312,7 +309,7 @@ fn a_wide_piece_is_refused_with_the_remedy_and_fits_that_fabric() {
     }
     let wide = Strip {
         width: 1.64,
-        ..strip
+        ..strip.clone()
     };
     let marker = make(&items, &wide, 1).unwrap();
     sound(&items, &wide, &marker);
@@ -348,10 +345,7 @@ fn impossible_fabric_and_empty_jobs_are_refused() {
         );
     }
     let against = [Item {
-        allowed: Allowed {
-            turns: vec![PI],
-            mirror: Mirror::Never,
-        },
+        allowed: Allowed::turned(vec![PI]),
         ..items[0].clone()
     }];
     let nap = Strip {
@@ -461,7 +455,7 @@ fn any_item() -> impl Strategy<Value = Item> {
         |(outline, grain, quantity, turns, mirror, gap)| Item {
             grain,
             quantity,
-            allowed: Allowed { turns, mirror },
+            allowed: Allowed::turned(turns).mirrored(mirror),
             gap,
             ..Item::new("star", outline)
         },
@@ -478,10 +472,11 @@ proptest! {
         margins in (0.0..0.02f64, 0.0..0.02f64),
         gap in prop_oneof![Just(0.0), 0.0..0.02f64],
         length in prop_oneof![Just(None), (0.8..2.0f64).prop_map(Some)],
-        nap in prop_oneof![Just(Nap::None), Just(Nap::OneWay)],
+        nap in prop_oneof![Just(Nap::None), Just(Nap::OneWay), Just(Nap::PerBundle)],
     ) {
         let strip = Strip {
-            width, selvedge: margins.0, end_margin: margins.1, gap, max_length: length, nap,
+            selvedge: margins.0, end_margin: margins.1, gap, max_length: length, nap,
+            ..Strip::of_width(width)
         };
         match make(&items, &strip, 1) {
             Ok(marker) => {

@@ -1,9 +1,10 @@
 //! What is derived from the project, kept while the project does not change.
 
+use crate::NestOptions;
 use crate::choice::BodyChoice;
 use crate::drape::{Drape, drape};
 use crate::fabrics::fabric_named;
-use crate::laying::{Laying, lay};
+use crate::laying::{Garments, Laying, lay};
 use crate::setup::{self, GarmentJob};
 use crate::{Project, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
@@ -134,7 +135,15 @@ impl Derived {
             return Ok(layings.clone());
         }
         let draft = self.sound_draft(project)?;
-        let layings = Arc::new(lay(&[&*draft], project.width, watcher)?);
+        let options = NestOptions {
+            width: project.width,
+            ..NestOptions::default()
+        };
+        let garments = [Garments {
+            draft: &draft,
+            count: 1,
+        }];
+        let layings = Arc::new(lay(&garments, &options, watcher)?);
         self.layings = Some(layings.clone());
         Ok(layings)
     }

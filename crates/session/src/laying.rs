@@ -2,13 +2,14 @@
 
 use crate::cut::{cut_outline, sewn_outline};
 use crate::watcher::tell;
-use crate::{Nested, SessionError, Watcher};
+use crate::{NestOptions, Nested, SessionError, Watcher};
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
 use toile_geometry::{Vec2, ring_area};
 use toile_interchange::{MarkerDrawing, MarkerFile, MarkerPiece};
 use toile_nesting::{
-    Control, Item, Marker, Nap, NestingError, Progress, Search, Strip, Verdict, judge, make_marker,
+    Allowed, Control, Item, Marker, MatchPoint, Nap, NestingError, Phase, Progress, Strip, Verdict,
+    judge, make_marker,
 };
 use toile_pattern::{Draft, Piece};
 
@@ -78,7 +79,7 @@ impl Laying {
         };
         MarkerDrawing {
             title: self.title(pattern),
-            strip: self.strip,
+            strip: self.strip.clone(),
             length: self.marker.length,
             efficiency: self.marker.efficiency,
             pieces: self.marker.placements.iter().map(piece).collect(),
@@ -108,25 +109,35 @@ fn flattened(curves: &[toile_geometry::Curve]) -> Vec<Vec2> {
         .collect()
 }
 
+/// Garments to cut from one draft.
+#[derive(Clone, Copy)]
+pub(crate) struct Garments<'a> {
+    pub draft: &'a Draft,
+    /// How many.
+    pub count: u32,
+}
+
 /// Lays all pieces of one or more drafts, each fabric on its own marker, fabrics in the order in
 /// which pieces first name them.
 pub(crate) fn lay(
-    drafts: &[&Draft],
-    width: Option<f64>,
+    garments: &[Garments<'_>],
+    options: &NestOptions,
     watcher: &mut dyn Watcher,
 ) -> Result<Vec<Laying>, SessionError> {
     let mut layings: Vec<Laying> = Vec::new();
-    for draft in drafts {
+    let mut first_bundle = 0;
+    for Garments { draft, count } in garments {
         for piece in &draft.pieces {
             let Some(fabric) = draft.fabrics.get(piece.fabric) else {
                 continue;
             };
             let piece = &right_side_up(piece);
-            let mut known = layings.iter_mut().filter(|l| l.fabric == fabric.name);
             let item = Item {
-                grain: piece.grain,
-                ..Item::new(piece.name.clone(), cut_outline(piece))
+                quantity: *count,
+                bundles: (first_bundle..first_bundle + count).collect(),
+                ..item_of(piece, options)
             };
+            let mut known = layings.iter_mut().filter(|l| l.fabric == fabric.name);
             if let Some(laying) = known.next() {
                 laying.items.push(item);
                 laying.pieces.push(piece.clone());
@@ -136,16 +147,17 @@ pub(crate) fn lay(
                 fabric: fabric.name.clone(),
                 items: vec![item],
                 pieces: vec![piece.clone()],
-                strip: Strip {
+                strip: options.applied(Strip {
                     selvedge: SELVEDGE,
                     gap: GAP,
                     nap: if fabric.nap { Nap::OneWay } else { Nap::None },
-                    ..Strip::of_width(width.unwrap_or(fabric.width))
-                },
+                    ..Strip::of_width(fabric.width)
+                }),
                 marker: Marker::default(),
                 verdict: Verdict::default(),
             });
         }
+        first_bundle += count;
     }
     if layings.is_empty() {
         return Err(NestingError::NoItems.into());
@@ -153,9 +165,31 @@ pub(crate) fn lay(
     let count = layings.len() as f64;
     for (k, laying) in layings.iter_mut().enumerate() {
         let from = k as f64 / count;
-        lay_one(laying, watcher, |done| from + done / count)?;
+        lay_one(laying, options, watcher, |done| from + done / count)?;
     }
     Ok(layings)
+}
+
+/// A piece as it is laid: its cut outline, its grain, and where the print must meet it.
+fn item_of(piece: &Piece, options: &NestOptions) -> Item {
+    let outline = cut_outline(piece);
+    // Back to the grain's own axes: the hem lies where the grain starts.
+    let bounds = outline.rotated(-piece.grain).bounds();
+    let (sin, cos) = piece.grain.sin_cos();
+    let hem = Vec2::new(bounds.min.x, bounds.centre().y);
+    let hem = Vec2::new(cos * hem.x - sin * hem.y, sin * hem.x + cos * hem.y);
+    Item {
+        grain: piece.grain,
+        match_point: options.repeat.map(|_| MatchPoint {
+            point: hem,
+            phase: Phase::At(Vec2::zeros()),
+        }),
+        allowed: Allowed {
+            tilt: options.tilt,
+            ..Allowed::two_way()
+        },
+        ..Item::new(piece.name.clone(), outline)
+    }
 }
 
 /// The piece as seen from the right side of the cloth, which lies up: a clockwise outline is drawn
@@ -185,6 +219,7 @@ fn right_side_up(piece: &Piece) -> Piece {
 
 fn lay_one(
     laying: &mut Laying,
+    options: &NestOptions,
     watcher: &mut dyn Watcher,
     share: impl Fn(f64) -> f64,
 ) -> Result<(), SessionError> {
@@ -201,12 +236,7 @@ fn lay_one(
         progress: &mut follow,
         cancel: &cancel,
     };
-    laying.marker = make_marker(
-        &laying.items,
-        &laying.strip,
-        Search::default(),
-        &mut control,
-    )?;
+    laying.marker = make_marker(&laying.items, &laying.strip, options.search(), &mut control)?;
     laying.verdict = judge(&laying.items, &laying.strip, &laying.marker);
     Ok(())
 }

@@ -19,6 +19,7 @@ mod history;
 mod journal;
 mod laying;
 mod live;
+mod marking;
 mod open;
 mod perform;
 mod pictures;
@@ -41,6 +42,7 @@ pub use event::{Assembled, Draped, Event, Nested};
 pub use hands::{LiveInput, StampedInput};
 pub use journal::{journal_lines, read_journal};
 pub use live::{LiveFrame, LiveRun};
+pub use marking::{NestOptions, is_nesting_instance, nest_instance, nest_patterns};
 pub use open::{
     Opened, PatternFormat, SAMPLE, open_measurements, open_pattern, read_pattern_text,
     read_text_file,
@@ -52,5 +54,6 @@ pub use setup::{GarmentJob, JobPanel};
 pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
 pub use toile_drape::Stage;
-pub use tools::{BodyRow, convert, make_body, mesh_panels, nest_patterns};
+pub use toile_nesting::{Budget, Nap};
+pub use tools::{BodyRow, convert, make_body, mesh_panels};
 pub use watcher::{Silent, Watcher};

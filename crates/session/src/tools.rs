@@ -1,24 +1,25 @@
-//! Single jobs that need no session: conversion, panel meshes, bodies, markers of several patterns.
+//! Single jobs that need no session: conversion, panel meshes, bodies.
 
-use crate::export::{cannot, marker_files};
-use crate::laying::lay;
+use crate::export::cannot;
 use crate::open::open_pattern;
 use crate::product::body_obj;
-use crate::{Nested, PatternFormat, Project, SessionError, Watcher};
-use std::path::{Path, PathBuf};
+use crate::{PatternFormat, Project, SessionError};
+use std::path::Path;
 use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_body::Mannequin;
 use toile_geometry::{Bounds2, Vec2, Vec3};
 use toile_interchange::{
-    ObjGroup, ObjMesh, write_all_atomically, write_atomically, write_garmentcode, write_obj,
-    write_pattern,
+    ObjGroup, ObjMesh, write_atomically, write_garmentcode, write_obj, write_pattern,
 };
 use toile_measure::{UnitKind, definition};
 use toile_pattern::Draft;
 
 /// The project a pattern file makes, in a named size.
-fn project_of(path: &Path, size: Option<&str>) -> Result<(Project, Vec<String>), SessionError> {
+pub(crate) fn project_of(
+    path: &Path,
+    size: Option<&str>,
+) -> Result<(Project, Vec<String>), SessionError> {
     let opened = open_pattern(path)?;
     let project = Project {
         pattern: Arc::new(opened.pattern),
@@ -31,7 +32,7 @@ fn project_of(path: &Path, size: Option<&str>) -> Result<(Project, Vec<String>),
 }
 
 /// The draft of a project, or every fault that keeps it from being made.
-fn sound_draft(project: &Project) -> Result<Draft, SessionError> {
+pub(crate) fn sound_draft(project: &Project) -> Result<Draft, SessionError> {
     let measurements = project.drafted_to();
     project.refuse_faults(&project.pattern.check(&measurements))?;
     Ok(project.pattern.resolve(&measurements).0)
@@ -128,31 +129,4 @@ pub fn make_body(project: &Project, to: &Path) -> Result<Vec<BodyRow>, SessionEr
         angle: angle(gap.name),
     });
     Ok(rows.collect())
-}
-
-/// Lays the pieces of one or more patterns together and writes the markers. Returns a summary of
-/// each marker and the files written.
-///
-/// # Errors
-/// A pattern cannot be read or laid, or a file cannot be written.
-pub fn nest_patterns(
-    patterns: &[PathBuf],
-    size: Option<&str>,
-    width: Option<f64>,
-    (folder, watcher): (&Path, &mut dyn Watcher),
-) -> Result<(Vec<Nested>, Vec<PathBuf>), SessionError> {
-    let mut drafts = Vec::new();
-    let mut names = Vec::new();
-    for path in patterns {
-        let (project, _) = project_of(path, size)?;
-        drafts.push(sound_draft(&project)?);
-        names.push(project.pattern.name.clone());
-    }
-    let drafts: Vec<&Draft> = drafts.iter().collect();
-    let layings = lay(&drafts, width, watcher)?;
-    let mut files = Vec::new();
-    marker_files(&names.join(" + "), &layings, &mut files)?;
-    write_all_atomically(folder, &files)?;
-    let paths = files.iter().map(|(name, _)| folder.join(name)).collect();
-    Ok((layings.iter().map(|l| l.summary()).collect(), paths))
 }

@@ -1,0 +1,117 @@
+//! The first layout, and what to do where not all pieces find room.
+
+use crate::explore::Island;
+use crate::job::Job;
+use crate::layout::Layout;
+use crate::separate::{Limit, Patience};
+
+/// Density at which the first layout is tried.
+const FIRST_DENSITY: f64 = 0.82;
+/// By how much the strip grows where that fails.
+const LONGER: f64 = 1.05;
+/// What a metre from the start of the strip costs while pieces are laid one by one \[m\].
+const BIAS: f64 = 0.02;
+/// Part of the fabric at hand that is filled at first where not all pieces can be laid.
+const FILLING: f64 = 0.9;
+/// Patience with a first layout, and with one piece too many: little, as there is another way.
+const FIRST: Patience = Patience {
+    rounds: 40,
+    strikes: 1,
+};
+const CROWDED: Patience = Patience {
+    rounds: 15,
+    strikes: 1,
+};
+
+impl Island<'_> {
+    /// Finds a first layout: pieces are laid where they overlap least, the largest first, and taken
+    /// apart; on a longer strip where that fails; on the longest, pieces are left out.
+    pub fn start(&mut self, limit: &Limit<'_>) {
+        let job = self.separator.job;
+        let longest = job.longest().min(job.ample());
+        let fixed = Layout::new(job, 0.0).least_reach(job);
+        let area: f64 = job.pieces.iter().map(|p| p.area).sum();
+        let wanted = area / (FIRST_DENSITY * job.height);
+        let mut length = wanted.max(job.shortest()).max(fixed).min(longest);
+        while !(limit.stop)() {
+            let order = largest_first(job);
+            self.construct(length, &order);
+            if self.separator.separate(FIRST, limit) {
+                self.keep();
+                return;
+            }
+            if length >= longest {
+                self.leave_out(longest, limit);
+                return;
+            }
+            length = (length * LONGER).min(longest);
+        }
+    }
+
+    /// Lays one piece after the other.
+    fn construct(&mut self, length: f64, order: &[usize]) {
+        let job = self.separator.job;
+        self.separator.load(Layout::new(job, length));
+        for &piece in order {
+            self.separator.move_piece(piece, BIAS);
+        }
+    }
+
+    /// Fills the longest strip and takes pieces out until nothing overlaps.
+    fn leave_out(&mut self, longest: f64, limit: &Limit<'_>) {
+        let job = self.separator.job;
+        let mut room = FILLING * longest * job.height;
+        let mut order = largest_first(job);
+        order.retain(|&k| {
+            let fits = job.pieces[k].area <= room && job.pieces[k].fits(job, longest);
+            room -= if fits { job.pieces[k].area } else { 0.0 };
+            fits
+        });
+        self.construct(longest, &order);
+        while !self.separator.separate(CROWDED, limit) {
+            let worst = |&a: &usize, &b: &usize| {
+                let loss = |k: usize| self.separator.loss_of(k) / job.pieces[k].area;
+                loss(a).total_cmp(&loss(b)).then(a.cmp(&b))
+            };
+            let laid = |k: &usize| self.separator.layout.present[*k];
+            let movable = |k: &usize| laid(k) && job.pieces[*k].locked.is_none();
+            let Some(out) = (0..job.pieces.len()).filter(movable).max_by(worst) else {
+                break;
+            };
+            let mut layout = self.separator.layout.clone();
+            layout.remove(job, out);
+            self.separator.load(layout);
+        }
+        self.keep();
+    }
+
+    /// Tries to lay one of the pieces left over beside the others.
+    pub(crate) fn insert(&mut self, limit: &Limit<'_>) {
+        let job = self.separator.job;
+        let Some(mut layout) = self.best.clone() else {
+            return;
+        };
+        layout.length = job.longest().min(job.ample());
+        let missing: Vec<usize> = (0..layout.at.len())
+            .filter(|&k| !layout.present[k])
+            .collect();
+        let piece = missing[self.separator.sequence.below(missing.len())];
+        self.separator.load(layout);
+        self.separator.move_piece(piece, 0.0);
+        let laid = self.separator.layout.present[piece];
+        if laid && self.separator.separate(FIRST, limit) {
+            self.keep();
+        } else {
+            self.failed();
+        }
+    }
+}
+
+/// Movable pieces by area.
+fn largest_first(job: &Job<'_>) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..job.pieces.len()).collect();
+    order.retain(|&k| job.pieces[k].locked.is_none());
+    let area = |k: usize| job.pieces[k].area;
+    order.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
+    order
+}
