@@ -504,3 +504,67 @@ pub(crate) fn exact_outline(job: &Job<'_>, shape: usize) -> Polygon {
     };
     pose.lay(&item.outline)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Allowed, Mirror};
+    use toile_geometry::PreparedPolygon;
+
+    fn notched() -> Polygon {
+        let points = [
+            (0.0, 0.0),
+            (0.4, 0.0),
+            (0.4, 0.3),
+            (0.25, 0.1),
+            (0.1, 0.3),
+            (0.0, 0.2),
+        ];
+        Polygon::new(points.iter().map(|&(x, y)| Vec2::new(x, y)).collect())
+    }
+
+    /// Every query against the exact answer on the outlines themselves.
+    #[test]
+    fn queries_of_pairs_in_all_poses_are_exact() {
+        let triangle = [(0.0, 0.0), (0.3, 0.05), (0.1, 0.2)];
+        let triangle = triangle.iter().map(|&(x, y)| Vec2::new(x, y)).collect();
+        let mut items = [
+            Item::new("notched", notched()),
+            Item::new("triangle", Polygon::new(triangle)),
+        ];
+        items[0].grain = 0.4;
+        items[0].allowed = Allowed::two_way().mirrored(Mirror::Free);
+        items[1].allowed = Allowed {
+            tilt: 0.05,
+            ..Allowed::two_way()
+        };
+        let strip = Strip::of_width(1.0);
+        let job = Job::new(&items, &strip, &[(0, 0), (1, 0)]);
+        assert_eq!(job.shapes.len(), 4 + 10);
+        let mut sequence = crate::sequence::Sequence(7);
+        for a in 0..job.shapes.len() {
+            let fixed = PreparedPolygon::new(&exact_outline(&job, a));
+            for b in 0..job.shapes.len() {
+                let outline = exact_outline(&job, b);
+                for _ in 0..60 {
+                    let span = job.shapes[a].size + job.shapes[b].size;
+                    let chance = Vec2::new(sequence.unit(), sequence.unit());
+                    let apart = span.component_mul(&chance) - job.shapes[b].size;
+                    let moving = PreparedPolygon::new(&outline.translated(apart));
+                    let exact = if fixed.overlaps(&moving) {
+                        fixed.penetration_depth(&moving)
+                    } else {
+                        -fixed.distance(&moving)
+                    };
+                    match job.probe(a, b, apart) {
+                        Some((probe, _)) => {
+                            let off = (probe.depth - exact).abs();
+                            assert!(off < 1e-7, "{a} {b} {apart}: {} {exact}", probe.depth);
+                        }
+                        None => assert!(exact < -job.window()),
+                    }
+                }
+            }
+        }
+    }
+}

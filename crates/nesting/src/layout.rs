@@ -41,7 +41,7 @@ impl Layout {
             p.locked
                 .map(|l| l.0)
                 .or_else(|| forward(p))
-                .unwrap_or(p.shapes[0])
+                .unwrap_or_else(|| p.shapes[0])
         };
         let shape: Vec<usize> = job.pieces.iter().map(first).collect();
         let place = |(k, p): (usize, &Piece)| p.locked.map_or_else(|| nowhere(job, k), |l| l.1);
