@@ -8,6 +8,7 @@
 mod caps;
 mod carry;
 mod cloth;
+pub mod collision;
 mod contacts;
 mod error;
 pub mod fabrics;

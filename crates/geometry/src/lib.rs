@@ -6,6 +6,7 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod closest;
 mod curve;
 mod distance_field;
 mod ellipsoid;
@@ -23,6 +24,7 @@ mod tree;
 mod triangle;
 mod units;
 
+pub use closest::{closest_on_face, closest_on_segments};
 pub use curve::Curve;
 pub use distance_field::DistanceField;
 pub use ellipsoid::Ellipsoid;
