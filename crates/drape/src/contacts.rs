@@ -1,5 +1,6 @@
 //! Finding where the cloth touches solid surfaces: recomputed as it moves.
 
+use crate::collision::ClothContacts;
 use crate::laws::contact::{ContactLaw, ContactPlane, damped_push};
 use crate::model::FIELD_REACH;
 use crate::{Model, State};
@@ -23,6 +24,8 @@ pub struct Contact {
 pub struct Contacts {
     /// Contacts in order of their samples.
     pub active: Vec<Contact>,
+    /// Contacts of cloth with cloth.
+    pub cloth: ClothContacts,
     memory: Vec<Memory>,
 }
 
@@ -45,6 +48,7 @@ impl Contacts {
     /// Finds the contacts of the present positions. A sample is skipped only when the distance it
     /// moved proves that it is out of reach.
     pub fn refresh(&mut self, model: &Model, state: &State, positions: &[Vec3]) {
+        self.cloth.refresh(model, state, positions);
         if model.colliders.is_empty() {
             self.active.clear();
             return;
@@ -101,6 +105,7 @@ impl Contacts {
 
     /// Moves the friction anchors after a step, and remembers the normal forces.
     pub fn settle(&self, model: &Model, state: &mut State) {
+        self.cloth.settle(model, state);
         state.anchors.fill(None);
         state.normal_forces.fill(0.0);
         state.follow_samples(model);

@@ -142,6 +142,7 @@ impl GarmentRun {
         model.colliders = std::mem::take(&mut self.model.colliders);
         model.contact = ContactSettings {
             friction: false,
+            cloth_offset: 0.0,
             ..self.setup.contact
         };
         model.gravity = Vec3::zeros();

@@ -2,6 +2,7 @@
 //! bending as scalars two rings far, elastics between any two vertices. Read row by row, and
 //! solved by factorisation.
 
+use crate::collision::Couplings;
 use crate::factor::{Block, Factor, Graph};
 use crate::newton::elastics_of;
 use crate::sparse::ScalarMatrix;
@@ -18,16 +19,19 @@ pub struct Hessian<'a> {
     pub blocks: &'a [Matrix3<f64>],
     /// Stiffness of each elastic [N/m].
     pub secants: &'a [f64],
+    /// Blocks between vertices of cloths that touch.
+    pub touching: &'a Couplings,
 }
 
 /// Vertices that the matrix couples.
-fn graph(model: &Model) -> Graph {
+fn graph(model: &Model, touching: &[[u32; 2]]) -> Graph {
     let mesh = (0..model.vertex_count()).flat_map(|v| {
         let edges = model.pattern.row_columns(v);
         let bending = model.bending.row_entries(v).0;
         edges.iter().chain(bending).map(move |&u| [v as u32, u])
     });
-    Graph::from_pairs(model.vertex_count(), mesh.chain(couples(model)))
+    let others = couples(model).chain(touching.iter().copied());
+    Graph::from_pairs(model.vertex_count(), mesh.chain(others))
 }
 
 /// Vertices coupled by elastics.
@@ -51,7 +55,7 @@ impl Hessian<'_> {
                 sum -= p[other as usize] * self.secants[e];
             }
         }
-        sum
+        sum + self.touching.row_times(row, p)
     }
 
     /// The block on the diagonal.
@@ -89,6 +93,13 @@ impl Hessian<'_> {
                 (0..3).for_each(|k| out[at][k][k] -= self.secants[e]);
             }
         }
+        let mut at = 0;
+        for (column, block) in self.touching.row(row) {
+            at = seek(columns, at, column);
+            for (i, row) in out[at].iter_mut().enumerate() {
+                (0..3).for_each(|k| row[k] += block[(i, k)]);
+            }
+        }
         for (out, &column) in out.iter_mut().zip(columns) {
             if model.pinned[column as usize] {
                 *out = [[0.0; 3]; 3];
@@ -113,19 +124,23 @@ pub struct Direct {
 }
 
 impl Direct {
-    /// Works out the structure for a model; `places` is any layout of the vertices in space.
-    pub fn new(model: &Model, places: &[Vec3]) -> Self {
+    /// Works out the structure for a model and vertices of cloths that may touch; `places` is any
+    /// layout of the vertices in space.
+    pub fn new(model: &Model, places: &[Vec3], touching: &[[u32; 2]]) -> Self {
         Self {
-            factor: Factor::new(graph(model), places),
+            factor: Factor::new(graph(model, touching), places),
             couples: couples(model).collect(),
         }
     }
 
     /// Whether the structure is that of a model, made from the same mesh as the one it was made
     /// for but perhaps with other elastics.
-    pub fn fits(&self, model: &Model) -> bool {
-        self.factor.graph().vertex_count() == model.vertex_count()
+    pub fn fits(&self, model: &Model, touching: &Couplings) -> bool {
+        let graph = self.factor.graph();
+        let has = |[a, b]: [u32; 2]| graph.row(a as usize).binary_search(&b).is_ok();
+        graph.vertex_count() == model.vertex_count()
             && couples(model).eq(self.couples.iter().copied())
+            && touching.places().all(has)
     }
 
     /// Solves A x = b; b must be zero at pins, and so is x. False when the matrix is not
@@ -195,8 +210,8 @@ mod tests {
             .map(|v| free(v, model.gravity * model.mass[v]))
             .collect();
         let mut x = vec![Vec3::zeros(); b.len()];
-        let mut direct = Direct::new(model, &model.layout);
-        assert!(direct.fits(model));
+        let mut direct = Direct::new(model, &model.layout, &[]);
+        assert!(direct.fits(model, &Couplings::default()));
         assert!(direct.solve(&hessian, &b, &mut x));
         let (mut off, mut whole, mut found, mut largest) = (0.0, 0.0, 0.0, 0.0f64);
         for v in 0..b.len() {
@@ -258,7 +273,7 @@ mod tests {
     fn sewn_sheets_are_solved_and_other_seams_need_another_structure() {
         let cloth = sheets(stiff(1.0));
         let mut model = Model::new("sheets", &cloth).unwrap();
-        let unsewn = Direct::new(&model, &model.layout);
+        let unsewn = Direct::new(&model, &model.layout, &[]);
         let law = ElasticLaw {
             stiffness: 2e3,
             largest_force: 1.0,
@@ -274,7 +289,7 @@ mod tests {
             law,
         };
         model.set_elastics((0..21).map(seam).chain([hold]).collect());
-        assert!(!unsewn.fits(&model));
+        assert!(!unsewn.fits(&model, &Couplings::default()));
         check(&model, &cloth.positions, 1.0 / 60.0);
     }
 
@@ -292,9 +307,10 @@ mod tests {
             bending: &model.bending,
             blocks: &blocks,
             secants: &[],
+            touching: &Couplings::default(),
         };
         let mut x = [Vec3::zeros(); 3];
-        let mut direct = Direct::new(&model, &model.layout);
+        let mut direct = Direct::new(&model, &model.layout, &[]);
         assert!(!direct.solve(&hessian, &[Vec3::x(); 3], &mut x));
     }
 }

@@ -65,16 +65,19 @@ pub struct ContactSettings {
     pub stiffness: f64,
     /// Whether friction acts.
     pub friction: bool,
+    /// Distance kept between the middles of two cloths [m]; 0 lets cloth pass through cloth.
+    pub cloth_offset: f64,
 }
 
 impl Default for ContactSettings {
     /// 4 mm: over the 3.1 mm sagitta of a 20 mm edge on a wrist of 16 mm radius.
-    /// 1e6 N/m3: 100 Pa (a close fit) sinks 0.1 mm.
+    /// 1e6 N/m3: 100 Pa (a close fit) sinks 0.1 mm. Cloth passes through cloth.
     fn default() -> Self {
         Self {
             offset: 4e-3,
             stiffness: 1e6,
             friction: true,
+            cloth_offset: 0.0,
         }
     }
 }
@@ -333,11 +336,16 @@ impl Model {
         }
     }
 
+    /// Triangles of the surface as it was given.
+    pub fn surface_triangles(&self) -> &[[u32; 3]] {
+        self.surface.as_ref().unwrap_or(&self.triangles)
+    }
+
     /// The surface at some positions.
     pub fn mesh(&self, positions: &[Vec3]) -> TriangleMesh {
         TriangleMesh {
             positions: positions.to_vec(),
-            triangles: self.surface.as_ref().unwrap_or(&self.triangles).clone(),
+            triangles: self.surface_triangles().to_vec(),
         }
     }
 }

@@ -6,6 +6,7 @@
 //! With w = m/h^2 and y = x_n + h v_n a minimum of Phi is a step of implicit Euler (Martin et al.
 //! 2011, equation 3). With y = x_n and growing h it is pseudo-transient continuation to rest.
 
+use crate::collision::Couplings;
 use crate::contacts::Contacts;
 use crate::hessian::{Direct, Hessian};
 use crate::laws::membrane::Curvature;
@@ -87,6 +88,7 @@ pub struct Workspace {
     diagonal: Vec<Matrix3<f64>>,
     blocks: Vec<Matrix3<f64>>,
     secants: Vec<f64>,
+    touching: Couplings,
     pcg: Pcg,
     jacobi: BlockJacobi,
     direct: Option<Direct>,
@@ -178,6 +180,7 @@ impl Workspace {
             report.iterations += 1;
             self.find_direction(model, &state.positions, inertia, settings, &mut report);
             self.limit_moves(settings.longest_move);
+            self.bound_moves(model, &state.positions);
             let fraction = self.line_search(model, &state.positions, inertia);
             report.fraction = fraction;
             if fraction == 0.0 {
@@ -233,6 +236,9 @@ impl Workspace {
             let place = model.samples[contact.sample as usize].place(x);
             energy += contact.law.energy(&contact.plane, place);
         }
+        for contact in &self.contacts.cloth.active {
+            energy += contact.law.energy(&contact.plane, contact.between(x));
+        }
         energy + self.terms.energy(model, x)
     }
 
@@ -277,6 +283,12 @@ impl Workspace {
             let sample = &model.samples[contact.sample as usize];
             let (_, gradient, _) = contact.law.evaluate(&contact.plane, sample.place(x));
             for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
+                self.gradient[v as usize] += gradient * w;
+            }
+        }
+        for contact in &self.contacts.cloth.active {
+            let (_, gradient, _) = contact.law.evaluate(&contact.plane, contact.between(x));
+            for (v, w) in contact.vertices.into_iter().zip(contact.weights) {
                 self.gradient[v as usize] += gradient * w;
             }
         }
@@ -330,9 +342,32 @@ impl Workspace {
                 }
             }
         }
+        self.couple(x);
         model
             .pattern
             .gather(&self.elements, &self.diagonal, &mut self.blocks);
+    }
+
+    /// Adds the Hessian of contacts of cloth with cloth.
+    fn couple(&mut self, x: &[Vec3]) {
+        self.touching.clear();
+        for contact in &self.contacts.cloth.active {
+            let (_, _, hessian) = contact.law.evaluate(&contact.plane, contact.between(x));
+            if hessian == Matrix3::zeros() {
+                continue;
+            }
+            for i in 0..4 {
+                let (v, w) = (contact.vertices[i], contact.weights[i]);
+                self.diagonal[v as usize] += hessian * (w * w);
+                for j in 0..i {
+                    let share = w * contact.weights[j];
+                    if share != 0.0 {
+                        self.touching.add(v, contact.vertices[j], hessian * share);
+                    }
+                }
+            }
+        }
+        self.touching.sort(x.len());
     }
 
     /// The Hessian filled last.
@@ -342,6 +377,7 @@ impl Workspace {
             bending: self.terms.bending(model),
             blocks: &self.blocks,
             secants: &self.secants,
+            touching: &self.touching,
         }
     }
 
@@ -407,6 +443,7 @@ impl Workspace {
             bending: self.terms.bending(model),
             blocks: &self.blocks,
             secants: &self.secants,
+            touching: &self.touching,
         };
         self.jacobi
             .refresh(&model.pinned, |row| hessian.diagonal(row));
@@ -421,15 +458,20 @@ impl Workspace {
 
     /// Solves for `gradient` by factorisation; false when the matrix is not positive definite.
     fn solve_directly(&mut self, model: &Model) -> bool {
-        let direct = match self.direct.take().filter(|direct| direct.fits(model)) {
+        let fits = |direct: &Direct| direct.fits(model, &self.touching);
+        let direct = match self.direct.take().filter(fits) {
             Some(direct) => self.direct.insert(direct),
-            None => self.direct.insert(Direct::new(model, &model.layout)),
+            None => {
+                let near = self.contacts.cloth.couples();
+                self.direct.insert(Direct::new(model, &model.layout, &near))
+            }
         };
         let hessian = Hessian {
             model,
             bending: self.terms.bending(model),
             blocks: &self.blocks,
             secants: &self.secants,
+            touching: &self.touching,
         };
         direct.solve(&hessian, &self.gradient, &mut self.direction)
     }
@@ -447,6 +489,28 @@ impl Workspace {
             for d in &mut self.direction {
                 *d *= scale;
             }
+        }
+    }
+
+    /// Shortens the direction where cloth would pass through cloth: vertex by vertex, or, where that
+    /// would no longer lower the potential, as a whole.
+    fn bound_moves(&mut self, model: &Model, x: &[Vec3]) {
+        if model.contact.cloth_offset <= 0.0 {
+            return;
+        }
+        self.trial.clone_from(&self.direction);
+        let held = self.contacts.cloth.bound(model, x, &mut self.direction);
+        // `gradient` holds its negative after the linear solve.
+        if held == 0 || dot(&self.gradient, &self.direction) > 0.0 {
+            return;
+        }
+        let share = |(whole, cut): (&Vec3, &Vec3)| {
+            let length = whole.norm();
+            if length > 0.0 { cut.norm() / length } else { 1.0 }
+        };
+        let least = self.trial.iter().zip(&self.direction).map(share).fold(1.0, f64::min);
+        for (d, whole) in self.direction.iter_mut().zip(&self.trial) {
+            *d = whole * least;
         }
     }
 

@@ -141,6 +141,7 @@ impl Scene {
             ("stiffness damping", self.damping.stiffness, 0.0),
             ("contact offset", self.contact.offset, 0.0),
             ("contact stiffness", self.contact.stiffness, 0.0),
+            ("cloth offset", self.contact.cloth_offset, 0.0),
         ] {
             if !value.is_finite() || value < least {
                 return refuse(

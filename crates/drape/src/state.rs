@@ -1,5 +1,6 @@
 //! The state: what changes as a simulation runs; a complete checkpoint.
 
+use crate::collision::ClothMemory;
 use crate::step_terms::SettledStrain;
 use crate::{Model, RelaxationRun, RestRun};
 use toile_geometry::Vec3;
@@ -39,6 +40,8 @@ pub struct State {
     pub anchors: Vec<Option<Vec3>>,
     /// Normal force on each contact sample in the last step [N].
     pub normal_forces: Vec<f64>,
+    /// What contact of cloth with cloth remembers.
+    pub cloth: ClothMemory,
     /// What each triangle has settled into; empty unless a cloth keeps strain.
     pub settled: Vec<SettledStrain>,
     /// Simulated time [s].
@@ -61,6 +64,7 @@ impl Clone for State {
             velocities,
             anchors,
             normal_forces,
+            cloth,
             settled,
             time,
             memory,
@@ -69,6 +73,7 @@ impl Clone for State {
         self.velocities.clone_from(velocities);
         self.anchors.clone_from(anchors);
         self.normal_forces.clone_from(normal_forces);
+        self.cloth.clone_from(cloth);
         self.settled.clone_from(settled);
         self.time = *time;
         self.memory.clone_from(memory);
@@ -83,6 +88,7 @@ impl State {
             positions,
             anchors: vec![None; model.samples.len()],
             normal_forces: vec![0.0; model.samples.len()],
+            cloth: ClothMemory::default(),
             settled: Vec::new(),
             time: 0.0,
             memory: Memory::Nothing,

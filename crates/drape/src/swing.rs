@@ -2,12 +2,15 @@
 //! damping. A substep costs less than a thousandth of a Newton step and leaves saddles as the real
 //! cloth does; Newton's method finishes.
 
+use crate::collision::ClothContacts;
+use crate::xpbd::Span;
 use crate::{DrapeError, Model, State, Xpbd};
 use toile_geometry::Vec3;
 
 /// A swing on its way to calm.
 pub struct SwingRun {
     xpbd: Xpbd,
+    cloth: ClothContacts,
     substep: f64,
     time: f64,
     energy: f64,
@@ -33,6 +36,7 @@ impl SwingRun {
     pub fn new(model: &Model) -> Self {
         Self {
             xpbd: Xpbd::new(model),
+            cloth: ClothContacts::default(),
             substep: substep(model),
             time: 0.0,
             energy: 0.0,
@@ -56,7 +60,12 @@ impl SwingRun {
     /// # Errors
     /// When a substep fails at every size; the state is as it was.
     pub fn advance(&mut self, model: &Model, state: &mut State) -> Result<(), DrapeError> {
-        let report = (self.xpbd).advance(model, state, self.substep, ROUND, DRAG)?;
+        let span = Span {
+            substep: self.substep,
+            count: ROUND,
+            drag: DRAG,
+        };
+        let report = (self.xpbd).advance_touching(model, state, &mut self.cloth, &span)?;
         self.time += self.substep * f64::from(ROUND);
         if report.kinetic_energy < self.energy {
             let mass: f64 = model.mass.iter().sum();

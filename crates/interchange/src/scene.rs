@@ -154,6 +154,9 @@ pub struct CollisionFile {
     /// Whether friction acts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<bool>,
+    /// Distance kept between the middles of two cloths [m]; none or 0 lets cloth pass through cloth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cloth_offset: Option<f64>,
     #[serde(flatten)]
     unknown: Unknown,
 }
@@ -423,6 +426,7 @@ impl SceneFile {
             offset: self.collision.offset.unwrap_or(usual.offset),
             stiffness: self.collision.stiffness.unwrap_or(usual.stiffness),
             friction: self.collision.friction.unwrap_or(usual.friction),
+            cloth_offset: self.collision.cloth_offset.unwrap_or(usual.cloth_offset),
         }
     }
 

@@ -61,7 +61,10 @@ pub(crate) fn job(
         levels: vec![level(draft, &garment)],
         counted: counted(draft, &garment, 2.0 * quality.edge_length()),
         colliders: vec![skin],
-        contact: ContactSettings::default(),
+        contact: ContactSettings {
+            cloth_offset: CLOTH_OFFSET,
+            ..ContactSettings::default()
+        },
         gravity: Vec3::new(0.0, -GRAVITY, 0.0),
         sew: SewSettings::default(),
         rest: RestSettings {
@@ -77,6 +80,10 @@ pub(crate) fn job(
         panels: Arc::new(panels),
     }
 }
+
+/// Distance kept between two layers of a garment [m]: half of what is kept from the body, so that
+/// layers fit between body and air.
+const CLOTH_OFFSET: f64 = 2e-3;
 
 fn level(draft: &Draft, garment: &Garment) -> GarmentLevel {
     GarmentLevel {

@@ -1,6 +1,20 @@
 //! Collision of cloth with cloth: which pairs might touch, which do, what they cost, how far a
 //! motion may go, and how what has crossed is led apart.
 
+mod bound;
+mod boxes;
+mod contact;
+mod coupling;
 mod impact;
+mod proximity;
+mod surface;
+mod tangle;
 
+pub use bound::bound_moves;
+pub use boxes::{Bounds, BoxTree, Node, Region};
+pub use contact::{ClothContact, ClothContacts, ClothMemory, Held};
+pub use coupling::Couplings;
 pub use impact::{edge_edge_impact, vertex_face_impact};
+pub use proximity::{Nearness, nearnesses};
+pub use surface::{ClothSurface, FeaturePair};
+pub use tangle::{Piercing, piercings};

@@ -22,6 +22,7 @@
 #![allow(clippy::needless_range_loop)]
 
 mod bending;
+mod cloth;
 mod contact;
 mod domains;
 mod lanes;
@@ -31,9 +32,11 @@ mod particles;
 mod region;
 mod run;
 
+use crate::collision::ClothContacts;
 use crate::methods::{Method, MethodSettings, StepReport};
 use crate::{DrapeError, Model, State};
 use bending::{BendingForce, Filter};
+pub(crate) use cloth::Span;
 use contact::{ContactStep, Touch};
 use lanes::LANES;
 use membrane::{LawRow, inverse_mass};
@@ -107,6 +110,8 @@ pub struct Xpbd {
     built_for: Fingerprint,
     domain_starts: Vec<usize>,
     cut_starts: Vec<usize>,
+    /// Contacts of samples in what is solved alone; those of cloth with cloth follow them.
+    sample_contacts: usize,
 }
 
 /// What of a model the constraints were built from.
@@ -182,6 +187,7 @@ impl Xpbd {
         }
         Self {
             settings,
+            sample_contacts: regions.rest.contacts.len(),
             regions,
             particles,
             bending: BendingForce::new(model, &order.vertex_of, &order.slot_of),
@@ -225,9 +231,7 @@ impl Xpbd {
         count: u32,
         drag: f64,
     ) -> Result<XpbdReport, DrapeError> {
-        if !self.built_for.fits(model) {
-            *self = Self::with_settings(model, self.settings);
-        }
+        self.take_up(model);
         if let Some(vertex) = state.first_not_finite() {
             let stage = "XPBD, before the step";
             return Err(DrapeError::NotFinite { stage, vertex });
@@ -254,6 +258,13 @@ impl Xpbd {
             stage: "XPBD step",
             vertex: failed,
         })
+    }
+
+    /// Builds the constraints anew where the model has changed.
+    fn take_up(&mut self, model: &Model) {
+        if !self.built_for.fits(model) {
+            *self = Self::with_settings(model, self.settings);
+        }
     }
 
     /// Reads a state.
@@ -429,6 +440,7 @@ pub(crate) struct XpbdMethod {
     settings: XpbdSettings,
     substeps: u32,
     solver: Option<Xpbd>,
+    cloth: ClothContacts,
 }
 
 /// Substeps of a step when none are asked for.
@@ -445,6 +457,7 @@ impl XpbdMethod {
             },
             substeps: settings.substeps.unwrap_or(SUBSTEPS).max(1),
             solver: None,
+            cloth: ClothContacts::default(),
         }
     }
 }
@@ -459,7 +472,12 @@ impl Method for XpbdMethod {
         let settings = self.settings;
         let solver = (self.solver).get_or_insert_with(|| Xpbd::with_settings(model, settings));
         let substep = step / f64::from(self.substeps);
-        let report = solver.advance(model, state, substep, self.substeps, model.air_drag)?;
+        let span = Span {
+            substep,
+            count: self.substeps,
+            drag: model.air_drag,
+        };
+        let report = solver.advance_touching(model, state, &mut self.cloth, &span)?;
         let iterations = self.substeps * self.settings.iterations * report.pieces;
         Ok(StepReport {
             pieces: report.pieces,

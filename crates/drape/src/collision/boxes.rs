@@ -1,0 +1,239 @@
+//! A tree of boxes over the triangles of a sheet: built once, refitted as they move.
+
+use rayon::prelude::*;
+use toile_geometry::Vec3;
+
+/// A box along the axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Least coordinates [m].
+    pub low: [f64; 3],
+    /// Largest coordinates [m].
+    pub high: [f64; 3],
+}
+
+impl Bounds {
+    /// Round nothing.
+    pub const EMPTY: Self = Self {
+        low: [f64::INFINITY; 3],
+        high: [f64::NEG_INFINITY; 3],
+    };
+
+    /// Round some points, with a margin [m].
+    pub fn round(points: &[Vec3], margin: f64) -> Self {
+        let mut bounds = Self::EMPTY;
+        for p in points {
+            for k in 0..3 {
+                bounds.low[k] = bounds.low[k].min(p[k] - margin);
+                bounds.high[k] = bounds.high[k].max(p[k] + margin);
+            }
+        }
+        bounds
+    }
+
+    /// Round two boxes.
+    pub fn join(&self, other: &Self) -> Self {
+        let mut bounds = *self;
+        for k in 0..3 {
+            bounds.low[k] = bounds.low[k].min(other.low[k]);
+            bounds.high[k] = bounds.high[k].max(other.high[k]);
+        }
+        bounds
+    }
+
+    /// Whether two boxes share a point.
+    #[inline(always)]
+    pub fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
+    }
+}
+
+/// A node: where its box is, and the leaves below it. With c leaves below, half of them (rounded
+/// down) are below the first child, which follows at once; the tree needs no pointers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Node {
+    /// Index of its box.
+    pub at: u32,
+    /// First of its leaves.
+    pub first: u32,
+    /// How many they are.
+    pub count: u32,
+}
+
+impl Node {
+    fn children(self) -> [Self; 2] {
+        let left = self.count / 2;
+        [
+            Self { at: self.at + 1, first: self.first, count: left },
+            Self { at: self.at + 2 * left, first: self.first + left, count: self.count - left },
+        ]
+    }
+}
+
+/// One region against itself, or against another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Region {
+    /// Itself.
+    Own(Node),
+    /// Two.
+    Two(Node, Node),
+}
+
+/// The tree.
+#[derive(Clone, Debug, Default)]
+pub struct BoxTree {
+    leaves: Vec<u32>,
+    counts: Vec<u32>,
+    boxes: Vec<Bounds>,
+}
+
+/// Parts that a search is cut into before cores share them.
+const PARTS: usize = 96;
+
+impl BoxTree {
+    /// Builds the tree over items at some centres [m], halving the longest axis; boxes are empty
+    /// until it is fitted.
+    pub fn new(centres: &[Vec3]) -> Self {
+        let mut tree = Self {
+            leaves: (0..centres.len() as u32).collect(),
+            counts: Vec::with_capacity(2 * centres.len()),
+            boxes: Vec::new(),
+        };
+        let mut leaves = std::mem::take(&mut tree.leaves);
+        if !leaves.is_empty() {
+            tree.split(centres, &mut leaves);
+        }
+        tree.leaves = leaves;
+        tree.boxes = vec![Bounds::EMPTY; tree.counts.len()];
+        tree
+    }
+
+    fn split(&mut self, centres: &[Vec3], leaves: &mut [u32]) {
+        self.counts.push(leaves.len() as u32);
+        if leaves.len() == 1 {
+            return;
+        }
+        let mut bounds = Bounds::EMPTY;
+        for &leaf in leaves.iter() {
+            bounds = bounds.join(&Bounds::round(&[centres[leaf as usize]], 0.0));
+        }
+        let length = |k: usize| bounds.high[k] - bounds.low[k];
+        let axis = (1..3).fold(0, |best, k| if length(k) > length(best) { k } else { best });
+        let half = leaves.len() / 2;
+        leaves.select_nth_unstable_by(half, |&a, &b| {
+            let (p, q) = (centres[a as usize][axis], centres[b as usize][axis]);
+            p.total_cmp(&q).then(a.cmp(&b))
+        });
+        let (left, right) = leaves.split_at_mut(half);
+        self.split(centres, left);
+        self.split(centres, right);
+    }
+
+    /// The node over everything; none when there is nothing.
+    pub fn root(&self) -> Option<Node> {
+        let count = self.leaves.len() as u32;
+        (count > 0).then_some(Node { at: 0, first: 0, count })
+    }
+
+    /// The item of a leaf.
+    pub fn item(&self, leaf: u32) -> u32 {
+        self.leaves[leaf as usize]
+    }
+
+    /// Nodes in the order of their boxes: children come after their parents.
+    pub fn nodes(&self) -> Vec<Node> {
+        let mut nodes = Vec::with_capacity(self.counts.len());
+        let mut stack: Vec<Node> = self.root().into_iter().collect();
+        while let Some(node) = stack.pop() {
+            nodes.push(node);
+            if node.count > 1 {
+                let [left, right] = node.children();
+                stack.extend([right, left]);
+            }
+        }
+        nodes
+    }
+
+    /// Fits every box anew; `bounds` gives that of an item.
+    pub fn refit(&mut self, bounds: impl Fn(u32) -> Bounds + Sync) {
+        let fresh: Vec<Bounds> = self.leaves.par_iter().map(|&leaf| bounds(leaf)).collect();
+        let mut leaf = fresh.len();
+        for at in (0..self.counts.len()).rev() {
+            let count = self.counts[at];
+            self.boxes[at] = if count == 1 {
+                leaf -= 1;
+                fresh[leaf]
+            } else {
+                let second = at + 2 * (count as usize / 2);
+                self.boxes[at + 1].join(&self.boxes[second])
+            };
+        }
+    }
+
+    /// Pairs of items whose boxes meet, each pair once, in an order that does not depend on the
+    /// number of threads. Regions that `skip` names are not looked into.
+    pub fn pairs(&self, skip: impl Fn(&Region) -> bool + Sync) -> Vec<[u32; 2]> {
+        let mut work: Vec<Region> = self.root().map(Region::Own).into_iter().collect();
+        let mut grown = true;
+        while grown && work.len() < PARTS {
+            let mut next = Vec::with_capacity(3 * work.len());
+            grown = false;
+            for region in &work {
+                let before = next.len();
+                match *region {
+                    Region::Two(a, b) if a.count == 1 && b.count == 1 => next.push(*region),
+                    _ => {
+                        self.open(*region, &skip, &mut next);
+                        grown = true;
+                    }
+                }
+                debug_assert!(next.len() <= before + 3);
+            }
+            work = next;
+        }
+        let found: Vec<Vec<[u32; 2]>> = work
+            .par_iter()
+            .map(|&region| {
+                let (mut stack, mut pairs) = (vec![region], Vec::new());
+                while let Some(region) = stack.pop() {
+                    match region {
+                        Region::Two(a, b) if a.count == 1 && b.count == 1 => {
+                            pairs.push([self.item(a.first), self.item(b.first)]);
+                        }
+                        _ => self.open(region, &skip, &mut stack),
+                    }
+                }
+                pairs
+            })
+            .collect();
+        found.concat()
+    }
+
+    fn open(&self, region: Region, skip: &impl Fn(&Region) -> bool, out: &mut Vec<Region>) {
+        let meet = |a: Node, b: Node| self.boxes[a.at as usize].meets(&self.boxes[b.at as usize]);
+        let mut add = |region: Region| {
+            if !skip(&region) {
+                out.push(region);
+            }
+        };
+        match region {
+            Region::Own(node) if node.count > 1 => {
+                let [left, right] = node.children();
+                add(Region::Own(left));
+                add(Region::Own(right));
+                if meet(left, right) {
+                    add(Region::Two(left, right));
+                }
+            }
+            Region::Own(_) => {}
+            Region::Two(a, b) => {
+                let (large, small) = if a.count >= b.count { (a, b) } else { (b, a) };
+                for child in large.children() {
+                    if meet(child, small) {
+                        add(Region::Two(child, small));
+                    }
+                }
+            }
+        }
+    }
+}

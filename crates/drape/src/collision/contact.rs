@@ -1,0 +1,263 @@
+//! Contact of cloth with cloth: the laws of contact with a surface, on the vector between two
+//! features in place of the point.
+
+use super::proximity::{Nearness, nearnesses};
+use super::surface::{ClothSurface, FeaturePair};
+use super::tangle::{Piercing, piercings};
+use crate::laws::contact::{ContactLaw, ContactPlane};
+use crate::{Model, State};
+use nalgebra::Matrix3;
+use toile_geometry::Vec3;
+
+/// A contact of two features.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClothContact {
+    /// The four vertices.
+    pub vertices: [u32; 4],
+    /// Their weights; they sum to zero.
+    pub weights: [f64; 4],
+    /// The plane; its point is the vector from the second feature to the first.
+    pub plane: ContactPlane,
+    /// The laws.
+    pub law: ContactLaw,
+    /// The features; none for a crossing that is being undone.
+    pub pair: Option<FeaturePair>,
+}
+
+impl ClothContact {
+    /// The vector between the features.
+    pub fn between(&self, x: &[Vec3]) -> Vec3 {
+        let four = self.vertices.into_iter().zip(self.weights);
+        four.map(|(v, w)| x[v as usize] * w).sum()
+    }
+}
+
+/// What a contact remembers from step to step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// The features.
+    pub pair: FeaturePair,
+    /// How far they have slid against each other since they stuck [m].
+    pub slip: Vec3,
+    /// Normal force in the last step [N].
+    pub force: f64,
+}
+
+/// What contact of cloth with cloth remembers of the last step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ClothMemory {
+    /// Positions then [m].
+    pub places: Vec<Vec3>,
+    /// Contacts that pressed, in order of their features.
+    pub held: Vec<Held>,
+}
+
+/// Contacts of the present positions.
+#[derive(Clone, Debug, Default)]
+pub struct ClothContacts {
+    /// The contacts.
+    pub active: Vec<ClothContact>,
+    /// Edges that pierce a face.
+    pub piercings: usize,
+    /// Vertices at a crossing.
+    pub tangled: Vec<bool>,
+    surface: ClothSurface,
+    near: Vec<[u32; 2]>,
+    near_at: Vec<Vec3>,
+    near_reach: f64,
+}
+
+/// Contacts are kept from this many offsets away, so that a step is stopped before it lands.
+const REACH_IN_OFFSETS: f64 = 2.0;
+
+/// Share of the shortest edge nearby above which no distance is kept: neighbours are not contacts.
+const ROOM: f64 = 0.5;
+
+/// How much farther pairs of triangles are looked for, so that they serve for some time [m].
+const SLACK: f64 = 2e-3;
+
+/// How far an edge that pierces a face is pulled at a time, in offsets.
+const PULL: f64 = 1.0;
+
+impl ClothContacts {
+    /// The surface in hand, made anew for another model.
+    pub fn surface(&mut self, model: &Model) -> &mut ClothSurface {
+        let stale = {
+            let given = model.surface_triangles();
+            self.surface.triangles != given || self.surface.room.len() != model.vertex_count()
+        };
+        if stale {
+            self.surface = ClothSurface::new(model);
+            self.near_at.clear();
+        }
+        &mut self.surface
+    }
+
+    /// Pairs of triangles near each other at some positions, found anew only when the cloth has
+    /// moved too far for the last ones.
+    fn look(&mut self, model: &Model, x: &[Vec3], reach: f64) {
+        self.surface(model);
+        let moved = |(a, b): (&Vec3, &Vec3)| (a - b).norm_squared();
+        let fresh = self.near_at.len() == x.len()
+            && self.near_reach >= reach
+            && self.near_at.iter().zip(x).map(moved).fold(0.0, f64::max) < 0.25 * SLACK * SLACK;
+        if !fresh {
+            self.near = self.surface.near_triangles(x, x, reach + SLACK);
+            self.near_at.clear();
+            self.near_at.extend_from_slice(x);
+            self.near_reach = reach;
+        }
+    }
+
+    /// Finds contacts within `reach` [m] and crossings; `friction` says whether contacts remember.
+    pub fn find(&mut self, model: &Model, state: &State, x: &[Vec3], reach: f64) {
+        self.active.clear();
+        self.piercings = 0;
+        self.tangled.clear();
+        self.tangled.resize(x.len(), false);
+        if model.contact.cloth_offset <= 0.0 {
+            return;
+        }
+        self.look(model, x, reach);
+        let piercings = piercings(&self.surface, &self.near, x);
+        self.piercings = piercings.len();
+        for v in piercings.iter().flat_map(|p| p.vertices) {
+            self.tangled[v as usize] = true;
+        }
+        for near in nearnesses(&self.surface, &self.near, x, reach) {
+            let vertices = near.pair.vertices();
+            let fixed = vertices.iter().all(|&v| model.pinned[v as usize]);
+            if fixed || vertices.iter().any(|&v| self.tangled[v as usize]) {
+                continue;
+            }
+            let contact = self.contact(model, state, x, &near);
+            self.active.push(contact);
+        }
+        for piercing in &piercings {
+            let contact = self.way_out(model, x, piercing);
+            self.active.extend(contact);
+        }
+    }
+
+    /// Contacts within the usual reach.
+    pub fn refresh(&mut self, model: &Model, state: &State, x: &[Vec3]) {
+        self.find(model, state, x, REACH_IN_OFFSETS * model.contact.cloth_offset);
+    }
+
+    fn contact(&self, model: &Model, state: &State, x: &[Vec3], near: &Nearness) -> ClothContact {
+        let vertices = near.pair.vertices();
+        let of = |values: &[f64]| {
+            let four = vertices.iter().zip(near.weights);
+            0.5 * four.map(|(&v, w)| values[v as usize] * w.abs()).sum::<f64>()
+        };
+        let room = vertices.iter().map(|&v| self.surface.room[v as usize]);
+        let kept = model.contact.cloth_offset.min(ROOM * room.fold(f64::INFINITY, f64::min));
+        // Each side's vertices see the other's faces: half the area each.
+        let normal = 0.5 * model.contact.stiffness * of(&self.surface.area);
+        let between = near.normal * near.distance;
+        let memory = &state.cloth;
+        let held = memory.held.binary_search_by(|held| held.pair.cmp(&near.pair)).ok();
+        let (mut anchor, mut force) = (between, 0.0);
+        if let Some(held) = held.map(|at| memory.held[at]) {
+            let four = vertices.iter().zip(near.weights);
+            let slid: Vec3 = four
+                .map(|(&v, w)| (x[v as usize] - memory.places[v as usize]) * w)
+                .sum();
+            anchor = between - held.slip - slid;
+            force = held.force;
+        }
+        let friction = if model.contact.friction { of(&self.surface.friction) } else { 0.0 };
+        ClothContact {
+            vertices,
+            weights: near.weights,
+            plane: ContactPlane {
+                point: between,
+                depth: kept - near.distance,
+                gradient: near.normal,
+                normal: near.normal,
+                hollow: Matrix3::zeros(),
+                bulge: Matrix3::zeros(),
+                anchor,
+                lagged_normal_force: force,
+            },
+            law: ContactLaw { normal, tangential: 0.5 * normal, friction },
+            pair: Some(near.pair),
+        }
+    }
+
+    /// A pull on the ends of a piercing edge and the two nearest corners of the face.
+    fn way_out(&self, model: &Model, x: &[Vec3], piercing: &Piercing) -> Option<ClothContact> {
+        let (v, w) = (piercing.vertices, piercing.weights);
+        let least = (2..5).fold(2, |least, k| if w[k] > w[least] { k } else { least });
+        let mut corners = (2..5).filter(|&k| k != least);
+        let [c, d] = [corners.next()?, corners.next()?];
+        let total = w[c] + w[d];
+        let vertices = [v[0], v[1], v[c], v[d]];
+        let weights = [w[0], w[1], -w[c] / total, -w[d] / total];
+        if vertices.iter().all(|&v| model.pinned[v as usize]) {
+            return None;
+        }
+        let area: f64 = vertices.iter().map(|&v| self.surface.area[v as usize]).sum();
+        let four = vertices.into_iter().zip(weights);
+        let normal = 0.25 * model.contact.stiffness * area;
+        let point = four.map(|(v, w)| x[v as usize] * w).sum();
+        Some(ClothContact {
+            vertices,
+            weights,
+            plane: ContactPlane {
+                point,
+                depth: PULL * model.contact.cloth_offset,
+                gradient: piercing.way,
+                normal: piercing.way,
+                hollow: Matrix3::zeros(),
+                bulge: Matrix3::zeros(),
+                anchor: point,
+                lagged_normal_force: 0.0,
+            },
+            law: ContactLaw { normal, tangential: normal, friction: 0.0 },
+            pair: None,
+        })
+    }
+
+    /// Pairs of vertices that the contacts in reach couple.
+    pub fn couples(&self) -> Vec<[u32; 2]> {
+        let mut pairs = Vec::new();
+        for contact in &self.active {
+            let v = contact.vertices;
+            pairs.extend((0..4).flat_map(|i| (0..i).map(move |j| [v[i], v[j]])));
+        }
+        pairs
+    }
+
+    /// Remembers what presses after a step.
+    pub fn settle(&self, model: &Model, state: &mut State) {
+        let mut held = Vec::new();
+        for contact in &self.active {
+            let Some(pair) = contact.pair else { continue };
+            let between = contact.between(&state.positions);
+            let force = contact.law.normal_force(&contact.plane, between);
+            if force > 0.0 && contact.law.friction > 0.0 {
+                let anchor = contact.law.slide(&contact.plane, between, force);
+                let slip = between - anchor;
+                let n = contact.plane.normal;
+                held.push(Held { pair, slip: slip - n * slip.dot(&n), force });
+            }
+        }
+        held.sort_unstable_by_key(|held| held.pair);
+        state.cloth.held = held;
+        if model.contact.cloth_offset > 0.0 {
+            state.cloth.places.clone_from(&state.positions);
+        }
+    }
+
+    /// Shortens moves so that cloth does not pass through cloth on the way; returns the number of
+    /// vertices held back.
+    pub fn bound(&mut self, model: &Model, x: &[Vec3], moves: &mut [Vec3]) -> usize {
+        if model.contact.cloth_offset <= 0.0 {
+            return 0;
+        }
+        self.surface(model);
+        self.tangled.resize(x.len(), false);
+        super::bound::bound_moves(&mut self.surface, &self.tangled, x, moves)
+    }
+}

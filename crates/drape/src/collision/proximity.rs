@@ -1,0 +1,93 @@
+//! Places where cloth is near cloth.
+
+use super::surface::{ClothSurface, FeaturePair};
+use rayon::prelude::*;
+use toile_geometry::{Vec3, closest_on_face, closest_on_segments};
+
+/// Two features near each other: n . sum w_i x_i is their distance, and the weights sum to zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearness {
+    /// The features.
+    pub pair: FeaturePair,
+    /// Weights of the four vertices.
+    pub weights: [f64; 4],
+    /// Unit vector from the second feature to the first.
+    pub normal: Vec3,
+    /// Distance [m].
+    pub distance: f64,
+}
+
+/// Below this distance no direction is known [m].
+const TOUCHING: f64 = 1e-9;
+
+impl Nearness {
+    /// Measures two features; nothing when they are farther than `reach` [m], or touch. Two edges
+    /// count only where the closest points are inside both: their ends are seen to by their faces.
+    pub fn measure(pair: FeaturePair, x: &[Vec3], reach: f64) -> Option<Self> {
+        let p = pair.vertices().map(|v| x[v as usize]);
+        let weights = match pair {
+            FeaturePair::VertexFace(_) => {
+                let w = closest_on_face(p[0], [p[1], p[2], p[3]]);
+                [1.0, -w[0], -w[1], -w[2]]
+            }
+            FeaturePair::EdgeEdge(_) => {
+                let [s, t] = closest_on_segments([p[0], p[1]], [p[2], p[3]]);
+                let inside = |s: f64| s > 0.0 && s < 1.0;
+                if !(inside(s) && inside(t)) {
+                    return None;
+                }
+                [1.0 - s, s, t - 1.0, -t]
+            }
+        };
+        let between: Vec3 = p.iter().zip(weights).map(|(p, w)| p * w).sum();
+        let distance = between.norm();
+        (distance <= reach && distance > TOUCHING).then(|| Self {
+            pair,
+            weights,
+            normal: between / distance,
+            distance,
+        })
+    }
+
+    /// Distance of two features [m].
+    pub fn distance(pair: FeaturePair, x: &[Vec3]) -> f64 {
+        let p = pair.vertices().map(|v| x[v as usize]);
+        match pair {
+            FeaturePair::VertexFace(_) => {
+                let w = closest_on_face(p[0], [p[1], p[2], p[3]]);
+                (p[1] * w[0] + p[2] * w[1] + p[3] * w[2] - p[0]).norm()
+            }
+            FeaturePair::EdgeEdge(_) => {
+                let [s, t] = closest_on_segments([p[0], p[1]], [p[2], p[3]]);
+                (p[2] + (p[3] - p[2]) * t - p[0] - (p[1] - p[0]) * s).norm()
+            }
+        }
+    }
+
+    /// Sum of w_i x_i.
+    pub fn between(&self, x: &[Vec3]) -> Vec3 {
+        let four = self.pair.vertices().into_iter().zip(self.weights);
+        four.map(|(v, w)| x[v as usize] * w).sum()
+    }
+}
+
+/// Every pair of features within `reach` [m], in an order that does not depend on threads;
+/// `near` are pairs of triangles as [`ClothSurface::near_triangles`] gives them.
+pub fn nearnesses(
+    surface: &ClothSurface,
+    near: &[[u32; 2]],
+    x: &[Vec3],
+    reach: f64,
+) -> Vec<Nearness> {
+    let found: Vec<Vec<Nearness>> = near
+        .par_chunks(512)
+        .map(|pairs| {
+            let mut found = Vec::new();
+            for &pair in pairs {
+                surface.features(pair, |pair| found.extend(Nearness::measure(pair, x, reach)));
+            }
+            found
+        })
+        .collect();
+    found.concat()
+}
