@@ -25,6 +25,9 @@ impl Nearness {
     /// count only where the closest points are inside both: their ends are seen to by their faces.
     pub fn measure(pair: FeaturePair, x: &[Vec3], reach: f64) -> Option<Self> {
         let p = pair.vertices().map(|v| x[v as usize]);
+        if is_far(pair, &p, reach) {
+            return None;
+        }
         let weights = match pair {
             FeaturePair::VertexFace(_) => {
                 let w = closest_on_face(p[0], [p[1], p[2], p[3]]);
@@ -71,19 +74,47 @@ impl Nearness {
     }
 }
 
+/// Whether boxes round two features are farther apart than `reach` [m].
+#[inline(always)]
+fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
+    let (low, high, other_low, other_high) = match pair {
+        FeaturePair::VertexFace(_) => {
+            (p[0], p[0], p[1].inf(&p[2]).inf(&p[3]), p[1].sup(&p[2]).sup(&p[3]))
+        }
+        FeaturePair::EdgeEdge(_) => {
+            (p[0].inf(&p[1]), p[0].sup(&p[1]), p[2].inf(&p[3]), p[2].sup(&p[3]))
+        }
+    };
+    (0..3).any(|k| low[k] > other_high[k] + reach || other_low[k] > high[k] + reach)
+}
+
 /// Every pair of features within `reach` [m], in an order that does not depend on threads;
-/// `near` are pairs of triangles as [`ClothSurface::near_triangles`] gives them.
+/// `near` are pairs of triangles as [`ClothSurface::near_triangles`] gives them. Triangles that
+/// share a vertex count only where they are folded against each other by more than a right angle.
 pub fn nearnesses(
     surface: &ClothSurface,
     near: &[[u32; 2]],
     x: &[Vec3],
     reach: f64,
 ) -> Vec<Nearness> {
+    let normals: Vec<Vec3> = surface
+        .triangles
+        .par_iter()
+        .with_min_len(512)
+        .map(|t| {
+            let [a, b, c] = t.map(|v| x[v as usize]);
+            (b - a).cross(&(c - a))
+        })
+        .collect();
     let found: Vec<Vec<Nearness>> = near
         .par_chunks(512)
         .map(|pairs| {
             let mut found = Vec::new();
             for &pair in pairs {
+                let [t, u] = pair.map(|t| normals[t as usize]);
+                if t.dot(&u) > 0.0 && surface.adjacent(pair) {
+                    continue;
+                }
                 surface.features(pair, |pair| found.extend(Nearness::measure(pair, x, reach)));
             }
             found

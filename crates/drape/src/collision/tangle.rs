@@ -2,6 +2,7 @@
 //! so that the line of intersection grows shorter (Volino and Magnenat-Thalmann 2006, Resolving
 //! surface collisions through intersection contour minimization).
 
+use super::boxes::Bounds;
 use super::surface::ClothSurface;
 use rayon::prelude::*;
 use toile_geometry::{Vec3, segment_intersects_triangle};
@@ -29,6 +30,13 @@ pub fn piercings(surface: &ClothSurface, near: &[[u32; 2]], x: &[Vec3]) -> Vec<P
         .map(|pairs| {
             let mut found = Vec::new();
             for &[t, u] in pairs {
+                let box_of = |t: u32| {
+                    let corners = surface.triangles[t as usize].map(|v| x[v as usize]);
+                    Bounds::round(&corners, 0.0)
+                };
+                if !box_of(t).meets(&box_of(u)) {
+                    continue;
+                }
                 for (t, u) in [(t, u), (u, t)] {
                     surface.pierced_by_own(t, u, x, &mut found);
                 }
