@@ -2,19 +2,21 @@
 //! damping. A substep costs less than a thousandth of a Newton step and leaves saddles as the real
 //! cloth does; Newton's method finishes.
 
-use crate::collision::ClothContacts;
-use crate::xpbd::Span;
+use crate::xpbd::{ClothWatch, Span};
 use crate::{DrapeError, Model, State, Xpbd};
 use toile_geometry::Vec3;
 
 /// A swing on its way to calm.
 pub struct SwingRun {
     xpbd: Xpbd,
-    cloth: ClothContacts,
+    cloth: ClothWatch,
     substep: f64,
     time: f64,
     energy: f64,
     calm: bool,
+    /// Lowest peak of kinetic energy [J], and the peaks since.
+    lowest: f64,
+    waited: u32,
 }
 
 /// Edges that a wave in the cloth may cross in a substep. What one sweep of XPBD leaves unsolved
@@ -30,17 +32,23 @@ const DRAG: f64 = 3.0;
 const LONGEST: f64 = 3.0;
 /// The swing is over when its peaks of kinetic energy are those of this mean speed [m/s].
 const CALM: f64 = 0.0015;
+/// A peak is a new low below this share of the lowest before; with crossings left the swing is over
+/// after as many peaks without one.
+const LOWER: f64 = 0.8;
+const PATIENCE: u32 = 12;
 
 impl SwingRun {
     /// Prepares the constraints of a model.
     pub fn new(model: &Model) -> Self {
         Self {
             xpbd: Xpbd::new(model),
-            cloth: ClothContacts::default(),
+            cloth: ClothWatch::default(),
             substep: substep(model),
             time: 0.0,
             energy: 0.0,
             calm: false,
+            lowest: f64::INFINITY,
+            waited: 0,
         }
     }
 
@@ -69,7 +77,7 @@ impl SwingRun {
         self.time += self.substep * f64::from(ROUND);
         if report.kinetic_energy < self.energy {
             let mass: f64 = model.mass.iter().sum();
-            self.calm = self.energy < 0.5 * mass * CALM * CALM;
+            self.calm = self.energy < 0.5 * mass * CALM * CALM || self.is_stuck();
             self.energy = 0.0;
             stop(state);
         } else {
@@ -79,6 +87,18 @@ impl SwingRun {
             stop(state);
         }
         Ok(())
+    }
+}
+
+impl SwingRun {
+    /// Whether crossings of cloth that are pulled apart keep it moving: the peaks fall no more.
+    fn is_stuck(&mut self) -> bool {
+        if self.energy < LOWER * self.lowest || self.cloth.contacts.piercings == 0 {
+            self.lowest = self.energy;
+            self.waited = 0;
+        }
+        self.waited += 1;
+        self.waited > PATIENCE
     }
 }
 

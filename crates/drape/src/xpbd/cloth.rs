@@ -17,13 +17,31 @@ pub(crate) struct Span {
 }
 
 /// How far the fastest vertex may go before contacts are looked for anew [m].
-const LOOK_AGAIN: f64 = 3e-3;
+const LOOK_AGAIN: f64 = 2e-3;
+
+/// Longest time that contacts are kept [s]: forces are not known ahead.
+const LONGEST: f64 = 5e-3;
 
 /// Substeps between two looks, at the least.
-const FEWEST: u32 = 4;
+const FEWEST: u32 = 2;
 
-/// Farther than by where it goes, a pair is kept when it is nearer than this beyond its offset [m].
-const MARGIN: f64 = 1e-3;
+/// Contacts of cloth with cloth as they were last found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ClothWatch {
+    /// The contacts.
+    pub contacts: ClothContacts,
+    /// How far the fastest vertex may have gone since [m]; none before the first look.
+    travelled: Option<f64>,
+    /// Time since [s].
+    time: f64,
+}
+
+impl ClothWatch {
+    /// Looks anew at the next step, whatever was found before.
+    pub fn forget(&mut self) {
+        self.travelled = None;
+    }
+}
 
 impl Xpbd {
     /// [`Xpbd::advance`] with contact of cloth with cloth, where the model has it.
@@ -31,33 +49,39 @@ impl Xpbd {
         &mut self,
         model: &Model,
         state: &mut State,
-        cloth: &mut ClothContacts,
+        watch: &mut ClothWatch,
         span: &Span,
     ) -> Result<XpbdReport, DrapeError> {
         if model.contact.cloth_offset <= 0.0 {
             return self.advance(model, state, span.substep, span.count, span.drag);
         }
+        self.take_up(model);
         let mut left = span.count;
         let mut report = XpbdReport::default();
         let mut pieces = 1;
         while left > 0 {
-            let speed = state.velocities.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt()
-                + model.gravity.norm() * span.substep * f64::from(FEWEST);
-            let count = (LOOK_AGAIN / (speed * span.substep)).clamp(f64::from(FEWEST), 1e6) as u32;
-            let count = count.min(left);
-            let time = span.substep * f64::from(count);
-            let reach = model.contact.cloth_offset + MARGIN + 2.0 * speed * time;
-            cloth.find(model, state, &state.positions, reach);
-            let kept = |contact: &&ClothContact| comes_near(contact, state, model, time);
-            let contacts: Vec<ClothContact> = cloth.active.iter().filter(kept).copied().collect();
-            self.take_up(model);
-            self.touch_cloth(&contacts);
+            let fewest = f64::from(FEWEST) * span.substep;
+            let speed2 = state.velocities.iter().map(|v| v.norm_squared());
+            let speed = speed2.fold(0.0, f64::max).sqrt() + model.gravity.norm() * fewest;
+            let ahead = watch.travelled.map(|t| t + speed * fewest);
+            if ahead.is_none_or(|far| far > LOOK_AGAIN) || watch.time + fewest > LONGEST {
+                // Two vertices may come nearer by twice the way.
+                let reach = model.contact.cloth_offset + 2.0 * LOOK_AGAIN;
+                watch.contacts.find(model, state, &state.positions, reach);
+                watch.travelled = Some(0.0);
+                watch.time = 0.0;
+                self.touch_cloth(&watch.contacts.active);
+            }
+            let travelled = watch.travelled.unwrap_or(0.0);
+            let time = ((LOOK_AGAIN - travelled) / speed).min(LONGEST - watch.time);
+            let count = ((time / span.substep) as u32).max(FEWEST).min(left);
             report = self.advance(model, state, span.substep, count, span.drag)?;
             pieces = pieces.max(report.pieces);
+            let time = span.substep * f64::from(count);
+            watch.travelled = Some(travelled + speed.max(report.fastest) * time);
+            watch.time += time;
             left -= count;
         }
-        // Contacts of these substeps do not hold in the next.
-        self.touch_cloth(&[]);
         report.pieces = pieces;
         Ok(report)
     }
@@ -83,14 +107,4 @@ impl Xpbd {
         held.truncate(self.sample_contacts);
         held.extend(stencils);
     }
-}
-
-/// Whether a pair comes within its offset in a time [s] if it goes on as it does.
-fn comes_near(contact: &ClothContact, state: &State, model: &Model, time: f64) -> bool {
-    let four = contact.vertices.into_iter().zip(contact.weights);
-    let opening: f64 = four
-        .map(|(v, w)| w * contact.plane.normal.dot(&state.velocities[v as usize]))
-        .sum();
-    let drop = model.gravity.norm() * time * time;
-    contact.plane.depth + MARGIN + drop + 2.0 * (-opening * time).max(0.0) > 0.0
 }

@@ -32,11 +32,10 @@ mod particles;
 mod region;
 mod run;
 
-use crate::collision::ClothContacts;
 use crate::methods::{Method, MethodSettings, StepReport};
 use crate::{DrapeError, Model, State};
 use bending::{BendingForce, Filter};
-pub(crate) use cloth::Span;
+pub(crate) use cloth::{ClothWatch, Span};
 use contact::{ContactStep, Touch};
 use lanes::LANES;
 use membrane::{LawRow, inverse_mass};
@@ -440,7 +439,7 @@ pub(crate) struct XpbdMethod {
     settings: XpbdSettings,
     substeps: u32,
     solver: Option<Xpbd>,
-    cloth: ClothContacts,
+    cloth: ClothWatch,
 }
 
 /// Substeps of a step when none are asked for.
@@ -457,7 +456,7 @@ impl XpbdMethod {
             },
             substeps: settings.substeps.unwrap_or(SUBSTEPS).max(1),
             solver: None,
-            cloth: ClothContacts::default(),
+            cloth: ClothWatch::default(),
         }
     }
 }
@@ -477,6 +476,8 @@ impl Method for XpbdMethod {
             count: self.substeps,
             drag: model.air_drag,
         };
+        // A step must not depend on what was found before it.
+        self.cloth.forget();
         let report = solver.advance_touching(model, state, &mut self.cloth, &span)?;
         let iterations = self.substeps * self.settings.iterations * report.pieces;
         Ok(StepReport {
