@@ -506,9 +506,18 @@ impl Workspace {
         }
         let share = |(whole, cut): (&Vec3, &Vec3)| {
             let length = whole.norm();
-            if length > 0.0 { cut.norm() / length } else { 1.0 }
+            if length > 0.0 {
+                cut.norm() / length
+            } else {
+                1.0
+            }
         };
-        let least = self.trial.iter().zip(&self.direction).map(share).fold(1.0, f64::min);
+        let least = self
+            .trial
+            .iter()
+            .zip(&self.direction)
+            .map(share)
+            .fold(1.0, f64::min);
         for (d, whole) in self.direction.iter_mut().zip(&self.trial) {
             *d = whole * least;
         }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use toile_drape::collision::{edge_edge_impact, vertex_face_impact};
 use toile_geometry::Vec3;
 
-/// False positives of the additive method of the IPC toolkit 1.6.1 on the same files: 421. 
+/// False positives of the additive method of the IPC toolkit 1.6.1 on the same files: 421.
 const MOST_FALSE_POSITIVES: usize = 421;
 
 fn folder() -> Option<PathBuf> {
@@ -48,7 +48,10 @@ fn no_published_query_is_missed() {
                         _ => vertex_face_impact(&start, &end, 0.0),
                     };
                     let clock = Instant::now();
-                    let found = (0..8).filter(|_| std::hint::black_box(test()).is_some()).count() > 0;
+                    let found = (0..8)
+                        .filter(|_| std::hint::black_box(test()).is_some())
+                        .count()
+                        > 0;
                     times.push(clock.elapsed().as_nanos() as f64 / 8.0);
                     total += 1;
                     missed += usize::from(query[0].1 && !found);

@@ -69,7 +69,12 @@ pub fn bound_moves(
                 held[v] = true;
             }
         }
-        meetings.retain(|m| m.pair.vertices().iter().any(|&v| moves[v as usize] != Vec3::zeros()));
+        meetings.retain(|m| {
+            m.pair
+                .vertices()
+                .iter()
+                .any(|&v| moves[v as usize] != Vec3::zeros())
+        });
         round += 1;
     }
     held.iter().filter(|&&h| h).count()
@@ -92,7 +97,11 @@ fn meetings(
                     let knot = |range: std::ops::Range<usize>| {
                         vertices[range].iter().any(|&v| tangled[v as usize])
                     };
-                    let cut = if matches!(pair, FeaturePair::VertexFace(_)) { 1 } else { 2 };
+                    let cut = if matches!(pair, FeaturePair::VertexFace(_)) {
+                        1
+                    } else {
+                        2
+                    };
                     if knot(0..cut) && knot(cut..4) {
                         return;
                     }
@@ -116,5 +125,8 @@ fn meeting(pair: FeaturePair, x: &[Vec3], moves: &[Vec3]) -> Option<Meeting> {
     if distance > reach || distance < TOUCHING {
         return None;
     }
-    Some(Meeting { pair, gap: KEPT * distance })
+    Some(Meeting {
+        pair,
+        gap: KEPT * distance,
+    })
 }

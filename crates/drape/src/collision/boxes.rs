@@ -64,8 +64,16 @@ impl Node {
     fn children(self) -> [Self; 2] {
         let left = self.count / 2;
         [
-            Self { at: self.at + 1, first: self.first, count: left },
-            Self { at: self.at + 2 * left, first: self.first + left, count: self.count - left },
+            Self {
+                at: self.at + 1,
+                first: self.first,
+                count: left,
+            },
+            Self {
+                at: self.at + 2 * left,
+                first: self.first + left,
+                count: self.count - left,
+            },
         ]
     }
 }
@@ -132,7 +140,11 @@ impl BoxTree {
     /// The node over everything; none when there is nothing.
     pub fn root(&self) -> Option<Node> {
         let count = self.leaves.len() as u32;
-        (count > 0).then_some(Node { at: 0, first: 0, count })
+        (count > 0).then_some(Node {
+            at: 0,
+            first: 0,
+            count,
+        })
     }
 
     /// The item of a leaf.

@@ -3,7 +3,7 @@
 
 use super::proximity::{Nearness, nearnesses};
 use super::surface::{ClothSurface, FeaturePair};
-use super::tangle::{Piercing, piercings};
+use super::tangle::{Piercing, crossings, piercings};
 use crate::laws::contact::{ContactLaw, ContactPlane};
 use crate::{Model, State};
 use nalgebra::Matrix3;
@@ -57,7 +57,7 @@ pub struct ClothMemory {
 pub struct ClothContacts {
     /// The contacts.
     pub active: Vec<ClothContact>,
-    /// Edges that pierce a face.
+    /// Pairs of an edge and a face that cross.
     pub piercings: usize,
     /// Vertices at a crossing.
     pub tangled: Vec<bool>,
@@ -109,7 +109,7 @@ impl ClothContacts {
         }
     }
 
-    /// Finds contacts within `reach` [m] and crossings; `friction` says whether contacts remember.
+    /// Finds contacts within `reach` [m] and crossings; what the state remembers of friction goes into them.
     pub fn find(&mut self, model: &Model, state: &State, x: &[Vec3], reach: f64) {
         self.active.clear();
         self.piercings = 0;
@@ -119,10 +119,13 @@ impl ClothContacts {
             return;
         }
         self.look(model, x, reach);
-        let piercings = piercings(&self.surface, &self.near, x);
-        self.piercings = piercings.len();
-        for v in piercings.iter().flat_map(|p| p.vertices) {
-            self.tangled[v as usize] = true;
+        let crossings = crossings(&self.surface, &self.near, x);
+        self.piercings = crossings.len();
+        for &[e, t] in &crossings {
+            let face = self.surface.triangles[t as usize];
+            for v in self.surface.edges[e as usize].into_iter().chain(face) {
+                self.tangled[v as usize] = true;
+            }
         }
         for near in nearnesses(&self.surface, &self.near, x, reach) {
             let vertices = near.pair.vertices();
@@ -133,7 +136,7 @@ impl ClothContacts {
             let contact = self.contact(model, state, x, &near);
             self.active.push(contact);
         }
-        for piercing in &piercings {
+        for piercing in &piercings(&self.surface, &crossings, x) {
             let contact = self.way_out(model, x, piercing);
             self.active.extend(contact);
         }
@@ -141,22 +144,35 @@ impl ClothContacts {
 
     /// Contacts within the usual reach.
     pub fn refresh(&mut self, model: &Model, state: &State, x: &[Vec3]) {
-        self.find(model, state, x, REACH_IN_OFFSETS * model.contact.cloth_offset);
+        self.find(
+            model,
+            state,
+            x,
+            REACH_IN_OFFSETS * model.contact.cloth_offset,
+        );
     }
 
     fn contact(&self, model: &Model, state: &State, x: &[Vec3], near: &Nearness) -> ClothContact {
         let vertices = near.pair.vertices();
         let of = |values: &[f64]| {
             let four = vertices.iter().zip(near.weights);
-            0.5 * four.map(|(&v, w)| values[v as usize] * w.abs()).sum::<f64>()
+            0.5 * four
+                .map(|(&v, w)| values[v as usize] * w.abs())
+                .sum::<f64>()
         };
         let room = vertices.iter().map(|&v| self.surface.room[v as usize]);
-        let kept = model.contact.cloth_offset.min(ROOM * room.fold(f64::INFINITY, f64::min));
+        let kept = model
+            .contact
+            .cloth_offset
+            .min(ROOM * room.fold(f64::INFINITY, f64::min));
         // Each side's vertices see the other's faces: half the area each.
         let normal = 0.5 * model.contact.stiffness * of(&self.surface.area);
         let between = near.normal * near.distance;
         let memory = &state.cloth;
-        let held = memory.held.binary_search_by(|held| held.pair.cmp(&near.pair)).ok();
+        let held = memory
+            .held
+            .binary_search_by(|held| held.pair.cmp(&near.pair))
+            .ok();
         let (mut anchor, mut force) = (between, 0.0);
         if let Some(held) = held.map(|at| memory.held[at]) {
             let four = vertices.iter().zip(near.weights);
@@ -166,7 +182,11 @@ impl ClothContacts {
             anchor = between - held.slip - slid;
             force = held.force;
         }
-        let friction = if model.contact.friction { of(&self.surface.friction) } else { 0.0 };
+        let friction = if model.contact.friction {
+            of(&self.surface.friction)
+        } else {
+            0.0
+        };
         ClothContact {
             vertices,
             weights: near.weights,
@@ -180,7 +200,11 @@ impl ClothContacts {
                 anchor,
                 lagged_normal_force: force,
             },
-            law: ContactLaw { normal, tangential: 0.5 * normal, friction },
+            law: ContactLaw {
+                normal,
+                tangential: 0.5 * normal,
+                friction,
+            },
             pair: Some(near.pair),
         }
     }
@@ -197,7 +221,10 @@ impl ClothContacts {
         if vertices.iter().all(|&v| model.pinned[v as usize]) {
             return None;
         }
-        let area: f64 = vertices.iter().map(|&v| self.surface.area[v as usize]).sum();
+        let area: f64 = vertices
+            .iter()
+            .map(|&v| self.surface.area[v as usize])
+            .sum();
         let four = vertices.into_iter().zip(weights);
         let normal = 0.25 * model.contact.stiffness * area;
         let point = four.map(|(v, w)| x[v as usize] * w).sum();
@@ -214,7 +241,11 @@ impl ClothContacts {
                 anchor: point,
                 lagged_normal_force: 0.0,
             },
-            law: ContactLaw { normal, tangential: normal, friction: 0.0 },
+            law: ContactLaw {
+                normal,
+                tangential: normal,
+                friction: 0.0,
+            },
             pair: None,
         })
     }
@@ -240,7 +271,11 @@ impl ClothContacts {
                 let anchor = contact.law.slide(&contact.plane, between, force);
                 let slip = between - anchor;
                 let n = contact.plane.normal;
-                held.push(Held { pair, slip: slip - n * slip.dot(&n), force });
+                held.push(Held {
+                    pair,
+                    slip: slip - n * slip.dot(&n),
+                    force,
+                });
             }
         }
         held.sort_unstable_by_key(|held| held.pair);

@@ -49,7 +49,9 @@ impl Couplings {
             Some(&end) => self.start[row] as usize..end as usize,
             None => 0..0,
         };
-        self.entries[range].iter().map(|([_, column], block)| (*column, block))
+        self.entries[range]
+            .iter()
+            .map(|([_, column], block)| (*column, block))
     }
 
     /// Rows and columns that have a block.
@@ -59,6 +61,8 @@ impl Couplings {
 
     /// A row times a vector.
     pub fn row_times(&self, row: usize, p: &[Vec3]) -> Vec3 {
-        self.row(row).map(|(column, block)| block * p[column as usize]).sum()
+        self.row(row)
+            .map(|(column, block)| block * p[column as usize])
+            .sum()
     }
 }

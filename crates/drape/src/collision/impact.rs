@@ -24,18 +24,30 @@ const ROUNDING: f64 = 20.0 * f64::EPSILON / 2.0;
 /// First time in 0..=1 at which a vertex (the first of the four) may come within `gap` [m] of a face
 /// (the others); none when it certainly does not. Never too late, and early by rounding only.
 pub fn vertex_face_impact(start: &[Vec3; 4], end: &[Vec3; 4], gap: f64) -> Option<f64> {
-    advance(start, end, gap, |[p, a, b, c]| {
-        let w = closest_on_face(*p, [*a, *b, *c]);
-        a * w[0] + b * w[1] + c * w[2] - p
-    }, &[[0, 1], [0, 2], [0, 3]])
+    advance(
+        start,
+        end,
+        gap,
+        |[p, a, b, c]| {
+            let w = closest_on_face(*p, [*a, *b, *c]);
+            a * w[0] + b * w[1] + c * w[2] - p
+        },
+        &[[0, 1], [0, 2], [0, 3]],
+    )
 }
 
 /// The same for an edge (the first two) and another (the last two).
 pub fn edge_edge_impact(start: &[Vec3; 4], end: &[Vec3; 4], gap: f64) -> Option<f64> {
-    advance(start, end, gap, |[a, b, c, d]| {
-        let [s, t] = closest_on_segments([*a, *b], [*c, *d]);
-        c + (d - c) * t - (a + (b - a) * s)
-    }, &[[0, 2], [0, 3], [1, 2], [1, 3]])
+    advance(
+        start,
+        end,
+        gap,
+        |[a, b, c, d]| {
+            let [s, t] = closest_on_segments([*a, *b], [*c, *d]);
+            c + (d - c) * t - (a + (b - a) * s)
+        },
+        &[[0, 2], [0, 3], [1, 2], [1, 3]],
+    )
 }
 
 /// Advances in time; `between` is the vector from one feature to the closest point of the other.
@@ -127,7 +139,10 @@ mod tests {
         let rod = |y: f64, x: f64| [Vec3::new(x, y, 0.0), Vec3::new(x, y, 1.0)];
         let both = |a: [Vec3; 2], b: [Vec3; 2]| [a[0], a[1], b[0], b[1]];
         let start = both(rod(0.0, 0.0), rod(0.1, -1.0));
-        assert_eq!(edge_edge_impact(&start, &both(rod(0.0, 0.0), rod(0.1, 1.0)), 0.0), None);
+        assert_eq!(
+            edge_edge_impact(&start, &both(rod(0.0, 0.0), rod(0.1, 1.0)), 0.0),
+            None
+        );
         let hit = edge_edge_impact(&start, &both(rod(0.0, 0.0), rod(-0.1, 1.0)), 0.0).unwrap();
         assert!((hit - 0.5).abs() < 1e-9, "{hit}");
     }

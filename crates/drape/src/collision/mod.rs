@@ -17,4 +17,4 @@ pub use coupling::Couplings;
 pub use impact::{edge_edge_impact, vertex_face_impact};
 pub use proximity::{Nearness, nearnesses};
 pub use surface::{ClothSurface, FeaturePair};
-pub use tangle::{Piercing, piercings};
+pub use tangle::{Piercing, crossings, piercings};

@@ -78,12 +78,18 @@ impl Nearness {
 #[inline(always)]
 fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
     let (low, high, other_low, other_high) = match pair {
-        FeaturePair::VertexFace(_) => {
-            (p[0], p[0], p[1].inf(&p[2]).inf(&p[3]), p[1].sup(&p[2]).sup(&p[3]))
-        }
-        FeaturePair::EdgeEdge(_) => {
-            (p[0].inf(&p[1]), p[0].sup(&p[1]), p[2].inf(&p[3]), p[2].sup(&p[3]))
-        }
+        FeaturePair::VertexFace(_) => (
+            p[0],
+            p[0],
+            p[1].inf(&p[2]).inf(&p[3]),
+            p[1].sup(&p[2]).sup(&p[3]),
+        ),
+        FeaturePair::EdgeEdge(_) => (
+            p[0].inf(&p[1]),
+            p[0].sup(&p[1]),
+            p[2].inf(&p[3]),
+            p[2].sup(&p[3]),
+        ),
     };
     (0..3).any(|k| low[k] > other_high[k] + reach || other_low[k] > high[k] + reach)
 }

@@ -118,7 +118,10 @@ impl ClothSurface {
             if still {
                 return bounds;
             }
-            bounds.join(&Bounds::round(&corners.map(|v| to[v as usize]), 0.5 * reach))
+            bounds.join(&Bounds::round(
+                &corners.map(|v| to[v as usize]),
+                0.5 * reach,
+            ))
         });
         self.tree.pairs(|_| false)
     }
@@ -149,7 +152,9 @@ impl ClothSurface {
 
     /// Edges that a triangle cares for.
     pub fn own_edges(&self, t: u32) -> impl Iterator<Item = u32> + use<> {
-        self.own_edges[t as usize].into_iter().take_while(|&e| e != NONE)
+        self.own_edges[t as usize]
+            .into_iter()
+            .take_while(|&e| e != NONE)
     }
 
     /// Whether two triangles share a vertex.

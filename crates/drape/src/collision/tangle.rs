@@ -22,9 +22,18 @@ pub struct Piercing {
 /// cannot help an edge that lies in it.
 const FLAT: f64 = 0.15;
 
-/// Every edge that pierces a face with which it shares no vertex, in the order of edges; `near` are
-/// pairs of triangles that may meet.
-pub fn piercings(surface: &ClothSurface, near: &[[u32; 2]], x: &[Vec3]) -> Vec<Piercing> {
+/// The ways out of some crossings, as [`crossings`] gives them. An edge in the plane of the face has
+/// none, and neither has one in the middle of a flat sheet.
+pub fn piercings(surface: &ClothSurface, crossings: &[[u32; 2]], x: &[Vec3]) -> Vec<Piercing> {
+    let found = crossings.iter();
+    found
+        .filter_map(|&[e, t]| way_out(surface, e as usize, t as usize, x))
+        .collect()
+}
+
+/// Every edge and face that cross, exactly, and share no vertex, sorted; `near` are pairs of
+/// triangles that may meet.
+pub fn crossings(surface: &ClothSurface, near: &[[u32; 2]], x: &[Vec3]) -> Vec<[u32; 2]> {
     let found: Vec<Vec<[u32; 2]>> = near
         .par_chunks(512)
         .map(|pairs| {
@@ -47,7 +56,7 @@ pub fn piercings(surface: &ClothSurface, near: &[[u32; 2]], x: &[Vec3]) -> Vec<P
     let mut found = found.concat();
     found.sort_unstable();
     found.dedup();
-    found.into_iter().filter_map(|[e, t]| way_out(surface, e as usize, t as usize, x)).collect()
+    found
 }
 
 impl ClothSurface {
@@ -80,13 +89,19 @@ fn way_out(surface: &ClothSurface, e: usize, t: usize, x: &[Vec3]) -> Option<Pie
     let along = (pb - pa).try_normalize(0.0)?;
     let normal = (q - p).cross(&(r - p)).try_normalize(0.0)?;
     let (da, db) = ((pa - p).dot(&normal), (pb - p).dot(&normal));
-    let s = if da == db { 0.5 } else { (da / (da - db)).clamp(0.0, 1.0) };
+    let s = if da == db {
+        0.5
+    } else {
+        (da / (da - db)).clamp(0.0, 1.0)
+    };
     let point = pa + (pb - pa) * s;
     let slope = along.dot(&normal);
     let slope = slope.abs().max(FLAT) * if slope < 0.0 { -1.0 } else { 1.0 };
     let mut gradient = Vec3::zeros();
     for &of in &surface.edge_triangles[e] {
-        let Some(third) = surface.triangles[of as usize].into_iter().find(|v| ![a, b].contains(v))
+        let Some(third) = surface.triangles[of as usize]
+            .into_iter()
+            .find(|v| ![a, b].contains(v))
         else {
             continue;
         };

@@ -1,0 +1,303 @@
+//! Cloth against cloth: pairs against brute force, motions that may not pass, scenes that end
+//! without a crossing, crossings that are undone.
+
+use toile_drape::collision::{
+    ClothContacts, ClothSurface, FeaturePair, Nearness, bound_moves, crossings, nearnesses,
+};
+use toile_drape::{
+    Cloth, ContactSettings, Material, Measures, MethodKind, Model, ObjectKind, Scene, SceneObject,
+    SceneRun, State,
+};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec3, segment_intersects_triangle};
+
+/// A square sheet of `n` by `n` cells.
+fn sheet(n: usize, place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
+    let mut mesh = TriangleMesh::default();
+    let at = |i: usize, j: usize| (j * (n + 1) + i) as u32;
+    for j in 0..=n {
+        for i in 0..=n {
+            mesh.positions
+                .push(place(i as f64 / n as f64, j as f64 / n as f64));
+        }
+    }
+    for j in 0..n {
+        for i in 0..n {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            let halves = if (i + j) % 2 == 0 {
+                [[a, b, c], [a, c, d]]
+            } else {
+                [[a, b, d], [b, c, d]]
+            };
+            mesh.triangles.extend(halves);
+        }
+    }
+    mesh
+}
+
+/// Numbers in 0..1 that repeat from run to run.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn vector(&mut self, scale: f64) -> Vec3 {
+        Vec3::new(self.next() - 0.5, self.next() - 0.5, self.next() - 0.5) * (2.0 * scale)
+    }
+}
+
+/// A sheet crumpled by a few waves.
+fn crumpled(seed: u64, n: usize) -> TriangleMesh {
+    let mut numbers = Numbers(seed + 1);
+    let waves: Vec<(Vec3, f64, f64, f64)> = (0..6)
+        .map(|_| {
+            let (a, b, c) = (numbers.next(), numbers.next(), numbers.next());
+            (numbers.vector(0.15), 12.0 * a, 12.0 * b, 6.3 * c)
+        })
+        .collect();
+    sheet(n, |u, v| {
+        let flat = Vec3::new(0.4 * u, 0.0, 0.4 * v);
+        flat + waves
+            .iter()
+            .map(|&(way, a, b, c)| way * (a * u + b * v + c).sin())
+            .sum::<Vec3>()
+    })
+}
+
+fn all_pairs(mesh: &TriangleMesh) -> Vec<FeaturePair> {
+    let edges = mesh.topology().edges;
+    let mut pairs = Vec::new();
+    for v in 0..mesh.positions.len() as u32 {
+        for face in mesh.triangles.iter().filter(|face| !face.contains(&v)) {
+            pairs.push(FeaturePair::VertexFace([v, face[0], face[1], face[2]]));
+        }
+    }
+    for (k, &[a, b]) in edges.iter().enumerate() {
+        for &[c, d] in edges[k + 1..]
+            .iter()
+            .filter(|e| !e.contains(&a) && !e.contains(&b))
+        {
+            pairs.push(FeaturePair::EdgeEdge([a, b, c, d]));
+        }
+    }
+    pairs
+}
+
+#[test]
+fn pairs_are_those_of_brute_force_in_200_crumpled_states() {
+    let (mut near_pairs, mut crossed) = (0, 0);
+    let mut surface = ClothSurface::of_mesh(&crumpled(0, 8));
+    for seed in 0..200 {
+        let mesh = crumpled(seed, 8);
+        let x = &mesh.positions;
+        let reach = 0.01;
+        let near = surface.near_triangles(x, x, reach);
+        let mut found = Vec::new();
+        for &pair in &near {
+            surface.features(pair, |pair| found.extend(Nearness::measure(pair, x, reach)));
+        }
+        found.sort_by_key(|near| near.pair);
+        let mut expected: Vec<Nearness> = all_pairs(&mesh)
+            .into_iter()
+            .filter_map(|pair| Nearness::measure(pair, x, reach))
+            .collect();
+        expected.sort_by_key(|near| near.pair);
+        assert_eq!(found, expected, "state {seed}");
+        near_pairs += found.len();
+        // What is left out for contact is a neighbour that faces the same way.
+        assert!(nearnesses(&surface, &near, x, reach).len() <= found.len());
+
+        let edges = mesh.topology().edges;
+        let mut brute = Vec::new();
+        for (e, &[a, b]) in edges.iter().enumerate() {
+            for (t, face) in mesh.triangles.iter().enumerate() {
+                let ends = [x[a as usize], x[b as usize]];
+                if !face.contains(&a)
+                    && !face.contains(&b)
+                    && segment_intersects_triangle(ends, mesh.corners(t))
+                {
+                    brute.push([e as u32, t as u32]);
+                }
+            }
+        }
+        let got = crossings(&surface, &near, x);
+        assert_eq!(got, brute, "state {seed}");
+        crossed += got.len();
+    }
+    assert!(
+        near_pairs > 10_000 && crossed > 1_000,
+        "{near_pairs} {crossed}"
+    );
+}
+
+#[test]
+fn bounded_moves_never_cross() {
+    let mut held = 0;
+    for seed in 0..60 {
+        let mut numbers = Numbers(seed);
+        let mut mesh = TriangleMesh::default();
+        for layer in 0..4 {
+            let part = sheet(6, |u, v| {
+                Vec3::new(
+                    0.1 * u,
+                    0.003 * f64::from(layer) + 0.01 * (9.0 * u).sin(),
+                    0.1 * v,
+                )
+            });
+            let first = mesh.positions.len() as u32;
+            mesh.positions.extend(part.positions);
+            mesh.triangles
+                .extend(part.triangles.iter().map(|t| t.map(|v| v + first)));
+        }
+        let mut surface = ClothSurface::of_mesh(&mesh);
+        let untangled = vec![false; mesh.positions.len()];
+        for _ in 0..5 {
+            let mut moves: Vec<Vec3> = mesh
+                .positions
+                .iter()
+                .map(|_| numbers.vector(0.02))
+                .collect();
+            held += bound_moves(&mut surface, &untangled, &mesh.positions, &mut moves);
+            for (x, d) in mesh.positions.iter_mut().zip(&moves) {
+                *x += d;
+            }
+            let near = surface.near_triangles(&mesh.positions, &mesh.positions, 0.0);
+            assert!(
+                crossings(&surface, &near, &mesh.positions).is_empty(),
+                "seed {seed}"
+            );
+        }
+    }
+    assert!(held > 1000, "{held}");
+}
+
+fn object(name: &str, mesh: TriangleMesh, pins: Vec<u32>) -> SceneObject {
+    let kind = ObjectKind::Deformable {
+        material: Material::default(),
+        pins,
+    };
+    SceneObject {
+        name: name.to_owned(),
+        kind,
+        mesh,
+        cloth: None,
+    }
+}
+
+/// A sheet that falls on another, which hangs by its corners.
+fn fall(method: MethodKind, cloth_offset: f64) -> (bool, Measures) {
+    let n = 10;
+    let low = sheet(n, |u, v| Vec3::new(0.2 * u, 0.0, 0.2 * v));
+    let high = sheet(n, |u, v| Vec3::new(0.03 + 0.13 * u, 0.02, 0.04 + 0.13 * v));
+    let n = n as u32;
+    let corners = vec![0, n, n * (n + 1), n * (n + 1) + n];
+    let scene = Scene {
+        duration: 0.35,
+        step: 1.0 / 120.0,
+        method: method.into(),
+        contact: ContactSettings {
+            cloth_offset,
+            ..ContactSettings::default()
+        },
+        objects: vec![object("low", low, corners), object("high", high, vec![])],
+        ..Scene::default()
+    };
+    let mut run = SceneRun::new(scene).unwrap();
+    while !run.finished() {
+        run.advance().unwrap();
+    }
+    let measures = run.measure();
+    let [low, high] = [0, 1].map(|k| run.meshes()[k].clone());
+    let middle = |mesh: &TriangleMesh| mesh.positions[mesh.positions.len() / 2].y;
+    (middle(&high) > middle(&low), measures)
+}
+
+#[test]
+fn a_sheet_that_falls_on_a_sheet_stays_on_it() {
+    for method in [MethodKind::ImplicitEuler, MethodKind::Xpbd] {
+        assert!(
+            !fall(method, 0.0).0,
+            "{method:?}: without contact it falls through"
+        );
+        let (above, measures) = fall(method, 2e-3);
+        assert!(above, "{method:?}");
+        assert_eq!(measures.self_intersections, 0, "{method:?}");
+    }
+}
+
+#[test]
+fn a_planted_crossing_is_undone() {
+    let n = 8;
+    let low = sheet(n, |u, v| Vec3::new(0.15 * u, 0.0, 0.15 * v));
+    // One border dips through the sheet below.
+    let high = sheet(n, |u, v| {
+        Vec3::new(
+            0.05 + 0.15 * u,
+            0.004 - 0.02 * (1.0 - 5.0 * u).max(0.0),
+            0.02 + 0.12 * v,
+        )
+    });
+    let n = n as u32;
+    let scene = Scene {
+        duration: 0.5,
+        gravity: Vec3::zeros(),
+        damping: toile_drape::Damping {
+            mass: 5.0,
+            ..Default::default()
+        },
+        method: MethodKind::Xpbd.into(),
+        contact: ContactSettings {
+            cloth_offset: 2e-3,
+            ..ContactSettings::default()
+        },
+        objects: vec![
+            object("low", low, vec![0, n, n * (n + 1), n * (n + 1) + n]),
+            object("high", high, vec![]),
+        ],
+        ..Scene::default()
+    };
+    let mut run = SceneRun::new(scene).unwrap();
+    assert!(run.measure().self_intersections > 4);
+    while !run.finished() {
+        run.advance().unwrap();
+    }
+    assert_eq!(run.measure().self_intersections, 0);
+}
+
+#[test]
+fn contacts_do_not_depend_on_threads_and_push_both_ways_alike() {
+    let mesh = crumpled(3, 12);
+    let cloth = Cloth::from_mesh("sheet", &mesh, Material::default()).unwrap();
+    let mut model = Model::new("sheet", &cloth).unwrap();
+    model.contact.cloth_offset = 4e-3;
+    let state = State::at_rest(&model, mesh.positions.clone());
+    let found = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        let mut contacts = ClothContacts::default();
+        pool.install(|| contacts.find(&model, &state, &state.positions, 8e-3));
+        contacts
+    };
+    let one = found(1);
+    assert!(!one.active.is_empty());
+    for contact in &one.active {
+        assert!(
+            contact.weights.iter().sum::<f64>().abs() < 1e-12,
+            "momentum is kept"
+        );
+    }
+    for threads in [2, 5] {
+        let other = found(threads);
+        assert_eq!(one.active, other.active);
+        assert_eq!(one.piercings, other.piercings);
+    }
+    let crossing = SurfaceTree::new(mesh).self_intersections().len();
+    assert_eq!(crossing > 0, one.piercings > 0);
+}
