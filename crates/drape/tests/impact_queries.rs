@@ -1,6 +1,8 @@
 //! Every continuous-collision query of the published samples with exact answers (Wang et al. 2021):
 //! none missed, few called too many.
 
+#![allow(clippy::unwrap_used)]
+
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use toile_drape::collision::{edge_edge_impact, vertex_face_impact};

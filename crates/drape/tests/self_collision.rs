@@ -1,6 +1,8 @@
 //! Cloth against cloth: pairs against brute force, motions that may not pass, scenes that end
 //! without a crossing, crossings that are undone.
 
+#![allow(clippy::unwrap_used)]
+
 use toile_drape::collision::{
     ClothContacts, ClothSurface, FeaturePair, Nearness, bound_moves, crossings, nearnesses,
 };

@@ -56,7 +56,7 @@ pub fn closest_on_segments(a: [Vec3; 2], b: [Vec3; 2]) -> [f64; 2] {
         [along(a, b[1]), 1.0],
     ];
     for other in ends {
-        if distance2(other) < distance2(best) || !(distance2(best) >= 0.0) {
+        if distance2(other) < distance2(best) || distance2(best).is_nan() {
             best = other;
         }
     }

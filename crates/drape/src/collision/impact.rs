@@ -72,7 +72,7 @@ fn advance<const N: usize>(
         let n = vector / distance;
         let kept = gap + ROUNDING * scale * (n.x.abs() + n.y.abs() + n.z.abs());
         // Also where the distance is zero and n no number.
-        if !(distance > kept) {
+        if distance <= kept || distance.is_nan() || kept.is_nan() {
             return Some(time);
         }
         let mut safe = f64::INFINITY;
