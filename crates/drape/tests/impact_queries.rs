@@ -1,7 +1,7 @@
 //! Every continuous-collision query of the published samples with exact answers (Wang et al. 2021):
 //! none missed, few called too many.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
