@@ -2,32 +2,21 @@
 //! floor, with one thread and two.
 #![allow(missing_docs, clippy::print_stdout, clippy::unwrap_used)]
 
+#[path = "../tests/support/sheets.rs"]
+mod sheets;
+
+use sheets::sheet;
 use std::sync::Arc;
 use std::time::Instant;
 use toile_drape::{Cloth, Collider, Material, Model, State, Xpbd};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-fn sheet(n: usize, cell: f64) -> TriangleMesh {
-    let mut mesh = TriangleMesh::default();
-    for j in 0..=n {
-        for i in 0..=n {
-            let (u, v) = (cell * i as f64, cell * j as f64);
-            let bump = 0.2 * cell * (9.0 * u + 7.0 * v).sin();
-            mesh.positions.push(Vec3::new(u, 6e-3 + bump, v));
-        }
-    }
-    let at = |i: usize, j: usize| (j * (n + 1) + i) as u32;
-    for j in 0..n {
-        for i in 0..n {
-            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            if (i + j) % 2 == 0 {
-                mesh.triangles.extend([[a, b, c], [a, c, d]]);
-            } else {
-                mesh.triangles.extend([[a, b, d], [b, c, d]]);
-            }
-        }
-    }
-    mesh
+fn bumpy(n: usize, cell: f64) -> TriangleMesh {
+    let size = cell * n as f64;
+    sheet([n, n], [size, size], |u, v| {
+        let bump = 0.2 * cell * (9.0 * u + 7.0 * v).sin();
+        Vec3::new(u, 6e-3 + bump, v)
+    })
 }
 
 fn floor() -> Collider {
@@ -69,7 +58,7 @@ fn time(model: &Model, threads: usize, runs: usize) -> f64 {
 
 fn sheet_positions(model: &Model) -> Vec<Vec3> {
     let n = (model.vertex_count() as f64).sqrt() as usize - 1;
-    sheet(n, 1.0 / n as f64).positions
+    bumpy(n, 1.0 / n as f64).positions
 }
 
 fn main() {
@@ -84,7 +73,7 @@ fn main() {
                 bend: [bend; 3],
                 ..Material::default()
             };
-            let cloth = Cloth::from_mesh("sheet", &sheet(n, 1.0 / n as f64), material).unwrap();
+            let cloth = Cloth::from_mesh("sheet", &bumpy(n, 1.0 / n as f64), material).unwrap();
             let mut model = Model::new("sheet", &cloth).unwrap();
             model.pinned[0] = true;
             model.pinned[n] = true;

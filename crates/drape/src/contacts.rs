@@ -1,8 +1,9 @@
 //! Finding where the cloth touches solid surfaces: recomputed as it moves.
 
 use crate::collision::ClothContacts;
-use crate::laws::contact::{ContactLaw, ContactPlane, damped_push};
+use crate::laws::contact::{ContactLaw, ContactPlane, damped_push, gentle_push};
 use crate::model::FIELD_REACH;
+use crate::state::Memory as StateMemory;
 use crate::{Model, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -81,13 +82,15 @@ impl Contacts {
         self.active.extend(found.into_iter().flatten());
     }
 
-    /// Adds what damps the push of the surfaces, for explicit methods [N].
-    pub fn damp(&self, model: &Model, state: &State, force: &mut [Vec3]) {
+    /// Adds what damps the push of the surfaces, for explicit methods in substeps of `h` [s], and
+    /// takes from it what would throw cloth that a surface was put over [N].
+    pub fn damp(&self, model: &Model, state: &State, h: f64, force: &mut [Vec3]) {
         for contact in &self.active {
             let sample = &model.samples[contact.sample as usize];
             let (plane, law) = (&contact.plane, &contact.law);
-            let push = law.normal_force(plane, sample.place(&state.positions));
-            if push <= 0.0 {
+            let place = sample.place(&state.positions);
+            let elastic = law.normal_force(plane, place);
+            if elastic <= 0.0 {
                 continue;
             }
             let corners = sample.vertices.iter().zip(sample.weights);
@@ -96,11 +99,27 @@ impl Contacts {
                 leaving += w * plane.normal.dot(&state.velocities[v as usize]);
                 mass += w * model.mass[v as usize];
             }
-            let change = damped_push(push, law.normal, mass, leaving) - push;
+            let mut push = damped_push(elastic, law.normal, mass, leaving);
+            if is_buried(model, state, contact, place) {
+                push = push.min(gentle_push(mass, leaving, h));
+            }
             for (&v, w) in corners {
-                force[v as usize] += plane.normal * (w * change);
+                force[v as usize] += plane.normal * (w * (push - elastic));
             }
         }
+    }
+
+    /// Remembers which samples a surface was put over, for explicit methods, after
+    /// [`Self::settle`]. Methods with a memory of their own remember none.
+    pub fn remember_buried(&self, model: &Model, state: &mut State) {
+        if !matches!(state.memory, StateMemory::Nothing | StateMemory::Buried(_)) {
+            return;
+        }
+        let buried = self.active.iter().filter(|contact| {
+            let sample = &model.samples[contact.sample as usize];
+            is_buried(model, state, contact, sample.place(&state.positions))
+        });
+        state.memory = StateMemory::of_buried(buried.map(|contact| contact.sample));
     }
 
     /// Moves the friction anchors after a step, and remembers the normal forces.
@@ -119,6 +138,15 @@ impl Contacts {
             }
         }
     }
+}
+
+/// Whether a sample lies deeper in a surface than the offset, where no motion brings it, or has
+/// lain so and not come out since.
+fn is_buried(model: &Model, state: &State, contact: &Contact, place: Vec3) -> bool {
+    let depth = contact.plane.depth_of(place);
+    let offset = model.contact.offset + model.samples[contact.sample as usize].extra_offset;
+    let remembered = || state.memory.buried().binary_search(&contact.sample).is_ok();
+    depth > offset || (depth > 0.0 && remembered())
 }
 
 fn find(

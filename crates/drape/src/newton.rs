@@ -134,10 +134,10 @@ impl Workspace {
 
     /// The same with the forces that depend on velocity, viscosity and the drag of the air on
     /// triangles, taken at the state's velocities [N]. Drag per mass is left to the caller.
-    pub(crate) fn force_in_motion(&mut self, model: &Model, state: &State) -> &[Vec3] {
+    pub(crate) fn force_in_motion(&mut self, model: &Model, state: &State, h: f64) -> &[Vec3] {
         self.net_force(model, state);
         add_forces_of_motion(model, state, &mut self.gradient);
-        self.contacts.damp(model, state, &mut self.gradient);
+        self.contacts.damp(model, state, h, &mut self.gradient);
         for (force, &pinned) in self.gradient.iter_mut().zip(&model.pinned) {
             if pinned {
                 *force = Vec3::zeros();

@@ -29,6 +29,25 @@ pub enum Memory {
     Relaxation(RelaxationRun),
 }
 
+impl Memory {
+    /// Of contact samples that a surface was put over, in order.
+    pub(crate) fn of_buried(samples: impl Iterator<Item = u32>) -> Self {
+        let samples: Vec<u32> = samples.collect();
+        match samples.is_empty() {
+            true => Self::Nothing,
+            false => Self::Buried(samples),
+        }
+    }
+
+    /// The contact samples that a surface was put over, in order.
+    pub(crate) fn buried(&self) -> &[u32] {
+        match self {
+            Self::Buried(samples) => samples,
+            _ => &[],
+        }
+    }
+}
+
 /// Positions, velocities, and what contact remembers.
 #[derive(Debug, Default, PartialEq)]
 pub struct State {

@@ -120,3 +120,68 @@ fn substep(model: &Model) -> f64 {
     let mean = (0..model.triangles.len()).map(crossing).sum::<f64>() / count as f64;
     (COURANT * mean).min(LONGEST_SUBSTEP)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Cloth, Material, RestRun, RestSettings, Workspace};
+    use toile_geometry::TriangleMesh;
+
+    /// A strip of 3 x 20 cells held level by its first row.
+    fn strip() -> (Model, State) {
+        let mut mesh = TriangleMesh::default();
+        for j in 0..=20u32 {
+            for i in 0..=3u32 {
+                let (x, z) = (0.01 * f64::from(i), 0.01 * f64::from(j));
+                mesh.positions.push(Vec3::new(x, 0.0, z));
+                if i < 3 && j < 20 {
+                    let a = 4 * j + i;
+                    mesh.triangles
+                        .extend([[a, a + 1, a + 5], [a, a + 5, a + 4]]);
+                }
+            }
+        }
+        let cloth = Cloth::from_mesh("strip", &mesh, Material::default()).unwrap();
+        let mut model = Model::new("strip", &cloth).unwrap();
+        model.pinned[..4].fill(true);
+        let state = State::at_rest(&model, mesh.positions);
+        (model, state)
+    }
+
+    #[test]
+    fn a_strip_let_go_swings_down_and_is_calm_before_its_time_is_up() {
+        let (model, mut state) = strip();
+        let mut run = SwingRun::new(&model);
+        let mut stops = 0;
+        while !run.finished() {
+            run.advance(&model, &mut state).unwrap();
+            stops += usize::from(run.energy == 0.0);
+            assert!((0.0..=1.0 + 1e-9).contains(&run.share()));
+        }
+        assert!(run.calm && run.time < 0.8 * LONGEST, "{}", run.time);
+        assert!(stops >= 2, "{stops}");
+        assert!(state.velocities.iter().all(|v| *v == Vec3::zeros()));
+        assert!(state.positions[83].y < -0.15, "{}", state.positions[83]);
+        // Newton's method finds the tip near its place.
+        let tip = state.positions[83];
+        let mut rest = RestRun::near(RestSettings::default());
+        let mut workspace = Workspace::default();
+        while !rest.finished() {
+            rest.advance(&model, &mut state, &mut workspace).unwrap();
+        }
+        let off = (state.positions[83] - tip).norm();
+        assert!(off < 3e-3, "{off}");
+    }
+
+    #[test]
+    fn finer_cloth_swings_in_shorter_substeps() {
+        let (model, _) = strip();
+        let mut finer = strip().0;
+        for area in &mut finer.elements {
+            area.area /= 16.0;
+        }
+        let ratio = substep(&finer) / substep(&model);
+        assert!((ratio - 0.25).abs() < 1e-12 || substep(&model) == LONGEST_SUBSTEP);
+        assert!(substep(&finer) < substep(&model));
+    }
+}

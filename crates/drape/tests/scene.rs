@@ -1,32 +1,18 @@
 //! Scenes in motion: known laws, and inputs where methods fail.
 
+#[path = "support/sheets.rs"]
+mod sheets;
+
+use sheets::sheet;
 use toile_drape::{
     Cloth, DrapeError, Material, MethodKind, ObjectKind, Scene, SceneElastic, SceneEnd,
     SceneObject, SceneRun,
 };
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// A square sheet of n x n cells with alternating diagonals, its first row at the origin.
-fn sheet(n: usize, size: f64, turn: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
-    let mut mesh = TriangleMesh::default();
-    for j in 0..=n {
-        for i in 0..=n {
-            mesh.positions
-                .push(turn(size * i as f64 / n as f64, size * j as f64 / n as f64));
-        }
-    }
-    let at = |i: usize, j: usize| (j * (n + 1) + i) as u32;
-    for j in 0..n {
-        for i in 0..n {
-            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            if (i + j) % 2 == 0 {
-                mesh.triangles.extend([[a, b, c], [a, c, d]]);
-            } else {
-                mesh.triangles.extend([[a, b, d], [b, c, d]]);
-            }
-        }
-    }
-    mesh
+/// A square sheet of n x n cells.
+fn square(n: usize, size: f64, place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
+    sheet([n, n], [size, size], place)
 }
 
 fn cloth_object(mesh: TriangleMesh, pins: Vec<u32>) -> SceneObject {
@@ -52,7 +38,7 @@ fn finish(mut run: SceneRun) -> SceneRun {
 fn a_free_sheet_falls_as_implicit_euler_falls() {
     let scene = Scene {
         objects: vec![cloth_object(
-            sheet(6, 0.3, |u, v| Vec3::new(u, 1.0, v)),
+            square(6, 0.3, |u, v| Vec3::new(u, 1.0, v)),
             vec![],
         )],
         duration: 0.5,
@@ -78,7 +64,7 @@ fn a_hanging_strip_stretches_by_its_weight() {
         ..Material::default()
     };
     let mut object = cloth_object(
-        sheet(20, 0.5, |u, v| Vec3::new(u, -v, 0.0)),
+        square(20, 0.5, |u, v| Vec3::new(u, -v, 0.0)),
         (0..=20).collect(),
     );
     object.kind = ObjectKind::Deformable {
@@ -112,8 +98,8 @@ fn a_hanging_strip_stretches_by_its_weight() {
 
 #[test]
 fn elastics_merge_what_they_draw_together_and_keep_momentum() {
-    let mesh = sheet(4, 0.2, |u, v| Vec3::new(u, v, 0.0));
-    let mut other = cloth_object(sheet(4, 0.2, |u, v| Vec3::new(u + 0.21, v, 0.0)), vec![]);
+    let mesh = square(4, 0.2, |u, v| Vec3::new(u, v, 0.0));
+    let mut other = cloth_object(square(4, 0.2, |u, v| Vec3::new(u + 0.21, v, 0.0)), vec![]);
     other.name = "other".to_owned();
     let elastics = (0..5u32)
         .map(|j| SceneElastic {
@@ -158,7 +144,7 @@ fn elastics_merge_what_they_draw_together_and_keep_momentum() {
 fn bad_scenes_are_refused_with_place_and_remedy() {
     let good = || Scene {
         objects: vec![cloth_object(
-            sheet(2, 0.1, |u, v| Vec3::new(u, v, 0.0)),
+            square(2, 0.1, |u, v| Vec3::new(u, v, 0.0)),
             vec![],
         )],
         ..Scene::default()
@@ -222,7 +208,7 @@ fn bad_scenes_are_refused_with_place_and_remedy() {
 
 #[test]
 fn huge_steps_and_stiff_crushed_cloth_end_finite_or_say_so() {
-    let crushed = sheet(8, 0.3, |u, v| Vec3::new(u, v, 0.0));
+    let crushed = square(8, 0.3, |u, v| Vec3::new(u, v, 0.0));
     let flat = crushed.clone();
     for (stretch, step) in [(600.0, 1.0), (1e8, 1.0 / 60.0), (1e8, 10.0)] {
         let material = Material {

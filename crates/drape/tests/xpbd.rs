@@ -1,40 +1,20 @@
 //! XPBD held to closed forms, to the implicit solver, and to inputs where methods fail.
 
+#[path = "support/sheets.rs"]
+mod sheets;
+
+use sheets::{cloth, sheet};
 use std::sync::Arc;
 use toile_drape::{
-    Cloth, Collider, DrapeError, Elastic, ElasticEnd, Inertia, LinearSolver, Material, MethodKind,
-    Model, NewtonSettings, PcgLimits, RestRun, RestSettings, State, StepSettings, Workspace, Xpbd,
+    Collider, DrapeError, Elastic, ElasticEnd, Inertia, LinearSolver, Material, MethodKind, Model,
+    NewtonSettings, PcgLimits, RestRun, RestSettings, State, StepSettings, Workspace, Xpbd,
     XpbdSettings, laws::elastic::ElasticLaw,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// A sheet of n x m cells of some size with alternating diagonals.
-fn sheet(n: usize, m: usize, cell: f64, turn: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
-    let mut mesh = TriangleMesh::default();
-    for j in 0..=m {
-        for i in 0..=n {
-            mesh.positions.push(turn(cell * i as f64, cell * j as f64));
-        }
-    }
-    let at = |i: usize, j: usize| (j * (n + 1) + i) as u32;
-    for j in 0..m {
-        for i in 0..n {
-            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            if (i + j) % 2 == 0 {
-                mesh.triangles.extend([[a, b, c], [a, c, d]]);
-            } else {
-                mesh.triangles.extend([[a, b, d], [b, c, d]]);
-            }
-        }
-    }
-    mesh
-}
-
-fn model_of(mesh: &TriangleMesh, material: Material) -> (Model, State) {
-    let cloth = Cloth::from_mesh("cloth", mesh, material).expect("sound");
-    let model = Model::new("cloth", &cloth).expect("sound");
-    let state = State::at_rest(&model, mesh.positions.clone());
-    (model, state)
+/// A sheet of n x m cells of some size.
+fn grid(n: usize, m: usize, cell: f64, place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
+    sheet([n, m], [cell * n as f64, cell * m as f64], place)
 }
 
 /// A flat floor of two triangles, its normal turned by `angle` about z.
@@ -54,8 +34,8 @@ fn slope(angle: f64) -> Collider {
 
 #[test]
 fn a_free_sheet_falls_and_keeps_its_momentum() {
-    let (mut model, mut state) = model_of(
-        &sheet(12, 12, 0.02, |u, v| Vec3::new(u, 1.0, v)),
+    let (mut model, mut state) = cloth(
+        &grid(12, 12, 0.02, |u, v| Vec3::new(u, 1.0, v)),
         Material::default(),
     );
     // Crumpled by its velocities, under no gravity.
@@ -82,8 +62,8 @@ fn a_free_sheet_falls_and_keeps_its_momentum() {
     assert!((momentum(&state) - before).norm() < 1e-4 * scale);
 
     // Alone under gravity: v is exact to single precision, and so is the fall.
-    let (model, mut state) = model_of(
-        &sheet(6, 6, 0.02, |u, v| Vec3::new(u, 1.0, v)),
+    let (model, mut state) = cloth(
+        &grid(6, 6, 0.02, |u, v| Vec3::new(u, 1.0, v)),
         Material::default(),
     );
     let mut solver = Xpbd::new(&model);
@@ -107,8 +87,8 @@ fn iterated_to_the_end_it_is_implicit_euler() {
         shear: 20.0,
         ..Material::default()
     };
-    let (mut model, state) = model_of(
-        &sheet(5, 5, 0.03, |u, v| Vec3::new(u, 0.02 * (30.0 * u).sin(), v)),
+    let (mut model, state) = cloth(
+        &grid(5, 5, 0.03, |u, v| Vec3::new(u, 0.02 * (30.0 * u).sin(), v)),
         material,
     );
     model.pinned[0] = true;
@@ -186,8 +166,8 @@ fn a_hanging_strip_stretches_by_its_weight() {
         ..Material::default()
     };
     let (cells, length) = (20, 0.5);
-    let (mut model, mut state) = model_of(
-        &sheet(cells, 2, length / 20.0, |u, v| Vec3::new(0.0, -u, v)),
+    let (mut model, mut state) = cloth(
+        &grid(cells, 2, length / 20.0, |u, v| Vec3::new(0.0, -u, v)),
         material.clone(),
     );
     for row in 0..3 {
@@ -224,7 +204,7 @@ fn it_rests_where_newton_rests() {
         bend: [1.5e-3; 3],
         ..Material::default()
     };
-    let (mut model, state) = model_of(&sheet(9, 2, 0.015, |u, v| Vec3::new(u, 0.0, v)), material);
+    let (mut model, state) = cloth(&grid(9, 2, 0.015, |u, v| Vec3::new(u, 0.0, v)), material);
     for row in 0..3 {
         model.pinned[10 * row] = true;
         model.pinned[10 * row + 1] = true;
@@ -274,8 +254,8 @@ fn friction_holds_below_its_angle_and_slides_as_coulomb_says_above() {
         let angle = tangent.atan();
         let along = Vec3::new(angle.cos(), angle.sin(), 0.0);
         let up = Vec3::new(-angle.sin(), angle.cos(), 0.0);
-        let mesh = sheet(4, 4, 0.02, |u, v| along * u + up * 4e-3 + Vec3::z() * v);
-        let (mut model, mut state) = model_of(
+        let mesh = grid(4, 4, 0.02, |u, v| along * u + up * 4e-3 + Vec3::z() * v);
+        let (mut model, mut state) = cloth(
             &mesh,
             Material {
                 friction,
@@ -308,8 +288,8 @@ fn friction_holds_below_its_angle_and_slides_as_coulomb_says_above() {
 
 /// A sheet falling onto a floor, with pins, an elastic and samples within triangles.
 fn busy_scene(n: usize) -> (Model, State) {
-    let (mut model, state) = model_of(
-        &sheet(n, n, 0.01, |u, v| {
+    let (mut model, state) = cloth(
+        &grid(n, n, 0.01, |u, v| {
             Vec3::new(u, 0.03 + 0.01 * (40.0 * u).sin(), v)
         }),
         Material::default(),
@@ -401,7 +381,7 @@ fn slivers_stiff_cloth_huge_steps_and_collapse_stay_sound() {
         (stiff, &flat, 1.0 / 600.0, true),
     ];
     for (case, (material, turn, substep, crush)) in cases.into_iter().enumerate() {
-        let (mut model, mut state) = model_of(&sheet(10, 10, 0.02, turn), material);
+        let (mut model, mut state) = cloth(&grid(10, 10, 0.02, turn), material);
         model.pinned[0] = true;
         model.colliders.push(slope(0.0));
         if crush {
@@ -426,8 +406,8 @@ fn slivers_stiff_cloth_huge_steps_and_collapse_stay_sound() {
 #[test]
 fn a_step_far_too_large_is_cut_or_refused() {
     for step in [0.3, 1e3] {
-        let (mut model, mut state) = model_of(
-            &sheet(8, 8, 0.02, |u, v| Vec3::new(u, 0.0, v)),
+        let (mut model, mut state) = cloth(
+            &grid(8, 8, 0.02, |u, v| Vec3::new(u, 0.0, v)),
             Material::default(),
         );
         model.pinned[0] = true;

@@ -49,6 +49,16 @@ impl ContactPlane {
 /// nothing themselves. Without it contact and friction together feed a flutter of cloth at rest.
 pub const RESTITUTION_DAMPING: f64 = 0.2;
 
+/// Speed [m/s] at which a surface that was put over cloth lets it go: faster, a push that no motion
+/// has stored would throw it.
+const LEAVING: f64 = 1.0;
+
+/// The most push [N] on cloth of a mass [kg] that a surface was put over, for a substep [s].
+#[inline(always)]
+pub fn gentle_push(mass: f64, leaving: f64, substep: f64) -> f64 {
+    (mass / substep * (LEAVING - leaving)).max(0.0)
+}
+
 /// Push of a surface [N] that stiffness and damping make together: max(0, k d - c v), with k d the
 /// `elastic` part [N], v the `leaving` speed along the normal [m/s] and c = 2 zeta sqrt(k m) for
 /// the `mass` [kg] on the spring `normal` [N/m]. It never pulls (Wriggers 2006, section 5.1).

@@ -2,17 +2,17 @@
 //!
 //! Every explicit method evaluates accelerations a(x, v) = f(x, v) / m from the net force f and
 //! extrapolates. All forces of the model act: membrane, bending, elastics, gravity, contact as the
-//! penalty k d of depth d, friction by return mapping to anchors that slide once a substep. Drag
+//! penalty k d of depth d with a dashpot, friction by return mapping to anchors that slide once a substep. Drag
 //! acts as -c v on the acceleration.
 //!
 //! Stability: a vibration of angular frequency w, undamped, stays bounded while h w is below the
 //! method's limit: 2 for symplectic Euler and Verlet, 2.828 for Runge-Kutta 4, 0 for forward Euler
 //! (Hairer, Norsett and Wanner 1993, II; Hairer, Lubich and Wanner 2006, I.5). Contact adds w^2 =
 //! stiffness / density: at 1e6 N/m3 and 0.2 kg/m2 the substep must stay below 2 / 2236 s = 0.89 ms
-//! however soft the cloth is.
+//! however soft the cloth is, and below 0.73 ms by its dashpot.
 
 use super::energy::{EnergyWatch, fastest, runaway};
-use super::frequency::{FrequencySearch, contact_frequency};
+use super::frequency::{FrequencySearch, damped_contact_frequency};
 use super::{Method, MethodSettings, StepReport};
 use crate::{DrapeError, Model, State, Workspace};
 use toile_geometry::Vec3;
@@ -26,8 +26,8 @@ pub trait Scheme: Default + Send {
     /// substeps are counted by.
     const LIMIT: f64;
 
-    /// Prepares for the substeps of one step.
-    fn begin(&mut self, _model: &Model, _state: &State, _workspace: &mut Workspace) {}
+    /// Prepares for the substeps of `h` [s] of one step.
+    fn begin(&mut self, _model: &Model, _state: &State, _workspace: &mut Workspace, _h: f64) {}
 
     /// Moves positions and velocities on by `h` [s], and the friction anchors.
     fn substep(&mut self, model: &Model, state: &mut State, workspace: &mut Workspace, h: f64);
@@ -49,9 +49,15 @@ const SHARE: f64 = 0.9;
 /// Substeps of one step at the most: more is a mesh with slivers, not a simulation.
 const MOST_SUBSTEPS: f64 = 1e6;
 
-/// Net force on every vertex: all forces of the model at a state, zero at pins [N].
-pub fn forces<'a>(model: &Model, state: &State, workspace: &'a mut Workspace) -> &'a [Vec3] {
-    workspace.force_in_motion(model, state)
+/// Net force on every vertex: all forces of the model at a state, zero at pins [N], for a substep
+/// of `h` [s].
+pub fn forces<'a>(
+    model: &Model,
+    state: &State,
+    workspace: &'a mut Workspace,
+    h: f64,
+) -> &'a [Vec3] {
+    workspace.force_in_motion(model, state, h)
 }
 
 /// The same, and slides the friction anchors to where the cloth is now. Once a substep.
@@ -59,10 +65,12 @@ pub fn forces_and_settle<'a>(
     model: &Model,
     state: &mut State,
     workspace: &'a mut Workspace,
+    h: f64,
 ) -> &'a [Vec3] {
-    forces(model, state, workspace);
+    forces(model, state, workspace, h);
     if !model.colliders.is_empty() {
         workspace.contacts.settle(model, state);
+        workspace.contacts.remember_buried(model, state);
     }
     workspace.last_force()
 }
@@ -89,7 +97,7 @@ impl<S: Scheme> Explicit<S> {
         if let Some(given) = self.substeps {
             return Ok(given.max(1));
         }
-        let limits = [S::LIMIT, contact_frequency(model)];
+        let limits = [S::LIMIT, damped_contact_frequency(model)];
         let (longest, vertex) = self
             .search
             .stable_step(model, state, &mut self.workspace, limits);
@@ -136,7 +144,7 @@ impl<S: Scheme> Method for Explicit<S> {
         }
         self.watch.start(model, state, &mut self.workspace);
         let end = state.time + step;
-        self.scheme.begin(model, state, &mut self.workspace);
+        self.scheme.begin(model, state, &mut self.workspace, h);
         for _ in 0..substeps {
             self.scheme.substep(model, state, &mut self.workspace, h);
             if let Some(vertex) = runaway(state) {

@@ -16,7 +16,7 @@ impl Scheme for ForwardEuler {
     const LIMIT: f64 = 2.0;
 
     fn substep(&mut self, model: &Model, state: &mut State, workspace: &mut Workspace, h: f64) {
-        let force = forces_and_settle(model, state, workspace);
+        let force = forces_and_settle(model, state, workspace, h);
         let moving = state.positions.iter_mut().zip(&mut state.velocities);
         for ((x, v), (f, m)) in moving.zip(force.iter().zip(&model.mass)) {
             let acceleration = f / *m - *v * model.air_drag;

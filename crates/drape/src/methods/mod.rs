@@ -22,7 +22,7 @@ mod symplectic_euler;
 mod velocity_verlet;
 
 pub(crate) use energy::{energy_bound, is_possible_speed};
-pub(crate) use frequency::contact_frequency;
+pub(crate) use frequency::damped_contact_frequency;
 pub use frequency::largest_frequency;
 pub use relaxation::RelaxationRun;
 

@@ -40,9 +40,9 @@ impl Scheme for RungeKutta4 {
         }
         for (stage, (along, weight)) in STAGES.into_iter().enumerate() {
             let force = if stage == 0 {
-                forces_and_settle(model, state, workspace)
+                forces_and_settle(model, state, workspace, h)
             } else {
-                forces(model, state, workspace)
+                forces(model, state, workspace, h)
             };
             for (i, f) in force.iter().enumerate() {
                 let v = state.velocities[i];

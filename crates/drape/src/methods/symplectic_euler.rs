@@ -17,7 +17,7 @@ impl Scheme for SymplecticEuler {
 
     fn substep(&mut self, model: &Model, state: &mut State, workspace: &mut Workspace, h: f64) {
         let slowing = 1.0 / (1.0 + model.air_drag * h);
-        let force = forces_and_settle(model, state, workspace);
+        let force = forces_and_settle(model, state, workspace, h);
         let moving = state.positions.iter_mut().zip(&mut state.velocities);
         for ((x, v), (f, m)) in moving.zip(force.iter().zip(&model.mass)) {
             *v = (*v + f * (h / m)) * slowing;

@@ -18,9 +18,9 @@ impl Scheme for VelocityVerlet {
     const STAGE: &'static str = "velocity Verlet";
     const LIMIT: f64 = 2.0;
 
-    fn begin(&mut self, model: &Model, state: &State, workspace: &mut Workspace) {
+    fn begin(&mut self, model: &Model, state: &State, workspace: &mut Workspace, h: f64) {
         self.force.clear();
-        self.force.extend(forces(model, state, workspace));
+        self.force.extend(forces(model, state, workspace, h));
     }
 
     fn substep(&mut self, model: &Model, state: &mut State, workspace: &mut Workspace, h: f64) {
@@ -33,7 +33,7 @@ impl Scheme for VelocityVerlet {
         }
         let slowing = 1.0 / (1.0 + model.air_drag * half);
         self.force
-            .copy_from_slice(forces_and_settle(model, state, workspace));
+            .copy_from_slice(forces_and_settle(model, state, workspace, h));
         for (v, (f, m)) in state
             .velocities
             .iter_mut()

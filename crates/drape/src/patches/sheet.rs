@@ -6,7 +6,7 @@ use super::patch::{Course, Patch, end_of, wider};
 use super::touch::Touch;
 use crate::laws::membrane::MembraneElement;
 use crate::laws::stretch::MembraneLaw;
-use crate::methods::contact_frequency;
+use crate::methods::damped_contact_frequency;
 use crate::{Elastic, ElasticEnd, Model, State};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -106,7 +106,7 @@ impl Sheet {
                 elements: model.elements.clone(),
                 laws: model.laws.clone(),
                 elastics: model.elastics.clone(),
-                contact: contact_frequency(model),
+                contact: damped_contact_frequency(model),
             },
             patches,
             rings,
@@ -131,7 +131,7 @@ impl Sheet {
             && key.elements == model.elements
             && key.laws == model.laws
             && key.elastics == model.elastics
-            && key.contact == contact_frequency(model)
+            && key.contact == damped_contact_frequency(model)
     }
 
     /// Takes over a state.

@@ -2,7 +2,7 @@
 //! [`crate::laws::contact`] at every one.
 
 use super::Lane;
-use crate::laws::contact::damped_push;
+use crate::laws::contact::{damped_push, gentle_push};
 use crate::model::FIELD_REACH;
 use crate::state::Memory;
 use crate::{Model, State};
@@ -34,10 +34,6 @@ pub struct Touching {
     buried: bool,
 }
 
-/// Speed [m/s] at which a surface that was put over cloth lets it go: faster, the push that no
-/// motion has stored would throw it.
-const LEAVING: f64 = 1.0;
-
 /// Stiffness along a surface by that across it, as for every other method.
 const TANGENTIAL: f64 = 0.5;
 
@@ -47,7 +43,7 @@ impl Touching {
     /// Push: N = k d of depth d. Friction: a spring to the anchor, k_t s, held to mu N by sliding
     /// the anchor (return mapping, Wriggers 2006, section 5.2).
     ///
-    /// Cloth that a surface was put over is pushed out no faster than [`LEAVING`]. Its `mass` is
+    /// Cloth that a surface was put over is pushed out at 1 m/s at the most. Its `mass` is
     /// in kg, the substep `h` in s.
     #[inline(always)]
     pub fn press(&mut self, place: Lane, velocity: Lane, mass: f64, h: f64) -> Lane {
@@ -65,7 +61,7 @@ impl Touching {
         let mut push = damped_push(self.force, self.stiffness, mass, leaving);
         self.buried |= depth > self.inside;
         if self.buried {
-            push = push.min((mass / h * (LEAVING - leaving)).max(0.0));
+            push = push.min(gentle_push(mass, leaving, h));
             self.force = push;
         }
         let away = place.minus(self.anchor);
@@ -143,10 +139,7 @@ impl Touch {
             self.near.clear();
             return;
         }
-        let buried: &[u32] = match &state.memory {
-            Memory::Buried(samples) => samples,
-            _ => &[],
-        };
+        let buried = state.memory.buried();
         for (number, sample) in model.samples.iter().enumerate() {
             let vertex = sample.vertices[0];
             if sample.triangle.is_some() || model.pinned[vertex as usize] {
@@ -182,11 +175,7 @@ impl Touch {
         state.anchors.fill(None);
         state.normal_forces.fill(0.0);
         let buried = self.places.iter().filter(|sample| sample.buried);
-        let buried: Vec<u32> = buried.map(|sample| sample.number).collect();
-        state.memory = match buried.is_empty() {
-            true => Memory::Nothing,
-            false => Memory::Buried(buried),
-        };
+        state.memory = Memory::of_buried(buried.map(|sample| sample.number));
         for sample in self.places.iter().filter(|sample| sample.force > 0.0) {
             state.anchors[sample.number as usize] = Some(sample.anchor.into());
             state.normal_forces[sample.number as usize] = sample.force;

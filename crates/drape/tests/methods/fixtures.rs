@@ -1,41 +1,9 @@
 //! Small cloths that the tests share.
 
+pub use crate::sheets::{cloth, sheet};
 use std::sync::Arc;
-use toile_drape::{Cloth, Collider, Material, Method, MethodKind, MethodSettings, Model, State};
+use toile_drape::{Collider, Material, Method, MethodKind, MethodSettings, Model, State};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
-
-/// A grid of `cells` over `size` [m] in a plane, alternating diagonals.
-pub fn sheet(cells: [usize; 2], size: [f64; 2], place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
-    let mut mesh = TriangleMesh::default();
-    for j in 0..=cells[1] {
-        for i in 0..=cells[0] {
-            mesh.positions.push(place(
-                size[0] * i as f64 / cells[0] as f64,
-                size[1] * j as f64 / cells[1] as f64,
-            ));
-        }
-    }
-    let at = |i: usize, j: usize| (j * (cells[0] + 1) + i) as u32;
-    for j in 0..cells[1] {
-        for i in 0..cells[0] {
-            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            if (i + j) % 2 == 0 {
-                mesh.triangles.extend([[a, b, c], [a, c, d]]);
-            } else {
-                mesh.triangles.extend([[a, b, d], [b, c, d]]);
-            }
-        }
-    }
-    mesh
-}
-
-/// The model of a mesh and its state at rest.
-pub fn cloth(mesh: &TriangleMesh, material: Material) -> (Model, State) {
-    let cloth = Cloth::from_mesh("cloth", mesh, material).expect("sound");
-    let model = Model::new("cloth", &cloth).expect("sound");
-    let state = State::at_rest(&model, mesh.positions.clone());
-    (model, state)
-}
 
 /// A soft square of 0.3 m, 6 x 6 cells, hanging in the xy plane from its upper row.
 pub fn hanging_square() -> (Model, State) {
@@ -76,6 +44,11 @@ pub fn method(kind: MethodKind, substeps: u32) -> Box<dyn Method> {
 
 /// A solid ball at the origin.
 pub fn ball(radius: f64) -> Collider {
+    Collider::new(Arc::new(SurfaceTree::new(ball_mesh(radius))))
+}
+
+/// The surface of a ball at the origin.
+pub fn ball_mesh(radius: f64) -> TriangleMesh {
     let (rings, around) = (24u32, 48u32);
     let mut mesh = TriangleMesh::default();
     mesh.positions.push(Vec3::new(0.0, radius, 0.0));
@@ -105,5 +78,5 @@ pub fn ball(radius: f64) -> Collider {
         let [a, b] = [k, next].map(|k| 1 + (rings - 2) * around + k);
         mesh.triangles.push([a, last, b]);
     }
-    Collider::new(Arc::new(SurfaceTree::new(mesh)))
+    mesh
 }

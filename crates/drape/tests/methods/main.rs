@@ -6,4 +6,7 @@ mod fixtures;
 mod hard;
 mod order;
 mod patches;
+mod rest;
+#[path = "../support/sheets.rs"]
+mod sheets;
 mod table;
