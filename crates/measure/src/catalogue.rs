@@ -1,5 +1,7 @@
 //! The catalogue: what each measurement is called, what it means and how it is taken.
 
+use crate::further::FURTHER;
+
 /// What a measurement's value is measured in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum UnitKind {
@@ -26,13 +28,13 @@ pub struct Definition {
 
 /// The measurement of that name or alias, if the catalogue knows it.
 pub fn definition(name: &str) -> Option<&'static Definition> {
-    CATALOGUE
-        .iter()
+    let all = || CATALOGUE.iter().chain(FURTHER);
+    all()
         .find(|known| known.name == name)
-        .or_else(|| CATALOGUE.iter().find(|known| known.aliases.contains(&name)))
+        .or_else(|| all().find(|known| known.aliases.contains(&name)))
 }
 
-const fn length(
+pub(crate) const fn length(
     name: &'static str,
     label: &'static str,
     meaning: &'static str,
@@ -153,11 +155,7 @@ pub const CATALOGUE: &[Definition] = &[
         "waist_line",
         "Neck to waist, back",
         "Distance down the back from the base of the neck to the waist.",
-        &[
-            "back_waist_length",
-            "neck_to_waist_back",
-            "hps_to_waist_back",
-        ],
+        &["back_waist_length", "neck_to_waist_back"],
     ),
     length(
         "waist_over_bust_line",
@@ -312,7 +310,7 @@ pub const CATALOGUE: &[Definition] = &[
     length(
         "ankle",
         "Ankle girth",
-        "Girth over the ankle bones.",
+        "Smallest girth of the leg above the ankle bones.",
         &["ankle_circ", "ankle_girth"],
     ),
 ];
@@ -325,7 +323,7 @@ mod tests {
     #[test]
     fn names_and_aliases_are_unique_and_snake_case() {
         let mut seen = BTreeSet::new();
-        for known in CATALOGUE {
+        for known in CATALOGUE.iter().chain(FURTHER) {
             for name in std::iter::once(&known.name).chain(known.aliases) {
                 assert!(seen.insert(*name), "{name} is in the catalogue twice");
                 assert!(name.chars().all(|c| c.is_ascii_lowercase() || c == '_'));

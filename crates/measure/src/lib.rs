@@ -5,8 +5,15 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod catalogue;
+mod foreign;
+mod further;
+mod predict;
 mod samples;
+mod survey;
 mod table;
 
 pub use catalogue::{CATALOGUE, Definition, UnitKind, definition};
+pub use foreign::{FREESEWING, SEAMLY, translated};
+pub use further::FURTHER;
+pub use predict::Build;
 pub use table::{MeasureError, Measured, Measurements, Origin};
