@@ -3,15 +3,7 @@
 /// Why a mannequin could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BodyError {
-    /// A measurement the mannequin needs is not in the table.
-    #[error("measurement {name} is missing: add it to the table, for example {example}")]
-    Missing {
-        /// The measurement.
-        name: &'static str,
-        /// A usual value with its unit.
-        example: String,
-    },
-    /// A value no adult body has.
+    /// A value no body has.
     #[error("measurement {name} is {value}: give a value from {low} to {high} ({unit})")]
     OutOfRange {
         /// The measurement.
@@ -34,18 +26,6 @@ pub enum BodyError {
         second: &'static str,
         /// What to change.
         remedy: &'static str,
-    },
-    /// A girth that the body cannot have beside the other measurements.
-    #[error(
-        "measurement {name}: asked {asked:.3} m, but beside the others this body gets {got:.3} m: bring it nearer to its neighbours"
-    )]
-    Unmet {
-        /// The measurement.
-        name: &'static str,
-        /// Asked for [m].
-        asked: f64,
-        /// Taken from the skin [m].
-        got: f64,
     },
     /// The primitives leave a hole where the skin should be.
     #[error("the primitives of the {part} do not enclose its axis near ({x:.3}, {y:.3}, {z:.3}) m")]

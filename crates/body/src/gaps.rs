@@ -1,19 +1,23 @@
 //! What was asked for and what the skin has.
 
-use crate::marks::UNDERBUST;
-use crate::solve::THIGH_DROP;
-use crate::tape::{girth, girth_across};
-use crate::{Joint, Mannequin, Part};
+use crate::Mannequin;
+use crate::conflict::Conflict;
+use crate::girths::Girth;
+use crate::taken::Taken;
+use crate::tape::Skinned;
+use toile_measure::{Origin, UnitKind, definition};
 
-/// One measurement: asked for, and got on the skin by our own tape.
+/// One measurement: asked for or predicted, and got on the skin by our own tape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
     /// The measurement's name.
     pub name: &'static str,
-    /// Asked for [m] or [rad].
+    /// Asked for or predicted [m] or [rad].
     pub asked: f64,
     /// Taken from the skin [m] or [rad].
     pub got: f64,
+    /// Whether somebody asked for it or it was predicted from the others.
+    pub origin: Origin,
 }
 
 impl Gap {
@@ -21,59 +25,98 @@ impl Gap {
     pub fn gap(&self) -> f64 {
         self.got - self.asked
     }
+
+    /// Whether it is a girth by a closed tape.
+    pub fn is_girth(&self) -> bool {
+        Girth::ALL.iter().any(|girth| girth.name() == self.name)
+    }
+
+    /// Whether it is an angle.
+    pub fn is_angle(&self) -> bool {
+        definition(self.name).is_some_and(|known| known.kind == UnitKind::Angle)
+    }
 }
 
+/// Largest gap of a length [m] over stature before it is named: a millimetre of an adult.
+const NAMED: f64 = 5.7e-4;
+
 impl Mannequin {
-    /// Every measurement the body was made from, as asked and as the finished skin has it. Girths
-    /// are the convex hull of a section: horizontal, for the wrist across the arm.
+    /// Calls a function with the tape on the finished skin.
+    pub(crate) fn with_tape<T>(&self, use_it: impl FnOnce(&Taken) -> T) -> T {
+        let skinned = Skinned::finished(self.skin(), &self.parts);
+        use_it(&Taken {
+            skinned: &skinned,
+            marks: &self.marks,
+            levels: &self.levels,
+            warp: &self.warp,
+            crotch: &self.crotch,
+            armpit: self.armpit,
+        })
+    }
+
+    /// A measurement by its name in the catalogue, taken from the finished skin [m] or [rad]; none
+    /// if the tape does not know it.
+    pub fn taken(&self, name: &str) -> Option<f64> {
+        let name = definition(name).map_or(name, |known| known.name);
+        self.with_tape(|tape| tape.value(name))
+    }
+
+    /// Every measurement the body was made from, as asked or predicted and as the finished skin
+    /// has it: first what was asked for. Girths are the convex hull of a section: level round
+    /// trunk and legs, across arms and neck. Lengths over the body lie tight on it.
     pub fn measure(&self) -> Vec<Gap> {
-        let (q, l) = (&self.request, &self.landmarks);
-        let mesh = self.skin();
-        let tape = |part: Part, level: f64| girth(mesh, &self.parts, part, level);
-        let (tip, neck) = (l.shoulder_tips[0], l.neck_sides[0]);
-        let wrist = self.skeleton.centre(Joint::LWrist);
-        let along = (wrist - self.skeleton.centre(Joint::LShoulder)).normalize();
-        let floor = mesh.bounds().map_or(0.0, |[low, _]| low.y);
-        let waist = q.waist_level();
-        let row = |name, asked, got| Gap { name, asked, got };
-        vec![
-            row("height", q.height, l.crown.y - floor),
-            row("head_l", q.head, l.crown.y - l.nape.y),
-            row("neck_w", q.neck_width, 2.0 * neck.x),
-            row("shoulder_w", q.shoulder_width, 2.0 * tip.x),
-            row(
-                "shoulder_incl",
-                q.shoulder_slope,
-                (neck.y - tip.y).atan2(tip.x - neck.x),
-            ),
-            row("bust", q.bust, tape(Part::Trunk, q.bust_level())),
-            row(
-                "vert_bust_line",
-                q.bust_depth,
-                l.nape.y - l.bust_points[0].y,
-            ),
-            row(
-                "underbust",
-                q.underbust,
-                tape(Part::Trunk, q.bust_level() - UNDERBUST * q.height),
-            ),
-            row("waist", q.waist, tape(Part::Trunk, waist)),
-            row("waist_line", q.waist_line, l.nape.y - l.waist.y),
-            row("hips", q.hips, tape(Part::Trunk, q.hip_level())),
-            row("hips_line", q.hips_line, l.waist.y - l.hips.y),
-            row("crotch_hip_diff", q.crotch_drop, l.hips.y - l.crotch.y),
-            row(
-                "leg_circ",
-                q.thigh,
-                tape(Part::LeftLeg, q.crotch_level() - THIGH_DROP * q.height),
-            ),
-            row("arm_length", q.arm_length, (wrist - tip).dot(&along)),
-            row("arm_pose_angle", q.arm_angle, (-along.y).atan2(along.x)),
-            row(
-                "wrist",
-                q.wrist,
-                girth_across(mesh, &self.parts, Part::LeftArm, [wrist, along]),
-            ),
-        ]
+        self.with_tape(|tape| {
+            let mut rows = Vec::new();
+            for origin in [Origin::Asked, Origin::Predicted] {
+                for (name, measured) in self.request.table.iter() {
+                    let (Some(known), true) = (definition(name), measured.origin == origin) else {
+                        continue;
+                    };
+                    if let Some(got) = tape.value(known.name) {
+                        rows.push(Gap {
+                            name: known.name,
+                            asked: measured.value,
+                            got,
+                            origin,
+                        });
+                    }
+                }
+            }
+            rows
+        })
+    }
+
+    /// What was asked for and the tape does not know.
+    pub fn untaken(&self) -> Vec<String> {
+        let known: Vec<&str> = self.measure().iter().map(|gap| gap.name).collect();
+        self.request
+            .table
+            .iter()
+            .filter(|(name, m)| m.origin == Origin::Asked && !known.contains(name))
+            .map(|(name, _)| name.to_owned())
+            .collect()
+    }
+
+    /// What was asked for and contradicts itself: broken rules of any body, and asked
+    /// measurements the solved body misses by more than a millimetre on an adult.
+    pub fn conflicts(&self) -> Vec<Conflict> {
+        let mut found = self.request.conflicts.clone();
+        let height = self.request.get("height");
+        for row in self.measure() {
+            let beyond = match row.is_angle() {
+                true => row.gap().abs() > 0.02,
+                false => row.gap().abs() > NAMED * height,
+            };
+            let named = found.iter().any(|c: &Conflict| c.names.contains(&row.name));
+            if row.origin == Origin::Asked && beyond && !named {
+                found.push(Conflict {
+                    names: vec![row.name],
+                    gap: row.gap().abs(),
+                    why: "the body that meets the others best does not have it: measure it anew, \
+                          or those beside it",
+                });
+            }
+        }
+        found
     }
 }

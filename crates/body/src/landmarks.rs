@@ -1,8 +1,8 @@
 //! Named points of a body, its axes and its levels.
 
+use crate::levels::{Level, Levels};
 use crate::marks::middle_depth;
 use crate::solve::Grown;
-use crate::tape::ridge;
 use crate::warp::{Follow, Warp};
 use crate::{Joint, Mannequin, Part};
 use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
@@ -65,8 +65,12 @@ fn pair(left: Vec3) -> [Vec3; 2] {
 }
 
 impl Landmarks {
-    pub(crate) fn find(grown: &Grown, warp: &Warp, mesh: &TriangleMesh) -> Self {
-        let q = &grown.request;
+    pub(crate) fn find(
+        grown: &Grown,
+        (levels, warp): (&Levels, &Warp),
+        mesh: &TriangleMesh,
+    ) -> Self {
+        let level = |level: Level| levels.at(level);
         let trunk_section = |y: f64| -> Vec<Vec2> {
             let trunk = (0..mesh.triangles.len())
                 .filter(|&t| matches!(grown.skin.parts[t], Part::Trunk | Part::Head));
@@ -76,17 +80,16 @@ impl Landmarks {
             let z = middle_extreme(&trunk_section(y), 1.0);
             Vec3::new(0.0, y, z)
         };
-        let nape_z = -middle_extreme(&trunk_section(q.nape()), -1.0);
+        let nape_z = -middle_extreme(&trunk_section(level(Level::Nape)), -1.0);
         let spine = |y: f64| Vec3::new(0.0, y, middle_depth(&trunk_section(y)));
-        let window = [q.bust_level(), q.nape() + 0.02 * q.height];
-        let fallback = Vec3::new(0.5 * q.shoulder_width, q.nape(), 0.0);
-        let tip = ridge(mesh, 0.5 * q.shoulder_width, window).unwrap_or(fallback);
-        let neck = warp.apply(grown.marks.neck_side, Follow::default());
-        let bust = trunk_section(q.bust_level())
+        let tip = grown.marks.tip_on.at(&mesh.positions);
+        let neck = grown.marks.neck_side_on.at(&mesh.positions);
+        let bust_level = level(Level::Bust);
+        let bust = trunk_section(bust_level)
             .into_iter()
             .filter(|p| p.x >= 0.0)
             .max_by(|a, b| a.y.total_cmp(&b.y))
-            .map_or(fallback, |p| Vec3::new(p.x, q.bust_level(), p.y));
+            .map_or(tip, |p| Vec3::new(p.x, bust_level, p.y));
         let middle = |v: &usize| grown.skin.mirror[*v] as usize == *v;
         let lowest = (0..mesh.positions.len())
             .filter(middle)
@@ -100,18 +103,18 @@ impl Landmarks {
         let neck_base = warp.apply(Vec3::from(grown.template.joints.neck), Follow::default());
         Self {
             crown,
-            nape: Vec3::new(0.0, q.nape(), nape_z),
+            nape: Vec3::new(0.0, level(Level::Nape), nape_z),
             neck_sides: pair(neck),
             shoulder_tips: pair(tip),
             bust_points: pair(bust),
-            waist: front(q.waist_level()),
-            hips: front(q.hip_level()),
+            waist: front(level(Level::Waist)),
+            hips: front(level(Level::Hips)),
             crotch: lowest,
             spine: [
                 Vec3::new(0.0, lowest.y, lowest.z),
-                spine(q.hip_level()),
-                spine(q.waist_level()),
-                spine(q.bust_level()),
+                spine(level(Level::Hips)),
+                spine(level(Level::Waist)),
+                spine(bust_level),
                 Vec3::new(0.0, neck.y, neck_base.z),
             ],
         }
@@ -153,9 +156,9 @@ impl Mannequin {
             crown: l.crown.y,
             neck: l.neck_sides[0].y,
             shoulder: l.shoulder_tips[0].y,
-            chest: self.request.bust_level(),
-            waist: self.request.waist_level(),
-            hip: self.request.hip_level(),
+            chest: self.levels.at(Level::Bust),
+            waist: self.levels.at(Level::Waist),
+            hip: self.levels.at(Level::Hips),
             crotch: l.crotch.y,
         }
     }

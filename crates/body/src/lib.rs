@@ -3,26 +3,33 @@
 
 mod attach;
 mod bones;
+mod conflict;
 mod curve;
 mod describe;
 mod error;
 mod fair;
 mod field;
 mod gaps;
+mod girths;
 mod joint;
 mod landmarks;
+mod levels;
 mod limbs;
 mod mannequin;
 mod marks;
+mod refit;
 mod request;
 mod rings;
+mod shape;
 mod skeleton;
 mod solve;
+mod taken;
 mod tape;
 mod template;
 mod warp;
 
 pub use attach::AttachedPrimitive;
+pub use conflict::Conflict;
 pub use describe::Description;
 pub use error::BodyError;
 pub use field::{Field, Part, Primitive, THRESHOLD, VISIBLE_RATIO};

@@ -2,15 +2,19 @@
 
 use crate::attach::posed;
 use crate::bones;
+use crate::field::VISIBLE_RATIO;
 use crate::landmarks::Landmarks;
+use crate::levels::Levels;
 use crate::marks::Marks;
+use crate::refit::refitted;
 use crate::request::Request;
-use crate::rings;
-use crate::solve::Grown;
+use crate::rings::{self, TemplateSkin};
+use crate::solve::{Grown, Solved};
 use crate::template::Template;
 use crate::warp::{Follow, Warp};
 use crate::{AttachedPrimitive, BodyError, Field, Figure, Part, Pose, Primitive, Skeleton};
 use nalgebra::Rotation3;
+use std::sync::OnceLock;
 use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3};
 use toile_measure::Measurements;
 
@@ -21,6 +25,11 @@ pub struct Mannequin {
     pub(crate) measurements: Measurements,
     pub(crate) request: Request,
     pub(crate) template_primitives: Vec<Primitive>,
+    pub(crate) marks: Marks,
+    pub(crate) levels: Levels,
+    pub(crate) warp: Warp,
+    pub(crate) crotch: Vec<u32>,
+    pub(crate) armpit: u32,
     pub(crate) skin: SurfaceTree,
     pub(crate) parts: Vec<Part>,
     pub(crate) skeleton: Skeleton,
@@ -29,18 +38,31 @@ pub struct Mannequin {
     pub(crate) landmarks: Landmarks,
 }
 
-/// Girths a body must have as asked.
-const GIRTHS: [&str; 5] = ["bust", "underbust", "waist", "hips", "leg_circ"];
-/// Largest difference of a girth from what was asked [m]: more would change the size worn.
-const LARGEST_GAP: f64 = 5e-3;
+/// A template's skin and marks.
+type Cast = (TemplateSkin, Marks);
+
+/// The skins of the figures' own templates, cast when first needed.
+static CAST: [OnceLock<Result<Cast, BodyError>>; 3] =
+    [OnceLock::new(), OnceLock::new(), OnceLock::new()];
+
+fn cast(template: &Template) -> Result<Cast, BodyError> {
+    let skin = rings::cast(template, &Field::new(&template.primitives))?;
+    let marks = Marks::of(template, &skin)?;
+    Ok((skin, marks))
+}
 
 impl Mannequin {
-    /// Makes the body of a figure with the given measurements.
+    /// Makes the body of a figure with the given measurements: any of the catalogue. What is
+    /// missing is predicted from them; what contradicts itself is met in the sense of least
+    /// squares and named by [`Mannequin::conflicts`].
     ///
     /// # Errors
-    /// A measurement that is missing, that no adult has, or that contradicts another.
+    /// A measurement that no body has, or lengths that leave no room for a landmark.
     pub fn new(measurements: &Measurements, figure: Figure) -> Result<Self, BodyError> {
-        Self::from_template(measurements, figure, Template::of(figure))
+        let template = Template::of(figure);
+        let cast = CAST[figure as usize].get_or_init(|| cast(&template));
+        let (skin, marks) = cast.as_ref().map_err(Clone::clone)?;
+        Self::grown(measurements, figure, (&template, skin, *marks))
     }
 
     pub(crate) fn from_template(
@@ -48,53 +70,68 @@ impl Mannequin {
         figure: Figure,
         template: Template,
     ) -> Result<Self, BodyError> {
-        let request = Request::read(measurements)?;
-        let skin = rings::cast(&template, &Field::new(&template.primitives))?;
-        let marks = Marks::of(&template, &skin)?;
+        let (skin, marks) = cast(&template)?;
+        Self::grown(measurements, figure, (&template, &skin, marks))
+    }
+
+    fn grown(
+        measurements: &Measurements,
+        figure: Figure,
+        (template, skin, marks): (&Template, &TemplateSkin, Marks),
+    ) -> Result<Self, BodyError> {
         let grown = Grown {
-            template: &template,
-            skin: &skin,
+            template,
+            skin,
             marks,
-            request,
+            request: Request::read(measurements, figure)?,
         };
-        let (shape, mesh) = grown.solve()?;
-        let warp = Warp::new(&template, shape);
-        let skeleton = bones::skeleton(&template, &warp);
-        let primitives: Vec<AttachedPrimitive> = template
+        let Solved {
+            shape,
+            levels,
+            mesh,
+        } = grown.solve()?;
+        let warp = Warp::new(template, &marks, shape);
+        let skeleton = bones::skeleton(template, &warp);
+        let left: Vec<Primitive> = template
             .primitives
             .iter()
+            .filter(|primitive| !primitive.is_right())
             .map(|primitive| {
-                let joint = bones::joint_of(&template, primitive);
-                AttachedPrimitive::new(joint, &carried(primitive, &warp), &skeleton)
+                let mut body = carried(primitive, &warp);
+                if primitive.is_central() {
+                    body.centre[0] = 0.0;
+                    body.rotation[1] = 0.0;
+                    body.rotation[2] = 0.0;
+                }
+                body
             })
             .collect();
-        let landmarks = Landmarks::find(&grown, &warp, &mesh);
-        let body = Self {
+        let primitives: Vec<AttachedPrimitive> = refitted(left, &mesh, &skin.parts)
+            .iter()
+            .zip(&template.primitives)
+            .map(|(primitive, of_template)| {
+                let joint = bones::joint_of(template, of_template);
+                AttachedPrimitive::new(joint, primitive, &skeleton)
+            })
+            .collect();
+        let landmarks = Landmarks::find(&grown, (&levels, &warp), &mesh);
+        Ok(Self {
             figure,
             measurements: measurements.clone(),
-            request,
             field: Field::new(&posed(&primitives, &skeleton, &Pose::rest())),
             skeleton,
             primitives,
             skin: SurfaceTree::new(mesh),
-            parts: skin.parts,
+            parts: skin.parts.clone(),
             landmarks,
-            template_primitives: template.primitives,
-        };
-        body.refuse_unmet()?;
-        Ok(body)
-    }
-
-    /// Refuses a body whose girths are not those asked for: far from any real table the sections
-    /// influence each other so much that no warp meets them all.
-    fn refuse_unmet(&self) -> Result<(), BodyError> {
-        for gap in self.measure() {
-            if GIRTHS.contains(&gap.name) && gap.gap().abs() >= LARGEST_GAP {
-                let (name, asked, got) = (gap.name, gap.asked, gap.got);
-                return Err(BodyError::Unmet { name, asked, got });
-            }
-        }
-        Ok(())
+            template_primitives: template.primitives.clone(),
+            crotch: grown.crotch_vertices(),
+            armpit: skin.armpit,
+            request: grown.request,
+            marks,
+            levels,
+            warp,
+        })
     }
 
     /// The figure it was grown from.
@@ -105,6 +142,11 @@ impl Mannequin {
     /// The measurements asked for.
     pub fn measurements(&self) -> &Measurements {
         &self.measurements
+    }
+
+    /// The measurements asked for with predictions of the rest, each marked.
+    pub fn completed(&self) -> &Measurements {
+        &self.request.table
     }
 
     /// The skin: closed, outward, the same triangles for every set of measurements of a figure.
@@ -128,8 +170,8 @@ impl Mannequin {
     }
 
     /// The ellipsoid primitives of the body, each in the frame of the joint it is fixed to: a
-    /// coarse description of the body, carried from the template's by the map of the skin,
-    /// linearised at their centres.
+    /// coarse description of the body, carried from the template's by the map of the skin and
+    /// scaled to lie on it.
     pub fn primitives(&self) -> &[AttachedPrimitive] {
         &self.primitives
     }
@@ -166,12 +208,9 @@ impl Mannequin {
     }
 }
 
-/// A primitive carried by the derivative J of the map at its centre: the ellipsoid with the matrix
-/// `J R S`, whose singular vectors and values are the new axes.
+/// A primitive carried by the map: the ellipsoid through what becomes of its visible axes, whose
+/// singular vectors and values are the new ones.
 fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
-    if primitive.is_right() {
-        return carried(&primitive.mirrored(), warp).mirrored();
-    }
     let follow = match primitive.part {
         Part::LeftArm | Part::RightArm => Follow { arm: 1.0, leg: 0.0 },
         Part::LeftLeg | Part::RightLeg => Follow { arm: 0.0, leg: 1.0 },
@@ -180,7 +219,9 @@ fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
     let centre = Vec3::from(primitive.centre);
     let old = *primitive.rotation().matrix();
     let scaled = old * nalgebra::Matrix3::from_diagonal(&Vec3::from(primitive.radii));
-    let svd = (warp.derivative(centre, follow) * scaled).svd(true, false);
+    // Taken over the visible axes: the map differs across them.
+    let axes = warp.carried_axes(centre, scaled * VISIBLE_RATIO, follow) / VISIBLE_RATIO;
+    let svd = axes.svd(true, false);
     let (Some(vectors), values) = (svd.u, svd.singular_values) else {
         return *primitive;
     };

@@ -1,24 +1,46 @@
 //! Where the levels and landmarks of a template lie, found on its skin.
 
 use crate::rings::TemplateSkin;
-use crate::tape::{girth, ridge};
+use crate::tape::{OnEdge, Skinned, extent, girth, ridge};
 use crate::template::Template;
 use crate::{BodyError, Part};
 use toile_geometry::{TriangleMesh, Vec3, horizontal_section};
 
-/// Levels [m] and shoulder places of a template.
+/// Three points of a plane of a template [m].
+pub(crate) type Plane = [Vec3; 3];
+
+/// Levels [m], distances from the shoulder joint along the arm [m] and places of a template.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Marks {
     /// Top of the head.
     pub(crate) crown: f64,
+    pub(crate) armpit: f64,
     pub(crate) crotch: f64,
     pub(crate) bust: f64,
     /// Where the neck meets the shoulder, left.
     pub(crate) neck_side: Vec3,
+    /// The same on the skin.
+    pub(crate) neck_side_on: OnEdge,
     /// Outer end of the shoulder, left.
     pub(crate) tip: Vec3,
+    /// The same on the skin.
+    pub(crate) tip_on: OnEdge,
     /// Depth of the middle of the trunk [m].
     pub(crate) depth: f64,
+    /// Plane of the neck's girth, square to its axis.
+    pub(crate) neck: Plane,
+    /// Plane of the head's girth.
+    pub(crate) head: Plane,
+    /// Plane of the heel's girth, over heel and instep.
+    pub(crate) heel: Plane,
+    pub(crate) lower_thigh: f64,
+    pub(crate) knee: f64,
+    pub(crate) calf: f64,
+    pub(crate) ankle: f64,
+    pub(crate) upper_arm: f64,
+    pub(crate) elbow: f64,
+    pub(crate) forearm: f64,
+    pub(crate) wrist: f64,
 }
 
 /// Distance of the end of the shoulder beyond the shoulder joint, over stature.
@@ -30,39 +52,93 @@ pub(crate) const UNDERBUST: f64 = 0.042;
 impl Marks {
     pub(crate) fn of(template: &Template, skin: &TemplateSkin) -> Result<Self, BodyError> {
         let h = template.height;
-        let tape = |y: f64| girth(&skin.mesh, &skin.parts, Part::Trunk, y);
+        let skinned = Skinned::finished(&skin.mesh, &skin.parts);
+        let level = |part: Part, y: f64| girth(&skinned, part, [Vec3::y() * y, Vec3::y()], None);
         let crotch = crotch(skin);
-        let shoulder = template.joints.shoulder;
-        let bust = extreme([shoulder[1] - 0.10 * h, shoulder[1] - 0.045 * h], tape);
-        let open = BodyError::Open {
-            part: "shoulder",
-            x: shoulder[0],
-            y: shoulder[1],
-            z: shoulder[2],
-        };
-        let window = [bust, template.joints.head[1] - 0.02 * h];
-        let tip = ridge(&skin.mesh, shoulder[0] + TIP * h, window).ok_or(open.clone())?;
-        let neck_side = neck_side(&skin.mesh, tip, window).ok_or(open)?;
-        let middle = |y: f64| {
-            let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
-            middle_depth(&horizontal_section(&skin.mesh, trunk, y))
-        };
+        let j = template.joints;
+        let bust = extreme([j.shoulder[1] - 0.10 * h, j.shoulder[1] - 0.045 * h], |y| {
+            level(Part::Trunk, y)
+        });
+        let [x, y, z] = j.shoulder;
+        let part = "shoulder";
+        let open = BodyError::Open { part, x, y, z };
+        let window = [bust, j.head[1] - 0.02 * h];
+        let tip_on = ridge(&skin.mesh, x + TIP * h, window).ok_or(open.clone())?;
+        let tip = tip_on.at(&skin.mesh.positions);
+        let neck_side_on = neck_side(&skin.mesh, tip, window).ok_or(open)?;
+        let [shoulder, elbow, wrist] = [j.shoulder, j.elbow, j.wrist].map(Vec3::from);
+        let along = (wrist - shoulder).normalize();
+        let [elbow, wrist] = [elbow, wrist].map(|p| (p - shoulder).dot(&along));
+        let arm = |d: f64| girth(&skinned, Part::LeftArm, [shoulder + along * d, along], None);
+        let (knee, leg) = (j.knee[1], |y: f64| level(Part::LeftLeg, y));
+        let calf = extreme([0.55 * knee, 0.9 * knee], leg);
+        let neck = neck_plane(template);
+        let brow = extreme([h - 0.075 * h, h - 0.03 * h], |y| level(Part::Head, y));
         let crown = skin.mesh.bounds().map_or(h, |[_, high]| high.y);
         Ok(Self {
             crown,
+            armpit: skin.mesh.positions[skin.armpit as usize].y,
             crotch,
             bust,
-            neck_side,
+            neck_side: neck_side_on.at(&skin.mesh.positions),
+            neck_side_on,
             tip,
-            depth: (0..=4)
-                .map(|k| {
-                    0.2 * middle(
-                        crotch + 0.05 * h + (bust - crotch - 0.05 * h) * 0.25 * f64::from(k),
-                    )
-                })
-                .sum(),
+            tip_on,
+            depth: depth(skin, [crotch + 0.05 * h, bust]),
+            neck,
+            head: [
+                Vec3::y() * brow,
+                Vec3::y() * brow + Vec3::z(),
+                Vec3::y() * brow + Vec3::x(),
+            ],
+            heel: heel_plane(template, &skinned),
+            lower_thigh: knee + 0.15 * (crotch - knee),
+            knee,
+            calf,
+            ankle: extreme([j.ankle[1] + 0.005 * h, 0.6 * calf], |y| -leg(y)),
+            upper_arm: extreme([0.45 * elbow, 0.75 * elbow], arm),
+            elbow,
+            forearm: extreme([elbow, elbow + 0.4 * (wrist - elbow)], arm),
+            wrist,
         })
     }
+}
+
+/// Mean depth of the middle of the trunk between two heights [m].
+fn depth(skin: &TemplateSkin, [low, high]: [f64; 2]) -> f64 {
+    let middle = |y: f64| {
+        let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
+        middle_depth(&horizontal_section(&skin.mesh, trunk, y))
+    };
+    (0..=4)
+        .map(|k| 0.2 * middle(low + (high - low) * 0.25 * f64::from(k)))
+        .sum()
+}
+
+/// The plane through the middle of the neck, half as steep as its axis is square.
+fn neck_plane(template: &Template) -> Plane {
+    let (neck, head) = (
+        Vec3::from(template.joints.neck),
+        Vec3::from(template.joints.head),
+    );
+    let middle = neck + (head - neck) * 0.42;
+    // The neck's rings turn from the shoulders' slope to level ones: half the tilt stays in it.
+    let axis = (head - neck).normalize() + Vec3::y();
+    let across = Vec3::x().cross(&axis).normalize();
+    [middle, middle - across, middle + Vec3::x()]
+}
+
+/// The plane through the lower end of the heel and over the instep.
+fn heel_plane(template: &Template, skinned: &Skinned) -> Plane {
+    let ankle = Vec3::from(template.joints.ankle);
+    let low = Vec3::new(ankle.x, 0.012, ankle.z);
+    // The heel's hindmost point at a finger's breadth over the floor.
+    let hull = skinned.hull(Part::LeftLeg, [Vec3::y() * low.y, Vec3::y()], None);
+    let [_, length] = extent(&hull);
+    let back = hull.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    let heel = Vec3::new(ankle.x, low.y, back + 0.06 * length);
+    let instep = Vec3::new(ankle.x, ankle.y + 0.01, ankle.z + 0.30 * length);
+    [heel, instep, heel + Vec3::x()]
 }
 
 /// Height of the lowest point in the middle [m].
@@ -99,7 +175,8 @@ fn extreme([low, high]: [f64; 2], value: impl Fn(f64) -> f64) -> f64 {
 
 /// Where the shoulder becomes the steep side of the neck: walking inward along the ridge from the
 /// middle of the shoulder, the first place where it rises by more than 35 degrees over 6 mm.
-fn neck_side(mesh: &TriangleMesh, tip: Vec3, window: [f64; 2]) -> Option<Vec3> {
+fn neck_side(mesh: &TriangleMesh, tip: Vec3, window: [f64; 2]) -> Option<OnEdge> {
+    let height = |x: f64| Some(ridge(mesh, x, window)?.at(&mesh.positions).y);
     let step = 0.002;
     let steep = 35f64.to_radians().tan() * 3.0 * step;
     for k in 0.. {
@@ -108,7 +185,7 @@ fn neck_side(mesh: &TriangleMesh, tip: Vec3, window: [f64; 2]) -> Option<Vec3> {
             return None;
         }
         let here = ridge(mesh, x, window)?;
-        if ridge(mesh, x - 3.0 * step, window)?.y - here.y > steep {
+        if height(x - 3.0 * step)? - here.at(&mesh.positions).y > steep {
             return Some(here);
         }
     }

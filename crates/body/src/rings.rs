@@ -35,6 +35,8 @@ pub(crate) struct TemplateSkin {
     pub(crate) leg: Vec<f64>,
     /// The mirror image of each vertex; itself in the middle.
     pub(crate) mirror: Vec<u32>,
+    /// The vertex in the left armpit.
+    pub(crate) armpit: u32,
 }
 
 /// Origin and elevation of the rays of one half ring of the trunk.
@@ -102,11 +104,12 @@ pub(crate) fn cast(template: &Template, field: &Field) -> Result<TemplateSkin, B
     let border = half.trunk()?;
     half.arm(&border.arm)?;
     half.leg(&border.bottom)?;
-    Ok(half.mirrored())
+    Ok(half.mirrored(border.armpit))
 }
 
 /// Rings where limbs begin, in the limbs' own order of walking.
 struct Borders {
+    armpit: u32,
     arm: Vec<u32>,
     bottom: Vec<u32>,
 }
@@ -276,7 +279,12 @@ impl Half<'_> {
         arm.extend((c0..c1).map(|i| grid[r0][i]));
         arm.extend((r0..r1).map(|t| grid[t][c1]));
         let bottom = grid[0].iter().rev().copied().collect();
-        Ok(Borders { arm, bottom })
+        let armpit = grid[r0][(c0 + c1) / 2];
+        Ok(Borders {
+            armpit,
+            arm,
+            bottom,
+        })
     }
 
     /// The hole for the arm: from below the armpit to the row that passes over the shoulder.
@@ -340,7 +348,7 @@ impl Half<'_> {
         }
     }
 
-    fn mirrored(self) -> TemplateSkin {
+    fn mirrored(self, armpit: u32) -> TemplateSkin {
         let count = self.positions.len();
         let mut mirror: Vec<u32> = vec![0; count];
         let mut mesh = TriangleMesh {
@@ -388,6 +396,7 @@ impl Half<'_> {
             arm,
             leg,
             mirror,
+            armpit,
         }
     }
 }

@@ -1,34 +1,17 @@
 //! The shape whose skin has the measurements asked for.
 
-use crate::marks::{Marks, UNDERBUST};
+use crate::BodyError;
+use crate::girths::Girth;
+use crate::levels::{self, Excess, Level, Levels, OVER};
+use crate::marks::Marks;
 use crate::request::Request;
 use crate::rings::TemplateSkin;
-use crate::tape::{girth, girth_across, ridge};
+use crate::shape::{Scales, shape};
+use crate::taken::Taken;
+use crate::tape::{Skinned, extent, half_length};
 use crate::template::Template;
 use crate::warp::{Follow, Shape, Warp};
-use crate::{BodyError, Part};
 use toile_geometry::{TriangleMesh, Vec3};
-
-/// Height of the neck's side below the nape, over stature.
-pub(crate) const NECK_SIDE_DROP: f64 = 0.020;
-/// Depth below the crotch at which the thigh is measured, over stature.
-pub(crate) const THIGH_DROP: f64 = 0.012;
-
-/// Scales that are solved for, in the order in which a tape would find them.
-#[derive(Clone, Copy, Debug)]
-struct Scales {
-    hips: f64,
-    waist: f64,
-    underbust: f64,
-    bust: f64,
-    shoulder: f64,
-    neck: f64,
-    thigh: f64,
-    wrist: f64,
-    arm_length: f64,
-    /// Height of the neck's side over the shoulder's end, over what its slope asks for.
-    shoulder_drop: f64,
-}
 
 /// A template with its skin and marks.
 pub(crate) struct Grown<'a> {
@@ -38,143 +21,237 @@ pub(crate) struct Grown<'a> {
     pub(crate) request: Request,
 }
 
+/// What was found.
+pub(crate) struct Solved {
+    pub(crate) shape: Shape,
+    pub(crate) levels: Levels,
+    pub(crate) mesh: TriangleMesh,
+}
+
+/// Rounds allowed; most bodies need 8 to 15.
+const ROUNDS: usize = 40;
+/// Rounds in which form and posture are still corrected; the girths have the last word.
+const FORMING: usize = 24;
+/// Largest change of a girth or a level over stature at which the rounds end: 0.002 mm.
+const STILL: f64 = 1e-6;
+
 impl Grown<'_> {
-    /// Finds the shape by fixed-point iteration: each scale is multiplied by asked over got.
-    pub(crate) fn solve(&self) -> Result<(Shape, TriangleMesh), BodyError> {
-        let global = self.request.height / self.template.height;
-        let mut scales = Scales {
-            hips: global,
-            waist: global,
-            underbust: global,
-            bust: global,
-            shoulder: 0.5 * self.request.shoulder_width / self.marks.tip.x,
-            neck: 0.5 * self.request.neck_width / self.marks.neck_side.x,
-            thigh: global,
-            wrist: global,
-            arm_length: global,
-            shoulder_drop: 1.0,
-        };
-        /// Sections interact only through the curves between levels: twelve rounds reach 1e-5.
-        const ROUNDS: usize = 12;
-        for _ in 0..ROUNDS {
-            let shape = self.shape(&scales)?;
-            let mesh = self.skin_of(&shape);
-            self.correct(&mut scales, &shape, &mesh);
+    /// Finds the shape by fixed-point iteration: each scale is multiplied by asked over got, each
+    /// level moved by what its landmark misses. Only the rings the tape meets are placed until
+    /// the last round is over.
+    pub(crate) fn solve(&self) -> Result<Solved, BodyError> {
+        let global = self.request.get("height") / self.template.height;
+        let mut scales = Scales::new(global, &self.marks);
+        let mut excess = Excess::default();
+        let crotch = self.crotch_vertices();
+        for round in 0..ROUNDS {
+            let levels = levels::solve(&self.request.table, &self.marks, &excess);
+            let shape = shape(self, &scales, &levels)?;
+            let warp = Warp::new(self.template, &self.marks, shape);
+            let place = |v: usize| self.place(&warp, v);
+            let skinned = Skinned::lazy(&self.skin.mesh, &self.skin.parts, &place);
+            let taken = self.taken(&skinned, (&levels, &warp), &crotch);
+            let mut moved = self.correct(&mut scales, &mut excess, &taken);
+            if round < FORMING {
+                self.form(&mut scales, &taken);
+                moved = moved.max(self.posture(&mut scales, &taken));
+            }
+            if moved < STILL * self.request.get("height") {
+                break;
+            }
         }
-        let shape = self.shape(&scales)?;
-        let mesh = self.skin_of(&shape);
-        Ok((shape, mesh))
-    }
-
-    fn correct(&self, scales: &mut Scales, shape: &Shape, mesh: &TriangleMesh) {
-        let (q, parts) = (&self.request, &self.skin.parts);
-        let trunk = |asked: f64, level: f64| ratio(asked, girth(mesh, parts, Part::Trunk, level));
-        scales.hips *= trunk(q.hips, q.hip_level());
-        scales.waist *= trunk(q.waist, q.waist_level());
-        scales.bust *= trunk(q.bust, q.bust_level());
-        scales.underbust *= trunk(q.underbust, q.bust_level() - UNDERBUST * q.height);
-        let thigh = q.crotch_level() - THIGH_DROP * q.height;
-        scales.thigh *= ratio(q.thigh, girth(mesh, parts, Part::LeftLeg, thigh));
-        let warp = Warp::new(self.template, shape.clone());
-        let [wrist, along] = self.wrist(&warp);
-        scales.wrist *= ratio(
-            q.wrist,
-            girth_across(mesh, parts, Part::LeftArm, [wrist, along]),
-        );
-        let window = [q.bust_level(), q.nape() + 0.02 * q.height];
-        if let Some(tip) = ridge(mesh, 0.5 * q.shoulder_width, window) {
-            scales.arm_length *= ratio(q.arm_length, (wrist - tip).dot(&along));
-            let neck = warp.apply(self.marks.neck_side, Follow::default());
-            let slope = (neck.y - tip.y) / (neck.x - tip.x).abs();
-            // Half steps: the blend with the arm answers late.
-            scales.shoulder_drop *= ratio(q.shoulder_slope.tan(), slope).clamp(0.5, 2.0).sqrt();
-        }
-    }
-
-    /// Centre of the wrist and direction of the arm on the body.
-    pub(crate) fn wrist(&self, warp: &Warp) -> [Vec3; 2] {
-        let on_arm = Follow { arm: 1.0, leg: 0.0 };
-        let wrist = warp.apply(Vec3::from(self.template.joints.wrist), on_arm);
-        let shoulder = warp.apply(Vec3::from(self.template.joints.shoulder), on_arm);
-        [wrist, (wrist - shoulder).normalize()]
-    }
-
-    fn shape(&self, s: &Scales) -> Result<Shape, BodyError> {
-        let (m, q, t) = (&self.marks, &self.request, self.template);
-        let global = q.height / t.height;
-        let neck_level = q.nape() - NECK_SIDE_DROP * q.height;
-        let tip_level = neck_level
-            - s.shoulder_drop * 0.5 * (q.shoulder_width - q.neck_width) * q.shoulder_slope.tan();
-        if tip_level < q.bust_level() + 0.03 * q.height {
-            return Err(BodyError::Contradiction {
-                first: "shoulder_incl",
-                second: "vert_bust_line",
-                remedy: "the shoulders fall to the level of the bust: lessen shoulder_incl or \
-                         enlarge vert_bust_line",
-            });
-        }
-        let crotch = q.crotch_level();
-        let levels = vec![
-            [0.0, 0.0],
-            [t.joints.ankle[1], t.joints.ankle[1] * global],
-            [t.joints.knee[1], t.joints.knee[1] * crotch / m.crotch],
-            [m.crotch, crotch],
-            [m.bust, q.bust_level()],
-            [m.tip.y, tip_level],
-            [m.neck_side.y, neck_level],
-            [m.crown, q.height],
-        ];
-        // Between crotch and bust heights are stretched evenly, so the levels follow.
-        let stretch = (m.bust - m.crotch) / (q.bust_level() - crotch);
-        let on_template = |level: f64| m.crotch + (level - crotch) * stretch;
-        let hips = on_template(q.hip_level());
-        let waist = on_template(q.waist_level());
-        let underbust = on_template(q.bust_level() - UNDERBUST * q.height);
-        let head = (q.height - neck_level) / (m.crown - m.neck_side.y);
-        let chin = m.neck_side.y + 0.35 * (m.crown - m.neck_side.y);
-        let girths = |tip: f64, neck: f64| {
-            vec![
-                [m.crotch, s.hips],
-                [hips, s.hips],
-                [waist, s.waist],
-                [underbust, s.underbust],
-                [m.bust, s.bust],
-                [m.tip.y, tip],
-                [m.neck_side.y, neck],
-                [chin, head],
-                [m.crown, head],
-            ]
-        };
-        let wrist = (Vec3::from(t.joints.wrist) - Vec3::from(t.joints.shoulder)).norm();
-        Ok(Shape {
+        let levels = levels::solve(&self.request.table, &self.marks, &excess);
+        let shape = shape(self, &scales, &levels)?;
+        let mesh = self.skin_of(&Warp::new(self.template, &self.marks, shape.clone()));
+        Ok(Solved {
+            shape,
             levels,
-            lateral: girths(s.shoulder, s.neck),
-            frontal: girths(0.5 * (s.bust + global), 0.5 * (s.neck + global)),
-            leg: vec![
-                [0.0, global],
-                [t.joints.ankle[1], global],
-                [t.joints.knee[1], 0.5 * (global + s.thigh)],
-                [m.crotch - THIGH_DROP * t.height, s.thigh],
-                [hips, s.thigh],
-            ],
-            arm: vec![
-                [0.0, global],
-                [0.5 * wrist, 0.5 * (global + s.wrist)],
-                [wrist, s.wrist],
-                [1.1 * wrist, s.wrist],
-                [1.3 * wrist, global],
-            ],
-            arm_length: s.arm_length,
-            arm_angle: q.arm_angle,
-            global,
-            stance: s.hips,
-            depth: m.depth,
+            mesh,
         })
     }
 
+    /// Middle vertices where the crotch may be lowest.
+    pub(crate) fn crotch_vertices(&self) -> Vec<u32> {
+        (0..self.skin.mirror.len() as u32)
+            .filter(|&v| {
+                let y = self.skin.mesh.positions[v as usize].y;
+                self.skin.mirror[v as usize] == v && y < self.marks.crotch + 0.05
+            })
+            .collect()
+    }
+
+    pub(crate) fn taken<'a>(
+        &'a self,
+        skinned: &'a Skinned<'a>,
+        (levels, warp): (&'a Levels, &'a Warp),
+        crotch: &'a [u32],
+    ) -> Taken<'a> {
+        Taken {
+            skinned,
+            marks: &self.marks,
+            levels,
+            warp,
+            crotch,
+            armpit: self.skin.armpit,
+        }
+    }
+
+    /// Corrects scales and excesses by what the tape found. Returns the largest miss [m].
+    fn correct(&self, scales: &mut Scales, excess: &mut Excess, taken: &Taken) -> f64 {
+        let q = &self.request;
+        let mut miss: f64 = 0.0;
+        for girth in Girth::ALL {
+            if let Some(asked) = q.girth(girth) {
+                let got = taken.girth(girth);
+                miss = miss.max((asked - got).abs());
+                scales.girth[girth as usize] *= ratio(asked, got);
+            }
+        }
+        let (tip, neck) = (taken.tip(), taken.neck_side());
+        // Shoulders by their width, else by the ways over them.
+        let over = ["shoulder_w", "shoulder_to_shoulder", "shoulder_length"];
+        let name = over
+            .into_iter()
+            .find(|name| q.is_asked(name))
+            .unwrap_or("shoulder_w");
+        let widths = [
+            (
+                &mut scales.shoulder,
+                name,
+                taken.value(name).unwrap_or(2.0 * tip.x),
+            ),
+            (&mut scales.neck, "neck_w", 2.0 * neck.x),
+        ];
+        for (scale, name, got) in widths {
+            miss = miss.max((q.get(name) - got).abs());
+            *scale *= ratio(q.get(name), got);
+        }
+        let mut along = |name: &str, scale: &mut f64| {
+            if let Some(got) = taken.value(name) {
+                miss = miss.max((q.get(name) - got).abs());
+                *scale += q.get(name) - got;
+            }
+        };
+        along("arm_length", &mut scales.wrist);
+        if q.is_asked("shoulder_to_elbow") {
+            along("shoulder_to_elbow", &mut scales.elbow);
+        } else if q.is_asked("elbow_to_wrist") {
+            let share = self.marks.elbow / self.marks.wrist;
+            let asked = q
+                .get("elbow_to_wrist")
+                .clamp(0.3 * scales.wrist, 0.7 * scales.wrist);
+            scales.elbow = if share > 0.0 {
+                scales.wrist - asked
+            } else {
+                scales.elbow
+            };
+        } else {
+            scales.elbow = scales.wrist * self.marks.elbow / self.marks.wrist;
+        }
+        excess.run = Some(tip.x - neck.x);
+        for level in [Level::Tip, Level::NeckSide, Level::Crotch] {
+            let found = taken.height(level) - taken.levels.at(level);
+            let known = &mut excess.level[level as usize];
+            miss = miss.max((found - *known).abs());
+            *known = found;
+        }
+        for (k, (name, upper, lower, _)) in OVER.into_iter().enumerate() {
+            if q.is_asked(name)
+                && let Some(got) = taken.value(name)
+            {
+                let lower = lower.map_or(0.0, |level| taken.levels.at(level));
+                let found = got - (taken.levels.at(upper) - lower);
+                // Half steps: a way over the body moves what it is taken over.
+                let step = 0.5 * (found - excess.over[k]);
+                miss = miss.max(step.abs());
+                excess.over[k] += step;
+            }
+        }
+        miss
+    }
+
+    /// Corrects the form of sections at equal girth: breadth over depth, front over back.
+    fn form(&self, scales: &mut Scales, taken: &Taken) {
+        let q = &self.request;
+        for (girth, breadth, depth, predicted) in [
+            (Girth::Bust, "chest_breadth", "chest_depth", false),
+            (Girth::Waist, "waist_breadth", "waist_depth", true),
+            (Girth::Hips, "hip_breadth", "hip_depth", true),
+        ] {
+            if !predicted && !(q.is_asked(breadth) && q.is_asked(depth)) {
+                continue;
+            }
+            let [x, z] = extent(&taken.hull(girth));
+            let form = &mut scales.aspect[girth as usize];
+            *form *= ratio(q.get(breadth) * z, q.get(depth) * x).sqrt();
+            *form = form.clamp(0.88, 1.14);
+        }
+        for (girth, name, side) in PARTS {
+            if !q.is_asked(name) {
+                continue;
+            }
+            let hull = taken.hull(girth);
+            let [own, other] = [side, -side].map(|side| half_length(&hull, side));
+            let asked = (q.get(name) / (own + other)).clamp(0.3, 0.7);
+            let split = &mut scales.split[girth as usize];
+            *split += side * (asked - own / (own + other));
+            *split = split.clamp(-0.3, 0.3);
+        }
+    }
+
+    /// Corrects where the neck stands between front and back lengths, and how far the bust points
+    /// are apart. Returns the largest miss that can still be corrected [m].
+    fn posture(&self, scales: &mut Scales, taken: &Taken) -> f64 {
+        let q = &self.request;
+        let height = q.get("height");
+        let mut miss: f64 = 0.0;
+        let gap = |name: &str| {
+            q.is_asked(name)
+                .then(|| Some(q.get(name) - taken.value(name)?))
+        };
+        let ways = ["hps_to_waist_front", "hps_to_waist_back"].map(|name| gap(name).flatten());
+        if let [Some(front), Some(back)] = ways {
+            let before = scales.lean;
+            let limit = LEAN * height;
+            scales.lean = (before + 0.5 * (back - front)).clamp(-limit, limit);
+            miss = miss.max((scales.lean - before).abs());
+        }
+        if ["armpit_height", "waist_to_armpit", "armscye_depth"]
+            .iter()
+            .any(|name| q.is_asked(name))
+        {
+            let found = taken.levels.at(Level::Armpit) - taken.height(Level::Armpit);
+            let (before, limit) = (scales.armpit, ARMPIT * height);
+            scales.armpit = (before + found).clamp(-limit, limit);
+            miss = miss.max((scales.armpit - before).abs());
+        }
+        if let Some(Some(wider)) = gap("bust_points") {
+            let got = q.get("bust_points") - wider;
+            let before = scales.spread;
+            let more = 0.6 * (ratio(q.get("bust_points"), got) - 1.0);
+            scales.spread = (before + more).clamp(-0.4, 0.8);
+            miss = miss.max((scales.spread - before).abs() * got);
+        }
+        miss
+    }
+
+    /// Where a vertex of the template is on the body [m]; the left half and the middle only.
+    fn place(&self, warp: &Warp, v: usize) -> Vec3 {
+        let follow = Follow {
+            arm: self.skin.arm[v],
+            leg: self.skin.leg[v],
+        };
+        let mut p = warp.apply(self.skin.mesh.positions[v], follow);
+        if self.skin.mirror[v] as usize == v {
+            p.x = 0.0;
+        } else if follow.leg > 0.5 {
+            p.x = p.x.max(LEG_GAP * self.request.get("height"));
+        }
+        p
+    }
+
     /// The template's skin carried to a shape, exactly symmetric.
-    fn skin_of(&self, shape: &Shape) -> TriangleMesh {
-        let warp = Warp::new(self.template, shape.clone());
+    fn skin_of(&self, warp: &Warp) -> TriangleMesh {
         let skin = self.skin;
         let mut mesh = skin.mesh.clone();
         for v in 0..mesh.positions.len() {
@@ -182,16 +259,7 @@ impl Grown<'_> {
             if mirror < v {
                 continue;
             }
-            let follow = Follow {
-                arm: skin.arm[v],
-                leg: skin.leg[v],
-            };
-            let mut p = warp.apply(skin.mesh.positions[v], follow);
-            if mirror == v {
-                p.x = 0.0;
-            } else if follow.leg > 0.5 {
-                p.x = p.x.max(LEG_GAP);
-            }
+            let p = self.place(warp, v);
             mesh.positions[v] = p;
             if mirror != v {
                 mesh.positions[mirror] = Vec3::new(-p.x, p.y, p.z);
@@ -201,9 +269,28 @@ impl Grown<'_> {
     }
 }
 
-/// Half the least gap between the legs [m]: cloth must pass.
-const LEG_GAP: f64 = 0.003;
+/// Parts of girths that lie on one side of z: +1 before, -1 behind.
+const PARTS: [(Girth, &str, f64); 5] = [
+    (Girth::Bust, "front_width", 1.0),
+    (Girth::Bust, "back_width", -1.0),
+    (Girth::HighBust, "high_bust_front", 1.0),
+    (Girth::Waist, "waist_back_width", -1.0),
+    (Girth::Hips, "hip_back_width", -1.0),
+];
+
+/// How far a neck may stand from the template's place, over stature.
+const LEAN: f64 = 0.02;
+
+/// How far an armpit may lie from the template's place, over stature.
+const ARMPIT: f64 = 0.035;
+
+/// Half the least gap between the legs, over stature: cloth must pass.
+const LEG_GAP: f64 = 0.0018;
 
 fn ratio(asked: f64, got: f64) -> f64 {
-    if got > 0.0 { asked / got } else { 1.0 }
+    if got > 0.0 && asked > 0.0 {
+        (asked / got).clamp(0.25, 4.0)
+    } else {
+        1.0
+    }
 }

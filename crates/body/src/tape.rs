@@ -1,48 +1,279 @@
-//! Girths and landmarks taken from a skin.
+//! Girths and lengths taken from a skin: a tape lies tight, so it follows the convex hull of a
+//! section and bridges hollows.
 
 use crate::Part;
-use toile_geometry::{TriangleMesh, Vec3, closed_length, convex_hull, horizontal_section};
+use std::cell::RefCell;
+use toile_geometry::{TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
 
-/// Girth of one part at a height by a horizontal tape, the convex hull of the section [m]; zero
-/// where the part has no section.
-pub(crate) fn girth(mesh: &TriangleMesh, parts: &[Part], part: Part, height: f64) -> f64 {
-    let triangles = (0..mesh.triangles.len()).filter(|&t| parts[t] == part);
-    closed_length(&convex_hull(&horizontal_section(mesh, triangles, height)))
+/// A skin whose vertices are placed when first needed. Its first half of triangles is the left
+/// side, the other half the mirror image.
+pub(crate) struct Skinned<'a> {
+    triangles: &'a [[u32; 3]],
+    parts: &'a [Part],
+    placed: RefCell<Vec<Vec3>>,
+    place: Option<&'a dyn Fn(usize) -> Vec3>,
+    /// Where the vertices are on the template, to leave out early what lies far away.
+    template: Option<&'a [Vec3]>,
 }
 
-/// Girth of one part in the plane through `origin` across `normal` (a unit vector) [m].
-pub(crate) fn girth_across(
-    mesh: &TriangleMesh,
-    parts: &[Part],
-    part: Part,
-    [origin, normal]: [Vec3; 2],
-) -> f64 {
-    let turn = nalgebra::Rotation3::rotation_between(&normal, &Vec3::y()).unwrap_or_else(|| {
-        nalgebra::Rotation3::from_axis_angle(&Vec3::x_axis(), std::f64::consts::PI)
-    });
-    let turned = TriangleMesh {
-        positions: mesh.positions.iter().map(|p| turn * (p - origin)).collect(),
-        triangles: mesh.triangles.clone(),
-    };
-    girth(&turned, parts, part, 0.0)
+/// A plane on the template and how far from it triangles may matter [m].
+pub(crate) type Near = ([Vec3; 2], f64);
+
+impl<'a> Skinned<'a> {
+    /// A finished mesh.
+    pub(crate) fn finished(mesh: &'a TriangleMesh, parts: &'a [Part]) -> Self {
+        Self {
+            triangles: &mesh.triangles,
+            parts,
+            placed: RefCell::new(mesh.positions.clone()),
+            place: None,
+            template: None,
+        }
+    }
+
+    /// A skin in the making.
+    pub(crate) fn lazy(
+        template: &'a TriangleMesh,
+        parts: &'a [Part],
+        place: &'a dyn Fn(usize) -> Vec3,
+    ) -> Self {
+        Self {
+            triangles: &template.triangles,
+            parts,
+            placed: RefCell::new(vec![Vec3::repeat(f64::NAN); template.positions.len()]),
+            place: Some(place),
+            template: Some(&template.positions),
+        }
+    }
+
+    /// Where a vertex is [m].
+    pub(crate) fn at(&self, vertex: u32) -> Vec3 {
+        let v = vertex as usize;
+        let known = self.placed.borrow()[v];
+        match self.place {
+            Some(place) if known.x.is_nan() => {
+                let p = place(v);
+                self.placed.borrow_mut()[v] = p;
+                p
+            }
+            _ => known,
+        }
+    }
+
+    /// Segments in which the left half of some parts crosses the plane through a point with a
+    /// unit normal.
+    pub(crate) fn section(
+        &self,
+        parts: &[Part],
+        [origin, normal]: [Vec3; 2],
+        near: Option<Near>,
+    ) -> Vec<[Vec3; 2]> {
+        let mut segments = Vec::new();
+        for (t, triangle) in self.triangles[..self.triangles.len() / 2]
+            .iter()
+            .enumerate()
+        {
+            if !parts.contains(&self.parts[t]) {
+                continue;
+            }
+            if let (Some(template), Some(([o, n], reach))) = (self.template, near) {
+                let p = template[triangle[0] as usize];
+                if (p - o).dot(&n).abs() > reach {
+                    continue;
+                }
+            }
+            let corners = triangle.map(|v| self.at(v));
+            let height = corners.map(|p| (p - origin).dot(&normal));
+            let mut ends = [Vec3::zeros(); 2];
+            let mut count = 0;
+            for k in 0..3 {
+                let (i, j) = (k, (k + 1) % 3);
+                if (height[i] >= 0.0) != (height[j] >= 0.0) && count < 2 {
+                    let share = height[i] / (height[i] - height[j]);
+                    ends[count] = corners[i] + (corners[j] - corners[i]) * share;
+                    count += 1;
+                }
+            }
+            if count == 2 {
+                segments.push(ends);
+            }
+        }
+        segments
+    }
+
+    /// A closed polygon round a section: its hull, in the plane's own coordinates, first axis
+    /// sideways.
+    pub(crate) fn hull(&self, part: Part, plane: [Vec3; 2], near: Option<Near>) -> Vec<Vec2> {
+        let [origin, normal] = plane;
+        // The trunk ends in the legs' first rings.
+        let parts: &[Part] = match part {
+            Part::Trunk => &[Part::Trunk, Part::LeftLeg],
+            _ => &[part],
+        };
+        let both = matches!(part, Part::Trunk | Part::Head);
+        let second = Vec3::x().cross(&normal);
+        let second = if second.norm() > 0.1 {
+            second.normalize()
+        } else {
+            Vec3::z()
+        };
+        let first = normal.cross(&second);
+        let mut points = Vec::new();
+        for p in self.section(parts, plane, near).into_iter().flatten() {
+            let offset = p - origin;
+            let q = Vec2::new(offset.dot(&first), offset.dot(&second));
+            points.push(q);
+            if both {
+                points.push(Vec2::new(-q.x, q.y));
+            }
+        }
+        convex_hull(&points)
+    }
+}
+
+/// Girth of one part by a tight tape in a plane [m]; zero where it has no section.
+pub(crate) fn girth(skinned: &Skinned, part: Part, plane: [Vec3; 2], near: Option<Near>) -> f64 {
+    closed_length(&skinned.hull(part, plane, near))
+}
+
+/// The part of a closed hull with `side * y >= 0`, without the chord [m].
+pub(crate) fn half_length(hull: &[Vec2], side: f64) -> f64 {
+    let mut sum = 0.0;
+    for (k, &a) in hull.iter().enumerate() {
+        let b = hull[(k + 1) % hull.len()];
+        let (u, v) = (side * a.y, side * b.y);
+        let share = match (u >= 0.0, v >= 0.0) {
+            (true, true) => 1.0,
+            (false, false) => 0.0,
+            (true, false) => u / (u - v),
+            (false, true) => v / (v - u),
+        };
+        sum += share * (b - a).norm();
+    }
+    sum
+}
+
+/// Extent of a hull along its two axes [m].
+pub(crate) fn extent(hull: &[Vec2]) -> [f64; 2] {
+    [0, 1].map(|k| {
+        let low = hull.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
+        let high = hull.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
+        (high - low).max(0.0)
+    })
+}
+
+/// Length of a tight tape from a point over segments of an upright section down to a level, on
+/// the side of the unit vector `outward` [m]: the hull of what lies between.
+pub(crate) fn fall(segments: &[[Vec3; 2]], from: Vec3, level: f64, outward: Vec3) -> Option<f64> {
+    let flat = |p: Vec3| Vec2::new(p.y, p.dot(&outward));
+    let flat: Vec<[Vec2; 2]> = segments.iter().map(|s| s.map(flat)).collect();
+    let end = outermost(&flat, level)?;
+    Some(stretched(&flat, end, Vec2::new(from.y, from.dot(&outward))))
+}
+
+/// The outermost point (place along, outward) of a section at a place along.
+pub(crate) fn outermost(segments: &[[Vec2; 2]], along: f64) -> Option<Vec2> {
+    segments
+        .iter()
+        .filter(|[a, b]| (a.x >= along) != (b.x >= along))
+        .map(|[a, b]| a + (b - a) * ((along - a.x) / (b.x - a.x)))
+        .max_by(|a, b| a.y.total_cmp(&b.y))
+}
+
+/// Length of a tight tape from one point to another over a section on its outward side [m].
+/// Points are (place along, outward), the first end before the second.
+pub(crate) fn stretched(segments: &[[Vec2; 2]], from: Vec2, to: Vec2) -> f64 {
+    let between = |p: &&Vec2| p.x > from.x && p.x < to.x;
+    let mut points: Vec<Vec2> = segments.iter().flatten().filter(between).copied().collect();
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.push(to);
+    let mut chain = vec![from];
+    for p in points {
+        while chain.len() > 1 {
+            let (a, b) = (chain[chain.len() - 2], chain[chain.len() - 1]);
+            if (b - a).perp(&(p - b)) >= 0.0 {
+                chain.pop();
+            } else {
+                break;
+            }
+        }
+        chain.push(p);
+    }
+    chain.windows(2).map(|w| (w[1] - w[0]).norm()).sum()
+}
+
+/// A point of a skin's surface on one of its edges, which goes with the skin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct OnEdge {
+    ends: [u32; 2],
+    share: f64,
+}
+
+impl OnEdge {
+    /// Where it is [m].
+    pub(crate) fn on(&self, skinned: &Skinned) -> Vec3 {
+        let [a, b] = self.ends.map(|v| skinned.at(v));
+        a + (b - a) * self.share
+    }
+
+    /// Where it is on a mesh [m].
+    pub(crate) fn at(&self, positions: &[Vec3]) -> Vec3 {
+        let [a, b] = self.ends.map(|v| positions[v as usize]);
+        a + (b - a) * self.share
+    }
 }
 
 /// The highest point of the skin over a place on the left side, searched along z at fixed `x`
 /// above height `from` [m], leaving out the head above `to` [m].
-pub(crate) fn ridge(mesh: &TriangleMesh, x: f64, [from, to]: [f64; 2]) -> Option<Vec3> {
-    let mut best: Option<Vec3> = None;
-    for t in 0..mesh.triangles.len() {
-        let corners = mesh.corners(t);
+pub(crate) fn ridge(mesh: &TriangleMesh, x: f64, [from, to]: [f64; 2]) -> Option<OnEdge> {
+    let mut best: Option<(f64, OnEdge)> = None;
+    for triangle in &mesh.triangles {
         for k in 0..3 {
-            let (a, b) = (corners[k], corners[(k + 1) % 3]);
+            let ends = [triangle[k], triangle[(k + 1) % 3]];
+            let [a, b] = ends.map(|v| mesh.positions[v as usize]);
             if (a.x >= x) == (b.x >= x) {
                 continue;
             }
-            let p = a + (b - a) * ((x - a.x) / (b.x - a.x));
-            if p.y >= from && p.y <= to && best.is_none_or(|q| p.y > q.y) {
-                best = Some(p);
+            let share = (x - a.x) / (b.x - a.x);
+            let y = a.y + (b.y - a.y) * share;
+            if y >= from && y <= to && best.is_none_or(|(top, _)| y > top) {
+                best = Some((y, OnEdge { ends, share }));
             }
         }
     }
-    best
+    best.map(|(_, point)| point)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tape_falls_straight_over_a_hollow_and_round_a_bulge() {
+        let at = |y: f64, z: f64| Vec3::new(0.0, y, z);
+        // Down a wall with a hollow: straight.
+        let hollow = [[at(1.0, 0.1), at(0.5, 0.0)], [at(0.5, 0.0), at(-0.5, 0.2)]];
+        let straight = fall(&hollow, at(1.0, 0.1), 0.0, Vec3::z()).unwrap();
+        assert!((straight - 1.0).abs() < 1e-12, "{straight}");
+        // Over a bulge: along it.
+        let bulge = [[at(1.0, 0.1), at(0.5, 0.6)], [at(0.5, 0.6), at(-0.5, -0.4)]];
+        let over = fall(&bulge, at(1.0, 0.1), 0.0, Vec3::z()).unwrap();
+        assert!((over - 2f64.sqrt()).abs() < 1e-12, "{over}");
+        assert!(fall(&bulge, at(1.0, 0.1), -1.0, Vec3::z()).is_none());
+        assert!(fall(&bulge, at(1.0, 0.1), 0.0, -Vec3::z()).unwrap() < 1.0 + 1e-12);
+    }
+
+    #[test]
+    fn halves_of_a_hull_and_its_extent() {
+        let square = [
+            Vec2::new(-1.0, -1.0),
+            Vec2::new(1.0, -1.0),
+            Vec2::new(1.0, 3.0),
+            Vec2::new(-1.0, 3.0),
+        ];
+        assert!((half_length(&square, 1.0) - 8.0).abs() < 1e-12);
+        assert!((half_length(&square, -1.0) - 4.0).abs() < 1e-12);
+        assert_eq!(extent(&square), [2.0, 4.0]);
+        assert_eq!(extent(&[]), [0.0, 0.0]);
+    }
 }

@@ -9,6 +9,7 @@ mod woman;
 
 use crate::{Part, Primitive};
 use serde::{Deserialize, Serialize};
+use toile_measure::Build;
 
 /// Which template a mannequin is grown from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -20,6 +21,17 @@ pub enum Figure {
     Man,
     /// The mean of both.
     Mean,
+}
+
+impl Figure {
+    /// Whose statistics predict what was not measured.
+    pub fn build(self) -> Build {
+        match self {
+            Figure::Woman => Build::Woman,
+            Figure::Man => Build::Man,
+            Figure::Mean => Build::Either,
+        }
+    }
 }
 
 /// Joint centres of the left side and the middle [m].

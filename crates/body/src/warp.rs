@@ -1,10 +1,11 @@
 //! The map from a template to a body of given measurements.
 //!
-//! Trunk and head: `(x, y, z) -> (x s_l(y), Y(y), z s_f(y))`, so that with `s_l = s_f` a section
-//! and the tape round it scale exactly. Legs and arms: the same about their own axes. Between the
+//! Trunk and head: `(x, y, z) -> (x s_l(y), Y(y), z s_f(y))`, with one s_f before and one behind
+//! the plane z = 0, so that with `s_l = s_f` a section and the tape round it scale exactly. Legs and arms: the same about their own axes. Between the
 //! parts the maps are blended over a few rings of the skin.
 
-use crate::curve::Monotone;
+use crate::curve::{Monotone, smooth_step};
+use crate::marks::Marks;
 use crate::rings::at_length;
 use crate::template::Template;
 use nalgebra::Matrix3;
@@ -18,14 +19,16 @@ pub(crate) struct Shape {
     pub(crate) levels: Vec<[f64; 2]>,
     /// Lateral scale of trunk and head over template height.
     pub(crate) lateral: Vec<[f64; 2]>,
-    /// Frontal scale of trunk and head over template height.
-    pub(crate) frontal: Vec<[f64; 2]>,
+    /// Frontal scale of trunk and head before the plane z = 0, over template height.
+    pub(crate) front: Vec<[f64; 2]>,
+    /// The same behind it.
+    pub(crate) back: Vec<[f64; 2]>,
     /// Scale of the leg about its axis over template height.
     pub(crate) leg: Vec<[f64; 2]>,
     /// Scale of the arm about its axis over template distance from the shoulder joint.
     pub(crate) arm: Vec<[f64; 2]>,
-    /// Scale of the arm along its axis.
-    pub(crate) arm_length: f64,
+    /// Distance along the arm's axis from the shoulder joint, on template and body [m].
+    pub(crate) arm_length: Vec<[f64; 2]>,
     /// Angle of the arm below the horizontal [rad].
     pub(crate) arm_angle: f64,
     /// Ratio of statures, body to template.
@@ -34,6 +37,16 @@ pub(crate) struct Shape {
     pub(crate) stance: f64,
     /// Template depth that becomes z = 0 [m].
     pub(crate) depth: f64,
+    /// Depth about which sections of trunk, neck and head are scaled, over template height.
+    pub(crate) middle: Vec<[f64; 2]>,
+    /// The same on the body.
+    pub(crate) middle_to: Vec<[f64; 2]>,
+    /// Rise of the ends of the shoulders over what the levels give them [m].
+    pub(crate) shoulder_rise: f64,
+    /// Rise of the armpits over what the levels give them [m].
+    pub(crate) armpit_rise: f64,
+    /// How far the bust points are apart over what the sections give them, less one.
+    pub(crate) bust_spread: f64,
 }
 
 /// How far a point follows a limb instead of the trunk.
@@ -44,12 +57,18 @@ pub(crate) struct Follow {
 }
 
 /// The map, for points of the left half, x >= 0.
+#[derive(Clone)]
 pub(crate) struct Warp {
     level: Monotone,
     lateral: Monotone,
-    frontal: Monotone,
+    front: Monotone,
+    back: Monotone,
     leg: Monotone,
     arm: Monotone,
+    arm_length: Monotone,
+    middle: Monotone,
+    middle_to: Monotone,
+    marks: Marks,
     shape: Shape,
     leg_axis: [Vec3; 3],
     shoulder: Vec3,
@@ -58,7 +77,7 @@ pub(crate) struct Warp {
 }
 
 impl Warp {
-    pub(crate) fn new(template: &Template, shape: Shape) -> Self {
+    pub(crate) fn new(template: &Template, marks: &Marks, shape: Shape) -> Self {
         let j = template.joints;
         let shoulder = Vec3::from(j.shoulder);
         let along = (Vec3::from(j.wrist) - shoulder).normalize();
@@ -66,9 +85,14 @@ impl Warp {
         Self {
             level: Monotone::new(shape.levels.clone()),
             lateral: Monotone::new(shape.lateral.clone()),
-            frontal: Monotone::new(shape.frontal.clone()),
+            front: Monotone::new(shape.front.clone()),
+            back: Monotone::new(shape.back.clone()),
             leg: Monotone::new(shape.leg.clone()),
             arm: Monotone::new(shape.arm.clone()),
+            arm_length: Monotone::new(shape.arm_length.clone()),
+            middle: Monotone::new(shape.middle.clone()),
+            middle_to: Monotone::new(shape.middle_to.clone()),
+            marks: *marks,
             leg_axis: [j.hip, j.knee, j.ankle].map(Vec3::from),
             shoulder,
             arm_from: [along, Vec3::z().cross(&along)],
@@ -78,11 +102,45 @@ impl Warp {
     }
 
     fn trunk(&self, p: Vec3) -> Vec3 {
+        let depth = p.z - self.middle.at(p.y);
+        // From the back's scale to the front's over the middle of the body.
+        let before = smooth_step(0.5 + depth / (0.09 * self.marks.crown));
+        let [front, back] = [self.front.at(p.y), self.back.at(p.y)];
+        let frontal = back + (front - back) * before;
         Vec3::new(
-            p.x * self.lateral.at(p.y),
-            self.level.at(p.y),
-            (p.z - self.shape.depth) * self.frontal.at(p.y),
+            p.x * self.lateral.at(p.y) * (1.0 + self.spread(p, depth)),
+            self.level.at(p.y) + self.rise(p),
+            self.middle_to.at(p.y) + depth * frontal,
         )
+    }
+
+    /// Share by which a place in front of the chest goes sideways with the bust points: all of it
+    /// there, nothing at the sides, above and below.
+    fn spread(&self, p: Vec3, depth: f64) -> f64 {
+        let m = &self.marks;
+        let half = 1.02 * m.tip.x;
+        let u = (p.x / half).powi(2);
+        let v = ((p.y - m.bust) / (0.055 * m.crown)).powi(2);
+        if u >= 1.0 || v >= 1.0 || depth <= 0.0 {
+            return 0.0;
+        }
+        let before = smooth_step(depth / (0.04 * m.crown));
+        self.shape.bust_spread * ((1.0 - u) * (1.0 - v)).powi(2) * before
+    }
+
+    /// Rise of a place with the end of the shoulder [m]: all of it there, nothing at the neck and
+    /// at the bust.
+    fn rise(&self, p: Vec3) -> f64 {
+        let m = &self.marks;
+        let inner = 0.92 * m.neck_side.x;
+        // Almost straight from the neck, level at the end.
+        let out = ((p.x - inner) / (m.tip.x - inner)).clamp(0.0, 1.0);
+        let out = out * (1.5 - 0.5 * out * out);
+        let up = smooth_step((p.y - m.bust) / (m.tip.y - m.bust));
+        let to_armpit = smooth_step(1.0 - (m.armpit - p.y) / (0.06 * m.crown));
+        let from_armpit = smooth_step(1.0 - (p.y - m.armpit) / (m.tip.y - m.armpit));
+        let armpit = self.shape.armpit_rise * to_armpit.min(from_armpit);
+        (self.shape.shoulder_rise * up + armpit) * out
     }
 
     /// The axis of the leg at a height.
@@ -113,7 +171,7 @@ impl Warp {
         let distance = offset.dot(&self.arm_from[0]);
         let scale = self.arm.at(distance);
         self.trunk(self.shoulder)
-            + self.arm_to[0] * (distance * self.shape.arm_length)
+            + self.arm_to[0] * self.arm_length.at(distance)
             + self.arm_to[1] * (offset.dot(&self.arm_from[1]) * scale)
             + Vec3::z() * (offset.z * scale)
     }
@@ -130,13 +188,47 @@ impl Warp {
         mapped
     }
 
-    /// Derivative of [`Warp::apply`] by central differences.
-    pub(crate) fn derivative(&self, p: Vec3, follow: Follow) -> Matrix3<f64> {
-        let step = 1e-4;
-        let column = |axis: Vec3| {
-            (self.apply(p + axis * step, follow) - self.apply(p - axis * step, follow))
-                / (2.0 * step)
+    /// The body's height of a height of the template [m].
+    pub(crate) fn level_of(&self, y: f64) -> f64 {
+        self.level.at(y)
+    }
+
+    /// The template's height of a height of the body [m].
+    pub(crate) fn template_level(&self, height: f64) -> f64 {
+        let (mut low, mut high) = (-1.0, 4.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.level.at(middle) < height {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    }
+
+    /// The plane across the arm at a template distance from the shoulder joint: a point of the
+    /// axis and its direction.
+    pub(crate) fn arm_plane(&self, distance: f64) -> [Vec3; 2] {
+        let along = self.arm_to[0] * self.arm_length.at(distance);
+        [self.trunk(self.shoulder) + along, self.arm_to[0]]
+    }
+
+    /// The same plane on the template.
+    pub(crate) fn template_arm_plane(&self, distance: f64) -> [Vec3; 2] {
+        [
+            self.shoulder + self.arm_from[0] * distance,
+            self.arm_from[0],
+        ]
+    }
+
+    /// What the map makes of three axes laid through a place: half the way between the images of
+    /// their two ends.
+    pub(crate) fn carried_axes(&self, p: Vec3, axes: Matrix3<f64>, follow: Follow) -> Matrix3<f64> {
+        let column = |k: usize| {
+            let axis = axes.column(k).into_owned();
+            (self.apply(p + axis, follow) - self.apply(p - axis, follow)) * 0.5
         };
-        Matrix3::from_columns(&[column(Vec3::x()), column(Vec3::y()), column(Vec3::z())])
+        Matrix3::from_columns(&[column(0), column(1), column(2)])
     }
 }

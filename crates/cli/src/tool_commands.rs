@@ -7,8 +7,9 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_geometry::Length;
+use toile_measure::Origin;
 use toile_session::{
-    BodyChoice, Budget, Event, NestOptions, Project, convert as convert_file, figure_named,
+    BodyChoice, BodyReport, Budget, Event, NestOptions, Project, convert as convert_file, figure_named,
     is_nesting_instance, make_body, mesh_panels, nest_instance, nest_patterns, open_measurements,
     run_scene,
 };
@@ -190,41 +191,75 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         body: choice,
         ..Project::default()
     };
-    let rows = make_body(&project, &body.out).map_err(|error| {
+    let report = make_body(&project, &body.out).map_err(|error| {
         let failure = Failure::from(error);
         match &body.measurements {
             Some(path) => failure.about(path),
             None => failure,
         }
     })?;
+    body_table(&report, output);
     output.say(format!(
-        "{:<20} {:>10} {:>10} {:>8}",
+        "wrote {} ({} compared)",
+        body.out.display(),
+        count(report.rows.len(), "measurement")
+    ));
+    let listed: Vec<Value> = report
+        .rows
+        .iter()
+        .map(|row| {
+            let unit = if row.is_angle() { "rad" } else { "m" };
+            json!({ "name": row.name, "asked": row.asked, "got": row.got, "unit": unit, "origin": row.origin })
+        })
+        .collect();
+    let conflicts: Vec<Value> = report
+        .conflicts
+        .iter()
+        .map(|c| json!({ "names": c.names, "gap_m": c.gap, "why": c.why }))
+        .collect();
+    Ok(json!({
+        "files": [body.out],
+        "measurements": listed,
+        "not_taken": report.untaken,
+        "conflicts": conflicts,
+    }))
+}
+
+/// The table of what was asked for or predicted and what the body has.
+fn body_table(report: &BodyReport, output: &Output) {
+    output.say(format!(
+        "{:<22} {:>10} {:>10} {:>8}",
         "measurement", "asked", "got", "gap"
     ));
-    for row in &rows {
-        let (scale, unit) = if row.angle {
+    for row in &report.rows {
+        let (scale, unit) = if row.is_angle() {
             (180.0 / std::f64::consts::PI, "deg")
         } else {
             (100.0, "cm")
         };
+        let predicted = match row.origin {
+            Origin::Asked => "",
+            Origin::Predicted => " (predicted)",
+        };
         output.say(format!(
-            "{:<20} {:>10.2} {:>10.2} {:>8.2} {unit}",
+            "{:<22} {:>10.2} {:>10.2} {:>8.2} {unit}{predicted}",
             row.name,
             row.asked * scale,
             row.got * scale,
             rounded((row.got - row.asked) * scale),
         ));
     }
-    output.say(format!(
-        "wrote {} ({} compared)",
-        body.out.display(),
-        count(rows.len(), "measurement")
-    ));
-    let listed: Vec<Value> = rows
-        .iter()
-        .map(|row| json!({ "name": row.name, "asked": row.asked, "got": row.got, "unit": if row.angle { "rad" } else { "m" } }))
-        .collect();
-    Ok(json!({ "files": [body.out], "measurements": listed }))
+    for name in &report.untaken {
+        output.say(format!("not taken on a standing body: {name}"));
+    }
+    for conflict in &report.conflicts {
+        output.say(format!(
+            "conflict of {:.1} cm: {}: {}",
+            conflict.gap * 100.0,
+            conflict.names.join(", "),
+            conflict.why
+        ));
+    }
 }
 
 /// To two decimals, and no negative zero.

@@ -119,6 +119,12 @@ pub const FURTHER: &[Definition] = &[
         &[],
     ),
     length(
+        "hps_to_waist_front",
+        "Side of neck to waist, front",
+        "Distance from the side of the neck over the front straight down to the waist.",
+        &[],
+    ),
+    length(
         "shoulder_to_shoulder",
         "Across shoulders",
         "Distance over the back between the outer ends of the shoulders.",

@@ -92,8 +92,9 @@ impl Project {
         self.pattern.size(self.size.as_deref()?)
     }
 
-    /// The measurements of the mannequin [m], [rad]: those of the file; else the figure's averages
-    /// overlaid with the named size, or with the pattern's base size where no body was chosen.
+    /// The measurements of the mannequin [m], [rad]: those of the file; else those of the named
+    /// size, or of the pattern's base size where no body was chosen; else the figure's averages.
+    /// What they leave out is predicted from them.
     pub fn wearer(&self) -> Measurements {
         let size = match &self.body {
             BodyChoice::Measured { measurements, .. } => Some(&**measurements),
@@ -102,8 +103,8 @@ impl Project {
                 .named_size()
                 .or_else(|| self.pattern.base_measurements()),
         };
-        let sample = sample_of(self.figure());
-        size.map_or_else(|| sample.clone(), |size| sample.overlaid(size))
+        let figure = self.figure();
+        size.map_or_else(|| sample_of(figure), |size| size.completed(figure.build()))
     }
 
     /// The measurements the pattern is drafted to [m], [rad]: the named size; else those of the

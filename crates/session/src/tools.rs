@@ -7,12 +7,11 @@ use crate::{PatternFormat, Project, SessionError};
 use std::path::Path;
 use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
-use toile_body::Mannequin;
+use toile_body::{Conflict, Gap, Mannequin};
 use toile_geometry::{Bounds2, Vec2, Vec3};
 use toile_interchange::{
     ObjGroup, ObjMesh, write_atomically, write_garmentcode, write_obj, write_pattern,
 };
-use toile_measure::{UnitKind, definition};
 use toile_pattern::Draft;
 
 /// The project a pattern file makes, in a named size.
@@ -100,33 +99,29 @@ pub fn mesh_panels(
     Ok(combine(&parts))
 }
 
-/// One measurement of a mannequin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyRow {
-    /// Its name.
-    pub name: &'static str,
-    /// Asked for [m] or [rad].
-    pub asked: f64,
-    /// Taken from the skin [m] or [rad].
-    pub got: f64,
-    /// Whether it is an angle.
-    pub angle: bool,
+/// A mannequin's measurements as asked and as got.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyReport {
+    /// What was asked for, then what was predicted.
+    pub rows: Vec<Gap>,
+    /// What was asked for and no tape takes from a standing body.
+    pub untaken: Vec<String>,
+    /// What was asked for and contradicts itself.
+    pub conflicts: Vec<Conflict>,
 }
 
-/// Makes a mannequin and writes its skin as OBJ. Returns every measurement as asked and as got.
+/// Makes a mannequin and writes its skin as OBJ. Returns every measurement as asked or predicted
+/// and as got.
 ///
 /// # Errors
 /// Measurements no body can have, or the file cannot be written.
-pub fn make_body(project: &Project, to: &Path) -> Result<Vec<BodyRow>, SessionError> {
+pub fn make_body(project: &Project, to: &Path) -> Result<BodyReport, SessionError> {
     let mannequin = Mannequin::new(&project.wearer(), project.figure())?;
     let text = write_obj(&body_obj(mannequin.skin())).map_err(cannot("the body"))?;
     write_atomically(to, text.as_bytes())?;
-    let angle = |name: &str| definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
-    let rows = mannequin.measure().into_iter().map(|gap| BodyRow {
-        name: gap.name,
-        asked: gap.asked,
-        got: gap.got,
-        angle: angle(gap.name),
-    });
-    Ok(rows.collect())
+    Ok(BodyReport {
+        rows: mannequin.measure(),
+        untaken: mannequin.untaken(),
+        conflicts: mannequin.conflicts(),
+    })
 }

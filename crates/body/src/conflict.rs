@@ -1,0 +1,202 @@
+//! Measurements that no single body has together.
+
+use toile_measure::{Measurements, Origin};
+
+/// Measurements that contradict one another. The body meets them in the sense of least squares.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conflict {
+    /// The measurements, by their names.
+    pub names: Vec<&'static str>,
+    /// By how much they disagree [m].
+    pub gap: f64,
+    /// What does not fit, and what to change.
+    pub why: &'static str,
+}
+
+/// A sum of measurements [m] that is at least zero on any body: names with their signs, part of
+/// the stature taken off.
+type Rule = (&'static [(&'static str, f64)], f64, &'static str);
+
+/// Rules of one body. Those with equal sums stand in pairs.
+const RULES: &[Rule] = &[
+    (
+        &[("bust", 1.0), ("high_bust", -1.0)],
+        0.0,
+        "the high bust is larger than the bust, which is the largest girth of the chest: measure \
+         both anew",
+    ),
+    (
+        &[("bust", 1.0), ("underbust", -1.0)],
+        0.0,
+        "the girth under the bust is larger than the bust: measure both anew",
+    ),
+    (
+        &[("hips", 1.0), ("high_hips", -1.0)],
+        0.0,
+        "the high hips are larger than the hips, which are the largest girth there: measure both \
+         anew",
+    ),
+    (
+        &[("high_hips", 1.0), ("waist", -1.0), ("hips", -0.15)],
+        -0.12,
+        "the high hips are far under the waist: measure both anew",
+    ),
+    (
+        &[
+            ("bust_line", 1.0),
+            ("bust_to_underbust", 1.0),
+            ("waist_to_underbust", 1.0),
+            ("hps_to_waist_front", -1.0),
+        ],
+        0.0,
+        "the way over the bust to the waist is shorter than the straight one: measure them anew",
+    ),
+    (
+        &[
+            ("height", 1.0),
+            ("head_l", -1.0),
+            ("waist_line", -1.0),
+            ("hips_line", -1.0),
+            ("crotch_hip_diff", -1.0),
+        ],
+        0.36,
+        "height less head_l, waist_line, hips_line and crotch_hip_diff leaves legs shorter than \
+         0.36 of the height: lessen one of them",
+    ),
+    (
+        &[("waist_line", 1.0), ("vert_bust_line", -1.0)],
+        0.05,
+        "the bust level must lie above the waist by 0.05 of the height or more: lessen \
+         vert_bust_line",
+    ),
+    (
+        &[("hips", 0.8), ("leg_circ", -1.0)],
+        0.0,
+        "a thigh cannot have over 0.8 of the hip girth: lessen leg_circ",
+    ),
+    (
+        &[("leg_circ", 1.0), ("calf", -1.0)],
+        0.0,
+        "the calf is larger than the thigh: measure both anew",
+    ),
+    (
+        &[("upper_arm", 1.0), ("wrist", -1.0)],
+        0.0,
+        "the wrist is larger than the upper arm: measure both anew",
+    ),
+    (
+        &[("heel", 1.0), ("ankle", -1.0)],
+        0.0,
+        "the ankle is larger than heel and instep: measure both anew",
+    ),
+];
+
+/// Two sums of lengths that are the same way of any body: names with signs.
+type Loop = (&'static [(&'static str, f64)], &'static str);
+
+const LOOPS: &[Loop] = &[
+    (
+        &[
+            ("height", 1.0),
+            ("head_l", -1.0),
+            ("waist_line", -1.0),
+            ("hips_line", -1.0),
+            ("crotch_hip_diff", -1.0),
+            ("inside_leg", -1.0),
+        ],
+        "height, head, waist, hips, crotch and leg lengths do not add up: change one of them",
+    ),
+    (
+        &[
+            ("waist_height", 1.0),
+            ("waist_to_crotch", -1.0),
+            ("inside_leg", -1.0),
+        ],
+        "waist height is not the rise and the inside leg together: change one of them",
+    ),
+    (
+        &[("height", 1.0), ("head_l", -1.0), ("nape_height", -1.0)],
+        "the nape's height is not stature less head and neck: change one of them",
+    ),
+    (
+        &[
+            ("nape_height", 1.0),
+            ("waist_line", -1.0),
+            ("waist_height", -1.0),
+        ],
+        "the back length is not the way from nape to waist: change one of them",
+    ),
+    (
+        &[
+            ("waist_height", 1.0),
+            ("waist_to_knee", -1.0),
+            ("knee_height", -1.0),
+        ],
+        "the knee's height is not that of the waist less the way to the knee: change one of them",
+    ),
+    (
+        &[
+            ("waist_height", 1.0),
+            ("hips_line", -1.0),
+            ("hip_height", -1.0),
+        ],
+        "the hips' height is not that of the waist less the way to the hips: change one of them",
+    ),
+    (
+        &[
+            ("nape_height", 1.0),
+            ("vert_bust_line", -1.0),
+            ("bust_height", -1.0),
+        ],
+        "the bust's height is not that of the nape less its depth: change one of them",
+    ),
+    (
+        &[
+            ("vert_bust_line", 1.0),
+            ("bust_to_underbust", 1.0),
+            ("waist_to_underbust", 1.0),
+            ("waist_line", -1.0),
+        ],
+        "the ways from nape over bust to waist do not add up to the back length: change one",
+    ),
+];
+
+/// Slack of an equality over stature: the tape's.
+const SLACK: f64 = 5e-4;
+
+/// Every rule broken by what was asked for.
+pub(crate) fn conflicts(table: &Measurements) -> Vec<Conflict> {
+    let height = table.get("height").unwrap_or(1.7);
+    // Only what somebody asked for can contradict.
+    let sum = |terms: &[(&'static str, f64)]| -> Option<f64> {
+        terms.iter().try_fold(0.0, |sum, (name, sign)| {
+            let measured = table.measured(name)?;
+            (measured.origin == Origin::Asked).then_some(sum + sign * measured.value)
+        })
+    };
+    let names = |terms: &[(&'static str, f64)]| terms.iter().map(|term| term.0).collect();
+    let mut found = Vec::new();
+    for &(terms, share, why) in RULES {
+        if let Some(sum) = sum(terms)
+            && sum < share * height - SLACK * height
+        {
+            found.push(Conflict {
+                names: names(terms),
+                gap: share * height - sum,
+                why,
+            });
+        }
+    }
+    for &(terms, why) in LOOPS {
+        if let Some(sum) = sum(terms)
+            && sum.abs() > SLACK * height
+        {
+            found.push(Conflict {
+                names: names(terms),
+                gap: sum.abs(),
+                why,
+            });
+        }
+    }
+    found
+}

@@ -1,0 +1,142 @@
+//! Every girth a body is solved for: where it lies and which scale it sets.
+
+use crate::Part;
+use crate::levels::{Level, Levels};
+use crate::marks::{Marks, Plane};
+use crate::tape::Near;
+use crate::warp::{Follow, Warp};
+use toile_geometry::Vec3;
+
+/// A girth, from the head down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Girth {
+    Head,
+    Neck,
+    HighBust,
+    Bust,
+    Underbust,
+    Waist,
+    HighHips,
+    Hips,
+    Thigh,
+    LowerThigh,
+    Knee,
+    Calf,
+    Ankle,
+    Heel,
+    UpperArm,
+    Elbow,
+    Forearm,
+    Wrist,
+}
+
+/// Where a girth lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Site {
+    /// Level round the trunk.
+    Trunk(Level),
+    /// Level round the left leg, at a height of the template [m].
+    Leg(f64),
+    /// Across the left arm, at a distance from the shoulder joint of the template [m].
+    Arm(f64),
+    /// A plane of the template.
+    Plane(Part, Plane),
+}
+
+/// Depth below the crotch at which the thigh is measured, over stature.
+pub(crate) const THIGH_DROP: f64 = 0.012;
+
+impl Girth {
+    pub(crate) const COUNT: usize = 18;
+    pub(crate) const ALL: [Girth; Self::COUNT] = {
+        use Girth::*;
+        [
+            Head, Neck, HighBust, Bust, Underbust, Waist, HighHips, Hips, Thigh, LowerThigh, Knee,
+            Calf, Ankle, Heel, UpperArm, Elbow, Forearm, Wrist,
+        ]
+    };
+
+    /// The measurement's name.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Girth::Head => "head",
+            Girth::Neck => "neck",
+            Girth::HighBust => "high_bust",
+            Girth::Bust => "bust",
+            Girth::Underbust => "underbust",
+            Girth::Waist => "waist",
+            Girth::HighHips => "high_hips",
+            Girth::Hips => "hips",
+            Girth::Thigh => "leg_circ",
+            Girth::LowerThigh => "lower_thigh",
+            Girth::Knee => "knee",
+            Girth::Calf => "calf",
+            Girth::Ankle => "ankle",
+            Girth::Heel => "heel",
+            Girth::UpperArm => "upper_arm",
+            Girth::Elbow => "elbow",
+            Girth::Forearm => "forearm",
+            Girth::Wrist => "wrist",
+        }
+    }
+
+    /// Where it lies on a template; the thigh's place follows the crotch.
+    pub(crate) fn site(self, marks: &Marks) -> Site {
+        match self {
+            Girth::Head => Site::Plane(Part::Head, marks.head),
+            Girth::Neck => Site::Plane(Part::Head, marks.neck),
+            Girth::HighBust => Site::Trunk(Level::HighBust),
+            Girth::Bust => Site::Trunk(Level::Bust),
+            Girth::Underbust => Site::Trunk(Level::Underbust),
+            Girth::Waist => Site::Trunk(Level::Waist),
+            Girth::HighHips => Site::Trunk(Level::HighHips),
+            Girth::Hips => Site::Trunk(Level::Hips),
+            Girth::Thigh => Site::Leg(marks.crotch),
+            Girth::LowerThigh => Site::Leg(marks.lower_thigh),
+            Girth::Knee => Site::Leg(marks.knee),
+            Girth::Calf => Site::Leg(marks.calf),
+            Girth::Ankle => Site::Leg(marks.ankle),
+            Girth::Heel => Site::Plane(Part::LeftLeg, marks.heel),
+            Girth::UpperArm => Site::Arm(marks.upper_arm),
+            Girth::Elbow => Site::Arm(marks.elbow),
+            Girth::Forearm => Site::Arm(marks.forearm),
+            Girth::Wrist => Site::Arm(marks.wrist),
+        }
+    }
+
+    /// The part it lies on, and its plane on the body: a point and a unit normal.
+    pub(crate) fn plane(self, marks: &Marks, levels: &Levels, warp: &Warp) -> (Part, [Vec3; 2]) {
+        let level = |part, y: f64| (part, [Vec3::new(0.0, y, 0.0), Vec3::y()]);
+        match self.site(marks) {
+            Site::Trunk(at) => level(Part::Trunk, levels.at(at)),
+            Site::Leg(_) if self == Girth::Thigh => {
+                let drop = THIGH_DROP * levels.at(Level::Crown);
+                level(Part::LeftLeg, levels.at(Level::Crotch) - drop)
+            }
+            Site::Leg(y) => level(Part::LeftLeg, warp.level_of(y)),
+            Site::Arm(distance) => (Part::LeftArm, warp.arm_plane(distance)),
+            Site::Plane(part, plane) => {
+                let follow = match part {
+                    Part::LeftLeg => Follow { arm: 0.0, leg: 1.0 },
+                    _ => Follow::default(),
+                };
+                let at = |p: Vec3| warp.apply(p, follow);
+                let [a, b, c] = plane.map(at);
+                let normal = (b - a).cross(&(c - a)).normalize();
+                (part, [a, if normal.y < 0.0 { -normal } else { normal }])
+            }
+        }
+    }
+
+    /// Where on the template its triangles are to be looked for.
+    pub(crate) fn near(self, marks: &Marks, plane: [Vec3; 2], warp: &Warp) -> Option<Near> {
+        let level = |y: f64, reach: f64| Some(([Vec3::y() * y, Vec3::y()], reach));
+        match self.site(marks) {
+            Site::Trunk(_) => level(warp.template_level(plane[0].y), 0.06),
+            Site::Leg(_) if self == Girth::Thigh => level(warp.template_level(plane[0].y), 0.08),
+            Site::Leg(y) => level(y, 0.05),
+            Site::Arm(distance) => Some((warp.template_arm_plane(distance), 0.05)),
+            Site::Plane(..) => None,
+        }
+    }
+}

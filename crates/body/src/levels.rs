@@ -1,0 +1,267 @@
+//! Heights of the landmarks, from whatever lengths are asked for.
+
+use crate::marks::{Marks, UNDERBUST};
+use nalgebra::{SMatrix, SVector};
+use toile_measure::{Measurements, Origin};
+
+/// Landmarks a height is solved for, from the top down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Level {
+    Crown,
+    Nape,
+    NeckSide,
+    Tip,
+    Armpit,
+    HighBust,
+    Bust,
+    Underbust,
+    Waist,
+    HighHips,
+    Hips,
+    Crotch,
+    Knee,
+}
+
+use Level::{
+    Armpit, Bust, Crotch, Crown, HighBust, HighHips, Hips, Knee, Nape, NeckSide, Tip, Underbust,
+    Waist,
+};
+
+const COUNT: usize = 13;
+
+/// Heights above the floor [m].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Levels([f64; COUNT]);
+
+impl Levels {
+    pub(crate) fn at(&self, level: Level) -> f64 {
+        self.0[level as usize]
+    }
+}
+
+/// How much more than the difference of its levels a measurement is on the skin [m].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Excess {
+    /// Of the landmark on the skin over its level.
+    pub(crate) level: [f64; COUNT],
+    /// From the side of the neck out to the end of the shoulder; none before it is known.
+    pub(crate) run: Option<f64>,
+    /// Of a way over the body over its fall, in the order of [`OVER`].
+    pub(crate) over: [f64; OVER.len()],
+}
+
+/// Straight upright lengths: name, upper and lower landmark; none is the floor.
+const UPRIGHT: [(&str, Level, Option<Level>); 20] = [
+    ("height", Crown, None),
+    ("nape_height", Nape, None),
+    ("head_l", Crown, Some(Nape)),
+    ("shoulder_height", Tip, None),
+    ("armpit_height", Armpit, None),
+    ("bust_height", Bust, None),
+    ("waist_height", Waist, None),
+    ("hip_height", Hips, None),
+    ("inside_leg", Crotch, None),
+    ("knee_height", Knee, None),
+    ("waist_line", Nape, Some(Waist)),
+    ("hips_line", Waist, Some(Hips)),
+    ("crotch_hip_diff", Hips, Some(Crotch)),
+    ("vert_bust_line", Nape, Some(Bust)),
+    ("waist_to_underbust", Underbust, Some(Waist)),
+    ("armscye_depth", Tip, Some(Armpit)),
+    ("waist_to_armpit", Armpit, Some(Waist)),
+    ("waist_to_high_hips", Waist, Some(HighHips)),
+    ("waist_to_crotch", Waist, Some(Crotch)),
+    ("waist_to_knee", Waist, Some(Knee)),
+];
+
+/// Ways over the body: name, upper and lower landmark, and the upright lengths beside which they
+/// do not decide the level.
+pub(crate) const OVER: [(&str, Level, Option<Level>, &[&str]); 6] = [
+    (
+        "bust_line",
+        NeckSide,
+        Some(Bust),
+        &["vert_bust_line", "bust_height"],
+    ),
+    ("hps_to_waist_back", NeckSide, Some(Waist), &["waist_line"]),
+    ("hps_to_waist_front", NeckSide, Some(Waist), &["waist_line"]),
+    (
+        "waist_over_bust_line",
+        NeckSide,
+        Some(Waist),
+        &["waist_line", "hps_to_waist_back", "bust_line"],
+    ),
+    ("bust_to_underbust", Bust, Some(Underbust), &[]),
+    (
+        "outside_leg",
+        Waist,
+        None,
+        &["waist_height", "waist_to_crotch", "waist_line"],
+    ),
+];
+
+/// Every upright length with its landmarks.
+pub(crate) fn upright() -> impl Iterator<Item = (&'static str, Level, Option<Level>)> {
+    UPRIGHT.into_iter()
+}
+
+/// Least squares of all lengths, weighted by how surely each is known.
+struct System {
+    normal: SMatrix<f64, COUNT, COUNT>,
+    right: SVector<f64, COUNT>,
+}
+
+impl System {
+    fn add(&mut self, terms: &[(Level, f64)], value: f64, deviation: f64) {
+        let weight = 1.0 / (deviation * deviation);
+        for &(a, x) in terms {
+            self.right[a as usize] += weight * x * value;
+            for &(b, y) in terms {
+                self.normal[(a as usize, b as usize)] += weight * x * y;
+            }
+        }
+    }
+}
+
+/// Deviations over stature: of an asked upright length, of an asked way over the body, of what
+/// was predicted, of the template's proportions, of a definition.
+const ASKED: f64 = 3e-5;
+const ASKED_OVER: f64 = 1e-3;
+const PREDICTED: f64 = 0.02;
+const PROPORTION: f64 = 0.008;
+const DEFINED: f64 = 3e-4;
+/// Height of the neck's side below the nape, over stature.
+const NECK_SIDE_DROP: f64 = 0.020;
+
+/// Heights that meet the lengths of a completed table in the sense of least squares: what is
+/// asked for weighs most, then what goes with the definitions, then predictions.
+pub(crate) fn solve(table: &Measurements, marks: &Marks, excess: &Excess) -> Levels {
+    let height = table.get("height").unwrap_or(1.7);
+    let mut system = System {
+        normal: SMatrix::zeros(),
+        right: SVector::zeros(),
+    };
+    let asked = |name: &str| {
+        table
+            .measured(name)
+            .is_some_and(|m| m.origin == Origin::Asked)
+    };
+    for (name, upper, lower) in UPRIGHT {
+        let Some(measured) = table.measured(name) else {
+            continue;
+        };
+        let mut terms = vec![(upper, 1.0)];
+        let mut value = measured.value - excess.level[upper as usize];
+        if let Some(lower) = lower {
+            terms.push((lower, -1.0));
+            value += excess.level[lower as usize];
+        }
+        let deviation = if asked(name) { ASKED } else { PREDICTED };
+        system.add(&terms, value, deviation * height);
+    }
+    for (k, (name, upper, lower, beside)) in OVER.into_iter().enumerate() {
+        if !asked(name) || beside.iter().any(|name| asked(name)) {
+            continue;
+        }
+        let mut terms = vec![(upper, 1.0)];
+        terms.extend(lower.map(|lower| (lower, -1.0)));
+        let value = table.get(name).unwrap_or_default() - excess.over[k];
+        system.add(&terms, value, ASKED_OVER * height);
+    }
+    proportions(&mut system, table, marks, height, excess);
+    let solved = system
+        .normal
+        .cholesky()
+        .map_or(SVector::zeros(), |factor| factor.solve(&system.right));
+    in_order(solved.into(), height)
+}
+
+/// What holds of any body: definitions, then the template's proportions.
+fn proportions(
+    system: &mut System,
+    table: &Measurements,
+    marks: &Marks,
+    height: f64,
+    excess: &Excess,
+) {
+    let h = height;
+    system.add(
+        &[(Nape, 1.0), (NeckSide, -1.0)],
+        NECK_SIDE_DROP * h,
+        DEFINED * h,
+    );
+    if let (Some(slope), Some(shoulders), Some(neck)) = (
+        table.measured("shoulder_incl"),
+        table.get("shoulder_w"),
+        table.get("neck_w"),
+    ) {
+        let run = excess.run.unwrap_or(0.5 * (shoulders - neck));
+        let fall = run * slope.value.clamp(-0.2, 1.2).tan();
+        let deviation = match slope.origin {
+            Origin::Asked => ASKED,
+            Origin::Predicted => PROPORTION,
+        };
+        let value = fall + excess.level[Tip as usize] - excess.level[NeckSide as usize];
+        system.add(&[(NeckSide, 1.0), (Tip, -1.0)], value, deviation * h);
+    }
+    let t = marks;
+    let of_template = |a: f64| a / t.crown * h;
+    let near = PROPORTION * h;
+    system.add(&[(Bust, 1.0), (Underbust, -1.0)], UNDERBUST * h, near);
+    system.add(&[(HighBust, 1.0), (Bust, -0.62), (Tip, -0.38)], 0.0, near);
+    system.add(&[(HighHips, 1.0), (Waist, -0.5), (Hips, -0.5)], 0.0, near);
+    system.add(&[(Knee, 1.0), (Crotch, -t.knee / t.crotch)], 0.0, near);
+    system.add(
+        &[(Tip, 1.0), (Armpit, -1.0)],
+        of_template(t.tip.y - t.armpit),
+        near,
+    );
+    // Weak ones, so that every level is determined.
+    let weak = 0.05 * h;
+    for (level, y) in [
+        (Crown, t.crown),
+        (Nape, t.neck_side.y),
+        (Tip, t.tip.y),
+        (Bust, t.bust),
+        (Crotch, t.crotch),
+        (Waist, t.crotch + 0.6 * (t.bust - t.crotch)),
+        (Hips, t.crotch + 0.2 * (t.bust - t.crotch)),
+    ] {
+        system.add(&[(level, 1.0)], of_template(y), weak);
+    }
+}
+
+/// Least heights of the landmarks over those below, over stature.
+const ROOM: [(Level, f64); 9] = [
+    (Knee, 0.12),
+    (Crotch, 0.10),
+    // The fullest buttocks may lie under the crotch.
+    (Hips, -0.025),
+    (Waist, 0.06),
+    (Underbust, 0.012),
+    (Bust, 0.012),
+    (Tip, 0.03),
+    (NeckSide, 0.004),
+    (Crown, 0.08),
+];
+
+/// Heights with the least room between them.
+fn in_order(mut heights: [f64; COUNT], height: f64) -> Levels {
+    let mut floor = 0.0;
+    for (level, room) in ROOM {
+        let least = floor + room * height;
+        let at = &mut heights[level as usize];
+        *at = at.max(least);
+        floor = *at;
+    }
+    let [hips, waist] = [heights[Hips as usize], heights[Waist as usize]];
+    let between = &mut heights[HighHips as usize];
+    *between = between.clamp(hips + 0.008 * height, waist - 0.008 * height);
+    let [under, tip] = [heights[Underbust as usize], heights[Tip as usize]];
+    let armpit = &mut heights[Armpit as usize];
+    *armpit = armpit.clamp(under, tip - 0.02 * height);
+    let bust = heights[Bust as usize];
+    let high = &mut heights[HighBust as usize];
+    *high = high.clamp(bust + 0.008 * height, tip - 0.008 * height);
+    Levels(heights)
+}

@@ -1,0 +1,247 @@
+//! From scales and levels to the curves of the warp.
+
+use crate::BodyError;
+use crate::curve::Monotone;
+use crate::girths::{Girth, Site, THIGH_DROP};
+use crate::levels::{Level, Levels};
+use crate::marks::Marks;
+use crate::solve::Grown;
+use crate::warp::Shape;
+
+/// Scales that are solved for.
+#[derive(Clone, Debug)]
+pub(crate) struct Scales {
+    /// Of each girth.
+    pub(crate) girth: [f64; Girth::COUNT],
+    /// Square of lateral over frontal scale, of girths round the trunk.
+    pub(crate) aspect: [f64; Girth::COUNT],
+    /// Front over back: the front's share of the scale beyond one half.
+    pub(crate) split: [f64; Girth::COUNT],
+    /// Lateral, at the ends of the shoulders.
+    pub(crate) shoulder: f64,
+    /// Lateral, at the sides of the neck.
+    pub(crate) neck: f64,
+    /// Distances along the arm from the shoulder joint [m].
+    pub(crate) elbow: f64,
+    pub(crate) wrist: f64,
+    /// How far the neck stands forward of the template's [m].
+    pub(crate) lean: f64,
+    /// How far the bust points are apart over what the sections give them, less one.
+    pub(crate) spread: f64,
+    /// Rise of the armpits over what the levels give them [m].
+    pub(crate) armpit: f64,
+}
+
+impl Scales {
+    /// All the template's own, at a ratio of statures.
+    pub(crate) fn new(global: f64, marks: &Marks) -> Self {
+        Self {
+            girth: [global; Girth::COUNT],
+            aspect: [1.0; Girth::COUNT],
+            split: [0.0; Girth::COUNT],
+            shoulder: global,
+            neck: global,
+            elbow: global * marks.elbow,
+            wrist: global * marks.wrist,
+            lean: 0.0,
+            spread: 0.0,
+            armpit: 0.0,
+        }
+    }
+
+    fn of(&self, girth: Girth) -> f64 {
+        self.girth[girth as usize]
+    }
+}
+
+/// Scales at one level of the trunk: height on the template [m], lateral, front, back.
+type Section = [f64; 4];
+
+/// Least distance between sections that are scaled apart, over stature.
+const APART: f64 = 0.006;
+
+/// The shape of given scales and levels.
+pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape, BodyError> {
+    let (m, q, t) = (&grown.marks, &grown.request, grown.template);
+    let height = levels.at(Level::Crown);
+    let global = q.get("height") / t.height;
+    let knee = levels.at(Level::Knee);
+    let ankle = (t.joints.ankle[1] * global).min(0.4 * knee);
+    let heights = vec![
+        [0.0, 0.0],
+        [t.joints.ankle[1], ankle],
+        [m.knee, knee],
+        [m.crotch, levels.at(Level::Crotch)],
+        [m.bust, levels.at(Level::Bust)],
+        [m.neck_side.y, levels.at(Level::NeckSide)],
+        [m.crown, height],
+    ];
+    if heights
+        .windows(2)
+        .any(|w| w[1][0] <= w[0][0] || w[1][1] <= w[0][1])
+    {
+        return Err(BodyError::Contradiction {
+            first: "height",
+            second: "the lengths along it",
+            remedy: "they leave no room between the landmarks: lessen the longest of them",
+        });
+    }
+    let curve = Monotone::new(heights.clone());
+    let shoulder_rise = levels.at(Level::Tip) - curve.at(m.tip.y);
+    let [neck, head] = [t.joints.neck[2], t.joints.head[2]];
+    let places = [
+        m.crotch,
+        m.bust,
+        m.tip.y,
+        m.neck_side.y,
+        t.joints.head[1],
+        m.crown,
+    ];
+    let middle = [m.depth, m.depth, 0.5 * (m.depth + neck), neck, head, head];
+    let forward = [0.0, 0.0, 0.5 * s.lean, s.lean, s.lean, s.lean];
+    let row = |k: usize| [places[k], middle[k]];
+    let row_to = |k: usize| [places[k], (middle[k] - m.depth) * global + forward[k]];
+    let on_template = |level: f64| inverse(&curve, level);
+    let sections = trunk(grown, s, levels, &on_template);
+    let column = |k: usize| sections.iter().map(|row| [row[0], row[k]]).collect();
+    let aspect = s.aspect[Girth::Hips as usize].sqrt();
+    Ok(Shape {
+        levels: heights,
+        lateral: column(1),
+        front: column(2),
+        back: column(3),
+        leg: leg(grown, s, levels, &on_template),
+        arm: arm(grown, s, global),
+        arm_length: vec![
+            [0.0, 0.0],
+            [m.elbow, s.elbow.clamp(0.2 * s.wrist, 0.8 * s.wrist)],
+            [m.wrist, s.wrist],
+            [1.5 * m.wrist, s.wrist + 0.5 * m.wrist * global],
+        ],
+        arm_angle: q.get("arm_pose_angle"),
+        global,
+        stance: s.of(Girth::Hips) * aspect,
+        depth: m.depth,
+        middle: (0..6).map(row).collect(),
+        middle_to: (0..6).map(row_to).collect(),
+        shoulder_rise,
+        bust_spread: s.spread,
+        armpit_rise: s.armpit,
+    })
+}
+
+/// Place on a rising curve [m].
+fn inverse(curve: &Monotone, value: f64) -> f64 {
+    let (mut low, mut high) = (-1.0, 4.0);
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        if curve.at(middle) < value {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Sections of trunk, neck and head from below. Of two that lie too close, the more important
+/// one stands.
+fn trunk(
+    grown: &Grown,
+    s: &Scales,
+    levels: &Levels,
+    on_template: &dyn Fn(f64) -> f64,
+) -> Vec<Section> {
+    let (m, t) = (&grown.marks, grown.template);
+    let section = |y: f64, girth: Girth| -> Section {
+        let k = girth as usize;
+        let (scale, form) = (s.girth[k], s.aspect[k].sqrt());
+        let frontal = scale / form;
+        let [front, back] = [1.0 + 2.0 * s.split[k], 1.0 - 2.0 * s.split[k]];
+        [y, scale * form, frontal * front, frontal * back]
+    };
+    let mut rows = vec![section(m.crotch, Girth::Hips)];
+    for girth in [
+        Girth::Hips,
+        Girth::Waist,
+        Girth::Bust,
+        Girth::Underbust,
+        Girth::HighBust,
+        Girth::HighHips,
+    ] {
+        if let (Some(_), Site::Trunk(level)) = (grown.request.girth(girth), girth.site(m)) {
+            let y = on_template(levels.at(level));
+            if rows.iter().all(|row| (row[0] - y).abs() > APART * t.height) {
+                rows.push(section(y, girth));
+            }
+        }
+    }
+    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let top = rows[rows.len() - 1];
+    rows.retain(|row| row[0] < m.tip.y - APART * t.height);
+    let global = grown.request.get("height") / t.height;
+    let (neck, head) = (s.of(Girth::Neck), s.of(Girth::Head));
+    let [front, back] = [2, 3].map(|k| 0.5 * (top[k] + global));
+    rows.push([m.tip.y, s.shoulder, front, back]);
+    let between = 0.5 * (s.neck + neck);
+    rows.push([m.neck_side.y, s.neck, between, between]);
+    rows.push([m.neck[0].y.max(m.neck_side.y + 0.01), neck, neck, neck]);
+    let chin = m.neck_side.y + 0.35 * (m.crown - m.neck_side.y);
+    rows.push([chin.max(m.neck[0].y + 0.02), head, head, head]);
+    rows.push([m.crown, head, head, head]);
+    rows
+}
+
+/// Scales of the leg over template height.
+fn leg(
+    grown: &Grown,
+    s: &Scales,
+    levels: &Levels,
+    on_template: &dyn Fn(f64) -> f64,
+) -> Vec<[f64; 2]> {
+    let (m, t, q) = (&grown.marks, grown.template, &grown.request);
+    let global = q.get("height") / t.height;
+    let foot = if q.girth(Girth::Heel).is_some() {
+        s.of(Girth::Heel)
+    } else {
+        global
+    };
+    let crotch = levels.at(Level::Crotch);
+    let thigh = on_template(crotch - THIGH_DROP * levels.at(Level::Crown));
+    let mut rows = vec![[0.0, foot], [0.8 * t.joints.ankle[1], foot]];
+    for (girth, y) in [
+        (Girth::Ankle, m.ankle),
+        (Girth::Calf, m.calf),
+        (Girth::Knee, m.knee),
+        (Girth::LowerThigh, m.lower_thigh),
+    ] {
+        if q.girth(girth).is_some() {
+            rows.push([y, s.of(girth)]);
+        }
+    }
+    rows.push([thigh, s.of(Girth::Thigh)]);
+    rows.push([thigh.max(m.crotch) + 0.05 * t.height, s.of(Girth::Thigh)]);
+    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    rows.dedup_by(|b, a| b[0] - a[0] < 1e-3);
+    rows
+}
+
+/// Scales of the arm over template distance from the shoulder joint.
+fn arm(grown: &Grown, s: &Scales, global: f64) -> Vec<[f64; 2]> {
+    let (m, q) = (&grown.marks, &grown.request);
+    let mut rows = vec![[0.0, 0.5 * (global + s.of(Girth::UpperArm))]];
+    for (girth, distance) in [
+        (Girth::UpperArm, m.upper_arm),
+        (Girth::Elbow, m.elbow),
+        (Girth::Forearm, m.forearm),
+        (Girth::Wrist, m.wrist),
+    ] {
+        if q.girth(girth).is_some() {
+            rows.push([distance, s.of(girth)]);
+        }
+    }
+    rows.push([1.1 * m.wrist, s.of(Girth::Wrist)]);
+    rows.push([1.3 * m.wrist, global]);
+    rows.dedup_by(|b, a| b[0] - a[0] < 1e-3);
+    rows
+}

@@ -1,0 +1,243 @@
+//! Every measurement as the tape finds it on a skin.
+
+use crate::Part;
+use crate::girths::Girth;
+use crate::levels::{Level, Levels, upright};
+use crate::marks::Marks;
+use crate::tape::{Skinned, extent, fall, half_length, outermost, stretched};
+use crate::warp::Warp;
+use std::f64::consts::FRAC_PI_2;
+use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
+
+/// A skin with what is needed to find places on it.
+pub(crate) struct Taken<'a> {
+    pub(crate) skinned: &'a Skinned<'a>,
+    pub(crate) marks: &'a Marks,
+    pub(crate) levels: &'a Levels,
+    pub(crate) warp: &'a Warp,
+    /// Vertices in the middle of the crotch.
+    pub(crate) crotch: &'a [u32],
+    /// Vertex of the crown, and those at the ends of the left hand and foot.
+    pub(crate) armpit: u32,
+}
+
+const TORSO: &[Part] = &[Part::Trunk, Part::Head];
+
+impl Taken<'_> {
+    /// The end of the left shoulder [m].
+    pub(crate) fn tip(&self) -> Vec3 {
+        self.marks.tip_on.on(self.skinned)
+    }
+
+    /// The left side of the neck [m].
+    pub(crate) fn neck_side(&self) -> Vec3 {
+        self.marks.neck_side_on.on(self.skinned)
+    }
+
+    /// Height of a landmark on the skin [m].
+    pub(crate) fn height(&self, level: Level) -> f64 {
+        match level {
+            Level::Tip => self.tip().y,
+            Level::NeckSide => self.neck_side().y,
+            Level::Armpit => self.skinned.at(self.armpit).y,
+            Level::Crotch => {
+                let heights = self.crotch.iter().map(|&v| self.skinned.at(v).y);
+                heights.fold(f64::INFINITY, f64::min)
+            }
+            _ => self.levels.at(level),
+        }
+    }
+
+    /// The hull of a girth's section.
+    pub(crate) fn hull(&self, girth: Girth) -> Vec<Vec2> {
+        let (part, plane) = girth.plane(self.marks, self.levels, self.warp);
+        self.skinned
+            .hull(part, plane, girth.near(self.marks, plane, self.warp))
+    }
+
+    /// A girth [m].
+    pub(crate) fn girth(&self, girth: Girth) -> f64 {
+        closed_length(&self.hull(girth))
+    }
+
+    /// The foremost point of the bust on the left [m].
+    pub(crate) fn bust_point(&self) -> Option<Vec3> {
+        let y = self.levels.at(Level::Bust);
+        let section = self
+            .skinned
+            .section(&[Part::Trunk], [Vec3::y() * y, Vec3::y()], None);
+        section
+            .into_iter()
+            .flatten()
+            .max_by(|a, b| a.z.total_cmp(&b.z).then(a.x.total_cmp(&b.x)))
+    }
+
+    /// The upright section through a point, parallel to z and a direction.
+    fn upright(&self, parts: &[Part], through: Vec3, sideways: Vec3) -> Vec<[Vec3; 2]> {
+        let normal = Vec3::z().cross(&sideways).normalize();
+        self.skinned.section(parts, [through, normal], None)
+    }
+
+    fn bust_line(&self) -> Option<f64> {
+        let (neck, bust) = (self.neck_side(), self.bust_point()?);
+        let way = bust - neck;
+        let down = Vec3::new(way.x, way.y, 0.0);
+        let stretch = down.norm() / down.y.abs().max(1e-9);
+        let section = self.upright(&[Part::Trunk, Part::Head], neck, down);
+        // Along the plane's own falling line, not along the upright.
+        let scaled: Vec<[Vec2; 2]> = section
+            .iter()
+            .map(|s| s.map(|p| Vec2::new(p.y * stretch, p.z)))
+            .collect();
+        let at = |p: Vec3| Vec2::new(p.y * stretch, p.z);
+        Some(stretched(&scaled, at(bust), at(neck)))
+    }
+
+    fn from_bust(&self, to: Level) -> Option<f64> {
+        let bust = self.bust_point()?;
+        let section = self.upright(&[Part::Trunk], bust, Vec3::y());
+        fall(&section, bust, self.levels.at(to), Vec3::z())
+    }
+
+    fn outside_leg(&self) -> Option<f64> {
+        let waist = self.levels.at(Level::Waist);
+        let hips = self.levels.at(Level::Hips);
+        let level = [Vec3::y() * waist, Vec3::y()];
+        let side = self
+            .skinned
+            .section(&[Part::Trunk], level, None)
+            .into_iter()
+            .flatten()
+            .max_by(|a, b| a.x.total_cmp(&b.x))?;
+        let section = self
+            .skinned
+            .section(&[Part::Trunk, Part::LeftLeg], [side, Vec3::z()], None);
+        Some(fall(&section, side, hips, Vec3::x())? + hips)
+    }
+
+    fn across_shoulders(&self) -> f64 {
+        let tip = self.tip();
+        let section = self.skinned.section(TORSO, [tip, Vec3::y()], None);
+        let flat: Vec<[Vec2; 2]> = section
+            .iter()
+            .flat_map(|s| {
+                let left = s.map(|p| Vec2::new(p.x, -p.z));
+                [left, left.map(|p| Vec2::new(-p.x, p.y))]
+            })
+            .collect();
+        let end = |x: f64| Vec2::new(x, -tip.z);
+        stretched(&flat, end(-tip.x), end(tip.x))
+    }
+
+    /// Crotch length, and the part before its middle [m].
+    fn crotch_lengths(&self) -> Option<[f64; 2]> {
+        let waist = self.levels.at(Level::Waist);
+        let parts = &[Part::Trunk, Part::LeftLeg];
+        // Just beside the middle, where the plane meets whole triangles.
+        let section = self
+            .skinned
+            .section(parts, [Vec3::x() * 1e-6, Vec3::x()], None);
+        let flat = |side: f64| -> Vec<[Vec2; 2]> {
+            let turned = |p: Vec3| Vec2::new(p.y, side * p.z);
+            section.iter().map(|s| s.map(turned)).collect()
+        };
+        let ends = [1.0, -1.0].map(|side| outermost(&flat(side), waist));
+        let [Some(front), Some(back)] = ends else {
+            return None;
+        };
+        let mut points: Vec<Vec2> = section
+            .iter()
+            .flatten()
+            .filter(|p| p.y <= waist)
+            .map(|p| Vec2::new(p.z, p.y))
+            .collect();
+        points.push(Vec2::new(front.y, waist));
+        points.push(Vec2::new(-back.y, waist));
+        let low = points
+            .iter()
+            .min_by(|a, b| a.y.total_cmp(&b.y))
+            .map_or(0.0, |p| p.x);
+        let hull = convex_hull(&points);
+        let around = closed_length(&hull) - (front.y + back.y);
+        let turned: Vec<Vec2> = hull.iter().map(|p| Vec2::new(p.y, p.x - low)).collect();
+        let before = half_length(&turned, 1.0) - (front.y - low);
+        Some([around, before])
+    }
+
+    /// A measurement by its name in the catalogue [m] or [rad]; none if the tape does not know it.
+    pub(crate) fn value(&self, name: &str) -> Option<f64> {
+        if let Some(girth) = Girth::ALL.into_iter().find(|girth| girth.name() == name) {
+            return Some(self.girth(girth));
+        }
+        if let Some((_, upper, lower)) = upright().find(|row| row.0 == name) {
+            let lower = lower.map_or(0.0, |level| self.height(level));
+            return Some(self.height(upper) - lower);
+        }
+        let part = |girth: Girth, side: f64| half_length(&self.hull(girth), side);
+        let wide = |girth: Girth, axis: usize| extent(&self.hull(girth))[axis];
+        let (tip, neck) = (self.tip(), self.neck_side());
+        let [arm, along] = self.warp.arm_plane(0.0);
+        let on_arm = |d: f64| (self.warp.arm_plane(d)[0] - arm).dot(&along);
+        let from_tip = (tip - arm).dot(&along);
+        Some(match name {
+            "shoulder_w" => 2.0 * tip.x,
+            "neck_w" => 2.0 * neck.x,
+            "shoulder_incl" => (neck.y - tip.y).atan2(tip.x - neck.x),
+            "shoulder_length" => (tip - neck).norm(),
+            "shoulder_to_shoulder" => self.across_shoulders(),
+            "arm_length" => on_arm(self.marks.wrist) - from_tip,
+            "shoulder_to_elbow" => on_arm(self.marks.elbow) - from_tip,
+            "elbow_to_wrist" => on_arm(self.marks.wrist) - on_arm(self.marks.elbow),
+            "arm_pose_angle" => (-along.y).atan2(along.x),
+            "front_width" => part(Girth::Bust, 1.0),
+            "back_width" => part(Girth::Bust, -1.0),
+            "high_bust_front" => part(Girth::HighBust, 1.0),
+            "waist_back_width" => part(Girth::Waist, -1.0),
+            "hip_back_width" => part(Girth::Hips, -1.0),
+            "chest_breadth" => wide(Girth::Bust, 0),
+            "chest_depth" => wide(Girth::Bust, 1),
+            "waist_breadth" => wide(Girth::Waist, 0),
+            "waist_depth" => wide(Girth::Waist, 1),
+            "hip_breadth" => wide(Girth::Hips, 0),
+            "hip_depth" => wide(Girth::Hips, 1),
+            "head_breadth" => wide(Girth::Head, 0),
+            "head_depth" => wide(Girth::Head, 1),
+            "bust_points" => 2.0 * self.bust_point()?.x,
+            "bum_points" => 2.0 * self.hindmost()?.x,
+            "bust_line" => self.bust_line()?,
+            "bust_to_underbust" => self.from_bust(Level::Underbust)?,
+            "waist_over_bust_line" => self.bust_line()? + self.from_bust(Level::Waist)?,
+            "hps_to_waist_front" => {
+                let section = self.upright(TORSO, neck, Vec3::y());
+                fall(&section, neck, self.levels.at(Level::Waist), Vec3::z())?
+            }
+            "hps_to_waist_back" => {
+                let section = self.upright(TORSO, neck, Vec3::y());
+                fall(&section, neck, self.levels.at(Level::Waist), -Vec3::z())?
+            }
+            "outside_leg" => self.outside_leg()?,
+            "hip_inclination" => {
+                let wider = 0.5 * (wide(Girth::Hips, 0) - wide(Girth::Waist, 0));
+                let fall = self.levels.at(Level::Waist) - self.levels.at(Level::Hips);
+                FRAC_PI_2 - fall.atan2(wider)
+            }
+            "crotch_length" => self.crotch_lengths()?[0],
+            "crotch_length_front" => self.crotch_lengths()?[1],
+            _ => return None,
+        })
+    }
+
+    /// The hindmost point of the left buttock [m].
+    fn hindmost(&self) -> Option<Vec3> {
+        let y = self.levels.at(Level::Hips);
+        self.skinned
+            .section(
+                &[Part::Trunk, Part::LeftLeg],
+                [Vec3::y() * y, Vec3::y()],
+                None,
+            )
+            .into_iter()
+            .flatten()
+            .min_by(|a, b| a.z.total_cmp(&b.z).then(b.x.total_cmp(&a.x)))
+    }
+}
