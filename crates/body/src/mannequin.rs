@@ -9,6 +9,7 @@ use crate::marks::Marks;
 use crate::refit::refitted;
 use crate::request::Request;
 use crate::rings::{self, TemplateSkin};
+use crate::skinning::Skinning;
 use crate::solve::{Grown, Solved};
 use crate::template::Template;
 use crate::warp::{Follow, Warp};
@@ -30,6 +31,7 @@ pub struct Mannequin {
     pub(crate) warp: Warp,
     pub(crate) crotch: Vec<u32>,
     pub(crate) armpit: u32,
+    pub(crate) skinning: Skinning,
     pub(crate) skin: SurfaceTree,
     pub(crate) parts: Vec<Part>,
     pub(crate) skeleton: Skeleton,
@@ -115,7 +117,7 @@ impl Mannequin {
             })
             .collect();
         let landmarks = Landmarks::find(&grown, (&levels, &warp), &mesh);
-        Ok(Self {
+        let mut body = Self {
             figure,
             measurements: measurements.clone(),
             field: Field::new(&posed(&primitives, &skeleton, &Pose::rest())),
@@ -131,7 +133,10 @@ impl Mannequin {
             marks,
             levels,
             warp,
-        })
+            skinning: Skinning::default(),
+        };
+        body.skinning = Skinning::new(&body, &skin.arm, &skin.leg);
+        Ok(body)
     }
 
     /// The figure it was grown from.

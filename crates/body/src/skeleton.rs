@@ -18,12 +18,15 @@ pub struct Skeleton {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
     rotations: [UnitQuaternion<f64>; Joint::COUNT],
+    /// How far the root is moved from its place at rest [m].
+    pub shift: Vec3,
 }
 
 impl Default for Pose {
     fn default() -> Self {
         Self {
             rotations: [UnitQuaternion::identity(); Joint::COUNT],
+            shift: Vec3::zeros(),
         }
     }
 }
@@ -92,6 +95,11 @@ impl Skeleton {
         self.centre(joint) - parent.unwrap_or_default()
     }
 
+    /// Height of the hip joints above the floor [m].
+    pub fn leg_length(&self) -> f64 {
+        self.centre(Joint::LHip).y
+    }
+
     /// The frames at rest.
     pub fn rest_frames(&self) -> JointFrames {
         JointFrames {
@@ -108,7 +116,7 @@ impl Skeleton {
                 Rigid::from_parts(Translation3::from(self.offset(joint)), pose.rotation(joint));
             frames.body_from_joint[joint as usize] = match joint.parent() {
                 Some(parent) => frames.body_from_joint[parent as usize] * step,
-                None => step,
+                None => Rigid::from(Translation3::from(pose.shift)) * step,
             };
         }
         frames

@@ -381,13 +381,20 @@ pub struct Mesh {
 /// `toile body`.
 #[derive(Debug, Args)]
 pub struct Body {
-    /// File of measurements: native JSON (cm, degrees) or GarmentCode YAML. Default: the average
-    /// of the figure.
+    /// File of measurements, any of the catalogue, the rest is predicted: native JSON (cm,
+    /// degrees), GarmentCode YAML, Seamly .smis .smms, Valentina .vit .vst, or FreeSewing JSON.
+    /// Default: the average of the figure.
     #[arg(long, value_name = "FILE")]
     pub measurements: Option<PathBuf>,
     /// Figure to grow it from: woman, man or mean.
     #[arg(long, value_name = "FIGURE", default_value = "mean")]
     pub figure: String,
+    /// Motion to pose it by: walk, run, or a BVH file. Default: at rest.
+    #[arg(long, value_name = "MOTION")]
+    pub motion: Option<String>,
+    /// Time in the motion (s).
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    pub time: f64,
     /// OBJ file to write (m).
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,

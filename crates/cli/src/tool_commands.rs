@@ -9,7 +9,7 @@ use std::sync::Arc;
 use toile_geometry::Length;
 use toile_measure::Origin;
 use toile_session::{
-    BodyChoice, BodyReport, Budget, Event, NestOptions, Project, convert as convert_file, figure_named,
+    BodyChoice, BodyReport, Budget, Event, Moment, NestOptions, Project, convert as convert_file, figure_named,
     is_nesting_instance, make_body, mesh_panels, nest_instance, nest_patterns, open_measurements,
     run_scene,
 };
@@ -191,7 +191,16 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         body: choice,
         ..Project::default()
     };
-    let report = make_body(&project, &body.out).map_err(|error| {
+    if !body.time.is_finite() {
+        return Err(Failure::bad_input(
+            "--time is no number of seconds".to_owned(),
+        ));
+    }
+    let moment = body.motion.clone().map(|motion| Moment {
+        motion,
+        time: body.time,
+    });
+    let report = make_body(&project, moment.as_ref(), &body.out).map_err(|error| {
         let failure = Failure::from(error);
         match &body.measurements {
             Some(path) => failure.about(path),

@@ -204,6 +204,37 @@ fn bodies_are_made_from_a_figure_or_a_file() {
     assert_eq!(waist["asked"], 0.8);
     assert!((waist["got"].as_f64().unwrap() - 0.8).abs() < 1e-3);
     assert!(folder.path().join("me.obj").is_file());
+    let hips = rows.iter().find(|row| row["name"] == "hips").unwrap();
+    assert_eq!(
+        (&waist["origin"], &hips["origin"]),
+        (&"asked".into(), &"predicted".into())
+    );
+    // Another program's file, in motion.
+    let seamly = "<vit><unit>cm</unit><m name=\"bust_circ\" value=\"90\"/></vit>";
+    std::fs::write(folder.path().join("me.vit"), seamly).unwrap();
+    let walking = [
+        "body",
+        "--measurements",
+        "me.vit",
+        "--motion",
+        "walk",
+        "--time",
+        "0.2",
+        "--out",
+        "walk.obj",
+    ];
+    let output = toile(folder.path(), &walking);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        said.contains("bust") && said.contains("(predicted)"),
+        "{said}"
+    );
+    assert!(folder.path().join("walk.obj").is_file());
+    let output = toile(
+        folder.path(),
+        &["body", "--motion", "no.bvh", "--out", "x.obj"],
+    );
+    assert_eq!(output.status.code(), Some(2));
     let output = toile(
         folder.path(),
         &["body", "--figure", "giant", "--out", "x.obj"],

@@ -6,6 +6,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod atomic;
+mod bvh;
 mod error;
 mod fabric_test;
 mod garmentcode;
@@ -14,6 +15,7 @@ mod jagua;
 mod marker_json;
 mod marker_svg;
 mod measurements;
+mod measurements_foreign;
 mod measurements_json;
 mod native;
 mod obj;
@@ -21,6 +23,7 @@ mod obj_read;
 mod scene;
 
 pub use atomic::{write_all_atomically, write_atomically};
+pub use bvh::read_bvh;
 pub use error::{FileError, FormatError, read_text};
 pub use fabric_test::{FabricTest, read_fabric_test};
 pub use garmentcode::{
@@ -34,6 +37,7 @@ pub use marker_json::{
 };
 pub use marker_svg::{MarkerDrawing, MarkerPiece, write_marker_svg};
 pub use measurements::read_body_yaml;
+pub use measurements_foreign::{read_freesewing, read_seamly};
 pub use measurements_json::{read_measurements, write_measurements};
 pub use native::{read_pattern, write_pattern};
 pub use obj::{ObjGroup, ObjMesh, write_obj};

@@ -1,6 +1,7 @@
 //! Tables of body measurements in the native format.
 
-use crate::{FormatError, read_body_yaml};
+use crate::measurements_foreign::looks_like_freesewing;
+use crate::{FormatError, read_body_yaml, read_freesewing, read_seamly};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
@@ -18,20 +19,22 @@ struct MeasurementsFile {
     measurements: BTreeMap<String, f64>,
 }
 
-/// Reads a table of measurements, native (JSON) or as GarmentCode writes it (YAML), which is seen
-/// from the first character.
+/// Reads a table of measurements, which is seen from its content: native (JSON), GarmentCode's
+/// (YAML), Seamly's and Valentina's (XML) or FreeSewing's (JSON).
 ///
 /// # Errors
 /// What is wrong, where, and the remedy.
 pub fn read_measurements(text: &str) -> Result<Measurements, FormatError> {
-    if text
+    match text
         .trim_start_matches('\u{feff}')
         .trim_start()
-        .starts_with('{')
+        .chars()
+        .next()
     {
-        read_json(text)
-    } else {
-        read_body_yaml(text)
+        Some('{') if looks_like_freesewing(text) => read_freesewing(text),
+        Some('{') => read_json(text),
+        Some('<') => read_seamly(text),
+        _ => read_body_yaml(text),
     }
 }
 

@@ -55,5 +55,5 @@ pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
 pub use toile_drape::Stage;
 pub use toile_nesting::{Budget, Nap};
-pub use tools::{BodyReport, convert, make_body, mesh_panels};
+pub use tools::{BodyReport, Moment, convert, make_body, mesh_panels};
 pub use watcher::{Silent, Watcher};

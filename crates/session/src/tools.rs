@@ -7,10 +7,10 @@ use crate::{PatternFormat, Project, SessionError};
 use std::path::Path;
 use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
-use toile_body::{Conflict, Gap, Mannequin};
-use toile_geometry::{Bounds2, Vec2, Vec3};
+use toile_body::{Conflict, Gap, Mannequin, Motion};
+use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{
-    ObjGroup, ObjMesh, write_atomically, write_garmentcode, write_obj, write_pattern,
+    ObjGroup, ObjMesh, read_bvh, read_text, write_atomically, write_garmentcode, write_obj, write_pattern,
 };
 use toile_pattern::Draft;
 
@@ -110,14 +110,50 @@ pub struct BodyReport {
     pub conflicts: Vec<Conflict>,
 }
 
-/// Makes a mannequin and writes its skin as OBJ. Returns every measurement as asked or predicted
-/// and as got.
+/// A moment of a motion: `walk`, `run` or a BVH file, and the time [s].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// Which motion.
+    pub motion: String,
+    /// When [s].
+    pub time: f64,
+}
+
+impl Moment {
+    /// The skin of a mannequin at this moment.
+    fn skin(&self, mannequin: &Mannequin) -> Result<TriangleMesh, SessionError> {
+        let skeleton = mannequin.skeleton();
+        let motion = match self.motion.as_str() {
+            "walk" => Motion::walk(skeleton),
+            "run" => Motion::run(skeleton),
+            path => {
+                let path = Path::new(path);
+                read_bvh(&read_text(path)?, skeleton).map_err(|error| SessionError::Format {
+                    path: path.to_owned(),
+                    error,
+                })?
+            }
+        };
+        Ok(mannequin.posed_skin(&motion.pose_for(skeleton, self.time)))
+    }
+}
+
+/// Makes a mannequin and writes its skin as OBJ, at rest or at a moment of a motion. Returns every
+/// measurement as asked or predicted and as got at rest.
 ///
 /// # Errors
-/// Measurements no body can have, or the file cannot be written.
-pub fn make_body(project: &Project, to: &Path) -> Result<BodyReport, SessionError> {
+/// Measurements no body can have, a motion that cannot be read, or the file cannot be written.
+pub fn make_body(
+    project: &Project,
+    moment: Option<&Moment>,
+    to: &Path,
+) -> Result<BodyReport, SessionError> {
     let mannequin = Mannequin::new(&project.wearer(), project.figure())?;
-    let text = write_obj(&body_obj(mannequin.skin())).map_err(cannot("the body"))?;
+    let obj = match moment {
+        None => body_obj(mannequin.skin()),
+        Some(moment) => body_obj(&moment.skin(&mannequin)?),
+    };
+    let text = write_obj(&obj).map_err(cannot("the body"))?;
     write_atomically(to, text.as_bytes())?;
     Ok(BodyReport {
         rows: mannequin.measure(),

@@ -1,0 +1,226 @@
+//! Poses over time: frames, loops, blending, walk and run.
+
+use crate::{Joint, Pose, Skeleton};
+use nalgebra::UnitQuaternion;
+use std::f64::consts::TAU;
+use toile_geometry::Vec3;
+
+/// Poses at even steps of time. Distances of the root are in leg lengths (hip to floor), so that a
+/// motion fits every size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Time from one pose to the next [s].
+    pub step: f64,
+    /// The poses; the root's place is over the leg length [1].
+    pub poses: Vec<Pose>,
+    /// Whether the first pose follows the last one.
+    pub is_loop: bool,
+}
+
+impl Motion {
+    /// Length [s]: of a loop with the way back to the first pose.
+    pub fn duration(&self) -> f64 {
+        let gaps = match self.is_loop {
+            true => self.poses.len(),
+            false => self.poses.len().saturating_sub(1),
+        };
+        self.step * gaps as f64
+    }
+
+    /// The pose at a time [s], slerped between frames: held before the start and after the end,
+    /// but for a loop. The root's place is over the leg length.
+    pub fn at(&self, time: f64) -> Pose {
+        let count = self.poses.len();
+        if count == 0 || !time.is_finite() || self.step <= 0.0 {
+            return self.poses.first().cloned().unwrap_or_default();
+        }
+        let frame = time / self.step;
+        let (low, share) = match self.is_loop {
+            true => (
+                frame.floor().rem_euclid(count as f64),
+                frame - frame.floor(),
+            ),
+            false => {
+                let held = frame.clamp(0.0, (count - 1) as f64);
+                (held.floor(), held - held.floor())
+            }
+        };
+        let low = (low as usize).min(count - 1);
+        let high = match self.is_loop {
+            true => (low + 1) % count,
+            false => (low + 1).min(count - 1),
+        };
+        self.poses[low].blended(&self.poses[high], share)
+    }
+
+    /// The pose at a time [s] for a skeleton: the root's place in metres.
+    pub fn pose_for(&self, skeleton: &Skeleton, time: f64) -> Pose {
+        let mut pose = self.at(time);
+        pose.shift *= skeleton.leg_length();
+        pose
+    }
+
+    /// A loop between two others, at the same share of their way round: 0 is this one. Matched
+    /// phases are needed, as [`Motion::walk`] and [`Motion::run`] have them; durations go along.
+    pub fn between(&self, other: &Self, share: f64) -> Self {
+        let share = share.clamp(0.0, 1.0);
+        let count = self.poses.len().max(other.poses.len()).max(1);
+        let duration = self.duration() + (other.duration() - self.duration()) * share;
+        let poses = (0..count)
+            .map(|k| {
+                let phase = k as f64 / count as f64;
+                let [a, b] = [self, other].map(|m| m.at(phase * m.duration()));
+                a.blended(&b, share)
+            })
+            .collect();
+        Self {
+            step: duration / count as f64,
+            poses,
+            is_loop: self.is_loop && other.is_loop,
+        }
+    }
+
+    /// A walk of our own: one stride of 1.1 s, on the spot; the left heel strikes at phase 0.
+    pub fn walk(skeleton: &Skeleton) -> Self {
+        Self::cycle(skeleton, &WALK)
+    }
+
+    /// A run of our own: one stride of 0.72 s, on the spot, the phase as of [`Motion::walk`].
+    pub fn run(skeleton: &Skeleton) -> Self {
+        Self::cycle(skeleton, &RUN)
+    }
+
+    fn cycle(skeleton: &Skeleton, gait: &Gait) -> Self {
+        const FRAMES: usize = 32;
+        Self {
+            step: gait.duration / FRAMES as f64,
+            poses: (0..FRAMES)
+                .map(|k| gait.pose(skeleton, k as f64 / FRAMES as f64))
+                .collect(),
+            is_loop: true,
+        }
+    }
+}
+
+impl Pose {
+    /// The pose between this one (0) and another (1): each joint the short way round
+    /// (Shoemake 1985), the root's place evenly.
+    #[must_use]
+    pub fn blended(&self, other: &Self, share: f64) -> Self {
+        let mut pose = Self::rest();
+        for joint in Joint::ALL {
+            let (a, b) = (self.rotation(joint), other.rotation(joint));
+            let turn = a
+                .try_slerp(&b, share, 1e-12)
+                .unwrap_or(if share < 0.5 { a } else { b });
+            pose.set(joint, turn);
+        }
+        pose.shift = self.shift + (other.shift - self.shift) * share;
+        pose
+    }
+}
+
+/// A wave over a stride: mean, then cosine and sine of once and twice round [rad].
+type Wave = [f64; 5];
+
+/// A gait by the waves of its angles; the right side is half a stride later.
+struct Gait {
+    duration: f64,
+    /// Flexion forward of hip and of knee, ankle upward, elbow; shoulder forward.
+    hip: Wave,
+    knee: Wave,
+    ankle: Wave,
+    elbow: Wave,
+    shoulder: Wave,
+    /// Turn of pelvis against chest, lean forward [rad], rise of the root over the leg [1].
+    twist: f64,
+    lean: f64,
+    bounce: Wave,
+}
+
+/// Hip, knee and ankle follow the usual courses of level walking (Winter 1991), as two harmonics.
+const WALK: Gait = Gait {
+    duration: 1.1,
+    hip: [0.12, 0.36, -0.08, 0.0, 0.04],
+    knee: [0.36, -0.02, -0.34, -0.24, 0.16],
+    ankle: [0.0, -0.02, 0.12, 0.06, -0.06],
+    elbow: [0.30, -0.12, 0.0, 0.0, 0.0],
+    shoulder: [0.02, -0.30, 0.0, 0.0, 0.0],
+    twist: 0.07,
+    lean: 0.03,
+    bounce: [-0.02, 0.0, 0.0, -0.016, 0.0],
+};
+
+const RUN: Gait = Gait {
+    duration: 0.72,
+    hip: [0.30, 0.52, -0.16, 0.0, 0.06],
+    knee: [0.80, -0.20, -0.62, -0.16, 0.12],
+    ankle: [0.0, 0.04, 0.20, 0.10, -0.04],
+    elbow: [1.15, -0.16, 0.0, 0.0, 0.0],
+    shoulder: [-0.05, -0.48, 0.0, 0.0, 0.0],
+    twist: 0.12,
+    lean: 0.12,
+    bounce: [-0.01, 0.0, 0.0, 0.0, 0.035],
+};
+
+fn wave(w: &Wave, phase: f64) -> f64 {
+    let [once, twice] = [TAU * phase, 2.0 * TAU * phase];
+    w[0] + w[1] * once.cos() + w[2] * once.sin() + w[3] * twice.cos() + w[4] * twice.sin()
+}
+
+impl Gait {
+    fn pose(&self, skeleton: &Skeleton, phase: f64) -> Pose {
+        let about = |axis: Vec3, angle: f64| UnitQuaternion::new(axis * angle);
+        let mut pose = Pose::rest();
+        let twist = self.twist * (TAU * phase).cos();
+        pose.set(Joint::Sacroiliac, about(Vec3::y(), -twist));
+        pose.set(
+            Joint::Vl5,
+            about(Vec3::y(), 2.0 * twist) * about(Vec3::x(), self.lean),
+        );
+        pose.set(
+            Joint::Vc4,
+            about(Vec3::y(), -twist) * about(Vec3::x(), -self.lean),
+        );
+        let sides = [
+            [
+                Joint::LHip,
+                Joint::LKnee,
+                Joint::LAnkle,
+                Joint::LShoulder,
+                Joint::LElbow,
+            ],
+            [
+                Joint::RHip,
+                Joint::RKnee,
+                Joint::RAnkle,
+                Joint::RShoulder,
+                Joint::RElbow,
+            ],
+        ];
+        for (side, [hip, knee, ankle, shoulder, elbow]) in sides.into_iter().enumerate() {
+            let sign = if side == 0 { 1.0 } else { -1.0 };
+            let phase = phase + 0.5 * side as f64;
+            // Legs are brought under the body from where they stand apart at rest.
+            let foot = skeleton.centre(ankle) - skeleton.centre(hip);
+            let apart = (foot.x * sign / foot.y.abs()).atan();
+            let closer = about(Vec3::z(), -0.35 * sign * apart);
+            pose.set(hip, about(Vec3::x(), -wave(&self.hip, phase)) * closer);
+            pose.set(knee, about(Vec3::x(), wave(&self.knee, phase).max(0.0)));
+            pose.set(ankle, about(Vec3::x(), -wave(&self.ankle, phase)));
+            // Arms hang from where they are held off at rest, but not against the trunk.
+            let arm = skeleton.centre(elbow) - skeleton.centre(shoulder);
+            let down = (-arm.y).atan2(arm.x * sign);
+            let hang = about(Vec3::z(), -sign * (1.15 - down).max(0.0));
+            pose.set(
+                shoulder,
+                about(Vec3::x(), -wave(&self.shoulder, phase)) * hang,
+            );
+            // The elbow bends about the axis across the hanging arm, as it lies in the arm at rest.
+            let across = hang.inverse() * Vec3::x();
+            pose.set(elbow, about(across, -wave(&self.elbow, phase).max(0.0)));
+        }
+        pose.shift = Vec3::new(0.0, wave(&self.bounce, phase), 0.0);
+        pose
+    }
+}

@@ -1,0 +1,159 @@
+//! The skin in motion: rest is rest, limbs go rigidly, walk and run stay clean.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use nalgebra::UnitQuaternion;
+use std::sync::LazyLock;
+use toile_body::{Figure, Joint, Mannequin, Motion, Pose};
+use toile_geometry::{SurfaceTree, Vec3};
+use toile_measure::{Measurements, Origin};
+
+static WOMAN: LazyLock<Mannequin> =
+    LazyLock::new(|| Mannequin::new(&Measurements::adult_woman(), Figure::Woman).unwrap());
+
+/// Sizes from small to large of both figures.
+fn sizes() -> Vec<Mannequin> {
+    // Twenty with TOILE_ALL set, four else.
+    let all = std::env::var("TOILE_ALL").is_ok();
+    let heights: &[f64] = if all {
+        &[0.92, 0.96, 1.0, 1.04, 1.08]
+    } else {
+        &[0.96, 1.05]
+    };
+    let girths: &[f64] = if all { &[0.92, 1.1] } else { &[1.03] };
+    let mut bodies = Vec::new();
+    for (figure, table) in [
+        (Figure::Woman, Measurements::adult_woman()),
+        (Figure::Man, Measurements::adult_man()),
+    ] {
+        for height in heights {
+            for girth in girths {
+                let mut sized = Measurements::new();
+                for (name, share) in [
+                    ("height", height),
+                    ("bust", girth),
+                    ("waist", girth),
+                    ("hips", girth),
+                ] {
+                    sized
+                        .set(name, table.get(name).unwrap() * share, Origin::Asked)
+                        .unwrap();
+                }
+                bodies.push(Mannequin::new(&sized, figure).unwrap());
+            }
+        }
+    }
+    bodies
+}
+
+#[test]
+fn at_rest_the_skin_stays_and_shares_add_up() {
+    let posed = WOMAN.posed_skin(&Pose::rest());
+    for (v, (a, b)) in WOMAN
+        .skin()
+        .positions
+        .iter()
+        .zip(&posed.positions)
+        .enumerate()
+    {
+        assert!((a - b).norm() < 1e-12);
+        let shares = WOMAN.shares(v);
+        let sum: f64 = shares.iter().map(|share| share.1).sum();
+        assert!((sum - 1.0).abs() < 1e-12 && shares.iter().all(|share| share.1 > 0.0));
+        assert!((1..=6).contains(&shares.len()), "{shares:?}");
+    }
+}
+
+#[test]
+fn the_root_moves_all_of_it_and_an_elbow_only_the_forearm() {
+    let turn = UnitQuaternion::new(Vec3::new(0.3, -0.8, 0.2));
+    let mut pose = Pose::rest().with(Joint::HumanoidRoot, turn);
+    pose.shift = Vec3::new(0.1, 0.2, -0.3);
+    let root = WOMAN.skeleton().centre(Joint::HumanoidRoot);
+    let posed = WOMAN.posed_skin(&pose);
+    for (a, b) in WOMAN.skin().positions.iter().zip(&posed.positions) {
+        assert!((turn * (a - root) + root + pose.shift - b).norm() < 1e-9);
+    }
+    let bend = UnitQuaternion::new(Vec3::new(0.0, -1.2, 0.0));
+    let posed = WOMAN.posed_skin(&Pose::rest().with(Joint::LElbow, bend));
+    for (v, (a, b)) in WOMAN
+        .skin()
+        .positions
+        .iter()
+        .zip(&posed.positions)
+        .enumerate()
+    {
+        let follows = WOMAN
+            .shares(v)
+            .iter()
+            .any(|share| share.0.follows(Joint::LElbow));
+        assert!(follows || (a - b).norm() < 1e-12);
+    }
+}
+
+#[test]
+fn poses_are_blended_the_short_way_round() {
+    let turn = |angle: f64| UnitQuaternion::new(Vec3::z() * angle);
+    let (a, b) = (Pose::rest(), Pose::rest().with(Joint::LKnee, turn(1.0)));
+    let middle = a.blended(&b, 0.25).rotation(Joint::LKnee);
+    assert!(middle.angle_to(&turn(0.25)) < 1e-12);
+    let walk = Motion::walk(WOMAN.skeleton());
+    let run = Motion::run(WOMAN.skeleton());
+    let [once, again] = [0.3, 0.3 + 2.0 * walk.duration()].map(|time| walk.at(time));
+    for joint in Joint::ALL {
+        assert!(once.rotation(joint).angle_to(&again.rotation(joint)) < 1e-9);
+    }
+    for (share, end) in [(0.0, &walk), (1.0, &run)] {
+        let blend = walk.between(&run, share);
+        for (a, b) in blend.poses.iter().zip(&end.poses) {
+            assert!((a.shift - b.shift).norm() < 1e-9);
+            for joint in Joint::ALL {
+                assert!(a.rotation(joint).angle_to(&b.rotation(joint)) < 1e-9);
+            }
+        }
+    }
+    let jog = walk.between(&run, 0.5);
+    assert!(jog.duration() < walk.duration() && jog.duration() > run.duration());
+    assert!(walk.at(f64::NAN) == walk.poses[0]);
+    // Half a stride later left and right have changed places.
+    let knee = |phase: f64, joint: Joint| walk.at(phase * walk.duration()).rotation(joint).angle();
+    assert!((knee(0.1, Joint::LKnee) - knee(0.6, Joint::RKnee)).abs() < 1e-9);
+}
+
+#[test]
+fn walk_and_run_are_clean_away_from_creases() {
+    let mut worst: f64 = 0.0;
+    let mut folds = 0;
+    let mut pairs: std::collections::BTreeMap<String, usize> = Default::default();
+    for body in sizes() {
+        let volume = body.skin().volume();
+        for motion in [Motion::walk(body.skeleton()), Motion::run(body.skeleton())] {
+            let step = if std::env::var("TOILE_ALL").is_ok() {
+                1
+            } else {
+                4
+            };
+            for k in (0..motion.poses.len()).step_by(step) {
+                let pose = motion.pose_for(body.skeleton(), k as f64 * motion.step);
+                let skin = body.posed_skin(&pose);
+                assert!(skin.is_closed_and_oriented());
+                let change = skin.volume() / volume - 1.0;
+                worst = worst.max(change.abs());
+                let crossing = SurfaceTree::new(skin).self_intersections();
+                for pair in crossing {
+                    let creased = pair.iter().all(|&t| body.is_crease(t as usize));
+                    if !creased {
+                        folds += 1;
+                        let parts = pair.map(|t| body.part_of_triangle()[t as usize]);
+                        *pairs.entry(format!("{parts:?}")).or_insert(0) += 1;
+                    }
+                }
+            }
+        }
+    }
+    println!(
+        "largest change of volume {:.2} %, {folds} crossings away from creases {pairs:?}",
+        worst * 100.0
+    );
+    assert!(worst < 0.03, "{worst}");
+    assert_eq!(folds, 0);
+}

@@ -1,0 +1,478 @@
+//! Motions from BVH files (Biovision hierarchy), carried to this program's joints.
+
+use crate::FormatError;
+use nalgebra::UnitQuaternion;
+use toile_body::{Joint, Motion, Pose, Skeleton};
+use toile_geometry::Vec3;
+
+/// One channel of a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Channel {
+    Position(usize),
+    Rotation(usize),
+}
+
+/// A joint of the file.
+#[derive(Debug)]
+struct Bone {
+    name: String,
+    parent: Option<usize>,
+    /// From the parent's origin at rest, in the file's unit.
+    offset: Vec3,
+    channels: Vec<Channel>,
+}
+
+struct Words<'a> {
+    rest: std::vec::IntoIter<(usize, &'a str)>,
+    line: usize,
+}
+
+impl<'a> Words<'a> {
+    fn new(text: &'a str) -> Self {
+        let words: Vec<(usize, &str)> = text
+            .lines()
+            .enumerate()
+            .flat_map(|(k, line)| line.split_whitespace().map(move |word| (k + 1, word)))
+            .collect();
+        Self {
+            rest: words.into_iter(),
+            line: 1,
+        }
+    }
+
+    fn problem(&self, what: impl Into<String>) -> FormatError {
+        FormatError::new(
+            format!("line {}", self.line),
+            what,
+            "export the motion again as BVH",
+        )
+    }
+
+    fn word(&mut self) -> Result<&'a str, FormatError> {
+        match self.rest.next() {
+            Some((line, word)) => {
+                self.line = line;
+                Ok(word)
+            }
+            None => Err(self.problem("the file ends too early")),
+        }
+    }
+
+    fn number(&mut self) -> Result<f64, FormatError> {
+        let word = self.word()?;
+        match word.parse::<f64>() {
+            Ok(number) if number.is_finite() && number.abs() < 1e9 => Ok(number),
+            _ => Err(self.problem(format!("{:?} is not a number", shortened(word)))),
+        }
+    }
+
+    fn expect(&mut self, wanted: &str) -> Result<(), FormatError> {
+        let word = self.word()?;
+        match word.eq_ignore_ascii_case(wanted) {
+            true => Ok(()),
+            false => Err(self.problem(format!(
+                "{:?} stands where {wanted} should",
+                shortened(word)
+            ))),
+        }
+    }
+
+    fn triple(&mut self) -> Result<Vec3, FormatError> {
+        Ok(Vec3::new(self.number()?, self.number()?, self.number()?))
+    }
+}
+
+fn shortened(text: &str) -> String {
+    text.chars().take(40).collect()
+}
+
+/// Most joints and most frames accepted: beyond them a file is damaged.
+const MOST: [usize; 2] = [1000, 200_000];
+
+/// Reads a BVH file for a skeleton: joints are recognised by their usual names (CMU's, MakeHuman's,
+/// H-Anim's, left and right in words or letters); every bone points as the file's does, whatever
+/// pose either stands in at rest; the root's way is over the leg length. Joints the file does not
+/// have stay as they are at rest to the one they hang on.
+///
+/// # Errors
+/// What is wrong, where, and the remedy; a file with none of hips, knees and shoulders.
+pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Motion, FormatError> {
+    let mut words = Words::new(text);
+    words.expect("HIERARCHY")?;
+    let bones = hierarchy(&mut words)?;
+    words.expect("Frames:")?;
+    let frames = words.number()?;
+    if frames.fract() != 0.0 || !(1.0..=MOST[1] as f64).contains(&frames) {
+        return Err(words.problem(format!("{frames} is not a number of frames")));
+    }
+    words.expect("Frame")?;
+    words.expect("Time:")?;
+    let step = words.number()?;
+    if step <= 0.0 {
+        return Err(words.problem("the time from frame to frame is not above zero"));
+    }
+    let carrier = Carrier::new(&bones, skeleton)?;
+    let mut poses = Vec::new();
+    for _ in 0..frames as usize {
+        let mut local = vec![UnitQuaternion::identity(); bones.len()];
+        let mut shift = Vec3::zeros();
+        for (k, bone) in bones.iter().enumerate() {
+            for channel in &bone.channels {
+                let value = words.number()?;
+                match *channel {
+                    Channel::Position(axis) if bone.parent.is_none() => shift[axis] = value,
+                    Channel::Position(_) => {}
+                    Channel::Rotation(axis) => {
+                        let turn = Vec3::ith(axis, value.to_radians());
+                        local[k] *= UnitQuaternion::new(turn);
+                    }
+                }
+            }
+        }
+        poses.push(carrier.pose(&bones, &local, shift));
+    }
+    Ok(Motion {
+        step,
+        poses,
+        is_loop: false,
+    })
+}
+
+fn hierarchy(words: &mut Words) -> Result<Vec<Bone>, FormatError> {
+    let mut bones: Vec<Bone> = Vec::new();
+    let mut open: Vec<Option<usize>> = Vec::new();
+    loop {
+        let word = words.word()?;
+        match word.to_ascii_uppercase().as_str() {
+            "ROOT" | "JOINT" => {
+                if bones.len() >= MOST[0] {
+                    return Err(words.problem("there are too many joints"));
+                }
+                let name = words.word()?.to_owned();
+                words.expect("{")?;
+                let parent = open.last().copied().flatten();
+                if parent.is_none() && !bones.is_empty() {
+                    return Err(words.problem("there is a second root"));
+                }
+                bones.push(Bone {
+                    name,
+                    parent,
+                    offset: Vec3::zeros(),
+                    channels: Vec::new(),
+                });
+                open.push(Some(bones.len() - 1));
+            }
+            "END" => {
+                words.word()?;
+                words.expect("{")?;
+                open.push(None);
+            }
+            "OFFSET" => {
+                let offset = words.triple()?;
+                if let Some(Some(bone)) = open.last() {
+                    bones[*bone].offset = offset;
+                }
+            }
+            "CHANNELS" => {
+                let count = words.number()? as usize;
+                for _ in 0..count.min(12) {
+                    let channel = channel(words)?;
+                    if let Some(Some(bone)) = open.last() {
+                        bones[*bone].channels.push(channel);
+                    }
+                }
+            }
+            "}" => {
+                if open.pop().is_none() {
+                    return Err(words.problem("a bracket closes what is not open"));
+                }
+            }
+            "MOTION" if open.is_empty() && !bones.is_empty() => return Ok(bones),
+            other => {
+                let what = format!("{:?} stands in the hierarchy", shortened(other));
+                return Err(words.problem(what));
+            }
+        }
+    }
+}
+
+fn channel(words: &mut Words) -> Result<Channel, FormatError> {
+    let word = words.word()?;
+    let lower = word.to_ascii_lowercase();
+    let axis = ["x", "y", "z"]
+        .iter()
+        .position(|axis| lower.starts_with(axis));
+    match (axis, &lower[lower.len().min(1)..]) {
+        (Some(axis), "position") => Ok(Channel::Position(axis)),
+        (Some(axis), "rotation") => Ok(Channel::Rotation(axis)),
+        _ => Err(words.problem(format!("{:?} is not a channel", shortened(word)))),
+    }
+}
+
+/// The joint a bone of the file is, by its name.
+fn joint_named(name: &str) -> Option<Joint> {
+    if let Some(joint) = Joint::named(name) {
+        return Some(joint);
+    }
+    let lower = name.to_ascii_lowercase();
+    let side = |start: &str, short: &str, end: &str| {
+        lower
+            .strip_prefix(start)
+            .or_else(|| lower.strip_suffix(end))
+            .or_else(|| {
+                let letter = name.starts_with(short);
+                let next = name.chars().nth(1).is_some_and(char::is_uppercase);
+                (letter && next).then(|| &lower[1..])
+            })
+            .map(str::to_owned)
+    };
+    use Joint::*;
+    let pair = |word: &str| -> Option<[Joint; 2]> {
+        Some(match word.trim_matches('_') {
+            "collar" | "clavicle" => [LSternoclavicular, RSternoclavicular],
+            "shldr" | "shoulder" | "uparm" | "upperarm" | "arm" => [LShoulder, RShoulder],
+            "forearm" | "elbow" | "loarm" | "lowerarm" => [LElbow, RElbow],
+            "hand" | "wrist" => [LWrist, RWrist],
+            "thigh" | "hip" | "upleg" | "upperleg" => [LHip, RHip],
+            "shin" | "knee" | "loleg" | "lowerleg" | "leg" => [LKnee, RKnee],
+            "foot" | "ankle" => [LAnkle, RAnkle],
+            "toe" | "toebase" => [LMidtarsal, RMidtarsal],
+            _ => return None,
+        })
+    };
+    if let Some([left, _]) = side("left", "l", "_l").and_then(|word| pair(&word)) {
+        return Some(left);
+    }
+    if let Some([_, right]) = side("right", "r", "_r").and_then(|word| pair(&word)) {
+        return Some(right);
+    }
+    Some(match lower.as_str() {
+        "abdomen" | "spine" | "spine1" => Vl5,
+        "chest" | "spine2" => Vt6,
+        "neck" => Vc4,
+        "head" => Skullbase,
+        _ => return None,
+    })
+}
+
+/// Where each joint's own bone ends, for the direction it points in.
+fn end_of(joint: Joint) -> Option<Joint> {
+    use Joint::*;
+    Some(match joint {
+        LHip => LKnee,
+        LKnee => LAnkle,
+        RHip => RKnee,
+        RKnee => RAnkle,
+        LShoulder => LElbow,
+        LElbow => LWrist,
+        RShoulder => RElbow,
+        RElbow => RWrist,
+        _ => return None,
+    })
+}
+
+/// From the file's bones to a skeleton's joints.
+struct Carrier {
+    /// The bone of each joint.
+    bone: [Option<usize>; Joint::COUNT],
+    /// What turns each joint's bone from where it points at rest to where the file's does.
+    align: [UnitQuaternion<f64>; Joint::COUNT],
+    /// Length of the file's legs, and the root's place at rest, in its unit.
+    leg: f64,
+    root: Vec3,
+}
+
+impl Carrier {
+    fn new(bones: &[Bone], skeleton: &Skeleton) -> Result<Self, FormatError> {
+        let mut bone = [None; Joint::COUNT];
+        for (k, b) in bones.iter().enumerate() {
+            match joint_named(&b.name) {
+                Some(joint) if b.parent.is_some() => {
+                    bone[joint as usize].get_or_insert(k);
+                }
+                _ => {}
+            }
+        }
+        let has = |joint: Joint| bone[joint as usize].is_some();
+        if ![Joint::LHip, Joint::RHip, Joint::LKnee, Joint::LShoulder]
+            .into_iter()
+            .all(has)
+        {
+            return Err(FormatError::new(
+                "the hierarchy",
+                "hips, knees and shoulders are not found by their names",
+                "name the joints as CMU or H-Anim do, such as lThigh or l_hip",
+            ));
+        }
+        let mut rest = vec![Vec3::zeros(); bones.len()];
+        for (k, b) in bones.iter().enumerate() {
+            rest[k] = b.offset + b.parent.map_or(Vec3::zeros(), |parent| rest[parent]);
+        }
+        let mut align = [UnitQuaternion::identity(); Joint::COUNT];
+        for joint in Joint::ALL {
+            let Some(end) = end_of(joint) else {
+                // Hands and feet go with the bone above them at rest.
+                if let Some(parent) = joint.parent()
+                    && end_of(parent).is_some()
+                {
+                    align[joint as usize] = align[parent as usize];
+                }
+                continue;
+            };
+            if let (Some(from), Some(to)) = (bone[joint as usize], bone[end as usize]) {
+                let theirs = rest[to] - rest[from];
+                let own = skeleton.centre(end) - skeleton.centre(joint);
+                align[joint as usize] =
+                    UnitQuaternion::rotation_between(&own, &theirs).unwrap_or_default();
+            }
+        }
+        // Feet stand flat at rest on both.
+        for joint in [
+            Joint::LAnkle,
+            Joint::RAnkle,
+            Joint::LMidtarsal,
+            Joint::RMidtarsal,
+        ] {
+            align[joint as usize] = UnitQuaternion::identity();
+        }
+        let hip = bone[Joint::LHip as usize].unwrap_or_default();
+        let low = rest.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        Ok(Self {
+            bone,
+            align,
+            leg: (rest[hip].y - low).abs().max(1e-9),
+            root: Vec3::new(0.0, rest[0].y - low, 0.0),
+        })
+    }
+
+    fn pose(&self, bones: &[Bone], local: &[UnitQuaternion<f64>], place: Vec3) -> Pose {
+        let mut global = local.to_vec();
+        for (k, bone) in bones.iter().enumerate() {
+            if let Some(parent) = bone.parent {
+                global[k] = global[parent] * local[k];
+            }
+        }
+        let mut pose = Pose::rest();
+        let mut own = [UnitQuaternion::identity(); Joint::COUNT];
+        for joint in Joint::ALL {
+            let above = joint
+                .parent()
+                .map_or(UnitQuaternion::identity(), |parent| own[parent as usize]);
+            own[joint as usize] = match (joint, self.bone[joint as usize]) {
+                (Joint::HumanoidRoot, _) => global[0],
+                (_, Some(bone)) => global[bone] * self.align[joint as usize],
+                (_, None) => above,
+            };
+            pose.set(joint, above.inverse() * own[joint as usize]);
+        }
+        pose.shift = (place - self.root) / self.leg;
+        pose
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use toile_body::{Figure, Mannequin};
+    use toile_measure::Measurements;
+
+    const SMALL: &str = "HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
+        JOINT lThigh\n{\nOFFSET 1 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT lShin\n{\nOFFSET 0 -5 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 -5 0\n}\n}\n}\n\
+        JOINT rThigh\n{\nOFFSET -1 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 -5 0\n}\n}\n\
+        JOINT lShldr\n{\nOFFSET 1 5 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 2 0 0\n}\n}\n}\n\
+        MOTION\nFrames: 2\nFrame Time: 0.5\n0 10 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n10 10 0 0 0 90 0 -90 0 0 90 0 0 0 0 0 0 0\n";
+
+    fn skeleton() -> Skeleton {
+        let table = Measurements::adult_woman();
+        Mannequin::new(&table, Figure::Woman)
+            .unwrap()
+            .skeleton()
+            .clone()
+    }
+
+    #[test]
+    fn bones_point_as_in_the_file() {
+        let skeleton = skeleton();
+        let motion = read_bvh(SMALL, &skeleton).unwrap();
+        assert_eq!((motion.poses.len(), motion.step), (2, 0.5));
+        let thigh = |pose: &Pose| {
+            let frames = skeleton.frames(pose);
+            (frames.centre(Joint::LKnee) - frames.centre(Joint::LHip)).normalize()
+        };
+        assert!(
+            (thigh(&motion.poses[0]) + Vec3::y()).norm() < 1e-9,
+            "straight down"
+        );
+        // Turned a quarter to the left about the upright, then the thigh lifted forward by 90
+        // degrees: it points where the body faces.
+        assert!((thigh(&motion.poses[1]) - Vec3::x()).norm() < 1e-9);
+        // One unit of ten on the way, legs are ten long.
+        assert!((motion.poses[1].shift - Vec3::x()).norm() < 1e-9);
+    }
+
+    #[test]
+    fn damage_is_refused_with_its_place() {
+        let skeleton = skeleton();
+        let place = |text: &str| read_bvh(text, &skeleton).unwrap_err().place;
+        assert_eq!(place(""), "line 1");
+        assert_eq!(place("HIERARCHY\nROOT hip\n{\nOFFSET 0 0 x\n"), "line 4");
+        assert_eq!(place(&SMALL.replace("Frames: 2", "Frames: -2")), "line 34");
+        assert!(read_bvh(&SMALL[..SMALL.len() - 9], &skeleton).is_err());
+        assert_eq!(place(&SMALL.replace("Thigh", "Tail")), "the hierarchy");
+    }
+
+    #[test]
+    fn recorded_motions_are_read() {
+        let start = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+        let found = start
+            .ancestors()
+            .map(|f| f.join("shared/data/body/bvh"))
+            .find(|f| f.is_dir());
+        let Some(folder) = found else {
+            return;
+        };
+        let skeleton = skeleton();
+        let read = |file: &str| {
+            let text = std::fs::read_to_string(folder.join(file)).unwrap();
+            read_bvh(&text, &skeleton).unwrap()
+        };
+        let motions = [
+            ("makehuman_hist_cmu_02_02_walk.bvh", 299),
+            ("kevinxie_walk.bvh", 299),
+            ("kevinxie_cmu_run_filtered.bvh", 174),
+            ("makehuman_walk1.bvh", 14),
+        ]
+        .map(|(file, frames)| {
+            let motion = read(file);
+            assert_eq!(motion.poses.len(), frames, "{file}");
+            motion
+        });
+        // One motion on two skeletons: the joints of one body come to nearly the same places.
+        let mut worst: f64 = 0.0;
+        for (a, b) in motions[0].poses.iter().zip(&motions[1].poses).step_by(20) {
+            let [a, b] = [a, b].map(|pose| skeleton.frames(pose));
+            let root = a.centre(Joint::HumanoidRoot) - b.centre(Joint::HumanoidRoot);
+            for joint in [
+                Joint::LKnee,
+                Joint::RKnee,
+                Joint::LAnkle,
+                Joint::RAnkle,
+                Joint::LElbow,
+            ] {
+                worst = worst.max((a.centre(joint) - b.centre(joint) - root).norm());
+            }
+        }
+        assert!(worst < 0.12, "{worst}");
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_read_or_refused(cut in 0..SMALL.len(), add in "[A-Za-z0-9 {}:.-]{0,20}") {
+            let text = format!("{}{add}{}", &SMALL[..cut], &SMALL[cut..]);
+            if let Ok(motion) = read_bvh(&text, &skeleton()) {
+                prop_assert!(!motion.poses.is_empty());
+            }
+        }
+    }
+}
