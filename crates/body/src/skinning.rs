@@ -107,6 +107,9 @@ impl Skinning {
                     shares.push((Joint::LMidtarsal, whole * toes));
                 }
                 shares.retain(|share| share.1 > 0.0);
+                if p.x == 0.0 {
+                    return on_both_sides(&shares);
+                }
                 if right {
                     for share in &mut shares {
                         share.0 = share.0.mirrored();
@@ -122,6 +125,15 @@ impl Skinning {
     pub(crate) fn of(&self, vertex: usize) -> &[(Joint, f64)] {
         &self.shares[vertex]
     }
+}
+
+/// Shares of a vertex in the middle: what goes with a left limb goes half with the right one.
+fn on_both_sides(shares: &[(Joint, f64)]) -> Shares {
+    let half = |&(joint, share): &(Joint, f64)| match joint.mirrored() == joint {
+        true => vec![(joint, share)],
+        false => vec![(joint, 0.5 * share), (joint.mirrored(), 0.5 * share)],
+    };
+    shares.iter().flat_map(half).collect()
 }
 
 /// A rigid motion as a dual quaternion: the turn, and half the shift times the turn.
@@ -170,8 +182,8 @@ impl Mannequin {
     }
 
     /// Whether a triangle of the skin lies where skin folds when joints bend, and may touch itself:
-    /// within 0.075 of the stature of a hip, knee, shoulder or elbow at rest, or where the skin
-    /// passes from the trunk to a limb.
+    /// within 0.075 of the stature of the crotch or of a hip, knee, shoulder or elbow at rest, or
+    /// where the skin passes from the trunk to a limb.
     pub fn is_crease(&self, triangle: usize) -> bool {
         const NEAR: f64 = 0.075;
         use Joint::{LElbow, LHip, LKnee, LShoulder, RElbow, RHip, RKnee, RShoulder};
@@ -190,7 +202,8 @@ impl Mannequin {
                 .filter(|s| limb(s.0))
                 .map(|s| s.1)
                 .sum();
-            folding.iter().any(near) || (0.03..0.97).contains(&on_limbs)
+            let groin = (self.landmarks.crotch - p).norm() < reach;
+            groin || folding.iter().any(near) || (0.03..0.97).contains(&on_limbs)
         })
     }
 }

@@ -178,7 +178,8 @@ impl Grown<'_> {
             (Girth::Waist, "waist_breadth", "waist_depth", true),
             (Girth::Hips, "hip_breadth", "hip_depth", true),
         ] {
-            if !predicted && !(q.is_asked(breadth) && q.is_asked(depth)) {
+            let asked = q.is_asked(breadth) && q.is_asked(depth);
+            if !(predicted || asked) {
                 continue;
             }
             let [x, z] = extent(&taken.hull(girth));

@@ -93,7 +93,7 @@ impl Taken<'_> {
         Some(stretched(&scaled, at(bust), at(neck)))
     }
 
-    fn from_bust(&self, to: Level) -> Option<f64> {
+    fn below_bust(&self, to: Level) -> Option<f64> {
         let bust = self.bust_point()?;
         let section = self.upright(&[Part::Trunk], bust, Vec3::y());
         fall(&section, bust, self.levels.at(to), Vec3::z())
@@ -205,8 +205,8 @@ impl Taken<'_> {
             "bust_points" => 2.0 * self.bust_point()?.x,
             "bum_points" => 2.0 * self.hindmost()?.x,
             "bust_line" => self.bust_line()?,
-            "bust_to_underbust" => self.from_bust(Level::Underbust)?,
-            "waist_over_bust_line" => self.bust_line()? + self.from_bust(Level::Waist)?,
+            "bust_to_underbust" => self.below_bust(Level::Underbust)?,
+            "waist_over_bust_line" => self.bust_line()? + self.below_bust(Level::Waist)?,
             "hps_to_waist_front" => {
                 let section = self.upright(TORSO, neck, Vec3::y());
                 fall(&section, neck, self.levels.at(Level::Waist), Vec3::z())?
