@@ -19,6 +19,8 @@ struct Bone {
     parent: Option<usize>,
     /// From the parent's origin at rest, in the file's unit.
     offset: Vec3,
+    /// Where it ends, for the last one of a limb.
+    end: Option<Vec3>,
     channels: Vec<Channel>,
 }
 
@@ -158,6 +160,7 @@ fn hierarchy(words: &mut Words) -> Result<Vec<Bone>, FormatError> {
                     name,
                     parent,
                     offset: Vec3::zeros(),
+                    end: None,
                     channels: Vec::new(),
                 });
                 open.push(Some(bones.len() - 1));
@@ -169,8 +172,10 @@ fn hierarchy(words: &mut Words) -> Result<Vec<Bone>, FormatError> {
             }
             "OFFSET" => {
                 let offset = words.triple()?;
-                if let Some(Some(bone)) = open.last() {
-                    bones[*bone].offset = offset;
+                match open.as_slice() {
+                    [.., Some(bone)] => bones[*bone].offset = offset,
+                    [.., Some(bone), None] => bones[*bone].end = Some(offset),
+                    _ => {}
                 }
             }
             "CHANNELS" => {
@@ -336,7 +341,11 @@ impl Carrier {
             align[joint as usize] = UnitQuaternion::identity();
         }
         let hip = bone[Joint::LHip as usize].unwrap_or_default();
-        let low = rest.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        let low = bones
+            .iter()
+            .zip(&rest)
+            .map(|(bone, p)| p.y + bone.end.map_or(0.0, |end| end.y.min(0.0)))
+            .fold(f64::INFINITY, f64::min);
         Ok(Self {
             bone,
             align,
@@ -417,7 +426,7 @@ mod tests {
         let place = |text: &str| read_bvh(text, &skeleton).unwrap_err().place;
         assert_eq!(place(""), "line 1");
         assert_eq!(place("HIERARCHY\nROOT hip\n{\nOFFSET 0 0 x\n"), "line 4");
-        assert_eq!(place(&SMALL.replace("Frames: 2", "Frames: -2")), "line 34");
+        assert_eq!(place(&SMALL.replace("Frames: 2", "Frames: -2")), "line 40");
         assert!(read_bvh(&SMALL[..SMALL.len() - 9], &skeleton).is_err());
         assert_eq!(place(&SMALL.replace("Thigh", "Tail")), "the hierarchy");
     }
