@@ -9,9 +9,9 @@ use std::sync::Arc;
 use toile_geometry::Length;
 use toile_measure::Origin;
 use toile_session::{
-    BodyChoice, BodyReport, Budget, Event, Moment, NestOptions, Project, convert as convert_file, figure_named,
-    is_nesting_instance, make_body, mesh_panels, nest_instance, nest_patterns, open_measurements,
-    run_scene,
+    BodyChoice, BodyReport, Budget, Event, Moment, NestOptions, Project, convert as convert_file,
+    figure_named, is_nesting_instance, make_body, mesh_panels, nest_instance, nest_patterns,
+    open_measurements, run_scene,
 };
 
 /// A pattern in another format.

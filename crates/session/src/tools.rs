@@ -10,7 +10,8 @@ use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_body::{Conflict, Gap, Mannequin, Motion};
 use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{
-    ObjGroup, ObjMesh, read_bvh, read_text, write_atomically, write_garmentcode, write_obj, write_pattern,
+    ObjGroup, ObjMesh, read_bvh, read_text, write_atomically, write_garmentcode, write_obj,
+    write_pattern,
 };
 use toile_pattern::Draft;
 
