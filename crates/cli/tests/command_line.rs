@@ -143,6 +143,83 @@ fn json_is_one_report_on_stdout() {
 }
 
 #[test]
+fn a_nesting_instance_is_solved_in_its_own_format_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = r#"{ "name": "tri", "strip_height": 30, "items": [ { "id": 4, "demand": 5,
+        "allowed_orientations": [0, 180], "shape": { "type": "simple_polygon",
+        "data": [[0, 0], [20, 0], [0, 15]] } } ] }"#;
+    std::fs::write(folder.path().join("tri.json"), text).unwrap();
+    let solve = |out: &str| {
+        let arguments = [
+            "nest",
+            "tri.json",
+            "--evaluations",
+            "200000",
+            "--out",
+            out,
+            "--json",
+        ];
+        let output = toile(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", words(&output.stderr));
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(
+            (&report["sound"], &report["pieces"]),
+            (&true.into(), &5.into())
+        );
+        std::fs::read_to_string(folder.path().join(out).join("tri.json")).unwrap()
+    };
+    let solution = solve("a");
+    assert_eq!(solution, solve("b"));
+    let value: Value = serde_json::from_str(&solution).unwrap();
+    assert_eq!(value["solution"]["layout"]["placed_items"][4]["item_id"], 4);
+    // Five triangles of 150 on a strip of 30 take at least 25.
+    let length = value["solution"]["strip_width"].as_f64().unwrap();
+    assert!((25.0..45.0).contains(&length), "{length}");
+    let refused = toile(folder.path(), &["nest", "tri.json", "--width", "1m"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(words(&refused.stderr).contains("tri.json"));
+    let never = toile(folder.path(), &["nest", "tri.json", "--time", "-1"]);
+    assert_eq!(never.status.code(), Some(2));
+}
+
+#[test]
+fn markers_of_a_ratio_keep_the_rules_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let shirt = patterns().join("t-shirt.toile.json");
+    let output = toile(
+        folder.path(),
+        &[
+            "nest",
+            shirt.to_str().unwrap(),
+            "--sizes",
+            "S:1,M:2",
+            "--nap",
+            "per-garment",
+            "--repeat",
+            "40mm,0mm",
+            "--defect",
+            "30cm,40cm,2cm,2cm",
+            "--tilt",
+            "2",
+            "--evaluations",
+            "200000",
+            "--json",
+        ],
+    );
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["markers"][0]["sound"], true);
+    assert_eq!(report["markers"][0]["pieces"], 12);
+    let svg = std::fs::read_to_string(folder.path().join("out/marker.svg")).unwrap();
+    assert!(svg.contains("class=\"print\"") && svg.contains("class=\"flaw\""));
+    let bad = toile(
+        folder.path(),
+        &["nest", shirt.to_str().unwrap(), "--sizes", "S:0"],
+    );
+    assert_eq!(bad.status.code(), Some(2));
+}
+
+#[test]
 fn patterns_are_checked_converted_and_converted_back() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["t-shirt", "gathered-skirt", "trousers", "poncho"] {

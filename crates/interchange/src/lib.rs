@@ -32,8 +32,8 @@ pub use garmentcode::{
 pub use gltf::{GlbMesh, GlbPrimitive, GlbScene, write_glb};
 pub use jagua::{JaguaInstance, is_jagua_instance, read_jagua, write_jagua};
 pub use marker_json::{
-    MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, read_marker_json,
-    write_marker_json,
+    MarkerDefect, MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, MarkerPrint,
+    read_marker_json, write_marker_json,
 };
 pub use marker_svg::{MarkerDrawing, MarkerPiece, write_marker_svg};
 pub use measurements::read_body_yaml;

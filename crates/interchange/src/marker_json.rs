@@ -2,8 +2,8 @@
 
 use crate::FormatError;
 use serde::{Deserialize, Serialize};
-use toile_geometry::Vec2;
-use toile_nesting::{Item, Marker, Nap, Placement, Strip, Unplaced};
+use toile_geometry::{Polygon, Vec2};
+use toile_nesting::{Defect, Item, Marker, Nap, Placement, Strip, Stripes, Unplaced};
 
 const FORMAT: &str = "toile-marker";
 const VERSION: u32 = 1;
@@ -50,6 +50,35 @@ pub struct MarkerFabric {
     pub max_length: Option<f64>,
     /// Whether the fabric has a nap, so that all pieces point one way.
     pub one_way: bool,
+    /// Whether the pieces of each garment point one way, whichever.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub one_way_per_garment: bool,
+    /// Print that repeats.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub print: Option<MarkerPrint>,
+    /// Flaws no piece may lie on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub defects: Vec<MarkerDefect>,
+}
+
+/// A print that repeats, in a marker file.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MarkerPrint {
+    /// Length of a repeat along the warp and across \[m\]; 0 where it does not repeat.
+    pub repeat: [f64; 2],
+    /// A point where lines of the print cross \[m\].
+    pub origin: [f64; 2],
+}
+
+/// A flaw of the fabric, in a marker file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MarkerDefect {
+    /// Its outline \[m\].
+    pub outline: Vec<[f64; 2]>,
+    /// Distance pieces keep from it \[m\].
+    pub clearance: f64,
 }
 
 /// A piece laid, in a marker file.
@@ -128,6 +157,12 @@ impl MarkerFile {
                 gap: strip.gap,
                 max_length: strip.max_length,
                 one_way: strip.nap == Nap::OneWay,
+                one_way_per_garment: strip.nap == Nap::PerBundle,
+                print: strip.stripes.map(|s| MarkerPrint {
+                    repeat: s.repeat.into(),
+                    origin: s.origin.into(),
+                }),
+                defects: strip.defects.iter().map(MarkerDefect::of).collect(),
             },
             length: marker.length,
             efficiency: marker.efficiency,
@@ -168,12 +203,38 @@ impl MarkerFile {
             end_margin: self.fabric.end_margin,
             gap: self.fabric.gap,
             max_length: self.fabric.max_length,
-            nap: if self.fabric.one_way {
-                Nap::OneWay
-            } else {
-                Nap::None
+            nap: match (self.fabric.one_way, self.fabric.one_way_per_garment) {
+                (true, _) => Nap::OneWay,
+                (_, true) => Nap::PerBundle,
+                _ => Nap::None,
             },
+            stripes: self.fabric.print.map(|print| Stripes {
+                repeat: Vec2::from(print.repeat),
+                origin: Vec2::from(print.origin),
+            }),
+            defects: self
+                .fabric
+                .defects
+                .iter()
+                .map(MarkerDefect::defect)
+                .collect(),
             ..Strip::of_width(self.fabric.width)
+        }
+    }
+}
+
+impl MarkerDefect {
+    fn of(defect: &Defect) -> Self {
+        Self {
+            outline: defect.outline.outer.iter().map(|&p| p.into()).collect(),
+            clearance: defect.clearance,
+        }
+    }
+
+    fn defect(&self) -> Defect {
+        Defect {
+            outline: Polygon::new(self.outline.iter().map(|&p| Vec2::from(p)).collect()),
+            clearance: self.clearance,
         }
     }
 }
@@ -229,6 +290,21 @@ fn check_numbers(file: &MarkerFile) -> Result<(), FormatError> {
         file.efficiency,
         file.utilisation,
     ];
+    let print = fabric
+        .print
+        .iter()
+        .flat_map(|p| p.repeat.into_iter().chain(p.origin));
+    let flaws = fabric
+        .defects
+        .iter()
+        .flat_map(|d| d.outline.iter().flatten().copied());
+    let clearances = fabric.defects.iter().map(|d| d.clearance);
+    let own: Vec<f64> = own
+        .into_iter()
+        .chain(print)
+        .chain(flaws)
+        .chain(clearances)
+        .collect();
     let bad = |place: String| {
         let hint = "check the piece's outline and make the marker again";
         Err(FormatError::new(place, "a number is not finite", hint))
@@ -293,7 +369,7 @@ pub fn read_marker_json(text: &str) -> Result<MarkerFile, FormatError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_geometry::{Bounds2, Polygon};
+    use toile_geometry::Bounds2;
     use toile_nesting::{Control, Mirror, Search, judge, make_marker};
 
     fn job() -> (Vec<Item>, Strip, Marker) {
@@ -309,6 +385,18 @@ mod tests {
             selvedge: 0.01,
             gap: 0.003,
             max_length: Some(1.3),
+            nap: Nap::PerBundle,
+            stripes: Some(Stripes {
+                repeat: Vec2::new(0.05, 0.0),
+                origin: Vec2::zeros(),
+            }),
+            defects: vec![Defect {
+                outline: Polygon::rectangle(Bounds2 {
+                    min: Vec2::new(0.1, 0.1),
+                    max: Vec2::new(0.12, 0.12),
+                }),
+                clearance: 0.01,
+            }],
             ..Strip::of_width(1.5)
         };
         let items = vec![item];

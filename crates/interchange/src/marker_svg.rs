@@ -249,6 +249,56 @@ fn fabric(text: &mut String, drawing: &MarkerDrawing) {
     rectangle("end-margin", [length - margin, edge, margin, inner], shade);
     let line = "fill=\"none\" stroke=\"#555555\" stroke-width=\"1\"";
     rectangle("fabric-edge", [0.0, 0.0, length, width], line);
+    print_and_flaws(text, drawing);
+}
+
+/// Most lines of a print that are drawn along one side.
+const MOST_LINES: f64 = 2000.0;
+
+/// The lines of the print and the flaws of the fabric; y runs down on the page.
+fn print_and_flaws(text: &mut String, drawing: &MarkerDrawing) {
+    let (length, width) = (drawing.length * 1e3, drawing.strip.width * 1e3);
+    let mut path = |class: &str, d: &str, style: &str| {
+        if !d.is_empty() {
+            let _ = writeln!(text, "<path class=\"{class}\" d=\"{d}\" {style}/>");
+        }
+    };
+    if let Some(print) = &drawing.strip.stripes {
+        let mut d = String::new();
+        for axis in 0..2 {
+            let (repeat, end) = (print.repeat[axis] * 1e3, [length, width][axis]);
+            if repeat <= 0.0 || end / repeat > MOST_LINES {
+                continue;
+            }
+            let mut at = (print.origin[axis] * 1e3).rem_euclid(repeat);
+            while at <= end {
+                let _ = match axis {
+                    0 => write!(d, "M{} 0V{}", number(at), number(width)),
+                    _ => write!(d, "M0 {}H{}", number(width - at), number(length)),
+                };
+                at += repeat;
+            }
+        }
+        path(
+            "print",
+            &d,
+            "fill=\"none\" stroke=\"#9db8d9\" stroke-width=\"1\"",
+        );
+    }
+    for defect in &drawing.strip.defects {
+        let mut d = String::new();
+        for (k, p) in defect.outline.outer.iter().enumerate() {
+            let step = if k == 0 { 'M' } else { 'L' };
+            let _ = write!(
+                d,
+                "{step}{} {}",
+                number(p.x * 1e3),
+                number(width - p.y * 1e3)
+            );
+        }
+        d.push('Z');
+        path("flaw", &d, "fill=\"#d9485f\" stroke=\"none\"");
+    }
 }
 
 /// From a piece's plane to the page.

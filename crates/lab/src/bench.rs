@@ -41,6 +41,8 @@ enum Work {
     Square(Square, u32, MethodKind),
     /// The shirt to rest, its mesh divided so many times, to a net force over weight.
     Rest(usize, f64),
+    /// A marker of shirts in three sizes.
+    Nest,
 }
 
 /// Frames of a benchmark of motion.
@@ -70,6 +72,7 @@ fn all() -> Vec<(String, Work)> {
             }
         }
     }
+    list.push(("nest".to_owned(), Work::Nest));
     list.push(("rest-shirt-1k".to_owned(), Work::Rest(0, 1e-2)));
     list.push(("rest-shirt-6k".to_owned(), Work::Rest(1, 1e-3)));
     list.push(("rest-shirt-22k".to_owned(), Work::Rest(2, 1e-3)));
@@ -167,6 +170,7 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
             frames(&model, state, (kind, SQUARE_FRAMES), &mut result);
         }
         Work::Rest(cuts, residual) => rest(cuts, residual, &mut result)?,
+        Work::Nest => crate::nest::nest(threads, &mut result)?,
     }
     Ok(result)
 }

@@ -13,6 +13,7 @@ mod flat;
 mod freeze;
 mod hard;
 mod laws;
+mod nest;
 mod outline;
 mod root;
 mod scenes;

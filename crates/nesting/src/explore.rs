@@ -17,11 +17,13 @@ const PRESS: Patience = Patience {
     strikes: 2,
 };
 /// Parts by which the strip is shortened: at most, and at least.
-const STEPS: [f64; 2] = [0.02, 0.0005];
+const STEPS: [f64; 2] = [0.04, 0.0005];
 /// Parts of the strip by which the best one is pressed, at first and at last.
 const PRESSES: [f64; 2] = [0.0005, 0.00002];
 /// Failures after which a job is settled, for every pair of pieces.
 const TRIES: usize = 25;
+/// By how much the strip may be longer to take touching pieces truly apart, over its width.
+const LONGER: [f64; 3] = [3e-7, 2e-6, 1e-5];
 /// Most failed layouts kept.
 const POOL: usize = 24;
 
@@ -190,25 +192,27 @@ impl<'a> Island<'a> {
     }
 
     /// Moves the pieces of the best layout that touch within rounding truly apart, where there is
-    /// room for that.
+    /// room for that, on a strip longer by as little as it takes.
     pub fn polish(&mut self) {
-        let Some(mut layout) = self.best.clone() else {
+        let Some(best) = self.best.clone() else {
             return;
         };
         let job = self.separator.job;
-        // Rounding of the no-fit polygons stays under half of what touching pieces keep.
-        self.separator.tolerance = 0.5 * job.safe();
-        let longer = layout.length + 4.0 * job.safe();
-        if longer <= job.longest() {
-            layout.length = longer;
-        }
-        self.separator.load(layout);
         let limit = Limit {
             queries: u64::MAX,
             stop: &|| false,
         };
-        if self.separator.separate(PRESS, &limit) {
-            self.keep();
+        // Rounding of the no-fit polygons stays under half of what touching pieces keep.
+        self.separator.tolerance = 0.5 * job.safe();
+        for more in LONGER {
+            let mut layout = best.clone();
+            layout.length = (best.length + more * job.height).min(job.longest());
+            layout.length = layout.length.max(best.length);
+            self.separator.load(layout);
+            if self.separator.separate(PRESS, &limit) {
+                self.keep();
+                break;
+            }
         }
         self.separator.tolerance = 2.0 * job.safe();
     }

@@ -6,9 +6,9 @@ use crate::layout::Layout;
 use crate::separate::{Limit, Patience};
 
 /// Density at which the first layout is tried.
-const FIRST_DENSITY: f64 = 0.82;
+const FIRST_DENSITY: f64 = 0.76;
 /// By how much the strip grows where that fails.
-const LONGER: f64 = 1.05;
+const LONGER: f64 = 1.06;
 /// What a metre from the start of the strip costs while pieces are laid one by one \[m\].
 const BIAS: f64 = 0.02;
 /// Part of the fabric at hand that is filled at first where not all pieces can be laid.
