@@ -237,7 +237,7 @@ const ROOM: [(Level, f64); 9] = [
     (Crotch, 0.10),
     // The fullest buttocks may lie under the crotch.
     (Hips, -0.025),
-    (Waist, 0.06),
+    (Waist, 0.03),
     (Underbust, 0.012),
     (Bust, 0.012),
     (Tip, 0.03),
