@@ -161,7 +161,7 @@ pub const CATALOGUE: &[Definition] = &[
         "waist_over_bust_line",
         "Neck to waist over the bust",
         "Distance over the body from the side of the neck, over the bust point, to the waist.",
-        &["front_waist_length", "hps_to_waist_front"],
+        &["front_waist_length"],
     ),
     length(
         "waist_back_width",
