@@ -1,11 +1,11 @@
 //! Hard cases, one by one: each method stays sound, or stops with an error that says where.
 
+use crate::clock::Clock;
 use crate::stability::shake;
 use crate::{LabError, MeshKind, freeze::ball, rectangle};
 use serde::Serialize;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::time::Instant;
 use toile_drape::{Cloth, Collider, Material, MethodKind, MethodSettings, Model, State};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 use toile_session::Watcher;
@@ -46,7 +46,7 @@ struct Case {
     jump: Option<Collider>,
 }
 
-/// Steps of a case, and wall time it may take [s].
+/// Steps of a case, and processor time it may take [s].
 const STEPS: usize = 30;
 const BUDGET: f64 = 1.5;
 
@@ -215,7 +215,7 @@ fn force_field() -> Result<Case, LabError> {
 fn run(mut case: Case, kind: MethodKind) -> (Outcome, String) {
     let mut state = case.state.clone();
     let mut method = MethodSettings::from(kind).build();
-    let clock = Instant::now();
+    let clock = Clock::start();
     for n in 0..STEPS {
         if n == STEPS / 3
             && let Some(jumped) = case.jump.take()
@@ -231,7 +231,7 @@ fn run(mut case: Case, kind: MethodKind) -> (Outcome, String) {
                 format!("vertex {vertex} is not finite after step {n}"),
             );
         }
-        if clock.elapsed().as_secs_f64() > BUDGET {
+        if clock.spent() > BUDGET {
             return verdict(&case, &state, Some(n + 1));
         }
         if method.finished() {
@@ -263,7 +263,7 @@ fn verdict(case: &Case, state: &State, stopped_at: Option<usize>) -> (Outcome, S
     match stopped_at {
         Some(steps) => (
             Outcome::Slow,
-            format!("{words}; {steps} of {STEPS} steps in {BUDGET} s"),
+            format!("{words}; {steps} of {STEPS} steps in {BUDGET} s of processor time"),
         ),
         None => (Outcome::Sound, words),
     }
