@@ -36,6 +36,19 @@ pub(crate) struct Mover<'a> {
 }
 
 impl Mover<'_> {
+    /// How far a place lies from another piece, where the box of a piece of `size` there comes
+    /// nearer than `more` to its box [m].
+    #[inline(always)]
+    fn near(&self, other: usize, at: Vec2, size: Vec2, more: f64) -> Option<Vec2> {
+        let apart = at - self.layout.at[other];
+        let far = self.layout.size[other];
+        let meets = apart.x < far.x + more
+            && apart.y < far.y + more
+            && apart.x > -size.x - more
+            && apart.y > -size.y - more;
+        (meets && other != self.piece).then_some(apart)
+    }
+
     /// Weighted loss at a place, or something above `limit` as soon as it is.
     #[inline]
     pub fn loss(&mut self, shape: usize, at: Vec2, limit: f64) -> f64 {
@@ -43,16 +56,9 @@ impl Mover<'_> {
         let more = self.job.widest_gap + self.job.growth();
         let mut sum = 0.0;
         for other in 0..self.layout.at.len() {
-            let apart = at - self.layout.at[other];
-            let far = self.layout.size[other];
-            if apart.x >= far.x + more
-                || apart.y >= far.y + more
-                || apart.x <= -size.x - more
-                || apart.y <= -size.y - more
-                || other == self.piece
-            {
+            let Some(apart) = self.near(other, at, size, more) else {
                 continue;
-            }
+            };
             self.queries += 1;
             sum += self.weights[other] * self.job.loss(self.layout.shape[other], shape, apart);
             if sum > limit {
@@ -70,16 +76,9 @@ impl Mover<'_> {
         let more = self.job.widest_gap + window;
         let mut sum = 0.0;
         for other in 0..self.layout.at.len() {
-            let apart = at - self.layout.at[other];
-            let far = self.layout.size[other];
-            if apart.x >= far.x + more
-                || apart.y >= far.y + more
-                || apart.x <= -size.x - more
-                || apart.y <= -size.y - more
-                || other == self.piece
-            {
+            let Some(apart) = self.near(other, at, size, more) else {
                 continue;
-            }
+            };
             self.queries += 1;
             let Some((probe, gap)) = self.job.probe(self.layout.shape[other], shape, apart) else {
                 continue;
