@@ -134,6 +134,7 @@ pub(crate) fn orientations(item: &Item, strip: &Strip, copy: u32) -> Vec<(f64, b
         Mirror::Never => &[false],
         Mirror::Pairs if copy % 2 == 1 => &[true],
         Mirror::Pairs => &[false],
+        Mirror::Always => &[true],
         Mirror::Free => &[false, true],
     };
     let mut found: Vec<(f64, bool)> = Vec::new();
@@ -269,6 +270,7 @@ fn check_locks(item: &Item) -> Option<ItemProblem> {
         let sided = match item.allowed.mirror {
             Mirror::Never => !lock.mirrored,
             Mirror::Pairs => lock.mirrored == (lock.copy % 2 == 1),
+            Mirror::Always => lock.mirrored,
             Mirror::Free => true,
         };
         let sound = finite.iter().all(|x| x.is_finite())

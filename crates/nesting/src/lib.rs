@@ -17,6 +17,7 @@ mod nofit;
 mod raster;
 mod referee;
 mod refine;
+mod rolls;
 mod rules;
 mod search;
 mod separate;
@@ -31,4 +32,5 @@ pub use marker::{
     Placement, Pose, Strip, Stripes, Unplaced,
 };
 pub use referee::{PENETRATION_LIMIT, Side, Verdict, Violation, judge};
+pub use rolls::{RollMarker, RolledOut, make_markers_on_rolls};
 pub use search::{Budget, Control, Progress, Search, make_marker};

@@ -11,6 +11,8 @@ pub enum Mirror {
     Never,
     /// Left and right: copies 1, 3, 5... are mirrored.
     Pairs,
+    /// Every copy face down.
+    Always,
     /// Each copy either way, as the marker likes.
     Free,
 }

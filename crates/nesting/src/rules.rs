@@ -64,6 +64,7 @@ fn check_orientation(
     let sided = match item.allowed.mirror {
         Mirror::Never => !placement.mirrored,
         Mirror::Pairs => placement.mirrored == (placement.copy % 2 == 1),
+        Mirror::Always => placement.mirrored,
         Mirror::Free => true,
     };
     (!turned || !with_nap || !sided).then_some(Violation::Orientation {

@@ -1,0 +1,248 @@
+//! Several pieces of fabric of given width and length, filled one after another.
+
+use crate::check::{NestingError, check};
+use crate::{
+    Budget, Control, Item, ItemProblem, Marker, Mirror, Progress, Search, Strip, Unplaced,
+    make_marker,
+};
+
+/// The marker on one roll.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RollMarker {
+    /// Index of the roll.
+    pub roll: usize,
+    /// What was to be laid on it: items of the job with the copies that were left, which the
+    /// marker counts anew from 0.
+    pub items: Vec<Item>,
+    /// For each of these items, its index in the job and the numbers of its copies there.
+    pub sources: Vec<(usize, Vec<u32>)>,
+    /// What lies where. Copies it lists as unplaced were passed on to the next roll.
+    pub marker: Marker,
+}
+
+/// Markers on several rolls.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RolledOut {
+    /// One for each roll that has a piece on it, in the order of the rolls.
+    pub markers: Vec<RollMarker>,
+    /// Copies that lie on no roll, by item and copy, with the reason each roll has.
+    pub unplaced: Vec<Unplaced>,
+}
+
+/// Lays all pieces on rolls of fabric, which are filled in the order given; what finds no place on
+/// one goes to the next. A roll without a length takes all that is left, in little length. Locked
+/// copies lie on the first roll.
+///
+/// The budget is shared out by the area that each roll can take. Every marker has passed the
+/// referee.
+///
+/// # Errors
+/// There is no roll or no piece, a roll makes no sense, a piece is damaged, or the search is stopped.
+/// A piece that is only too large for a roll is no error: it is listed.
+pub fn make_markers_on_rolls(
+    items: &[Item],
+    rolls: &[Strip],
+    search: Search,
+    control: &mut Control<'_>,
+) -> Result<RolledOut, NestingError> {
+    if rolls.is_empty() {
+        return Err(NestingError::Strip(
+            "no roll is given; give at least one with its width".to_owned(),
+        ));
+    }
+    if items.is_empty() {
+        return Err(NestingError::NoItems);
+    }
+    let mut left: Vec<Remainder> = (0..items.len())
+        .map(|item| Remainder {
+            copies: (0..items[item].quantity).collect(),
+            reasons: Vec::new(),
+        })
+        .collect();
+    let mut out = RolledOut::default();
+    let shares = shares(items, rolls);
+    let mut done = 0.0;
+    for (roll, strip) in rolls.iter().enumerate() {
+        let (laid, sources) = jobs_of(items, &mut left, (roll, strip))?;
+        if !laid.is_empty() && shares[roll] > 0.0 {
+            let mut told = |progress: Progress| {
+                (control.progress)(Progress {
+                    done: done + progress.done * shares[roll],
+                    ..progress
+                });
+            };
+            let mut control = Control {
+                progress: &mut told,
+                cancel: control.cancel,
+            };
+            let marker = make_marker(&laid, strip, part(search, shares[roll]), &mut control)?;
+            settle(&marker, &sources, &mut left, (roll, rolls.len()));
+            if !marker.placements.is_empty() {
+                out.markers.push(RollMarker {
+                    roll,
+                    items: laid,
+                    sources,
+                    marker,
+                });
+            }
+        }
+        done += shares[roll];
+    }
+    for (item, remainder) in left.iter().enumerate() {
+        out.unplaced
+            .extend(remainder.copies.iter().map(|&copy| Unplaced {
+                item,
+                copy,
+                reason: remainder.reasons.join("; "),
+            }));
+    }
+    Ok(out)
+}
+
+/// Copies of an item that are not laid yet, and what the rolls so far had against them.
+struct Remainder {
+    copies: Vec<u32>,
+    reasons: Vec<String>,
+}
+
+/// The part of the search each roll gets: by the area it takes of what is there to lay.
+fn shares(items: &[Item], rolls: &[Strip]) -> Vec<f64> {
+    let area = |item: &Item| item.outline.area() * f64::from(item.quantity);
+    let mut left: f64 = items.iter().map(area).sum();
+    let taken: Vec<f64> = rolls
+        .iter()
+        .map(|strip| {
+            let room = strip
+                .max_length
+                .map_or(f64::INFINITY, |l| (l * strip.usable_width()).max(0.0));
+            let taken = room.min(left);
+            left -= taken;
+            taken.max(0.0)
+        })
+        .collect();
+    let last = taken.iter().rposition(|&t| t > 0.0);
+    let most = taken.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    // A roll after the last that is needed by area takes what the others could not hold.
+    let late = last.map_or(0, |l| rolls.len() - 1 - l) as f64;
+    let spare = if late > 0.0 { 0.2 } else { 0.0 };
+    let share = |(k, t): (usize, &f64)| match last {
+        Some(last) if k > last => spare / late,
+        _ => (1.0 - spare) * t / most,
+    };
+    taken.iter().enumerate().map(share).collect()
+}
+
+fn part(search: Search, share: f64) -> Search {
+    let budget = match search.budget {
+        Budget::Evaluations(all) => Budget::Evaluations((all as f64 * share) as u64),
+        Budget::Seconds(all) => Budget::Seconds(all * share),
+    };
+    Search { budget, ..search }
+}
+
+/// What is left to lay on a roll, and which items of the job that is. What is too large for the
+/// roll is left out, with the reason.
+#[allow(clippy::type_complexity)]
+fn jobs_of(
+    items: &[Item],
+    left: &mut [Remainder],
+    (roll, strip): (usize, &Strip),
+) -> Result<(Vec<Item>, Vec<(usize, Vec<u32>)>), NestingError> {
+    let mut laid = Vec::new();
+    let mut sources = Vec::new();
+    for (k, item) in items.iter().enumerate() {
+        if item.quantity == 0 {
+            // Refused below with its name.
+            laid.push(item.clone());
+            sources.push((k, Vec::new()));
+        }
+        for copies in groups(item, &left[k].copies) {
+            laid.push(part_of(item, &copies, roll));
+            sources.push((k, copies));
+        }
+    }
+    if laid.is_empty() {
+        return Ok((laid, sources));
+    }
+    let refused = match check(&laid, strip) {
+        Ok(()) => return Ok((laid, sources)),
+        Err(NestingError::Refused(refused)) => refused,
+        Err(error) => return Err(error),
+    };
+    let too_large = |problem: &ItemProblem| {
+        matches!(
+            problem,
+            ItemProblem::TooWide { .. } | ItemProblem::TooLong { .. }
+        )
+    };
+    if refused.iter().any(|r| !too_large(&r.problem)) {
+        let other = refused.into_iter().filter(|r| !too_large(&r.problem));
+        let named = other.map(|mut r| {
+            r.item = sources[r.item].0;
+            r
+        });
+        return Err(NestingError::Refused(named.collect()));
+    }
+    for refusal in refused.iter().rev() {
+        let reason = format!("roll {}: {}", roll + 1, refusal.problem);
+        let reasons = &mut left[sources[refusal.item].0].reasons;
+        if !reasons.contains(&reason) {
+            reasons.push(reason);
+        }
+        laid.remove(refusal.item);
+        sources.remove(refusal.item);
+    }
+    Ok((laid, sources))
+}
+
+/// Copies that may lie alike: of a pair the even ones and the odd ones.
+fn groups(item: &Item, copies: &[u32]) -> Vec<Vec<u32>> {
+    let whole = item.allowed.mirror != Mirror::Pairs;
+    let (even, odd): (Vec<u32>, Vec<u32>) = copies.iter().partition(|&&c| whole || c % 2 == 0);
+    [even, odd].into_iter().filter(|g| !g.is_empty()).collect()
+}
+
+/// An item with some of its copies only.
+fn part_of(item: &Item, copies: &[u32], roll: usize) -> Item {
+    let mut part = item.clone();
+    part.quantity = copies.len() as u32;
+    part.bundles = copies.iter().map(|&c| item.bundle(c)).collect();
+    if item.allowed.mirror == Mirror::Pairs {
+        part.allowed.mirror = match copies[0] % 2 {
+            1 => Mirror::Always,
+            _ => Mirror::Never,
+        };
+    }
+    let locks = item.locked.iter().filter(|_| roll == 0);
+    part.locked = locks
+        .filter_map(|lock| {
+            let copy = copies.iter().position(|&c| c == lock.copy)? as u32;
+            Some(crate::Locked { copy, ..*lock })
+        })
+        .collect();
+    part
+}
+
+/// Takes what lies on a roll off the list, and notes why the rest does not.
+fn settle(
+    marker: &Marker,
+    sources: &[(usize, Vec<u32>)],
+    left: &mut [Remainder],
+    (roll, count): (usize, usize),
+) {
+    for placement in &marker.placements {
+        let (item, copies) = &sources[placement.item];
+        let copy = copies[placement.copy as usize];
+        left[*item].copies.retain(|&c| c != copy);
+    }
+    for unplaced in &marker.unplaced {
+        let reason = match count {
+            1 => unplaced.reason.clone(),
+            _ => format!("roll {}: {}", roll + 1, unplaced.reason),
+        };
+        let reasons = &mut left[sources[unplaced.item].0].reasons;
+        if !reasons.contains(&reason) {
+            reasons.push(reason);
+        }
+    }
+}
