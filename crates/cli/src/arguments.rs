@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::Length;
-use toile_session::{Command, PatternFormat, Quality};
+use toile_session::{Command, MarkerFormat, PatternFormat, Quality, Spread};
 
 /// Sewing patterns checked, laid out on fabric, sewn round a mannequin, draped and exported.
 ///
@@ -37,6 +37,9 @@ pub enum Task {
     /// Exit status 2 if the garment cannot be made.
     Check(Check),
     /// Lay the pieces of one or more patterns on fabric: marker.svg (true size, mm), marker.json.
+    ///
+    /// Each fabric has its own marker, and each roll of it. Says length, efficiency, fabric needed
+    /// (m), cost, and what found no place and why.
     Nest(Nest),
     /// Write the triangulated panels as OBJ, in metres, side by side.
     Mesh(Mesh),
@@ -282,6 +285,34 @@ pub struct Nest {
     /// Nap of the fabric. Default: the fabric's own.
     #[arg(long, value_enum)]
     pub nap: Option<NapName>,
+    /// How the fabric is spread. The width is that of the fabric laid open. Default: open.
+    #[arg(long, value_enum)]
+    pub spread: Option<SpreadName>,
+    /// Layers cut at once. Default: 1; face to face 2.
+    #[arg(long, value_name = "COUNT")]
+    pub plies: Option<u32>,
+    /// A roll at hand: its length, and its width if that is not the fabric's. May be given again;
+    /// rolls are filled in this order, and what fits none is named with the reason.
+    #[arg(long, value_name = "L[,L]", value_parser = roll, conflicts_with = "length")]
+    pub roll: Vec<(f64, Option<f64>)>,
+    /// Price of a metre of the fabric's length.
+    #[arg(long, value_name = "PRICE")]
+    pub price: Option<f64>,
+    /// File of marker settings (JSON), by fabric and by piece: spreads, rolls, prices, print,
+    /// flaws, gaps, blocks, turns, tilt, folds, locked pieces, marks that match, further fabrics.
+    /// See docs/FORMATS.md. Options given here come first.
+    #[arg(long, value_name = "FILE")]
+    pub settings: Option<PathBuf>,
+    /// What to write: svg (true size, mm), json, dxf (release 12, mm), pdf (one page at true size),
+    /// report (A4: picture, table, yardage, cost), plt (HPGL/2).
+    #[arg(
+        long,
+        value_name = "FORMAT",
+        value_enum,
+        value_delimiter = ',',
+        default_value = "svg,json"
+    )]
+    pub write: Vec<MarkerFormatName>,
     /// How far the grain may lie off the warp (degrees).
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0)]
     pub tilt: f64,
@@ -310,6 +341,60 @@ pub struct Nest {
     /// Folder to write into; it is made if need be.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+}
+
+/// How fabric is spread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SpreadName {
+    /// Open, right side up.
+    Open,
+    /// Folded in two along the warp: pieces cut on the fold lie on it, pairs are cut at once.
+    Folded,
+    /// A tube laid flat, a fold at both sides; its width is its girth.
+    Tubular,
+    /// Open, every second ply turned over: pairs are cut at once.
+    FaceToFace,
+}
+
+impl From<SpreadName> for Spread {
+    fn from(name: SpreadName) -> Self {
+        match name {
+            SpreadName::Open => Self::Open,
+            SpreadName::Folded => Self::Folded,
+            SpreadName::Tubular => Self::Tubular,
+            SpreadName::FaceToFace => Self::FaceToFace,
+        }
+    }
+}
+
+/// Files of a marker.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MarkerFormatName {
+    /// Drawing at true size.
+    Svg,
+    /// Data.
+    Json,
+    /// DXF release 12, millimetres.
+    Dxf,
+    /// One page at true size.
+    Pdf,
+    /// A4 report of all markers.
+    Report,
+    /// HPGL/2.
+    Plt,
+}
+
+impl From<MarkerFormatName> for MarkerFormat {
+    fn from(name: MarkerFormatName) -> Self {
+        match name {
+            MarkerFormatName::Svg => Self::Svg,
+            MarkerFormatName::Json => Self::Json,
+            MarkerFormatName::Dxf => Self::Dxf,
+            MarkerFormatName::Pdf => Self::Pdf,
+            MarkerFormatName::Report => Self::Report,
+            MarkerFormatName::Plt => Self::Hpgl,
+        }
+    }
 }
 
 /// Nap of a fabric.
@@ -344,18 +429,33 @@ fn size_count(text: &str) -> Result<(String, u32), String> {
     }
 }
 
-/// Four lengths with commas between [m].
-fn four_lengths(text: &str) -> Result<[f64; 4], String> {
-    let lengths: Result<Vec<f64>, String> = text
-        .split(',')
+/// Lengths with commas between [m].
+fn lengths(text: &str) -> Result<Vec<f64>, String> {
+    text.split(',')
         .map(|part| {
             let length: Result<Length, _> = part.trim().parse();
             length
                 .map(|l| l.as_metres())
                 .map_err(|error| error.to_string())
         })
-        .collect();
-    let lengths = lengths?;
+        .collect()
+}
+
+/// Length and width of a roll [m].
+fn roll(text: &str) -> Result<(f64, Option<f64>), String> {
+    match lengths(text)?[..] {
+        [length] => Ok((length, None)),
+        [length, width] => Ok((length, Some(width))),
+        ref more => Err(format!(
+            "there are {} lengths; give the roll's length, or length,width",
+            more.len()
+        )),
+    }
+}
+
+/// Four lengths with commas between [m].
+fn four_lengths(text: &str) -> Result<[f64; 4], String> {
+    let lengths = lengths(text)?;
     let count = lengths.len();
     lengths
         .try_into()

@@ -6,6 +6,7 @@
 mod arguments;
 mod bar;
 mod lab_commands;
+mod nest_commands;
 mod output;
 mod session_commands;
 mod tool_commands;
@@ -48,7 +49,7 @@ fn run(task: Task, output: &Output) -> Result<serde_json::Value, Failure> {
         Task::Replay(replay) => session_commands::replay(&replay, output),
         Task::Convert(convert) => tool_commands::convert(&convert, output),
         Task::Mesh(mesh) => tool_commands::mesh(&mesh, output),
-        Task::Nest(nest) => tool_commands::nest(&nest, output),
+        Task::Nest(nest) => nest_commands::nest(&nest, output),
         Task::Body(body) => tool_commands::body(&body, output),
         Task::Run(run) => tool_commands::run(&run, output),
         Task::Validate(validate) => lab_commands::validate(&validate, output),

@@ -159,9 +159,13 @@ fn words(event: &Event) -> Option<String> {
             ),
         }),
         Event::Nested(nested) => Some(format!(
-            "laid out: {} on {}, {:.0} cm wide and {:.1} cm long, {:.1} % used",
+            "laid out: {} on {}{}, {:.0} cm wide and {:.1} cm long, {:.1} % used",
             count(nested.pieces, "piece"),
             nested.fabric,
+            nested
+                .roll
+                .as_ref()
+                .map_or_else(String::new, |roll| format!(" ({roll})")),
             nested.width * 100.0,
             nested.length * 100.0,
             nested.efficiency * 100.0,
@@ -219,6 +223,16 @@ fn meaning(path: &Path) -> &'static str {
         "journal.jsonl" => "the commands, for `toile replay`",
         name if name.starts_with("marker") && name.ends_with(".svg") => {
             "the pieces on the fabric, at true size"
+        }
+        "marker-report.pdf" => "report on A4: picture, table of pieces, fabric needed, cost",
+        name if name.starts_with("marker") && name.ends_with(".pdf") => {
+            "the pieces on the fabric on one page, at true size"
+        }
+        name if name.starts_with("marker") && name.ends_with(".dxf") => {
+            "the pieces on the fabric for drafting programs and cutters, mm"
+        }
+        name if name.starts_with("marker") && name.ends_with(".plt") => {
+            "the pieces on the fabric for plotters, HPGL/2"
         }
         name if name.starts_with("marker") => "the pieces on the fabric, as data",
         _ => "",

@@ -1,17 +1,15 @@
 //! Commands that need no session.
 
-use crate::arguments::{Body, Convert, FormatName, Mesh, Nest, Run};
+use crate::arguments::{Body, Convert, FormatName, Mesh, Run};
 use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
-use toile_geometry::Length;
 use toile_measure::Origin;
 use toile_session::{
-    BodyChoice, BodyReport, Budget, Event, Moment, NestOptions, Project, convert as convert_file,
-    figure_named, is_nesting_instance, make_body, mesh_panels, nest_instance, nest_patterns,
-    open_measurements, run_scene,
+    BodyChoice, BodyReport, Moment, Project, convert as convert_file, figure_named, make_body,
+    mesh_panels, open_measurements, run_scene,
 };
 
 /// A pattern in another format.
@@ -58,117 +56,6 @@ pub fn mesh(mesh: &Mesh, output: &Output) -> Result<Value, Failure> {
         "smallest_free_angle_rad": quality.smallest_free_angle,
         "under_20_degrees": quality.under_20,
     }))
-}
-
-/// What the arguments ask for.
-fn nest_options(nest: &Nest) -> Result<NestOptions, Failure> {
-    let metres = |length: &Option<Length>| length.map(|l| l.as_metres());
-    if let Some(seconds) = nest.time.filter(|t| !t.is_finite() || *t <= 0.0) {
-        return Err(Failure::bad_input(format!(
-            "--time is {seconds}; give a number of seconds above 0"
-        )));
-    }
-    let sizes = match &nest.size {
-        Some(size) => vec![(size.clone(), 1)],
-        None => nest.sizes.clone(),
-    };
-    let repeat = nest
-        .repeat
-        .iter()
-        .map(|l| l.as_metres())
-        .collect::<Vec<_>>();
-    Ok(NestOptions {
-        sizes,
-        width: metres(&nest.width),
-        length: metres(&nest.length),
-        selvedge: metres(&nest.selvedge),
-        end_margin: metres(&nest.end_margin),
-        gap: metres(&nest.gap),
-        nap: nest.nap.map(Into::into),
-        tilt: nest.tilt.to_radians(),
-        repeat: (!repeat.is_empty()).then(|| [repeat[0], repeat.get(1).copied().unwrap_or(0.0)]),
-        defects: nest.defect.clone(),
-        budget: match nest.time {
-            Some(seconds) => Budget::Seconds(seconds),
-            None => Budget::Evaluations(nest.evaluations),
-        },
-        seed: nest.seed,
-    })
-}
-
-/// The solution of a nesting instance.
-fn solve(
-    path: &Path,
-    nest: &Nest,
-    options: &NestOptions,
-    output: &Output,
-) -> Result<Value, Failure> {
-    let lengths = [
-        &nest.width,
-        &nest.length,
-        &nest.selvedge,
-        &nest.end_margin,
-        &nest.gap,
-    ];
-    let own = lengths.iter().all(|l| l.is_none()) && options.repeat.is_none();
-    if !own || !options.defects.is_empty() || !options.sizes.is_empty() {
-        return Err(Failure::bad_input(
-            "an instance has its own strip and items; give only --time, --evaluations, --seed, --tilt and --out",
-        )
-        .about(path));
-    }
-    let (nested, notes, file) = nest_instance(path, options, (&nest.out, &mut Bar::new()))
-        .map_err(|error| Failure::from(error).about(path))?;
-    for note in &notes {
-        output.warn(format!("note: {note}"));
-    }
-    output.say(format!(
-        "{} laid on a strip of {:.4} by {:.4}, density {:.3} %",
-        count(nested.pieces, "item"),
-        nested.length,
-        nested.width,
-        nested.efficiency * 100.0
-    ));
-    output.say(format!("wrote {}", file.display()));
-    Ok(json!({
-        "files": [file],
-        "instance": nested.fabric,
-        "pieces": nested.pieces,
-        "unplaced": nested.unplaced,
-        "strip_width": nested.length,
-        "strip_height": nested.width,
-        "density": nested.efficiency,
-        "sound": nested.sound,
-    }))
-}
-
-/// Pieces laid on fabric.
-pub fn nest(nest: &Nest, output: &Output) -> Result<Value, Failure> {
-    let options = nest_options(nest)?;
-    if let [path] = &nest.patterns[..]
-        && is_nesting_instance(path)
-    {
-        return solve(path, nest, &options, output);
-    }
-    let (layings, paths) = nest_patterns(&nest.patterns, &options, (&nest.out, &mut Bar::new()))?;
-    let listed: Vec<Value> = layings
-        .iter()
-        .map(|laying| {
-            json!({
-                "fabric": laying.fabric,
-                "pieces": laying.pieces,
-                "unplaced": laying.unplaced,
-                "width_m": laying.width,
-                "length_m": laying.length,
-                "efficiency": laying.efficiency,
-                "sound": laying.sound,
-            })
-        })
-        .collect();
-    let report = json!({ "files": paths, "markers": listed });
-    output.tell(&layings.into_iter().map(Event::Nested).collect::<Vec<_>>());
-    output.tell(&[Event::FilesWritten { paths }]);
-    Ok(report)
 }
 
 /// A mannequin.

@@ -220,6 +220,73 @@ fn markers_of_a_ratio_keep_the_rules_given() {
 }
 
 #[test]
+fn a_marker_maker_gets_rolls_spreads_costs_and_files_for_machines() {
+    let folder = tempfile::tempdir().unwrap();
+    let trousers = patterns().join("trousers.toile.json");
+    let trousers = trousers.to_str().unwrap();
+    let text = r#"{ "toile": 1, "kind": "marker-settings", "currency": "EUR",
+        "fabrics": { "twill": { "price_per_metre": 10 } } }"#;
+    std::fs::write(folder.path().join("s.json"), text).unwrap();
+    let nest = |more: &[&str]| {
+        let usual = [
+            "nest",
+            trousers,
+            "--evaluations",
+            "200000",
+            "--settings",
+            "s.json",
+        ];
+        let all: Vec<&str> = usual.iter().chain(more).copied().collect();
+        toile(folder.path(), &all)
+    };
+    let output = nest(&["--spread", "folded", "--write", "dxf,plt,pdf,report"]);
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output.stderr));
+    let said = words(&output.stdout);
+    assert!(said.contains("two plies are cut at once"), "{said}");
+    assert!(said.contains("EUR"), "{said}");
+    for name in [
+        "marker.dxf",
+        "marker.plt",
+        "marker.pdf",
+        "marker-report.pdf",
+    ] {
+        assert!(folder.path().join("out").join(name).is_file(), "{name}");
+        assert!(said.contains(name), "{said}");
+    }
+    let rolls = ["--roll", "120cm,45cm", "--roll", "60cm", "--json"];
+    let output = nest(&rolls);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let markers = report["markers"].as_array().unwrap();
+    assert_eq!(markers[0]["roll"], "roll 1");
+    let missing = &markers.last().unwrap()["missing"];
+    assert!(missing[0]["reason"].as_str().unwrap().contains("roll 2: "));
+    for (bad, what) in [
+        (["--roll", "1,2,3"], "no unit"),
+        (["--roll", "1m,2m,3m"], "3 lengths"),
+        (["--price", "-1"], "--price"),
+        (["--plies", "0"], "plies"),
+        (["--settings", "gone.json"], "gone.json"),
+        (["--write", "png"], "png"),
+    ] {
+        let output = toile(folder.path(), &["nest", trousers, bad[0], bad[1]]);
+        assert_eq!(output.status.code(), Some(2), "{bad:?}");
+        assert!(
+            words(&output.stderr).contains(what),
+            "{}",
+            words(&output.stderr)
+        );
+    }
+    std::fs::write(folder.path().join("s.json"), text.replace("10", "-1")).unwrap();
+    let output = nest(&[]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = words(&output.stderr);
+    assert!(
+        said.contains("s.json: fabrics.twill: the price is -1"),
+        "{said}"
+    );
+}
+
+#[test]
 fn patterns_are_checked_converted_and_converted_back() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["t-shirt", "gathered-skirt", "trousers", "poncho"] {

@@ -7,12 +7,20 @@
 
 mod atomic;
 mod bvh;
+mod dxf;
 mod error;
 mod fabric_test;
 mod garmentcode;
 mod gltf;
+mod hpgl;
 mod jagua;
+mod marker_drawing;
 mod marker_json;
+mod marker_label;
+mod marker_plot;
+mod marker_report;
+mod marker_settings;
+mod marker_strokes;
 mod marker_svg;
 mod measurements;
 mod measurements_foreign;
@@ -20,6 +28,7 @@ mod measurements_json;
 mod native;
 mod obj;
 mod obj_read;
+mod pdf;
 mod scene;
 
 pub use atomic::{write_all_atomically, write_atomically};
@@ -31,11 +40,18 @@ pub use garmentcode::{
 };
 pub use gltf::{GlbMesh, GlbPrimitive, GlbScene, write_glb};
 pub use jagua::{JaguaInstance, is_jagua_instance, read_jagua, write_jagua};
+pub use marker_drawing::{MarkerDrawing, MarkerFacts, MarkerPiece};
 pub use marker_json::{
-    MarkerDefect, MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, MarkerPrint,
-    read_marker_json, write_marker_json,
+    MarkerDefect, MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, MarkerFold,
+    MarkerPrint, read_marker_json, write_marker_json,
 };
-pub use marker_svg::{MarkerDrawing, MarkerPiece, write_marker_svg};
+pub use marker_plot::{write_marker_dxf, write_marker_hpgl, write_marker_pdf};
+pub use marker_report::write_marker_report;
+pub use marker_settings::{
+    ALL, FabricSettings, FlawSettings, LockSettings, MarkerSettings, Metres, NapField,
+    PieceSettings, PrintSettings, RollSettings, Spread, read_marker_settings,
+};
+pub use marker_svg::write_marker_svg;
 pub use measurements::read_body_yaml;
 pub use measurements_foreign::{read_freesewing, read_seamly};
 pub use measurements_json::{read_measurements, write_measurements};

@@ -3,7 +3,7 @@
 use crate::FormatError;
 use serde::{Deserialize, Serialize};
 use toile_geometry::{Polygon, Vec2};
-use toile_nesting::{Defect, Item, Marker, Nap, Placement, Strip, Stripes, Unplaced};
+use toile_nesting::{Defect, Fold, Item, Marker, Nap, Placement, Strip, Stripes, Unplaced};
 
 const FORMAT: &str = "toile-marker";
 const VERSION: u32 = 1;
@@ -28,6 +28,15 @@ pub struct MarkerFile {
     pub efficiency: f64,
     /// Area of the pieces over width times length, 0..=1.
     pub utilisation: f64,
+    /// The roll it is cut from, if there are several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roll: Option<String>,
+    /// Layers cut at once; a fold does not count.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub plies: u32,
+    /// Whether every second ply is turned over.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub face_to_face: bool,
     /// The pieces laid.
     pub pieces: Vec<MarkerFilePiece>,
     /// Copies that found no place.
@@ -53,12 +62,42 @@ pub struct MarkerFabric {
     /// Whether the pieces of each garment point one way, whichever.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub one_way_per_garment: bool,
+    /// Where it is folded along the warp.
+    #[serde(default, skip_serializing_if = "MarkerFold::is_open")]
+    pub fold: MarkerFold,
     /// Print that repeats.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub print: Option<MarkerPrint>,
     /// Flaws no piece may lie on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub defects: Vec<MarkerDefect>,
+}
+
+/// Folds of the fabric, in a marker file; its width is then that of the folded fabric.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MarkerFold {
+    /// None.
+    #[default]
+    Open,
+    /// At y = 0.
+    Lower,
+    /// At y = 0 and at y = width.
+    Both,
+}
+
+impl MarkerFold {
+    fn is_open(&self) -> bool {
+        *self == Self::Open
+    }
+}
+
+fn one() -> u32 {
+    1
+}
+
+fn is_one(plies: &u32) -> bool {
+    *plies == 1
 }
 
 /// A print that repeats, in a marker file.
@@ -158,6 +197,11 @@ impl MarkerFile {
                 max_length: strip.max_length,
                 one_way: strip.nap == Nap::OneWay,
                 one_way_per_garment: strip.nap == Nap::PerBundle,
+                fold: match strip.fold {
+                    Fold::Open => MarkerFold::Open,
+                    Fold::Lower => MarkerFold::Lower,
+                    Fold::Both => MarkerFold::Both,
+                },
                 print: strip.stripes.map(|s| MarkerPrint {
                     repeat: s.repeat.into(),
                     origin: s.origin.into(),
@@ -167,6 +211,9 @@ impl MarkerFile {
             length: marker.length,
             efficiency: marker.efficiency,
             utilisation: marker.utilisation,
+            roll: None,
+            plies: 1,
+            face_to_face: false,
             pieces: marker.placements.iter().filter_map(piece).collect(),
             unplaced: marker.unplaced.iter().map(left).collect(),
         }
@@ -207,6 +254,11 @@ impl MarkerFile {
                 (true, _) => Nap::OneWay,
                 (_, true) => Nap::PerBundle,
                 _ => Nap::None,
+            },
+            fold: match self.fabric.fold {
+                MarkerFold::Open => Fold::Open,
+                MarkerFold::Lower => Fold::Lower,
+                MarkerFold::Both => Fold::Both,
             },
             stripes: self.fabric.print.map(|print| Stripes {
                 repeat: Vec2::from(print.repeat),
@@ -258,7 +310,7 @@ pub fn write_marker_json(file: &MarkerFile) -> Result<String, FormatError> {
     };
     let pieces: Result<_, _> = file.pieces.iter().map(line).collect();
     let unplaced: Result<_, _> = file.unplaced.iter().map(line).collect();
-    let fields = [
+    let mut fields = vec![
         format!("  \"format\": {}", line(&file.format)?),
         format!("  \"version\": {}", line(&file.version)?),
         format!("  \"unit\": {}", line(&file.unit)?),
@@ -267,9 +319,17 @@ pub fn write_marker_json(file: &MarkerFile) -> Result<String, FormatError> {
         format!("  \"length\": {}", line(&file.length)?),
         format!("  \"efficiency\": {}", line(&file.efficiency)?),
         format!("  \"utilisation\": {}", line(&file.utilisation)?),
-        list("pieces", pieces?),
-        list("unplaced", unplaced?),
     ];
+    if let Some(roll) = &file.roll {
+        fields.push(format!("  \"roll\": {}", line(roll)?));
+    }
+    if file.plies != 1 {
+        fields.push(format!("  \"plies\": {}", file.plies));
+    }
+    if file.face_to_face {
+        fields.push("  \"face_to_face\": true".to_owned());
+    }
+    fields.extend([list("pieces", pieces?), list("unplaced", unplaced?)]);
     Ok(format!("{{\n{}\n}}\n", fields.join(",\n")))
 }
 
@@ -386,6 +446,7 @@ mod tests {
             gap: 0.003,
             max_length: Some(1.3),
             nap: Nap::PerBundle,
+            fold: Fold::Lower,
             stripes: Some(Stripes {
                 repeat: Vec2::new(0.05, 0.0),
                 origin: Vec2::zeros(),
@@ -412,7 +473,10 @@ mod tests {
     #[test]
     fn a_marker_read_back_is_the_marker_and_still_sound() {
         let (items, strip, marker) = job();
-        let file = MarkerFile::new("shirt", &items, &strip, &marker);
+        let mut file = MarkerFile::new("shirt", &items, &strip, &marker);
+        file.roll = Some("first \"roll\"".into());
+        file.plies = 4;
+        file.face_to_face = true;
         let text = write_marker_json(&file).unwrap();
         assert_eq!(text, write_marker_json(&file).unwrap());
         let back = read_marker_json(&text).unwrap();

@@ -3,10 +3,11 @@
 //! The fabric lies along x from the origin of the drawing, the upper selvedge at y = 0. Numbers
 //! have a fixed count of decimals, so that the same marker gives the same bytes.
 
-use crate::FormatError;
+use crate::marker_label::{Spot, roomiest_spot, size_on};
+use crate::{FormatError, MarkerDrawing, MarkerPiece};
 use std::fmt::Write as _;
-use toile_geometry::{Polygon, Vec2, point_segment_distance};
-use toile_nesting::{Nap, Pose, Strip};
+use toile_geometry::{Polygon, Vec2};
+use toile_nesting::{Fold, Pose};
 
 /// White round the fabric \[mm\].
 const BORDER: f64 = 20.0;
@@ -17,50 +18,12 @@ const FILLS: [&str; 8] = [
     "#f6d9c8", "#cfe3f2", "#d9ecd0", "#f5e6b8", "#e3d6ee", "#f3d0d8", "#cdeae6", "#e6e0d4",
 ];
 
-/// Everything that is drawn on a marker. All points of a piece are in its own plane \[m\].
-#[derive(Clone, Debug, PartialEq)]
-pub struct MarkerDrawing {
-    /// Name of the marker.
-    pub title: String,
-    /// The fabric.
-    pub strip: Strip,
-    /// Fabric used, end margins included \[m\].
-    pub length: f64,
-    /// Area of the pieces over width times length between the end margins, 0..=1.
-    pub efficiency: f64,
-    /// The pieces laid.
-    pub pieces: Vec<MarkerPiece>,
-    /// Names of the copies that found no place.
-    pub unplaced: Vec<String>,
-}
-
-/// One piece on a marker.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MarkerPiece {
-    /// Name to write on it.
-    pub name: String,
-    /// Number that pieces of one kind share: they are filled with one colour.
-    pub item: usize,
-    /// Line to cut along \[m\].
-    pub cut: Polygon,
-    /// Line to sew along \[m\]; without rings where it is not known.
-    pub sew: Polygon,
-    /// Grain line, from its tail to its head \[m\]; nothing draws one through the middle.
-    pub grain: Option<[Vec2; 2]>,
-    /// Notches, each a short stroke \[m\].
-    pub notches: Vec<[Vec2; 2]>,
-    /// Other lines drawn on the piece \[m\].
-    pub lines: Vec<Vec<Vec2>>,
-    /// Marker from piece.
-    pub pose: Pose,
-}
-
 /// The SVG text of a marker.
 ///
 /// # Errors
 /// A coordinate is not finite.
 pub fn write_marker_svg(drawing: &MarkerDrawing) -> Result<String, FormatError> {
-    check_numbers(drawing)?;
+    drawing.check_numbers()?;
     let (length, width) = (drawing.length * 1e3, drawing.strip.width * 1e3);
     let sheet = (
         length.max(400.0) + 2.0 * BORDER,
@@ -75,7 +38,7 @@ pub fn write_marker_svg(drawing: &MarkerDrawing) -> Result<String, FormatError> 
         number(-BORDER),
         number(-HEADER - BORDER),
     );
-    let summary = summary(drawing);
+    let summary = drawing.summary();
     let _ = writeln!(
         text,
         "<title>{}: {}</title>",
@@ -89,48 +52,10 @@ pub fn write_marker_svg(drawing: &MarkerDrawing) -> Result<String, FormatError> 
     for piece in &drawing.pieces {
         write_piece(&mut text, piece, drawing.strip.width);
     }
-    text.push_str("</g>\n</svg>\n");
+    text.push_str("</g>\n");
+    overlaps(&mut text, drawing);
+    text.push_str("</svg>\n");
     Ok(text)
-}
-
-fn check_numbers(drawing: &MarkerDrawing) -> Result<(), FormatError> {
-    let refuse = |place: String| {
-        let hint = "check the piece's outline and make the marker again";
-        Err(FormatError::new(place, "a number is not finite", hint))
-    };
-    let Strip {
-        width,
-        selvedge,
-        end_margin,
-        ..
-    } = drawing.strip;
-    let sizes = [
-        width,
-        selvedge,
-        end_margin,
-        drawing.length,
-        drawing.efficiency,
-    ];
-    if !sizes.iter().all(|x| x.is_finite()) {
-        return refuse("marker".into());
-    }
-    for piece in &drawing.pieces {
-        let [x, y] = piece.pose.axes();
-        let rings = piece
-            .cut
-            .rings()
-            .chain(piece.sew.rings())
-            .chain(&piece.lines);
-        let mut points = rings
-            .flatten()
-            .chain(piece.grain.iter().flatten())
-            .chain(piece.notches.iter().flatten())
-            .chain([&x, &y, &piece.pose.translation]);
-        if !points.all(|p| p.x.is_finite() && p.y.is_finite()) {
-            return refuse(format!("piece \"{}\"", piece.name));
-        }
-    }
-    Ok(())
 }
 
 /// Three decimals of a millimetre; no negative zero.
@@ -159,40 +84,6 @@ fn escape(text: &str) -> String {
     safe
 }
 
-fn plural(count: usize) -> String {
-    format!("{count} piece{}", if count == 1 { "" } else { "s" })
-}
-
-/// The marker in words: length and efficiency, then the fabric, then what is missing.
-fn summary(drawing: &MarkerDrawing) -> Vec<String> {
-    let strip = &drawing.strip;
-    let mut lines = vec![format!(
-        "{} on {:.3} m of fabric {:.3} m wide, efficiency {:.1} %",
-        plural(drawing.pieces.len()),
-        drawing.length,
-        strip.width,
-        drawing.efficiency * 100.0
-    )];
-    let nap = match strip.nap {
-        Nap::None => "no nap: pieces may point either way",
-        Nap::OneWay => "nap: all pieces point one way",
-        Nap::PerBundle => "nap: the pieces of a garment point one way",
-    };
-    lines.push(format!(
-        "Warp runs along the length; selvedge {:.0} mm, end margin {:.0} mm, gap {:.0} mm; {nap}.",
-        strip.selvedge * 1e3,
-        strip.end_margin * 1e3,
-        strip.gap * 1e3
-    ));
-    if !drawing.unplaced.is_empty() {
-        lines.push(format!(
-            "Not on this marker: {}.",
-            drawing.unplaced.join(", ")
-        ));
-    }
-    lines
-}
-
 fn header(text: &mut String, drawing: &MarkerDrawing, summary: &[String]) {
     text.push_str("<g id=\"heading\" fill=\"#222222\" stroke=\"none\">\n");
     let mut line = |y: f64, size: f64, colour: &str, words: &str| {
@@ -206,7 +97,7 @@ fn header(text: &mut String, drawing: &MarkerDrawing, summary: &[String]) {
     };
     line(-HEADER + 14.0, 22.0, "#222222", &drawing.title);
     for (k, words) in summary.iter().enumerate() {
-        let colour = if k == 2 { "#b00020" } else { "#222222" };
+        let colour = if k >= 2 { "#b00020" } else { "#222222" };
         line(-HEADER + 36.0 + 18.0 * k as f64, 14.0, colour, words);
     }
     text.push_str("</g>\n");
@@ -225,7 +116,9 @@ fn header(text: &mut String, drawing: &MarkerDrawing, summary: &[String]) {
 
 fn fabric(text: &mut String, drawing: &MarkerDrawing) {
     let (length, width) = (drawing.length * 1e3, drawing.strip.width * 1e3);
-    let (edge, margin) = (drawing.strip.selvedge * 1e3, drawing.strip.end_margin * 1e3);
+    let strip = &drawing.strip;
+    let (lower, upper) = (strip.lower() * 1e3, width - strip.upper() * 1e3);
+    let margin = strip.end_margin * 1e3;
     let mut rectangle = |class: &str, place: [f64; 4], style: &str| {
         if place[2] > 0.0 && place[3] > 0.0 {
             let [x, y, w, h] = place.map(number);
@@ -241,14 +134,27 @@ fn fabric(text: &mut String, drawing: &MarkerDrawing) {
         "fill=\"#fffdf8\" stroke=\"none\"",
     );
     let shade = "fill=\"#cfc8bb\" stroke=\"none\"";
-    rectangle("selvedge", [0.0, 0.0, length, edge], shade);
-    rectangle("selvedge", [0.0, width - edge, length, edge], shade);
+    rectangle("selvedge", [0.0, 0.0, length, upper], shade);
+    rectangle("selvedge", [0.0, width - lower, length, lower], shade);
     let shade = "fill=\"#ebe6dc\" stroke=\"none\"";
-    let inner = width - 2.0 * edge;
-    rectangle("end-margin", [0.0, edge, margin, inner], shade);
-    rectangle("end-margin", [length - margin, edge, margin, inner], shade);
+    let inner = width - lower - upper;
+    rectangle("end-margin", [0.0, upper, margin, inner], shade);
+    rectangle("end-margin", [length - margin, upper, margin, inner], shade);
     let line = "fill=\"none\" stroke=\"#555555\" stroke-width=\"1\"";
     rectangle("fabric-edge", [0.0, 0.0, length, width], line);
+    let folds: &[f64] = match strip.fold {
+        Fold::Open => &[],
+        Fold::Lower => &[width],
+        Fold::Both => &[0.0, width],
+    };
+    for y in folds {
+        let _ = writeln!(
+            text,
+            "<path class=\"fold\" d=\"M0 {}H{}\" fill=\"none\" stroke=\"#8c338c\" stroke-width=\"2\" stroke-dasharray=\"20 5 4 5\"/>",
+            number(*y),
+            number(length)
+        );
+    }
     print_and_flaws(text, drawing);
 }
 
@@ -301,6 +207,26 @@ fn print_and_flaws(text: &mut String, drawing: &MarkerDrawing) {
     }
 }
 
+/// What is cut twice.
+fn overlaps(text: &mut String, drawing: &MarkerDrawing) {
+    let width = drawing.strip.width;
+    for polygon in &drawing.overlaps {
+        let mut d = String::new();
+        for ring in polygon.rings() {
+            for (k, p) in ring.iter().enumerate() {
+                let step = if k == 0 { 'M' } else { 'L' };
+                let (x, y) = (number(p.x * 1e3), number((width - p.y) * 1e3));
+                let _ = write!(d, "{step}{x} {y}");
+            }
+            d.push('Z');
+        }
+        let _ = writeln!(
+            text,
+            "<path class=\"overlap\" d=\"{d}\" fill=\"#e60000\" fill-opacity=\"0.8\" fill-rule=\"evenodd\" stroke=\"#e60000\" stroke-width=\"2\"/>"
+        );
+    }
+}
+
 /// From a piece's plane to the page.
 struct Page<'a> {
     pose: &'a Pose,
@@ -309,7 +235,11 @@ struct Page<'a> {
 
 impl Page<'_> {
     fn at(&self, point: Vec2) -> Vec2 {
-        let laid = self.pose.apply(point);
+        self.flat(self.pose.apply(point))
+    }
+
+    /// From the fabric to the page.
+    fn flat(&self, laid: Vec2) -> Vec2 {
         Vec2::new(laid.x, self.width - laid.y) * 1e3
     }
 
@@ -334,8 +264,7 @@ fn write_piece(text: &mut String, piece: &MarkerPiece, width: f64) {
         pose: &piece.pose,
         width,
     };
-    let laid = piece.cut.mapped(|p| page.at(p));
-    let spot = roomiest_spot(&laid);
+    let spot = roomiest_spot(&piece.pose.lay(&piece.cut));
     let name = escape(&piece.name);
     let _ = writeln!(
         text,
@@ -363,9 +292,9 @@ fn write_piece(text: &mut String, piece: &MarkerPiece, width: f64) {
     stroke("line", &lines, "stroke=\"#888888\" stroke-width=\"0.5\"");
     let notches: String = piece.notches.iter().map(|n| page.path(n, "")).collect();
     stroke("notch", &notches, "stroke=\"#111111\" stroke-width=\"0.8\"");
-    let size = (spot.room * 0.3).clamp(4.0, 22.0);
+    let size = (spot.room * 300.0).clamp(4.0, 22.0);
     let grain = piece.grain.map_or_else(
-        || grain_through(&piece.pose, &spot),
+        || grain_through(&page, &spot),
         |ends| ends.map(|p| page.at(p)),
     );
     stroke(
@@ -373,16 +302,16 @@ fn write_piece(text: &mut String, piece: &MarkerPiece, width: f64) {
         &arrow(grain, size),
         "stroke=\"#1f4e9e\" stroke-width=\"1\"",
     );
-    write_label(text, piece, &spot, size);
+    write_label(text, &page, (piece, &spot, size));
     text.push_str("</g>\n");
 }
 
 /// A grain line just above the label.
-fn grain_through(pose: &Pose, spot: &Spot) -> [Vec2; 2] {
+fn grain_through(page: &Page<'_>, spot: &Spot) -> [Vec2; 2] {
     // The piece's grain lies at the turn from the warp; y is down on the page.
-    let (sin, cos) = pose.turn.sin_cos();
-    let along = Vec2::new(cos, -sin) * (spot.room * 0.75);
-    let centre = spot.at - Vec2::new(0.0, spot.room * 0.2);
+    let (sin, cos) = page.pose.turn.sin_cos();
+    let along = Vec2::new(cos, -sin) * (spot.room * 750.0);
+    let centre = page.flat(spot.at) - Vec2::new(0.0, spot.room * 200.0);
     [centre - along, centre + along]
 }
 
@@ -408,26 +337,18 @@ fn arrow([tail, head]: [Vec2; 2], size: f64) -> String {
     )
 }
 
-/// Where the words of a piece go \[mm\].
-struct Spot {
-    at: Vec2,
-    /// Distance to the outline.
-    room: f64,
-    /// Free length through the point along the page's x and y.
-    runs: [f64; 2],
-}
-
-fn write_label(text: &mut String, piece: &MarkerPiece, spot: &Spot, size: f64) {
-    // A letter is about 0.55 of its height wide.
-    let letters = piece.name.chars().count().max(1) as f64;
-    let fitted = |run: f64| size.min(0.85 * run / (0.55 * letters)).max(3.0);
-    let upright = fitted(spot.runs[0]) < 0.6 * size && spot.runs[1] > 1.5 * spot.runs[0];
-    let size = fitted(spot.runs[usize::from(upright)]);
+fn write_label(
+    text: &mut String,
+    page: &Page<'_>,
+    (piece, spot, size): (&MarkerPiece, &Spot, f64),
+) {
+    let (size, upright) = size_on(spot, &piece.name, size * 1e-3);
+    let (size, room, at) = (size * 1e3, spot.room * 1e3, page.flat(spot.at));
     let turn = if upright {
         format!(
             " transform=\"rotate(-90 {} {})\"",
-            number(spot.at.x),
-            number(spot.at.y)
+            number(at.x),
+            number(at.y)
         )
     } else {
         String::new()
@@ -436,57 +357,14 @@ fn write_label(text: &mut String, piece: &MarkerPiece, spot: &Spot, size: f64) {
         let _ = writeln!(
             text,
             "<text x=\"{}\" y=\"{}\" font-size=\"{}\" text-anchor=\"middle\" fill=\"#111111\" stroke=\"none\"{turn}>{}</text>",
-            number(spot.at.x),
-            number(spot.at.y + offset),
+            number(at.x),
+            number(at.y + offset),
             number(size),
             escape(words)
         );
     };
-    line(spot.room * 0.05 + size, size, &piece.name);
+    line(room * 0.05 + size, size, &piece.name);
     if piece.pose.mirrored {
-        line(spot.room * 0.05 + 1.9 * size, size * 0.7, "face down");
+        line(room * 0.05 + 1.9 * size, size * 0.7, "face down");
     }
-}
-
-/// The point of a grid that lies far inside and near the middle.
-fn roomiest_spot(polygon: &Polygon) -> Spot {
-    const CELLS: u32 = 24;
-    let bounds = polygon.bounds();
-    let centre = bounds.centre();
-    let mut best = (0.0, centre, 0.0);
-    for k in 0..CELLS * CELLS {
-        let cell = Vec2::new(f64::from(k % CELLS) + 0.5, f64::from(k / CELLS) + 0.5);
-        let point = bounds.min + bounds.size().component_mul(&cell) / f64::from(CELLS);
-        if !polygon.contains(point) {
-            continue;
-        }
-        let room = polygon
-            .edges()
-            .map(|edge| point_segment_distance(point, edge))
-            .fold(f64::INFINITY, f64::min);
-        let score = room / (1.0 + (point - centre).norm() / bounds.size().norm());
-        if score > best.0 {
-            best = (score, point, room);
-        }
-    }
-    let (_, at, room) = best;
-    Spot {
-        at,
-        room,
-        runs: [0, 1].map(|axis| free_run(polygon, at, axis)),
-    }
-}
-
-/// Twice the way from a point to the nearer side of the outline along an axis.
-fn free_run(polygon: &Polygon, at: Vec2, axis: usize) -> f64 {
-    let other = 1 - axis;
-    let crossed = |[a, b]: [Vec2; 2]| {
-        let spans = (a[other] <= at[other]) != (b[other] <= at[other]);
-        let share = (at[other] - a[other]) / (b[other] - a[other]);
-        spans.then(|| (a[axis] + (b[axis] - a[axis]) * share - at[axis]).abs())
-    };
-    2.0 * polygon
-        .edges()
-        .filter_map(crossed)
-        .fold(f64::INFINITY, f64::min)
 }

@@ -3,8 +3,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use toile_geometry::{Bounds2, Polygon, Vec2};
-use toile_interchange::{MarkerDrawing, MarkerPiece, write_marker_svg};
-use toile_nesting::{Nap, Pose, Strip};
+use toile_interchange::{MarkerDrawing, MarkerFacts, MarkerPiece, write_marker_svg};
+use toile_nesting::{Fold, Nap, Pose, Strip};
 
 fn drawing() -> MarkerDrawing {
     let cut = Polygon::rectangle(Bounds2 {
@@ -44,7 +44,9 @@ fn drawing() -> MarkerDrawing {
             piece("front", 0.0, false, Vec2::new(0.01, 0.32)),
             piece("back", PI, true, Vec2::new(1.01, 0.62)),
         ],
-        unplaced: vec!["collar".into()],
+        unplaced: vec![["collar".into(), "no room is left".into()]],
+        overlaps: Vec::new(),
+        facts: MarkerFacts::default(),
     }
 }
 
@@ -119,4 +121,23 @@ fn empty_and_broken_drawings() {
     );
     broken.length = f64::INFINITY;
     assert_eq!(write_marker_svg(&broken).unwrap_err().place, "marker");
+}
+
+#[test]
+fn folds_and_what_is_cut_twice_are_drawn() {
+    let mut drawing = drawing();
+    drawing.strip.fold = Fold::Lower;
+    let corners = [[0.1, 0.1], [0.2, 0.1], [0.2, 0.3]].map(Vec2::from);
+    drawing.overlaps = vec![Polygon::new(corners.to_vec())];
+    let text = write_marker_svg(&drawing).unwrap();
+    check_well_formed(&text);
+    assert!(text.contains("class=\"fold\" d=\"M0 700H1020\""), "{text}");
+    assert_eq!(text.matches("class=\"selvedge\"").count(), 1);
+    let overlap = "class=\"overlap\" d=\"M100 600L200 600L200 400Z\"";
+    assert!(text.contains(overlap), "{text}");
+    assert!(text.contains("cut twice is red"));
+    drawing.strip.fold = Fold::Both;
+    let text = write_marker_svg(&drawing).unwrap();
+    assert_eq!(text.matches("class=\"fold\"").count(), 2);
+    assert_eq!(text.matches("class=\"selvedge\"").count(), 0);
 }

@@ -70,7 +70,11 @@ fn what_a_roll_cannot_hold_goes_to_the_next() {
     sleeve.allowed.mirror = Mirror::Pairs;
     sleeve.bundles = vec![0, 0, 1, 1, 2, 2];
     let items = [sleeve];
-    let rolls = [of_length(0.85, 0.55), of_length(0.45, 0.6), Strip::of_width(0.85)];
+    let rolls = [
+        of_length(0.85, 0.55),
+        of_length(0.45, 0.6),
+        Strip::of_width(0.85),
+    ];
     let out = make(&items, &rolls).unwrap();
     whole(&items, &rolls, &out);
     let counts: Vec<usize> = out

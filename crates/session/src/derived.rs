@@ -140,8 +140,10 @@ impl Derived {
             ..NestOptions::default()
         };
         let garments = [Garments {
+            pattern: &project.pattern,
             draft: &draft,
             count: 1,
+            label: None,
         }];
         let layings = Arc::new(lay(&garments, &options, watcher)?);
         self.layings = Some(layings.clone());

@@ -6,9 +6,12 @@ use crate::laying::Laying;
 use crate::product::{garment_glb, garment_obj};
 use crate::report::Report;
 use crate::watcher::tell;
-use crate::{Command, Project, SessionError, Watcher, pictures};
+use crate::{Command, MarkerFormat, Project, SessionError, Watcher, pictures};
 use std::path::Path;
-use toile_interchange::{FormatError, write_glb, write_marker_json, write_marker_svg, write_obj};
+use toile_interchange::{
+    FormatError, write_glb, write_marker_dxf, write_marker_hpgl, write_marker_json,
+    write_marker_pdf, write_marker_report, write_marker_svg, write_obj,
+};
 
 /// A file to write: its name and its content.
 pub(crate) type File = (String, Vec<u8>);
@@ -31,7 +34,8 @@ pub(crate) fn files(
     let mut files = Vec::new();
     if let Some(layings) = &derived.layings {
         tell(watcher, "writing", 0.0, "marker")?;
-        marker_files(&project.pattern.name, layings, &mut files)?;
+        let formats = [MarkerFormat::Svg, MarkerFormat::Json];
+        marker_files((&project.pattern.name, &formats), layings, &mut files)?;
         report.add_markers(layings);
     }
     if let Some(drape) = derived.drape.clone() {
@@ -60,9 +64,10 @@ fn picture_title(project: &Project) -> String {
     }
 }
 
-/// The files of markers: `marker.svg` and `marker.json`, numbered from the second fabric on.
+/// The files of markers: `marker.svg`, `marker.json` and others asked for, numbered from the second
+/// marker on.
 pub(crate) fn marker_files(
-    name: &str,
+    (name, formats): (&str, &[MarkerFormat]),
     layings: &[Laying],
     files: &mut Vec<File>,
 ) -> Result<(), SessionError> {
@@ -71,10 +76,29 @@ pub(crate) fn marker_files(
             0 => "marker".to_owned(),
             k => format!("marker-{}", k + 1),
         };
-        let svg = write_marker_svg(&laying.drawing(name)).map_err(cannot("marker.svg"))?;
-        let json = write_marker_json(&laying.file(name)).map_err(cannot("marker.json"))?;
-        files.push((format!("{stem}.svg"), svg.into_bytes()));
-        files.push((format!("{stem}.json"), json.into_bytes()));
+        let drawing = laying.drawing(name);
+        for format in formats {
+            let (ending, bytes) = match format {
+                MarkerFormat::Svg => ("svg", write_marker_svg(&drawing).map(String::into_bytes)),
+                MarkerFormat::Json => {
+                    let text = write_marker_json(&laying.file(name));
+                    ("json", text.map(String::into_bytes))
+                }
+                MarkerFormat::Dxf => ("dxf", write_marker_dxf(&drawing).map(String::into_bytes)),
+                MarkerFormat::Hpgl => ("plt", write_marker_hpgl(&drawing).map(String::into_bytes)),
+                MarkerFormat::Pdf => ("pdf", write_marker_pdf(&drawing)),
+                MarkerFormat::Report => continue,
+            };
+            files.push((
+                format!("{stem}.{ending}"),
+                bytes.map_err(cannot("the marker"))?,
+            ));
+        }
+    }
+    if formats.contains(&MarkerFormat::Report) {
+        let drawings: Vec<_> = layings.iter().map(|l| l.drawing(name)).collect();
+        let report = write_marker_report(name, &drawings).map_err(cannot("marker-report.pdf"))?;
+        files.push(("marker-report.pdf".to_owned(), report));
     }
     Ok(())
 }

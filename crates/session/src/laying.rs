@@ -1,24 +1,17 @@
-//! Markers of a draft: one for each fabric its pieces are cut from.
+//! Markers of drafts: one for each fabric their pieces are cut from, and for each roll of it.
 
-use crate::cut::{cut_outline, sewn_outline};
+use crate::laying_items::{LaidPiece, Wanted, items_on, wanted_of};
+use crate::matching::runs_one_way;
+use crate::nest_options::{FabricPlan, PlannedRoll};
 use crate::watcher::tell;
 use crate::{NestOptions, Nested, SessionError, Watcher};
-use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
-use toile_geometry::{Vec2, ring_area};
-use toile_interchange::{MarkerDrawing, MarkerFile, MarkerPiece};
+use toile_interchange::{MarkerDrawing, MarkerFacts, MarkerFile, MarkerPiece, Spread};
 use toile_nesting::{
-    Allowed, Control, Item, Marker, MatchPoint, Nap, NestingError, Phase, Progress, Strip, Verdict,
-    judge, make_marker,
+    Control, Item, Marker, Nap, NestingError, Progress, Strip, Verdict, judge, make_marker,
+    make_markers_on_rolls,
 };
-use toile_pattern::{Draft, Piece};
-
-/// Unusable edge at either side of the fabric [m].
-const SELVEDGE: f64 = 0.010;
-/// Room for the blade between two pieces [m].
-const GAP: f64 = 0.002;
-/// Length of a notch's stroke on the drawing [m].
-const NOTCH: f64 = 0.006;
+use toile_pattern::{Draft, Fabric, Pattern};
 
 /// A marker made, with everything a drawing of it needs.
 #[derive(Clone, Debug)]
@@ -27,23 +20,36 @@ pub(crate) struct Laying {
     pub fabric: String,
     /// Pieces by their cut outline.
     pub items: Vec<Item>,
-    /// The same pieces as drafted, in the order of the items.
-    pub pieces: Vec<Piece>,
+    /// What is drawn on them, in the order of the items.
+    pub pieces: Vec<LaidPiece>,
     pub strip: Strip,
     pub marker: Marker,
     pub verdict: Verdict,
+    /// Copies that lie on no marker of this fabric: names, and why.
+    pub missing: Vec<[String; 2]>,
+    /// What else is known.
+    pub facts: MarkerFacts,
 }
 
 impl Laying {
     /// A few numbers.
     pub fn summary(&self) -> Nested {
+        let yardage = self.marker.length * f64::from(self.facts.plies);
         Nested {
             fabric: self.fabric.clone(),
+            roll: self.facts.roll.clone(),
             pieces: self.marker.placements.len(),
-            unplaced: self.marker.unplaced.len(),
+            unplaced: self.missing.len(),
+            missing: self.missing.clone(),
             length: self.marker.length,
             width: self.strip.width,
+            plies: self.facts.plies,
+            yardage,
+            cost: self.facts.price_per_metre.map(|price| price * yardage),
+            currency: self.facts.currency.clone(),
             efficiency: self.marker.efficiency,
+            utilisation: self.marker.utilisation,
+            notes: self.facts.notes.clone(),
             sound: self.verdict.is_sound(),
         }
     }
@@ -62,173 +68,135 @@ impl Laying {
                 name: item.name.clone(),
                 item: placement.item,
                 cut: item.outline.clone(),
-                sew: sewn_outline(piece),
+                sew: piece.sew.clone(),
                 grain: None,
-                notches: piece
-                    .notches
-                    .iter()
-                    .map(|n| [n.point, n.point + n.inward * NOTCH])
-                    .collect(),
-                lines: piece
-                    .internal_lines
-                    .iter()
-                    .map(|line| flattened(&line.curves))
-                    .collect(),
+                notches: piece.notches.clone(),
+                lines: piece.lines.clone(),
                 pose: placement.pose(item),
             }
         };
+        let overlaps = self.verdict.overlaps.iter().flat_map(|o| &o.1);
         MarkerDrawing {
             title: self.title(pattern),
             strip: self.strip.clone(),
             length: self.marker.length,
             efficiency: self.marker.efficiency,
             pieces: self.marker.placements.iter().map(piece).collect(),
-            unplaced: self
-                .marker
-                .unplaced
-                .iter()
-                .map(|u| self.items[u.item].name.clone())
-                .collect(),
+            unplaced: self.missing.clone(),
+            overlaps: overlaps.cloned().collect(),
+            facts: MarkerFacts {
+                utilisation: self.marker.utilisation,
+                ..self.facts.clone()
+            },
         }
     }
 
     /// The marker as its file.
     pub fn file(&self, pattern: &str) -> MarkerFile {
-        MarkerFile::new(&self.title(pattern), &self.items, &self.strip, &self.marker)
+        MarkerFile {
+            roll: self.facts.roll.clone(),
+            plies: self.facts.plies,
+            face_to_face: self.facts.face_to_face,
+            ..MarkerFile::new(&self.title(pattern), &self.items, &self.strip, &self.marker)
+        }
     }
 
     fn title(&self, pattern: &str) -> String {
-        format!("{pattern}, {}", self.fabric)
+        match &self.facts.roll {
+            Some(roll) => format!("{pattern}, {}, {roll}", self.fabric),
+            None => format!("{pattern}, {}", self.fabric),
+        }
     }
-}
-
-fn flattened(curves: &[toile_geometry::Curve]) -> Vec<Vec2> {
-    curves
-        .iter()
-        .flat_map(|curve| curve.flatten(1e-4))
-        .collect()
 }
 
 /// Garments to cut from one draft.
 #[derive(Clone, Copy)]
 pub(crate) struct Garments<'a> {
+    pub pattern: &'a Pattern,
     pub draft: &'a Draft,
     /// How many.
     pub count: u32,
+    /// What tells its pieces from those of other drafts, as in a size.
+    pub label: Option<&'a str>,
 }
 
-/// Lays all pieces of one or more drafts, each fabric on its own marker, fabrics in the order in
+/// Lays all pieces of one or more drafts, each fabric on its own markers, fabrics in the order in
 /// which pieces first name them.
 pub(crate) fn lay(
     garments: &[Garments<'_>],
     options: &NestOptions,
     watcher: &mut dyn Watcher,
 ) -> Result<Vec<Laying>, SessionError> {
-    let mut layings: Vec<Laying> = Vec::new();
-    let mut first_bundle = 0;
-    for Garments { draft, count } in garments {
-        for piece in &draft.pieces {
-            let Some(fabric) = draft.fabrics.get(piece.fabric) else {
-                continue;
-            };
-            let piece = &right_side_up(piece);
-            let item = Item {
-                quantity: *count,
-                bundles: (first_bundle..first_bundle + count).collect(),
-                ..item_of(piece, options)
-            };
-            let mut known = layings.iter_mut().filter(|l| l.fabric == fabric.name);
-            if let Some(laying) = known.next() {
-                laying.items.push(item);
-                laying.pieces.push(piece.clone());
-                continue;
-            }
-            layings.push(Laying {
-                fabric: fabric.name.clone(),
-                items: vec![item],
-                pieces: vec![piece.clone()],
-                strip: options.applied(Strip {
-                    selvedge: SELVEDGE,
-                    gap: GAP,
-                    nap: if fabric.nap { Nap::OneWay } else { Nap::None },
-                    ..Strip::of_width(fabric.width)
-                }),
-                marker: Marker::default(),
-                verdict: Verdict::default(),
-            });
+    let mut groups: Vec<(String, Vec<Wanted>)> = Vec::new();
+    for wanted in wanted_of(garments, options)? {
+        match groups.iter_mut().find(|g| g.0 == wanted.fabric) {
+            Some(group) => group.1.push(wanted),
+            None => groups.push((wanted.fabric.clone(), vec![wanted])),
         }
-        first_bundle += count;
     }
-    if layings.is_empty() {
+    if groups.is_empty() {
         return Err(NestingError::NoItems.into());
     }
-    let count = layings.len() as f64;
-    for (k, laying) in layings.iter_mut().enumerate() {
+    check_fabric_names(&groups, options)?;
+    let fabrics = || garments.iter().flat_map(|g| &g.draft.fabrics);
+    let count = groups.len() as f64;
+    let mut layings = Vec::new();
+    for (k, (name, wanted)) in groups.iter().enumerate() {
+        let own: Option<&Fabric> = fabrics().find(|f| f.name == *name);
+        let mut plan = options.plan(name, own)?;
+        if runs_one_way(wanted) {
+            for roll in &mut plan.rolls {
+                if roll.strip.stripes.is_some() && roll.strip.nap == Nap::None {
+                    roll.strip.nap = Nap::PerBundle;
+                }
+            }
+        }
         let from = k as f64 / count;
-        lay_one(laying, options, watcher, |done| from + done / count)?;
+        let mut part = |done: f64, detail: &str| {
+            tell(watcher, "laying out", from + done / count, detail).is_ok()
+        };
+        if !part(0.0, "") {
+            return Err(SessionError::Cancelled);
+        }
+        layings.extend(lay_fabric((name, wanted), (&plan, options), &mut part)?);
     }
     Ok(layings)
 }
 
-/// A piece as it is laid: its cut outline, its grain, and where the print must meet it.
-fn item_of(piece: &Piece, options: &NestOptions) -> Item {
-    let outline = cut_outline(piece);
-    // Back to the grain's own axes: the hem lies where the grain starts.
-    let bounds = outline.rotated(-piece.grain).bounds();
-    let (sin, cos) = piece.grain.sin_cos();
-    let hem = Vec2::new(bounds.min.x, bounds.centre().y);
-    let hem = Vec2::new(cos * hem.x - sin * hem.y, sin * hem.x + cos * hem.y);
-    Item {
-        grain: piece.grain,
-        match_point: options.repeat.map(|_| MatchPoint {
-            point: hem,
-            phase: Phase::At(Vec2::zeros()),
-        }),
-        allowed: Allowed {
-            tilt: options.tilt,
-            ..Allowed::two_way()
-        },
-        ..Item::new(piece.name.clone(), outline)
-    }
-}
-
-/// The piece as seen from the right side of the cloth, which lies up: a clockwise outline is drawn
-/// from the wrong side and is reflected.
-fn right_side_up(piece: &Piece) -> Piece {
-    let mut piece = piece.clone();
-    if ring_area(&sewn_outline(&piece).outer) >= 0.0 {
-        return piece;
-    }
-    let across = |p: Vec2| Vec2::new(-p.x, p.y);
-    let holes = piece.holes.iter_mut().flatten();
-    for edge in piece.outline.iter_mut().chain(holes) {
-        edge.curve = edge.curve.reflected(Vec2::zeros(), Vec2::y());
-    }
-    for line in &mut piece.internal_lines {
-        for curve in &mut line.curves {
-            *curve = curve.reflected(Vec2::zeros(), Vec2::y());
+/// Settings of a fabric that nothing is cut from are a mistake.
+fn check_fabric_names(
+    groups: &[(String, Vec<Wanted>)],
+    options: &NestOptions,
+) -> Result<(), SessionError> {
+    let known = |name: &str| name == "*" || groups.iter().any(|g| g.0 == name);
+    let given = options.settings.fabrics.keys();
+    match given.into_iter().find(|name| !known(name)) {
+        None => Ok(()),
+        Some(name) => {
+            let names: Vec<&str> = groups.iter().map(|g| g.0.as_str()).collect();
+            Err(SessionError::Unknown {
+                kind: "fabric",
+                name: name.clone(),
+                hint: format!("pieces are cut from: {}", names.join(", ")),
+            })
         }
     }
-    for notch in &mut piece.notches {
-        notch.point = across(notch.point);
-        notch.inward = across(notch.inward);
-    }
-    piece.grain = PI - piece.grain;
-    piece
 }
 
-fn lay_one(
-    laying: &mut Laying,
-    options: &NestOptions,
-    watcher: &mut dyn Watcher,
-    share: impl Fn(f64) -> f64,
-) -> Result<(), SessionError> {
-    let stage = "laying out";
-    tell(watcher, stage, share(0.0), "")?;
+/// Told the part done of one fabric and a detail; answers whether to go on.
+type Told<'a> = &'a mut dyn FnMut(f64, &str) -> bool;
+
+/// All markers of one fabric.
+fn lay_fabric(
+    (fabric, wanted): (&str, &[Wanted]),
+    (plan, options): (&FabricPlan, &NestOptions),
+    told: Told<'_>,
+) -> Result<Vec<Laying>, SessionError> {
+    let (items, pieces, notes) = items_on(wanted, plan, options)?;
     let cancel = AtomicBool::new(false);
     let mut follow = |progress: Progress| {
         let detail = format!("{:.0} mm of fabric", progress.length * 1e3);
-        if tell(watcher, stage, share(progress.done), &detail).is_err() {
+        if !told(progress.done, &detail) {
             cancel.store(true, Ordering::Relaxed);
         }
     };
@@ -236,7 +204,61 @@ fn lay_one(
         progress: &mut follow,
         cancel: &cancel,
     };
-    laying.marker = make_marker(&laying.items, &laying.strip, options.search(), &mut control)?;
-    laying.verdict = judge(&laying.items, &laying.strip, &laying.marker);
-    Ok(())
+    let laying = |roll: &PlannedRoll, items: Vec<Item>, pieces: Vec<LaidPiece>, marker: Marker| {
+        let verdict = judge(&items, &roll.strip, &marker);
+        Laying {
+            fabric: fabric.to_owned(),
+            strip: roll.strip.clone(),
+            facts: MarkerFacts {
+                fabric: fabric.to_owned(),
+                roll: roll.name.clone(),
+                plies: plan.plies,
+                face_to_face: plan.spread == Spread::FaceToFace,
+                utilisation: marker.utilisation,
+                price_per_metre: roll.price_per_metre,
+                currency: options.settings.currency.clone().unwrap_or_default(),
+                notes: notes.clone(),
+            },
+            missing: Vec::new(),
+            items,
+            pieces,
+            marker,
+            verdict,
+        }
+    };
+    if !plan.rolled {
+        let roll = &plan.rolls[0];
+        let marker = make_marker(&items, &roll.strip, options.search(), &mut control)?;
+        let mut only = laying(roll, items, pieces, marker);
+        only.missing = named(&only.items, &only.marker.unplaced);
+        return Ok(vec![only]);
+    }
+    let strips: Vec<Strip> = plan.rolls.iter().map(|r| r.strip.clone()).collect();
+    let out = make_markers_on_rolls(&items, &strips, options.search(), &mut control)?;
+    let missing = named(&items, &out.unplaced);
+    let mut layings: Vec<Laying> = out
+        .markers
+        .into_iter()
+        .map(|made| {
+            let drawn = made.sources.iter().map(|s| pieces[s.0].clone());
+            let drawn = drawn.collect();
+            laying(&plan.rolls[made.roll], made.items, drawn, made.marker)
+        })
+        .collect();
+    match layings.last_mut() {
+        Some(last) => last.missing = missing,
+        None => {
+            let reasons = missing.iter().map(|[name, why]| format!("{name}: {why}"));
+            let reasons: Vec<String> = reasons.collect();
+            let what = format!("no piece fits any roll: {}", reasons.join("; "));
+            return Err(NestingError::Strip(what).into());
+        }
+    }
+    Ok(layings)
+}
+
+/// Names of copies that found no place, and why.
+fn named(items: &[Item], unplaced: &[toile_nesting::Unplaced]) -> Vec<[String; 2]> {
+    let name = |u: &toile_nesting::Unplaced| [items[u.item].name.clone(), u.reason.clone()];
+    unplaced.iter().map(name).collect()
 }

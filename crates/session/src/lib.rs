@@ -14,12 +14,16 @@ mod error;
 mod event;
 mod export;
 mod fabrics;
+mod halves;
 mod hands;
 mod history;
 mod journal;
 mod laying;
+mod laying_items;
 mod live;
 mod marking;
+mod matching;
+mod nest_options;
 mod open;
 mod perform;
 mod pictures;
@@ -42,7 +46,8 @@ pub use event::{Assembled, Draped, Event, Nested};
 pub use hands::{LiveInput, StampedInput};
 pub use journal::{journal_lines, read_journal};
 pub use live::{LiveFrame, LiveRun};
-pub use marking::{NestOptions, is_nesting_instance, nest_instance, nest_patterns};
+pub use marking::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
+pub use nest_options::{MarkerFormat, NestOptions};
 pub use open::{
     Opened, PatternFormat, SAMPLE, open_measurements, open_pattern, read_pattern_text,
     read_text_file,
@@ -54,6 +59,7 @@ pub use setup::{GarmentJob, JobPanel};
 pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
 pub use toile_drape::Stage;
+pub use toile_interchange::{MarkerSettings, Spread};
 pub use toile_nesting::{Budget, Nap};
 pub use tools::{BodyReport, Moment, convert, make_body, mesh_panels};
 pub use watcher::{Silent, Watcher};

@@ -4,101 +4,14 @@ use crate::export::{cannot, marker_files};
 use crate::laying::{Garments, lay};
 use crate::tools::{project_of, sound_draft};
 use crate::watcher::tell;
-use crate::{Nested, SessionError, Watcher};
+use crate::{NestOptions, Nested, SessionError, Watcher};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_interchange::{
-    is_jagua_instance, read_jagua, read_text, write_all_atomically, write_jagua,
+    MarkerSettings, is_jagua_instance, read_jagua, read_marker_settings, read_text,
+    write_all_atomically, write_jagua,
 };
-use toile_nesting::{
-    Budget, Control, Defect, Nap, Progress, Search, Strip, Stripes, judge, make_marker,
-};
-
-/// How markers are made. What is not given is the fabric's own, or usual.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NestOptions {
-    /// Named sizes, and how many garments of each; without any, one garment of the base size.
-    pub sizes: Vec<(String, u32)>,
-    /// Full width of the fabric [m].
-    pub width: Option<f64>,
-    /// Length at hand [m].
-    pub length: Option<f64>,
-    /// Unusable edge at either side [m].
-    pub selvedge: Option<f64>,
-    /// Fabric left free at either end [m].
-    pub end_margin: Option<f64>,
-    /// Least distance between pieces [m].
-    pub gap: Option<f64>,
-    /// Nap.
-    pub nap: Option<Nap>,
-    /// How far the grain may lie off the warp [rad].
-    pub tilt: f64,
-    /// Repeat of the print along the warp and across [m], 0 where it does not repeat: the hem and
-    /// the middle of every piece lie on its lines.
-    pub repeat: Option<[f64; 2]>,
-    /// Flaws of the fabric: x and y of the corner, length and width [m].
-    pub defects: Vec<[f64; 4]>,
-    /// When the search ends.
-    pub budget: Budget,
-    /// Start of the sequences of chance.
-    pub seed: u64,
-}
-
-impl Default for NestOptions {
-    fn default() -> Self {
-        let search = Search::default();
-        Self {
-            sizes: Vec::new(),
-            width: None,
-            length: None,
-            selvedge: None,
-            end_margin: None,
-            gap: None,
-            nap: None,
-            tilt: 0.0,
-            repeat: None,
-            defects: Vec::new(),
-            budget: search.budget,
-            seed: search.seed,
-        }
-    }
-}
-
-impl NestOptions {
-    pub(crate) fn search(&self) -> Search {
-        Search {
-            budget: self.budget,
-            seed: self.seed,
-            ..Search::default()
-        }
-    }
-
-    /// A strip with what is given instead of its own.
-    pub(crate) fn applied(&self, strip: Strip) -> Strip {
-        let rectangle = |&[x, y, length, width]: &[f64; 4]| Defect {
-            outline: Polygon::rectangle(Bounds2 {
-                min: Vec2::new(x, y),
-                max: Vec2::new(x + length, y + width),
-            }),
-            clearance: 0.0,
-        };
-        Strip {
-            width: self.width.unwrap_or(strip.width),
-            selvedge: self.selvedge.unwrap_or(strip.selvedge),
-            end_margin: self.end_margin.unwrap_or(strip.end_margin),
-            gap: self.gap.unwrap_or(strip.gap),
-            max_length: self.length.or(strip.max_length),
-            nap: self.nap.unwrap_or(strip.nap),
-            stripes: self.repeat.map(|repeat| Stripes {
-                repeat: Vec2::from(repeat),
-                origin: Vec2::zeros(),
-            }),
-            defects: self.defects.iter().map(rectangle).collect(),
-            ..strip
-        }
-    }
-}
+use toile_nesting::{Budget, Control, Progress, judge, make_marker};
 
 /// Lays the pieces of one or more patterns together and writes the markers. Returns a summary of
 /// each marker and the files written.
@@ -123,7 +36,9 @@ pub fn nest_patterns(
         };
         for (size, count) in sizes {
             let (project, _) = project_of(path, size)?;
-            drafts.push((sound_draft(&project)?, count));
+            let draft = sound_draft(&project)?;
+            let label = (options.sizes.len() > 1).then(|| size.map(str::to_owned));
+            drafts.push((project.pattern.clone(), draft, count, label.flatten()));
             let name = &project.pattern.name;
             names.push(match (size, options.sizes.len() > 1 || count > 1) {
                 (Some(size), true) => format!("{name} {count} x {size}"),
@@ -131,16 +46,31 @@ pub fn nest_patterns(
             });
         }
     }
-    let garments = drafts.iter().map(|(draft, count)| Garments {
-        draft,
-        count: *count,
-    });
+    let garments = drafts
+        .iter()
+        .map(|(pattern, draft, count, label)| Garments {
+            pattern,
+            draft,
+            count: *count,
+            label: label.as_deref(),
+        });
     let layings = lay(&garments.collect::<Vec<_>>(), options, watcher)?;
     let mut files = Vec::new();
-    marker_files(&names.join(" + "), &layings, &mut files)?;
+    marker_files((&names.join(" + "), &options.formats), &layings, &mut files)?;
     write_all_atomically(folder, &files)?;
     let paths = files.iter().map(|(name, _)| folder.join(name)).collect();
     Ok((layings.iter().map(|l| l.summary()).collect(), paths))
+}
+
+/// Reads a file of marker settings.
+///
+/// # Errors
+/// The file cannot be read, or is not what it should be.
+pub fn open_marker_settings(path: &Path) -> Result<MarkerSettings, SessionError> {
+    read_marker_settings(&read_text(path)?).map_err(|error| SessionError::Format {
+        path: path.to_owned(),
+        error,
+    })
 }
 
 /// Whether a file is a nesting instance rather than a pattern.
@@ -203,8 +133,11 @@ pub fn nest_instance(
         unplaced: marker.unplaced.len(),
         length: marker.length / scale,
         width: strip.width / scale,
+        yardage: marker.length / scale,
         efficiency: marker.efficiency,
+        utilisation: marker.utilisation,
         sound: verdict.is_sound(),
+        ..Nested::default()
     };
     Ok((nested, instance.notes, folder.join(file.0)))
 }

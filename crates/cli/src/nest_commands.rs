@@ -1,0 +1,195 @@
+//! `toile nest`: pieces laid on fabric.
+
+use crate::arguments::Nest;
+use crate::bar::Bar;
+use crate::output::{Failure, Output, count};
+use serde_json::{Value, json};
+use std::path::Path;
+use toile_geometry::Length;
+use toile_session::{
+    Budget, Event, MarkerSettings, NestOptions, Nested, is_nesting_instance, nest_instance,
+    nest_patterns, open_marker_settings,
+};
+
+/// A yard [m].
+const YARD: f64 = 0.9144;
+
+/// What the arguments ask for.
+fn nest_options(nest: &Nest) -> Result<NestOptions, Failure> {
+    let metres = |length: &Option<Length>| length.map(|l| l.as_metres());
+    if let Some(seconds) = nest.time.filter(|t| !t.is_finite() || *t <= 0.0) {
+        return Err(Failure::bad_input(format!(
+            "--time is {seconds}; give a number of seconds above 0"
+        )));
+    }
+    let sizes = match &nest.size {
+        Some(size) => vec![(size.clone(), 1)],
+        None => nest.sizes.clone(),
+    };
+    let repeat = nest
+        .repeat
+        .iter()
+        .map(|l| l.as_metres())
+        .collect::<Vec<_>>();
+    Ok(NestOptions {
+        sizes,
+        width: metres(&nest.width),
+        length: metres(&nest.length),
+        selvedge: metres(&nest.selvedge),
+        end_margin: metres(&nest.end_margin),
+        gap: metres(&nest.gap),
+        nap: nest.nap.map(Into::into),
+        tilt: nest.tilt.to_radians(),
+        repeat: (!repeat.is_empty()).then(|| [repeat[0], repeat.get(1).copied().unwrap_or(0.0)]),
+        defects: nest.defect.clone(),
+        spread: nest.spread.map(Into::into),
+        plies: nest.plies,
+        price_per_metre: price(nest.price)?,
+        rolls: nest.roll.clone(),
+        settings: match &nest.settings {
+            Some(path) => open_marker_settings(path)?,
+            None => MarkerSettings::default(),
+        },
+        formats: nest.write.iter().map(|&f| f.into()).collect(),
+        budget: match nest.time {
+            Some(seconds) => Budget::Seconds(seconds),
+            None => Budget::Evaluations(nest.evaluations),
+        },
+        seed: nest.seed,
+        ..NestOptions::default()
+    })
+}
+
+/// A price of 0 or more.
+fn price(given: Option<f64>) -> Result<Option<f64>, Failure> {
+    match given {
+        Some(price) if !(price.is_finite() && price >= 0.0) => Err(Failure::bad_input(format!(
+            "--price is {price}; give 0 or more"
+        ))),
+        price => Ok(price),
+    }
+}
+
+/// The solution of a nesting instance.
+fn solve(
+    path: &Path,
+    nest: &Nest,
+    options: &NestOptions,
+    output: &Output,
+) -> Result<Value, Failure> {
+    let lengths = [
+        &nest.width,
+        &nest.length,
+        &nest.selvedge,
+        &nest.end_margin,
+        &nest.gap,
+    ];
+    let own = lengths.iter().all(|l| l.is_none()) && options.repeat.is_none();
+    let plain = own
+        && *options
+            == NestOptions {
+                tilt: options.tilt,
+                budget: options.budget,
+                seed: options.seed,
+                ..NestOptions::default()
+            };
+    if !plain {
+        return Err(Failure::bad_input(
+            "an instance has its own strip and items; give only --time, --evaluations, --seed, --tilt and --out",
+        )
+        .about(path));
+    }
+    let (nested, notes, file) = nest_instance(path, options, (&nest.out, &mut Bar::new()))
+        .map_err(|error| Failure::from(error).about(path))?;
+    for note in &notes {
+        output.warn(format!("note: {note}"));
+    }
+    output.say(format!(
+        "{} laid on a strip of {:.4} by {:.4}, density {:.3} %",
+        count(nested.pieces, "item"),
+        nested.length,
+        nested.width,
+        nested.efficiency * 100.0
+    ));
+    output.say(format!("wrote {}", file.display()));
+    Ok(json!({
+        "files": [file],
+        "instance": nested.fabric,
+        "pieces": nested.pieces,
+        "unplaced": nested.unplaced,
+        "strip_width": nested.length,
+        "strip_height": nested.width,
+        "density": nested.efficiency,
+        "sound": nested.sound,
+    }))
+}
+
+/// Pieces laid on fabric.
+pub fn nest(nest: &Nest, output: &Output) -> Result<Value, Failure> {
+    let options = nest_options(nest)?;
+    if let [path] = &nest.patterns[..]
+        && is_nesting_instance(path)
+    {
+        return solve(path, nest, &options, output);
+    }
+    let (layings, paths) = nest_patterns(&nest.patterns, &options, (&nest.out, &mut Bar::new()))?;
+    let listed: Vec<Value> = layings
+        .iter()
+        .map(|laying| {
+            json!({
+                "fabric": laying.fabric,
+                "roll": laying.roll,
+                "pieces": laying.pieces,
+                "unplaced": laying.unplaced,
+                "missing": laying.missing.iter().map(|[name, reason]| {
+                    json!({ "name": name, "reason": reason })
+                }).collect::<Vec<_>>(),
+                "width_m": laying.width,
+                "length_m": laying.length,
+                "plies": laying.plies,
+                "fabric_needed_m": laying.yardage,
+                "cost": laying.cost,
+                "currency": laying.currency,
+                "efficiency": laying.efficiency,
+                "utilisation": laying.utilisation,
+                "notes": laying.notes,
+                "sound": laying.sound,
+            })
+        })
+        .collect();
+    let report = json!({ "files": paths, "markers": listed });
+    for laying in &layings {
+        output.tell(&[Event::Nested(laying.clone())]);
+        for note in &laying.notes {
+            output.say(format!("note: {note}"));
+        }
+        for [name, reason] in &laying.missing {
+            output.warn(format!("not laid: {name}: {reason}"));
+        }
+    }
+    yardage(&layings, output);
+    output.tell(&[Event::FilesWritten { paths }]);
+    Ok(report)
+}
+
+/// What is needed of each fabric, and what it costs.
+fn yardage(layings: &[Nested], output: &Output) {
+    let mut fabrics: Vec<&str> = Vec::new();
+    for laying in layings {
+        if !fabrics.contains(&laying.fabric.as_str()) {
+            fabrics.push(&laying.fabric);
+        }
+    }
+    for fabric in fabrics {
+        let own = || layings.iter().filter(|l| l.fabric == fabric);
+        let length: f64 = own().map(|l| l.yardage).sum();
+        let cost: Option<f64> = own().map(|l| l.cost).sum();
+        let currency = own().next().map_or("", |l| l.currency.as_str());
+        let cost = cost.map_or_else(String::new, |c| format!(", cost {c:.2} {currency}"));
+        output.say(format!(
+            "{fabric}: {length:.3} m of fabric ({:.2} yd){}",
+            length / YARD,
+            cost.trim_end()
+        ));
+    }
+}

@@ -1,0 +1,181 @@
+//! Everything that is drawn of a marker, whatever the format.
+
+use crate::FormatError;
+use toile_geometry::{Polygon, Vec2};
+use toile_nesting::{Fold, Nap, Pose, Strip};
+
+/// Everything that is drawn on a marker. All points of a piece are in its own plane \[m\].
+#[derive(Clone, Debug, PartialEq)]
+pub struct MarkerDrawing {
+    /// Name of the marker.
+    pub title: String,
+    /// The fabric.
+    pub strip: Strip,
+    /// Fabric used, end margins included \[m\].
+    pub length: f64,
+    /// Area of the pieces over width times length between the end margins, 0..=1.
+    pub efficiency: f64,
+    /// The pieces laid.
+    pub pieces: Vec<MarkerPiece>,
+    /// Names of the copies that found no place, and why.
+    pub unplaced: Vec<[String; 2]>,
+    /// What is cut twice, in the plane of the fabric \[m\]; nothing on a sound marker.
+    pub overlaps: Vec<Polygon>,
+    /// What else is known.
+    pub facts: MarkerFacts,
+}
+
+/// What a report says beside the drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MarkerFacts {
+    /// Name of the fabric.
+    pub fabric: String,
+    /// The roll it is cut from, if there are several.
+    pub roll: Option<String>,
+    /// Layers cut at once; a fold does not count.
+    pub plies: u32,
+    /// Whether every second ply is turned over.
+    pub face_to_face: bool,
+    /// Area of the pieces over width times length, 0..=1.
+    pub utilisation: f64,
+    /// Price of a metre of length.
+    pub price_per_metre: Option<f64>,
+    /// What the price is in.
+    pub currency: String,
+    /// What else the cutter must know.
+    pub notes: Vec<String>,
+}
+
+impl Default for MarkerFacts {
+    fn default() -> Self {
+        Self {
+            fabric: String::new(),
+            roll: None,
+            plies: 1,
+            face_to_face: false,
+            utilisation: 0.0,
+            price_per_metre: None,
+            currency: String::new(),
+            notes: Vec::new(),
+        }
+    }
+}
+
+/// One piece on a marker.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MarkerPiece {
+    /// Name to write on it.
+    pub name: String,
+    /// Number that pieces of one kind share: they are filled with one colour.
+    pub item: usize,
+    /// Line to cut along \[m\].
+    pub cut: Polygon,
+    /// Line to sew along \[m\]; without rings where it is not known.
+    pub sew: Polygon,
+    /// Grain line, from its tail to its head \[m\]; nothing draws one through the middle.
+    pub grain: Option<[Vec2; 2]>,
+    /// Notches, each a short stroke \[m\].
+    pub notches: Vec<[Vec2; 2]>,
+    /// Other lines drawn on the piece \[m\].
+    pub lines: Vec<Vec<Vec2>>,
+    /// Marker from piece.
+    pub pose: Pose,
+}
+
+fn plural(count: usize) -> String {
+    format!("{count} piece{}", if count == 1 { "" } else { "s" })
+}
+
+impl MarkerDrawing {
+    /// Fabric needed, all plies together \[m\].
+    pub fn yardage(&self) -> f64 {
+        self.length * f64::from(self.facts.plies)
+    }
+
+    /// Price of the fabric needed.
+    pub fn cost(&self) -> Option<f64> {
+        Some(self.facts.price_per_metre? * self.yardage())
+    }
+
+    /// The marker in words: length and efficiency, then the fabric, then what is missing.
+    pub(crate) fn summary(&self) -> Vec<String> {
+        let strip = &self.strip;
+        let mut lines = vec![format!(
+            "{} on {:.3} m of fabric {:.3} m wide, efficiency {:.1} %",
+            plural(self.pieces.len()),
+            self.length,
+            strip.width,
+            self.efficiency * 100.0
+        )];
+        let nap = match strip.nap {
+            Nap::None => "no nap: pieces may point either way",
+            Nap::OneWay => "nap: all pieces point one way",
+            Nap::PerBundle => "nap: the pieces of a garment point one way",
+        };
+        lines.push(format!(
+            "Warp runs along the length; selvedge {:.0} mm, end margin {:.0} mm, gap {:.0} mm; {nap}; {}.",
+            strip.selvedge * 1e3,
+            strip.end_margin * 1e3,
+            strip.gap * 1e3,
+            self.spread()
+        ));
+        if !self.unplaced.is_empty() {
+            let names: Vec<&str> = self.unplaced.iter().map(|u| u[0].as_str()).collect();
+            lines.push(format!("Not on this marker: {}.", names.join(", ")));
+        }
+        if !self.overlaps.is_empty() {
+            lines.push("What is cut twice is red.".to_owned());
+        }
+        lines
+    }
+
+    /// How the fabric lies.
+    pub(crate) fn spread(&self) -> String {
+        let plies = match self.facts.plies {
+            1 => String::new(),
+            n => format!("{n} plies "),
+        };
+        let way = match (self.strip.fold, self.facts.face_to_face) {
+            (Fold::Open, true) => "face to face",
+            (Fold::Open, false) => "open",
+            (Fold::Lower, _) => "folded, the fold below",
+            (Fold::Both, _) => "tubular, folds above and below",
+        };
+        format!("{plies}{way}")
+    }
+
+    /// Refuses what cannot be drawn.
+    pub(crate) fn check_numbers(&self) -> Result<(), FormatError> {
+        let refuse = |place: String| {
+            let hint = "check the piece's outline and make the marker again";
+            Err(FormatError::new(place, "a number is not finite", hint))
+        };
+        let Strip {
+            width,
+            selvedge,
+            end_margin,
+            ..
+        } = self.strip;
+        let sizes = [width, selvedge, end_margin, self.length, self.efficiency];
+        if !sizes.iter().all(|x| x.is_finite()) {
+            return refuse("marker".into());
+        }
+        for piece in &self.pieces {
+            let [x, y] = piece.pose.axes();
+            let rings = piece
+                .cut
+                .rings()
+                .chain(piece.sew.rings())
+                .chain(&piece.lines);
+            let mut points = rings
+                .flatten()
+                .chain(piece.grain.iter().flatten())
+                .chain(piece.notches.iter().flatten())
+                .chain([&x, &y, &piece.pose.translation]);
+            if !points.all(|p| p.x.is_finite() && p.y.is_finite()) {
+                return refuse(format!("piece \"{}\"", piece.name));
+            }
+        }
+        Ok(())
+    }
+}

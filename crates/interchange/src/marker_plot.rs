@@ -1,0 +1,153 @@
+//! A marker for machines and for paper at true size: DXF, HPGL, PDF.
+
+use crate::dxf::DxfWriter;
+use crate::hpgl::HpglWriter;
+use crate::marker_strokes::{Layer, Strokes};
+use crate::pdf::{Align, PdfPage, PdfSheets, PdfText};
+use crate::{FormatError, MarkerDrawing};
+use toile_geometry::Vec2;
+
+/// A marker as DXF of release 12, in millimetres: layers CUT, SEW, NOTCH, GRAIN, LINE, TEXT for the
+/// pieces and FABRIC, MARGIN, FOLD, PRINT, FLAW for the cloth. The lower corner of the fabric's
+/// start is the origin.
+///
+/// # Errors
+/// A coordinate is not finite.
+pub fn write_marker_dxf(drawing: &MarkerDrawing) -> Result<String, FormatError> {
+    drawing.check_numbers()?;
+    let layers = Layer::ALL.map(|l| (l.name(), l.colour_index()));
+    let mut dxf = DxfWriter::new(layers.to_vec());
+    let all = Strokes::of(drawing);
+    for stroke in &all.strokes {
+        dxf.polyline(stroke.layer.name(), &stroke.points, stroke.closed);
+    }
+    for words in &all.words {
+        let place = (words.at, words.size, words.angle);
+        dxf.text(Layer::Text.name(), &words.text, place);
+    }
+    Ok(dxf.finish())
+}
+
+/// A marker for a plotter or cutter: HPGL/2 in hundredths of a millimetre. Pen 1 is what is cut, pen
+/// 2 what is drawn on the pieces, pen 3 the fabric.
+///
+/// # Errors
+/// A coordinate is not finite.
+pub fn write_marker_hpgl(drawing: &MarkerDrawing) -> Result<String, FormatError> {
+    drawing.check_numbers()?;
+    let all = Strokes::of(drawing);
+    let mut hpgl = HpglWriter::new(Vec2::new(drawing.length, drawing.strip.width));
+    // Drawn before it is cut, the fabric first.
+    for pen in [3, 2, 1] {
+        for stroke in all.strokes.iter().filter(|s| s.layer.pen() == pen) {
+            hpgl.polyline(pen, &stroke.points, stroke.closed);
+        }
+        if Layer::Text.pen() == pen {
+            for words in &all.words {
+                hpgl.text(pen, &words.text, (words.at, words.size, words.angle));
+            }
+        }
+    }
+    Ok(hpgl.finish())
+}
+
+/// White round the fabric \[m\].
+const BORDER: f64 = 0.02;
+
+/// A marker on one PDF page at true size.
+///
+/// # Errors
+/// A coordinate is not finite.
+pub fn write_marker_pdf(drawing: &MarkerDrawing) -> Result<Vec<u8>, FormatError> {
+    drawing.check_numbers()?;
+    let header = 0.02 * (2 + drawing.summary().len()) as f64;
+    let fabric = Vec2::new(drawing.length, drawing.strip.width);
+    let size = fabric + Vec2::new(2.0 * BORDER, 2.0 * BORDER + header);
+    let mut page = PdfPage::new(Vec2::new(size.x.max(0.4), size.y));
+    let look = PlotLook {
+        origin: Vec2::new(BORDER, BORDER),
+        scale: 1.0,
+        width: 0.0005,
+        words: true,
+    };
+    plot(&mut page, drawing, &look);
+    let mut line = size.y - 0.03;
+    let mut write = |text: &str, size: f64| {
+        page.text(PdfText {
+            text,
+            at: Vec2::new(BORDER, line),
+            size,
+            angle: 0.0,
+            align: Align::Left,
+            ink: Layer::Text.ink(),
+        });
+        line -= 0.02;
+    };
+    write(&drawing.title, 0.018);
+    for words in drawing.summary() {
+        write(&words, 0.011);
+    }
+    let mut sheets = PdfSheets::default();
+    sheets.push(page);
+    Ok(sheets.finish(&drawing.title))
+}
+
+/// How a marker is put on a page.
+pub(crate) struct PlotLook {
+    /// Where the fabric's lower corner lies \[m\].
+    pub origin: Vec2,
+    /// Length on the page over length of fabric.
+    pub scale: f64,
+    /// Width of a line \[m\].
+    pub width: f64,
+    /// Whether words are written.
+    pub words: bool,
+}
+
+/// Pale fills, one after another by item.
+const FILLS: [[f32; 3]; 8] = [
+    [0.96, 0.85, 0.78],
+    [0.81, 0.89, 0.95],
+    [0.85, 0.93, 0.82],
+    [0.96, 0.90, 0.72],
+    [0.89, 0.84, 0.93],
+    [0.95, 0.82, 0.85],
+    [0.80, 0.92, 0.90],
+    [0.90, 0.88, 0.83],
+];
+
+/// Draws a marker on a page.
+pub(crate) fn plot(page: &mut PdfPage, drawing: &MarkerDrawing, look: &PlotLook) {
+    let on_page = |p: Vec2| look.origin + p * look.scale;
+    let mapped = |points: &[Vec2]| points.iter().map(|&p| on_page(p)).collect::<Vec<_>>();
+    for piece in &drawing.pieces {
+        let cut = piece.pose.lay(&piece.cut);
+        let rings: Vec<Vec<Vec2>> = cut.rings().map(|r| mapped(r)).collect();
+        let fill = FILLS[piece.item % FILLS.len()];
+        page.fill(rings.iter().map(Vec::as_slice), fill);
+    }
+    for overlap in &drawing.overlaps {
+        let rings: Vec<Vec<Vec2>> = overlap.rings().map(|r| mapped(r)).collect();
+        page.fill(rings.iter().map(Vec::as_slice), Layer::Overlap.ink());
+    }
+    let all = Strokes::of(drawing);
+    for stroke in &all.strokes {
+        let dash = match stroke.layer {
+            Layer::Sew => 0.006,
+            Layer::Fold => 0.02,
+            _ => 0.0,
+        };
+        let style = (look.width, dash * look.scale, stroke.layer.ink());
+        page.stroke(&mapped(&stroke.points), stroke.closed, style);
+    }
+    for words in all.words.iter().filter(|_| look.words) {
+        page.text(PdfText {
+            text: &words.text,
+            at: on_page(words.at),
+            size: words.size * look.scale,
+            angle: words.angle,
+            align: Align::Middle,
+            ink: Layer::Text.ink(),
+        });
+    }
+}

@@ -1,0 +1,249 @@
+//! What a plot of a marker is drawn of: lines and words on layers, in the fabric's own plane [m],
+//! x along the warp from 0, y across from the lower side.
+
+use crate::marker_label::{roomiest_spot, size_on};
+use crate::{MarkerDrawing, MarkerPiece};
+use toile_geometry::{Polygon, Vec2};
+use toile_nesting::Fold;
+
+/// What a line or a text is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Layer {
+    Fabric,
+    Margin,
+    Fold,
+    Print,
+    Flaw,
+    Cut,
+    Sew,
+    Line,
+    Notch,
+    Grain,
+    Text,
+    Overlap,
+}
+
+impl Layer {
+    pub const ALL: [Self; 12] = [
+        Self::Fabric,
+        Self::Margin,
+        Self::Fold,
+        Self::Print,
+        Self::Flaw,
+        Self::Cut,
+        Self::Sew,
+        Self::Line,
+        Self::Notch,
+        Self::Grain,
+        Self::Text,
+        Self::Overlap,
+    ];
+
+    /// Name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fabric => "FABRIC",
+            Self::Margin => "MARGIN",
+            Self::Fold => "FOLD",
+            Self::Print => "PRINT",
+            Self::Flaw => "FLAW",
+            Self::Cut => "CUT",
+            Self::Sew => "SEW",
+            Self::Line => "LINE",
+            Self::Notch => "NOTCH",
+            Self::Grain => "GRAIN",
+            Self::Text => "TEXT",
+            Self::Overlap => "OVERLAP",
+        }
+    }
+
+    /// AutoCAD colour index.
+    pub fn colour_index(self) -> u8 {
+        match self {
+            Self::Cut | Self::Text => 7,
+            Self::Fabric | Self::Margin => 8,
+            Self::Sew | Self::Line => 9,
+            Self::Notch => 3,
+            Self::Grain => 5,
+            Self::Print => 4,
+            Self::Fold => 6,
+            Self::Flaw | Self::Overlap => 1,
+        }
+    }
+
+    /// Red, green, blue, 0..=1.
+    pub fn ink(self) -> [f32; 3] {
+        match self {
+            Self::Cut | Self::Text => [0.07, 0.07, 0.07],
+            Self::Notch => [0.07, 0.07, 0.07],
+            Self::Fabric => [0.33, 0.33, 0.33],
+            Self::Margin => [0.7, 0.68, 0.64],
+            Self::Sew | Self::Line => [0.45, 0.45, 0.45],
+            Self::Grain => [0.12, 0.31, 0.62],
+            Self::Print => [0.62, 0.72, 0.85],
+            Self::Fold => [0.55, 0.2, 0.55],
+            Self::Flaw => [0.85, 0.28, 0.37],
+            Self::Overlap => [0.9, 0.0, 0.0],
+        }
+    }
+
+    /// Pen of a plotter: 1 what is cut, 2 what is drawn on the pieces, 3 the fabric.
+    pub fn pen(self) -> u8 {
+        match self {
+            Self::Cut | Self::Notch | Self::Overlap => 1,
+            Self::Sew | Self::Line | Self::Grain | Self::Text => 2,
+            Self::Fabric | Self::Margin | Self::Fold | Self::Print | Self::Flaw => 3,
+        }
+    }
+}
+
+/// A line.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Stroke {
+    pub layer: Layer,
+    pub points: Vec<Vec2>,
+    pub closed: bool,
+}
+
+/// Words, their baseline's middle at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Words {
+    pub text: String,
+    pub at: Vec2,
+    /// Height of the letters \[m\].
+    pub size: f64,
+    /// Direction of the baseline \[rad\].
+    pub angle: f64,
+}
+
+/// Lines and words of a marker.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Strokes {
+    pub strokes: Vec<Stroke>,
+    pub words: Vec<Words>,
+}
+
+/// Most lines of a print that are drawn along one side.
+const MOST_LINES: f64 = 2000.0;
+
+impl Strokes {
+    /// Everything on a marker.
+    pub fn of(drawing: &MarkerDrawing) -> Self {
+        let mut all = Self::default();
+        all.fabric(drawing);
+        for piece in &drawing.pieces {
+            all.piece(piece);
+        }
+        for overlap in &drawing.overlaps {
+            all.rings(Layer::Overlap, overlap);
+        }
+        all
+    }
+
+    fn line(&mut self, layer: Layer, points: Vec<Vec2>, closed: bool) {
+        if points.len() > 1 {
+            self.strokes.push(Stroke {
+                layer,
+                points,
+                closed,
+            });
+        }
+    }
+
+    fn rings(&mut self, layer: Layer, polygon: &Polygon) {
+        for ring in polygon.rings() {
+            self.line(layer, ring.clone(), true);
+        }
+    }
+
+    fn fabric(&mut self, drawing: &MarkerDrawing) {
+        let (strip, length) = (&drawing.strip, drawing.length);
+        let width = strip.width;
+        let across = |x: f64| vec![Vec2::new(x, 0.0), Vec2::new(x, width)];
+        let along = |y: f64| vec![Vec2::new(0.0, y), Vec2::new(length, y)];
+        let corners = [[0.0, 0.0], [length, 0.0], [length, width], [0.0, width]];
+        self.line(Layer::Fabric, corners.map(Vec2::from).to_vec(), true);
+        if strip.lower() > 0.0 {
+            self.line(Layer::Margin, along(strip.lower()), false);
+        }
+        if strip.upper() < width {
+            self.line(Layer::Margin, along(strip.upper()), false);
+        }
+        if strip.end_margin > 0.0 {
+            self.line(Layer::Margin, across(strip.end_margin), false);
+            self.line(Layer::Margin, across(length - strip.end_margin), false);
+        }
+        if strip.fold != Fold::Open {
+            self.line(Layer::Fold, along(0.0), false);
+        }
+        if strip.fold == Fold::Both {
+            self.line(Layer::Fold, along(width), false);
+        }
+        if let Some(print) = &strip.stripes {
+            for axis in 0..2 {
+                let (repeat, end) = (print.repeat[axis], [length, width][axis]);
+                if repeat <= 0.0 || end / repeat > MOST_LINES {
+                    continue;
+                }
+                let first = print.origin[axis].rem_euclid(repeat);
+                let count = ((end - first) / repeat).floor().max(-1.0) as i64;
+                for k in 0..=count {
+                    let at = first + k as f64 * repeat;
+                    let line = if axis == 0 { across(at) } else { along(at) };
+                    self.line(Layer::Print, line, false);
+                }
+            }
+        }
+        for defect in &strip.defects {
+            self.rings(Layer::Flaw, &defect.outline);
+        }
+    }
+
+    fn piece(&mut self, piece: &MarkerPiece) {
+        let laid = |points: &[Vec2]| points.iter().map(|&p| piece.pose.apply(p)).collect();
+        let cut = piece.pose.lay(&piece.cut);
+        self.rings(Layer::Cut, &cut);
+        self.rings(Layer::Sew, &piece.pose.lay(&piece.sew));
+        for line in &piece.lines {
+            self.line(Layer::Line, laid(line), false);
+        }
+        for notch in &piece.notches {
+            self.line(Layer::Notch, laid(notch), false);
+        }
+        let spot = roomiest_spot(&cut);
+        let size = (spot.room * 0.3).clamp(0.004, 0.022);
+        let along = Vec2::new(piece.pose.turn.cos(), piece.pose.turn.sin()) * (spot.room * 0.75);
+        let centre = spot.at + Vec2::new(0.0, spot.room * 0.2);
+        let [tail, head] = piece
+            .grain
+            .map_or([centre - along, centre + along], |ends| {
+                ends.map(|p| piece.pose.apply(p))
+            });
+        if let Some(way) = (head - tail).try_normalize(0.0) {
+            let side = Vec2::new(-way.y, way.x);
+            let barb = (size * 0.6).min((head - tail).norm() * 0.3);
+            let wing = |s: f64| head - way * barb + side * (barb * s);
+            self.line(Layer::Grain, vec![tail, head], false);
+            self.line(Layer::Grain, vec![wing(0.5), head, wing(-0.5)], false);
+        }
+        let (size, upright) = size_on(&spot, &piece.name, size);
+        let angle = if upright {
+            std::f64::consts::FRAC_PI_2
+        } else {
+            0.0
+        };
+        let down = Vec2::new(angle.sin(), -angle.cos());
+        let mut word = |text: &str, size: f64, below: f64| {
+            self.words.push(Words {
+                text: text.to_owned(),
+                at: spot.at + down * below,
+                size,
+                angle,
+            });
+        };
+        word(&piece.name, size, spot.room * 0.05 + size);
+        if piece.pose.mirrored {
+            word("face down", size * 0.7, spot.room * 0.05 + 1.9 * size);
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! Sheets of lines, areas and words as PDF. Lengths in metres from the lower left corner; the text
+//! is Helvetica, which every reader has.
+
+use pdf_writer::types::{LineCapStyle, LineJoinStyle};
+use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
+use toile_geometry::Vec2;
+
+/// Points of a PDF in a metre \[1/m\].
+const POINTS: f64 = 72.0 / 0.0254;
+/// Longest side of a page in its own units (PDF 1.7, annex C); longer pages have a larger unit.
+const LONGEST: f64 = 14_400.0;
+
+/// A colour of ink: red, green, blue, 0..=1.
+pub(crate) type Ink = [f32; 3];
+
+/// A PDF in the making.
+#[derive(Default)]
+pub(crate) struct PdfSheets {
+    pages: Vec<(Vec2, f64, Content)>,
+}
+
+/// A page in the making.
+pub(crate) struct PdfPage {
+    size: Vec2,
+    /// Points in a unit of the page.
+    unit: f64,
+    content: Content,
+}
+
+/// Where a text stands on its baseline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Align {
+    Left,
+    Middle,
+    Right,
+}
+
+/// Words on a page.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PdfText<'a> {
+    pub text: &'a str,
+    /// On the baseline \[m\].
+    pub at: Vec2,
+    /// Size of the letters \[m\].
+    pub size: f64,
+    /// Direction of the baseline \[rad\].
+    pub angle: f64,
+    pub align: Align,
+    pub ink: Ink,
+}
+
+impl PdfPage {
+    /// An empty page of a size \[m\].
+    pub fn new(size: Vec2) -> Self {
+        let unit = (size.max() * POINTS / LONGEST).ceil().max(1.0);
+        let mut content = Content::new();
+        content.set_line_cap(LineCapStyle::RoundCap);
+        content.set_line_join(LineJoinStyle::RoundJoin);
+        Self {
+            size,
+            unit,
+            content,
+        }
+    }
+
+    fn units(&self, metres: f64) -> f32 {
+        (metres * POINTS / self.unit) as f32
+    }
+
+    fn path<'p>(&mut self, rings: impl IntoIterator<Item = &'p [Vec2]>, closed: bool) {
+        for ring in rings {
+            for (k, p) in ring.iter().enumerate() {
+                let (x, y) = (self.units(p.x), self.units(p.y));
+                match k {
+                    0 => self.content.move_to(x, y),
+                    _ => self.content.line_to(x, y),
+                };
+            }
+            if closed && !ring.is_empty() {
+                self.content.close_path();
+            }
+        }
+    }
+
+    /// Fills rings, holes by the even-odd rule.
+    pub fn fill<'p>(&mut self, rings: impl IntoIterator<Item = &'p [Vec2]>, ink: Ink) {
+        self.content.set_fill_rgb(ink[0], ink[1], ink[2]);
+        self.path(rings, true);
+        self.content.fill_even_odd();
+    }
+
+    /// Draws a line of a width \[m\], dashed by a length \[m\] if that is not 0.
+    pub fn stroke(&mut self, points: &[Vec2], closed: bool, (width, dash, ink): (f64, f64, Ink)) {
+        let (width, dash) = (self.units(width), self.units(dash));
+        self.content.set_stroke_rgb(ink[0], ink[1], ink[2]);
+        self.content.set_line_width(width);
+        let dashes: &[f32] = &[dash, 0.5 * dash];
+        let dashes = if dash > 0.0 { dashes } else { &[] };
+        self.content.set_dash_pattern(dashes.iter().copied(), 0.0);
+        self.path([points], closed);
+        self.content.stroke();
+    }
+
+    /// Writes words.
+    pub fn text(&mut self, text: PdfText<'_>) {
+        let encoded = win_ansi(text.text);
+        let width = text_width(&encoded) * text.size;
+        let back = match text.align {
+            Align::Left => 0.0,
+            Align::Middle => 0.5 * width,
+            Align::Right => width,
+        };
+        let (sin, cos) = text.angle.sin_cos();
+        let at = text.at - Vec2::new(cos, sin) * back;
+        let (x, y, size) = (self.units(at.x), self.units(at.y), self.units(text.size));
+        let (sin, cos) = (sin as f32, cos as f32);
+        self.content
+            .set_fill_rgb(text.ink[0], text.ink[1], text.ink[2])
+            .begin_text()
+            .set_font(Name(b"F1"), size)
+            .set_text_matrix([cos, sin, -sin, cos, x, y])
+            .show(Str(&encoded))
+            .end_text();
+    }
+}
+
+impl PdfSheets {
+    /// Adds a page.
+    pub fn push(&mut self, page: PdfPage) {
+        self.pages.push((page.size, page.unit, page.content));
+    }
+
+    /// The file.
+    pub fn finish(self, title: &str) -> Vec<u8> {
+        let mut pdf = Pdf::new();
+        let (catalog, tree, font, info) = (Ref::new(1), Ref::new(2), Ref::new(3), Ref::new(4));
+        let page_of = |k: usize| Ref::new(5 + 2 * k as i32);
+        let content_of = |k: usize| Ref::new(6 + 2 * k as i32);
+        pdf.catalog(catalog).pages(tree);
+        pdf.document_info(info)
+            .title(pdf_writer::TextStr(title))
+            .producer(pdf_writer::TextStr("Toile"));
+        pdf.pages(tree)
+            .kids((0..self.pages.len()).map(page_of))
+            .count(self.pages.len() as i32);
+        for (k, (size, unit, content)) in self.pages.into_iter().enumerate() {
+            let units = |metres: f64| (metres * POINTS / unit) as f32;
+            let mut page = pdf.page(page_of(k));
+            page.media_box(Rect::new(0.0, 0.0, units(size.x), units(size.y)));
+            if unit > 1.0 {
+                page.pair(Name(b"UserUnit"), unit as f32);
+            }
+            page.parent(tree).contents(content_of(k));
+            page.resources().fonts().pair(Name(b"F1"), font);
+            page.finish();
+            pdf.stream(content_of(k), &content.finish());
+        }
+        pdf.type1_font(font)
+            .base_font(Name(b"Helvetica"))
+            .encoding_predefined(Name(b"WinAnsiEncoding"));
+        pdf.finish()
+    }
+}
+
+/// Text in the encoding of the page; letters it does not have become question marks.
+fn win_ansi(text: &str) -> Vec<u8> {
+    let byte = |c: char| match c {
+        ' '..='~' | '\u{a0}'..='\u{ff}' => c as u8,
+        '\u{20ac}' => 0x80,
+        '\u{2013}' => 0x96,
+        '\u{2019}' => 0x92,
+        c if c.is_control() => b' ',
+        _ => b'?',
+    };
+    text.chars().map(byte).collect()
+}
+
+/// Width of Helvetica's letters from the space to the tilde, in thousandths of their size (Adobe
+/// font metrics).
+const WIDTHS: [u16; 95] = [
+    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278, 556, 556, 556,
+    556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667,
+    611, 778, 722, 278, 500, 667, 556, 833, 722, 778, 667, 778, 722, 667, 611, 722, 667, 944, 667,
+    667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556, 556, 278, 556, 556, 222, 222, 500,
+    222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
+];
+
+/// Width of encoded text over the size of its letters.
+fn text_width(encoded: &[u8]) -> f64 {
+    let width = |&byte: &u8| match byte {
+        b' '..=b'~' => f64::from(WIDTHS[usize::from(byte - b' ')]),
+        _ => 556.0,
+    };
+    encoded.iter().map(width).sum::<f64>() / 1e3
+}
+
+/// As many letters from the start of a text as fit a width \[m\] at a size \[m\].
+pub(crate) fn fitted(text: &str, size: f64, width: f64) -> String {
+    if text_width(&win_ansi(text)) * size <= width {
+        return text.to_owned();
+    }
+    let mut short = String::new();
+    for c in text.chars() {
+        let longer = format!("{short}{c}");
+        if text_width(&win_ansi(&format!("{longer}..."))) * size > width {
+            break;
+        }
+        short = longer;
+    }
+    short + "..."
+}

@@ -1,0 +1,385 @@
+//! The pieces of drafts as they are laid: cut outlines, copies, what may be done with them.
+
+use crate::cut::{cut_outline, sewn_outline};
+use crate::halves::{HalfPlane, are_mirror_images, fold_of, straightened};
+use crate::laying::Garments;
+use crate::matching::{match_up, resolve_marks};
+use crate::nest_options::FabricPlan;
+use crate::{NestOptions, SessionError};
+use std::f64::consts::PI;
+use toile_geometry::{Polygon, Vec2, ring_area};
+use toile_interchange::{ALL, PieceSettings, Spread};
+use toile_nesting::{Allowed, FoldEdge, Item, Locked, MatchPoint, Mirror, NestingError, Phase};
+use toile_pattern::Piece;
+
+/// Length of a notch's stroke on the drawing [m].
+const NOTCH: f64 = 0.006;
+
+/// What is drawn on a piece that is laid, in its own plane [m].
+#[derive(Clone, Debug)]
+pub(crate) struct LaidPiece {
+    pub sew: Polygon,
+    pub notches: Vec<[Vec2; 2]>,
+    pub lines: Vec<Vec<Vec2>>,
+}
+
+/// A piece of one draft that is to be cut from a fabric.
+#[derive(Clone, Debug)]
+pub(crate) struct Wanted {
+    pub fabric: String,
+    /// As seen from the right side of the cloth.
+    pub piece: Piece,
+    pub settings: PieceSettings,
+    /// Name for messages and on the marker.
+    pub name: String,
+    /// The garment of each copy.
+    pub bundles: Vec<u32>,
+    /// Marks on the print: number of the set, and the point [m].
+    pub marks: Vec<(usize, Vec2)>,
+}
+
+/// Everything that is to be cut, in the order of the drafts. Where pieces are matched, every
+/// garment's pieces stand alone, as each garment is matched in itself.
+pub(crate) fn wanted_of(
+    garments: &[Garments<'_>],
+    options: &NestOptions,
+) -> Result<Vec<Wanted>, SessionError> {
+    check_piece_names(garments, options)?;
+    let mut all = Vec::new();
+    let mut first = 0;
+    for garment in garments {
+        let marks = resolve_marks(garment.pattern, &options.settings.matched);
+        let bundles: Vec<u32> = (first..first + garment.count).collect();
+        first += garment.count;
+        let alone = !options.settings.matched.is_empty();
+        let parts: Vec<Vec<u32>> = match alone {
+            true => bundles.iter().map(|&b| vec![b]).collect(),
+            false => vec![bundles],
+        };
+        for bundles in parts {
+            for piece in &garment.draft.pieces {
+                let Some(own) = garment.draft.fabrics.get(piece.fabric) else {
+                    continue;
+                };
+                let settings = options.piece(panel_name(garment, piece), &piece.name);
+                let piece = right_side_up(piece);
+                let name = match garment.label {
+                    Some(label) => format!("{} {label}", piece.name),
+                    None => piece.name.clone(),
+                };
+                let wanted = |fabric: &str, count: u32| Wanted {
+                    fabric: fabric.to_owned(),
+                    name: name.clone(),
+                    bundles: bundles
+                        .iter()
+                        .flat_map(|&b| (0..count).map(move |_| b))
+                        .collect(),
+                    marks: marks
+                        .iter()
+                        .filter(|mark| mark.1 == piece.id.panel)
+                        .filter_map(|mark| {
+                            let notch = piece.notches.iter().find(|n| n.id == mark.2)?;
+                            Some((mark.0, notch.point))
+                        })
+                        .collect(),
+                    settings: settings.clone(),
+                    piece: piece.clone(),
+                };
+                let fabric = settings.fabric.as_deref().unwrap_or(&own.name);
+                all.push(wanted(fabric, 1));
+                for (fabric, &count) in settings.also.iter().flatten() {
+                    if piece.id.copy == 0 && count > 0 {
+                        all.push(wanted(fabric, count));
+                    }
+                }
+            }
+        }
+    }
+    Ok(all)
+}
+
+fn panel_name<'a>(garment: &Garments<'a>, piece: &Piece) -> &'a str {
+    let panels = &garment.pattern.panels;
+    let panel = panels.iter().find(|p| p.id == piece.id.panel);
+    panel.map_or("", |p| p.name.as_str())
+}
+
+/// Settings, locks and marks that name nothing are mistakes.
+fn check_piece_names(garments: &[Garments<'_>], options: &NestOptions) -> Result<(), SessionError> {
+    let mut names: Vec<String> = Vec::new();
+    let mut marks: Vec<String> = Vec::new();
+    for garment in garments {
+        names.extend(garment.draft.pieces.iter().map(|p| p.name.clone()));
+        for panel in &garment.pattern.panels {
+            names.push(panel.name.clone());
+            let notch = |n: &toile_pattern::Notch| format!("{}.{}", panel.name, n.name);
+            marks.extend(panel.notches.iter().map(notch));
+        }
+    }
+    for list in [&mut names, &mut marks] {
+        list.sort_unstable();
+        list.dedup();
+    }
+    let unknown = |kind: &'static str, name: &str, there: &[String]| SessionError::Unknown {
+        kind,
+        name: name.to_owned(),
+        hint: match there.is_empty() {
+            true => "there are none in the pattern".to_owned(),
+            false => format!("choose from: {}", there.join(", ")),
+        },
+    };
+    let given = options.settings.pieces.keys();
+    for name in given.filter(|name| *name != ALL) {
+        if !names.contains(name) {
+            return Err(unknown("piece", name, &names));
+        }
+    }
+    for mark in options.settings.matched.iter().flatten() {
+        if !marks.contains(mark) {
+            return Err(unknown("mark", mark, &marks));
+        }
+    }
+    Ok(())
+}
+
+/// Items, what is drawn on each, and what the cutter must know.
+type Items = (Vec<Item>, Vec<LaidPiece>, Vec<String>);
+
+/// The pieces of one fabric as they are laid on it.
+pub(crate) fn items_on(
+    wanted: &[Wanted],
+    plan: &FabricPlan,
+    options: &NestOptions,
+) -> Result<Items, SessionError> {
+    let mut items = Vec::new();
+    let mut drawn = Vec::new();
+    let mut notes = Vec::new();
+    let printed = plan.rolls.iter().any(|r| r.strip.stripes.is_some());
+    let matched = wanted.iter().any(|w| !w.marks.is_empty());
+    for (k, role) in roles(wanted, plan)?.into_iter().enumerate() {
+        let wanted = &wanted[k];
+        let on_print = wanted.settings.on_print.unwrap_or(!matched);
+        let print = printed && on_print && wanted.marks.is_empty();
+        let (mut item, piece) = item_of(wanted, print, options);
+        match role {
+            Role::Twin => continue,
+            Role::Alone => {}
+            Role::Paired => item.allowed.mirror = Mirror::Free,
+            Role::Half(half) => {
+                let (halved, piece) = halved(item, &piece, half);
+                items.push(halved);
+                drawn.push((k, piece));
+                continue;
+            }
+            Role::Two { spare } => {
+                let count = item.quantity;
+                item.allowed.mirror = Mirror::Free;
+                item.quantity = if spare { count } else { count.div_ceil(2) };
+                let left = 2 * item.quantity - count;
+                if left > 0 {
+                    notes.push(format!(
+                        "{}: two plies are cut at once, {left} more than needed",
+                        item.name
+                    ));
+                }
+                item.bundles.truncate(item.quantity as usize);
+            }
+        }
+        items.push(item);
+        drawn.push((k, piece));
+    }
+    if printed {
+        let order: Vec<usize> = drawn.iter().map(|d| d.0).collect();
+        match_up(&mut items, &order, (wanted, plan))?;
+    }
+    if plan.plies > 1 {
+        notes.push(format!(
+            "{} plies: every piece on the marker is cut {0} times",
+            plan.plies
+        ));
+    }
+    Ok((items, drawn.into_iter().map(|d| d.1).collect(), notes))
+}
+
+/// What becomes of a piece on fabric of several layers.
+enum Role {
+    /// Cut as it is laid.
+    Alone,
+    /// Either way up.
+    Paired,
+    /// Cut together with its mirror image, which is laid instead.
+    Twin,
+    /// Half of it on the fold.
+    Half(HalfPlane),
+    /// Each placement gives two; `spare` if one of them is the wrong way round.
+    Two { spare: bool },
+}
+
+fn roles(wanted: &[Wanted], plan: &FabricPlan) -> Result<Vec<Role>, SessionError> {
+    if plan.spread == Spread::Open {
+        return Ok(wanted.iter().map(|_| Role::Alone).collect());
+    }
+    let shape = |w: &Wanted| straightened(&cut_of(w), w.piece.grain);
+    let shapes: Vec<Polygon> = wanted.iter().map(shape).collect();
+    let folded = plan.spread != Spread::FaceToFace;
+    let mut roles: Vec<Option<Role>> = wanted.iter().map(|_| None).collect();
+    for k in 0..wanted.len() {
+        if roles[k].is_some() {
+            continue;
+        }
+        let along = |half: &HalfPlane| half.runs_along(wanted[k].piece.grain);
+        let fold = fold_of(&wanted[k].piece).filter(along);
+        let on_fold = wanted[k].settings.on_fold.unwrap_or(true);
+        if let Some(half) = fold.filter(|_| folded && on_fold) {
+            roles[k] = Some(Role::Half(half));
+            continue;
+        }
+        let symmetrical = are_mirror_images(&shapes[k], &shapes[k]);
+        let twin = (k + 1..wanted.len()).find(|&other| {
+            roles[other].is_none()
+                && !symmetrical
+                && wanted[other].bundles == wanted[k].bundles
+                && are_mirror_images(&shapes[k], &shapes[other])
+        });
+        roles[k] = Some(match (twin, symmetrical, folded) {
+            (Some(other), ..) => {
+                roles[other] = Some(if folded { Role::Twin } else { Role::Paired });
+                Role::Paired
+            }
+            (None, true, true) => Role::Two { spare: false },
+            (None, true, false) => Role::Alone,
+            (None, false, true) => Role::Two { spare: true },
+            (None, false, false) => {
+                return Err(NestingError::Strip(format!(
+                    "piece \"{}\" is neither symmetrical nor one of a pair: half of its copies would come out mirrored face to face; spread the fabric open, or cut it from another fabric",
+                    wanted[k].name
+                ))
+                .into());
+            }
+        });
+    }
+    Ok(roles
+        .into_iter()
+        .map(|r| r.unwrap_or(Role::Alone))
+        .collect())
+}
+
+/// The line a piece is cut along, with the block round it [m].
+fn cut_of(wanted: &Wanted) -> Polygon {
+    let block = wanted.settings.block.unwrap_or_default().0;
+    if block <= 0.0 {
+        return cut_outline(&wanted.piece);
+    }
+    let mut wide = wanted.piece.clone();
+    for edge in &mut wide.outline {
+        edge.seam_allowance = edge.seam_allowance.max(0.0) + block;
+    }
+    cut_outline(&wide)
+}
+
+/// A piece as it is laid: its cut outline, its grain, and where the print must meet it.
+fn item_of(wanted: &Wanted, print: bool, options: &NestOptions) -> (Item, LaidPiece) {
+    let (piece, settings) = (&wanted.piece, &wanted.settings);
+    let outline = cut_of(wanted);
+    // Back to the grain's own axes: the hem lies where the grain starts.
+    let bounds = outline.rotated(-piece.grain).bounds();
+    let hem = turned(Vec2::new(bounds.min.x, bounds.centre().y), piece.grain);
+    let turns = match &settings.turns {
+        Some(turns) => turns.iter().map(|t| t.to_radians()).collect(),
+        None => vec![0.0, PI],
+    };
+    let locked = settings.locked.iter().flatten().map(|lock| Locked {
+        copy: lock.copy,
+        turn: lock.turn.to_radians(),
+        mirrored: lock.face_down,
+        translation: Vec2::new(lock.at[0].0, lock.at[1].0),
+    });
+    let item = Item {
+        grain: piece.grain,
+        quantity: wanted.bundles.len() as u32,
+        bundles: wanted.bundles.clone(),
+        gap: settings.gap.unwrap_or_default().0,
+        over_defects: settings.over_flaws.unwrap_or(false),
+        match_point: print.then_some(MatchPoint {
+            point: hem,
+            phase: Phase::At(Vec2::zeros()),
+        }),
+        allowed: Allowed {
+            tilt: settings.tilt.map_or(options.tilt, f64::to_radians),
+            mirror: match settings.turn_over {
+                Some(true) => Mirror::Free,
+                _ => Mirror::Never,
+            },
+            ..Allowed::turned(turns)
+        },
+        locked: locked.collect(),
+        ..Item::new(wanted.name.clone(), outline)
+    };
+    let drawn = LaidPiece {
+        sew: sewn_outline(piece),
+        notches: piece
+            .notches
+            .iter()
+            .map(|n| [n.point, n.point + n.inward * NOTCH])
+            .collect(),
+        lines: piece
+            .internal_lines
+            .iter()
+            .map(|line| {
+                let curves = line.curves.iter();
+                curves.flat_map(|curve| curve.flatten(1e-4)).collect()
+            })
+            .collect(),
+    };
+    (item, drawn)
+}
+
+/// Half of a piece, for the fold.
+fn halved(mut item: Item, piece: &LaidPiece, half: HalfPlane) -> (Item, LaidPiece) {
+    item.outline = half.cut(&item.outline);
+    let inward = turned(half.inward, -item.grain);
+    item.fold_edge = Some(match inward.y > 0.0 {
+        true => FoldEdge::Lower,
+        false => FoldEdge::Upper,
+    });
+    item.allowed.mirror = Mirror::Free;
+    item.allowed.tilt = 0.0;
+    let notches = piece.notches.iter().filter(|n| half.keeps(n[0]));
+    let drawn = LaidPiece {
+        sew: half.cut(&piece.sew),
+        notches: notches.copied().collect(),
+        lines: piece.lines.iter().flat_map(|l| half.cut_line(l)).collect(),
+    };
+    (item, drawn)
+}
+
+/// A vector turned by an angle [rad].
+pub(crate) fn turned(v: Vec2, angle: f64) -> Vec2 {
+    let (sin, cos) = angle.sin_cos();
+    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+}
+
+/// The piece as seen from the right side of the cloth, which lies up: a clockwise outline is drawn
+/// from the wrong side and is reflected.
+fn right_side_up(piece: &Piece) -> Piece {
+    let mut piece = piece.clone();
+    if ring_area(&sewn_outline(&piece).outer) >= 0.0 {
+        return piece;
+    }
+    let across = |p: Vec2| Vec2::new(-p.x, p.y);
+    let holes = piece.holes.iter_mut().flatten();
+    for edge in piece.outline.iter_mut().chain(holes) {
+        edge.curve = edge.curve.reflected(Vec2::zeros(), Vec2::y());
+    }
+    for line in &mut piece.internal_lines {
+        for curve in &mut line.curves {
+            *curve = curve.reflected(Vec2::zeros(), Vec2::y());
+        }
+    }
+    for notch in &mut piece.notches {
+        notch.point = across(notch.point);
+        notch.inward = across(notch.inward);
+    }
+    piece.grain = PI - piece.grain;
+    piece
+}

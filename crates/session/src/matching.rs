@@ -1,0 +1,125 @@
+//! Marks of pieces that lie on the same place of a print, so that stripes and checks meet at seams.
+//!
+//! An item has one match point in one set. Marks that share pieces are joined into one set: where
+//! piece i has mark m of a set and anchor a, piece j with mark m' of that set has the anchor
+//! a' = a - m + m', all in the grain's own axes. That holds if i and j lie the same way up, so
+//! pieces with several marks make their garment run one way.
+
+use crate::SessionError;
+use crate::laying_items::{Wanted, turned};
+use crate::nest_options::FabricPlan;
+use std::collections::BTreeMap;
+use toile_geometry::Vec2;
+use toile_nesting::{Item, MatchPoint, Mirror, NestingError, Phase, Stripes};
+use toile_pattern::{NotchId, PanelId, Pattern};
+
+/// How far marks of one set may miss each other [m].
+const MISS: f64 = 1e-6;
+
+/// The marks of a pattern: number of the set, panel and notch. Names that are not there are left out.
+pub(crate) fn resolve_marks(
+    pattern: &Pattern,
+    sets: &[Vec<String>],
+) -> Vec<(usize, PanelId, NotchId)> {
+    let mut marks = Vec::new();
+    for (set, names) in sets.iter().enumerate() {
+        for panel in &pattern.panels {
+            for notch in &panel.notches {
+                if names.contains(&format!("{}.{}", panel.name, notch.name)) {
+                    marks.push((set, panel.id, notch.id));
+                }
+            }
+        }
+    }
+    marks
+}
+
+/// Gives every item with marks its match point. `order` names the wanted piece of each item.
+pub(crate) fn match_up(
+    items: &mut [Item],
+    order: &[usize],
+    (wanted, plan): (&[Wanted], &FabricPlan),
+) -> Result<(), SessionError> {
+    let Some(stripes) = plan.rolls.iter().find_map(|r| r.strip.stripes) else {
+        return Ok(());
+    };
+    let marks: Vec<Vec<(usize, Vec2)>> = order
+        .iter()
+        .map(|&k| {
+            let grain = wanted[k].piece.grain;
+            let straight = |m: &(usize, Vec2)| (m.0, turned(m.1, -grain));
+            wanted[k].marks.iter().map(straight).collect()
+        })
+        .collect();
+    let garment = |k: usize| wanted[order[k]].bundles.first().copied().unwrap_or(0);
+    let mut members: BTreeMap<(u32, usize), Vec<(usize, Vec2)>> = BTreeMap::new();
+    for (k, marks) in marks.iter().enumerate() {
+        for &(set, mark) in marks {
+            let set = members.entry((garment(k), set)).or_default();
+            set.push((k, mark));
+        }
+    }
+    let mut anchors: Vec<Option<Vec2>> = vec![None; items.len()];
+    let mut number = 0;
+    for root in 0..items.len() {
+        let (None, Some(first)) = (anchors[root], marks[root].first()) else {
+            continue;
+        };
+        anchors[root] = Some(first.1);
+        let mut joined = vec![root];
+        let mut next = 0;
+        while let Some(&one) = joined.get(next) {
+            next += 1;
+            let Some(anchor) = anchors[one] else { continue };
+            for &(set, mark) in &marks[one] {
+                for &(other, theirs) in &members[&(garment(one), set)] {
+                    let wanted = anchor - mark + theirs;
+                    match anchors[other] {
+                        None => {
+                            anchors[other] = Some(wanted);
+                            joined.push(other);
+                        }
+                        Some(has) if missed(has - wanted, &stripes) => {
+                            return Err(cannot_meet(&items[one], &items[other]).into());
+                        }
+                        Some(_) => {}
+                    }
+                }
+            }
+        }
+        let chained = joined.iter().any(|&k| marks[k].len() > 1);
+        for &k in &joined {
+            let Some(anchor) = anchors[k] else { continue };
+            items[k].match_point = Some(MatchPoint {
+                point: turned(anchor, items[k].grain),
+                phase: Phase::Set(number),
+            });
+            if chained && items[k].allowed.mirror == Mirror::Free && stripes.repeat.y > 0.0 {
+                items[k].allowed.mirror = Mirror::Never;
+            }
+        }
+        number += 1;
+    }
+    Ok(())
+}
+
+/// Whether pieces must lie the same way up because one has several marks.
+pub(crate) fn runs_one_way(wanted: &[Wanted]) -> bool {
+    wanted.iter().any(|w| w.marks.len() > 1)
+}
+
+/// Whether an offset is no whole number of repeats.
+fn missed(apart: Vec2, stripes: &Stripes) -> bool {
+    (0..2).any(|axis| {
+        let repeat = stripes.repeat[axis];
+        let off = apart[axis].rem_euclid(if repeat > 0.0 { repeat } else { 1.0 });
+        repeat > 0.0 && off.min(repeat - off) > MISS
+    })
+}
+
+fn cannot_meet(one: &Item, other: &Item) -> NestingError {
+    NestingError::Strip(format!(
+        "the print cannot meet at all marks of \"{}\" and \"{}\": other marks hold them already; match fewer marks, or move a notch",
+        one.name, other.name
+    ))
+}
