@@ -40,7 +40,7 @@ pub enum Task {
     ///
     /// Each fabric has its own marker, and each roll of it. Says length, efficiency, fabric needed
     /// (m), cost, and what found no place and why.
-    Nest(Nest),
+    Nest(Box<Nest>),
     /// Write the triangulated panels as OBJ, in metres, side by side.
     Mesh(Mesh),
     /// Make a mannequin as OBJ, in metres, and list its measurements as asked and as got.

@@ -263,7 +263,7 @@ fn a_marker_maker_gets_rolls_spreads_costs_and_files_for_machines() {
     for (bad, what) in [
         (["--roll", "1,2,3"], "no unit"),
         (["--roll", "1m,2m,3m"], "3 lengths"),
-        (["--price", "-1"], "--price"),
+        (["--price", "nan"], "--price"),
         (["--plies", "0"], "plies"),
         (["--settings", "gone.json"], "gone.json"),
         (["--write", "png"], "png"),

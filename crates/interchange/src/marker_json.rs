@@ -270,7 +270,6 @@ impl MarkerFile {
                 .iter()
                 .map(MarkerDefect::defect)
                 .collect(),
-            ..Strip::of_width(self.fabric.width)
         }
     }
 }
