@@ -185,7 +185,7 @@ fn rolls_are_filled_in_turn_and_what_fits_none_is_named() {
     assert_eq!(made.marker("marker.json").roll.as_deref(), Some("remnant"));
     // On the command line.
     options.settings = MarkerSettings::default();
-    options.rolls = vec![(1.2, Some(0.3)), (1.1, None)];
+    options.rolls = vec![(1.2, Some(0.3)), (1.1, Some(0.8))];
     let made = nest("trousers", &options).unwrap();
     let missing = &made.nested.last().unwrap().missing;
     let left =
