@@ -205,6 +205,8 @@ fn find(
         bulge,
         anchor: state.anchors[at].unwrap_or(place),
         lagged_normal_force: state.normal_forces[at],
+        returning: false,
+        landing: false,
     };
     let friction = if model.contact.friction {
         sample.friction

@@ -85,6 +85,8 @@ pub struct GarmentRun {
     stage: Stage,
     gap_before_merging: f64,
     refinements: usize,
+    /// Residual below which crossings of the body are looked for next.
+    look_below: f64,
     share: f64,
     warnings: Vec<String>,
     /// Steps of sewing and of settling on the levels left behind.
@@ -96,6 +98,11 @@ const COARSE_RESIDUAL: f64 = 2e-2;
 
 /// Rounds of finer contact testing before crossings of the body are left and reported.
 const MOST_REFINEMENTS: usize = 12;
+
+/// Residual below which crossings of the body are first looked for, and what the next such residual
+/// is of the last: what is found early is cured on the way.
+const FIRST_LOOK: f64 = 2.0;
+const NEXT_LOOK: f64 = 0.1;
 
 impl GarmentRun {
     /// Prepares the first step.
@@ -123,6 +130,7 @@ impl GarmentRun {
             stage: Stage::Sewing,
             gap_before_merging: 0.0,
             refinements: 0,
+            look_below: FIRST_LOOK,
             share: 0.0,
             warnings: Vec::new(),
             steps: [0; 2],
@@ -156,6 +164,7 @@ impl GarmentRun {
         self.stage = Stage::Sewing;
         self.rest = RestRun::new(self.rest_settings());
         self.refinements = 0;
+        self.look_below = FIRST_LOOK;
         if self.sew.closed() {
             self.merge()?;
         }
@@ -260,21 +269,19 @@ impl GarmentRun {
         self.share = self
             .share
             .max((0.7 + 0.3 * decades.clamp(0.0, 1.0)).min(0.99));
-        if !self.rest.finished() {
-            return Ok(());
-        }
+        let finished = self.rest.finished();
         if !self.is_finest() {
-            return self.refine();
+            return if finished { self.refine() } else { Ok(()) };
         }
-        let offenders = self.body_crossings();
-        if !offenders.is_empty() && self.refinements < MOST_REFINEMENTS {
-            self.refinements += 1;
-            for triangle in offenders {
-                self.model.refine_contact(triangle);
+        if finished || self.rest.residual() < self.look_below {
+            self.look_below = NEXT_LOOK * self.rest.residual();
+            if self.keep_off_the_body() && finished {
+                self.rest
+                    .go_on(self.setup.rest.residual, self.setup.rest.steps / 4);
+                return Ok(());
             }
-            self.state.follow_samples(&self.model);
-            self.rest
-                .go_on(self.setup.rest.residual, self.setup.rest.steps / 4);
+        }
+        if !finished {
             return Ok(());
         }
         if self.rest.residual() > self.setup.rest.residual {
@@ -288,6 +295,20 @@ impl GarmentRun {
         self.stage = Stage::Finished;
         self.share = 1.0;
         Ok(())
+    }
+
+    /// Tests contact more finely where cloth crosses the body; whether it does so anywhere.
+    fn keep_off_the_body(&mut self) -> bool {
+        let offenders = self.body_crossings();
+        if offenders.is_empty() || self.refinements >= MOST_REFINEMENTS {
+            return false;
+        }
+        self.refinements += 1;
+        for triangle in offenders {
+            self.model.refine_contact(triangle);
+        }
+        self.state.follow_samples(&self.model);
+        true
     }
 
     /// Goes on to the next finer level with the shape reached.

@@ -48,10 +48,8 @@ pub struct RestRun {
     left_out: f64,
 }
 
-/// Share of the destabilising curvature left out after a step that went well, over that before
-/// it; below the least none is left out.
+/// Share of the destabilising curvature left out after a step that went well, over that before it.
 const LESS: f64 = 0.7;
-const LEAST: f64 = 0.02;
 /// A direction of which the line search takes less than this is as bad as none.
 const CUT: f64 = 0.2;
 /// Steps without a new low of the residual before a cycle is suspected.
@@ -204,12 +202,12 @@ impl RestRun {
     /// matrix was not positive definite or whose direction had to be cut. With too little of it
     /// cloth that is about to buckle creeps away from its saddle by a few per cent a step.
     fn adapt_curvature(&mut self, report: &NewtonReport) {
-        let tried = report.exact || self.left_out == 1.0;
-        self.left_out = if tried && report.fraction > CUT {
-            let less = LESS * self.left_out;
-            if less < LEAST { 0.0 } else { less }
+        let left_out = 1.0 - report.curvature.0;
+        self.left_out = if report.fraction > CUT {
+            let less = LESS * left_out;
+            if less < Curvature::FINEST { 0.0 } else { less }
         } else {
-            (2.0 * self.left_out).clamp(LEAST, 1.0)
+            (2.0 * left_out).clamp(Curvature::FINEST, 1.0)
         };
     }
 

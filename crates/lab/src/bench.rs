@@ -242,21 +242,21 @@ fn rest(cuts: usize, residual: f64, result: &mut Timed) -> Result<(), LabError> 
     let clock = Clock::start();
     let mut run = GarmentRun::new(setup)?;
     while run.progress().stage != Stage::Finished {
-        let [level, _] = run.level();
+        let ([level, _], stage) = (run.level(), run.progress().stage);
         let before = clock.wall();
         if let Err(error) = run.advance() {
             result.failure = Some(error.to_string());
             break;
         }
         let spent = clock.wall() - before;
-        *result
-            .counted
-            .entry(format!("level_{level}_s"))
-            .or_default() += spent;
-        *result
-            .counted
-            .entry(format!("level_{level}_steps"))
-            .or_default() += 1.0;
+        let name = match stage {
+            Stage::Swinging => "swing",
+            _ => "settle",
+        };
+        for (what, more) in [("s", spent), ("steps", 1.0)] {
+            let counted = result.counted.entry(format!("level_{level}_{name}_{what}"));
+            *counted.or_default() += more;
+        }
         if clock.wall() > BUDGET {
             result.failure = Some(format!("not done in {BUDGET} s"));
             break;

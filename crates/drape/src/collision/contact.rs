@@ -199,6 +199,8 @@ impl ClothContacts {
                 bulge: Matrix3::zeros(),
                 anchor,
                 lagged_normal_force: force,
+                returning: false,
+                landing: false,
             },
             law: ContactLaw {
                 normal,
@@ -240,6 +242,8 @@ impl ClothContacts {
                 bulge: Matrix3::zeros(),
                 anchor: point,
                 lagged_normal_force: 0.0,
+                returning: false,
+                landing: false,
             },
             law: ContactLaw {
                 normal,

@@ -36,6 +36,12 @@ pub struct ContactPlane {
     pub anchor: Vec3,
     /// Normal force that limits friction [N], taken from the last iteration.
     pub lagged_normal_force: f64,
+    /// Whether a point at the limit of friction counts as sticking for the Hessian, because it is
+    /// about to come back.
+    pub returning: bool,
+    /// Whether a point above the surface counts as touching for the Hessian, because it is about to
+    /// land.
+    pub landing: bool,
 }
 
 impl ContactPlane {
@@ -85,8 +91,10 @@ impl ContactLaw {
         if depth > 0.0 {
             energy += 0.5 * self.normal * depth * depth;
             gradient -= plane.gradient * (self.normal * depth);
-            hessian += plane.gradient * plane.gradient.transpose() * self.normal
-                + plane.hollow * (self.normal * depth);
+            hessian += plane.hollow * (self.normal * depth);
+        }
+        if depth > 0.0 || plane.landing {
+            hessian += plane.gradient * plane.gradient.transpose() * self.normal;
         }
         let limit = self.friction * plane.lagged_normal_force;
         if limit > 0.0 {
@@ -101,7 +109,7 @@ impl ContactLaw {
                 energy += limit * length - 0.5 * limit * limit / self.tangential;
                 gradient += slip * (limit / length);
             }
-            if self.tangential * length <= AT_LIMIT * limit {
+            if plane.returning || self.tangential * length <= AT_LIMIT * limit {
                 hessian += tangent * self.tangential;
             } else {
                 // Friction is constant along the slip, so nothing holds the point back there.
@@ -117,6 +125,40 @@ impl ContactLaw {
     /// pushed off it the more the farther it slides down [N/m].
     pub fn missing_curvature(&self, plane: &ContactPlane, point: Vec3) -> Matrix3<f64> {
         plane.bulge * (self.normal * plane.depth_of(point).max(0.0))
+    }
+
+    /// Energy that a point at the limit of friction finds on a `step` back into the cone, and that
+    /// the Hessian of [`Self::evaluate`] does not foresee [J].
+    pub fn unforeseen_return(&self, plane: &ContactPlane, point: Vec3, step: Vec3) -> f64 {
+        let limit = self.friction * plane.lagged_normal_force;
+        let n = plane.normal;
+        let offset = point - plane.anchor;
+        let slip = offset - n * offset.dot(&n);
+        let length = slip.norm();
+        if limit <= 0.0 || plane.returning || self.tangential * length <= AT_LIMIT * limit {
+            return 0.0;
+        }
+        let back = -step.dot(&slip) / length;
+        // Beyond the far side of the cone it slides the other way.
+        let most = 2.0 * limit / self.tangential;
+        let spring = back.clamp(0.0, most);
+        self.tangential * spring * (back - 0.5 * spring).max(0.0)
+    }
+
+    /// Energy that a point above a surface finds when a `step` takes it in [J].
+    pub fn unforeseen_landing(&self, plane: &ContactPlane, point: Vec3, step: Vec3) -> f64 {
+        if plane.depth_of(point) > 0.0 || plane.landing {
+            return 0.0;
+        }
+        let depth = plane.depth_of(point + step).max(0.0);
+        0.5 * self.normal * depth * depth
+    }
+
+    /// Force that draws a point about to land down to the surface, so that the Newton step ends
+    /// there: that of the spring of the surface if it could pull \[N\].
+    pub fn pull_down(&self, plane: &ContactPlane, point: Vec3) -> Option<Vec3> {
+        let depth = plane.depth_of(point);
+        (plane.landing && depth < 0.0).then(|| plane.gradient * (self.normal * depth))
     }
 
     /// Energy alone [J].
@@ -179,6 +221,8 @@ mod tests {
             bulge: Matrix3::zeros(),
             anchor: Vec3::new(0.101, 0.2, 0.299),
             lagged_normal_force: 0.3,
+            returning: false,
+            landing: false,
         }
     }
 
@@ -220,5 +264,62 @@ mod tests {
         assert!((slip.norm() * LAW.tangential - LAW.friction * force).abs() < 1e-12);
         let stuck = LAW.slide(&plane, plane.anchor + plane.normal * 0.01, 1.0);
         assert_eq!(stuck, plane.anchor);
+    }
+
+    /// A point at the limit of friction, touching and pressed, with the slip's direction.
+    fn at_limit() -> (ContactPlane, Vec3, Vec3) {
+        let plane = plane();
+        let along = Vec3::new(0.8, 0.0, -0.6);
+        let reach = LAW.friction * plane.lagged_normal_force / LAW.tangential;
+        let point = plane.anchor + along * reach;
+        assert!(along.dot(&plane.normal).abs() < 1e-12);
+        (plane, point, along)
+    }
+
+    #[test]
+    fn what_the_hessian_does_not_foresee_of_a_return_is_told() {
+        let (plane, point, along) = at_limit();
+        let (energy, gradient, hessian) = LAW.evaluate(&plane, point);
+        for step in [-1e-4, -5e-4, -2.5e-3, 0.0, 3e-4].map(|s| along * s) {
+            let quadratic = energy + gradient.dot(&step) + 0.5 * step.dot(&(hessian * step));
+            let more = LAW.energy(&plane, point + step) - quadratic;
+            let told = LAW.unforeseen_return(&plane, point, step);
+            assert!((more - told).abs() < 1e-12, "{step:?}: {more} {told}");
+        }
+        let returning = ContactPlane {
+            returning: true,
+            ..plane
+        };
+        assert_eq!(LAW.unforeseen_return(&returning, point, -along * 1e-4), 0.0);
+        let stuck = LAW.evaluate(&returning, point).2;
+        assert!((along.dot(&(stuck * along)) - LAW.tangential).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_the_hessian_does_not_foresee_of_a_landing_is_told_and_drawn_to_the_surface() {
+        let law = ContactLaw {
+            friction: 0.0,
+            ..LAW
+        };
+        let plane = plane();
+        let (above, step) = (
+            plane.point + plane.normal * 2e-3,
+            plane.normal * -5e-3 + Vec3::x() * 1e-3,
+        );
+        let told = law.unforeseen_landing(&plane, above, step);
+        assert!((told - law.energy(&plane, above + step)).abs() < 1e-15 && told > 0.0);
+        assert_eq!(law.unforeseen_landing(&plane, above, step * 0.1), 0.0);
+        assert_eq!(law.pull_down(&plane, above), None);
+        let landing = ContactPlane {
+            landing: true,
+            ..plane
+        };
+        let pull = law.pull_down(&landing, above).unwrap();
+        let (_, gradient, hessian) = law.evaluate(&landing, above);
+        assert_eq!(gradient, Vec3::zeros());
+        // The spring alone ends on the surface.
+        let fall = plane.normal * (plane.normal.dot(&pull) / law.normal);
+        assert!((hessian * fall - pull).norm() < 1e-9);
+        assert!(landing.depth_of(above + fall).abs() < 1e-12);
     }
 }

@@ -30,6 +30,23 @@ impl Curvature {
     pub const EXACT: Self = Self(1.0);
     /// None that could make the Hessian indefinite.
     pub const CONVEX: Self = Self(0.0);
+
+    /// Leaves out twice as much, and no less than [`Self::FINEST`]: what to try where a Hessian is
+    /// not positive definite.
+    pub fn less(self) -> Self {
+        let left_out = (2.0 * (1.0 - self.0)).max(Self::FINEST);
+        Self((1.0 - left_out).max(0.0))
+    }
+
+    /// Least share that is left out where not all of the curvature can be kept.
+    pub const FINEST: f64 = 0.02;
+}
+
+impl Default for Curvature {
+    /// None: what is always safe.
+    fn default() -> Self {
+        Self::CONVEX
+    }
 }
 
 /// Strain of a triangle along its directions.

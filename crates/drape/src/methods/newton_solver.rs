@@ -120,6 +120,7 @@ impl Solver for OneSolve {
             },
             iterations: 1000,
         });
+        workspace.turn_gradient();
         let linear_iterations = workspace.solve_linear(model, linear);
         for (x, d) in state.positions.iter_mut().zip(&workspace.direction) {
             *x += d;

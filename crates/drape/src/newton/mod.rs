@@ -6,11 +6,14 @@
 //! With w = m/h^2 and y = x_n + h v_n a minimum of Phi is a step of implicit Euler (Martin et al.
 //! 2011, equation 3). With y = x_n and growing h it is pseudo-transient continuation to rest.
 
+mod direction;
+mod foresight;
+
 use crate::collision::Couplings;
 use crate::contacts::Contacts;
 use crate::hessian::{Direct, Hessian};
 use crate::laws::membrane::Curvature;
-use crate::pcg::{BlockJacobi, Pcg, PcgLimits, System};
+use crate::pcg::{BlockJacobi, Pcg, PcgLimits};
 use crate::sparse::dot;
 use crate::step_terms::{StepTerms, add_forces_of_motion};
 use crate::{ElasticEnd, Model, State};
@@ -37,9 +40,10 @@ pub struct NewtonSettings {
     pub longest_move: f64,
     /// Limits of the linear solver.
     pub linear: LinearSolver,
-    /// Which Hessian is tried first; the convex one is always safe, the exact one converges
-    /// quadratically near rest and leaves saddles at once. Only factorisation can tell whether it
-    /// is positive definite: an iterative solver always takes the convex one.
+    /// Which Hessian is tried first, then ones with less of the destabilising curvature until one is
+    /// positive definite. The convex one is always safe, the exact one converges quadratically near
+    /// rest and leaves saddles at once. Only factorisation can tell whether it is positive definite:
+    /// an iterative solver always takes the convex one.
     pub curvature: Curvature,
 }
 
@@ -69,8 +73,8 @@ pub struct NewtonReport {
     pub moved: f64,
     /// Share of the last Newton step that the line search took.
     pub fraction: f64,
-    /// Whether the last direction came from the exact Hessian.
-    pub exact: bool,
+    /// What the Hessian that the last direction came from kept of the destabilising curvature.
+    pub curvature: Curvature,
     /// Whether every number stayed finite and the potential could be lowered.
     pub sound: bool,
 }
@@ -83,6 +87,7 @@ pub struct Workspace {
     pub(crate) gradient: Vec<Vec3>,
     pub(crate) direction: Vec<Vec3>,
     pub(crate) trial: Vec<Vec3>,
+    force: Vec<Vec3>,
     corner_gradients: Vec<[Vec3; 3]>,
     elements: Vec<[Matrix3<f64>; 6]>,
     diagonal: Vec<Matrix3<f64>>,
@@ -178,6 +183,7 @@ impl Workspace {
                 break;
             }
             report.iterations += 1;
+            self.turn_gradient();
             self.find_direction(model, &state.positions, inertia, settings, &mut report);
             self.limit_moves(settings.longest_move);
             self.bound_moves(model, &state.positions);
@@ -188,13 +194,7 @@ impl Workspace {
                 return report;
             }
             std::mem::swap(&mut state.positions, &mut self.trial);
-            let longest = self
-                .direction
-                .iter()
-                .map(Vec3::norm_squared)
-                .fold(0.0, f64::max)
-                .sqrt();
-            report.moved = longest * fraction;
+            report.moved = self.longest_direction() * fraction;
         }
         report
     }
@@ -396,138 +396,11 @@ impl Workspace {
         model.pattern.row_entries(row, &self.blocks)
     }
 
-    /// Finds the Newton direction: with the exact Hessian where that is asked for and is positive
-    /// definite, else with its convex part. `gradient` then holds its negative.
-    fn find_direction(
-        &mut self,
-        model: &Model,
-        x: &[Vec3],
-        inertia: &Inertia,
-        settings: &NewtonSettings,
-        report: &mut NewtonReport,
-    ) {
-        report.exact = false;
-        let direct = matches!(settings.linear, LinearSolver::Direct { .. });
-        if direct && settings.curvature != Curvature::CONVEX {
-            self.fill_hessian(model, x, inertia, settings.curvature);
-            report.exact = self.solve_directly(model);
-        }
-        if !report.exact {
-            self.fill_hessian(model, x, inertia, Curvature::CONVEX);
-            report.linear_iterations += self.solve_linear(model, settings.linear);
-            return;
-        }
-        for (g, d) in self.gradient.iter_mut().zip(&mut self.direction) {
-            *g = -*g;
-            *d = -*d;
-        }
-    }
-
-    /// Solves for the Newton direction; returns the iterations taken. `gradient` then holds its
-    /// negative.
-    pub(crate) fn solve_linear(&mut self, model: &Model, limits: LinearSolver) -> usize {
-        for g in &mut self.gradient {
-            *g = -*g;
-        }
-        let limits = match limits {
-            LinearSolver::Iterative(limits) => limits,
-            LinearSolver::Direct { otherwise } => {
-                if self.solve_directly(model) {
-                    return 0;
-                }
-                otherwise
-            }
-        };
-        let hessian = Hessian {
-            model,
-            bending: self.terms.bending(model),
-            blocks: &self.blocks,
-            secants: &self.secants,
-            touching: &self.touching,
-        };
-        self.jacobi
-            .refresh(&model.pinned, |row| hessian.diagonal(row));
-        let system = System {
-            b: &self.gradient,
-            fixed: &model.pinned,
-            row: |row, p: &[Vec3]| hessian.row_times(row, p),
-        };
-        self.pcg
-            .solve(&system, &mut self.jacobi, limits, &mut self.direction)
-    }
-
-    /// Solves for `gradient` by factorisation; false when the matrix is not positive definite.
-    fn solve_directly(&mut self, model: &Model) -> bool {
-        let fits = |direct: &Direct| direct.fits(model, &self.touching);
-        let direct = match self.direct.take().filter(fits) {
-            Some(direct) => self.direct.insert(direct),
-            None => {
-                let near = self.contacts.cloth.couples();
-                self.direct.insert(Direct::new(model, &model.layout, &near))
-            }
-        };
-        let hessian = Hessian {
-            model,
-            bending: self.terms.bending(model),
-            blocks: &self.blocks,
-            secants: &self.secants,
-            touching: &self.touching,
-        };
-        direct.solve(&hessian, &self.gradient, &mut self.direction)
-    }
-
-    /// Shortens the whole direction so that no vertex moves farther than `longest` [m].
-    fn limit_moves(&mut self, longest: f64) {
-        let most = self
-            .direction
-            .iter()
-            .map(Vec3::norm_squared)
-            .fold(0.0, f64::max)
-            .sqrt();
-        if most > longest {
-            let scale = longest / most;
-            for d in &mut self.direction {
-                *d *= scale;
-            }
-        }
-    }
-
-    /// Shortens the direction where cloth would pass through cloth: vertex by vertex, or, where that
-    /// would no longer lower the potential, as a whole.
-    fn bound_moves(&mut self, model: &Model, x: &[Vec3]) {
-        if model.contact.cloth_offset <= 0.0 {
-            return;
-        }
-        self.trial.clone_from(&self.direction);
-        let held = self.contacts.cloth.bound(model, x, &mut self.direction);
-        // `gradient` holds its negative after the linear solve.
-        if held == 0 || dot(&self.gradient, &self.direction) > 0.0 {
-            return;
-        }
-        let share = |(whole, cut): (&Vec3, &Vec3)| {
-            let length = whole.norm();
-            if length > 0.0 {
-                cut.norm() / length
-            } else {
-                1.0
-            }
-        };
-        let least = self
-            .trial
-            .iter()
-            .zip(&self.direction)
-            .map(share)
-            .fold(1.0, f64::min);
-        for (d, whole) in self.direction.iter_mut().zip(&self.trial) {
-            *d = whole * least;
-        }
-    }
-
     /// Halves the direction until the potential falls enough; the new positions are in `trial`.
     /// Returns the share taken, 0 when none lowers the potential.
     fn line_search(&mut self, model: &Model, x: &[Vec3], inertia: &Inertia) -> f64 {
         let start = self.potential(model, x, inertia);
-        // `gradient` holds its negative after the linear solve.
+        // `gradient` holds its negative.
         let slope = -dot(&self.gradient, &self.direction);
         let mut fraction = 1.0;
         for _ in 0..HALVINGS {
@@ -543,6 +416,12 @@ impl Workspace {
             fraction *= 0.5;
         }
         0.0
+    }
+
+    /// Longest move of a vertex in the direction [m].
+    fn longest_direction(&self) -> f64 {
+        let squares = self.direction.iter().map(Vec3::norm_squared);
+        squares.fold(0.0, f64::max).sqrt()
     }
 }
 
