@@ -85,6 +85,39 @@ struct Pair {
     gap: f64,
 }
 
+/// All that a query of one pair of shapes needs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PairQuery<'a> {
+    no_fit: &'a NoFit,
+    axes: [Vec2; 2],
+    shift: Vec2,
+    gap: f64,
+}
+
+impl PairQuery<'_> {
+    /// Where the moving shape lies to the fixed one at a move from it, and the gap they need;
+    /// nothing if they are farther apart than the window.
+    #[inline]
+    pub fn probe(&self, apart: Vec2) -> Option<(Probe, f64)> {
+        let [x, y] = self.axes;
+        let at = Vec2::new(apart.dot(&x), apart.dot(&y)) + self.shift;
+        let mut probe = self.no_fit.probe(at)?;
+        probe.normal = x * probe.normal.x + y * probe.normal.y;
+        Some((probe, self.gap))
+    }
+
+    /// How much nearer than allowed the moving shape lies to the fixed one \[m\], 0 or more.
+    #[inline]
+    pub fn loss(&self, apart: Vec2) -> f64 {
+        let [x, y] = self.axes;
+        let at = Vec2::new(apart.dot(&x), apart.dot(&y)) + self.shift;
+        match self.no_fit.probe(at) {
+            Some(probe) => (probe.depth + self.gap).max(0.0),
+            None => 0.0,
+        }
+    }
+}
+
 /// Kinds, angle between them \[rad\], and whether one of them is turned over.
 type Key = (usize, usize, f64, bool);
 
@@ -372,34 +405,22 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Where a moving shape lies to a fixed one at a move from it, and the gap they need; nothing
-    /// if they are farther apart than the window, or may overlap.
+    /// The pair of a fixed and a moving shape; nothing if they may overlap.
     #[inline]
-    pub fn probe(&self, fixed: usize, moving: usize, apart: Vec2) -> Option<(Probe, f64)> {
+    pub fn pair(&self, fixed: usize, moving: usize) -> Option<PairQuery<'_>> {
         let pair = &self.pairs[fixed * self.shapes.len() + moving];
-        if pair.gap < 0.0 {
-            return None;
-        }
-        let [x, y] = pair.axes;
-        let at = Vec2::new(apart.dot(&x), apart.dot(&y)) + pair.shift;
-        let mut probe = self.no_fit(pair.no_fit).probe(at)?;
-        probe.normal = x * probe.normal.x + y * probe.normal.y;
-        Some((probe, pair.gap))
+        (pair.gap >= 0.0).then(|| PairQuery {
+            no_fit: self.no_fit(pair.no_fit),
+            axes: pair.axes,
+            shift: pair.shift,
+            gap: pair.gap,
+        })
     }
 
     /// How much nearer than allowed a moving shape lies to a fixed one \[m\], 0 or more.
     #[inline]
     pub fn loss(&self, fixed: usize, moving: usize, apart: Vec2) -> f64 {
-        let pair = &self.pairs[fixed * self.shapes.len() + moving];
-        if pair.gap < 0.0 {
-            return 0.0;
-        }
-        let [x, y] = pair.axes;
-        let at = Vec2::new(apart.dot(&x), apart.dot(&y)) + pair.shift;
-        match self.no_fit(pair.no_fit).probe(at) {
-            Some(probe) => (probe.depth + pair.gap).max(0.0),
-            None => 0.0,
-        }
+        self.pair(fixed, moving).map_or(0.0, |pair| pair.loss(apart))
     }
 
     /// The losses of a moving shape at regular moves from a fixed one.
@@ -556,7 +577,7 @@ mod tests {
                     } else {
                         -fixed.distance(&moving)
                     };
-                    match job.probe(a, b, apart) {
+                    match job.pair(a, b).and_then(|pair| pair.probe(apart)) {
                         Some((probe, _)) => {
                             let off = (probe.depth - exact).abs();
                             assert!(off < 1e-7, "{a} {b} {apart}: {} {exact}", probe.depth);

@@ -3,11 +3,13 @@
 
 use crate::job::Job;
 use crate::sequence::Sequence;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use toile_geometry::Vec2;
 
 /// Side of the blocks of which each yields its best cell.
 const BLOCK: usize = 8;
+/// Numbers added at once: rows of rasters and maps are padded to whole groups.
+const LANES: usize = 16;
 /// Part by which chance may raise a cell's score.
 const CHANCE: f32 = 0.1;
 
@@ -17,7 +19,14 @@ pub(crate) struct DepthRaster {
     /// First column and row, in cells from no move.
     first: [i32; 2],
     columns: usize,
+    /// Numbers from row to row: the columns, then zeros to at least one whole group more.
+    stride: usize,
     values: Vec<f32>,
+}
+
+/// Length of a padded row.
+fn padded(columns: usize) -> usize {
+    columns.next_multiple_of(LANES) + LANES
 }
 
 impl DepthRaster {
@@ -31,7 +40,8 @@ impl DepthRaster {
             (high(0) - low(0) + 1) as usize,
             (high(1) - low(1) + 1) as usize,
         );
-        let mut values = Vec::with_capacity(columns * rows);
+        let stride = padded(columns);
+        let mut values = Vec::with_capacity(stride * rows);
         for row in 0..rows {
             for column in 0..columns {
                 let cell = Vec2::new(
@@ -40,10 +50,12 @@ impl DepthRaster {
                 );
                 values.push(job.loss(fixed, moving, cell * job.spacing) as f32);
             }
+            values.resize((row + 1) * stride, 0.0);
         }
         Self {
             first: [low(0), low(1)],
             columns,
+            stride,
             values,
         }
     }
@@ -53,6 +65,8 @@ impl DepthRaster {
 pub(crate) struct LossMap {
     columns: usize,
     rows: usize,
+    /// Numbers from row to row; those after the columns mean nothing.
+    stride: usize,
     values: Vec<f32>,
     /// Least value of each column of a row of blocks.
     least: Vec<f32>,
@@ -74,6 +88,7 @@ impl LossMap {
         Self {
             columns: 0,
             rows: 0,
+            stride: 0,
             values: Vec::new(),
             least: Vec::new(),
             arch: Arch::new(),
@@ -83,8 +98,9 @@ impl LossMap {
     /// No loss anywhere in a room of an extent \[cells\].
     pub fn clear(&mut self, columns: usize, rows: usize) {
         (self.columns, self.rows) = (columns, rows);
+        self.stride = padded(columns);
         self.values.clear();
-        self.values.resize(columns * rows, 0.0);
+        self.values.resize(self.stride * rows, 0.0);
     }
 
     /// Adds a raster times a weight, with no move at a cell.
@@ -93,23 +109,21 @@ impl LossMap {
         let low = raster.first[1] + cell[1];
         let start = left.max(0);
         let end = (left + raster.columns as i32).min(self.columns as i32);
-        let rows = (raster.values.len() / raster.columns) as i32;
+        let rows = (raster.values.len() / raster.stride) as i32;
         let (first, last) = (low.max(0), (low + rows).min(self.rows as i32));
         if start >= end || first >= last {
             return;
         }
-        let (columns, values) = (self.columns, &mut self.values);
-        self.arch.dispatch(|| {
-            for row in first..last {
-                let to = row as usize * columns + start as usize;
-                let from = (row - low) as usize * raster.columns + (start - left) as usize;
-                let count = (end - start) as usize;
-                let target = &mut values[to..to + count];
-                let source = &raster.values[from..from + count];
-                for (value, add) in target.iter_mut().zip(source) {
-                    *value += weight * add;
-                }
-            }
+        let count = ((end - start) as usize).next_multiple_of(LANES);
+        let to = first as usize * self.stride + start as usize;
+        let from = (first - low) as usize * raster.stride + (start - left) as usize;
+        self.arch.dispatch(AddRows {
+            target: &mut self.values[to..],
+            source: &raster.values[from..],
+            strides: [self.stride, raster.stride],
+            count,
+            rows: (last - first) as usize,
+            weight,
         });
     }
 
@@ -147,7 +161,7 @@ impl LossMap {
                     continue;
                 }
                 let is_it = |&(row, column): &(usize, usize)| {
-                    self.values[row * self.columns + column] == least
+                    self.values[row * self.stride + column] == least
                 };
                 let mut cells = (low..high).flat_map(|row| (left..right).map(move |c| (row, c)));
                 let Some((row, column)) = cells.find(is_it) else {
@@ -167,16 +181,63 @@ impl LossMap {
 
     /// The least value of each column between two rows.
     fn least_of_rows(&mut self, low: usize, high: usize) {
-        let (columns, values, least) = (self.columns, &self.values, &mut self.least);
-        least.clear();
-        least.extend_from_slice(&values[low * columns..(low + 1) * columns]);
-        self.arch.dispatch(|| {
-            for row in low + 1..high {
-                let line = &values[row * columns..(row + 1) * columns];
-                for (least, &value) in least.iter_mut().zip(line) {
-                    *least = if value < *least { value } else { *least };
-                }
-            }
+        self.least.clear();
+        self.least.resize(self.stride, f32::INFINITY);
+        self.arch.dispatch(LeastOfRows {
+            values: &self.values[low * self.stride..high * self.stride],
+            least: &mut self.least,
         });
+    }
+}
+
+/// Adds rows of one table, times a weight, to rows of another.
+struct AddRows<'a> {
+    target: &'a mut [f32],
+    source: &'a [f32],
+    /// Numbers from row to row of the target and of the source.
+    strides: [usize; 2],
+    /// Numbers of a row, whole groups.
+    count: usize,
+    rows: usize,
+    weight: f32,
+}
+
+impl WithSimd for AddRows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let weight = simd.splat_f32s(self.weight);
+        for row in 0..self.rows {
+            let target = &mut self.target[row * self.strides[0]..][..self.count];
+            let source = &self.source[row * self.strides[1]..][..self.count];
+            let (target, _) = S::as_mut_simd_f32s(target);
+            let (source, _) = S::as_simd_f32s(source);
+            for (target, &source) in target.iter_mut().zip(source) {
+                *target = simd.add_f32s(*target, simd.mul_f32s(weight, source));
+            }
+        }
+    }
+}
+
+/// The least number of each column.
+struct LeastOfRows<'a> {
+    values: &'a [f32],
+    least: &'a mut [f32],
+}
+
+impl WithSimd for LeastOfRows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let stride = self.least.len();
+        let (least, _) = S::as_mut_simd_f32s(self.least);
+        for row in self.values.chunks_exact(stride) {
+            let (row, _) = S::as_simd_f32s(row);
+            for (least, &value) in least.iter_mut().zip(row) {
+                *least = simd.min_f32s(*least, value);
+            }
+        }
     }
 }

@@ -4,7 +4,7 @@
 //! lies where two pieces touch, or one piece and an edge of the fabric, or where one ramp ends.
 //! Those points are tried, and from the best one again.
 
-use crate::job::{Axis, Job};
+use crate::job::{Axis, Job, PairQuery};
 use crate::layout::Layout;
 use toile_geometry::Vec2;
 
@@ -12,12 +12,17 @@ use toile_geometry::Vec2;
 const STEPS: usize = 8;
 /// Most pieces looked at around a place.
 const LINES: usize = 8;
+/// Most points tried at every step, the most promising first.
+const TRIALS: usize = 4;
+/// Longest step over the width of the fabric.
+const REACH: f64 = 0.25;
 
 /// The line on which the moving piece just touches another: `normal . move = level`.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     normal: Vec2,
     level: f64,
+    weight: f64,
     /// Weighted loss; 0 for one that is only near.
     loss: f64,
     /// How far the line is from the place \[m\].
@@ -25,42 +30,78 @@ struct Line {
 }
 
 /// A piece that may move among the others.
-pub(crate) struct Mover<'a> {
-    pub job: &'a Job<'a>,
+pub(crate) struct Mover<'a, 'j> {
+    pub job: &'j Job<'j>,
     pub layout: &'a Layout,
     pub piece: usize,
     /// Weights of this piece's pairs.
     pub weights: &'a [f64],
     /// Queries made.
     pub queries: u64,
+    pub scratch: &'a mut Scratch<'j>,
 }
 
-impl Mover<'_> {
-    /// How far a place lies from another piece, where the box of a piece of `size` there comes
-    /// nearer than `more` to its box [m].
-    #[inline(always)]
-    fn near(&self, other: usize, at: Vec2, size: Vec2, more: f64) -> Option<Vec2> {
-        let apart = at - self.layout.at[other];
-        let far = self.layout.size[other];
-        let meets = apart.x < far.x + more
-            && apart.y < far.y + more
-            && apart.x > -size.x - more
-            && apart.y > -size.y - more;
-        (meets && other != self.piece).then_some(apart)
+/// Another piece within reach of a place.
+#[derive(Clone, Copy, Debug)]
+struct Neighbour<'a> {
+    at: Vec2,
+    /// Extent \[m\].
+    size: Vec2,
+    weight: f64,
+    pair: PairQuery<'a>,
+}
+
+/// Lists used again and again.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch<'a> {
+    neighbours: Vec<Neighbour<'a>>,
+    lines: Vec<Line>,
+    targets: Vec<(f64, Vec2)>,
+}
+
+impl Mover<'_, '_> {
+    /// Finds the pieces that a shape can meet no farther than `reach` from a place \[m\].
+    pub fn gather(&mut self, shape: usize, at: Vec2, reach: f64) {
+        let size = self.job.shapes[shape].size;
+        let neighbours = &mut self.scratch.neighbours;
+        neighbours.clear();
+        let layout = self.layout;
+        for other in 0..layout.at.len() {
+            let (place, far) = (layout.at[other], layout.size[other]);
+            let apart = at - place;
+            let meets = apart.x < far.x + reach
+                && apart.y < far.y + reach
+                && apart.x > -size.x - reach
+                && apart.y > -size.y - reach;
+            if !meets || other == self.piece {
+                continue;
+            }
+            neighbours.extend(self.job.pair(layout.shape[other], shape).map(|pair| Neighbour {
+                at: place,
+                size: far,
+                weight: self.weights[other],
+                pair,
+            }));
+        }
     }
 
-    /// Weighted loss at a place, or something above `limit` as soon as it is.
+    /// Weighted loss at a place within reach, or something above `limit` as soon as it is.
     #[inline]
     pub fn loss(&mut self, shape: usize, at: Vec2, limit: f64) -> f64 {
         let size = self.job.shapes[shape].size;
         let more = self.job.widest_gap + self.job.growth();
         let mut sum = 0.0;
-        for other in 0..self.layout.at.len() {
-            let Some(apart) = self.near(other, at, size, more) else {
+        for near in &self.scratch.neighbours {
+            let apart = at - near.at;
+            let meets = apart.x < near.size.x + more
+                && apart.y < near.size.y + more
+                && apart.x > -size.x - more
+                && apart.y > -size.y - more;
+            if !meets {
                 continue;
-            };
+            }
             self.queries += 1;
-            sum += self.weights[other] * self.job.loss(self.layout.shape[other], shape, apart);
+            sum += near.weight * near.pair.loss(apart);
             if sum > limit {
                 break;
             }
@@ -69,35 +110,41 @@ impl Mover<'_> {
     }
 
     /// The loss at a place and the lines round it, the heaviest first.
-    fn lines(&mut self, shape: usize, at: Vec2, lines: &mut Vec<Line>) -> f64 {
-        lines.clear();
+    fn lines(&mut self, shape: usize, at: Vec2) -> f64 {
         let size = self.job.shapes[shape].size;
         let window = self.job.window();
         let more = self.job.widest_gap + window;
         let mut sum = 0.0;
-        for other in 0..self.layout.at.len() {
-            let Some(apart) = self.near(other, at, size, more) else {
+        let Scratch { neighbours, lines, .. } = &mut *self.scratch;
+        lines.clear();
+        for near in neighbours.iter() {
+            let apart = at - near.at;
+            let meets = apart.x < near.size.x + more
+                && apart.y < near.size.y + more
+                && apart.x > -size.x - more
+                && apart.y > -size.y - more;
+            if !meets {
                 continue;
-            };
+            }
             self.queries += 1;
-            let Some((probe, gap)) = self.job.probe(self.layout.shape[other], shape, apart) else {
+            let Some((probe, gap)) = near.pair.probe(apart) else {
                 continue;
             };
             let loss = probe.depth + gap;
             if loss < -window {
                 continue;
             }
-            let weighted = self.weights[other] * loss.max(0.0);
+            let weighted = near.weight * loss.max(0.0);
             sum += weighted;
             lines.push(Line {
                 normal: probe.normal,
                 level: probe.normal.dot(&at) + loss,
+                weight: near.weight,
                 loss: weighted,
                 apart: loss.abs(),
             });
         }
         lines.sort_by(|a, b| b.loss.total_cmp(&a.loss).then(a.apart.total_cmp(&b.apart)));
-        lines.truncate(LINES);
         sum
     }
 
@@ -106,17 +153,26 @@ impl Mover<'_> {
         let room = self.layout.room(self.job, shape)?;
         let axes = self.job.axes(self.piece, shape, &self.layout.phases);
         let mut at = self.layout.settle(self.job, self.piece, shape, from)?;
-        let mut lines = Vec::with_capacity(2 * LINES);
-        let mut targets = Vec::with_capacity(64);
-        let mut best = self.lines(shape, at, &mut lines);
+        let reach = REACH * self.job.height;
+        let around = reach + self.job.widest_gap + self.job.window();
+        self.gather(shape, at, around);
+        let mut best = self.lines(shape, at);
         for _ in 0..STEPS {
             if best <= 0.0 {
                 break;
             }
+            let enough = best * (1.0 - 1e-9);
+            let Scratch { lines, targets, .. } = &mut *self.scratch;
             targets.clear();
-            propose(&lines, at, (room, axes), &mut targets);
+            propose(lines, (at, reach), (room, axes), targets);
             let mut next = None;
-            for &target in &targets {
+            for _ in 0..TRIALS {
+                let Some((guess, target)) = least(&mut self.scratch.targets) else {
+                    break;
+                };
+                if guess >= best * (1.0 - 1e-9) {
+                    break;
+                }
                 let Some(target) = self.layout.settle(self.job, self.piece, shape, target) else {
                     continue;
                 };
@@ -126,29 +182,48 @@ impl Mover<'_> {
                     next = Some(target);
                 }
             }
-            let Some(next) = next else {
+            let Some(next) = next.filter(|_| best < enough) else {
                 break;
             };
             at = next;
-            best = self.lines(shape, at, &mut lines);
+            self.gather(shape, at, around);
+            best = self.lines(shape, at);
         }
         Some((best, at))
     }
 }
 
-/// Points near a place where lines end or cross.
-fn propose(lines: &[Line], at: Vec2, (room, axes): (Vec2, [Axis; 2]), targets: &mut Vec<Vec2>) {
+/// Takes the most promising target out of a list.
+fn least(targets: &mut Vec<(f64, Vec2)>) -> Option<(f64, Vec2)> {
+    let best = (0..targets.len()).min_by(|&a, &b| targets[a].0.total_cmp(&targets[b].0))?;
+    Some(targets.swap_remove(best))
+}
+
+/// Points near a place where lines end or cross, with what they would lose if the lines went on
+/// straight.
+fn propose(
+    lines: &[Line],
+    (at, reach): (Vec2, f64),
+    (room, axes): (Vec2, [Axis; 2]),
+    targets: &mut Vec<(f64, Vec2)>,
+) {
     let farthest = lines
         .iter()
         .filter(|l| l.loss > 0.0)
         .map(|l| l.apart)
         .fold(0.0, f64::max);
-    let radius = 4.0 * farthest;
-    let near = |p: &Vec2| (p - at).norm_squared() <= radius * radius;
-    for (k, line) in lines.iter().enumerate() {
+    let radius = (4.0 * farthest).min(reach);
+    let mut add = |target: Vec2| {
+        let target = target.sup(&Vec2::zeros()).inf(&room);
+        if (target - at).norm_squared() <= radius * radius {
+            let ramp = |l: &Line| l.weight * (l.level - l.normal.dot(&target)).max(0.0);
+            targets.push((lines.iter().map(ramp).sum(), target));
+        }
+    };
+    for (k, line) in lines.iter().take(LINES).enumerate() {
         let missing = line.level - line.normal.dot(&at);
         if line.loss > 0.0 {
-            targets.push(at + line.normal * missing);
+            add(at + line.normal * missing);
         }
         // Along the axes: to the line, for pieces that may move along one only.
         for axis in 0..2 {
@@ -156,29 +231,29 @@ fn propose(lines: &[Line], at: Vec2, (room, axes): (Vec2, [Axis; 2]), targets: &
             if (held || line.loss > 0.0) && line.normal[axis].abs() > 1e-3 {
                 let mut target = at;
                 target[axis] += missing / line.normal[axis];
-                targets.extend(Some(target).filter(near));
+                add(target);
             }
         }
-        for other in &lines[k + 1..] {
-            if line.loss <= 0.0 {
-                break;
-            }
+        if line.loss <= 0.0 {
+            continue;
+        }
+        for other in lines.iter().take(LINES).skip(k + 1) {
             let cross = line.normal.perp(&other.normal);
             if cross.abs() > 1e-3 {
                 let x = line.level * other.normal.y - other.level * line.normal.y;
                 let y = other.level * line.normal.x - line.level * other.normal.x;
-                targets.extend(Some(Vec2::new(x, y) / cross).filter(near));
+                add(Vec2::new(x, y) / cross);
             }
         }
         // Where the line meets an edge of the fabric.
         for axis in 0..2 {
             for wall in [0.0, room[axis]] {
                 let other = 1 - axis;
-                if line.loss > 0.0 && line.normal[other].abs() > 1e-3 {
+                if line.normal[other].abs() > 1e-3 {
                     let mut target = Vec2::zeros();
                     target[axis] = wall;
                     target[other] = (line.level - line.normal[axis] * wall) / line.normal[other];
-                    targets.extend(Some(target).filter(near));
+                    add(target);
                 }
             }
         }

@@ -5,7 +5,7 @@
 use crate::job::Job;
 use crate::layout::Layout;
 use crate::raster::{Candidate, LossMap};
-use crate::refine::Mover;
+use crate::refine::{Mover, Scratch};
 use crate::sequence::Sequence;
 use toile_geometry::Vec2;
 
@@ -51,6 +51,7 @@ pub(crate) struct Separator<'a> {
     losses: Vec<f64>,
     map: LossMap,
     found: Vec<Candidate>,
+    pub(crate) scratch: Scratch<'a>,
 }
 
 impl<'a> Separator<'a> {
@@ -65,6 +66,7 @@ impl<'a> Separator<'a> {
             losses: Vec::new(),
             map: LossMap::new(),
             found: Vec::new(),
+            scratch: Scratch::default(),
             layout: layout.clone(),
         };
         separator.load(layout);
@@ -186,6 +188,7 @@ impl<'a> Separator<'a> {
             piece,
             weights: &self.weights[piece * count..][..count],
             queries: 0,
+            scratch: &mut self.scratch,
         };
         let here = (self.layout.shape[piece], self.layout.at[piece]);
         let here = Some(here).filter(|_| self.layout.present[piece]);

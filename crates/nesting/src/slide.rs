@@ -25,8 +25,11 @@ impl Separator<'_> {
                     piece,
                     weights: &even,
                     queries: 0,
+                    scratch: &mut self.scratch,
                 };
                 let shape = self.layout.shape[piece];
+                let far = self.layout.length;
+                mover.gather(shape, self.layout.at[piece], far);
                 let mut at = self.layout.at[piece];
                 let loss = mover.loss(shape, at, f64::INFINITY);
                 let mut step = STEPS[0] * self.job.height;
