@@ -3,7 +3,7 @@
 
 use crate::job::Job;
 use crate::layout::Layout;
-use crate::separate::{Limit, Patience, Separator};
+use crate::separate::{Limit, Outcome, Patience, Separator};
 use crate::sequence::Sequence;
 use toile_geometry::Vec2;
 
@@ -68,11 +68,14 @@ impl<'a> Island<'a> {
             .map_or((f64::INFINITY, f64::INFINITY), score)
     }
 
-    /// Takes a better layout from elsewhere.
+    /// Takes a better layout from elsewhere. A try for a strip shorter still goes on.
     pub fn adopt(&mut self, layout: &Layout) {
         self.best = Some(layout.clone());
-        self.pool.clear();
-        self.target = 0.0;
+        if self.target >= layout.length {
+            self.separator.give_up();
+            self.pool.clear();
+            self.target = 0.0;
+        }
     }
 
     /// Keeps the layout in hand as the best.
@@ -96,18 +99,22 @@ impl<'a> Island<'a> {
                 self.insert(limit);
                 continue;
             }
-            if self.target <= 0.0 || self.target >= best.length {
-                self.target = best.length * (1.0 - self.step);
-                self.shorten(self.target);
-            } else {
-                self.restart();
+            if !self.separator.is_paused() {
+                if self.target <= 0.0 {
+                    self.target = best.length * (1.0 - self.step);
+                    self.shorten(self.target);
+                } else {
+                    self.restart();
+                }
             }
-            if self.separator.separate(EXPLORE, limit) {
-                self.keep();
-                self.target = 0.0;
-                self.step = (self.step * 1.25).min(STEPS[0]);
-            } else if !self.is_over(limit) {
-                self.fail();
+            match self.separator.separate(EXPLORE, limit) {
+                Outcome::Apart => {
+                    self.keep();
+                    self.target = 0.0;
+                    self.step = (self.step * 1.25).min(STEPS[0]);
+                }
+                Outcome::Failed => self.fail(),
+                Outcome::Paused => {}
             }
         }
     }
@@ -178,17 +185,18 @@ impl<'a> Island<'a> {
                 self.insert(limit);
                 continue;
             }
-            let done = done(self.separator.queries).clamp(0.0, 1.0);
-            let step = PRESSES[0] * (PRESSES[1] / PRESSES[0]).powf(done);
-            let target = best.length * (1.0 - step);
-            self.shorten(target);
-            if self.separator.separate(PRESS, limit) {
-                self.keep();
-            } else {
-                self.failures += 1;
+            if !self.separator.is_paused() {
+                let done = done(self.separator.queries).clamp(0.0, 1.0);
+                let step = PRESSES[0] * (PRESSES[1] / PRESSES[0]).powf(done);
+                self.target = best.length * (1.0 - step);
+                self.shorten(self.target);
+            }
+            match self.separator.separate(PRESS, limit) {
+                Outcome::Apart => self.keep(),
+                Outcome::Failed => self.failures += 1,
+                Outcome::Paused => {}
             }
         }
-        self.target = 0.0;
     }
 
     /// Moves the pieces of the best layout that touch within rounding truly apart, where there is
@@ -209,7 +217,7 @@ impl<'a> Island<'a> {
             layout.length = (best.length + more * job.height).min(job.longest());
             layout.length = layout.length.max(best.length);
             self.separator.load(layout);
-            if self.separator.separate(PRESS, &limit) {
+            if self.separator.separate(PRESS, &limit) == Outcome::Apart {
                 self.keep();
                 break;
             }

@@ -420,7 +420,8 @@ impl<'a> Job<'a> {
     /// How much nearer than allowed a moving shape lies to a fixed one \[m\], 0 or more.
     #[inline]
     pub fn loss(&self, fixed: usize, moving: usize, apart: Vec2) -> f64 {
-        self.pair(fixed, moving).map_or(0.0, |pair| pair.loss(apart))
+        self.pair(fixed, moving)
+            .map_or(0.0, |pair| pair.loss(apart))
     }
 
     /// The losses of a moving shape at regular moves from a fixed one.

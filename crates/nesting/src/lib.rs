@@ -4,7 +4,7 @@
 //! The strip runs along +x: x is the warp (the length of the roll) from 0, y the weft from one
 //! selvedge at 0 to the other at the width. A piece's own grain is turned to lie along +x.
 //!
-//! [`make_marker`] lays the pieces; [`judge`] checks any marker on the original outlines and
+//! [`make_marker`] lays the pieces, [`improve_marker`] goes on from a marker; [`judge`] checks any marker on the original outlines and
 //! shares no code with the placing but the geometry.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
@@ -25,6 +25,7 @@ mod sequence;
 mod simplify;
 mod slide;
 mod start;
+mod warm;
 
 pub use check::{ItemProblem, NestingError, Refusal};
 pub use marker::{
@@ -33,4 +34,4 @@ pub use marker::{
 };
 pub use referee::{PENETRATION_LIMIT, Side, Verdict, Violation, judge};
 pub use rolls::{RollMarker, RolledOut, make_markers_on_rolls};
-pub use search::{Budget, Control, Progress, Search, make_marker};
+pub use search::{Budget, Control, Progress, Search, improve_marker, make_marker};

@@ -13,9 +13,11 @@ const STEPS: usize = 8;
 /// Most pieces looked at around a place.
 const LINES: usize = 8;
 /// Most points tried at every step, the most promising first.
-const TRIALS: usize = 4;
-/// Longest step over the width of the fabric.
-const REACH: f64 = 0.25;
+const TRIALS: usize = 8;
+/// How far around a place other pieces are listed at first, over the width of the fabric.
+const REACH: f64 = 0.1;
+/// Longest step over the deepest overlap.
+const STRIDE: f64 = 4.0;
 
 /// The line on which the moving piece just touches another: `normal . move = level`.
 #[derive(Clone, Copy, Debug)]
@@ -76,12 +78,16 @@ impl Mover<'_, '_> {
             if !meets || other == self.piece {
                 continue;
             }
-            neighbours.extend(self.job.pair(layout.shape[other], shape).map(|pair| Neighbour {
-                at: place,
-                size: far,
-                weight: self.weights[other],
-                pair,
-            }));
+            neighbours.extend(
+                self.job
+                    .pair(layout.shape[other], shape)
+                    .map(|pair| Neighbour {
+                        at: place,
+                        size: far,
+                        weight: self.weights[other],
+                        pair,
+                    }),
+            );
         }
     }
 
@@ -115,7 +121,9 @@ impl Mover<'_, '_> {
         let window = self.job.window();
         let more = self.job.widest_gap + window;
         let mut sum = 0.0;
-        let Scratch { neighbours, lines, .. } = &mut *self.scratch;
+        let Scratch {
+            neighbours, lines, ..
+        } = &mut *self.scratch;
         lines.clear();
         for near in neighbours.iter() {
             let apart = at - near.at;
@@ -148,15 +156,25 @@ impl Mover<'_, '_> {
         sum
     }
 
+    /// Lists the lines round a place and all pieces within a step of it; the loss there.
+    fn look_around(&mut self, shape: usize, at: Vec2) -> f64 {
+        let near = self.job.widest_gap + self.job.window();
+        let listed = REACH * self.job.height;
+        self.gather(shape, at, listed + near);
+        let loss = self.lines(shape, at);
+        let step = longest_step(&self.scratch.lines);
+        if step > listed {
+            self.gather(shape, at, step + near);
+        }
+        loss
+    }
+
     /// The best place found near one, with its loss. Stops once it cannot be improved.
     pub fn refine(&mut self, shape: usize, from: Vec2) -> Option<(f64, Vec2)> {
         let room = self.layout.room(self.job, shape)?;
         let axes = self.job.axes(self.piece, shape, &self.layout.phases);
         let mut at = self.layout.settle(self.job, self.piece, shape, from)?;
-        let reach = REACH * self.job.height;
-        let around = reach + self.job.widest_gap + self.job.window();
-        self.gather(shape, at, around);
-        let mut best = self.lines(shape, at);
+        let mut best = self.look_around(shape, at);
         for _ in 0..STEPS {
             if best <= 0.0 {
                 break;
@@ -164,15 +182,12 @@ impl Mover<'_, '_> {
             let enough = best * (1.0 - 1e-9);
             let Scratch { lines, targets, .. } = &mut *self.scratch;
             targets.clear();
-            propose(lines, (at, reach), (room, axes), targets);
+            propose(lines, at, (room, axes), targets);
             let mut next = None;
             for _ in 0..TRIALS {
-                let Some((guess, target)) = least(&mut self.scratch.targets) else {
+                let Some(target) = least(&mut self.scratch.targets) else {
                     break;
                 };
-                if guess >= best * (1.0 - 1e-9) {
-                    break;
-                }
                 let Some(target) = self.layout.settle(self.job, self.piece, shape, target) else {
                     continue;
                 };
@@ -186,33 +201,32 @@ impl Mover<'_, '_> {
                 break;
             };
             at = next;
-            self.gather(shape, at, around);
-            best = self.lines(shape, at);
+            best = self.look_around(shape, at);
         }
         Some((best, at))
     }
 }
 
 /// Takes the most promising target out of a list.
-fn least(targets: &mut Vec<(f64, Vec2)>) -> Option<(f64, Vec2)> {
+fn least(targets: &mut Vec<(f64, Vec2)>) -> Option<Vec2> {
     let best = (0..targets.len()).min_by(|&a, &b| targets[a].0.total_cmp(&targets[b].0))?;
-    Some(targets.swap_remove(best))
+    Some(targets.swap_remove(best).1)
+}
+
+fn longest_step(lines: &[Line]) -> f64 {
+    let overlapping = lines.iter().filter(|l| l.loss > 0.0).map(|l| l.apart);
+    STRIDE * overlapping.fold(0.0, f64::max)
 }
 
 /// Points near a place where lines end or cross, with what they would lose if the lines went on
 /// straight.
 fn propose(
     lines: &[Line],
-    (at, reach): (Vec2, f64),
+    at: Vec2,
     (room, axes): (Vec2, [Axis; 2]),
     targets: &mut Vec<(f64, Vec2)>,
 ) {
-    let farthest = lines
-        .iter()
-        .filter(|l| l.loss > 0.0)
-        .map(|l| l.apart)
-        .fold(0.0, f64::max);
-    let radius = (4.0 * farthest).min(reach);
+    let radius = longest_step(lines);
     let mut add = |target: Vec2| {
         let target = target.sup(&Vec2::zeros()).inf(&room);
         if (target - at).norm_squared() <= radius * radius {

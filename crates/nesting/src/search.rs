@@ -5,7 +5,8 @@ use crate::explore::Island;
 use crate::job::Job;
 use crate::layout::Layout;
 use crate::separate::Limit;
-use crate::{Item, Marker, Placement, Strip, Unplaced, judge};
+use crate::warm::{finish, layout_of};
+use crate::{Item, Marker, Strip, judge};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -27,6 +28,8 @@ pub struct Search {
     pub seed: u64,
     /// Searches side by side; their number changes the marker, the number of processors does not.
     pub islands: usize,
+    /// Threads; 0 for as many as the machine has. More than there are islands are not used.
+    pub threads: usize,
 }
 
 impl Default for Search {
@@ -35,6 +38,7 @@ impl Default for Search {
             budget: Budget::Evaluations(10_000_000),
             seed: 1,
             islands: 2,
+            threads: 0,
         }
     }
 }
@@ -72,7 +76,8 @@ pub struct Progress {
 pub struct Control<'a> {
     /// Told now and then.
     pub progress: &'a mut dyn FnMut(Progress),
-    /// Set from anywhere to stop: the search ends with [`NestingError::Cancelled`].
+    /// Set from anywhere to stop: the search ends with the best marker so far, or with
+    /// [`NestingError::Cancelled`] if there is none yet.
     pub cancel: &'a AtomicBool,
 }
 
@@ -80,6 +85,8 @@ pub struct Control<'a> {
 const EXPLORING: f64 = 0.8;
 /// Evaluations of an island between two exchanges.
 const EPOCH: u64 = 3_000_000;
+/// Time between two exchanges where the clock decides \[s\].
+const EPOCH_SECONDS: f64 = 0.25;
 
 /// What was used and what is at hand.
 struct Meter<'a> {
@@ -106,6 +113,17 @@ impl Meter<'_> {
                     self.started.elapsed() > Duration::from_secs_f64((all * part).clamp(0.0, 1e9))
                 }
             }
+    }
+
+    /// When the next exchange is due, if the clock decides.
+    fn end_of_epoch(&self) -> Option<Instant> {
+        match self.search.budget {
+            Budget::Evaluations(_) => None,
+            Budget::Seconds(all) => {
+                let seconds = (all / 40.0).clamp(1e-3, EPOCH_SECONDS);
+                Some(Instant::now() + Duration::from_secs_f64(seconds))
+            }
+        }
     }
 
     /// Evaluations of one island when a part of the budget is used up.
@@ -146,6 +164,31 @@ pub fn make_marker(
     search: Search,
     control: &mut Control<'_>,
 ) -> Result<Marker, NestingError> {
+    run(items, strip, None, (search, control))
+}
+
+/// Goes on from a marker: one made before, stopped before its time, or changed by hand.
+///
+/// Pieces of the start may overlap, lie beside the strip, be turned otherwise than allowed, or be
+/// missing: they are taken apart, brought back, turned to the nearest orientation allowed, and
+/// laid. Locked copies lie where they are locked. Where the start is sound, the marker is no
+/// longer than it. Otherwise as [`make_marker`].
+pub fn improve_marker(
+    items: &[Item],
+    strip: &Strip,
+    start: &Marker,
+    search: Search,
+    control: &mut Control<'_>,
+) -> Result<Marker, NestingError> {
+    run(items, strip, Some(start), (search, control))
+}
+
+fn run(
+    items: &[Item],
+    strip: &Strip,
+    start: Option<&Marker>,
+    (search, control): (Search, &mut Control<'_>),
+) -> Result<Marker, NestingError> {
     check(items, strip)?;
     let meter = Meter {
         search,
@@ -156,83 +199,110 @@ pub fn make_marker(
         .flat_map(|k| (0..items[k].quantity).map(move |copy| (k, copy)))
         .collect();
     let job = Job::new(items, strip, &copies);
-    job.prepare(threads(), &|| control.cancel.load(Ordering::Relaxed));
-    let best = hunt(&job, &meter, control)?;
+    job.prepare(threads(search), &|| control.cancel.load(Ordering::Relaxed));
+    let layout = start.map(|marker| layout_of(&job, marker));
+    let best = hunt(&job, layout.as_ref(), &meter, control)?;
     let marker = finish(&job, &best);
+    if let Some(start) =
+        start.filter(|s| is_behind(&marker, s) && judge(items, strip, s).is_sound())
+    {
+        return Ok(start.clone());
+    }
     match judge(items, strip, &marker).violations.first() {
         None => Ok(marker),
         Some(violation) => Err(NestingError::Unsound(format!("{violation:?}"))),
     }
 }
 
-fn threads() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
+/// Whether a marker has less laid than another, or as much on more fabric.
+fn is_behind(marker: &Marker, other: &Marker) -> bool {
+    let (left, other_left) = (marker.unplaced.len(), other.unplaced.len());
+    left > other_left || (left == other_left && marker.length > other.length)
+}
+
+fn threads(search: Search) -> usize {
+    match search.threads {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        threads => threads,
+    }
+}
+
+/// Islands of a search, each with a seed of its own.
+fn islands<'a>(job: &'a Job<'a>, search: Search) -> Vec<Island<'a>> {
+    let seed = search.seed.wrapping_mul(0x1000_0000_01b3);
+    let count = search.islands.max(1) as u64;
+    (0..count)
+        .map(|k| Island::new(job, seed.wrapping_add(k)))
+        .collect()
 }
 
 fn hunt(
     job: &Job<'_>,
+    start: Option<&Layout>,
     meter: &Meter<'_>,
     control: &mut Control<'_>,
 ) -> Result<Layout, NestingError> {
-    let count = meter.search.islands.max(1) as u64;
-    let seeds = (0..count).map(|k| {
-        meter
-            .search
-            .seed
-            .wrapping_mul(0x1000_0000_01b3)
-            .wrapping_add(k)
-    });
-    let mut islands: Vec<Island<'_>> = seeds.map(|seed| Island::new(job, seed)).collect();
-    each(&mut islands, &|island| {
-        island.start(&Limit {
+    let mut islands = islands(job, meter.search);
+    let threads = threads(meter.search);
+    each(&mut islands, threads, &|island| {
+        let limit = Limit {
             queries: u64::MAX,
             stop: &|| meter.cancel.load(Ordering::Relaxed),
-        });
+        };
+        match start {
+            Some(layout) => island.start_from(layout, &limit),
+            None => island.start(&limit),
+        }
     });
-    let epoch = EPOCH.min(meter.share(1.0) / 16 + 1);
+    share(&mut islands);
+    tell(&islands, meter, control);
     for (part, press) in [(EXPLORING, false), (1.0, true)] {
         loop {
-            if meter.cancel.load(Ordering::Relaxed) {
-                return Err(NestingError::Cancelled);
-            }
-            share(&mut islands);
-            tell(&islands, meter, control);
-            let queries = |island: &Island<'_>| island.queries();
-            let most = islands.iter().map(queries).max().unwrap_or(0);
+            let most = islands.iter().map(Island::queries).max().unwrap_or(0);
             if meter.stops(part) || most >= meter.share(part) {
                 break;
             }
-            each(&mut islands, &|island| {
-                let limit = Limit {
-                    queries: (island.queries() + epoch).min(meter.share(part)),
-                    stop: &|| meter.stops(part),
-                };
-                if press {
-                    let done = |queries: u64| {
-                        (meter.done(queries * count) - EXPLORING) / (1.0 - EXPLORING)
-                    };
-                    island.press(&limit, &done);
-                } else {
-                    island.explore(&limit);
-                }
-            });
-            let now = islands.iter().map(queries).max().unwrap_or(0);
+            epoch(&mut islands, meter, (part, press));
+            share(&mut islands);
+            tell(&islands, meter, control);
+            let now = islands.iter().map(Island::queries).max().unwrap_or(0);
             if now == most {
                 // Nothing is left to try.
                 break;
             }
         }
     }
-    let mut best = best_of(&islands)
-        .map(|k| islands.swap_remove(k))
-        .ok_or(NestingError::NoItems)?;
+    let best = best_of(&islands).map(|k| islands.swap_remove(k));
+    let mut best = best.ok_or(NestingError::NoItems)?;
     best.polish();
     best.best.ok_or(NestingError::Cancelled)
 }
 
-/// Works on all islands, on as many threads as there are.
-fn each<'a>(islands: &mut [Island<'a>], work: &(dyn Fn(&mut Island<'a>) + Sync)) {
-    let share = islands.len().div_ceil(threads());
+/// Lets every island search until the next exchange.
+fn epoch(islands: &mut [Island<'_>], meter: &Meter<'_>, (part, press): (f64, bool)) {
+    let count = islands.len() as u64;
+    let queries = EPOCH.min(meter.share(1.0) / 16 + 1);
+    let ends = meter.end_of_epoch();
+    each(islands, threads(meter.search), &|island| {
+        let limit = Limit {
+            queries: match ends {
+                Some(_) => u64::MAX,
+                None => (island.queries() + queries).min(meter.share(part)),
+            },
+            stop: &|| meter.stops(part) || ends.is_some_and(|end| Instant::now() >= end),
+        };
+        if press {
+            let done = |queries: u64| (meter.done(queries * count) - EXPLORING) / (1.0 - EXPLORING);
+            island.press(&limit, &done);
+        } else {
+            island.explore(&limit);
+        }
+    });
+}
+
+/// Works on all islands, on so many threads.
+fn each<'a>(islands: &mut [Island<'a>], threads: usize, work: &(dyn Fn(&mut Island<'a>) + Sync)) {
+    let share = islands.len().div_ceil(threads.max(1)).max(1);
     std::thread::scope(|scope| {
         let mut chunks = islands.chunks_mut(share);
         let own = chunks.next();
@@ -273,45 +343,4 @@ fn tell(islands: &[Island<'_>], meter: &Meter<'_>, control: &mut Control<'_>) {
         evaluations,
         length: length + margin,
     });
-}
-
-fn finish(job: &Job<'_>, layout: &Layout) -> Marker {
-    let strip = job.strip;
-    let (mut placements, mut unplaced) = (Vec::new(), Vec::new());
-    let reason = match strip.max_length {
-        Some(length) => format!(
-            "no room is left on {:.0} mm of fabric; take more fabric or lay it on another marker",
-            length * 1e3
-        ),
-        None => "no place was found between defects, locked pieces and stripes; free some of them"
-            .to_owned(),
-    };
-    for (k, piece) in job.pieces.iter().enumerate() {
-        let Some(item) = piece.item else {
-            continue;
-        };
-        if !layout.present[k] {
-            unplaced.push(Unplaced {
-                item,
-                copy: piece.copy,
-                reason: reason.clone(),
-            });
-            continue;
-        }
-        let shape = &job.shapes[layout.shape[k]];
-        placements.push(Placement {
-            item,
-            copy: piece.copy,
-            turn: shape.turn,
-            mirrored: shape.mirrored,
-            translation: layout.at[k] - shape.offset + job.corner(),
-        });
-    }
-    let mut marker = Marker {
-        placements,
-        unplaced,
-        ..Marker::default()
-    };
-    marker.measure(job.items, strip);
-    marker
 }

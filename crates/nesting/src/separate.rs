@@ -37,6 +37,28 @@ pub(crate) struct Limit<'a> {
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
+/// How a try to take a layout apart stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// Nothing overlaps.
+    Apart,
+    /// Patience is at its end.
+    Failed,
+    /// The limit is reached; the next call goes on.
+    Paused,
+}
+
+/// A try under way.
+#[derive(Clone, Debug)]
+struct Attempt {
+    /// Least loss so far, and its layout.
+    best: (f64, Layout),
+    /// Least loss at the last strike.
+    before: f64,
+    strikes: usize,
+    rounds: usize,
+}
+
 /// A layout under repair.
 pub(crate) struct Separator<'a> {
     pub job: &'a Job<'a>,
@@ -51,6 +73,7 @@ pub(crate) struct Separator<'a> {
     losses: Vec<f64>,
     map: LossMap,
     found: Vec<Candidate>,
+    attempt: Option<Attempt>,
     pub(crate) scratch: Scratch<'a>,
 }
 
@@ -66,6 +89,7 @@ impl<'a> Separator<'a> {
             losses: Vec::new(),
             map: LossMap::new(),
             found: Vec::new(),
+            attempt: None,
             scratch: Scratch::default(),
             layout: layout.clone(),
         };
@@ -76,7 +100,8 @@ impl<'a> Separator<'a> {
     /// Takes another layout, with all weights even.
     pub fn load(&mut self, layout: Layout) {
         self.layout = layout;
-        self.weights = self.least_weights.clone();
+        self.weights.clone_from(&self.least_weights);
+        self.attempt = None;
         self.measure();
     }
 
@@ -123,42 +148,56 @@ impl<'a> Separator<'a> {
         row.filter(|&&loss| loss > self.tolerance).sum()
     }
 
-    /// Moves pieces until nothing overlaps, or patience or the limit is at its end; then the best
-    /// layout found is in place. Whether nothing overlaps.
-    pub fn separate(&mut self, patience: Patience, limit: &Limit<'_>) -> bool {
-        let mut best = (self.total(), self.layout.clone());
-        let mut strikes = 0;
-        while best.0 > 0.0 && strikes < patience.strikes && !self.is_over(limit) {
-            let before = best.0;
-            let mut rounds = 0;
-            while rounds < patience.rounds && !self.is_over(limit) {
-                self.round();
-                let total = self.total();
-                if total < best.0 {
-                    if total < 0.98 * best.0 {
-                        rounds = 0;
-                    }
-                    best = (total, self.layout.clone());
-                    if total == 0.0 {
-                        break;
-                    }
-                }
-                rounds += 1;
-                self.reweigh();
+    /// Whether a try was paused.
+    pub fn is_paused(&self) -> bool {
+        self.attempt.is_some()
+    }
+
+    /// Forgets a paused try.
+    pub fn give_up(&mut self) {
+        self.attempt = None;
+    }
+
+    /// Moves pieces until nothing overlaps or patience is at its end; then the best layout found
+    /// is in place. Pauses at the limit.
+    pub fn separate(&mut self, patience: Patience, limit: &Limit<'_>) -> Outcome {
+        let mut attempt = self.attempt.take().unwrap_or_else(|| Attempt {
+            best: (self.total(), self.layout.clone()),
+            before: self.total(),
+            strikes: 0,
+            rounds: 0,
+        });
+        while attempt.best.0 > 0.0 && attempt.strikes < patience.strikes {
+            if self.is_over(limit) {
+                self.attempt = Some(attempt);
+                return Outcome::Paused;
             }
-            strikes = if best.0 < 0.98 * before {
-                0
-            } else {
-                strikes + 1
-            };
-            if best.0 > 0.0 {
-                self.layout = best.1.clone();
+            self.round();
+            let total = self.total();
+            if total < attempt.best.0 {
+                if total < 0.98 * attempt.best.0 {
+                    attempt.rounds = 0;
+                }
+                attempt.best = (total, self.layout.clone());
+            }
+            attempt.rounds += 1;
+            self.reweigh();
+            if attempt.rounds >= patience.rounds {
+                let better = attempt.best.0 < 0.98 * attempt.before;
+                attempt.strikes = if better { 0 } else { attempt.strikes + 1 };
+                attempt.before = attempt.best.0;
+                attempt.rounds = 0;
+                self.layout.clone_from(&attempt.best.1);
                 self.measure();
             }
         }
-        self.layout = best.1;
+        self.layout = attempt.best.1;
         self.measure();
-        self.total() == 0.0
+        if self.total() == 0.0 {
+            Outcome::Apart
+        } else {
+            Outcome::Failed
+        }
     }
 
     fn is_over(&self, limit: &Limit<'_>) -> bool {

@@ -3,7 +3,7 @@
 use crate::explore::Island;
 use crate::job::Job;
 use crate::layout::Layout;
-use crate::separate::{Limit, Patience};
+use crate::separate::{Limit, Outcome, Patience};
 
 /// Density at which the first layout is tried.
 const FIRST_DENSITY: f64 = 0.76;
@@ -36,7 +36,7 @@ impl Island<'_> {
         while !(limit.stop)() {
             let order = largest_first(job);
             self.construct(length, &order);
-            if self.separator.separate(FIRST, limit) {
+            if self.separator.separate(FIRST, limit) == Outcome::Apart {
                 self.keep();
                 return;
             }
@@ -68,7 +68,7 @@ impl Island<'_> {
             fits
         });
         self.construct(longest, &order);
-        while !self.separator.separate(CROWDED, limit) {
+        while self.separator.separate(CROWDED, limit) != Outcome::Apart {
             let worst = |&a: &usize, &b: &usize| {
                 let loss = |k: usize| self.separator.loss_of(k) / job.pieces[k].area;
                 loss(a).total_cmp(&loss(b)).then(a.cmp(&b))
@@ -87,6 +87,24 @@ impl Island<'_> {
 
     /// Tries to lay one of the pieces left over beside the others.
     pub(crate) fn insert(&mut self, limit: &Limit<'_>) {
+        if !self.separator.is_paused() {
+            self.add_one();
+        }
+        match self.separator.separate(FIRST, limit) {
+            Outcome::Apart if self.is_better() => self.keep(),
+            Outcome::Apart | Outcome::Failed => self.failed(),
+            Outcome::Paused => {}
+        }
+    }
+
+    /// Whether the layout in hand has more laid than the best.
+    fn is_better(&self) -> bool {
+        let left_over = self.separator.layout.left_over(self.separator.job);
+        left_over < self.score().0
+    }
+
+    /// Loads the best layout with one more piece, overlaps allowed.
+    fn add_one(&mut self) {
         let job = self.separator.job;
         let Some(mut layout) = self.best.clone() else {
             return;
@@ -98,12 +116,6 @@ impl Island<'_> {
         let piece = missing[self.separator.sequence.below(missing.len())];
         self.separator.load(layout);
         self.separator.move_piece(piece, 0.0);
-        let laid = self.separator.layout.present[piece];
-        if laid && self.separator.separate(FIRST, limit) {
-            self.keep();
-        } else {
-            self.failed();
-        }
     }
 }
 

@@ -210,13 +210,24 @@ fn progress_is_told_and_cancelling_stops() {
         cancel: &cancel,
     };
     let search = Search::default();
-    let result = make_marker(&shirt(3), &Strip::of_width(1.5), search, &mut control);
-    assert_eq!(result, Err(NestingError::Cancelled));
+    let (items, strip) = (shirt(3), Strip::of_width(1.5));
+    let stopped = make_marker(&items, &strip, search, &mut control).unwrap();
+    assert!(judge(&items, &strip, &stopped).is_sound());
     assert_eq!(seen.len(), 3);
+    assert!(
+        (stopped.length - seen[2].length).abs() < 1e-4,
+        "the best so far"
+    );
     assert!(
         seen.windows(2)
             .all(|w| w[0].done < w[1].done && w[0].length >= w[1].length)
     );
+    let mut at_once = Control {
+        progress: &mut |_| {},
+        cancel: &AtomicBool::new(true),
+    };
+    let nothing = make_marker(&items, &strip, search, &mut at_once);
+    assert_eq!(nothing, Err(NestingError::Cancelled));
 }
 
 #[test]
