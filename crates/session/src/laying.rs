@@ -229,12 +229,18 @@ fn lay_fabric(
     if !plan.rolled {
         let roll = &plan.rolls[0];
         let marker = make_marker(&items, &roll.strip, options.search(), &mut control)?;
+        if cancel.load(Ordering::Relaxed) {
+            return Err(SessionError::Cancelled);
+        }
         let mut only = laying(roll, items, pieces, marker);
         only.missing = named(&only.items, &only.marker.unplaced);
         return Ok(vec![only]);
     }
     let strips: Vec<Strip> = plan.rolls.iter().map(|r| r.strip.clone()).collect();
     let out = make_markers_on_rolls(&items, &strips, options.search(), &mut control)?;
+    if cancel.load(Ordering::Relaxed) {
+        return Err(SessionError::Cancelled);
+    }
     let missing = named(&items, &out.unplaced);
     let mut layings: Vec<Laying> = out
         .markers

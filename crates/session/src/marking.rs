@@ -111,6 +111,9 @@ pub fn nest_instance(
     };
     let (items, strip) = (&instance.items, &instance.strip);
     let marker = make_marker(items, strip, options.search(), &mut control)?;
+    if cancel.load(Ordering::Relaxed) {
+        return Err(SessionError::Cancelled);
+    }
     let verdict = judge(items, strip, &marker);
     let seconds = match options.budget {
         Budget::Seconds(_) => Some(started.elapsed().as_secs_f64()),
