@@ -3,14 +3,14 @@
 
 use crate::job::Job;
 use crate::layout::Layout;
-use crate::separate::{Limit, Outcome, Patience, Separator};
+use crate::separate::{Limit, Outcome, Patience, Separator, TOLERANCE};
 use crate::sequence::Sequence;
 use toile_geometry::Vec2;
 
 /// Patience while searching for shorter strips, and while pressing the best one.
 const EXPLORE: Patience = Patience {
-    rounds: 50,
-    strikes: 3,
+    rounds: 100,
+    strikes: 2,
 };
 const PRESS: Patience = Patience {
     rounds: 30,
@@ -24,6 +24,8 @@ const PRESSES: [f64; 2] = [0.0005, 0.00002];
 const TRIES: usize = 25;
 /// By how much the strip may be longer to take touching pieces truly apart, over its width.
 const LONGER: [f64; 3] = [3e-7, 2e-6, 1e-5];
+/// How often the ends of a failed layout are exchanged rather than two pieces.
+const ENDS: f64 = 0.2;
 /// Most failed layouts kept.
 const POOL: usize = 24;
 
@@ -222,7 +224,7 @@ impl<'a> Island<'a> {
                 break;
             }
         }
-        self.separator.tolerance = 2.0 * job.safe();
+        self.separator.tolerance = TOLERANCE * job.safe();
     }
 
     pub(crate) fn is_over(&self, limit: &Limit<'_>) -> bool {
@@ -231,7 +233,7 @@ impl<'a> Island<'a> {
 }
 
 /// Changes a layout thoroughly: a garment is turned round, a matched set moved within the repeat,
-/// or two large pieces exchanged.
+/// the ends of the strip or two large pieces exchanged.
 fn disturb(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
     match sequence.below(4) {
         0 if job.bundles > 0 => {
@@ -247,7 +249,42 @@ fn disturb(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
                 layout.at[piece] = place.unwrap_or(layout.at[piece]);
             }
         }
+        _ if sequence.unit() < ENDS => swap_ends(job, layout, sequence),
         _ => exchange(job, layout, sequence),
+    }
+}
+
+/// Cuts the strip anywhere and exchanges its two parts.
+fn swap_ends(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
+    let cut = sequence.unit() * layout.length;
+    let movable = |&k: &usize| job.pieces[k].locked.is_none() && layout.present[k];
+    let pieces: Vec<usize> = (0..layout.at.len()).filter(movable).collect();
+    for piece in pieces {
+        let middle = layout.at[piece].x + 0.5 * layout.size[piece].x;
+        let by = if middle < cut {
+            layout.length - cut
+        } else {
+            -cut
+        };
+        let at = layout.at[piece] + Vec2::new(by, 0.0);
+        if let Some(at) = layout.settle(job, piece, layout.shape[piece], at) {
+            layout.at[piece] = at;
+        }
+    }
+}
+
+/// Puts a piece anywhere.
+fn scatter(job: &Job<'_>, layout: &mut Layout, piece: usize, sequence: &mut Sequence) {
+    let shapes = job.pieces[piece].shapes.iter().copied();
+    let allowed: Vec<usize> = shapes.filter(|&s| layout.allows(job, piece, s)).collect();
+    if allowed.is_empty() {
+        return;
+    }
+    let shape = allowed[sequence.below(allowed.len())];
+    let chance = Vec2::new(sequence.unit(), sequence.unit());
+    let at = chance.component_mul(&Vec2::new(layout.length, job.height));
+    if let Some(at) = layout.settle(job, piece, shape, at) {
+        layout.put(job, piece, shape, at);
     }
 }
 
@@ -298,7 +335,7 @@ fn exchange(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
     let different = |&k: &usize| job.pieces[k].item != job.pieces[a].item;
     let others: Vec<usize> = large.iter().copied().filter(different).collect();
     if others.is_empty() {
-        return;
+        return scatter(job, layout, a, sequence);
     }
     let b = others[sequence.below(others.len())];
     let middle = |k: usize| layout.at[k] + layout.size[k] * 0.5;

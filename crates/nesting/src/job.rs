@@ -5,7 +5,8 @@
 
 use crate::check::{folds_up, orientations};
 use crate::marker::{Phase, turned};
-use crate::nofit::{NoFit, Probe};
+use crate::nofit::NoFit;
+use crate::pair::{Pair, PairQuery};
 use crate::raster::DepthRaster;
 use crate::simplify::simplify_outward;
 use crate::{FoldEdge, Item, Nap, Pose, Strip};
@@ -25,6 +26,8 @@ const SAFE: f64 = 6e-8;
 const WINDOW: f64 = 0.02;
 /// Most rows of the loss maps.
 const ROWS: f64 = 64.0;
+/// Outlines of more corners are not compared with each other.
+const MOST_CORNERS: usize = 500;
 /// Most numbers in all depth rasters together: 128 MB.
 const RASTER_NUMBERS: f64 = 32e6;
 
@@ -71,50 +74,6 @@ impl Piece {
     pub fn fits(&self, job: &Job<'_>, length: f64) -> bool {
         let snug = length + crate::check::SNUG;
         self.shapes.iter().any(|&s| job.shapes[s].size.x <= snug)
-    }
-}
-
-/// How the no-fit polygon of two shapes follows from one that is kept.
-#[derive(Clone, Copy, Debug)]
-struct Pair {
-    no_fit: u32,
-    /// Columns of the map from the kept polygon's plane.
-    axes: [Vec2; 2],
-    shift: Vec2,
-    /// Distance the shapes keep \[m\]; minus infinity if they may overlap.
-    gap: f64,
-}
-
-/// All that a query of one pair of shapes needs.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PairQuery<'a> {
-    no_fit: &'a NoFit,
-    axes: [Vec2; 2],
-    shift: Vec2,
-    gap: f64,
-}
-
-impl PairQuery<'_> {
-    /// Where the moving shape lies to the fixed one at a move from it, and the gap they need;
-    /// nothing if they are farther apart than the window.
-    #[inline]
-    pub fn probe(&self, apart: Vec2) -> Option<(Probe, f64)> {
-        let [x, y] = self.axes;
-        let at = Vec2::new(apart.dot(&x), apart.dot(&y)) + self.shift;
-        let mut probe = self.no_fit.probe(at)?;
-        probe.normal = x * probe.normal.x + y * probe.normal.y;
-        Some((probe, self.gap))
-    }
-
-    /// How much nearer than allowed the moving shape lies to the fixed one \[m\], 0 or more.
-    #[inline]
-    pub fn loss(&self, apart: Vec2) -> f64 {
-        let [x, y] = self.axes;
-        let at = Vec2::new(apart.dot(&x), apart.dot(&y)) + self.shift;
-        match self.no_fit.probe(at) {
-            Some(probe) => (probe.depth + self.gap).max(0.0),
-            None => 0.0,
-        }
     }
 }
 
@@ -226,6 +185,7 @@ impl<'a> Job<'a> {
                         Some(self.shapes.len() - 1)
                     })
                     .collect();
+                let shapes = self.distinct(item, shapes);
                 let locked = lock.zip(shapes.first()).map(|(lock, &shape)| {
                     let at = lock.translation + self.shapes[shape].offset - self.corner();
                     (shape, at)
@@ -253,6 +213,30 @@ impl<'a> Job<'a> {
             }
         }
         (self.bundles, self.sets) = (bundles.len(), sets.len());
+    }
+
+    /// Shapes without those that look like an earlier one: a rectangle turned half round is the
+    /// same to everything but a garment that runs one way.
+    fn distinct(&self, item: &Item, shapes: Vec<usize>) -> Vec<usize> {
+        let corners = item.outline.outer.len();
+        if self.strip.nap == Nap::PerBundle || corners > MOST_CORNERS {
+            return shapes;
+        }
+        let mut kept: Vec<(usize, Vec<Vec2>)> = Vec::new();
+        for index in shapes {
+            let shape = &self.shapes[index];
+            let ring = shape.outline(item).outer;
+            let same = |(k, other): &(usize, Vec<Vec2>)| {
+                let known = &self.shapes[*k];
+                known.anchor == shape.anchor
+                    && known.on_fold == shape.on_fold
+                    && coincide(&ring, other, SAFE * self.height)
+            };
+            if !kept.iter().any(same) {
+                kept.push((index, ring));
+            }
+        }
+        kept.into_iter().map(|(index, _)| index).collect()
     }
 
     /// Defects lie where they lie.
@@ -511,20 +495,23 @@ impl Shape {
             on_fold,
         })
     }
+
+    /// The outline from the box's corner \[m\].
+    pub fn outline(&self, item: &Item) -> Polygon {
+        let pose = Pose {
+            grain: item.grain,
+            turn: self.turn,
+            mirrored: self.mirrored,
+            translation: -self.offset,
+        };
+        pose.lay(&item.outline)
+    }
 }
 
-/// The polygon of a shape from the box's corner \[m\], as the search takes it.
-#[cfg(test)]
-pub(crate) fn exact_outline(job: &Job<'_>, shape: usize) -> Polygon {
-    let shape = &job.shapes[shape];
-    let item = &job.items[shape.kind];
-    let pose = Pose {
-        grain: item.grain,
-        turn: shape.turn,
-        mirrored: shape.mirrored,
-        translation: -shape.offset,
-    };
-    pose.lay(&item.outline)
+/// Whether two rings have the same corners, in whatever order, to a tolerance \[m\].
+fn coincide(a: &[Vec2], b: &[Vec2], tolerance: f64) -> bool {
+    let found = |p: &Vec2| b.iter().any(|q| (p - q).amax() <= tolerance);
+    a.len() == b.len() && a.iter().all(found)
 }
 
 #[cfg(test)]
@@ -565,9 +552,9 @@ mod tests {
         assert_eq!(job.shapes.len(), 4 + 10);
         let mut sequence = crate::sequence::Sequence(7);
         for a in 0..job.shapes.len() {
-            let fixed = PreparedPolygon::new(&exact_outline(&job, a));
+            let fixed = PreparedPolygon::new(&job.shapes[a].outline(&items[job.shapes[a].kind]));
             for b in 0..job.shapes.len() {
-                let outline = exact_outline(&job, b);
+                let outline = job.shapes[b].outline(&items[job.shapes[b].kind]);
                 for _ in 0..60 {
                     let span = job.shapes[a].size + job.shapes[b].size;
                     let chance = Vec2::new(sequence.unit(), sequence.unit());

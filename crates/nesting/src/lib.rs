@@ -14,6 +14,7 @@ mod job;
 mod layout;
 mod marker;
 mod nofit;
+mod pair;
 mod raster;
 mod referee;
 mod refine;

@@ -4,8 +4,9 @@
 //! lies where two pieces touch, or one piece and an edge of the fabric, or where one ramp ends.
 //! Those points are tried, and from the best one again.
 
-use crate::job::{Axis, Job, PairQuery};
+use crate::job::{Axis, Job};
 use crate::layout::Layout;
+use crate::pair::PairQuery;
 use toile_geometry::Vec2;
 
 /// Most steps from point to point.

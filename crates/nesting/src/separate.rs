@@ -15,6 +15,9 @@ const LOOKS: usize = 4;
 const GROWTH: [f64; 2] = [1.2, 2.0];
 const DECAY: f64 = 0.95;
 
+/// Loss that counts as none, over the distance touching pieces keep: so much that four pieces that
+/// fill the width exactly, with three such distances between them, count as apart.
+pub(crate) const TOLERANCE: f64 = 3.5;
 /// Cells of a loss map that cost as much as one query.
 const CELLS_A_QUERY: usize = 64;
 /// Large pieces are harder to move, so their pairs weigh more: area over the mean to this power.
@@ -83,7 +86,7 @@ impl<'a> Separator<'a> {
             job,
             queries: 0,
             sequence: Sequence(seed),
-            tolerance: 2.0 * job.safe(),
+            tolerance: TOLERANCE * job.safe(),
             weights: Vec::new(),
             least_weights: least_weights(job),
             losses: Vec::new(),

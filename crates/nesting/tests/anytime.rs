@@ -204,5 +204,5 @@ fn locks_and_print_hold_when_going_on() {
     let more = improve(&items, &strip, &marker, Search::evaluations(200_000));
     assert!(judge(&items, &strip, &more).is_sound());
     assert!(more.length <= marker.length);
-    assert!(more.placements.iter().any(|p| *p == laid), "it stays");
+    assert!(more.placements.contains(&laid), "it stays");
 }
