@@ -43,6 +43,8 @@ enum Work {
     Rest(usize, f64),
     /// A marker of shirts in three sizes.
     Nest,
+    /// Queries of pairs of their pieces, as the search makes them, one thread.
+    NestQueries,
 }
 
 /// Frames of a benchmark of motion.
@@ -73,6 +75,7 @@ fn all() -> Vec<(String, Work)> {
         }
     }
     list.push(("nest".to_owned(), Work::Nest));
+    list.push(("nest-queries".to_owned(), Work::NestQueries));
     list.push(("rest-shirt-1k".to_owned(), Work::Rest(0, 1e-2)));
     list.push(("rest-shirt-6k".to_owned(), Work::Rest(1, 1e-3)));
     list.push(("rest-shirt-22k".to_owned(), Work::Rest(2, 1e-3)));
@@ -171,6 +174,7 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
         }
         Work::Rest(cuts, residual) => rest(cuts, residual, &mut result)?,
         Work::Nest => crate::nest::nest(threads, &mut result)?,
+        Work::NestQueries => crate::nest::queries(threads, &mut result)?,
     }
     Ok(result)
 }

@@ -6,11 +6,17 @@ use crate::clock::Clock;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::AtomicBool;
 use toile_geometry::{Polygon, Vec2};
-use toile_nesting::{Allowed, Control, Item, Mirror, Progress, Search, Strip, judge, make_marker};
+use toile_nesting::{
+    Allowed, Control, Item, Mirror, Progress, Search, Strip, judge, make_marker, with_pair_queries,
+};
 use toile_session::cpu_seconds;
 
 /// Evaluations given to each island.
 const EVALUATIONS: u64 = 20_000_000;
+/// Random pairs queried, how often each, and how many of them are held against the exact answer.
+const PAIRS: usize = 100_000;
+const PASSES: u32 = 50;
+const CHECKED: usize = 2_000;
 /// Points along a curve.
 const POINTS: u32 = 16;
 
@@ -65,16 +71,64 @@ fn shirts() -> Vec<Item> {
         .collect()
 }
 
-/// Lays the shirts with an island a thread.
-pub(crate) fn nest(threads: usize, result: &mut Timed) -> Result<(), LabError> {
-    let items = shirts();
-    let strip = Strip {
+fn fabric() -> Strip {
+    Strip {
         gap: 0.002,
         selvedge: 0.01,
         ..Strip::of_width(1.5)
-    };
+    }
+}
+
+/// Signed penetration queries of pairs of the shirts' pieces in random poses: how many a second on
+/// each thread, and how far they lie from exact ones on the original outlines.
+pub(crate) fn queries(threads: usize, result: &mut Timed) -> Result<(), LabError> {
+    let items = shirts();
+    result.vertices = items.iter().map(|item| item.outline.outer.len()).sum();
+    let worked = with_pair_queries(&items, &fabric(), (PAIRS, 1), |queries| {
+        let warm = queries.sum();
+        let clock = Clock::start();
+        let pass = || {
+            (0..PASSES)
+                .map(|_| std::hint::black_box(queries).sum())
+                .sum()
+        };
+        let sums: Vec<f64> = std::thread::scope(|scope| {
+            let others: Vec<_> = (1..threads).map(|_| scope.spawn(pass)).collect();
+            let own: f64 = pass();
+            let others = others.into_iter().filter_map(|o| o.join().ok());
+            std::iter::once(own).chain(others).collect()
+        });
+        result.wall_s = clock.wall();
+        let same = |sum: &f64| (sum - warm * f64::from(PASSES)).abs() <= 1e-9 * sum.abs();
+        if sums.len() != threads || !sums.iter().all(same) {
+            result.failure = Some("the sums of the threads differ".to_owned());
+        }
+        let off = |k: usize| Some((queries.depth(k)? - queries.exact(k)?).abs());
+        let errors: Vec<f64> = (0..CHECKED).filter_map(off).collect();
+        let made = queries.count() as f64 * f64::from(PASSES);
+        let mut note = |name: &str, value: f64| result.counted.insert(name.to_owned(), value);
+        note("queries_a_second_and_thread", made / result.wall_s);
+        note("checked", errors.len() as f64);
+        note("error_max_m", errors.iter().copied().fold(0.0, f64::max));
+        note(
+            "error_mean_m",
+            errors.iter().sum::<f64>() / errors.len().max(1) as f64,
+        );
+        note("outline_growth_allowed_m", queries.growth());
+    });
+    if let Err(error) = worked {
+        result.failure = Some(error.to_string());
+    }
+    Ok(())
+}
+
+/// Lays the shirts with an island a thread.
+pub(crate) fn nest(threads: usize, result: &mut Timed) -> Result<(), LabError> {
+    let items = shirts();
+    let strip = fabric();
     let search = Search {
         islands: threads,
+        threads,
         ..Search::evaluations(EVALUATIONS * threads as u64)
     };
     let (clock, before) = (Clock::start(), cpu_seconds());

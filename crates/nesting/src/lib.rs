@@ -15,6 +15,7 @@ mod layout;
 mod marker;
 mod nofit;
 mod pair;
+mod queries;
 mod raster;
 mod referee;
 mod refine;
@@ -33,6 +34,7 @@ pub use marker::{
     Allowed, Defect, Fold, FoldEdge, Item, Locked, Marker, MatchPoint, Mirror, Nap, Phase,
     Placement, Pose, Strip, Stripes, Unplaced,
 };
+pub use queries::{PairQueries, with_pair_queries};
 pub use referee::{PENETRATION_LIMIT, Side, Verdict, Violation, judge};
 pub use rolls::{RollMarker, RolledOut, make_markers_on_rolls};
 pub use search::{Budget, Control, Progress, Search, improve_marker, make_marker};

@@ -14,10 +14,9 @@ const STEPS: usize = 8;
 /// Most pieces looked at around a place.
 const LINES: usize = 8;
 /// Most points tried at every step, the most promising first.
-const TRIALS: usize = 8;
-/// How far around a place other pieces are listed at first, over the width of the fabric.
-const REACH: f64 = 0.1;
-/// Longest step over the deepest overlap.
+const TRIALS: usize = 4;
+/// Longest step over the width of the fabric, and over the deepest overlap.
+const REACH: f64 = 0.25;
 const STRIDE: f64 = 4.0;
 
 /// The line on which the moving piece just touches another: `normal . move = level`.
@@ -159,15 +158,9 @@ impl Mover<'_, '_> {
 
     /// Lists the lines round a place and all pieces within a step of it; the loss there.
     fn look_around(&mut self, shape: usize, at: Vec2) -> f64 {
-        let near = self.job.widest_gap + self.job.window();
-        let listed = REACH * self.job.height;
-        self.gather(shape, at, listed + near);
-        let loss = self.lines(shape, at);
-        let step = longest_step(&self.scratch.lines);
-        if step > listed {
-            self.gather(shape, at, step + near);
-        }
-        loss
+        let step = REACH * self.job.height;
+        self.gather(shape, at, step + self.job.widest_gap + self.job.window());
+        self.lines(shape, at)
     }
 
     /// The best place found near one, with its loss. Stops once it cannot be improved.
@@ -183,12 +176,15 @@ impl Mover<'_, '_> {
             let enough = best * (1.0 - 1e-9);
             let Scratch { lines, targets, .. } = &mut *self.scratch;
             targets.clear();
-            propose(lines, at, (room, axes), targets);
+            propose(lines, (at, REACH * self.job.height), (room, axes), targets);
             let mut next = None;
             for _ in 0..TRIALS {
-                let Some(target) = least(&mut self.scratch.targets) else {
+                let Some((guess, target)) = least(&mut self.scratch.targets) else {
                     break;
                 };
+                if guess >= best * (1.0 - 1e-9) {
+                    break;
+                }
                 let Some(target) = self.layout.settle(self.job, self.piece, shape, target) else {
                     continue;
                 };
@@ -209,25 +205,21 @@ impl Mover<'_, '_> {
 }
 
 /// Takes the most promising target out of a list.
-fn least(targets: &mut Vec<(f64, Vec2)>) -> Option<Vec2> {
+fn least(targets: &mut Vec<(f64, Vec2)>) -> Option<(f64, Vec2)> {
     let best = (0..targets.len()).min_by(|&a, &b| targets[a].0.total_cmp(&targets[b].0))?;
-    Some(targets.swap_remove(best).1)
-}
-
-fn longest_step(lines: &[Line]) -> f64 {
-    let overlapping = lines.iter().filter(|l| l.loss > 0.0).map(|l| l.apart);
-    STRIDE * overlapping.fold(0.0, f64::max)
+    Some(targets.swap_remove(best))
 }
 
 /// Points near a place where lines end or cross, with what they would lose if the lines went on
 /// straight.
 fn propose(
     lines: &[Line],
-    at: Vec2,
+    (at, reach): (Vec2, f64),
     (room, axes): (Vec2, [Axis; 2]),
     targets: &mut Vec<(f64, Vec2)>,
 ) {
-    let radius = longest_step(lines);
+    let overlapping = lines.iter().filter(|l| l.loss > 0.0).map(|l| l.apart);
+    let radius = reach.min(STRIDE * overlapping.fold(0.0, f64::max));
     let mut add = |target: Vec2| {
         let target = target.sup(&Vec2::zeros()).inf(&room);
         if (target - at).norm_squared() <= radius * radius {
