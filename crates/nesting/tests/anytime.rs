@@ -94,7 +94,17 @@ fn any_number_of_threads_gives_the_same_bytes() {
 #[test]
 fn going_on_never_lengthens_and_shortens_a_poor_marker() {
     let (items, strip) = (pieces(), Strip::of_width(1.2));
-    let poor = make(&items, &strip, Search::evaluations(1_000));
+    // One piece behind the other.
+    let mut poor = make(&items, &strip, Search::evaluations(1_000));
+    for (k, placement) in poor.placements.iter_mut().enumerate() {
+        let bounds = placement
+            .pose(&items[placement.item])
+            .lay(&items[placement.item].outline);
+        let corner = Vec2::new(0.6 * k as f64, 0.0);
+        placement.translation += corner - bounds.bounds().min;
+    }
+    poor.measure(&items, &strip);
+    assert!(judge(&items, &strip, &poor).is_sound());
     let mut lengths = vec![poor.length];
     let mut marker = poor;
     for seed in 1..4 {
@@ -107,7 +117,7 @@ fn going_on_never_lengthens_and_shortens_a_poor_marker() {
         lengths.push(marker.length);
     }
     assert!(lengths.windows(2).all(|w| w[1] <= w[0]), "{lengths:?}");
-    assert!(lengths[3] < 0.97 * lengths[0], "{lengths:?}");
+    assert!(lengths[3] < 0.5 * lengths[0], "{lengths:?}");
 }
 
 #[test]
