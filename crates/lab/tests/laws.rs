@@ -28,6 +28,16 @@ fn the_quick_laws_hold_for_every_method() {
 }
 
 #[test]
+fn coulombs_friction_is_met_within_a_hundredth() {
+    let checks = checks(&["capstan", "stick-slip"]);
+    assert_eq!(checks.len(), 14);
+    for check in &checks {
+        assert!(check.tolerance <= 0.01, "{check:?}");
+        assert!(check.passed(), "{}", toile_lab::table(&checks));
+    }
+}
+
+#[test]
 fn no_law_allows_more_than_three_per_cent_and_names_are_unique() {
     for check in checks(&["patch", "incline"]) {
         assert!(check.tolerance <= 0.03, "{check:?}");

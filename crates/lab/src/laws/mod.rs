@@ -2,11 +2,13 @@
 
 mod buckling;
 mod cantilever;
+mod capstan;
 mod drape;
 mod friction;
 mod hang;
 mod motion;
 mod order;
+mod stick_slip;
 mod strain;
 mod swing;
 
@@ -27,7 +29,7 @@ pub struct Law {
 }
 
 /// Every law.
-pub const LAWS: [Law; 20] = [
+pub const LAWS: [Law; 22] = [
     Law {
         name: "cantilever",
         title: "a strip clamped horizontally bends by its weight: drop over reach against the heavy elastica, four kinds of mesh",
@@ -122,6 +124,16 @@ pub const LAWS: [Law; 20] = [
         name: "incline",
         title: "a cloth on an incline sticks or slides by Coulomb's law",
         run: friction::incline,
+    },
+    Law {
+        name: "capstan",
+        title: "a strip drawn over a cylinder pulls by exp(mu phi) more on one side than on the other",
+        run: capstan::capstan,
+    },
+    Law {
+        name: "stick-slip",
+        title: "a strip pushed down on a table sticks while friction bears what the propped elastica asks",
+        run: stick_slip::stick_slip,
     },
     Law {
         name: "cusick",
