@@ -38,6 +38,8 @@ pub enum Task {
     Check(Check),
     /// Lay the pieces of one or more patterns on fabric: marker.svg (true size, mm), marker.json.
     ///
+    /// Ctrl-C ends the search and writes the best so far.
+    ///
     /// Each fabric has its own marker, and each roll of it. Says length, efficiency, fabric needed
     /// (m), cost, and what found no place and why.
     Nest(Box<Nest>),
@@ -253,11 +255,15 @@ pub fn body_command(text: &str) -> Command {
 /// `toile check`.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// The pattern: native or GarmentCode.
+    /// The pattern: native or GarmentCode; or a marker.json: its overlaps, gaps, margins, nap and
+    /// flaws as it stands.
     pub pattern: PathBuf,
     /// Named size to check. Default: the pattern's base size.
     #[arg(long, value_name = "NAME")]
     pub size: Option<String>,
+    /// Folder for the drawing of a marker, where what is cut twice is red.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// `toile nest`.
@@ -304,7 +310,8 @@ pub struct Nest {
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
     /// What to write: svg (true size, mm), json, dxf (release 12, mm), pdf (one page at true size),
-    /// report (A4: picture, table, yardage, cost), plt (HPGL/2).
+    /// report (A4: picture, table, yardage, cost), plt (HPGL/2), instance (the pieces alone, for
+    /// other nesting programs).
     #[arg(
         long,
         value_name = "FORMAT",
@@ -338,6 +345,19 @@ pub struct Nest {
     /// Start of the sequence of chance.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
+    /// A marker.json to go on from, made before or changed by hand; one for each fabric.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["roll", "study"])]
+    pub from: Vec<PathBuf>,
+    /// Pieces that stay where the marker gone on from has them, as in front,back.
+    #[arg(long, value_name = "NAME", value_delimiter = ',', requires = "from")]
+    pub lock: Vec<String>,
+    /// Instead of one marker, lay the garments with and without each rule of the trade, and print
+    /// what each costs in points of efficiency. Nothing is written.
+    #[arg(long)]
+    pub study: bool,
+    /// Seeds that are averaged in a study.
+    #[arg(long, value_name = "COUNT", default_value_t = 3, requires = "study")]
+    pub seeds: u64,
     /// Folder to write into; it is made if need be.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
@@ -382,6 +402,8 @@ pub enum MarkerFormatName {
     Report,
     /// HPGL/2.
     Plt,
+    /// The pieces as a nesting instance in the JSON of jagua-rs.
+    Instance,
 }
 
 impl From<MarkerFormatName> for MarkerFormat {
@@ -393,6 +415,7 @@ impl From<MarkerFormatName> for MarkerFormat {
             MarkerFormatName::Pdf => Self::Pdf,
             MarkerFormatName::Report => Self::Report,
             MarkerFormatName::Plt => Self::Hpgl,
+            MarkerFormatName::Instance => Self::Instance,
         }
     }
 }

@@ -2,14 +2,20 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use toile_session::Watcher;
 
+/// Exit status of a program that was interrupted.
+const INTERRUPTED: i32 = 130;
 /// Steps of the bar.
 const STEPS: f64 = 1000.0;
 
 /// A bar on stderr; hidden where stderr is no terminal.
 pub struct Bar {
     bar: ProgressBar,
+    /// Set when the work is to stop.
+    stop: Option<Arc<AtomicBool>>,
 }
 
 impl Bar {
@@ -19,7 +25,21 @@ impl Bar {
         let style = ProgressStyle::with_template("{bar:36} {percent:>3} %  {msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar());
         bar.set_style(style);
-        Self { bar }
+        Self { bar, stop: None }
+    }
+
+    /// A bar whose work stops at the first Ctrl-C; the second one ends the program.
+    pub fn stopped_by_a_signal() -> Self {
+        let stop = Arc::new(AtomicBool::new(false));
+        let own = stop.clone();
+        let handled = ctrlc::set_handler(move || {
+            if own.swap(true, Ordering::Relaxed) {
+                std::process::exit(INTERRUPTED);
+            }
+        });
+        let mut bar = Self::new();
+        bar.stop = handled.is_ok().then_some(stop);
+        bar
     }
 }
 
@@ -34,6 +54,9 @@ impl Watcher for Bar {
         let gap = if detail.is_empty() { "" } else { ": " };
         self.bar.set_message(format!("{stage}{gap}{detail}"));
         self.bar.set_position((share * STEPS) as u64);
-        ControlFlow::Continue(())
+        match &self.stop {
+            Some(stop) if stop.load(Ordering::Relaxed) => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        }
     }
 }

@@ -45,6 +45,9 @@ fn run(task: Task, output: &Output) -> Result<serde_json::Value, Failure> {
     match task {
         Task::Make(make) => session_commands::make(&make, output),
         Task::Drape(drape) => session_commands::drape(&drape, output),
+        Task::Check(check) if toile_session::is_marker_file(&check.pattern) => {
+            nest_commands::check_marker(&check, output)
+        }
         Task::Check(check) => session_commands::check(&check, output),
         Task::Replay(replay) => session_commands::replay(&replay, output),
         Task::Convert(convert) => tool_commands::convert(&convert, output),

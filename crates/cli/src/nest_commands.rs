@@ -1,14 +1,14 @@
 //! `toile nest`: pieces laid on fabric.
 
-use crate::arguments::Nest;
+use crate::arguments::{Check, Nest};
 use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
 use std::path::Path;
 use toile_geometry::Length;
 use toile_session::{
-    Budget, Event, MarkerSettings, NestOptions, Nested, is_nesting_instance, nest_instance,
-    nest_patterns, open_marker_settings,
+    Budget, Event, MarkerSettings, NestOptions, Nested, is_nesting_instance, judge_marker_file,
+    nest_instance, nest_patterns, open_marker_settings, rule_table, study_rules,
 };
 
 /// A yard [m].
@@ -50,13 +50,15 @@ fn nest_options(nest: &Nest) -> Result<NestOptions, Failure> {
             Some(path) => open_marker_settings(path)?,
             None => MarkerSettings::default(),
         },
+        from: nest.from.clone(),
+        locked: nest.lock.clone(),
+        keep_best: true,
         formats: nest.write.iter().map(|&f| f.into()).collect(),
         budget: match nest.time {
             Some(seconds) => Budget::Seconds(seconds),
             None => Budget::Evaluations(nest.evaluations),
         },
         seed: nest.seed,
-        ..NestOptions::default()
     })
 }
 
@@ -89,6 +91,7 @@ fn solve(
         && *options
             == NestOptions {
                 tilt: options.tilt,
+                keep_best: true,
                 budget: options.budget,
                 seed: options.seed,
                 ..NestOptions::default()
@@ -99,8 +102,9 @@ fn solve(
         )
         .about(path));
     }
-    let (nested, notes, file) = nest_instance(path, options, (&nest.out, &mut Bar::new()))
-        .map_err(|error| Failure::from(error).about(path))?;
+    let (nested, notes, file) =
+        nest_instance(path, options, (&nest.out, &mut Bar::stopped_by_a_signal()))
+            .map_err(|error| Failure::from(error).about(path))?;
     for note in &notes {
         output.warn(format!("note: {note}"));
     }
@@ -132,7 +136,14 @@ pub fn nest(nest: &Nest, output: &Output) -> Result<Value, Failure> {
     {
         return solve(path, nest, &options, output);
     }
-    let (layings, paths) = nest_patterns(&nest.patterns, &options, (&nest.out, &mut Bar::new()))?;
+    if nest.study {
+        return study(nest, &options, output);
+    }
+    let (layings, paths) = nest_patterns(
+        &nest.patterns,
+        &options,
+        (&nest.out, &mut Bar::stopped_by_a_signal()),
+    )?;
     let listed: Vec<Value> = layings
         .iter()
         .map(|laying| {
@@ -192,4 +203,54 @@ fn yardage(layings: &[Nested], output: &Output) {
             cost.trim_end()
         ));
     }
+}
+
+/// What each rule of the trade costs.
+fn study(nest: &Nest, options: &NestOptions, output: &Output) -> Result<Value, Failure> {
+    let rows = study_rules(&nest.patterns, options, (nest.seeds, &mut Bar::new()))?;
+    output.say(rule_table(&rows, options.budget).trim_end());
+    let listed = rows.iter().map(|row| {
+        json!({
+            "rule": row.rule,
+            "fabric_m": row.fabric,
+            "efficiency": row.efficiency,
+            "cost": row.cost,
+            "unsound": row.unsound,
+            "unplaced": row.unplaced,
+            "refused": row.refused,
+        })
+    });
+    let report = json!({ "rules": listed.collect::<Vec<_>>() });
+    match rows.iter().map(|r| r.unsound).sum() {
+        0 => Ok(report),
+        unsound => {
+            let message = format!("{} refused by the referee", count(unsound, "marker"));
+            Err(Failure::failed(message).with_report(report))
+        }
+    }
+}
+
+/// A marker judged as it stands.
+pub fn check_marker(check: &Check, output: &Output) -> Result<Value, Failure> {
+    let judged = judge_marker_file(&check.pattern, check.out.as_deref())?;
+    let nested = &judged.nested;
+    for path in &judged.files {
+        output.say(format!("wrote {}", path.display()));
+    }
+    let report = json!({
+        "files": judged.files,
+        "pieces": nested.pieces,
+        "length_m": nested.length,
+        "faults": judged.faults,
+    });
+    if judged.faults.is_empty() {
+        output.say(format!(
+            "{} on {:.1} cm of fabric: no faults",
+            count(nested.pieces, "piece"),
+            nested.length * 100.0
+        ));
+        return Ok(report);
+    }
+    let failure = Failure::bad_input(judged.faults.join("\n"));
+    Err(failure.about(&check.pattern).with_report(report))
 }

@@ -287,6 +287,121 @@ fn a_marker_maker_gets_rolls_spreads_costs_and_files_for_machines() {
 }
 
 #[test]
+fn a_marker_is_judged_gone_on_from_and_written_for_other_programs() {
+    let folder = tempfile::tempdir().unwrap();
+    let shirt = patterns().join("t-shirt.toile.json");
+    let shirt = shirt.to_str().unwrap();
+    let nest = |more: &[&str]| {
+        let usual = ["nest", shirt, "--evaluations", "200000"];
+        let all: Vec<&str> = usual.iter().chain(more).copied().collect();
+        toile(folder.path(), &all)
+    };
+    let output = nest(&["--write", "json,instance"]);
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output.stderr));
+    let solved = toile(
+        folder.path(),
+        &[
+            "nest",
+            "out/marker-instance.json",
+            "--evaluations",
+            "100000",
+        ],
+    );
+    assert_eq!(solved.status.code(), Some(0), "{}", words(&solved.stderr));
+    let sound = toile(folder.path(), &["check", "out/marker.json"]);
+    assert_eq!(sound.status.code(), Some(0), "{}", words(&sound.stderr));
+    // A hand moves the front over its neighbours.
+    let path = folder.path().join("out/marker.json");
+    let mut file: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    let before = file.clone();
+    for point in file["pieces"][0]["outline"].as_array_mut().unwrap() {
+        point[1] = (point[1].as_f64().unwrap() * 0.5 + 0.3).into();
+    }
+    std::fs::write(folder.path().join("moved.json"), file.to_string()).unwrap();
+    let bad = toile(folder.path(), &["check", "moved.json", "--out", "judged"]);
+    assert_eq!(bad.status.code(), Some(2));
+    let said = words(&bad.stderr);
+    assert!(
+        said.contains("overlap by") && said.contains("moved.json"),
+        "{said}"
+    );
+    let svg = std::fs::read_to_string(folder.path().join("judged/marker-judged.svg")).unwrap();
+    assert!(svg.contains("class=\"overlap\""));
+    // Going on keeps what is locked and is no longer than before.
+    let more = [
+        "--from",
+        "out/marker.json",
+        "--lock",
+        "front,sleeve",
+        "--out",
+        "more",
+    ];
+    let output = nest(&more);
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output.stderr));
+    let after = std::fs::read(folder.path().join("more/marker.json")).unwrap();
+    let after: Value = serde_json::from_slice(&after).unwrap();
+    let place = |file: &Value, name: &str| {
+        let pieces = file["pieces"].as_array().unwrap().clone();
+        pieces.into_iter().find(|p| p["name"] == name).unwrap()
+    };
+    for name in ["front", "sleeve"] {
+        assert_eq!(place(&before, name), place(&after, name));
+    }
+    let length = |file: &Value| file["length"].as_f64().unwrap();
+    assert!(length(&after) <= length(&before) + 1e-9);
+    let output = nest(&["--from", "out/marker.json", "--lock", "collar"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(words(&output.stderr).contains("\"collar\""));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_search_writes_the_best_so_far() {
+    let folder = tempfile::tempdir().unwrap();
+    let shirt = patterns().join("t-shirt.toile.json");
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_toile"))
+        .current_dir(folder.path())
+        .args(["nest", shirt.to_str().unwrap(), "--time", "120"])
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    let killed = std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(killed.success());
+    let started = std::time::Instant::now();
+    assert!(child.wait().unwrap().success());
+    assert!(started.elapsed().as_secs() < 60, "it did not stop");
+    assert!(folder.path().join("out/marker.json").is_file());
+}
+
+#[test]
+fn the_study_prints_what_rules_cost() {
+    let folder = tempfile::tempdir().unwrap();
+    let shirt = patterns().join("t-shirt.toile.json");
+    let study = [
+        "--study",
+        "--seeds",
+        "1",
+        "--evaluations",
+        "20000",
+        "--json",
+    ];
+    let mut all = vec!["nest", shirt.to_str().unwrap()];
+    all.extend(study);
+    let output = toile(folder.path(), &all);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rules = report["rules"].as_array().unwrap();
+    assert!(rules.len() >= 15);
+    assert!(rules.iter().all(|r| r["unsound"] == 0));
+    let base = rules[0]["efficiency"].as_f64().unwrap();
+    assert!((0.5..0.9).contains(&base), "{base}");
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
 fn patterns_are_checked_converted_and_converted_back() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["t-shirt", "gathered-skirt", "trousers", "poncho"] {

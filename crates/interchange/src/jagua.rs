@@ -195,9 +195,59 @@ pub fn write_jagua(
     text.map_err(|error| wrong("solution", error.to_string()))
 }
 
+/// Items and the usable width of a strip as an instance, in millimetres, grain along x. Gaps, print,
+/// flaws, folds and locks are not in this format.
+pub fn write_jagua_instance(name: &str, items: &[Item], strip: &Strip) -> String {
+    let item = |(id, item): (usize, &Item)| {
+        let straight = item.outline.rotated(-item.grain);
+        let corner = straight.bounds().min;
+        let point = |p: &Vec2| [(p.x - corner.x) * 1e3, (p.y - corner.y) * 1e3];
+        let turns: Vec<f64> = item.allowed.turns.iter().map(|t| t.to_degrees()).collect();
+        json!({
+            "id": id,
+            "demand": item.quantity,
+            "allowed_orientations": turns,
+            "shape": {
+                "type": "simple_polygon",
+                "data": straight.oriented().outer.iter().map(point).collect::<Vec<_>>(),
+            },
+        })
+    };
+    let instance = json!({
+        "name": name,
+        "strip_height": strip.usable_width() * 1e3,
+        "items": items.iter().enumerate().map(item).collect::<Vec<_>>(),
+    });
+    format!("{instance}\n")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_instance_written_is_read_back() {
+        let ring = [[0.1, 0.2], [0.5, 0.25], [0.3, 0.9]].map(Vec2::from);
+        let item = Item {
+            quantity: 3,
+            grain: 0.3,
+            ..Item::new("sleeve", Polygon::new(ring.to_vec()))
+        };
+        let strip = Strip {
+            selvedge: 0.01,
+            ..Strip::of_width(1.5)
+        };
+        let text = write_jagua_instance("shirt", std::slice::from_ref(&item), &strip);
+        assert!(is_jagua_instance(&text));
+        let back = read_jagua(&text).unwrap();
+        assert_eq!((back.items.len(), back.items[0].quantity), (1, 3));
+        let scale = back.scale / 1e-3;
+        assert!((back.strip.width / scale - 1.48).abs() < 1e-12);
+        let area = back.items[0].outline.area() / (scale * scale);
+        assert!((area - item.outline.area()).abs() < 1e-12);
+        assert_eq!(back.items[0].allowed.turns, item.allowed.turns);
+    }
+
     use toile_nesting::{Control, Search, make_marker};
 
     const SMALL: &str = r#"{ "name": "small", "strip_height": 4900.0, "items": [

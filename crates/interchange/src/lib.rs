@@ -39,7 +39,7 @@ pub use garmentcode::{
     GarmentCodeReading, GarmentCodeWriting, read_garmentcode, write_garmentcode,
 };
 pub use gltf::{GlbMesh, GlbPrimitive, GlbScene, write_glb};
-pub use jagua::{JaguaInstance, is_jagua_instance, read_jagua, write_jagua};
+pub use jagua::{JaguaInstance, is_jagua_instance, read_jagua, write_jagua, write_jagua_instance};
 pub use marker_drawing::{MarkerDrawing, MarkerFacts, MarkerPiece};
 pub use marker_json::{
     MarkerDefect, MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, MarkerFold,

@@ -75,7 +75,15 @@ pub fn make_markers_on_rolls(
                 progress: &mut told,
                 cancel: control.cancel,
             };
-            let marker = make_marker(&laid, strip, part(search, shares[roll]), &mut control)?;
+            let made = make_marker(&laid, strip, part(search, shares[roll]), &mut control);
+            if made == Err(NestingError::Cancelled) && !out.markers.is_empty() {
+                // Stopped with some rolls done: the rest is said not to be laid.
+                for source in &sources {
+                    left[source.0].reasons = vec!["the search was stopped; go on".to_owned()];
+                }
+                break;
+            }
+            let marker = made?;
             settle(&marker, &sources, &mut left, (roll, rolls.len()));
             if !marker.placements.is_empty() {
                 out.markers.push(RollMarker {

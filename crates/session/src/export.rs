@@ -9,8 +9,8 @@ use crate::watcher::tell;
 use crate::{Command, MarkerFormat, Project, SessionError, Watcher, pictures};
 use std::path::Path;
 use toile_interchange::{
-    FormatError, write_glb, write_marker_dxf, write_marker_hpgl, write_marker_json,
-    write_marker_pdf, write_marker_report, write_marker_svg, write_obj,
+    FormatError, write_glb, write_jagua_instance, write_marker_dxf, write_marker_hpgl,
+    write_marker_json, write_marker_pdf, write_marker_report, write_marker_svg, write_obj,
 };
 
 /// A file to write: its name and its content.
@@ -87,6 +87,11 @@ pub(crate) fn marker_files(
                 MarkerFormat::Dxf => ("dxf", write_marker_dxf(&drawing).map(String::into_bytes)),
                 MarkerFormat::Hpgl => ("plt", write_marker_hpgl(&drawing).map(String::into_bytes)),
                 MarkerFormat::Pdf => ("pdf", write_marker_pdf(&drawing)),
+                MarkerFormat::Instance => {
+                    let text = write_jagua_instance(name, &laying.items, &laying.strip);
+                    files.push((format!("{stem}-instance.json"), text.into_bytes()));
+                    continue;
+                }
                 MarkerFormat::Report => continue,
             };
             files.push((

@@ -1,15 +1,16 @@
 //! Markers of drafts: one for each fabric their pieces are cut from, and for each roll of it.
 
+use crate::going_on::{lock, read_starts, start_of};
 use crate::laying_items::{LaidPiece, Wanted, items_on, wanted_of};
 use crate::matching::runs_one_way;
 use crate::nest_options::{FabricPlan, PlannedRoll};
 use crate::watcher::tell;
-use crate::{NestOptions, Nested, SessionError, Watcher};
+use crate::{Budget, NestOptions, Nested, SessionError, Watcher};
 use std::sync::atomic::{AtomicBool, Ordering};
 use toile_interchange::{MarkerDrawing, MarkerFacts, MarkerFile, MarkerPiece, Spread};
 use toile_nesting::{
-    Control, Item, Marker, Nap, NestingError, Progress, Strip, Verdict, judge, make_marker,
-    make_markers_on_rolls,
+    Control, Item, Marker, Nap, NestingError, Progress, Strip, Verdict, improve_marker, judge,
+    make_marker, make_markers_on_rolls,
 };
 use toile_pattern::{Draft, Fabric, Pattern};
 
@@ -139,8 +140,10 @@ pub(crate) fn lay(
     }
     check_fabric_names(&groups, options)?;
     let fabrics = || garments.iter().flat_map(|g| &g.draft.fabrics);
+    let starts = read_starts(options)?;
     let count = groups.len() as f64;
     let mut layings = Vec::new();
+    let mut stopped = false;
     for (k, (name, wanted)) in groups.iter().enumerate() {
         let own: Option<&Fabric> = fabrics().find(|f| f.name == *name);
         let mut plan = options.plan(name, own)?;
@@ -153,12 +156,33 @@ pub(crate) fn lay(
         }
         let from = k as f64 / count;
         let mut part = |done: f64, detail: &str| {
-            tell(watcher, "laying out", from + done / count, detail).is_ok()
+            stopped |= tell(watcher, "laying out", from + done / count, detail).is_err();
+            !stopped
         };
-        if !part(0.0, "") {
+        let going_on = part(0.0, "");
+        let laid = match going_on {
+            true => lay_fabric((name, wanted), (&plan, options), (&starts, &mut part)),
+            false if !options.keep_best => return Err(SessionError::Cancelled),
+            false => {
+                // Stopped on an earlier fabric: this one gets the first marker that is found.
+                let mut shortly = options.clone();
+                shortly.budget = Budget::Evaluations(1);
+                let mut unheard = |_: f64, _: &str| true;
+                lay_fabric((name, wanted), (&plan, &shortly), (&starts, &mut unheard))
+            }
+        };
+        if stopped && !options.keep_best {
             return Err(SessionError::Cancelled);
         }
-        layings.extend(lay_fabric((name, wanted), (&plan, options), &mut part)?);
+        layings.extend(laid?);
+    }
+    if stopped {
+        for laying in &mut layings {
+            laying
+                .facts
+                .notes
+                .push("stopped early: the best so far".to_owned());
+        }
     }
     Ok(layings)
 }
@@ -190,9 +214,13 @@ type Told<'a> = &'a mut dyn FnMut(f64, &str) -> bool;
 fn lay_fabric(
     (fabric, wanted): (&str, &[Wanted]),
     (plan, options): (&FabricPlan, &NestOptions),
-    told: Told<'_>,
+    (starts, told): (&[MarkerFile], Told<'_>),
 ) -> Result<Vec<Laying>, SessionError> {
-    let (items, pieces, notes) = items_on(wanted, plan, options)?;
+    let (mut items, pieces, notes) = items_on(wanted, plan, options)?;
+    let start = start_of(starts, &items);
+    if let Some(start) = &start {
+        lock(&mut items, start, &options.locked);
+    }
     let cancel = AtomicBool::new(false);
     let mut follow = |progress: Progress| {
         let detail = format!("{:.0} mm of fabric", progress.length * 1e3);
@@ -228,10 +256,11 @@ fn lay_fabric(
     };
     if !plan.rolled {
         let roll = &plan.rolls[0];
-        let marker = make_marker(&items, &roll.strip, options.search(), &mut control)?;
-        if cancel.load(Ordering::Relaxed) {
-            return Err(SessionError::Cancelled);
-        }
+        let search = options.search();
+        let marker = match &start {
+            Some(start) => improve_marker(&items, &roll.strip, start, search, &mut control)?,
+            None => make_marker(&items, &roll.strip, search, &mut control)?,
+        };
         let mut only = laying(roll, items, pieces, marker);
         only.missing = named(&only.items, &only.marker.unplaced);
         return Ok(vec![only]);

@@ -6,23 +6,40 @@ use crate::tools::{project_of, sound_draft};
 use crate::watcher::tell;
 use crate::{NestOptions, Nested, SessionError, Watcher};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use toile_interchange::{
     MarkerSettings, is_jagua_instance, read_jagua, read_marker_settings, read_text,
     write_all_atomically, write_jagua,
 };
 use toile_nesting::{Budget, Control, Progress, judge, make_marker};
+use toile_pattern::{Draft, Pattern};
 
-/// Lays the pieces of one or more patterns together and writes the markers. Returns a summary of
-/// each marker and the files written.
-///
-/// # Errors
-/// A pattern cannot be read or laid, or a file cannot be written.
-pub fn nest_patterns(
+/// A pattern drafted in a size, and how often it is cut.
+pub(crate) struct Drafted {
+    pattern: Arc<Pattern>,
+    draft: Draft,
+    count: u32,
+    label: Option<String>,
+}
+
+impl Drafted {
+    /// The garments to cut.
+    pub fn garments(&self) -> Garments<'_> {
+        Garments {
+            pattern: &self.pattern,
+            draft: &self.draft,
+            count: self.count,
+            label: self.label.as_deref(),
+        }
+    }
+}
+
+/// The drafts of all patterns in all sizes, and what they are called.
+pub(crate) fn drafts_of(
     patterns: &[PathBuf],
     options: &NestOptions,
-    (folder, watcher): (&Path, &mut dyn Watcher),
-) -> Result<(Vec<Nested>, Vec<PathBuf>), SessionError> {
+) -> Result<(Vec<Drafted>, Vec<String>), SessionError> {
     let mut drafts = Vec::new();
     let mut names = Vec::new();
     for path in patterns {
@@ -37,24 +54,36 @@ pub fn nest_patterns(
         for (size, count) in sizes {
             let (project, _) = project_of(path, size)?;
             let draft = sound_draft(&project)?;
-            let label = (options.sizes.len() > 1).then(|| size.map(str::to_owned));
-            drafts.push((project.pattern.clone(), draft, count, label.flatten()));
+            let several = options.sizes.len() > 1;
             let name = &project.pattern.name;
-            names.push(match (size, options.sizes.len() > 1 || count > 1) {
+            names.push(match (size, several || count > 1) {
                 (Some(size), true) => format!("{name} {count} x {size}"),
                 _ => name.clone(),
             });
+            drafts.push(Drafted {
+                pattern: project.pattern.clone(),
+                draft,
+                count,
+                label: size.filter(|_| several).map(str::to_owned),
+            });
         }
     }
-    let garments = drafts
-        .iter()
-        .map(|(pattern, draft, count, label)| Garments {
-            pattern,
-            draft,
-            count: *count,
-            label: label.as_deref(),
-        });
-    let layings = lay(&garments.collect::<Vec<_>>(), options, watcher)?;
+    Ok((drafts, names))
+}
+
+/// Lays the pieces of one or more patterns together and writes the markers. Returns a summary of
+/// each marker and the files written.
+///
+/// # Errors
+/// A pattern cannot be read or laid, or a file cannot be written.
+pub fn nest_patterns(
+    patterns: &[PathBuf],
+    options: &NestOptions,
+    (folder, watcher): (&Path, &mut dyn Watcher),
+) -> Result<(Vec<Nested>, Vec<PathBuf>), SessionError> {
+    let (drafts, names) = drafts_of(patterns, options)?;
+    let garments: Vec<Garments<'_>> = drafts.iter().map(|d| d.garments()).collect();
+    let layings = lay(&garments, options, watcher)?;
     let mut files = Vec::new();
     marker_files((&names.join(" + "), &options.formats), &layings, &mut files)?;
     write_all_atomically(folder, &files)?;
@@ -111,7 +140,7 @@ pub fn nest_instance(
     };
     let (items, strip) = (&instance.items, &instance.strip);
     let marker = make_marker(items, strip, options.search(), &mut control)?;
-    if cancel.load(Ordering::Relaxed) {
+    if cancel.load(Ordering::Relaxed) && !options.keep_best {
         return Err(SessionError::Cancelled);
     }
     let verdict = judge(items, strip, &marker);

@@ -30,6 +30,9 @@ pub enum MarkerFormat {
     Report,
     /// `marker.plt`: HPGL/2.
     Hpgl,
+    /// `marker-instance.json`: the pieces and the usable width as a nesting instance, for other
+    /// programs.
+    Instance,
 }
 
 /// How markers are made. What is not given is the fabric's own, or usual.
@@ -70,6 +73,8 @@ pub struct NestOptions {
     pub from: Vec<PathBuf>,
     /// Names of pieces that stay where those markers have them.
     pub locked: Vec<String>,
+    /// Whether a search that the watcher stops ends with the best marker so far, not with an error.
+    pub keep_best: bool,
     /// Files to write.
     pub formats: Vec<MarkerFormat>,
     /// When the search ends.
@@ -99,6 +104,7 @@ impl Default for NestOptions {
             settings: MarkerSettings::default(),
             from: Vec::new(),
             locked: Vec::new(),
+            keep_best: false,
             formats: vec![MarkerFormat::Svg, MarkerFormat::Json],
             budget: search.budget,
             seed: search.seed,

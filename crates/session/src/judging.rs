@@ -1,0 +1,253 @@
+//! A `marker.json` judged as it stands, after a hand has changed it.
+
+use crate::export::cannot;
+use crate::{Nested, SessionError};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::path::{Path, PathBuf};
+use toile_geometry::{Polygon, Vec2, total_area};
+use toile_interchange::{
+    MarkerDrawing, MarkerFacts, MarkerFile, MarkerPiece, read_marker_json, read_text,
+    write_all_atomically, write_marker_svg,
+};
+use toile_nesting::{Allowed, Item, Mirror, Violation, judge};
+
+/// Outlines in the file are rounded to a micrometre, so that touching pieces may seem to overlap
+/// by so much [m].
+const ROUNDING: f64 = 3e-6;
+
+/// What was found in a marker.
+#[derive(Clone, Debug)]
+pub struct JudgedMarker {
+    /// The marker in a few numbers.
+    pub nested: Nested,
+    /// What is wrong, in words; nothing if it can be cut.
+    pub faults: Vec<String>,
+    /// The drawing with what is cut twice in red, if a folder was given.
+    pub files: Vec<PathBuf>,
+}
+
+/// Whether a text is a marker.
+pub fn is_marker_file(path: &Path) -> bool {
+    let marked = |text: &str| {
+        let head = text.get(..400.min(text.len())).unwrap_or(text);
+        head.contains("\"toile-marker\"")
+    };
+    read_text(path).is_ok_and(|text| marked(&text))
+}
+
+/// Judges a `marker.json` by its own outlines: overlaps, gaps, margins, nap, print, flaws. What only
+/// the pattern knows (tilt allowed, folds, pairs, locks) is not judged. With a folder, writes
+/// `marker-judged.svg`, where what is cut twice is red.
+///
+/// # Errors
+/// The file cannot be read or is no marker; the drawing cannot be written.
+pub fn judge_marker_file(path: &Path, folder: Option<&Path>) -> Result<JudgedMarker, SessionError> {
+    let file = read_marker_json(&read_text(path)?).map_err(|error| SessionError::Format {
+        path: path.to_owned(),
+        error,
+    })?;
+    let items = items_of(&file);
+    let mut marker = file.marker();
+    marker.unplaced.clear();
+    for (k, placement) in marker.placements.iter_mut().enumerate() {
+        (placement.item, placement.copy) = (k, 0);
+    }
+    let strip = file.strip();
+    let verdict = judge(&items, &strip, &marker);
+    let name = |k: usize| {
+        file.pieces
+            .get(k)
+            .map_or_else(String::new, |p| format!("\"{}\" {}", p.name, p.copy))
+    };
+    let faults: Vec<String> = verdict
+        .violations
+        .iter()
+        .filter(|v| !within_rounding(v))
+        .map(|v| in_words(v, &name))
+        .collect();
+    let overlaps: Vec<Polygon> = verdict
+        .overlaps
+        .iter()
+        .filter(|o| total_area(&o.1) > ROUNDING * ROUNDING)
+        .flat_map(|o| o.1.iter().cloned())
+        .collect();
+    let nested = Nested {
+        fabric: file.name.clone(),
+        roll: file.roll.clone(),
+        pieces: file.pieces.len(),
+        unplaced: file.unplaced.len(),
+        length: verdict.length,
+        width: strip.width,
+        plies: file.plies,
+        yardage: verdict.length * f64::from(file.plies),
+        efficiency: file.efficiency,
+        utilisation: file.utilisation,
+        sound: faults.is_empty(),
+        ..Nested::default()
+    };
+    let mut files = Vec::new();
+    if let Some(folder) = folder {
+        let drawing = drawing_of(&file, (items, overlaps), verdict.length);
+        let svg = write_marker_svg(&drawing).map_err(cannot("marker-judged.svg"))?;
+        let written = [("marker-judged.svg".to_owned(), svg.into_bytes())];
+        write_all_atomically(folder, &written)?;
+        files.push(folder.join("marker-judged.svg"));
+    }
+    Ok(JudgedMarker {
+        nested,
+        faults,
+        files,
+    })
+}
+
+/// Every piece as an item of its own, back in its own plane.
+fn items_of(file: &MarkerFile) -> Vec<Item> {
+    let item = |piece: &toile_interchange::MarkerFilePiece| {
+        let pose = toile_nesting::Pose {
+            grain: piece.grain.to_radians(),
+            turn: piece.turn.to_radians(),
+            mirrored: piece.face_down,
+            translation: Vec2::new(piece.at[0], piece.at[1]),
+        };
+        let [x, y] = pose.axes();
+        let back = |p: &[f64; 2]| {
+            let from = Vec2::new(p[0], p[1]) - pose.translation;
+            Vec2::new(from.dot(&x), from.dot(&y))
+        };
+        let outline = Polygon::new(piece.outline.iter().map(back).collect());
+        let half_turns = (pose.turn / PI).round() * PI;
+        Item {
+            grain: pose.grain,
+            allowed: Allowed {
+                tilt: (pose.turn - half_turns).abs(),
+                mirror: Mirror::Free,
+                ..Allowed::turned(vec![0.0, PI])
+            },
+            ..Item::new(piece.name.clone(), outline)
+        }
+    };
+    file.pieces.iter().map(item).collect()
+}
+
+fn drawing_of(
+    file: &MarkerFile,
+    (items, overlaps): (Vec<Item>, Vec<Polygon>),
+    length: f64,
+) -> MarkerDrawing {
+    let marker = file.marker();
+    let mut kinds: BTreeMap<usize, usize> = BTreeMap::new();
+    let pieces = items.into_iter().zip(&marker.placements);
+    MarkerDrawing {
+        title: file.name.clone(),
+        strip: file.strip(),
+        length,
+        efficiency: file.efficiency,
+        pieces: pieces
+            .map(|(item, placement)| {
+                let count = kinds.len();
+                MarkerPiece {
+                    name: item.name.clone(),
+                    item: *kinds.entry(placement.item).or_insert(count),
+                    pose: placement.pose(&item),
+                    cut: item.outline,
+                    sew: Polygon::new(Vec::new()),
+                    grain: None,
+                    notches: Vec::new(),
+                    lines: Vec::new(),
+                }
+            })
+            .collect(),
+        unplaced: file
+            .unplaced
+            .iter()
+            .map(|u| [u.name.clone(), u.reason.clone()])
+            .collect(),
+        overlaps,
+        facts: MarkerFacts {
+            roll: file.roll.clone(),
+            plies: file.plies,
+            face_to_face: file.face_to_face,
+            utilisation: file.utilisation,
+            ..MarkerFacts::default()
+        },
+    }
+}
+
+/// Whether a violation may come of the rounding of the file.
+fn within_rounding(violation: &Violation) -> bool {
+    match violation {
+        Violation::Overlap { depth, .. } => *depth < ROUNDING,
+        Violation::Gap {
+            distance, needed, ..
+        } => needed - distance < ROUNDING,
+        Violation::Outside { by, .. } => *by < ROUNDING,
+        Violation::Length { stated, found } => (stated - found).abs() < ROUNDING,
+        _ => false,
+    }
+}
+
+/// What is wrong and where, in words.
+fn in_words(violation: &Violation, name: &dyn Fn(usize) -> String) -> String {
+    let mm = |metres: f64| format!("{:.2} mm", metres * 1e3);
+    match violation {
+        Violation::Overlap {
+            pair, depth, area, ..
+        } => format!(
+            "{} and {} overlap by {}, {:.2} cm2 are cut twice; move them apart",
+            name(pair[0]),
+            name(pair[1]),
+            mm(*depth),
+            area * 1e4
+        ),
+        Violation::Gap {
+            pair,
+            distance,
+            needed,
+        } => format!(
+            "{} and {} lie {} apart and need {}; move them apart",
+            name(pair[0]),
+            name(pair[1]),
+            mm(*distance),
+            mm(*needed)
+        ),
+        Violation::Outside {
+            placement,
+            side,
+            by,
+        } => format!(
+            "{} sticks out by {} ({}); move it in",
+            name(*placement),
+            mm(*by),
+            match side {
+                toile_nesting::Side::Start => "at the start",
+                toile_nesting::Side::End => "at the end",
+                toile_nesting::Side::Lower => "at the lower selvedge",
+                toile_nesting::Side::Upper => "at the upper selvedge",
+            }
+        ),
+        Violation::Orientation {
+            placement, turn, ..
+        } => format!(
+            "{} is turned by {:.1} degrees on fabric with a nap; turn it to 0",
+            name(*placement),
+            turn.to_degrees()
+        ),
+        Violation::OnDefect {
+            placement, defect, ..
+        } => format!(
+            "{} lies on flaw {} or too near; move it away",
+            name(*placement),
+            defect + 1
+        ),
+        Violation::Length { stated, found } => format!(
+            "the length is said to be {} and is {}; correct it",
+            mm(*stated),
+            mm(*found)
+        ),
+        Violation::Nonsense { placement } => {
+            format!("{} lies nowhere; give it a place", name(*placement))
+        }
+        other => format!("{other:?}"),
+    }
+}

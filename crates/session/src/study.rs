@@ -1,0 +1,232 @@
+//! What each rule of the trade costs: the same garments laid with and without it, with the same
+//! number of evaluations.
+
+use crate::laying::{Garments, lay};
+use crate::marking::drafts_of;
+use crate::watcher::Part;
+use crate::{Budget, Nap, NestOptions, Nested, SessionError, Spread, Watcher};
+use std::path::PathBuf;
+use toile_interchange::{ALL, Metres, PieceSettings};
+use toile_pattern::Pattern;
+
+/// What a rule costs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RuleCost {
+    /// The rule, in words.
+    pub rule: String,
+    /// Fabric a set of garments needs, on average over the seeds [m].
+    pub fabric: f64,
+    /// Area of the garments' pieces over width times that, 0..=1.
+    pub efficiency: f64,
+    /// Efficiency without the rule less that with it.
+    pub cost: f64,
+    /// Markers that the referee refused.
+    pub unsound: usize,
+    /// Pieces that found no place.
+    pub unplaced: usize,
+    /// Why it could not be done, if so.
+    pub refused: Option<String>,
+}
+
+/// A rule: its words, and what it changes.
+type Rule = (String, Box<dyn Fn(&mut NestOptions)>);
+
+/// Length of the repeat of stripes and checks [m].
+const REPEAT: f64 = 0.05;
+
+fn rule(words: &str, change: impl Fn(&mut NestOptions) + 'static) -> Rule {
+    (words.to_owned(), Box::new(change))
+}
+
+/// What holds for all pieces, to change.
+fn every_piece(options: &mut NestOptions) -> &mut PieceSettings {
+    options.settings.pieces.entry(ALL.to_owned()).or_default()
+}
+
+/// The rules, for a marker of a length and a width [m] without any.
+fn rules(patterns: &[&Pattern], length: f64, width: f64) -> Vec<Rule> {
+    let mut all = vec![
+        rule("grain within 2 degrees instead of exact", |o| {
+            o.tilt = 2f64.to_radians();
+        }),
+        rule("pieces may be turned over", |o| {
+            every_piece(o).turn_over = Some(true);
+        }),
+        rule("nap: each garment one way", |o| {
+            o.nap = Some(Nap::PerBundle)
+        }),
+        rule("nap: all one way", |o| o.nap = Some(Nap::OneWay)),
+        rule("gap of 5 mm instead of 2 mm", |o| o.gap = Some(0.005)),
+        rule("block of 5 mm round every piece", |o| {
+            every_piece(o).block = Some(Metres(0.005));
+        }),
+        rule("selvedges of 20 mm instead of 10 mm, ends of 20 mm", |o| {
+            o.selvedge = Some(0.02);
+            o.end_margin = Some(0.02);
+        }),
+        rule("stripes of 50 mm across, hems on a line", |o| {
+            o.repeat = Some([REPEAT, 0.0]);
+        }),
+        rule("checks of 50 mm, hems and middles on lines", |o| {
+            o.repeat = Some([REPEAT, REPEAT]);
+        }),
+        rule("three flaws of 50 mm, 5 mm kept from them", move |o| {
+            let at = |k: f64| [length * k / 4.0, width * k / 4.0, 0.06, 0.06];
+            o.defects = [1.0, 2.0, 3.0].map(at).to_vec();
+        }),
+        rule("two rolls of 60 % of the length", move |o| {
+            o.rolls = vec![(0.6 * length, None); 2];
+        }),
+        rule("face to face", |o| o.spread = Some(Spread::FaceToFace)),
+        rule("folded in two", |o| o.spread = Some(Spread::Folded)),
+        rule("tubular", |o| o.spread = Some(Spread::Tubular)),
+    ];
+    if let Some(marks) = shared_notch(patterns) {
+        let words = format!("stripes of 50 mm met at {}", marks.join(" and "));
+        all.push((
+            words,
+            Box::new(move |o| {
+                o.repeat = Some([REPEAT, 0.0]);
+                o.settings.matched = vec![marks.clone()];
+            }),
+        ));
+    }
+    all
+}
+
+/// The first notch that two panels have by the same name: both marks.
+fn shared_notch(patterns: &[&Pattern]) -> Option<Vec<String>> {
+    for pattern in patterns {
+        for (k, panel) in pattern.panels.iter().enumerate() {
+            for notch in &panel.notches {
+                let has = |other: &&std::sync::Arc<toile_pattern::Panel>| {
+                    other.notches.iter().any(|n| n.name == notch.name)
+                };
+                if let Some(other) = pattern.panels[k + 1..].iter().find(has) {
+                    let mark = |panel: &str| format!("{panel}.{}", notch.name);
+                    return Some(vec![mark(&panel.name), mark(&other.name)]);
+                }
+            }
+        }
+    }
+    None
+}
+
+/// Lays the garments without and with each rule, from several seeds each, and compares the fabric
+/// they need. The first row is without any rule but those of `options`.
+///
+/// # Errors
+/// A pattern cannot be read, or the garments cannot be laid even without the rules.
+pub fn study_rules(
+    patterns: &[PathBuf],
+    options: &NestOptions,
+    (seeds, watcher): (u64, &mut dyn Watcher),
+) -> Result<Vec<RuleCost>, SessionError> {
+    let (drafts, _) = drafts_of(patterns, options)?;
+    let garments: Vec<Garments<'_>> = drafts.iter().map(|d| d.garments()).collect();
+    let seeds = seeds.max(1);
+    let try_rule = |change: &dyn Fn(&mut NestOptions), watcher: &mut dyn Watcher| {
+        let mut found = Found::default();
+        for seed in 0..seeds {
+            let mut own = options.clone();
+            change(&mut own);
+            own.seed = options.seed + seed;
+            for laying in lay(&garments, &own, watcher)? {
+                found.add(&laying.summary(), laying.cut_area());
+            }
+        }
+        Ok::<_, SessionError>(found.mean(seeds as f64))
+    };
+    let base = try_rule(&|_| {}, &mut Part::new(watcher, 0.0, 0.06))?;
+    let area = base.area;
+    let efficiency = |found: &Found| area / (base.width * found.fabric);
+    let row = |rule: &str, found: &Found| RuleCost {
+        rule: rule.to_owned(),
+        fabric: found.fabric,
+        efficiency: efficiency(found),
+        cost: efficiency(&base) - efficiency(found),
+        unsound: found.unsound,
+        unplaced: found.unplaced,
+        refused: None,
+    };
+    let mut rows = vec![row("none", &base)];
+    let known: Vec<&Pattern> = garments.iter().map(|g| g.pattern).collect();
+    let rules = rules(&known, base.fabric, base.width);
+    let count = rules.len() as f64;
+    for (k, (words, change)) in rules.iter().enumerate() {
+        let share = |k: f64| 0.06 + 0.94 * k / count;
+        let mut part = Part::new(watcher, share(k as f64), share(k as f64 + 1.0));
+        match try_rule(change, &mut part) {
+            Ok(found) => rows.push(row(words, &found)),
+            Err(SessionError::Cancelled) => return Err(SessionError::Cancelled),
+            Err(error) => rows.push(RuleCost {
+                rule: words.clone(),
+                fabric: f64::NAN,
+                efficiency: f64::NAN,
+                cost: f64::NAN,
+                unsound: 0,
+                unplaced: 0,
+                refused: Some(error.to_string()),
+            }),
+        }
+    }
+    Ok(rows)
+}
+
+/// What markers came to.
+#[derive(Clone, Copy, Debug, Default)]
+struct Found {
+    /// Length for one set of garments [m].
+    fabric: f64,
+    /// Area of the pieces [m2].
+    area: f64,
+    /// Full width [m].
+    width: f64,
+    unsound: usize,
+    unplaced: usize,
+}
+
+impl Found {
+    fn add(&mut self, nested: &Nested, area: f64) {
+        self.fabric += nested.length;
+        self.area += area;
+        self.width = self.width.max(nested.width);
+        self.unsound += usize::from(!nested.sound);
+        self.unplaced += nested.unplaced;
+    }
+
+    fn mean(self, seeds: f64) -> Self {
+        Self {
+            fabric: self.fabric / seeds,
+            area: self.area / seeds,
+            ..self
+        }
+    }
+}
+
+/// The rows as a table.
+pub fn rule_table(rows: &[RuleCost], budget: Budget) -> String {
+    let budget = match budget {
+        Budget::Evaluations(count) => format!("{} M evaluations", count as f64 / 1e6),
+        Budget::Seconds(seconds) => format!("{seconds} s"),
+    };
+    let mut text = format!(
+        "| rule added ({budget} a marker) | fabric, m | efficiency, % | cost, points | refused by the referee | not laid |\n|---|---|---|---|---|---|\n"
+    );
+    for row in rows {
+        let cells = match &row.refused {
+            Some(why) => format!("| {} | {why} | | | | |\n", row.rule),
+            None => format!(
+                "| {} | {:.3} | {:.2} | {:.2} | {} | {} |\n",
+                row.rule,
+                row.fabric,
+                row.efficiency * 100.0,
+                row.cost * 100.0 + 0.0,
+                row.unsound,
+                row.unplaced
+            ),
+        };
+        text += &cells;
+    }
+    text
+}
