@@ -267,9 +267,6 @@ fn lay_fabric(
     }
     let strips: Vec<Strip> = plan.rolls.iter().map(|r| r.strip.clone()).collect();
     let out = make_markers_on_rolls(&items, &strips, options.search(), &mut control)?;
-    if cancel.load(Ordering::Relaxed) {
-        return Err(SessionError::Cancelled);
-    }
     let missing = named(&items, &out.unplaced);
     let mut layings: Vec<Laying> = out
         .markers
