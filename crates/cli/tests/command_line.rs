@@ -378,6 +378,53 @@ fn an_interrupted_search_writes_the_best_so_far() {
 }
 
 #[test]
+fn damaged_pieces_are_refused_by_name_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let ring = |count: u32| -> Vec<[f64; 2]> {
+        let angle = |k: u32| std::f64::consts::TAU * f64::from(k) / f64::from(count);
+        (0..count)
+            .map(|k| [200.0 * angle(k).cos(), 200.0 * angle(k).sin()])
+            .collect()
+    };
+    let square = vec![[0.0, 0.0], [300.0, 0.0], [300.0, 400.0], [0.0, 400.0]];
+    let wide = vec![[0.0, 0.0], [300.0, 0.0], [300.0, 1600.0], [0.0, 1600.0]];
+    let tie = vec![[0.0, 0.0], [300.0, 400.0], [300.0, 0.0], [0.0, 400.0]];
+    for (outline, demand, what) in [
+        (
+            wide,
+            1,
+            "is 1600 mm across the fabric and 1500 mm are usable",
+        ),
+        (Vec::new(), 1, "encloses no area"),
+        (tie, 1, "crosses itself at (150.0, 200.0) mm"),
+        (square.clone(), 0, "quantity is 0"),
+        (ring(1_000_000), 1, "has 1000000 points"),
+    ] {
+        let item = |id: u32, demand: u32, data: &[[f64; 2]]| {
+            serde_json::json!({ "id": id, "demand": demand, "allowed_orientations": [0, 180],
+                "shape": { "type": "simple_polygon", "data": data } })
+        };
+        let items = [item(0, 1, &square), item(7, demand, &outline)];
+        let text = serde_json::json!({ "name": "bad", "strip_height": 1500, "items": items });
+        std::fs::write(folder.path().join("bad.json"), text.to_string()).unwrap();
+        let output = toile(folder.path(), &["nest", "bad.json"]);
+        assert_eq!(output.status.code(), Some(2), "{what}");
+        let said = words(&output.stderr);
+        assert!(said.contains("bad.json: marker: piece \"7\""), "{said}");
+        assert!(said.contains(what), "{said}");
+        assert!(!said.contains("piece \"0\""), "{said}");
+        assert!(!folder.path().join("out").exists());
+    }
+    let shirt = patterns().join("t-shirt.toile.json");
+    let narrow = ["nest", shirt.to_str().unwrap(), "--width", "50cm"];
+    let output = toile(folder.path(), &narrow);
+    assert_eq!(output.status.code(), Some(2));
+    let said = words(&output.stderr);
+    assert!(said.contains("piece \"front\": it is"), "{said}");
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
 fn the_study_prints_what_rules_cost() {
     let folder = tempfile::tempdir().unwrap();
     let shirt = patterns().join("t-shirt.toile.json");

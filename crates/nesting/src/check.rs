@@ -43,6 +43,30 @@ pub struct Refusal {
     pub problem: ItemProblem,
 }
 
+impl NestingError {
+    /// The same with all lengths in another unit: for jobs that were scaled.
+    pub fn scaled(mut self, by: f64) -> Self {
+        let Self::Refused(refusals) = &mut self else {
+            return self;
+        };
+        for refusal in refusals {
+            match &mut refusal.problem {
+                ItemProblem::Crosses(at) => *at *= by,
+                ItemProblem::TooWide {
+                    needed,
+                    usable,
+                    fabric,
+                } => [needed, usable, fabric].into_iter().for_each(|l| *l *= by),
+                ItemProblem::TooLong { needed, usable } => {
+                    [needed, usable].into_iter().for_each(|l| *l *= by);
+                }
+                _ => {}
+            }
+        }
+        self
+    }
+}
+
 /// What is wrong with a piece.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ItemProblem {
@@ -189,7 +213,14 @@ fn check_outline(item: &Item) -> Option<ItemProblem> {
         PolygonDefect::Crossing(c) => Some(ItemProblem::Crosses(c.point)),
         PolygonDefect::StrayHole { hole } => Some(ItemProblem::StrayHole(hole)),
     };
-    item.outline.defects().iter().find_map(problem)
+    let found = item.outline.defects().iter().find_map(problem);
+    if found == Some(ItemProblem::Empty) {
+        // A bow tie has no area either: where its lines cross is the better remedy.
+        let crossings = item.outline.crossings(16);
+        let crossing = crossings.iter().find(|c| c.kind == CrossingKind::Cross);
+        return crossing.map(|c| ItemProblem::Crosses(c.point)).or(found);
+    }
+    found
 }
 
 fn check_item(item: &Item, strip: &Strip) -> Option<ItemProblem> {

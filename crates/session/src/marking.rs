@@ -139,7 +139,9 @@ pub fn nest_instance(
         cancel: &cancel,
     };
     let (items, strip) = (&instance.items, &instance.strip);
-    let marker = make_marker(items, strip, options.search(), &mut control)?;
+    let made = make_marker(items, strip, options.search(), &mut control);
+    // Lengths of an instance are said as its own numbers of millimetres.
+    let marker = made.map_err(|error| error.scaled(1e-3 / scale))?;
     if cancel.load(Ordering::Relaxed) && !options.keep_best {
         return Err(SessionError::Cancelled);
     }
