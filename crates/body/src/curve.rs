@@ -37,6 +37,44 @@ impl Monotone {
         Self { points, slopes }
     }
 
+    /// Place on a rising curve of a value, to rounding.
+    pub(crate) fn inverse(&self, value: f64) -> f64 {
+        let last = self.points.len() - 1;
+        for (end, slope) in [(0, self.slopes[0]), (last, self.slopes[last])] {
+            let [x, y] = self.points[end];
+            let beyond = if end == 0 { value <= y } else { value >= y };
+            if beyond {
+                return x + (value - y) / slope.max(1e-9);
+            }
+        }
+        let k = self.points.partition_point(|p| p[1] <= value) - 1;
+        let (mut low, mut high) = (self.points[k][0], self.points[k + 1][0]);
+        let mut x = 0.5 * (low + high);
+        for _ in 0..60 {
+            let miss = self.at(x) - value;
+            if miss < 0.0 {
+                low = x;
+            } else {
+                high = x;
+            }
+            // Newton's method, kept between the ends.
+            let step = 1e-7 * (self.points[k + 1][0] - self.points[k][0]);
+            let slope = (self.at(x + step) - self.at(x - step)) / (2.0 * step);
+            let next = x - miss / slope;
+            let next = if next > low && next < high {
+                next
+            } else {
+                0.5 * (low + high)
+            };
+            let moved = (next - x).abs();
+            x = next;
+            if moved < 1e-13 {
+                break;
+            }
+        }
+        x
+    }
+
     /// Value at `x`.
     pub(crate) fn at(&self, x: f64) -> f64 {
         let last = self.points.len() - 1;
@@ -88,6 +126,11 @@ mod tests {
             "level beyond a level end"
         );
         let line = Monotone::new(vec![[0.0, 0.0], [1.0, 2.0], [3.0, 6.0]]);
+        let rising = Monotone::new(vec![[0.0, 1.0], [0.4, 1.1], [1.0, 3.0], [1.1, 3.2]]);
+        for k in -20..=40 {
+            let x = 0.05 * f64::from(k);
+            assert!((rising.inverse(rising.at(x)) - x).abs() < 1e-9, "{x}");
+        }
         assert!((line.at(0.7) - 1.4).abs() < 1e-14 && (line.at(5.0) - 10.0).abs() < 1e-12);
     }
 }

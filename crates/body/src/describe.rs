@@ -26,7 +26,9 @@ impl Mannequin {
             figure: self.figure,
             measurements: self.measurements.clone(),
             primitives: self
-                .template_primitives
+                .cast
+                .template
+                .primitives
                 .iter()
                 .filter(|p| !p.is_right())
                 .copied()

@@ -10,31 +10,33 @@ const SHRINK: f64 = 0.5;
 /// (Taubin 1995, pass band 0.1).
 const SWELL: f64 = -0.526;
 
-/// Fairs a mesh in place. Vertices for which `fixed` holds stay.
+/// Fairs a closed oriented mesh in place. Vertices for which `fixed` holds stay.
 pub(crate) fn fair(mesh: &mut TriangleMesh, fixed: impl Fn(usize, Vec3) -> bool) {
-    let edges = mesh.topology().edges;
+    // Round a closed oriented mesh every neighbour comes exactly once as the end of an edge that
+    // starts at the vertex.
     let mut count = vec![0.0; mesh.positions.len()];
-    for &[a, b] in &edges {
-        count[a as usize] += 1.0;
-        count[b as usize] += 1.0;
+    for &v in mesh.triangles.iter().flatten() {
+        count[v as usize] += 1.0;
     }
     let held: Vec<bool> = mesh
         .positions
         .iter()
         .enumerate()
-        .map(|(v, &p)| fixed(v, p))
+        .map(|(v, &p)| fixed(v, p) || count[v] == 0.0)
         .collect();
+    let mut sum = vec![Vec3::zeros(); mesh.positions.len()];
     for _ in 0..PASSES {
         for share in [SHRINK, SWELL] {
-            let mut sum = vec![Vec3::zeros(); mesh.positions.len()];
-            for &[a, b] in &edges {
-                sum[a as usize] += mesh.positions[b as usize];
-                sum[b as usize] += mesh.positions[a as usize];
+            sum.fill(Vec3::zeros());
+            for &[a, b, c] in &mesh.triangles {
+                let [pa, pb, pc] = [a, b, c].map(|v| mesh.positions[v as usize]);
+                sum[a as usize] += pb;
+                sum[b as usize] += pc;
+                sum[c as usize] += pa;
             }
-            for v in 0..sum.len() {
-                if !held[v] && count[v] > 0.0 {
-                    let p = mesh.positions[v];
-                    mesh.positions[v] = p + (sum[v] / count[v] - p) * share;
+            for (v, p) in mesh.positions.iter_mut().enumerate() {
+                if !held[v] {
+                    *p += (sum[v] / count[v] - *p) * share;
                 }
             }
         }

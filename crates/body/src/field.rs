@@ -199,45 +199,129 @@ impl Field {
     pub fn first_exit(&self, parts: &[Part], origin: Vec3, direction: Vec3) -> Option<f64> {
         /// No limb is thicker, nor is half a trunk [m].
         const REACH: f64 = 0.6;
-        let inside = |distance: f64| self.in_any(parts, origin + direction * distance);
+        let along = self.along(parts, [origin, direction]);
         let mut distance = 0.0;
-        while inside(distance) {
+        while along.is_inside(distance) {
             distance += STEP;
             if distance > REACH {
                 return None;
             }
         }
-        (distance > 0.0).then(|| bisected(inside, [distance - STEP, distance]))
+        (distance > 0.0).then(|| along.exit([distance - STEP, distance]))
     }
 
     /// Distance [m] along a ray to where it last leaves one part on its way of `reach` [m], to
     /// 1e-9 m: hollows inside are passed over. Nothing when the part is not met.
-    pub fn last_exit(&self, part: Part, [origin, direction]: [Vec3; 2], reach: f64) -> Option<f64> {
-        let inside = |distance: f64| self.in_any(&[part], origin + direction * distance);
+    pub fn last_exit(&self, part: Part, ray: [Vec3; 2], reach: f64) -> Option<f64> {
+        let along = self.along(&[part], ray);
         let count = (reach / STEP).ceil() as usize;
-        let last = (0..count).rev().find(|&k| inside(k as f64 * STEP))? as f64;
-        Some(bisected(inside, [last * STEP, (last + 1.0) * STEP]))
+        let last = (0..count)
+            .rev()
+            .find(|&k| along.is_inside(k as f64 * STEP))? as f64;
+        Some(along.exit([last * STEP, (last + 1.0) * STEP]))
     }
 
-    fn in_any(&self, parts: &[Part], point: Vec3) -> bool {
-        parts
-            .iter()
-            .any(|&part| self.density(part, point) >= THRESHOLD)
+    fn along(&self, parts: &[Part], [origin, direction]: [Vec3; 2]) -> Along {
+        let mut along = Along {
+            rows: Vec::with_capacity(24),
+            ends: [0; 6],
+            count: parts.len(),
+        };
+        for (part, end) in parts.iter().zip(&mut along.ends) {
+            for density in &self.parts[*part as usize] {
+                let offset = origin - density.centre;
+                let towards = offset.dot(&direction);
+                let beside = offset.norm_squared() - towards * towards;
+                if beside >= density.reach_squared {
+                    continue;
+                }
+                let start = density.unit_from_body * offset;
+                let step = density.unit_from_body * direction;
+                let row = [
+                    step.norm_squared(),
+                    2.0 * start.dot(&step),
+                    start.norm_squared(),
+                ];
+                // Least q on the whole line.
+                if row[2] - 0.25 * row[1] * row[1] / row[0] < 1.0 {
+                    along.rows.push(row);
+                }
+            }
+            *end = along.rows.len();
+        }
+        along
+    }
+}
+
+/// Densities along a ray: on a straight line the q of each primitive is a quadratic in the
+/// distance t, `q = a t^2 + b t + c`.
+struct Along {
+    /// a, b, c of the primitives the line meets, part after part.
+    rows: Vec<[f64; 3]>,
+    /// Where each part's rows end.
+    ends: [usize; 6],
+    /// How many parts.
+    count: usize,
+}
+
+impl Along {
+    /// The largest density of a part [1] and its slope along the ray [1/m].
+    fn strongest(&self, t: f64) -> [f64; 2] {
+        let mut best = [0.0, 0.0];
+        let mut from = 0;
+        for &end in &self.ends[..self.count] {
+            let mut sum = [0.0, 0.0];
+            for &[a, b, c] in &self.rows[from..end] {
+                let within = (1.0 - ((a * t + b) * t + c)).max(0.0);
+                sum[0] += within * within;
+                sum[1] -= 2.0 * within * (2.0 * a * t + b);
+            }
+            if sum[0] > best[0] {
+                best = sum;
+            }
+            from = end;
+        }
+        best
+    }
+
+    fn is_inside(&self, t: f64) -> bool {
+        let mut from = 0;
+        self.ends[..self.count].iter().any(|&end| {
+            let rows = &self.rows[from..end];
+            from = end;
+            let mut sum = 0.0;
+            for &[a, b, c] in rows {
+                let within = (1.0 - ((a * t + b) * t + c)).max(0.0);
+                sum += within * within;
+            }
+            sum >= THRESHOLD
+        })
+    }
+
+    /// The change from inside to outside between two distances [m], to 1e-9 m: Newton's method
+    /// kept between the ends, by halves where it leaves them.
+    fn exit(&self, [mut low, mut high]: [f64; 2]) -> f64 {
+        let mut t = 0.5 * (low + high);
+        for _ in 0..60 {
+            let [density, slope] = self.strongest(t);
+            if density >= THRESHOLD {
+                low = t;
+            } else {
+                high = t;
+            }
+            let step = (THRESHOLD - density) / slope;
+            let next = t + step;
+            let better = slope < 0.0 && next > low && next < high;
+            let next = if better { next } else { 0.5 * (low + high) };
+            let moved = (next - t).abs();
+            t = next;
+            if moved < 1e-10 || high - low < 1e-9 {
+                break;
+            }
+        }
+        t
     }
 }
 
 /// Step of a march along a ray [m]: thinner gaps than this are not seen.
 const STEP: f64 = 0.004;
-
-/// The change from inside to outside between two distances [m], to 1e-9 m.
-fn bisected(inside: impl Fn(f64) -> bool, [mut low, mut high]: [f64; 2]) -> f64 {
-    while high - low > 1e-9 {
-        let middle = 0.5 * (low + high);
-        if inside(middle) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
-}

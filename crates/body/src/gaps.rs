@@ -43,14 +43,15 @@ const NAMED: f64 = 5.7e-4;
 impl Mannequin {
     /// Calls a function with the tape on the finished skin.
     pub(crate) fn with_tape<T>(&self, use_it: impl FnOnce(&Taken) -> T) -> T {
-        let skinned = Skinned::finished(self.skin(), &self.parts);
+        let skinned = Skinned::finished(self.skin(), &self.cast.skin.parts);
         use_it(&Taken {
             skinned: &skinned,
-            marks: &self.marks,
+            marks: &self.cast.marks,
             levels: &self.levels,
             warp: &self.warp,
             crotch: &self.crotch,
-            armpit: self.armpit,
+            armpit: self.cast.skin.armpit,
+            hulls: Default::default(),
         })
     }
 

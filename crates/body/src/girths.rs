@@ -1,9 +1,9 @@
 //! Every girth a body is solved for: where it lies and which scale it sets.
 
 use crate::Part;
+use crate::bands::Near;
 use crate::levels::{Level, Levels};
 use crate::marks::{Marks, Plane};
-use crate::tape::Near;
 use crate::warp::{Follow, Warp};
 use toile_geometry::Vec3;
 
@@ -129,14 +129,23 @@ impl Girth {
     }
 
     /// Where on the template its triangles are to be looked for.
-    pub(crate) fn near(self, marks: &Marks, plane: [Vec3; 2], warp: &Warp) -> Option<Near> {
-        let level = |y: f64, reach: f64| Some(([Vec3::y() * y, Vec3::y()], reach));
+    pub(crate) fn near(self, marks: &Marks, plane: [Vec3; 2], warp: &Warp) -> Near {
         match self.site(marks) {
-            Site::Trunk(_) => level(warp.template_level(plane[0].y), 0.06),
-            Site::Leg(_) if self == Girth::Thigh => level(warp.template_level(plane[0].y), 0.08),
-            Site::Leg(y) => level(y, 0.05),
-            Site::Arm(distance) => Some((warp.template_arm_plane(distance), 0.05)),
-            Site::Plane(..) => None,
+            // Up there the ends of the shoulders are moved besides.
+            Site::Trunk(Level::HighBust) => Near::level(warp.template_level(plane[0].y), 0.08),
+            Site::Trunk(_) => Near::level(warp.template_level(plane[0].y), 0.04),
+            Site::Leg(_) if self == Girth::Thigh => {
+                Near::level(warp.template_level(plane[0].y), 0.08)
+            }
+            Site::Leg(y) if self == Girth::Ankle => Near::level(y, 0.05),
+            Site::Leg(y) => Near::level(y, 0.03),
+            Site::Arm(distance) => Near::Arm([distance - 0.05, distance + 0.05]),
+            Site::Plane(_, points) => {
+                let heights = points.map(|p| p.y);
+                let low = heights.iter().copied().fold(f64::INFINITY, f64::min);
+                let high = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                Near::Level([low - 0.12, high + 0.12])
+            }
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Named points of a body, its axes and its levels.
 
+use crate::bands::Near;
 use crate::levels::{Level, Levels};
 use crate::marks::middle_depth;
 use crate::solve::Grown;
@@ -72,7 +73,11 @@ impl Landmarks {
     ) -> Self {
         let level = |level: Level| levels.at(level);
         let trunk_section = |y: f64| -> Vec<Vec2> {
-            let trunk = (0..mesh.triangles.len())
+            let near = Near::level(warp.template_level(y), 0.08);
+            let trunk = grown
+                .skin
+                .bands
+                .of(near)
                 .filter(|&t| matches!(grown.skin.parts[t], Part::Trunk | Part::Head));
             horizontal_section(mesh, trunk, y)
         };

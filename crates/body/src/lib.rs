@@ -2,6 +2,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod attach;
+mod bands;
 mod bones;
 mod conflict;
 mod curve;
@@ -38,7 +39,7 @@ pub use field::{Field, Part, Primitive, THRESHOLD, VISIBLE_RATIO};
 pub use gaps::Gap;
 pub use joint::Joint;
 pub use landmarks::{BodyLevels, Landmarks, PartAxis};
-pub use mannequin::Mannequin;
+pub use mannequin::{Mannequin, template_skin};
 pub use motion::Motion;
 pub use skeleton::{JointFrames, Pose, Skeleton};
 pub use template::Figure;

@@ -15,7 +15,7 @@ use crate::template::Template;
 use crate::warp::{Follow, Warp};
 use crate::{AttachedPrimitive, BodyError, Field, Figure, Part, Pose, Primitive, Skeleton};
 use nalgebra::Rotation3;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3};
 use toile_measure::Measurements;
 
@@ -25,32 +25,51 @@ pub struct Mannequin {
     pub(crate) figure: Figure,
     pub(crate) measurements: Measurements,
     pub(crate) request: Request,
-    pub(crate) template_primitives: Vec<Primitive>,
-    pub(crate) marks: Marks,
+    pub(crate) cast: Arc<Cast>,
     pub(crate) levels: Levels,
     pub(crate) warp: Warp,
     pub(crate) crotch: Vec<u32>,
-    pub(crate) armpit: u32,
-    pub(crate) skinning: Skinning,
-    pub(crate) skin: SurfaceTree,
-    pub(crate) parts: Vec<Part>,
     pub(crate) skeleton: Skeleton,
-    pub(crate) primitives: Vec<AttachedPrimitive>,
-    pub(crate) field: Field,
     pub(crate) landmarks: Landmarks,
+    skin: TriangleMesh,
+    // What follows is made from the rest when first asked for.
+    tree: OnceLock<SurfaceTree>,
+    skinning: OnceLock<Skinning>,
+    primitives: OnceLock<Vec<AttachedPrimitive>>,
+    field: OnceLock<Field>,
 }
 
-/// A template's skin and marks.
-type Cast = (TemplateSkin, Marks);
+/// A template with its skin and marks.
+pub(crate) struct Cast {
+    pub(crate) template: Template,
+    pub(crate) skin: TemplateSkin,
+    pub(crate) marks: Marks,
+}
 
-/// The skins of the figures' own templates, cast when first needed.
-static CAST: [OnceLock<Result<Cast, BodyError>>; 3] =
+impl Cast {
+    fn of(template: Template) -> Result<Arc<Self>, BodyError> {
+        let skin = rings::cast(&template, &Field::new(&template.primitives))?;
+        let marks = Marks::of(&template, &skin)?;
+        Ok(Arc::new(Self {
+            template,
+            skin,
+            marks,
+        }))
+    }
+}
+
+/// The figures' own templates, cast when first needed.
+static CAST: [OnceLock<Result<Arc<Cast>, BodyError>>; 3] =
     [OnceLock::new(), OnceLock::new(), OnceLock::new()];
 
-fn cast(template: &Template) -> Result<Cast, BodyError> {
-    let skin = rings::cast(template, &Field::new(&template.primitives))?;
-    let marks = Marks::of(template, &skin)?;
-    Ok((skin, marks))
+/// The skin of a figure's own primitives, before any measurement is applied: cast anew [m].
+///
+/// # Errors
+/// A part whose primitives leave its axis bare.
+pub fn template_skin(figure: Figure) -> Result<TriangleMesh, BodyError> {
+    let template = Template::of(figure);
+    let skin = rings::cast(&template, &Field::new(&template.primitives))?;
+    Ok(skin.mesh)
 }
 
 impl Mannequin {
@@ -61,10 +80,8 @@ impl Mannequin {
     /// # Errors
     /// A measurement that no body has, or lengths that leave no room for a landmark.
     pub fn new(measurements: &Measurements, figure: Figure) -> Result<Self, BodyError> {
-        let template = Template::of(figure);
-        let cast = CAST[figure as usize].get_or_init(|| cast(&template));
-        let (skin, marks) = cast.as_ref().map_err(Clone::clone)?;
-        Self::grown(measurements, figure, (&template, skin, *marks))
+        let cast = CAST[figure as usize].get_or_init(|| Cast::of(Template::of(figure)));
+        Self::grown(measurements, figure, cast.clone()?)
     }
 
     pub(crate) fn from_template(
@@ -72,19 +89,18 @@ impl Mannequin {
         figure: Figure,
         template: Template,
     ) -> Result<Self, BodyError> {
-        let (skin, marks) = cast(&template)?;
-        Self::grown(measurements, figure, (&template, &skin, marks))
+        Self::grown(measurements, figure, Cast::of(template)?)
     }
 
     fn grown(
         measurements: &Measurements,
         figure: Figure,
-        (template, skin, marks): (&Template, &TemplateSkin, Marks),
+        cast: Arc<Cast>,
     ) -> Result<Self, BodyError> {
         let grown = Grown {
-            template,
-            skin,
-            marks,
+            template: &cast.template,
+            skin: &cast.skin,
+            marks: cast.marks,
             request: Request::read(measurements, figure)?,
         };
         let Solved {
@@ -92,14 +108,34 @@ impl Mannequin {
             levels,
             mesh,
         } = grown.solve()?;
-        let warp = Warp::new(template, &marks, shape);
-        let skeleton = bones::skeleton(template, &warp);
+        let warp = Warp::new(&cast.template, &cast.marks, shape);
+        Ok(Self {
+            figure,
+            measurements: measurements.clone(),
+            skeleton: bones::skeleton(&cast.template, &warp),
+            landmarks: Landmarks::find(&grown, (&levels, &warp), &mesh),
+            crotch: grown.crotch_vertices(),
+            request: grown.request,
+            levels,
+            warp,
+            skin: mesh,
+            tree: OnceLock::new(),
+            skinning: OnceLock::new(),
+            primitives: OnceLock::new(),
+            field: OnceLock::new(),
+            cast,
+        })
+    }
+
+    /// The template's primitives carried by the map, scaled to lie on the skin, and fixed.
+    fn fitted_primitives(&self) -> Vec<AttachedPrimitive> {
+        let template = &self.cast.template;
         let left: Vec<Primitive> = template
             .primitives
             .iter()
             .filter(|primitive| !primitive.is_right())
             .map(|primitive| {
-                let mut body = carried(primitive, &warp);
+                let mut body = carried(primitive, &self.warp);
                 if primitive.is_central() {
                     body.centre[0] = 0.0;
                     body.rotation[1] = 0.0;
@@ -108,35 +144,21 @@ impl Mannequin {
                 body
             })
             .collect();
-        let primitives: Vec<AttachedPrimitive> = refitted(left, &mesh, &skin.parts)
+        refitted(left, &self.skin, &self.cast.skin.parts)
             .iter()
             .zip(&template.primitives)
             .map(|(primitive, of_template)| {
                 let joint = bones::joint_of(template, of_template);
-                AttachedPrimitive::new(joint, primitive, &skeleton)
+                AttachedPrimitive::new(joint, primitive, &self.skeleton)
             })
-            .collect();
-        let landmarks = Landmarks::find(&grown, (&levels, &warp), &mesh);
-        let mut body = Self {
-            figure,
-            measurements: measurements.clone(),
-            field: Field::new(&posed(&primitives, &skeleton, &Pose::rest())),
-            skeleton,
-            primitives,
-            skin: SurfaceTree::new(mesh),
-            parts: skin.parts.clone(),
-            landmarks,
-            template_primitives: template.primitives.clone(),
-            crotch: grown.crotch_vertices(),
-            armpit: skin.armpit,
-            request: grown.request,
-            marks,
-            levels,
-            warp,
-            skinning: Skinning::default(),
-        };
-        body.skinning = Skinning::new(&body, &skin.arm, &skin.leg);
-        Ok(body)
+            .collect()
+    }
+
+    /// How the skin hangs on the joints.
+    pub(crate) fn skinning(&self) -> &Skinning {
+        let skin = &self.cast.skin;
+        self.skinning
+            .get_or_init(|| Skinning::new(self, &skin.arm, &skin.leg))
     }
 
     /// The figure it was grown from.
@@ -156,17 +178,18 @@ impl Mannequin {
 
     /// The skin: closed, outward, the same triangles for every set of measurements of a figure.
     pub fn skin(&self) -> &TriangleMesh {
-        self.skin.mesh()
+        &self.skin
     }
 
-    /// The skin with its box tree.
+    /// The skin with its box tree, built when first asked for.
     pub fn skin_tree(&self) -> &SurfaceTree {
-        &self.skin
+        self.tree
+            .get_or_init(|| SurfaceTree::new(self.skin.clone()))
     }
 
     /// The part each triangle of the skin belongs to.
     pub fn part_of_triangle(&self) -> &[Part] {
-        &self.parts
+        &self.cast.skin.parts
     }
 
     /// The joints, where they are at rest.
@@ -178,7 +201,7 @@ impl Mannequin {
     /// coarse description of the body, carried from the template's by the map of the skin and
     /// scaled to lie on it.
     pub fn primitives(&self) -> &[AttachedPrimitive] {
-        &self.primitives
+        self.primitives.get_or_init(|| self.fitted_primitives())
     }
 
     /// The primitives in the body's frame, at rest, in the order of [`Mannequin::primitives`].
@@ -188,12 +211,12 @@ impl Mannequin {
 
     /// The primitives in the body's frame, in a pose: each goes rigidly with its joint.
     pub fn posed_ellipsoids(&self, pose: &Pose) -> Vec<Primitive> {
-        posed(&self.primitives, &self.skeleton, pose)
+        posed(self.primitives(), &self.skeleton, pose)
     }
 
     /// The implicit surface of the primitives at rest.
     pub fn field(&self) -> &Field {
-        &self.field
+        self.field.get_or_init(|| Field::new(&self.ellipsoids()))
     }
 
     /// Named points of the body.
@@ -203,13 +226,13 @@ impl Mannequin {
 
     /// Whether a point lies inside the skin. Exact.
     pub fn contains(&self, point: Vec3) -> bool {
-        self.skin.contains(point)
+        self.skin_tree().contains(point)
     }
 
     /// The closest point of the skin. Exact up to rounding; nothing for a point that is not
     /// finite.
     pub fn closest_point(&self, point: Vec3) -> Option<ClosestPoint> {
-        self.skin.closest_point(point, f64::INFINITY)
+        self.skin_tree().closest_point(point, f64::INFINITY)
     }
 }
 

@@ -5,6 +5,7 @@
 //! hole, the leg's first ring is the lowest half ring closed along the crotch. Parts so share
 //! their border points, and the skin is a closed two-manifold by construction.
 
+use crate::bands::Bands;
 use crate::curve::smooth_step;
 use crate::template::Template;
 use crate::{BodyError, Field, Part};
@@ -37,6 +38,8 @@ pub(crate) struct TemplateSkin {
     pub(crate) mirror: Vec<u32>,
     /// The vertex in the left armpit.
     pub(crate) armpit: u32,
+    /// The left half's triangles by their place.
+    pub(crate) bands: Bands,
 }
 
 /// Origin and elevation of the rays of one half ring of the trunk.
@@ -390,7 +393,11 @@ impl Half<'_> {
                 mesh.positions[image] = Vec3::new(-p.x, p.y, p.z);
             }
         }
+        let j = self.template.joints;
+        let shoulder = Vec3::from(j.shoulder);
+        let along = (Vec3::from(j.wrist) - shoulder).normalize();
         TemplateSkin {
+            bands: Bands::new(&mesh, &parts, [shoulder, along]),
             mesh,
             parts,
             arm,

@@ -101,7 +101,7 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
     let forward = [0.0, 0.0, 0.5 * s.lean, s.lean, s.lean, s.lean];
     let row = |k: usize| [places[k], middle[k]];
     let row_to = |k: usize| [places[k], (middle[k] - m.depth) * global + forward[k]];
-    let on_template = |level: f64| inverse(&curve, level);
+    let on_template = |level: f64| curve.inverse(level);
     let sections = trunk(grown, s, levels, &on_template);
     let column = |k: usize| sections.iter().map(|row| [row[0], row[k]]).collect();
     let aspect = s.aspect[Girth::Hips as usize].sqrt();
@@ -128,20 +128,6 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
         bust_spread: s.spread,
         armpit_rise: s.armpit,
     })
-}
-
-/// Place on a rising curve [m].
-fn inverse(curve: &Monotone, value: f64) -> f64 {
-    let (mut low, mut high) = (-1.0, 4.0);
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        if curve.at(middle) < value {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
 }
 
 /// Sections of trunk, neck and head from below. Of two that lie too close, the more important

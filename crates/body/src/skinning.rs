@@ -146,7 +146,7 @@ struct Dual {
 impl Mannequin {
     /// The joints each vertex of the skin goes with and its shares, which add up to one.
     pub fn shares(&self, vertex: usize) -> &[(Joint, f64)] {
-        self.skinning.of(vertex)
+        self.skinning().of(vertex)
     }
 
     /// The skin in a pose: dual quaternions of the joints blended by each vertex's shares, which
@@ -154,14 +154,14 @@ impl Mannequin {
     pub fn posed_skin(&self, pose: &Pose) -> TriangleMesh {
         let frames = self.skeleton.frames(pose);
         let duals = Joint::ALL.map(|joint| self.motion_of(&frames, joint));
-        let rest = self.skin();
+        let (rest, skinning) = (self.skin(), self.skinning());
         let mut positions = rest.positions.clone();
         positions
             .par_iter_mut()
             .with_min_len(1024)
             .enumerate()
             .for_each(|(v, p)| {
-                *p = blended(self.skinning.of(v), &duals, *p);
+                *p = blended(skinning.of(v), &duals, *p);
             });
         TriangleMesh {
             positions,
@@ -196,7 +196,7 @@ impl Mannequin {
             let p = self.skin().positions[v as usize];
             let near = |joint: &Joint| (self.skeleton.centre(*joint) - p).norm() < reach;
             let on_limbs: f64 = self
-                .skinning
+                .skinning()
                 .of(v as usize)
                 .iter()
                 .filter(|s| limb(s.0))

@@ -49,7 +49,11 @@ impl Grown<'_> {
             let shape = shape(self, &scales, &levels)?;
             let warp = Warp::new(self.template, &self.marks, shape);
             let place = |v: usize| self.place(&warp, v);
-            let skinned = Skinned::lazy(&self.skin.mesh, &self.skin.parts, &place);
+            let skinned = Skinned::lazy(
+                (&self.skin.mesh, &self.skin.bands),
+                &self.skin.parts,
+                &place,
+            );
             let taken = self.taken(&skinned, (&levels, &warp), &crotch);
             let mut moved = self.correct(&mut scales, &mut excess, &taken);
             if round < FORMING {
@@ -93,6 +97,7 @@ impl Grown<'_> {
             warp,
             crotch,
             armpit: self.skin.armpit,
+            hulls: Default::default(),
         }
     }
 

@@ -1,12 +1,15 @@
 //! Every measurement as the tape finds it on a skin.
 
 use crate::Part;
+use crate::bands::Near;
 use crate::girths::Girth;
 use crate::levels::{Level, Levels, upright};
 use crate::marks::Marks;
 use crate::tape::{Skinned, extent, fall, half_length, outermost, stretched};
 use crate::warp::Warp;
+use std::cell::RefCell;
 use std::f64::consts::FRAC_PI_2;
+use std::rc::Rc;
 use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
 
 /// A skin with what is needed to find places on it.
@@ -17,6 +20,8 @@ pub(crate) struct Taken<'a> {
     pub(crate) warp: &'a Warp,
     /// Vertices in the middle of the crotch.
     pub(crate) crotch: &'a [u32],
+    /// Hulls that were taken before.
+    pub(crate) hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
     /// Vertex of the crown, and those at the ends of the left hand and foot.
     pub(crate) armpit: u32,
 }
@@ -49,10 +54,19 @@ impl Taken<'_> {
     }
 
     /// The hull of a girth's section.
-    pub(crate) fn hull(&self, girth: Girth) -> Vec<Vec2> {
+    pub(crate) fn hull(&self, girth: Girth) -> Rc<[Vec2]> {
+        if let Some(known) = &self.hulls.borrow()[girth as usize] {
+            return known.clone();
+        }
+        let hull: Rc<[Vec2]> = self.taken_hull(girth).into();
+        self.hulls.borrow_mut()[girth as usize] = Some(hull.clone());
+        hull
+    }
+
+    fn taken_hull(&self, girth: Girth) -> Vec<Vec2> {
         let (part, plane) = girth.plane(self.marks, self.levels, self.warp);
         self.skinned
-            .hull(part, plane, girth.near(self.marks, plane, self.warp))
+            .hull(part, plane, Some(girth.near(self.marks, plane, self.warp)))
     }
 
     /// A girth [m].
@@ -63,19 +77,25 @@ impl Taken<'_> {
     /// The foremost point of the bust on the left [m].
     pub(crate) fn bust_point(&self) -> Option<Vec3> {
         let y = self.levels.at(Level::Bust);
-        let section = self
-            .skinned
-            .section(&[Part::Trunk], [Vec3::y() * y, Vec3::y()], None);
-        section
+        let level = [Vec3::y() * y, Vec3::y()];
+        self.skinned
+            .section(&[Part::Trunk], level, self.around(y))
             .into_iter()
             .flatten()
             .max_by(|a, b| a.z.total_cmp(&b.z).then(a.x.total_cmp(&b.x)))
     }
 
+    /// Where triangles that cross a height [m] lie.
+    fn around(&self, height: f64) -> Option<Near> {
+        Some(Near::level(self.warp.template_level(height), 0.08))
+    }
+
     /// The upright section through a point, parallel to z and a direction.
     fn upright(&self, parts: &[Part], through: Vec3, sideways: Vec3) -> Vec<[Vec3; 2]> {
         let normal = Vec3::z().cross(&sideways).normalize();
-        self.skinned.section(parts, [through, normal], None)
+        let end = through.x + if sideways.y == 1.0 { 0.0 } else { sideways.x };
+        let near = Near::side([through.x, end], self.warp.global());
+        self.skinned.section(parts, [through, normal], Some(near))
     }
 
     fn bust_line(&self) -> Option<f64> {
@@ -105,7 +125,7 @@ impl Taken<'_> {
         let level = [Vec3::y() * waist, Vec3::y()];
         let side = self
             .skinned
-            .section(&[Part::Trunk], level, None)
+            .section(&[Part::Trunk], level, self.around(waist))
             .into_iter()
             .flatten()
             .max_by(|a, b| a.x.total_cmp(&b.x))?;
@@ -117,7 +137,8 @@ impl Taken<'_> {
 
     fn across_shoulders(&self) -> f64 {
         let tip = self.tip();
-        let section = self.skinned.section(TORSO, [tip, Vec3::y()], None);
+        let level = [tip, Vec3::y()];
+        let section = self.skinned.section(TORSO, level, self.around(tip.y));
         let flat: Vec<[Vec2; 2]> = section
             .iter()
             .flat_map(|s| {
@@ -134,9 +155,7 @@ impl Taken<'_> {
         let waist = self.levels.at(Level::Waist);
         let parts = &[Part::Trunk, Part::LeftLeg];
         // Just beside the middle, where the plane meets whole triangles.
-        let section = self
-            .skinned
-            .section(parts, [Vec3::x() * 1e-6, Vec3::x()], None);
+        let section = self.upright(parts, Vec3::x() * 1e-6, Vec3::y());
         let flat = |side: f64| -> Vec<[Vec2; 2]> {
             let turned = |p: Vec3| Vec2::new(p.y, side * p.z);
             section.iter().map(|s| s.map(turned)).collect()
@@ -234,7 +253,7 @@ impl Taken<'_> {
             .section(
                 &[Part::Trunk, Part::LeftLeg],
                 [Vec3::y() * y, Vec3::y()],
-                None,
+                self.around(y),
             )
             .into_iter()
             .flatten()

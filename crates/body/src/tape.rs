@@ -2,6 +2,7 @@
 //! section and bridges hollows.
 
 use crate::Part;
+use crate::bands::{Bands, Near};
 use std::cell::RefCell;
 use toile_geometry::{TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
 
@@ -12,12 +13,9 @@ pub(crate) struct Skinned<'a> {
     parts: &'a [Part],
     placed: RefCell<Vec<Vec3>>,
     place: Option<&'a dyn Fn(usize) -> Vec3>,
-    /// Where the vertices are on the template, to leave out early what lies far away.
-    template: Option<&'a [Vec3]>,
+    /// Triangles by their place on the template, to leave out early what lies far away.
+    bands: Option<&'a Bands>,
 }
-
-/// A plane on the template and how far from it triangles may matter [m].
-pub(crate) type Near = ([Vec3; 2], f64);
 
 impl<'a> Skinned<'a> {
     /// A finished mesh.
@@ -27,13 +25,13 @@ impl<'a> Skinned<'a> {
             parts,
             placed: RefCell::new(mesh.positions.clone()),
             place: None,
-            template: None,
+            bands: None,
         }
     }
 
     /// A skin in the making.
     pub(crate) fn lazy(
-        template: &'a TriangleMesh,
+        (template, bands): (&'a TriangleMesh, &'a Bands),
         parts: &'a [Part],
         place: &'a dyn Fn(usize) -> Vec3,
     ) -> Self {
@@ -42,7 +40,7 @@ impl<'a> Skinned<'a> {
             parts,
             placed: RefCell::new(vec![Vec3::repeat(f64::NAN); template.positions.len()]),
             place: Some(place),
-            template: Some(&template.positions),
+            bands: Some(bands),
         }
     }
 
@@ -68,37 +66,35 @@ impl<'a> Skinned<'a> {
         [origin, normal]: [Vec3; 2],
         near: Option<Near>,
     ) -> Vec<[Vec3; 2]> {
+        let half = self.triangles.len() / 2;
         let mut segments = Vec::new();
-        for (t, triangle) in self.triangles[..self.triangles.len() / 2]
-            .iter()
-            .enumerate()
-        {
-            if !parts.contains(&self.parts[t]) {
-                continue;
+        let mut cut = |t: usize| {
+            if parts.contains(&self.parts[t]) {
+                segments.extend(self.cut(t, [origin, normal]));
             }
-            if let (Some(template), Some(([o, n], reach))) = (self.template, near) {
-                let p = template[triangle[0] as usize];
-                if (p - o).dot(&n).abs() > reach {
-                    continue;
-                }
-            }
-            let corners = triangle.map(|v| self.at(v));
-            let height = corners.map(|p| (p - origin).dot(&normal));
-            let mut ends = [Vec3::zeros(); 2];
-            let mut count = 0;
-            for k in 0..3 {
-                let (i, j) = (k, (k + 1) % 3);
-                if (height[i] >= 0.0) != (height[j] >= 0.0) && count < 2 {
-                    let share = height[i] / (height[i] - height[j]);
-                    ends[count] = corners[i] + (corners[j] - corners[i]) * share;
-                    count += 1;
-                }
-            }
-            if count == 2 {
-                segments.push(ends);
-            }
+        };
+        match (self.bands, near) {
+            (Some(bands), Some(near)) => bands.of(near).for_each(&mut cut),
+            _ => (0..half).for_each(cut),
         }
         segments
+    }
+
+    /// The segment in which a triangle crosses a plane.
+    fn cut(&self, t: usize, [origin, normal]: [Vec3; 2]) -> Option<[Vec3; 2]> {
+        let corners = self.triangles[t].map(|v| self.at(v));
+        let height = corners.map(|p| (p - origin).dot(&normal));
+        let mut ends = [Vec3::zeros(); 2];
+        let mut count = 0;
+        for k in 0..3 {
+            let (i, j) = (k, (k + 1) % 3);
+            if (height[i] >= 0.0) != (height[j] >= 0.0) && count < 2 {
+                let share = height[i] / (height[i] - height[j]);
+                ends[count] = corners[i] + (corners[j] - corners[i]) * share;
+                count += 1;
+            }
+        }
+        (count == 2).then_some(ends)
     }
 
     /// A closed polygon round a section: its hull, in the plane's own coordinates, first axis

@@ -188,6 +188,11 @@ impl Warp {
         mapped
     }
 
+    /// Ratio of statures, body to template [1].
+    pub(crate) fn global(&self) -> f64 {
+        self.shape.global
+    }
+
     /// The body's height of a height of the template [m].
     pub(crate) fn level_of(&self, y: f64) -> f64 {
         self.level.at(y)
@@ -195,16 +200,7 @@ impl Warp {
 
     /// The template's height of a height of the body [m].
     pub(crate) fn template_level(&self, height: f64) -> f64 {
-        let (mut low, mut high) = (-1.0, 4.0);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if self.level.at(middle) < height {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        0.5 * (low + high)
+        self.level.inverse(height)
     }
 
     /// The plane across the arm at a template distance from the shoulder joint: a point of the
@@ -212,14 +208,6 @@ impl Warp {
     pub(crate) fn arm_plane(&self, distance: f64) -> [Vec3; 2] {
         let along = self.arm_to[0] * self.arm_length.at(distance);
         [self.trunk(self.shoulder) + along, self.arm_to[0]]
-    }
-
-    /// The same plane on the template.
-    pub(crate) fn template_arm_plane(&self, distance: f64) -> [Vec3; 2] {
-        [
-            self.shoulder + self.arm_from[0] * distance,
-            self.arm_from[0],
-        ]
     }
 
     /// What the map makes of three axes laid through a place: half the way between the images of

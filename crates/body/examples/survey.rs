@@ -1,0 +1,301 @@
+//! Makes a body for every person of a survey table (ANSUR II, as CSV with head units: millimetres)
+//! and says how many have what was measured of them.
+//!
+//! `cargo run --release -p toile-body --example survey -- SUBJECTS.csv [EVERY [FIRST]]`
+//!
+//! Twelve girths and ten lengths are asked; breadths and depths are not, and are held against the
+//! survey's own.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::process::ExitCode;
+use std::time::Instant;
+use toile_body::{Figure, Mannequin};
+use toile_measure::{Measurements, Origin};
+
+/// The survey's names and the catalogue's: twelve girths, then ten lengths.
+const ASKED: [(&str, &str); 22] = [
+    ("chestcircumference", "bust"),
+    ("waistcircumference", "waist"),
+    ("buttockcircumference", "hips"),
+    ("neckcircumference", "neck"),
+    ("bicepscircumferenceflexed", "upper_arm"),
+    ("forearmcircumferenceflexed", "forearm"),
+    ("wristcircumference", "wrist"),
+    ("thighcircumference", "leg_circ"),
+    ("lowerthighcircumference", "lower_thigh"),
+    ("calfcircumference", "calf"),
+    ("anklecircumference", "ankle"),
+    ("headcircumference", "head"),
+    ("stature", "height"),
+    ("cervicaleheight", "nape_height"),
+    ("acromialheight", "shoulder_height"),
+    ("chestheight", "bust_height"),
+    ("waistheightomphalion", "waist_height"),
+    ("buttockheight", "hip_height"),
+    ("crotchheight", "inside_leg"),
+    ("kneeheightmidpatella", "knee_height"),
+    ("sleeveoutseam", "arm_length"),
+    ("biacromialbreadth", "shoulder_w"),
+];
+
+/// What is not asked: the survey's name and the catalogue's.
+const HELD_OUT: [(&str, &str); 6] = [
+    ("chestbreadth", "chest_breadth"),
+    ("chestdepth", "chest_depth"),
+    ("waistbreadth", "waist_breadth"),
+    ("waistdepth", "waist_depth"),
+    ("hipbreadth", "hip_breadth"),
+    ("buttockdepth", "hip_depth"),
+];
+
+struct Person {
+    row: usize,
+    figure: Figure,
+    values: BTreeMap<String, f64>,
+}
+
+/// What became of one person.
+struct Outcome {
+    /// Measurements missed by more than a millimetre, or why there is no body.
+    missed: Vec<String>,
+    /// Pairs of triangles of the skin that cross; none when the skin is not a closed manifold.
+    crossings: Option<usize>,
+    held_out: [f64; HELD_OUT.len()],
+    /// Time of the solve [s].
+    time: f64,
+}
+
+fn read(path: &str) -> std::io::Result<Vec<Person>> {
+    let text = std::fs::read_to_string(path)?;
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+    Ok(lines
+        .enumerate()
+        .map(|(row, line)| {
+            let cells: Vec<&str> = line.split(',').collect();
+            let value = |(name, cell): (&&str, &&str)| {
+                Some(((*name).to_owned(), cell.parse::<f64>().ok()? * 1e-3))
+            };
+            Person {
+                row,
+                figure: match cells.first() {
+                    Some(&"f") => Figure::Woman,
+                    _ => Figure::Man,
+                },
+                values: names.iter().zip(&cells).filter_map(value).collect(),
+            }
+        })
+        .collect())
+}
+
+fn get(person: &Person, name: &str) -> f64 {
+    person.values.get(name).copied().unwrap_or(f64::NAN)
+}
+
+fn run(person: &Person) -> Outcome {
+    let mut table = Measurements::new();
+    for (from, name) in ASKED {
+        let _ = table.set(name, get(person, from), Origin::Asked);
+    }
+    let start = Instant::now();
+    let body = match Mannequin::new(&table, person.figure) {
+        Ok(body) => body,
+        Err(error) => {
+            return Outcome {
+                missed: vec![error.to_string()],
+                crossings: None,
+                held_out: [f64::NAN; HELD_OUT.len()],
+                time: 0.0,
+            };
+        }
+    };
+    let time = start.elapsed().as_secs_f64();
+    let rows = body.measure();
+    let missed = rows
+        .iter()
+        .filter(|row| row.origin == Origin::Asked && row.gap().abs() > 1e-3)
+        .map(|row| format!("{} {:+.1} mm", row.name, row.gap() * 1e3))
+        .collect();
+    let skin = body.skin();
+    let manifold = skin.check() == Ok(())
+        && skin.is_closed_and_oriented()
+        && skin.euler_characteristic() == 2
+        && skin.component_count() == 1
+        && skin.volume() > 0.0;
+    let crossings = manifold.then(|| body.skin_tree().self_intersections().len());
+    let taken = |name: &str| body.taken(name).unwrap_or(f64::NAN);
+    Outcome {
+        missed,
+        crossings,
+        held_out: HELD_OUT.map(|(_, name)| taken(name)),
+        time,
+    }
+}
+
+/// Whether every asked value lies between the survey's 5th and 95th of a hundred of that sex.
+fn in_box(person: &Person, limits: &BTreeMap<(bool, &str), [f64; 2]>) -> bool {
+    ASKED.iter().all(|(name, _)| {
+        let [low, high] = limits[&(person.figure == Figure::Woman, *name)];
+        (low..=high).contains(&get(person, name))
+    })
+}
+
+fn limits(people: &[Person]) -> BTreeMap<(bool, &'static str), [f64; 2]> {
+    let mut limits = BTreeMap::new();
+    for woman in [false, true] {
+        for (name, _) in ASKED {
+            let mut values: Vec<f64> = people
+                .iter()
+                .filter(|person| (person.figure == Figure::Woman) == woman)
+                .map(|person| get(person, name))
+                .collect();
+            values.sort_by(f64::total_cmp);
+            let at = |share: f64| values[(share * (values.len() - 1) as f64).round() as usize];
+            limits.insert((woman, name), [at(0.05), at(0.95)]);
+        }
+    }
+    limits
+}
+
+/// Root mean square of a linear regression on the asked values, fitted on people with an odd row
+/// and held against the even ones, and of the bodies against the same [m].
+fn held_out(people: &[Person], bodies: &[&Outcome], woman: bool, which: usize) -> [f64; 2] {
+    let own = |p: &&Person| (p.figure == Figure::Woman) == woman;
+    let inputs = |p: &Person| -> Vec<f64> {
+        let values = ASKED.iter().map(|(name, _)| get(p, name));
+        std::iter::once(1.0).chain(values).collect()
+    };
+    let n = ASKED.len() + 1;
+    let (mut normal, mut right) = (vec![vec![0.0; n]; n], vec![0.0; n]);
+    for person in people.iter().filter(own).filter(|p| p.row % 2 == 1) {
+        let (x, y) = (inputs(person), get(person, HELD_OUT[which].0));
+        for i in 0..n {
+            right[i] += x[i] * y;
+            for j in 0..n {
+                normal[i][j] += x[i] * x[j];
+            }
+        }
+    }
+    // Gauss with pivots: the matrix is small and its columns are alike in size.
+    for k in 0..n {
+        let pivot = (k..n)
+            .max_by(|&a, &b| normal[a][k].abs().total_cmp(&normal[b][k].abs()))
+            .unwrap_or(k);
+        normal.swap(k, pivot);
+        right.swap(k, pivot);
+        for i in k + 1..n {
+            let factor = normal[i][k] / normal[k][k];
+            for j in k..n {
+                normal[i][j] -= factor * normal[k][j];
+            }
+            right[i] -= factor * right[k];
+        }
+    }
+    for k in (0..n).rev() {
+        for j in k + 1..n {
+            right[k] -= normal[k][j] * right[j];
+        }
+        right[k] /= normal[k][k];
+    }
+    let (mut sums, mut count) = ([0.0; 2], 0.0);
+    for (person, body) in people.iter().zip(bodies) {
+        let got = body.held_out[which];
+        if !own(&person) || person.row % 2 == 1 || !got.is_finite() {
+            continue;
+        }
+        let actual = get(person, HELD_OUT[which].0);
+        let line: f64 = inputs(person).iter().zip(&right).map(|(x, b)| x * b).sum();
+        sums[0] += (line - actual).powi(2);
+        sums[1] += (got - actual).powi(2);
+        count += 1.0;
+    }
+    sums.map(|sum: f64| (sum / f64::max(count, 1.0)).sqrt())
+}
+
+fn report(everyone: &[Person], people: Vec<Person>) {
+    let limits = limits(everyone);
+    let start = Instant::now();
+    let outcomes: Vec<Outcome> = people.par_iter().map(run).collect();
+    println!(
+        "{} people in {:.0} s",
+        people.len(),
+        start.elapsed().as_secs_f64()
+    );
+    let mut times: Vec<f64> = outcomes.iter().map(|o| o.time).collect();
+    times.sort_by(f64::total_cmp);
+    let at = |share: f64| 1e3 * times[(share * (times.len() - 1) as f64) as usize];
+    println!(
+        "a body: median {:.1} ms, 99 of 100 within {:.1} ms",
+        at(0.5),
+        at(0.99)
+    );
+    let inside: Vec<bool> = people.iter().map(|p| in_box(p, &limits)).collect();
+    let count = |test: &dyn Fn(usize) -> bool| (0..people.len()).filter(|&k| test(k)).count();
+    let good = |k: usize| outcomes[k].missed.is_empty();
+    println!(
+        "within 1 mm: {} of {} inside the 5-95 % box, {} of {} in all",
+        count(&|k| inside[k] && good(k)),
+        count(&|k| inside[k]),
+        count(&good),
+        people.len()
+    );
+    println!(
+        "skins closed, of one piece, without a crossing: {}",
+        count(&|k| outcomes[k].crossings == Some(0))
+    );
+    for (person, outcome) in people.iter().zip(&outcomes) {
+        if !outcome.missed.is_empty() {
+            println!("person {} misses {}", person.row, outcome.missed.join(", "));
+        }
+        match outcome.crossings {
+            Some(0) => {}
+            Some(pairs) => println!("person {}: {pairs} crossing pairs", person.row),
+            None => println!("person {}: no closed skin", person.row),
+        }
+    }
+    let bodies: Vec<&Outcome> = outcomes.iter().collect();
+    if people.len() == everyone.len() {
+        for woman in [true, false] {
+            for (which, (name, _)) in HELD_OUT.iter().enumerate() {
+                let [line, body] = held_out(&people, &bodies, woman, which).map(|x| 1e3 * x);
+                let sex = if woman { "women" } else { "men" };
+                println!("not asked, {sex} {name}: regression {line:.2} mm, body {body:.2} mm");
+            }
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let Some(path) = arguments.first() else {
+        eprintln!("give the table of people: survey SUBJECTS.csv [EVERY [FIRST]]");
+        return ExitCode::from(2);
+    };
+    let number = |k: usize| arguments.get(k).and_then(|text| text.parse::<usize>().ok());
+    let (every, first) = (number(1).unwrap_or(1).max(1), number(2).unwrap_or(0));
+    let everyone = match read(path) {
+        Ok(people) if !people.is_empty() => people,
+        Ok(_) => {
+            eprintln!("{path}: no people in it");
+            return ExitCode::from(2);
+        }
+        Err(error) => {
+            eprintln!("{path}: {error}");
+            return ExitCode::from(2);
+        }
+    };
+    let chosen = |p: &Person| p.row >= first && (p.row - first).is_multiple_of(every);
+    let people = everyone
+        .iter()
+        .filter(|p| chosen(p))
+        .map(|p| Person {
+            row: p.row,
+            figure: p.figure,
+            values: p.values.clone(),
+        })
+        .collect();
+    report(&everyone, people);
+    ExitCode::SUCCESS
+}

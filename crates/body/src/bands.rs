@@ -1,0 +1,69 @@
+//! Triangles of a template sorted by where they lie, so that a tape looks at few of them.
+
+use crate::Part;
+use toile_geometry::{TriangleMesh, Vec3};
+
+/// Where on a template a tape looks for its triangles: from one place to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Near {
+    /// Heights above the floor [m].
+    Level([f64; 2]),
+    /// Distances from the shoulder joint along the arm [m].
+    Arm([f64; 2]),
+    /// Distances from the middle [m].
+    Side([f64; 2]),
+}
+
+impl Near {
+    /// Round a height.
+    pub(crate) fn level(height: f64, reach: f64) -> Self {
+        Self::Level([height - reach, height + reach])
+    }
+
+    /// Round places of a body at some distance from the middle, `global` times the template's
+    /// size: no section is scaled by less than 0.4 or more than 2.5 beyond that.
+    pub(crate) fn side(places: [f64; 2], global: f64) -> Self {
+        let [low, high] = [places[0].min(places[1]), places[0].max(places[1])];
+        Self::Side([0.4 * low / global - 0.025, 2.5 * high / global + 0.025])
+    }
+}
+
+/// The left half's triangles with the place of their first corner, in ascending order.
+pub(crate) struct Bands {
+    level: Vec<(f64, u32)>,
+    arm: Vec<(f64, u32)>,
+    side: Vec<(f64, u32)>,
+}
+
+impl Bands {
+    /// Sorts the left half of a template's triangles; the arm's along its axis from the shoulder.
+    pub(crate) fn new(mesh: &TriangleMesh, parts: &[Part], [shoulder, along]: [Vec3; 2]) -> Self {
+        let half = mesh.triangles.len() / 2;
+        let first = |t: usize| mesh.positions[mesh.triangles[t][0] as usize];
+        let sorted = |mut rows: Vec<(f64, u32)>| {
+            rows.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            rows
+        };
+        let level = (0..half).map(|t| (first(t).y, t as u32)).collect();
+        let on_arm = |t: &usize| matches!(parts[*t], Part::LeftArm | Part::Trunk);
+        let place = |t: usize| ((first(t) - shoulder).dot(&along), t as u32);
+        let side = (0..half).map(|t| (first(t).x, t as u32)).collect();
+        Self {
+            side: sorted(side),
+            level: sorted(level),
+            arm: sorted((0..half).filter(on_arm).map(place).collect()),
+        }
+    }
+
+    /// The triangles that begin near a place.
+    pub(crate) fn of(&self, near: Near) -> impl Iterator<Item = usize> + '_ {
+        let (rows, [from, to]) = match near {
+            Near::Level(range) => (&self.level, range),
+            Near::Arm(range) => (&self.arm, range),
+            Near::Side(range) => (&self.side, range),
+        };
+        let low = rows.partition_point(|row| row.0 < from);
+        let high = rows.partition_point(|row| row.0 <= to).max(low);
+        rows[low..high].iter().map(|row| row.1 as usize)
+    }
+}
