@@ -59,8 +59,7 @@ impl Cast {
 }
 
 /// The figures' own templates, cast when first needed.
-static CAST: [OnceLock<Result<Arc<Cast>, BodyError>>; 3] =
-    [OnceLock::new(), OnceLock::new(), OnceLock::new()];
+static CAST: [OnceLock<Result<Arc<Cast>, BodyError>>; 3] = [const { OnceLock::new() }; 3];
 
 /// The skin of a figure's own primitives, before any measurement is applied: cast anew [m].
 ///
@@ -80,7 +79,9 @@ impl Mannequin {
     /// # Errors
     /// A measurement that no body has, or lengths that leave no room for a landmark.
     pub fn new(measurements: &Measurements, figure: Figure) -> Result<Self, BodyError> {
-        let cast = CAST[figure as usize].get_or_init(|| Cast::of(Template::of(figure)));
+        // Children share the template of the mean.
+        let place = (figure as usize).min(Figure::Mean as usize);
+        let cast = CAST[place].get_or_init(|| Cast::of(Template::of(figure)));
         Self::grown(measurements, figure, cast.clone()?)
     }
 

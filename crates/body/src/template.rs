@@ -9,7 +9,7 @@ mod woman;
 
 use crate::{Part, Primitive};
 use serde::{Deserialize, Serialize};
-use toile_measure::Build;
+use toile_measure::{Build, Measurements};
 
 /// Which template a mannequin is grown from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -21,15 +21,83 @@ pub enum Figure {
     Man,
     /// The mean of both.
     Mean,
+    /// A child of 2 years.
+    #[serde(rename = "child-2")]
+    Child2,
+    /// A child of 4 years.
+    #[serde(rename = "child-4")]
+    Child4,
+    /// A child of 6 years.
+    #[serde(rename = "child-6")]
+    Child6,
+    /// A child of 8 years.
+    #[serde(rename = "child-8")]
+    Child8,
+    /// A child of 10 years.
+    #[serde(rename = "child-10")]
+    Child10,
+    /// A child of 12 years.
+    #[serde(rename = "child-12")]
+    Child12,
+    /// A child of 14 years.
+    #[serde(rename = "child-14")]
+    Child14,
 }
 
 impl Figure {
+    /// How many there are.
+    pub const COUNT: usize = 10;
+
+    /// All figures, the adults first.
+    pub const ALL: [Figure; Self::COUNT] = [
+        Figure::Woman,
+        Figure::Man,
+        Figure::Mean,
+        Figure::Child2,
+        Figure::Child4,
+        Figure::Child6,
+        Figure::Child8,
+        Figure::Child10,
+        Figure::Child12,
+        Figure::Child14,
+    ];
+
+    /// The name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Figure::Woman => "woman",
+            Figure::Man => "man",
+            Figure::Mean => "mean",
+            Figure::Child2 => "child-2",
+            Figure::Child4 => "child-4",
+            Figure::Child6 => "child-6",
+            Figure::Child8 => "child-8",
+            Figure::Child10 => "child-10",
+            Figure::Child12 => "child-12",
+            Figure::Child14 => "child-14",
+        }
+    }
+
+    /// Age of a child [years]; none for an adult.
+    pub fn age(self) -> Option<u8> {
+        match self {
+            Figure::Woman | Figure::Man | Figure::Mean => None,
+            child => Some(2 * (child as u8 - Figure::Child2 as u8 + 1)),
+        }
+    }
+
+    /// The average body of the figure: the measurements a garment is drawn from.
+    pub fn average(self) -> Measurements {
+        Measurements::average(self.build())
+    }
+
     /// Whose statistics predict what was not measured.
     pub fn build(self) -> Build {
         match self {
             Figure::Woman => Build::Woman,
             Figure::Man => Build::Man,
             Figure::Mean => Build::Either,
+            child => Build::Child(child.age().unwrap_or(8)),
         }
     }
 }
@@ -78,7 +146,8 @@ impl Template {
         let table: &'static Table = match figure {
             Figure::Woman => &woman::TABLE,
             Figure::Man => &man::TABLE,
-            Figure::Mean => &mean::TABLE,
+            // A child has the adult's form at its own proportions.
+            _ => &mean::TABLE,
         };
         let mut primitives = Vec::new();
         let rows = [

@@ -169,8 +169,8 @@ pub struct Make {
     /// Folder to write into; it is made if need be.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
-    /// Whose body: woman, man, mean, a file of measurements (native JSON or GarmentCode YAML), or
-    /// FIGURE:FILE. Default: a woman of the pattern's size; mean for a pattern without sizes.
+    /// Whose body: woman, man, mean, child-2, child-4, ... child-14 (by age), a file of
+    /// measurements (native JSON or GarmentCode YAML), or FIGURE:FILE. Default: a woman of the pattern's size; mean for a pattern without sizes.
     #[arg(long, value_name = "BODY")]
     pub body: Option<String>,
     /// Named size of the pattern; the mannequin gets that size too. Default: the pattern's base
@@ -509,7 +509,7 @@ pub struct Body {
     /// Default: the average of the figure.
     #[arg(long, value_name = "FILE")]
     pub measurements: Option<PathBuf>,
-    /// Figure to grow it from: woman, man or mean.
+    /// Figure to grow it from: woman, man, mean, or child-2, child-4, ... child-14 (by age).
     #[arg(long, value_name = "FIGURE", default_value = "mean")]
     pub figure: String,
     /// Motion to pose it by: walk, run, or a BVH file. Default: at rest.

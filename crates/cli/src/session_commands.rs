@@ -56,7 +56,7 @@ fn refuse_nobody(commands: &[Command]) -> Result<(), Failure> {
             && !file.exists()
         {
             return Err(Failure::bad_input(format!(
-                "--body: there is no file {}; give woman, man, mean, a file of measurements, or \
+                "--body: there is no file {}; give woman, man, mean, child-2 to child-14, a file of measurements, or \
                  FIGURE:FILE",
                 file.display()
             )));

@@ -62,7 +62,7 @@ pub fn mesh(mesh: &Mesh, output: &Output) -> Result<Value, Failure> {
 pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
     let figure = figure_named(&body.figure).ok_or_else(|| {
         Failure::bad_input(format!(
-            "there is no figure {:?}; choose woman, man or mean",
+            "there is no figure {:?}; choose woman, man, mean, or child-2, child-4, ... child-14",
             body.figure
         ))
     })?;

@@ -12,6 +12,8 @@ pub enum Build {
     Man,
     /// The mean of both.
     Either,
+    /// A child of an age [years], where no stature is given.
+    Child(u8),
 }
 
 /// Statistics of one build in SI units.
@@ -26,7 +28,7 @@ impl Statistics {
         match build {
             Build::Woman => Self::mixed(&[&WOMEN]),
             Build::Man => Self::mixed(&[&MEN]),
-            Build::Either => Self::mixed(&[&WOMEN, &MEN]),
+            Build::Either | Build::Child(_) => Self::mixed(&[&WOMEN, &MEN]),
         }
     }
 
@@ -129,13 +131,17 @@ impl Measurements {
             Build::Woman => Self::adult_woman(),
             Build::Man => Self::adult_man(),
             Build::Either => Self::adult(),
+            Build::Child(age) => Self::child(age),
         }
     }
 
     /// This table with what is missing predicted and marked so: the mean of adults of that build
     /// who have the values given (ANSUR II, 2012); what no survey took, in proportion to what it
-    /// goes with, from the average body.
+    /// goes with, from the average body. A child is completed from the average child of its stature.
     pub fn completed(&self, build: Build) -> Self {
+        if let Build::Child(age) = build {
+            return self.completed_child(age);
+        }
         let statistics = Statistics::of(build);
         let average = Self::average(build);
         let scale = self.scale(&statistics);

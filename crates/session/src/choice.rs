@@ -41,27 +41,19 @@ impl BodyChoice {
 
 /// The name of a figure on the command line and on screens.
 pub(crate) fn figure_name(figure: Figure) -> &'static str {
-    match figure {
-        Figure::Woman => "woman",
-        Figure::Man => "man",
-        Figure::Mean => "mean",
-    }
+    figure.name()
 }
 
-/// The figure of that name: `woman`, `man` or `mean`.
+/// The figure of that name: `woman`, `man`, `mean`, or `child-2` to `child-14` by age.
 pub fn figure_named(name: &str) -> Option<Figure> {
-    [Figure::Woman, Figure::Man, Figure::Mean]
+    Figure::ALL
         .into_iter()
-        .find(|&figure| figure_name(figure) == name)
+        .find(|&figure| figure.name() == name)
 }
 
-/// The average adult of a figure.
+/// The average body of a figure.
 pub(crate) fn sample_of(figure: Figure) -> Measurements {
-    match figure {
-        Figure::Woman => Measurements::adult_woman(),
-        Figure::Man => Measurements::adult_man(),
-        Figure::Mean => Measurements::adult(),
-    }
+    figure.average()
 }
 
 /// How finely the garment is meshed and how near to rest it is draped.

@@ -1,0 +1,361 @@
+//! Any closed mesh of a standing person as a body to measure: loops of its sections, landmarks
+//! found or given, and the same tape as on our own bodies: the convex hull of a section.
+
+use crate::tape::extent;
+use crate::BodyError;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use toile_geometry::{TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
+use toile_measure::{Measurements, Origin};
+
+/// One closed loop of a section of a mesh by a plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loop {
+    /// Its corners in order, in the plane's coordinates; of a level plane (x, z) [m].
+    pub points: Vec<Vec2>,
+}
+
+impl Loop {
+    /// Length of the loop itself [m].
+    pub fn length(&self) -> f64 {
+        closed_length(&self.points)
+    }
+
+    /// Length of a tight tape round it: its convex hull's [m].
+    pub fn girth(&self) -> f64 {
+        closed_length(&convex_hull(&self.points))
+    }
+
+    /// Its extent along both axes of the plane [m].
+    pub fn extent(&self) -> [f64; 2] {
+        extent(&self.points)
+    }
+
+    /// The middle of its extent [m].
+    pub fn centre(&self) -> Vec2 {
+        let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| {
+            self.points.iter().map(|p| p[k]).fold(start, pick)
+        };
+        let middle = |k: usize| {
+            0.5 * (end(k, f64::min, f64::INFINITY) + end(k, f64::max, f64::NEG_INFINITY))
+        };
+        Vec2::new(middle(0), middle(1))
+    }
+}
+
+/// Where landmarks of a mesh lie: heights above its lowest point, and points [m]. What is left out
+/// is found, or goes unmeasured where it cannot be.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ScanLandmarks {
+    /// Height of the crotch [m].
+    pub crotch: Option<f64>,
+    /// Height of the fullest hips [m].
+    pub hips: Option<f64>,
+    /// Height of the waist [m].
+    pub waist: Option<f64>,
+    /// Height under the bust [m].
+    pub underbust: Option<f64>,
+    /// Height of the fullest bust or chest [m].
+    pub bust: Option<f64>,
+    /// Height of the armpits [m].
+    pub armpit: Option<f64>,
+    /// Height of the knees [m].
+    pub knee: Option<f64>,
+    /// Base of the neck at the back [m].
+    pub nape: Option<[f64; 3]>,
+    /// Left end of the shoulders, +X [m].
+    pub shoulder_tip: Option<[f64; 3]>,
+    /// Left side of the neck, +X [m].
+    pub neck_side: Option<[f64; 3]>,
+    /// Left wrist [m].
+    pub wrist: Option<[f64; 3]>,
+}
+
+/// A closed mesh of a person standing upright, facing +Z, measured by sections.
+pub struct Scan {
+    mesh: TriangleMesh,
+    floor: f64,
+    height: f64,
+    middle: f64,
+    landmarks: ScanLandmarks,
+}
+
+/// Steps in which levels are searched, over stature.
+const STEP: f64 = 0.0025;
+
+impl Scan {
+    /// Takes a mesh in metres, Y up, with landmarks; finds those that are left out.
+    ///
+    /// # Errors
+    /// A mesh that is not closed and outward, or no larger than a doll, or a landmark outside it.
+    pub fn new(mesh: TriangleMesh, landmarks: ScanLandmarks) -> Result<Self, BodyError> {
+        let bad = |what: &str| Err(BodyError::Mesh(what.to_owned()));
+        if mesh.check().is_err() {
+            return bad("has a corner that points nowhere or is not finite: repair the file");
+        }
+        if !mesh.is_closed_and_oriented() {
+            return bad("is not a closed surface: close its holes and join its shells");
+        }
+        let Some([low, high]) = mesh.bounds() else {
+            return bad("is empty");
+        };
+        let height = high.y - low.y;
+        if !(0.12..6.0).contains(&height) {
+            return bad("is not between 0.12 and 6 m tall along Y: give metres, Y up");
+        }
+        if mesh.volume() <= 0.0 {
+            return bad("is inside out: turn its triangles round");
+        }
+        let given = [
+            landmarks.crotch,
+            landmarks.hips,
+            landmarks.waist,
+            landmarks.underbust,
+            landmarks.bust,
+            landmarks.armpit,
+            landmarks.knee,
+        ];
+        let outside = |y: f64| !(0.0..=height).contains(&y);
+        if given.iter().flatten().any(|&y| outside(y)) {
+            return bad("has a landmark that is not between floor and crown: give heights in metres");
+        }
+        let mut scan = Self {
+            floor: low.y,
+            height,
+            middle: 0.5 * (low.x + high.x),
+            mesh,
+            landmarks,
+        };
+        scan.find();
+        Ok(scan)
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &TriangleMesh {
+        &self.mesh
+    }
+
+    /// The landmarks, given and found.
+    pub fn landmarks(&self) -> &ScanLandmarks {
+        &self.landmarks
+    }
+
+    /// The loops of the level section at a height above the lowest point [m].
+    pub fn level(&self, height: f64) -> Vec<Loop> {
+        let origin = Vec3::new(0.0, self.floor + height, 0.0);
+        self.section(origin, [Vec3::x(), Vec3::z()])
+    }
+
+    /// The loops of the section by the plane through a point along two unit axes.
+    pub fn section(&self, origin: Vec3, [first, second]: [Vec3; 2]) -> Vec<Loop> {
+        let normal = second.cross(&first);
+        let side = |v: u32| (self.mesh.positions[v as usize] - origin).dot(&normal);
+        // From the edge at which a triangle's segment begins to the one where it ends.
+        let mut next: BTreeMap<[u32; 2], [u32; 2]> = BTreeMap::new();
+        for triangle in &self.mesh.triangles {
+            let heights = triangle.map(side);
+            let (mut from, mut to) = (None, None);
+            for k in 0..3 {
+                let (i, j) = (k, (k + 1) % 3);
+                let edge = [
+                    triangle[i].min(triangle[j]),
+                    triangle[i].max(triangle[j]),
+                ];
+                match (heights[i] >= 0.0, heights[j] >= 0.0) {
+                    (true, false) => from = Some(edge),
+                    (false, true) => to = Some(edge),
+                    _ => {}
+                }
+            }
+            if let (Some(from), Some(to)) = (from, to) {
+                next.insert(from, to);
+            }
+        }
+        let at = |[a, b]: [u32; 2]| {
+            let (u, v) = (side(a), side(b));
+            let [a, b] = [a, b].map(|v| self.mesh.positions[v as usize]);
+            let offset = a + (b - a) * (u / (u - v)) - origin;
+            Vec2::new(offset.dot(&first), offset.dot(&second))
+        };
+        let mut loops = Vec::new();
+        while let Some((start, mut edge)) = next.pop_first() {
+            let mut points = vec![at(start)];
+            while edge != start {
+                points.push(at(edge));
+                match next.remove(&edge) {
+                    Some(further) => edge = further,
+                    None => break,
+                }
+            }
+            loops.push(Loop { points });
+        }
+        loops
+    }
+
+    /// The trunk's loop at a height: the one that holds the middle, the largest if several do.
+    pub fn trunk(&self, height: f64) -> Option<Loop> {
+        self.level(height)
+            .into_iter()
+            .filter(|l| {
+                let low = l.points.iter().map(|p| p.x).fold(f64::INFINITY, f64::min);
+                let high = l.points.iter().map(|p| p.x).fold(f64::NEG_INFINITY, f64::max);
+                low < self.middle && high > self.middle
+            })
+            .max_by(|a, b| a.length().total_cmp(&b.length()))
+    }
+
+    /// The left leg's loop at a height: of those on the left below the crotch, the innermost.
+    pub fn leg(&self, height: f64) -> Option<Loop> {
+        self.level(height)
+            .into_iter()
+            .filter(|l| l.centre().x > self.middle && l.length() > 0.03 * self.height)
+            .min_by(|a, b| a.centre().x.total_cmp(&b.centre().x))
+    }
+
+    /// The left arm's loop beside the trunk at a height: the outermost on the left.
+    fn arm(&self, height: f64) -> Option<Loop> {
+        let trunk = self.trunk(height)?;
+        self.level(height)
+            .into_iter()
+            .filter(|l| l.centre().x > trunk.centre().x + 0.5 * trunk.extent()[0])
+            .max_by(|a, b| a.centre().x.total_cmp(&b.centre().x))
+    }
+
+    /// The level between two at which a value is largest, in even steps.
+    fn extreme(&self, [low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+        let count = ((high - low) / (STEP * self.height)).ceil().max(1.0) as usize;
+        let mut best: Option<[f64; 2]> = None;
+        for k in 0..=count {
+            let y = low + (high - low) * k as f64 / count as f64;
+            if let Some(v) = value(y)
+                && best.is_none_or(|known| v > known[0])
+            {
+                best = Some([v, y]);
+            }
+        }
+        best.map(|known| known[1])
+    }
+
+    /// Finds the heights that were not given.
+    fn find(&mut self) {
+        let h = self.height;
+        if self.landmarks.crotch.is_none() {
+            // From the hips down, the last level at which one loop holds the middle.
+            let mut y = 0.6 * h;
+            while y > 0.3 * h && self.trunk(y).is_some() {
+                y -= 0.001 * h;
+            }
+            self.landmarks.crotch = (y > 0.3 * h).then_some(y + 0.0005 * h);
+        }
+        if self.landmarks.armpit.is_none() {
+            // From the waist up, the first level with no arm beside the trunk.
+            let mut y = 0.62 * h;
+            while y < 0.85 * h && self.arm(y).is_some() {
+                y += 0.002 * h;
+            }
+            self.landmarks.armpit = (y > 0.63 * h && y < 0.85 * h).then_some(y);
+        }
+        let trunk = |y: f64| Some(self.trunk(y)?.girth());
+        let armpit = self.landmarks.armpit.unwrap_or(0.74 * h);
+        let crotch = self.landmarks.crotch.unwrap_or(0.46 * h);
+        let hips = self
+            .landmarks
+            .hips
+            .or_else(|| self.extreme([crotch + 0.01 * h, crotch + 0.12 * h], trunk));
+        let waist = self.landmarks.waist.or_else(|| {
+            let from = hips.unwrap_or(crotch) + 0.06 * h;
+            self.extreme([from, armpit - 0.08 * h], |y| trunk(y).map(|g| -g))
+        });
+        let bust = self.landmarks.bust.or_else(|| {
+            let from = waist.unwrap_or(0.6 * h) + 0.05 * h;
+            self.extreme([from, armpit - 0.004 * h], trunk)
+        });
+        let knee = self.landmarks.knee.or(Some(0.58 * crotch));
+        let underbust = self.landmarks.underbust.or(bust.map(|y| y - 0.042 * h));
+        self.landmarks = ScanLandmarks {
+            hips,
+            waist,
+            bust,
+            knee,
+            underbust,
+            ..self.landmarks.clone()
+        };
+    }
+
+    /// Every measurement the landmarks allow, as a table to make a body from or to draft a
+    /// pattern to [m].
+    pub fn measurements(&self) -> Measurements {
+        let mut table = Measurements::new();
+        let mut put = |name: &str, value: Option<f64>| {
+            if let Some(value) = value.filter(|v| v.is_finite() && *v > 0.0) {
+                let _ = table.set(name, value, Origin::Asked);
+            }
+        };
+        let (h, l) = (self.height, &self.landmarks);
+        put("height", Some(h));
+        for (name, level) in [
+            ("bust", l.bust),
+            ("underbust", l.underbust),
+            ("waist", l.waist),
+            ("hips", l.hips),
+        ] {
+            put(name, level.and_then(|y| Some(self.trunk(y)?.girth())));
+        }
+        for (names, level) in [
+            (["waist_breadth", "waist_depth"], l.waist),
+            (["hip_breadth", "hip_depth"], l.hips),
+        ] {
+            let found = level.and_then(|y| Some(self.trunk(y)?.extent()));
+            put(names[0], found.map(|e| e[0]));
+            put(names[1], found.map(|e| e[1]));
+        }
+        let leg = |y: f64| Some(self.leg(y)?.girth());
+        put("leg_circ", l.crotch.and_then(|y| leg(y - 0.012 * h)));
+        put("knee", l.knee.and_then(leg));
+        let knee = l.knee.unwrap_or(0.27 * h);
+        let calf = self.extreme([0.55 * knee, 0.9 * knee], leg);
+        put("calf", calf.and_then(leg));
+        let thin = |y: f64| leg(y).map(|g| -g);
+        put("ankle", self.extreme([0.03 * h, 0.6 * knee], thin).and_then(leg));
+        let head = |y: f64| Some(self.trunk(y)?.girth());
+        let brow = self.extreme([0.925 * h, 0.97 * h], head);
+        put("head", brow.and_then(head));
+        let neck = self.extreme([0.82 * h, 0.9 * h], |y| head(y).map(|g| -g));
+        put("neck", neck.and_then(head));
+        put("inside_leg", l.crotch);
+        put("waist_height", l.waist);
+        put("hip_height", l.hips);
+        put("bust_height", l.bust);
+        put("armpit_height", l.armpit);
+        put("hips_line", l.waist.zip(l.hips).map(|(a, b)| a - b));
+        put("crotch_hip_diff", l.hips.zip(l.crotch).map(|(a, b)| a - b));
+        let up = |p: [f64; 3]| p[1] - self.floor;
+        put("nape_height", l.nape.map(up));
+        put("head_l", l.nape.map(|p| h - up(p)));
+        put("waist_line", l.nape.zip(l.waist).map(|(p, y)| up(p) - y));
+        put("shoulder_height", l.shoulder_tip.map(up));
+        let across = |p: [f64; 3]| 2.0 * (p[0] - self.middle).abs();
+        put("shoulder_w", l.shoulder_tip.map(across));
+        put("neck_w", l.neck_side.map(across));
+        let far = |(a, b): ([f64; 3], [f64; 3])| (Vec3::from(a) - Vec3::from(b)).norm();
+        put("shoulder_length", l.neck_side.zip(l.shoulder_tip).map(far));
+        put("arm_length", l.shoulder_tip.zip(l.wrist).map(far));
+        let arm = l.shoulder_tip.zip(l.wrist);
+        put("upper_arm", arm.and_then(|ends| self.across_arm(ends, 0.3)));
+        put("wrist", arm.and_then(|ends| self.across_arm(ends, 1.0)));
+        table
+    }
+
+    /// Girth across the arm at a share of the way from shoulder to wrist [m].
+    fn across_arm(&self, (tip, wrist): ([f64; 3], [f64; 3]), share: f64) -> Option<f64> {
+        let [tip, wrist] = [tip, wrist].map(Vec3::from);
+        let along = (wrist - tip).try_normalize(1e-9)?;
+        let first = along.cross(&Vec3::z()).try_normalize(1e-9)?;
+        let loops = self.section(tip + (wrist - tip) * share, [first, first.cross(&along)]);
+        let nearest = loops
+            .into_iter()
+            .min_by(|a, b| a.centre().norm().total_cmp(&b.centre().norm()))?;
+        Some(nearest.girth())
+    }
+}

@@ -1,0 +1,43 @@
+//! Children of several ages: bodies with their measurements, closed and clean.
+#![allow(clippy::unwrap_used)]
+
+use toile_body::{Figure, Mannequin};
+use toile_measure::{Measurements, Origin};
+
+fn is_sound(body: &Mannequin) -> bool {
+    let skin = body.skin();
+    skin.check() == Ok(())
+        && skin.is_closed_and_oriented()
+        && skin.euler_characteristic() == 2
+        && skin.component_count() == 1
+        && skin.volume() > 0.0
+        && body.skin_tree().self_intersections().is_empty()
+}
+
+#[test]
+fn children_of_every_age_have_their_measurements() {
+    for figure in Figure::ALL {
+        let Some(age) = figure.age() else { continue };
+        let body = Mannequin::new(&figure.average(), figure).unwrap();
+        assert!(is_sound(&body), "{age} years");
+        for row in body.measure() {
+            let limit = if row.is_girth() { 5e-4 } else { 1e-3 };
+            let exact = row.origin == Origin::Asked && !row.is_angle();
+            assert!(!exact || row.gap().abs() <= limit, "{age}: {row:?}");
+        }
+        // Heads from crown to nape: four to seven and a half to the stature.
+        let crown = body.levels().crown;
+        assert!((crown - figure.average().get("height").unwrap()).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn a_child_of_given_height_and_waist() {
+    let mut asked = Measurements::new();
+    asked.set("height", 1.1, Origin::Asked).unwrap();
+    asked.set("waist", 0.58, Origin::Asked).unwrap();
+    let body = Mannequin::new(&asked, Figure::Child6).unwrap();
+    assert!(is_sound(&body));
+    assert!((body.taken("waist").unwrap() - 0.58).abs() < 5e-4);
+    assert!((body.taken("height").unwrap() - 1.1).abs() < 1e-3);
+}
