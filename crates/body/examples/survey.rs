@@ -1,7 +1,7 @@
 //! Makes a body for every person of a survey table (ANSUR II, as CSV with head units: millimetres)
 //! and says how many have what was measured of them.
 //!
-//! `cargo run --release -p toile-body --example survey -- SUBJECTS.csv [EVERY [FIRST]]`
+//! `cargo run --release -p toile-body --example survey -- SUBJECTS.csv [EVERY [FIRST] | ROW,ROW,...]`
 //!
 //! Twelve girths and ten lengths are asked; breadths and depths are not, and are held against the
 //! survey's own.
@@ -97,6 +97,13 @@ fn get(person: &Person, name: &str) -> f64 {
 fn run(person: &Person) -> Outcome {
     let mut table = Measurements::new();
     for (from, name) in ASKED {
+        let _ = table.set(name, get(person, from), Origin::Asked);
+    }
+    // The survey's waist lies at the navel: what is predicted stands on that.
+    for (from, name) in [
+        ("waistcircumference", "navel_girth"),
+        ("waistheightomphalion", "navel_height"),
+    ] {
         let _ = table.set(name, get(person, from), Origin::Asked);
     }
     let start = Instant::now();
@@ -270,9 +277,14 @@ fn report(everyone: &[Person], people: Vec<Person>) {
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let Some(path) = arguments.first() else {
-        eprintln!("give the table of people: survey SUBJECTS.csv [EVERY [FIRST]]");
+        eprintln!("give the table of people: survey SUBJECTS.csv [EVERY [FIRST] | ROW,ROW,...]");
         return ExitCode::from(2);
     };
+    let rows: Vec<usize> = arguments
+        .get(1)
+        .filter(|text| text.contains(','))
+        .map(|text| text.split(',').filter_map(|n| n.parse().ok()).collect())
+        .unwrap_or_default();
     let number = |k: usize| arguments.get(k).and_then(|text| text.parse::<usize>().ok());
     let (every, first) = (number(1).unwrap_or(1).max(1), number(2).unwrap_or(0));
     let everyone = match read(path) {
@@ -286,7 +298,10 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    let chosen = |p: &Person| p.row >= first && (p.row - first).is_multiple_of(every);
+    let chosen = |p: &Person| match rows.is_empty() {
+        true => p.row >= first && (p.row - first).is_multiple_of(every),
+        false => rows.contains(&p.row),
+    };
     let people = everyone
         .iter()
         .filter(|p| chosen(p))

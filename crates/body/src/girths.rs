@@ -132,11 +132,9 @@ impl Girth {
     pub(crate) fn near(self, marks: &Marks, plane: [Vec3; 2], warp: &Warp) -> Near {
         match self.site(marks) {
             // Up there the ends of the shoulders are moved besides.
-            Site::Trunk(Level::HighBust) => Near::level(warp.template_level(plane[0].y), 0.08),
-            Site::Trunk(_) => Near::level(warp.template_level(plane[0].y), 0.04),
-            Site::Leg(_) if self == Girth::Thigh => {
-                Near::level(warp.template_level(plane[0].y), 0.08)
-            }
+            Site::Trunk(Level::HighBust) => warp.near(plane[0].y, 0.08),
+            Site::Trunk(_) => warp.near(plane[0].y, 0.04),
+            Site::Leg(_) if self == Girth::Thigh => warp.near(plane[0].y, 0.08),
             Site::Leg(y) if self == Girth::Ankle => Near::level(y, 0.05),
             Site::Leg(y) => Near::level(y, 0.03),
             Site::Arm(distance) => Near::Arm([distance - 0.05, distance + 0.05]),

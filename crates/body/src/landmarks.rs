@@ -1,6 +1,5 @@
 //! Named points of a body, its axes and its levels.
 
-use crate::bands::Near;
 use crate::levels::{Level, Levels};
 use crate::marks::middle_depth;
 use crate::solve::Grown;
@@ -73,7 +72,7 @@ impl Landmarks {
     ) -> Self {
         let level = |level: Level| levels.at(level);
         let trunk_section = |y: f64| -> Vec<Vec2> {
-            let near = Near::level(warp.template_level(y), 0.08);
+            let near = warp.near(y, 0.08);
             let trunk = grown
                 .skin
                 .bands

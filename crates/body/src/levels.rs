@@ -156,7 +156,12 @@ pub(crate) fn solve(table: &Measurements, marks: &Marks, excess: &Excess) -> Lev
             terms.push((lower, -1.0));
             value += excess.level[lower as usize];
         }
-        let deviation = if asked(name) { ASKED } else { PREDICTED };
+        let deviation = match name {
+            _ if asked(name) => ASKED,
+            // The survey knows it better than the template's proportions do.
+            "armpit_height" => PROPORTION,
+            _ => PREDICTED,
+        };
         system.add(&terms, value, deviation * height);
     }
     for (k, (name, upper, lower, beside)) in OVER.into_iter().enumerate() {
@@ -214,7 +219,7 @@ fn proportions(
     system.add(
         &[(Tip, 1.0), (Armpit, -1.0)],
         of_template(t.tip.y - t.armpit),
-        near,
+        PREDICTED * h,
     );
     // Weak ones, so that every level is determined.
     let weak = 0.05 * h;
@@ -257,9 +262,10 @@ fn in_order(mut heights: [f64; COUNT], height: f64) -> Levels {
     let [hips, waist] = [heights[Hips as usize], heights[Waist as usize]];
     let between = &mut heights[HighHips as usize];
     *between = between.clamp(hips + 0.008 * height, waist - 0.008 * height);
-    let [under, tip] = [heights[Underbust as usize], heights[Tip as usize]];
+    let [bust, tip] = [heights[Bust as usize], heights[Tip as usize]];
+    // The bust is taken under the arms.
     let armpit = &mut heights[Armpit as usize];
-    *armpit = armpit.clamp(under, tip - 0.02 * height);
+    *armpit = armpit.clamp(bust + 0.008 * height, tip - 0.02 * height);
     let bust = heights[Bust as usize];
     let high = &mut heights[HighBust as usize];
     *high = high.clamp(bust + 0.008 * height, tip - 0.008 * height);

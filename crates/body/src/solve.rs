@@ -222,15 +222,10 @@ impl Grown<'_> {
             scales.lean = (before + 0.5 * (back - front)).clamp(-limit, limit);
             miss = miss.max((scales.lean - before).abs());
         }
-        if ["armpit_height", "waist_to_armpit", "armscye_depth"]
-            .iter()
-            .any(|name| q.is_asked(name))
-        {
-            let found = taken.levels.at(Level::Armpit) - taken.height(Level::Armpit);
-            let (before, limit) = (scales.armpit, ARMPIT * height);
-            scales.armpit = (before + found).clamp(-limit, limit);
-            miss = miss.max((scales.armpit - before).abs());
-        }
+        let found = taken.levels.at(Level::Armpit) - taken.height(Level::Armpit);
+        let (before, limit) = (scales.armpit, ARMPIT * height);
+        scales.armpit = (before + found).clamp(-limit, limit);
+        miss = miss.max((scales.armpit - before).abs());
         if let Some(Some(wider)) = gap("bust_points") {
             let got = q.get("bust_points") - wider;
             let before = scales.spread;

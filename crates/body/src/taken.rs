@@ -87,7 +87,7 @@ impl Taken<'_> {
 
     /// Where triangles that cross a height [m] lie.
     fn around(&self, height: f64) -> Option<Near> {
-        Some(Near::level(self.warp.template_level(height), 0.08))
+        Some(self.warp.near(height, 0.08))
     }
 
     /// The upright section through a point, parallel to z and a direction.

@@ -4,6 +4,7 @@
 //! the plane z = 0, so that with `s_l = s_f` a section and the tape round it scale exactly. Legs and arms: the same about their own axes. Between the
 //! parts the maps are blended over a few rings of the skin.
 
+use crate::bands::Near;
 use crate::curve::{Monotone, smooth_step};
 use crate::marks::Marks;
 use crate::rings::at_length;
@@ -201,6 +202,17 @@ impl Warp {
     /// The template's height of a height of the body [m].
     pub(crate) fn template_level(&self, height: f64) -> f64 {
         self.level.inverse(height)
+    }
+
+    /// Where on the template lies what may cross a height of the body [m], within a reach: what
+    /// rises or sinks with shoulders and armpits comes from farther off.
+    pub(crate) fn near(&self, height: f64, reach: f64) -> Near {
+        let moved = [self.shape.shoulder_rise, self.shape.armpit_rise]
+            .map(|rise| 1.6 * rise / self.shape.global);
+        let up: f64 = moved.iter().map(|r| r.max(0.0)).sum();
+        let down: f64 = moved.iter().map(|r| (-r).max(0.0)).sum();
+        let at = self.template_level(height);
+        Near::Level([at - reach - up, at + reach + down])
     }
 
     /// The plane across the arm at a template distance from the shoulder joint: a point of the
