@@ -39,6 +39,9 @@ pub enum BodyError {
         /// Place on the axis [m].
         z: f64,
     },
+    /// A mesh that cannot be measured as a body.
+    #[error("the mesh {0}")]
+    Mesh(String),
     /// A file of another version or with damaged values.
     #[error("mannequin description: {0}")]
     Description(String),

@@ -8,6 +8,7 @@
 use crate::bands::Bands;
 use crate::curve::smooth_step;
 use crate::template::Template;
+use crate::underarm::Underarm;
 use crate::{BodyError, Field, Part};
 use toile_geometry::{TriangleMesh, Vec3};
 
@@ -40,6 +41,8 @@ pub(crate) struct TemplateSkin {
     pub(crate) armpit: u32,
     /// The left half's triangles by their place.
     pub(crate) bands: Bands,
+    /// The arm's first rings from below.
+    pub(crate) underarm: Underarm,
 }
 
 /// Origin and elevation of the rays of one half ring of the trunk.
@@ -107,12 +110,14 @@ pub(crate) fn cast(template: &Template, field: &Field) -> Result<TemplateSkin, B
     let border = half.trunk()?;
     half.arm(&border.arm)?;
     half.leg(&border.bottom)?;
-    Ok(half.mirrored(border.armpit))
+    Ok(half.mirrored(border.armpit, border.side))
 }
 
 /// Rings where limbs begin, in the limbs' own order of walking.
 struct Borders {
     armpit: u32,
+    /// Up the side of the trunk to the armpit.
+    side: Vec<u32>,
     arm: Vec<u32>,
     bottom: Vec<u32>,
 }
@@ -284,6 +289,7 @@ impl Half<'_> {
         let bottom = grid[0].iter().rev().copied().collect();
         let armpit = grid[r0][(c0 + c1) / 2];
         Ok(Borders {
+            side: (0..=r0).map(|t| grid[t][(c0 + c1) / 2]).collect(),
             armpit,
             arm,
             bottom,
@@ -351,7 +357,7 @@ impl Half<'_> {
         }
     }
 
-    fn mirrored(self, armpit: u32) -> TemplateSkin {
+    fn mirrored(self, armpit: u32, side: Vec<u32>) -> TemplateSkin {
         let count = self.positions.len();
         let mut mirror: Vec<u32> = vec![0; count];
         let mut mesh = TriangleMesh {
@@ -398,6 +404,7 @@ impl Half<'_> {
         let along = (Vec3::from(j.wrist) - shoulder).normalize();
         TemplateSkin {
             bands: Bands::new(&mesh, &parts, [shoulder, along]),
+            underarm: Underarm::of(&mesh, &arm, side, shoulder.y),
             mesh,
             parts,
             arm,

@@ -1,8 +1,8 @@
 //! Any closed mesh of a standing person as a body to measure: loops of its sections, landmarks
 //! found or given, and the same tape as on our own bodies: the convex hull of a section.
 
-use crate::tape::extent;
 use crate::BodyError;
+use crate::tape::extent;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use toile_geometry::{TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
@@ -118,7 +118,9 @@ impl Scan {
         ];
         let outside = |y: f64| !(0.0..=height).contains(&y);
         if given.iter().flatten().any(|&y| outside(y)) {
-            return bad("has a landmark that is not between floor and crown: give heights in metres");
+            return bad(
+                "has a landmark that is not between floor and crown: give heights in metres",
+            );
         }
         let mut scan = Self {
             floor: low.y,
@@ -158,10 +160,7 @@ impl Scan {
             let (mut from, mut to) = (None, None);
             for k in 0..3 {
                 let (i, j) = (k, (k + 1) % 3);
-                let edge = [
-                    triangle[i].min(triangle[j]),
-                    triangle[i].max(triangle[j]),
-                ];
+                let edge = [triangle[i].min(triangle[j]), triangle[i].max(triangle[j])];
                 match (heights[i] >= 0.0, heights[j] >= 0.0) {
                     (true, false) => from = Some(edge),
                     (false, true) => to = Some(edge),
@@ -199,7 +198,11 @@ impl Scan {
             .into_iter()
             .filter(|l| {
                 let low = l.points.iter().map(|p| p.x).fold(f64::INFINITY, f64::min);
-                let high = l.points.iter().map(|p| p.x).fold(f64::NEG_INFINITY, f64::max);
+                let high = l
+                    .points
+                    .iter()
+                    .map(|p| p.x)
+                    .fold(f64::NEG_INFINITY, f64::max);
                 low < self.middle && high > self.middle
             })
             .max_by(|a, b| a.length().total_cmp(&b.length()))
@@ -317,7 +320,10 @@ impl Scan {
         let calf = self.extreme([0.55 * knee, 0.9 * knee], leg);
         put("calf", calf.and_then(leg));
         let thin = |y: f64| leg(y).map(|g| -g);
-        put("ankle", self.extreme([0.03 * h, 0.6 * knee], thin).and_then(leg));
+        put(
+            "ankle",
+            self.extreme([0.03 * h, 0.6 * knee], thin).and_then(leg),
+        );
         let head = |y: f64| Some(self.trunk(y)?.girth());
         let brow = self.extreme([0.925 * h, 0.97 * h], head);
         put("head", brow.and_then(head));

@@ -168,7 +168,9 @@ fn trunk(
     let global = grown.request.get("height") / t.height;
     let (neck, head) = (s.of(Girth::Neck), s.of(Girth::Head));
     let [front, back] = [2, 3].map(|k| 0.5 * (top[k] + global));
-    rows.push([m.tip.y, s.shoulder, front, back]);
+    let tip = [m.tip.y, s.shoulder, front, back];
+    rows.extend(under_the_arm(&rows, tip, m.armpit, APART * t.height));
+    rows.push(tip);
     let between = 0.5 * (s.neck + neck);
     rows.push([m.neck_side.y, s.neck, between, between]);
     rows.push([m.neck[0].y.max(m.neck_side.y + 0.01), neck, neck, neck]);
@@ -176,6 +178,21 @@ fn trunk(
     rows.push([chin.max(m.neck[0].y + 0.02), head, head, head]);
     rows.push([m.crown, head, head, head]);
     rows
+}
+
+/// At the armpits the trunk is as broad in proportion as at its highest section below, so that a
+/// broad chest does not lie under the arms like a ledge.
+fn under_the_arm(rows: &[Section], tip: Section, armpit: f64, apart: f64) -> Option<Section> {
+    let below = rows.iter().rev().find(|row| row[0] < armpit - apart)?;
+    let between = rows
+        .iter()
+        .any(|row| row[0] >= armpit - apart && row[0] < tip[0]);
+    if between || armpit > tip[0] - apart {
+        return None;
+    }
+    let share = (armpit - below[0]) / (tip[0] - below[0]);
+    let even = |k: usize| below[k] + (tip[k] - below[k]) * share;
+    Some([armpit, even(1).max(below[1]), even(2), even(3)])
 }
 
 /// Scales of the leg over template height.

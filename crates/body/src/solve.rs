@@ -245,8 +245,9 @@ impl Grown<'_> {
         let mut p = warp.apply(self.skin.mesh.positions[v], follow);
         if self.skin.mirror[v] as usize == v {
             p.x = 0.0;
-        } else if follow.leg > 0.5 {
-            p.x = p.x.max(LEG_GAP * self.request.get("height"));
+        } else {
+            let least = if follow.leg > 0.5 { LEG_GAP } else { SIDE_GAP };
+            p.x = p.x.max(least * self.request.get("height"));
         }
         p
     }
@@ -255,14 +256,16 @@ impl Grown<'_> {
     fn skin_of(&self, warp: &Warp) -> TriangleMesh {
         let skin = self.skin;
         let mut mesh = skin.mesh.clone();
-        for v in 0..mesh.positions.len() {
+        let left = |v: &usize| skin.mirror[*v] as usize >= *v;
+        for v in (0..skin.mirror.len()).filter(left) {
+            mesh.positions[v] = self.place(warp, v);
+        }
+        skin.underarm
+            .draw(&mut mesh.positions, self.request.get("height"));
+        for v in (0..skin.mirror.len()).filter(left) {
             let mirror = skin.mirror[v] as usize;
-            if mirror < v {
-                continue;
-            }
-            let p = self.place(warp, v);
-            mesh.positions[v] = p;
             if mirror != v {
+                let p = mesh.positions[v];
                 mesh.positions[mirror] = Vec3::new(-p.x, p.y, p.z);
             }
         }
@@ -287,6 +290,9 @@ const ARMPIT: f64 = 0.035;
 
 /// Half the least gap between the legs, over stature: cloth must pass.
 const LEG_GAP: f64 = 0.0018;
+
+/// Least distance of what is not in the middle from it, over stature.
+const SIDE_GAP: f64 = 0.0006;
 
 fn ratio(asked: f64, got: f64) -> f64 {
     if got > 0.0 && asked > 0.0 {
