@@ -168,7 +168,12 @@ fn limits(people: &[Person]) -> BTreeMap<(bool, &'static str), [f64; 2]> {
 
 /// Root mean square of a linear regression on the asked values, fitted on people with an odd row
 /// and held against the even ones, and of the bodies against the same [m].
-fn held_out(people: &[Person], bodies: &[&Outcome], woman: bool, which: usize) -> [f64; 2] {
+fn held_out(
+    everyone: &[Person],
+    (people, bodies): (&[Person], &[Outcome]),
+    woman: bool,
+    which: usize,
+) -> [f64; 2] {
     let own = |p: &&Person| (p.figure == Figure::Woman) == woman;
     let inputs = |p: &Person| -> Vec<f64> {
         let values = ASKED.iter().map(|(name, _)| get(p, name));
@@ -176,7 +181,7 @@ fn held_out(people: &[Person], bodies: &[&Outcome], woman: bool, which: usize) -
     };
     let n = ASKED.len() + 1;
     let (mut normal, mut right) = (vec![vec![0.0; n]; n], vec![0.0; n]);
-    for person in people.iter().filter(own).filter(|p| p.row % 2 == 1) {
+    for person in everyone.iter().filter(own).filter(|p| p.row % 2 == 1) {
         let (x, y) = (inputs(person), get(person, HELD_OUT[which].0));
         for i in 0..n {
             right[i] += x[i] * y;
@@ -262,11 +267,11 @@ fn report(everyone: &[Person], people: Vec<Person>) {
             None => println!("person {}: no closed skin", person.row),
         }
     }
-    let bodies: Vec<&Outcome> = outcomes.iter().collect();
-    if people.len() == everyone.len() {
+    if people.len() > 50 {
         for woman in [true, false] {
             for (which, (name, _)) in HELD_OUT.iter().enumerate() {
-                let [line, body] = held_out(&people, &bodies, woman, which).map(|x| 1e3 * x);
+                let [line, body] =
+                    held_out(everyone, (&people, &outcomes), woman, which).map(|x| 1e3 * x);
                 let sex = if woman { "women" } else { "men" };
                 println!("not asked, {sex} {name}: regression {line:.2} mm, body {body:.2} mm");
             }

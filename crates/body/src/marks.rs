@@ -27,6 +27,9 @@ pub(crate) struct Marks {
     pub(crate) tip_on: OnEdge,
     /// Depth of the middle of the trunk [m].
     pub(crate) depth: f64,
+    /// Sections of the trunk from crotch to bust: height, half the breadth, depth before and behind
+    /// the middle [m].
+    pub(crate) sections: [[f64; 4]; SECTIONS],
     /// Plane of the neck's girth, square to its axis.
     pub(crate) neck: Plane,
     /// Plane of the head's girth.
@@ -42,6 +45,9 @@ pub(crate) struct Marks {
     pub(crate) forearm: f64,
     pub(crate) wrist: f64,
 }
+
+/// Sections of the trunk that are kept.
+pub(crate) const SECTIONS: usize = 9;
 
 /// Distance of the end of the shoulder beyond the shoulder joint, over stature.
 const TIP: f64 = 0.003;
@@ -74,6 +80,7 @@ impl Marks {
         let calf = extreme([0.55 * knee, 0.9 * knee], leg);
         let neck = neck_plane(template);
         let brow = extreme([h - 0.075 * h, h - 0.03 * h], |y| level(Part::Head, y));
+        let depth = depth(skin, [crotch + 0.05 * h, bust]);
         let crown = skin.mesh.bounds().map_or(h, |[_, high]| high.y);
         Ok(Self {
             crown,
@@ -84,7 +91,8 @@ impl Marks {
             neck_side_on,
             tip,
             tip_on,
-            depth: depth(skin, [crotch + 0.05 * h, bust]),
+            depth,
+            sections: sections(skin, [crotch + 0.03 * h, bust], depth),
             neck,
             head: [
                 Vec3::y() * brow,
@@ -113,6 +121,21 @@ fn depth(skin: &TemplateSkin, [low, high]: [f64; 2]) -> f64 {
     (0..=4)
         .map(|k| 0.2 * middle(low + (high - low) * 0.25 * f64::from(k)))
         .sum()
+}
+
+/// Extents of the trunk at even heights about a depth [m].
+fn sections(skin: &TemplateSkin, [low, high]: [f64; 2], depth: f64) -> [[f64; 4]; SECTIONS] {
+    std::array::from_fn(|k| {
+        let y = low + (high - low) * k as f64 / (SECTIONS - 1) as f64;
+        let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
+        let points = horizontal_section(&skin.mesh, trunk, y);
+        let largest = |value: &dyn Fn(&toile_geometry::Vec2) -> f64| {
+            points.iter().map(value).fold(0.02, f64::max)
+        };
+        let half = largest(&|p| p.x.abs());
+        let [front, back] = [largest(&|p| p.y - depth), largest(&|p| depth - p.y)];
+        [y, half, front, back]
+    })
 }
 
 /// The plane through the middle of the neck, half as steep as its axis is square.

@@ -15,6 +15,8 @@ pub(crate) struct Scales {
     pub(crate) girth: [f64; Girth::COUNT],
     /// Square of lateral over frontal scale, of girths round the trunk.
     pub(crate) aspect: [f64; Girth::COUNT],
+    /// How much fuller the corners of a section are, of girths round the trunk.
+    pub(crate) corners: [f64; Girth::COUNT],
     /// Front over back: the front's share of the scale beyond one half.
     pub(crate) split: [f64; Girth::COUNT],
     /// Lateral, at the ends of the shoulders.
@@ -38,6 +40,7 @@ impl Scales {
         Self {
             girth: [global; Girth::COUNT],
             aspect: [1.0; Girth::COUNT],
+            corners: [0.0; Girth::COUNT],
             split: [0.0; Girth::COUNT],
             shoulder: global,
             neck: global,
@@ -110,6 +113,7 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
         lateral: column(1),
         front: column(2),
         back: column(3),
+        corners: corners(grown, s, levels, &on_template),
         leg: leg(grown, s, levels, &on_template),
         arm: arm(grown, s, global),
         arm_length: vec![
@@ -177,6 +181,32 @@ fn trunk(
     let chin = m.neck_side.y + 0.35 * (m.crown - m.neck_side.y);
     rows.push([chin.max(m.neck[0].y + 0.02), head, head, head]);
     rows.push([m.crown, head, head, head]);
+    rows
+}
+
+/// How much fuller the corners of the sections are over template height: nothing at the shoulders.
+fn corners(
+    grown: &Grown,
+    s: &Scales,
+    levels: &Levels,
+    on_template: &dyn Fn(f64) -> f64,
+) -> Vec<[f64; 2]> {
+    let m = &grown.marks;
+    let apart = APART * grown.template.height;
+    let mut rows = vec![[m.tip.y, 0.0]];
+    for (girth, level) in [
+        (Girth::Hips, Level::Hips),
+        (Girth::Waist, Level::Waist),
+        (Girth::Bust, Level::Bust),
+    ] {
+        let y = on_template(levels.at(level));
+        if rows.iter().all(|row| (row[0] - y).abs() > apart) && y < m.tip.y {
+            rows.push([y, s.corners[girth as usize]]);
+        }
+    }
+    rows.push([0.0, s.corners[Girth::Hips as usize]]);
+    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    rows.dedup_by(|b, a| b[0] - a[0] < apart);
     rows
 }
 

@@ -11,7 +11,7 @@ use crate::taken::Taken;
 use crate::tape::{Skinned, extent, half_length};
 use crate::template::Template;
 use crate::warp::{Follow, Shape, Warp};
-use toile_geometry::{TriangleMesh, Vec3};
+use toile_geometry::{TriangleMesh, Vec3, closed_length};
 
 /// A template with its skin and marks.
 pub(crate) struct Grown<'a> {
@@ -30,8 +30,9 @@ pub(crate) struct Solved {
 
 /// Rounds allowed; most bodies need 8 to 15.
 const ROUNDS: usize = 40;
-/// Rounds in which form and posture are still corrected; the girths have the last word.
+/// Rounds in which posture and form are still corrected; the girths have the last word.
 const FORMING: usize = 24;
+const SHAPING: usize = 12;
 /// Largest change of a girth or a level over stature at which the rounds end: 0.002 mm.
 const STILL: f64 = 1e-6;
 
@@ -57,7 +58,9 @@ impl Grown<'_> {
             let taken = self.taken(&skinned, (&levels, &warp), &crotch);
             let mut moved = self.correct(&mut scales, &mut excess, &taken);
             if round < FORMING {
-                self.form(&mut scales, &taken);
+                if round < SHAPING {
+                    self.form(&mut scales, &taken);
+                }
                 moved = moved.max(self.posture(&mut scales, &taken));
             }
             if moved < STILL * self.request.get("height") {
@@ -178,20 +181,35 @@ impl Grown<'_> {
     /// Corrects the form of sections at equal girth: breadth over depth, front over back.
     fn form(&self, scales: &mut Scales, taken: &Taken) {
         let q = &self.request;
-        for (girth, breadth, depth, predicted) in [
-            (Girth::Bust, "chest_breadth", "chest_depth", false),
-            (Girth::Waist, "waist_breadth", "waist_depth", true),
-            (Girth::Hips, "hip_breadth", "hip_depth", true),
+        for (girth, breadth, depth) in [
+            (Girth::Waist, "waist_breadth", "waist_depth"),
+            (Girth::Hips, "hip_breadth", "hip_depth"),
         ] {
             let asked = q.is_asked(breadth) && q.is_asked(depth);
-            if !(predicted || asked) {
-                continue;
-            }
-            let [x, z] = extent(&taken.hull(girth));
+            let hull = taken.hull(girth);
+            let [x, z] = extent(&hull);
             let form = &mut scales.aspect[girth as usize];
-            *form *= ratio(q.get(breadth) * z, q.get(depth) * x).sqrt();
-            *form = form.clamp(0.88, 1.14);
+            *form *= ratio(q.get(breadth) * z, q.get(depth) * x);
+            *form = form.clamp(ASPECT[0], ASPECT[1]);
+            // The girth over breadth and depth: how full the corners are. The survey's waist is
+            // the navel's.
+            let around = match girth {
+                Girth::Waist if !asked => q.get("navel_girth"),
+                _ => q.girth(girth).unwrap_or_default(),
+            };
+            let wanted = around / (q.get(breadth) + q.get(depth));
+            let found = closed_length(&hull) / (x + z);
+            let corners = &mut scales.corners[girth as usize];
+            *corners = (*corners + 2.0 * ratio(wanted, found).ln()).clamp(CORNERS[0], CORNERS[1]);
         }
+        // A survey's chest breadth is taken between the folds of the armpits, not of the whole.
+        let [x, z] = extent(&taken.hull(Girth::Bust));
+        let form = &mut scales.aspect[Girth::Bust as usize];
+        *form *= match q.is_asked("chest_breadth") {
+            true => ratio(q.get("chest_breadth") * z, q.get("chest_depth") * x),
+            false => ratio(z, q.get("chest_depth")),
+        };
+        *form = form.clamp(ASPECT[0], ASPECT[1]);
         for (girth, name, side) in PARTS {
             if !q.is_asked(name) {
                 continue;
@@ -281,6 +299,10 @@ const PARTS: [(Girth, &str, f64); 5] = [
     (Girth::Waist, "waist_back_width", -1.0),
     (Girth::Hips, "hip_back_width", -1.0),
 ];
+
+/// Square of lateral over frontal scale, and how full corners may be: people differ by less.
+const ASPECT: [f64; 2] = [0.8, 1.3];
+const CORNERS: [f64; 2] = [-0.3, 0.3];
 
 /// How far a neck may stand from the template's place, over stature.
 const LEAN: f64 = 0.02;

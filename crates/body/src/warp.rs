@@ -24,6 +24,9 @@ pub(crate) struct Shape {
     pub(crate) front: Vec<[f64; 2]>,
     /// The same behind it.
     pub(crate) back: Vec<[f64; 2]>,
+    /// How much farther out the corners of a section lie at equal breadth and depth [1], over
+    /// template height.
+    pub(crate) corners: Vec<[f64; 2]>,
     /// Scale of the leg about its axis over template height.
     pub(crate) leg: Vec<[f64; 2]>,
     /// Scale of the arm about its axis over template distance from the shoulder joint.
@@ -64,6 +67,8 @@ pub(crate) struct Warp {
     lateral: Monotone,
     front: Monotone,
     back: Monotone,
+    corners: Monotone,
+    sections: [Monotone; 3],
     leg: Monotone,
     arm: Monotone,
     arm_length: Monotone,
@@ -88,6 +93,9 @@ impl Warp {
             lateral: Monotone::new(shape.lateral.clone()),
             front: Monotone::new(shape.front.clone()),
             back: Monotone::new(shape.back.clone()),
+            corners: Monotone::new(shape.corners.clone()),
+            sections: [1, 2, 3]
+                .map(|k| Monotone::new(marks.sections.map(|row| [row[0], row[k]]).into())),
             leg: Monotone::new(shape.leg.clone()),
             arm: Monotone::new(shape.arm.clone()),
             arm_length: Monotone::new(shape.arm_length.clone()),
@@ -103,16 +111,35 @@ impl Warp {
     }
 
     fn trunk(&self, p: Vec3) -> Vec3 {
-        let depth = p.z - self.middle.at(p.y);
+        let fuller = self.fuller(p);
+        let depth = (p.z - self.middle.at(p.y)) * fuller;
         // From the back's scale to the front's over the middle of the body.
         let before = smooth_step(0.5 + depth / (0.09 * self.marks.crown));
         let [front, back] = [self.front.at(p.y), self.back.at(p.y)];
         let frontal = back + (front - back) * before;
         Vec3::new(
-            p.x * self.lateral.at(p.y) * (1.0 + self.spread(p, depth)),
+            p.x * fuller * self.lateral.at(p.y) * (1.0 + self.spread(p, depth)),
             self.level.at(p.y) + self.rise(p),
             self.middle_to.at(p.y) + depth * frontal,
         )
+    }
+
+    /// By how much a place of the trunk lies farther out from the middle of its section: with its
+    /// direction t in a section brought to breadth and depth one, `1 + c sin^2(2 t)`, so that
+    /// breadth and depth stay and the corners between them fill.
+    fn fuller(&self, p: Vec3) -> f64 {
+        let corners = self.corners.at(p.y);
+        if corners == 0.0 {
+            return 1.0;
+        }
+        // Below and above the sections that are known, those at the ends.
+        let [first, last] = [self.marks.sections[0][0], self.marks.bust];
+        let y = p.y.clamp(first, last);
+        let depth = p.z - self.marks.depth;
+        let [breadth, front, back] = [0, 1, 2].map(|k| self.sections[k].at(y));
+        let u = (p.x / breadth).powi(2);
+        let v = (depth / if depth > 0.0 { front } else { back }).powi(2);
+        1.0 + corners * 4.0 * u * v / (u + v).max(0.5).powi(2)
     }
 
     /// Share by which a place in front of the chest goes sideways with the bust points: all of it
