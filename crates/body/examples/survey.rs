@@ -197,12 +197,13 @@ fn held_out(
             .unwrap_or(k);
         normal.swap(k, pivot);
         right.swap(k, pivot);
-        for i in k + 1..n {
-            let factor = normal[i][k] / normal[k][k];
-            for j in k..n {
-                normal[i][j] -= factor * normal[k][j];
+        let (above, below) = normal.split_at_mut(k + 1);
+        for (row, b) in below.iter_mut().zip(k + 1..) {
+            let factor = row[k] / above[k][k];
+            for (x, pivot) in row.iter_mut().zip(&above[k]).skip(k) {
+                *x -= factor * pivot;
             }
-            right[i] -= factor * right[k];
+            right[b] -= factor * right[k];
         }
     }
     for k in (0..n).rev() {

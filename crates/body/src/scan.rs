@@ -94,12 +94,12 @@ impl Scan {
         if mesh.check().is_err() {
             return bad("has a corner that points nowhere or is not finite: repair the file");
         }
-        if !mesh.is_closed_and_oriented() {
-            return bad("is not a closed surface: close its holes and join its shells");
-        }
         let Some([low, high]) = mesh.bounds() else {
             return bad("is empty");
         };
+        if !mesh.is_closed_and_oriented() {
+            return bad("is not a closed surface: close its holes and join its shells");
+        }
         let height = high.y - low.y;
         if !(0.12..6.0).contains(&height) {
             return bad("is not between 0.12 and 6 m tall along Y: give metres, Y up");
@@ -334,8 +334,6 @@ impl Scan {
         put("hip_height", l.hips);
         put("bust_height", l.bust);
         put("armpit_height", l.armpit);
-        put("hips_line", l.waist.zip(l.hips).map(|(a, b)| a - b));
-        put("crotch_hip_diff", l.hips.zip(l.crotch).map(|(a, b)| a - b));
         let up = |p: [f64; 3]| p[1] - self.floor;
         put("nape_height", l.nape.map(up));
         put("head_l", l.nape.map(|p| h - up(p)));

@@ -512,13 +512,22 @@ pub struct Body {
     /// Figure to grow it from: woman, man, mean, or child-2, child-4, ... child-14 (by age).
     #[arg(long, value_name = "FIGURE", default_value = "mean")]
     pub figure: String,
+    /// Measure somebody's mesh instead: a closed OBJ file (m, Y up, facing +Z). --out then is the
+    /// table of measurements (JSON), ready for --measurements.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["measurements", "motion"])]
+    pub mesh: Option<PathBuf>,
+    /// Landmarks of --mesh (JSON): heights over the sole (m) crotch, hips, waist, underbust, bust,
+    /// armpit, knee, and points (m) nape, shoulder_tip, neck_side, wrist of the left side, +X.
+    /// Default: heights are found, what needs points is left out.
+    #[arg(long, value_name = "FILE", requires = "mesh")]
+    pub landmarks: Option<PathBuf>,
     /// Motion to pose it by: walk, run, or a BVH file. Default: at rest.
     #[arg(long, value_name = "MOTION")]
     pub motion: Option<String>,
     /// Time in the motion (s).
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     pub time: f64,
-    /// OBJ file to write (m).
+    /// File to write: OBJ (m); measurements (JSON) with --mesh.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
 }

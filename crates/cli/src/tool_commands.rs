@@ -4,12 +4,12 @@ use crate::arguments::{Body, Convert, FormatName, Mesh, Run};
 use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::Arc;
 use toile_measure::Origin;
 use toile_session::{
     BodyChoice, BodyReport, Moment, Project, convert as convert_file, figure_named, make_body,
-    mesh_panels, open_measurements, run_scene,
+    measure_mesh, mesh_panels, open_measurements, run_scene,
 };
 
 /// A pattern in another format.
@@ -60,6 +60,9 @@ pub fn mesh(mesh: &Mesh, output: &Output) -> Result<Value, Failure> {
 
 /// A mannequin.
 pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
+    if let Some(mesh) = &body.mesh {
+        return measured_mesh(mesh, body, output);
+    }
     let figure = figure_named(&body.figure).ok_or_else(|| {
         Failure::bad_input(format!(
             "there is no figure {:?}; choose woman, man, mean, or child-2, child-4, ... child-14",
@@ -118,6 +121,25 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         "measurements": listed,
         "not_taken": report.untaken,
         "conflicts": conflicts,
+    }))
+}
+
+/// What a tape finds on somebody's mesh.
+fn measured_mesh(mesh: &Path, body: &Body, output: &Output) -> Result<Value, Failure> {
+    let found = measure_mesh(mesh, body.landmarks.as_deref(), &body.out).map_err(Failure::from)?;
+    for (name, measured) in found.measurements.iter() {
+        output.say(format!("{name:<22} {:>10.2} cm", measured.value * 100.0));
+    }
+    output.say(format!("wrote {}", body.out.display()));
+    let listed: Vec<Value> = found
+        .measurements
+        .iter()
+        .map(|(name, m)| json!({ "name": name, "got": m.value, "unit": "m" }))
+        .collect();
+    Ok(json!({
+        "files": [body.out],
+        "measurements": listed,
+        "landmarks": found.landmarks,
     }))
 }
 

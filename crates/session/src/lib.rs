@@ -66,5 +66,5 @@ pub use toile_assembly::Garment;
 pub use toile_drape::Stage;
 pub use toile_interchange::{MarkerSettings, Spread};
 pub use toile_nesting::{Budget, Nap};
-pub use tools::{BodyReport, Moment, convert, make_body, mesh_panels};
+pub use tools::{BodyReport, MeshMeasured, Moment, convert, make_body, measure_mesh, mesh_panels};
 pub use watcher::{Silent, Watcher};

@@ -7,12 +7,13 @@ use crate::{PatternFormat, Project, SessionError};
 use std::path::Path;
 use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
-use toile_body::{Conflict, Gap, Mannequin, Motion};
+use toile_body::{Conflict, Gap, Mannequin, Motion, Scan, ScanLandmarks};
 use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{
-    ObjGroup, ObjMesh, read_bvh, read_text, write_atomically, write_garmentcode, write_obj,
-    write_pattern,
+    FormatError, ObjGroup, ObjMesh, read_bvh, read_obj, read_text, write_atomically,
+    write_garmentcode, write_measurements, write_obj, write_pattern,
 };
+use toile_measure::Measurements;
 use toile_pattern::Draft;
 
 /// The project a pattern file makes, in a named size.
@@ -137,6 +138,62 @@ impl Moment {
         };
         Ok(mannequin.posed_skin(&motion.pose_for(skeleton, self.time)))
     }
+}
+
+/// What was measured on somebody's mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshMeasured {
+    /// The measurements [m].
+    pub measurements: Measurements,
+    /// Where they were taken.
+    pub landmarks: ScanLandmarks,
+}
+
+/// Measures a closed mesh of a standing person (OBJ, metres, Y up, facing +Z) by the tape of our
+/// own bodies, at landmarks from a file (JSON) or found, and writes the table of measurements.
+///
+/// # Errors
+/// A file that cannot be read, a mesh that is not closed, or the table cannot be written.
+pub fn measure_mesh(
+    mesh: &Path,
+    landmarks: Option<&Path>,
+    to: &Path,
+) -> Result<MeshMeasured, SessionError> {
+    let at = |path: &Path, error: FormatError| SessionError::Format {
+        path: path.to_owned(),
+        error,
+    };
+    let bytes = std::fs::read(mesh).map_err(|error| {
+        at(
+            mesh,
+            FormatError::new("the file", error.to_string(), "give an OBJ file"),
+        )
+    })?;
+    let read = read_obj(&bytes).map_err(|error| at(mesh, error))?;
+    let given = match landmarks {
+        None => ScanLandmarks::default(),
+        Some(path) => serde_json::from_str(&read_text(path)?).map_err(|error| {
+            let remedy = "give heights such as \"waist\": 1.05 and points such as \"nape\": [0, 1.4, -0.05] in metres";
+            at(path, FormatError::new("the landmarks", error.to_string(), remedy))
+        })?,
+    };
+    let surface = TriangleMesh {
+        positions: read.positions,
+        triangles: read.triangles,
+    };
+    let scan = Scan::new(surface, given).map_err(|error| {
+        at(
+            mesh,
+            FormatError::new("the mesh", error.to_string(), "repair it"),
+        )
+    })?;
+    let measurements = scan.measurements();
+    let text = write_measurements(&measurements).map_err(cannot("the measurements"))?;
+    write_atomically(to, text.as_bytes())?;
+    Ok(MeshMeasured {
+        measurements,
+        landmarks: scan.landmarks().clone(),
+    })
 }
 
 /// Makes a mannequin and writes its skin as OBJ, at rest or at a moment of a motion. Returns every
