@@ -512,6 +512,9 @@ pub struct Body {
     /// Figure to grow it from: woman, man, mean, or child-2, child-4, ... child-14 (by age).
     #[arg(long, value_name = "FIGURE", default_value = "mean")]
     pub figure: String,
+    /// A mannequin file (JSON) to make the body from, as --out NAME.json writes it.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["measurements", "mesh"])]
+    pub mannequin: Option<PathBuf>,
     /// Measure somebody's mesh instead: a closed OBJ file (m, Y up, facing +Z). --out then is the
     /// table of measurements (JSON), ready for --measurements.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["measurements", "motion"])]
@@ -527,7 +530,8 @@ pub struct Body {
     /// Time in the motion (s).
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     pub time: f64,
-    /// File to write: OBJ (m); measurements (JSON) with --mesh.
+    /// File to write, by its ending: .obj the skin (m), .glb the skin with its skeleton and the
+    /// whole motion, .json a mannequin file; measurements (JSON) with --mesh.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
 }

@@ -4,12 +4,12 @@ use crate::arguments::{Body, Convert, FormatName, Mesh, Run};
 use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_measure::Origin;
 use toile_session::{
-    BodyChoice, BodyReport, Moment, Project, convert as convert_file, figure_named, make_body,
-    measure_mesh, mesh_panels, open_measurements, run_scene,
+    BodyChoice, BodyReport, BodySource, Moment, Project, convert as convert_file, figure_named,
+    make_body, measure_mesh, mesh_panels, open_mannequin, open_measurements, run_scene,
 };
 
 /// A pattern in another format.
@@ -90,9 +90,19 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         motion,
         time: body.time,
     });
-    let report = make_body(&project, moment.as_ref(), &body.out).map_err(|error| {
+    let described = body
+        .mannequin
+        .as_deref()
+        .map(open_mannequin)
+        .transpose()
+        .map_err(Failure::from)?;
+    let source = match &described {
+        Some(description) => BodySource::Described(description),
+        None => BodySource::Wearer(&project),
+    };
+    let report = make_body(source, moment.as_ref(), &body.out).map_err(|error| {
         let failure = Failure::from(error);
-        match &body.measurements {
+        match body.measurements.as_ref().or(body.mannequin.as_ref()) {
             Some(path) => failure.about(path),
             None => failure,
         }

@@ -240,7 +240,7 @@ impl Writer {
 }
 
 /// The GLB container: a header and two chunks, each padded to a multiple of four bytes.
-fn container(mut text: Vec<u8>, mut data: Vec<u8>) -> Result<Vec<u8>, FormatError> {
+pub(crate) fn container(mut text: Vec<u8>, mut data: Vec<u8>) -> Result<Vec<u8>, FormatError> {
     text.resize(text.len().next_multiple_of(4), b' ');
     data.resize(data.len().next_multiple_of(4), 0);
     let data_chunk = if data.is_empty() { 0 } else { 8 + data.len() };

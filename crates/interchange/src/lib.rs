@@ -12,8 +12,10 @@ mod error;
 mod fabric_test;
 mod garmentcode;
 mod gltf;
+mod gltf_body;
 mod hpgl;
 mod jagua;
+mod mannequin_json;
 mod marker_drawing;
 mod marker_json;
 mod marker_label;
@@ -39,7 +41,9 @@ pub use garmentcode::{
     GarmentCodeReading, GarmentCodeWriting, read_garmentcode, write_garmentcode,
 };
 pub use gltf::{GlbMesh, GlbPrimitive, GlbScene, write_glb};
+pub use gltf_body::write_body_glb;
 pub use jagua::{JaguaInstance, is_jagua_instance, read_jagua, write_jagua, write_jagua_instance};
+pub use mannequin_json::{read_mannequin, write_mannequin};
 pub use marker_drawing::{MarkerDrawing, MarkerFacts, MarkerPiece};
 pub use marker_json::{
     MarkerDefect, MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, MarkerFold,

@@ -66,5 +66,8 @@ pub use toile_assembly::Garment;
 pub use toile_drape::Stage;
 pub use toile_interchange::{MarkerSettings, Spread};
 pub use toile_nesting::{Budget, Nap};
-pub use tools::{BodyReport, MeshMeasured, Moment, convert, make_body, measure_mesh, mesh_panels};
+pub use tools::{
+    BodyReport, BodySource, MeshMeasured, Moment, convert, make_body, measure_mesh, mesh_panels,
+    open_mannequin,
+};
 pub use watcher::{Silent, Watcher};

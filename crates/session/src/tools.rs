@@ -7,11 +7,12 @@ use crate::{PatternFormat, Project, SessionError};
 use std::path::Path;
 use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
-use toile_body::{Conflict, Gap, Mannequin, Motion, Scan, ScanLandmarks};
+use toile_body::{Conflict, Description, Gap, Mannequin, Motion, Scan, ScanLandmarks};
 use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{
-    FormatError, ObjGroup, ObjMesh, read_bvh, read_obj, read_text, write_atomically,
-    write_garmentcode, write_measurements, write_obj, write_pattern,
+    FormatError, ObjGroup, ObjMesh, read_bvh, read_mannequin, read_obj, read_text,
+    write_atomically, write_body_glb, write_garmentcode, write_mannequin, write_measurements,
+    write_obj, write_pattern,
 };
 use toile_measure::Measurements;
 use toile_pattern::Draft;
@@ -122,10 +123,10 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// The skin of a mannequin at this moment.
-    fn skin(&self, mannequin: &Mannequin) -> Result<TriangleMesh, SessionError> {
+    /// The whole motion, for a mannequin.
+    fn motion_for(&self, mannequin: &Mannequin) -> Result<Motion, SessionError> {
         let skeleton = mannequin.skeleton();
-        let motion = match self.motion.as_str() {
+        Ok(match self.motion.as_str() {
             "walk" => Motion::walk(skeleton),
             "run" => Motion::run(skeleton),
             path => {
@@ -135,8 +136,13 @@ impl Moment {
                     error,
                 })?
             }
-        };
-        Ok(mannequin.posed_skin(&motion.pose_for(skeleton, self.time)))
+        })
+    }
+
+    /// The skin of a mannequin at this moment.
+    fn skin(&self, mannequin: &Mannequin) -> Result<TriangleMesh, SessionError> {
+        let motion = self.motion_for(mannequin)?;
+        Ok(mannequin.posed_skin(&motion.pose_for(mannequin.skeleton(), self.time)))
     }
 }
 
@@ -196,23 +202,61 @@ pub fn measure_mesh(
     })
 }
 
-/// Makes a mannequin and writes its skin as OBJ, at rest or at a moment of a motion. Returns every
-/// measurement as asked or predicted and as got at rest.
+/// The description in a mannequin file.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn open_mannequin(path: &Path) -> Result<Description, SessionError> {
+    read_mannequin(&read_text(path)?).map_err(|error| SessionError::Format {
+        path: path.to_owned(),
+        error,
+    })
+}
+
+/// Where a body comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum BodySource<'a> {
+    /// The wearer of a project.
+    Wearer(&'a Project),
+    /// A mannequin file's description.
+    Described(&'a Description),
+}
+
+/// Makes a mannequin and writes it by the name of the file: `.glb` with skeleton and the whole clip
+/// of the motion, `.json` as a mannequin file, else its skin as OBJ, at rest or at a moment of a
+/// motion. Returns every measurement as asked or predicted and as got at rest.
 ///
 /// # Errors
 /// Measurements no body can have, a motion that cannot be read, or the file cannot be written.
 pub fn make_body(
-    project: &Project,
+    source: BodySource,
     moment: Option<&Moment>,
     to: &Path,
 ) -> Result<BodyReport, SessionError> {
-    let mannequin = Mannequin::new(&project.wearer(), project.figure())?;
-    let obj = match moment {
-        None => body_obj(mannequin.skin()),
-        Some(moment) => body_obj(&moment.skin(&mannequin)?),
+    let mannequin = match source {
+        BodySource::Wearer(project) => Mannequin::new(&project.wearer(), project.figure())?,
+        BodySource::Described(description) => Mannequin::from_description(description)?,
     };
-    let text = write_obj(&obj).map_err(cannot("the body"))?;
-    write_atomically(to, text.as_bytes())?;
+    let extension = to
+        .extension()
+        .and_then(|end| end.to_str())
+        .unwrap_or_default();
+    let bytes = match extension.to_ascii_lowercase().as_str() {
+        "glb" => {
+            let motion = moment.map(|m| m.motion_for(&mannequin)).transpose()?;
+            let name = moment.map_or("", |m| m.motion.as_str());
+            write_body_glb(&mannequin, motion.as_ref().map(|m| (name, m)))
+        }
+        "json" => write_mannequin(&mannequin.description()).map(String::into_bytes),
+        _ => {
+            let obj = match moment {
+                None => body_obj(mannequin.skin()),
+                Some(moment) => body_obj(&moment.skin(&mannequin)?),
+            };
+            write_obj(&obj).map(String::into_bytes)
+        }
+    };
+    write_atomically(to, &bytes.map_err(cannot("the body"))?)?;
     Ok(BodyReport {
         rows: mannequin.measure(),
         untaken: mannequin.untaken(),

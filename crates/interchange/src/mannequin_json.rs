@@ -1,0 +1,194 @@
+//! The mannequin as a file of a few kilobytes: its measurements and its template's primitives.
+
+use crate::FormatError;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use toile_body::{Description, Figure, Part, Primitive};
+use toile_measure::{Measurements, Origin, UnitKind, definition};
+
+const KIND: &str = "mannequin";
+const VERSION: u32 = 1;
+
+/// Centre, effective semi-axes [0.1 mm] and rotation vector [mrad] of a primitive.
+type Row = [i32; 9];
+
+/// The native file. Lengths of measurements in centimetres, angles in degrees.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MannequinFile {
+    toile: u32,
+    kind: String,
+    figure: Figure,
+    measurements: BTreeMap<String, f64>,
+    /// Primitives of trunk, head, left arm and left leg before any measurement is applied; none
+    /// for the figure's own.
+    #[serde(default)]
+    trunk: Vec<Row>,
+    #[serde(default)]
+    head: Vec<Row>,
+    #[serde(default)]
+    arm: Vec<Row>,
+    #[serde(default)]
+    leg: Vec<Row>,
+}
+
+/// Lengths are kept to 0.1 mm and turns to 1 mrad, as the templates are.
+const LENGTH: f64 = 1e-4;
+const TURN: f64 = 1e-3;
+
+/// Writes all a mannequin is made from: the same file gives the same body.
+///
+/// # Errors
+/// A primitive of a right limb, which is the left one's mirror image.
+pub fn write_mannequin(description: &Description) -> Result<String, FormatError> {
+    let rows = |part: Part| -> Vec<Row> {
+        let own = description.primitives.iter().filter(|p| p.part == part);
+        own.map(|p| {
+            let length = |x: f64| (x / LENGTH).round() as i32;
+            let turn = |x: f64| (x / TURN).round() as i32;
+            let ([x, y, z], [a, b, c], [u, v, w]) = (
+                p.centre.map(length),
+                p.radii.map(length),
+                p.rotation.map(turn),
+            );
+            [x, y, z, a, b, c, u, v, w]
+        })
+        .collect()
+    };
+    let asked = description.measurements.iter();
+    let file = MannequinFile {
+        toile: VERSION,
+        kind: KIND.into(),
+        figure: description.figure,
+        measurements: asked
+            .filter(|(_, m)| m.origin == Origin::Asked)
+            .map(|(name, m)| {
+                let shown = match is_angle(name) {
+                    true => m.value.to_degrees(),
+                    false => m.value * 100.0,
+                };
+                (name.to_owned(), (shown * 1e6).round() / 1e6)
+            })
+            .collect(),
+        trunk: rows(Part::Trunk),
+        head: rows(Part::Head),
+        arm: rows(Part::LeftArm),
+        leg: rows(Part::LeftLeg),
+    };
+    let text = serde_json::to_string(&file)
+        .map_err(|error| FormatError::new("mannequin", error.to_string(), "check the values"))?;
+    // One primitive a line.
+    Ok(text.replace("],[", "],\n[").replace("]],\"", "]],\n\"") + "\n")
+}
+
+fn is_angle(name: &str) -> bool {
+    definition(name).is_some_and(|known| known.kind == UnitKind::Angle)
+}
+
+/// Reads what [`write_mannequin`] wrote.
+///
+/// # Errors
+/// What is wrong, where, and the remedy.
+pub fn read_mannequin(text: &str) -> Result<Description, FormatError> {
+    let hint = "write {\"toile\": 1, \"kind\": \"mannequin\", \"figure\": \"woman\", \"measurements\": {\"height\": 170}}";
+    let file: MannequinFile = serde_json::from_str(text).map_err(|error| {
+        let place = format!("line {}, column {}", error.line(), error.column());
+        FormatError::new(place, error.to_string(), hint)
+    })?;
+    if file.kind != KIND || file.toile != VERSION {
+        let what = format!(
+            "{:?} of version {} is not known here",
+            file.kind, file.toile
+        );
+        return Err(FormatError::new("kind", what, hint));
+    }
+    let mut measurements = Measurements::new();
+    for (name, number) in file.measurements {
+        let value = match is_angle(&name) {
+            true => number.to_radians(),
+            false => number * 0.01,
+        };
+        measurements
+            .set(&name, value, Origin::Asked)
+            .map_err(|error| {
+                let place = format!("measurements.{name}");
+                FormatError::new(place, error.to_string(), "correct it")
+            })?;
+    }
+    let parts = [
+        (Part::Trunk, file.trunk),
+        (Part::Head, file.head),
+        (Part::LeftArm, file.arm),
+        (Part::LeftLeg, file.leg),
+    ];
+    let primitive = |part: Part, row: Row| {
+        let length = |k: usize| f64::from(row[k]) * LENGTH;
+        let turn = |k: usize| f64::from(row[k]) * TURN;
+        Primitive {
+            part,
+            centre: [length(0), length(1), length(2)],
+            radii: [length(3), length(4), length(5)],
+            rotation: [turn(6), turn(7), turn(8)],
+        }
+    };
+    Ok(Description {
+        figure: file.figure,
+        measurements,
+        primitives: parts
+            .into_iter()
+            .flat_map(|(part, rows)| rows.into_iter().map(move |row| primitive(part, row)))
+            .collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toile_body::Mannequin;
+
+    #[test]
+    fn a_whole_adult_in_eight_kilobytes_reads_back() {
+        for figure in [Figure::Woman, Figure::Man, Figure::Child6] {
+            let body = Mannequin::new(&figure.average(), figure).unwrap();
+            let text = write_mannequin(&body.description()).unwrap();
+            assert!(text.len() <= 8_000, "{figure:?}: {} bytes", text.len());
+            let again = Mannequin::from_description(&read_mannequin(&text).unwrap()).unwrap();
+            let furthest = body
+                .skin()
+                .positions
+                .iter()
+                .zip(&again.skin().positions)
+                .map(|(a, b)| (a - b).norm())
+                .fold(0.0, f64::max);
+            assert!(furthest < 1e-4, "{figure:?}: {furthest}");
+            // Written again it is the same file.
+            assert_eq!(write_mannequin(&again.description()).unwrap(), text);
+        }
+    }
+
+    #[test]
+    fn damage_is_refused_with_place_and_remedy() {
+        for (text, word) in [
+            ("{", "line"),
+            (
+                "{\"toile\":1,\"kind\":\"pattern\",\"figure\":\"woman\",\"measurements\":{}}",
+                "pattern",
+            ),
+            (
+                "{\"toile\":9,\"kind\":\"mannequin\",\"figure\":\"woman\",\"measurements\":{}}",
+                "version 9",
+            ),
+            (
+                "{\"toile\":1,\"kind\":\"mannequin\",\"figure\":\"ogre\",\"measurements\":{}}",
+                "ogre",
+            ),
+            (
+                "{\"toile\":1,\"kind\":\"mannequin\",\"figure\":\"man\",\"measurements\":{},\"arm\":[[1,2]]}",
+                "line",
+            ),
+        ] {
+            let error = read_mannequin(text).unwrap_err();
+            assert!(error.to_string().contains(word), "{error}");
+        }
+    }
+}
