@@ -155,10 +155,10 @@ fn attributes(body: &Mannequin, binary: &mut Binary) -> Value {
         shares.truncate(JOINTS);
         let sum: f64 = shares.iter().map(|share| share.1).sum();
         let mut row = [0.0; JOINTS];
-        for k in 0..JOINTS {
+        for (k, weight) in row.iter_mut().enumerate() {
             let share = shares.get(k);
             joints.push(share.map_or(0, |share| share.0 as u8));
-            row[k] = share.map_or(0.0, |share| (share.1 / sum) as f32);
+            *weight = share.map_or(0.0, |share| (share.1 / sum) as f32);
         }
         weights.push(row);
     }
