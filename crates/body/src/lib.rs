@@ -13,6 +13,7 @@ mod fair;
 mod field;
 mod gaps;
 mod girths;
+mod hang;
 mod joint;
 mod landmarks;
 mod levels;

@@ -3,6 +3,7 @@
 use crate::attach::posed;
 use crate::bones;
 use crate::field::VISIBLE_RATIO;
+use crate::hang::hang;
 use crate::landmarks::Landmarks;
 use crate::levels::Levels;
 use crate::marks::Marks;
@@ -13,7 +14,7 @@ use crate::skinning::Skinning;
 use crate::solve::{Grown, Solved};
 use crate::template::Template;
 use crate::warp::{Follow, Warp};
-use crate::{AttachedPrimitive, BodyError, Field, Figure, Part, Pose, Primitive, Skeleton};
+use crate::{AttachedPrimitive, BodyError, Field, Figure, Joint, Part, Pose, Primitive, Skeleton};
 use nalgebra::Rotation3;
 use std::sync::{Arc, OnceLock};
 use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3};
@@ -113,7 +114,11 @@ impl Mannequin {
         Ok(Self {
             figure,
             measurements: measurements.clone(),
-            skeleton: bones::skeleton(&cast.template, &warp),
+            skeleton: hung(
+                bones::skeleton(&cast.template, &warp),
+                &mesh,
+                &cast.skin.arm,
+            ),
             landmarks: Landmarks::find(&grown, (&levels, &warp), &mesh),
             crotch: grown.crotch_vertices(),
             request: grown.request,
@@ -235,6 +240,15 @@ impl Mannequin {
     pub fn closest_point(&self, point: Vec3) -> Option<ClosestPoint> {
         self.skin_tree().closest_point(point, f64::INFINITY)
     }
+}
+
+/// A skeleton that knows how far its arms can hang.
+fn hung(skeleton: Skeleton, mesh: &TriangleMesh, arm: &[f64]) -> Skeleton {
+    let shoulder = skeleton.centre(Joint::LShoulder);
+    let along = skeleton.centre(Joint::LWrist) - shoulder;
+    let down = (-along.y).atan2(along.x);
+    let steepest = hang(&mesh.positions, arm, (shoulder, down));
+    skeleton.hanging(steepest)
 }
 
 /// A primitive carried by the map: the ellipsoid through what becomes of its visible axes, whose

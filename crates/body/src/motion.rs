@@ -211,7 +211,7 @@ impl Gait {
             // Arms hang from where they are held off at rest, but not against the trunk.
             let arm = skeleton.centre(elbow) - skeleton.centre(shoulder);
             let down = (-arm.y).atan2(arm.x * sign);
-            let hang = about(Vec3::z(), -sign * (1.15 - down).max(0.0));
+            let hang = about(Vec3::z(), -sign * (skeleton.hang() - down).max(0.0));
             pose.set(
                 shoulder,
                 about(Vec3::x(), -wave(&self.shoulder, phase)) * hang,

@@ -11,6 +11,7 @@ use toile_geometry::{Rigid, Vec3};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skeleton {
     rest: [Vec3; Joint::COUNT],
+    hang: f64,
 }
 
 /// A rotation of every joint about its own centre, in its own frame. The identity is the rest
@@ -75,7 +76,17 @@ impl JointFrames {
 
 impl Skeleton {
     pub(crate) fn new(rest: [Vec3; Joint::COUNT]) -> Self {
-        Self { rest }
+        Self { rest, hang: 1.15 }
+    }
+
+    /// The same with the angle at which straight arms hang [rad].
+    pub(crate) fn hanging(self, hang: f64) -> Self {
+        Self { hang, ..self }
+    }
+
+    /// The steepest angle below the horizontal at which straight arms clear the body [rad].
+    pub fn hang(&self) -> f64 {
+        self.hang
     }
 
     /// The joints, every one after the joint it hangs on.

@@ -1,0 +1,49 @@
+//! How far straight arms can hang beside a body without touching it.
+
+use toile_geometry::Vec3;
+
+/// Steepest angle below the horizontal [rad].
+const STEEPEST: f64 = 1.15;
+/// Least distance between arm and trunk, over stature: arms swing and trunks turn.
+const CLEAR: f64 = 0.012;
+/// Height of the bands in which the trunk's breadth is known, over stature.
+const BAND: f64 = 0.01;
+/// Beside the shoulder skin folds; so much of the stature is left out.
+const SHOULDER: f64 = 0.075;
+
+/// The steepest angle below the horizontal [rad] at which the left arm, held `down` now, clears
+/// trunk and legs; `arm` says how far each vertex follows it.
+pub(crate) fn hang(positions: &[Vec3], arm: &[f64], (shoulder, down): (Vec3, f64)) -> f64 {
+    let stature = positions.iter().map(|p| p.y).fold(0.0, f64::max);
+    let band = |y: f64| (y / (BAND * stature)).max(0.0) as usize;
+    let mut breadth = vec![0.0_f64; band(stature) + 3];
+    for (p, &follow) in positions.iter().zip(arm) {
+        if follow < 0.05 {
+            let own = band(p.y);
+            for k in own.saturating_sub(1)..=own + 1 {
+                breadth[k] = breadth[k].max(p.x);
+            }
+        }
+    }
+    let far = |p: &Vec3| (p - shoulder).norm() > SHOULDER * stature;
+    let limb: Vec<Vec3> = positions
+        .iter()
+        .zip(arm)
+        .filter(|(p, follow)| p.x > 0.0 && **follow > 0.95 && far(p))
+        .map(|(p, _)| p - shoulder)
+        .collect();
+    let clears = |angle: f64| {
+        let (sin, cos) = (angle - down).sin_cos();
+        limb.iter().all(|p| {
+            let x = shoulder.x + p.x * cos + p.y * sin;
+            let y = shoulder.y + p.y * cos - p.x * sin;
+            let beside = breadth.get(band(y)).copied().unwrap_or_default();
+            y <= 0.0 || x >= beside + CLEAR * stature
+        })
+    };
+    let mut angle = STEEPEST;
+    while angle > down && !clears(angle) {
+        angle -= 0.01;
+    }
+    angle.max(down.min(STEEPEST))
+}
