@@ -320,6 +320,43 @@ fn bodies_are_made_from_a_figure_or_a_file() {
 }
 
 #[test]
+fn a_body_goes_out_as_a_file_comes_back_and_is_measured_as_a_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let body = |arguments: &str| {
+        let mut all = vec!["body"];
+        all.extend(arguments.split(' '));
+        let output = toile(folder.path(), &all);
+        assert!(output.status.success(), "{}", words(&output.stderr));
+    };
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    body("--figure child-8 --out child.json");
+    assert!(read("child.json").len() <= 8_000);
+    body("--figure child-8 --out child.obj");
+    body("--mannequin child.json --out again.obj");
+    let points = |name: &str| -> Vec<f64> {
+        let text = words(&read(name));
+        let vertices = text.lines().filter_map(|line| line.strip_prefix("v "));
+        vertices
+            .flat_map(|line| line.split_whitespace().map(|x| x.parse().unwrap()))
+            .collect()
+    };
+    let (first, again) = (points("child.obj"), points("again.obj"));
+    assert!(!first.is_empty() && first.len() == again.len());
+    assert!(first.iter().zip(&again).all(|(a, b)| (a - b).abs() < 1e-4));
+    body("--figure child-8 --motion walk --out child.glb");
+    assert_eq!(&read("child.glb")[..4], b"glTF");
+    // The mesh measured by the tape, and a body grown from that.
+    body("--mesh child.obj --out measured.json");
+    assert!(words(&read("measured.json")).contains("\"waist\""));
+    body("--figure child-8 --measurements measured.json --out grown.obj");
+    let refused = toile(
+        folder.path(),
+        &["body", "--mesh", "child.json", "--out", "x.json"],
+    );
+    assert_eq!(refused.status.code(), Some(2), "{}", words(&refused.stderr));
+}
+
+#[test]
 fn a_scene_is_simulated_and_a_bad_one_refused() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);
