@@ -20,8 +20,8 @@ pub(crate) fn hang(positions: &[Vec3], arm: &[f64], (shoulder, down): (Vec3, f64
     for (p, &follow) in positions.iter().zip(arm) {
         if follow < 0.05 {
             let own = band(p.y);
-            for k in own.saturating_sub(1)..=own + 1 {
-                breadth[k] = breadth[k].max(p.x);
+            for known in &mut breadth[own.saturating_sub(1)..=own + 1] {
+                *known = known.max(p.x);
             }
         }
     }
