@@ -80,13 +80,13 @@ fn fabric() -> Strip {
 }
 
 /// Signed penetration queries of pairs of the shirts' pieces in random poses: how many a second on
-/// each thread, and how far they lie from exact ones on the original outlines.
+/// each thread, and how far they lie from exact ones.
 pub(crate) fn queries(threads: usize, result: &mut Timed) -> Result<(), LabError> {
     let items = shirts();
     result.vertices = items.iter().map(|item| item.outline.outer.len()).sum();
     let worked = with_pair_queries(&items, &fabric(), (PAIRS, 1), |queries| {
         let warm = queries.sum();
-        let clock = Clock::start();
+        let (clock, before) = (Clock::start(), cpu_seconds());
         let pass = || {
             (0..PASSES)
                 .map(|_| std::hint::black_box(queries).sum())
@@ -103,11 +103,16 @@ pub(crate) fn queries(threads: usize, result: &mut Timed) -> Result<(), LabError
         if sums.len() != threads || !sums.iter().all(same) {
             result.failure = Some("the sums of the threads differ".to_owned());
         }
+        let cpu = cpu_seconds().zip(before).map(|(now, before)| now - before);
+        result.cpu_s = cpu;
         let off = |k: usize| Some((queries.depth(k)? - queries.exact(k)?).abs());
         let errors: Vec<f64> = (0..CHECKED).filter_map(off).collect();
         let made = queries.count() as f64 * f64::from(PASSES);
         let mut note = |name: &str, value: f64| result.counted.insert(name.to_owned(), value);
         note("queries_a_second_and_thread", made / result.wall_s);
+        if let Some(cpu) = cpu.filter(|cpu| *cpu > 0.0) {
+            note("queries_a_cpu_second", made * threads as f64 / cpu);
+        }
         note("checked", errors.len() as f64);
         note("error_max_m", errors.iter().copied().fold(0.0, f64::max));
         note(

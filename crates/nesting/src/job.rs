@@ -408,6 +408,13 @@ impl<'a> Job<'a> {
             .map_or(0.0, |pair| pair.loss(apart))
     }
 
+    /// The outline of a shape as the search takes it, from the corner of its box \[m\].
+    pub fn taken(&self, shape: usize) -> Polygon {
+        let shape = &self.shapes[shape];
+        let ring = turned(&self.rings[shape.kind], shape.turn, shape.mirrored);
+        Polygon::new(ring).translated(-shape.offset)
+    }
+
     /// The losses of a moving shape at regular moves from a fixed one.
     pub fn raster(&self, fixed: usize, moving: usize) -> &DepthRaster {
         self.rasters[fixed * self.shapes.len() + moving]

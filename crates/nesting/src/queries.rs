@@ -7,6 +7,9 @@ use crate::sequence::Sequence;
 use crate::{Item, Strip};
 use toile_geometry::{PreparedPolygon, Vec2};
 
+/// Poses in which a pair is queried before the next pair.
+const POSES: usize = 16;
+
 /// One pair of shapes in a pose.
 #[derive(Clone, Copy, Debug)]
 struct Ask<'a> {
@@ -17,11 +20,12 @@ struct Ask<'a> {
     pair: PairQuery<'a>,
 }
 
-/// Queries of random pairs of pieces in random poses in which their boxes meet.
+/// Queries of random pairs of pieces, each in several random poses in which their boxes meet, as
+/// a move of the search asks for one pair in many places.
 ///
 /// A query is one signed penetration depth: how far a pair must move to touch, positive if it
 /// overlaps. The search makes nothing else; [`PairQueries::exact`] finds the same number by
-/// polygon operations on the original outlines.
+/// polygon operations.
 pub struct PairQueries<'a> {
     job: &'a Job<'a>,
     asks: Vec<Ask<'a>>,
@@ -43,8 +47,11 @@ pub fn with_pair_queries<R>(
     let mut sequence = Sequence(seed);
     let shapes = job.shapes.len();
     let mut asks = Vec::with_capacity(count);
-    for _ in 0..count {
-        let (fixed, moving) = (sequence.below(shapes), sequence.below(shapes));
+    let (mut fixed, mut moving) = (0, 0);
+    for number in 0..count {
+        if number % POSES == 0 {
+            (fixed, moving) = (sequence.below(shapes), sequence.below(shapes));
+        }
         let (a, b) = (job.shapes[fixed].size, job.shapes[moving].size);
         let chance = Vec2::new(sequence.unit(), sequence.unit());
         let apart = (a + b).component_mul(&chance) - b;
@@ -81,18 +88,12 @@ impl PairQueries<'_> {
         ask.pair.probe(ask.apart).map(|(probe, _)| probe.depth)
     }
 
-    /// The exact depth \[m\] on the original outlines.
+    /// The exact depth \[m\] of the outlines as the search takes them: with fewer points, larger
+    /// than the original ones by [`PairQueries::growth`] at the most.
     pub fn exact(&self, number: usize) -> Option<f64> {
         let ask = self.asks.get(number)?;
-        let outline = |shape: usize| {
-            let shape = &self.job.shapes[shape];
-            self.job
-                .items
-                .get(shape.kind)
-                .map(|item| shape.outline(item))
-        };
-        let fixed = PreparedPolygon::new(&outline(ask.fixed)?);
-        let moving = PreparedPolygon::new(&outline(ask.moving)?.translated(ask.apart));
+        let fixed = PreparedPolygon::new(&self.job.taken(ask.fixed));
+        let moving = PreparedPolygon::new(&self.job.taken(ask.moving).translated(ask.apart));
         Some(match fixed.overlaps(&moving) {
             true => fixed.penetration_depth(&moving),
             false => -fixed.distance(&moving),
@@ -102,5 +103,41 @@ impl PairQueries<'_> {
     /// How much the search takes outlines larger than they are, at most, for a pair \[m\].
     pub fn growth(&self) -> f64 {
         self.job.growth()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toile_geometry::Polygon;
+
+    #[test]
+    fn queries_are_exact() {
+        let ring = |n: usize, scale: f64| {
+            let point = |k: usize| {
+                let angle = std::f64::consts::TAU * k as f64 / n as f64;
+                let radius = scale * (1.0 + 0.4 * (3.0 * angle).sin());
+                Vec2::new(radius * angle.cos(), radius * angle.sin())
+            };
+            Polygon::new((0..n).map(point).collect())
+        };
+        let items = [
+            Item::new("lobed", ring(60, 0.2)),
+            Item::new("small", ring(9, 0.1)),
+        ];
+        let worst = with_pair_queries(&items, &Strip::of_width(1.2), (600, 3), |queries| {
+            assert_eq!(queries.count(), 600);
+            let both = |k: usize| Some((queries.depth(k)?, queries.exact(k)?));
+            let found: Vec<(f64, f64)> = (0..600).filter_map(both).collect();
+            assert!(found.len() > 400 && found.iter().any(|f| f.0 > 0.05));
+            let sum: f64 = (0..600).filter_map(|k| queries.depth(k)).sum();
+            assert!((sum - queries.sum()).abs() < 1e-9);
+            assert!(queries.growth() < 2e-4);
+            let off = found.iter().map(|(depth, exact)| (depth - exact).abs());
+            off.fold(0.0, f64::max)
+        });
+        assert!(worst.unwrap() < 1e-7);
+        let nothing = with_pair_queries(&[], &Strip::of_width(1.2), (1, 1), |_| ());
+        assert_eq!(nothing, Err(NestingError::NoItems));
     }
 }
