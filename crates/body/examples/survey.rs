@@ -7,38 +7,16 @@
 //! survey's own.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+#[path = "../tests/common/survey.rs"]
+mod survey;
+
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 use std::time::Instant;
+use survey::{ASKED, Person, is_closed, people};
 use toile_body::{Figure, Mannequin};
-use toile_measure::{Measurements, Origin};
-
-/// The survey's names and the catalogue's: twelve girths, then ten lengths.
-const ASKED: [(&str, &str); 22] = [
-    ("chestcircumference", "bust"),
-    ("waistcircumference", "waist"),
-    ("buttockcircumference", "hips"),
-    ("neckcircumference", "neck"),
-    ("bicepscircumferenceflexed", "upper_arm"),
-    ("forearmcircumferenceflexed", "forearm"),
-    ("wristcircumference", "wrist"),
-    ("thighcircumference", "leg_circ"),
-    ("lowerthighcircumference", "lower_thigh"),
-    ("calfcircumference", "calf"),
-    ("anklecircumference", "ankle"),
-    ("headcircumference", "head"),
-    ("stature", "height"),
-    ("cervicaleheight", "nape_height"),
-    ("acromialheight", "shoulder_height"),
-    ("chestheight", "bust_height"),
-    ("waistheightomphalion", "waist_height"),
-    ("buttockheight", "hip_height"),
-    ("crotchheight", "inside_leg"),
-    ("kneeheightmidpatella", "knee_height"),
-    ("sleeveoutseam", "arm_length"),
-    ("biacromialbreadth", "shoulder_w"),
-];
+use toile_measure::Origin;
 
 /// What is not asked: the survey's name and the catalogue's.
 const HELD_OUT: [(&str, &str); 6] = [
@@ -49,12 +27,6 @@ const HELD_OUT: [(&str, &str); 6] = [
     ("hipbreadth", "hip_breadth"),
     ("buttockdepth", "hip_depth"),
 ];
-
-struct Person {
-    row: usize,
-    figure: Figure,
-    values: BTreeMap<String, f64>,
-}
 
 /// What became of one person.
 struct Outcome {
@@ -67,44 +39,14 @@ struct Outcome {
     time: f64,
 }
 
-fn read(path: &str) -> std::io::Result<Vec<Person>> {
-    let text = std::fs::read_to_string(path)?;
-    let mut lines = text.lines();
-    let names: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-    Ok(lines
-        .enumerate()
-        .map(|(row, line)| {
-            let cells: Vec<&str> = line.split(',').collect();
-            let value = |(name, cell): (&&str, &&str)| {
-                Some(((*name).to_owned(), cell.parse::<f64>().ok()? * 1e-3))
-            };
-            Person {
-                row,
-                figure: match cells.first() {
-                    Some(&"f") => Figure::Woman,
-                    _ => Figure::Man,
-                },
-                values: names.iter().zip(&cells).filter_map(value).collect(),
-            }
-        })
-        .collect())
-}
-
-fn get(person: &Person, name: &str) -> f64 {
-    person.values.get(name).copied().unwrap_or(f64::NAN)
-}
-
 fn run(person: &Person) -> Outcome {
-    let mut table = Measurements::new();
-    for (from, name) in ASKED {
-        let _ = table.set(name, get(person, from), Origin::Asked);
-    }
+    let mut table = person.asked();
     // The survey's waist lies at the navel: what is predicted stands on that.
     for (from, name) in [
         ("waistcircumference", "navel_girth"),
         ("waistheightomphalion", "navel_height"),
     ] {
-        let _ = table.set(name, get(person, from), Origin::Asked);
+        let _ = table.set(name, person.get(from), Origin::Asked);
     }
     let start = Instant::now();
     let body = match Mannequin::new(&table, person.figure) {
@@ -125,13 +67,7 @@ fn run(person: &Person) -> Outcome {
         .filter(|row| row.origin == Origin::Asked && row.gap().abs() > 1e-3)
         .map(|row| format!("{} {:+.1} mm", row.name, row.gap() * 1e3))
         .collect();
-    let skin = body.skin();
-    let manifold = skin.check() == Ok(())
-        && skin.is_closed_and_oriented()
-        && skin.euler_characteristic() == 2
-        && skin.component_count() == 1
-        && skin.volume() > 0.0;
-    let crossings = manifold.then(|| body.skin_tree().self_intersections().len());
+    let crossings = is_closed(body.skin()).then(|| body.skin_tree().self_intersections().len());
     let taken = |name: &str| body.taken(name).unwrap_or(f64::NAN);
     Outcome {
         missed,
@@ -145,7 +81,7 @@ fn run(person: &Person) -> Outcome {
 fn in_box(person: &Person, limits: &BTreeMap<(bool, &str), [f64; 2]>) -> bool {
     ASKED.iter().all(|(name, _)| {
         let [low, high] = limits[&(person.figure == Figure::Woman, *name)];
-        (low..=high).contains(&get(person, name))
+        (low..=high).contains(&person.get(name))
     })
 }
 
@@ -156,7 +92,7 @@ fn limits(people: &[Person]) -> BTreeMap<(bool, &'static str), [f64; 2]> {
             let mut values: Vec<f64> = people
                 .iter()
                 .filter(|person| (person.figure == Figure::Woman) == woman)
-                .map(|person| get(person, name))
+                .map(|person| person.get(name))
                 .collect();
             values.sort_by(f64::total_cmp);
             let at = |share: f64| values[(share * (values.len() - 1) as f64).round() as usize];
@@ -176,13 +112,13 @@ fn held_out(
 ) -> [f64; 2] {
     let own = |p: &&Person| (p.figure == Figure::Woman) == woman;
     let inputs = |p: &Person| -> Vec<f64> {
-        let values = ASKED.iter().map(|(name, _)| get(p, name));
+        let values = ASKED.iter().map(|(name, _)| p.get(name));
         std::iter::once(1.0).chain(values).collect()
     };
     let n = ASKED.len() + 1;
     let (mut normal, mut right) = (vec![vec![0.0; n]; n], vec![0.0; n]);
     for person in everyone.iter().filter(own).filter(|p| p.row % 2 == 1) {
-        let (x, y) = (inputs(person), get(person, HELD_OUT[which].0));
+        let (x, y) = (inputs(person), person.get(HELD_OUT[which].0));
         for i in 0..n {
             right[i] += x[i] * y;
             for j in 0..n {
@@ -218,7 +154,7 @@ fn held_out(
         if !own(&person) || person.row % 2 == 1 || !got.is_finite() {
             continue;
         }
-        let actual = get(person, HELD_OUT[which].0);
+        let actual = person.get(HELD_OUT[which].0);
         let line: f64 = inputs(person).iter().zip(&right).map(|(x, b)| x * b).sum();
         sums[0] += (line - actual).powi(2);
         sums[1] += (got - actual).powi(2);
@@ -293,8 +229,8 @@ fn main() -> ExitCode {
         .unwrap_or_default();
     let number = |k: usize| arguments.get(k).and_then(|text| text.parse::<usize>().ok());
     let (every, first) = (number(1).unwrap_or(1).max(1), number(2).unwrap_or(0));
-    let everyone = match read(path) {
-        Ok(people) if !people.is_empty() => people,
+    let everyone = match std::fs::read_to_string(path).map(|text| people(&text)) {
+        Ok(everyone) if !everyone.is_empty() => everyone,
         Ok(_) => {
             eprintln!("{path}: no people in it");
             return ExitCode::from(2);
@@ -308,15 +244,7 @@ fn main() -> ExitCode {
         true => p.row >= first && (p.row - first).is_multiple_of(every),
         false => rows.contains(&p.row),
     };
-    let people = everyone
-        .iter()
-        .filter(|p| chosen(p))
-        .map(|p| Person {
-            row: p.row,
-            figure: p.figure,
-            values: p.values.clone(),
-        })
-        .collect();
+    let people = everyone.iter().filter(|p| chosen(p)).cloned().collect();
     report(&everyone, people);
     ExitCode::SUCCESS
 }

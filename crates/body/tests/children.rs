@@ -1,18 +1,11 @@
 //! Children of several ages: bodies with their measurements, closed and clean.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
+use common::is_sound;
 use toile_body::{Figure, Mannequin};
 use toile_measure::{Measurements, Origin};
-
-fn is_sound(body: &Mannequin) -> bool {
-    let skin = body.skin();
-    skin.check() == Ok(())
-        && skin.is_closed_and_oriented()
-        && skin.euler_characteristic() == 2
-        && skin.component_count() == 1
-        && skin.volume() > 0.0
-        && body.skin_tree().self_intersections().is_empty()
-}
 
 #[test]
 fn children_of_every_age_have_their_measurements() {

@@ -1,8 +1,10 @@
 //! The tape on closed meshes that are none of our own bodies.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod common;
+
+use common::shared;
 use std::f64::consts::{PI, TAU};
-use std::path::PathBuf;
 use toile_body::{Figure, Mannequin, Scan, ScanLandmarks};
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_measure::Origin;
@@ -122,18 +124,6 @@ fn our_own_body_measured_as_a_mesh_has_its_measurements() {
         // And a body can be grown from what was measured.
         assert!(Mannequin::new(&found.measurements(), figure).is_ok());
     }
-}
-
-fn shared(file: &str) -> Option<PathBuf> {
-    let start = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    let found = start
-        .ancestors()
-        .map(|folder| folder.join("shared/data").join(file))
-        .find(|path| path.is_file());
-    if found.is_none() {
-        println!("skipped: no shared data folder");
-    }
-    found
 }
 
 /// Positions and triangles of a plain OBJ file of triangles and quads.

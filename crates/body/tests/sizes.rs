@@ -1,34 +1,23 @@
 //! Bodies for whole tables of sizes: every measurement as asked on the finished skin.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod common;
+
+use common::survey::people;
+use common::{is_sound, shared};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use toile_body::{Figure, Mannequin, Part};
 use toile_geometry::{closed_length, convex_hull, horizontal_section};
 use toile_measure::{FREESEWING, Measurements, Origin, UnitKind, definition, translated};
-
-fn shared(file: &str) -> Option<String> {
-    let start = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    let found = start
-        .ancestors()
-        .map(|folder| folder.join("shared/data").join(file))
-        .find(|path| path.is_file());
-    match found {
-        Some(path) => std::fs::read_to_string(path).ok(),
-        None => {
-            println!("skipped: no shared data folder");
-            None
-        }
-    }
-}
 
 type Sets = BTreeMap<String, BTreeMap<String, BTreeMap<String, f64>>>;
 
 /// All FreeSewing sets: name, figure and table.
 fn freesewing() -> Vec<(String, Figure, Measurements)> {
-    let Some(text) = shared("body/measurements/freesewing_models_4.10.2.json") else {
+    let Some(path) = shared("body/measurements/freesewing_models_4.10.2.json") else {
         return Vec::new();
     };
+    let text = std::fs::read_to_string(path).unwrap();
     let file: serde_json::Value = serde_json::from_str(&text).unwrap();
     let mut all = Vec::new();
     for group in ["adult", "doll", "giant"] {
@@ -63,16 +52,6 @@ fn girth(body: &Mannequin, height: f64) -> f64 {
     let own = |part: Part| matches!(part, Part::Trunk | Part::LeftLeg | Part::RightLeg);
     let triangles = (0..mesh.triangles.len()).filter(|&t| own(parts[t]));
     closed_length(&convex_hull(&horizontal_section(mesh, triangles, height)))
-}
-
-fn is_sound(body: &Mannequin) -> bool {
-    let skin = body.skin();
-    skin.check() == Ok(())
-        && skin.is_closed_and_oriented()
-        && skin.euler_characteristic() == 2
-        && skin.component_count() == 1
-        && skin.volume() > 0.0
-        && body.skin_tree().self_intersections().is_empty()
 }
 
 #[test]
@@ -145,65 +124,6 @@ fn dump(name: &str, body: &Mannequin) {
     std::fs::write(format!("{folder}/{}.txt", name.replace(' ', "_")), table).unwrap();
 }
 
-/// The survey's names and the catalogue's: twelve girths and ten lengths.
-const ASKED: [(&str, &str); 22] = [
-    ("chestcircumference", "bust"),
-    ("waistcircumference", "waist"),
-    ("buttockcircumference", "hips"),
-    ("neckcircumference", "neck"),
-    ("bicepscircumferenceflexed", "upper_arm"),
-    ("forearmcircumferenceflexed", "forearm"),
-    ("wristcircumference", "wrist"),
-    ("thighcircumference", "leg_circ"),
-    ("lowerthighcircumference", "lower_thigh"),
-    ("calfcircumference", "calf"),
-    ("anklecircumference", "ankle"),
-    ("headcircumference", "head"),
-    ("stature", "height"),
-    ("cervicaleheight", "nape_height"),
-    ("acromialheight", "shoulder_height"),
-    ("chestheight", "bust_height"),
-    ("waistheightomphalion", "waist_height"),
-    ("buttockheight", "hip_height"),
-    ("crotchheight", "inside_leg"),
-    ("kneeheightmidpatella", "knee_height"),
-    ("sleeveoutseam", "arm_length"),
-    ("biacromialbreadth", "shoulder_w"),
-];
-
-/// Every `step`th of the survey's people with the measurements asked.
-fn people(step: usize) -> Vec<(usize, Figure, Measurements, BTreeMap<String, f64>)> {
-    let Some(text) = shared("body/measurements/ansur2_subjects_garment.csv") else {
-        return Vec::new();
-    };
-    let mut lines = text.lines();
-    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
-    lines
-        .enumerate()
-        .step_by(step)
-        .map(|(index, line)| {
-            let cells: Vec<&str> = line.split(',').collect();
-            let all: BTreeMap<String, f64> = names
-                .iter()
-                .zip(&cells)
-                .filter_map(|(name, cell)| {
-                    Some(((*name).to_owned(), cell.parse::<f64>().ok()? * 1e-3))
-                })
-                .collect();
-            let mut table = Measurements::new();
-            for (from, name) in ASKED {
-                table.set(name, all[from], Origin::Asked).unwrap();
-            }
-            let figure = if cells[0] == "f" {
-                Figure::Woman
-            } else {
-                Figure::Man
-            };
-            (index, figure, table, all)
-        })
-        .collect()
-}
-
 #[test]
 fn people_of_the_survey_have_what_was_measured() {
     // All 6,068 with TOILE_ALL set; every 101st else.
@@ -212,11 +132,16 @@ fn people_of_the_survey_have_what_was_measured() {
     } else {
         101
     };
-    let everyone = people(step);
+    let Some(path) = shared("body/measurements/ansur2_subjects_garment.csv") else {
+        return;
+    };
+    let all = people(&std::fs::read_to_string(path).unwrap());
+    let everyone: Vec<_> = all.iter().step_by(step).collect();
     let mut failed = Vec::new();
     let mut crossed = Vec::new();
-    for (index, figure, table, _) in &everyone {
-        let body = match Mannequin::new(table, *figure) {
+    for person in &everyone {
+        let index = person.row;
+        let body = match Mannequin::new(&person.asked(), person.figure) {
             Ok(body) => body,
             Err(error) => {
                 failed.push(format!("person {index}: {error}"));

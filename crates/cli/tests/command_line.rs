@@ -1,25 +1,11 @@
 //! The `toile` command as a person runs it.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
+use common::{patterns, toile, words};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn patterns() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../patterns")
-}
-
-fn toile(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_toile"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap()
-}
-
-fn words(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
+use std::process::Command;
 
 #[test]
 fn help_states_units_and_defaults() {

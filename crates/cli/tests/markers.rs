@@ -1,25 +1,10 @@
 //! `toile nest` and `toile check` for a marker maker, as a program.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
+use common::{patterns, toile, words};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn toile(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_toile"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap()
-}
-
-fn words(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
-
-fn patterns() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../patterns")
-}
 
 #[test]
 fn a_marker_maker_gets_rolls_spreads_costs_and_files_for_machines() {

@@ -69,9 +69,21 @@ fn integrate(gamma: f64, start: f64) -> [f64; 4] {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use std::path::Path;
+
+    /// A table of the test material, where it is present; says so where it is not.
+    pub(crate) fn shared(file: &str) -> Option<String> {
+        let found = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .ancestors()
+            .map(|folder| folder.join("shared/data").join(file))
+            .find(|path| path.is_file());
+        if found.is_none() {
+            println!("skipped: no shared data folder");
+        }
+        found.map(|path| std::fs::read_to_string(path).unwrap())
+    }
 
     /// Gamma, h/w, h/L, w/L, tip angle [degree]: solved by collocation to 1e-9.
     const TABLE: [[f64; 5]; 10] = [
@@ -113,15 +125,9 @@ mod tests {
 
     #[test]
     fn agrees_with_a_published_curve() {
-        let found = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .ancestors()
-            .map(|folder| folder.join("shared/data/drape/heavy_elastica.csv"))
-            .find(|path| path.is_file());
-        let Some(path) = found else {
-            println!("skipped: no shared data folder");
+        let Some(text) = shared("drape/heavy_elastica.csv") else {
             return;
         };
-        let text = std::fs::read_to_string(path).unwrap();
         let mut compared = 0;
         for line in text.lines().filter(|line| !line.starts_with('#')) {
             let row: Vec<f64> = line.split(',').map(|x| x.parse().unwrap()).collect();

@@ -107,7 +107,7 @@ fn shape(unknown: Vector3<f64>) -> Vector3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path;
+    use crate::elastica::tests::shared;
 
     #[test]
     fn a_strip_hardly_pushed_carries_the_load_of_euler() {
@@ -128,15 +128,9 @@ mod tests {
 
     #[test]
     fn agrees_with_a_table() {
-        let found = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .ancestors()
-            .map(|folder| folder.join("shared/data/drape/stick_slip_elastica.txt"))
-            .find(|path| path.is_file());
-        let Some(path) = found else {
-            println!("skipped: no shared data folder");
+        let Some(text) = shared("drape/stick_slip_elastica.txt") else {
             return;
         };
-        let text = std::fs::read_to_string(path).unwrap();
         let mut compared = 0;
         for line in text.lines() {
             let words: Vec<&str> = line.split_whitespace().collect();

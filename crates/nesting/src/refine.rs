@@ -53,6 +53,20 @@ struct Neighbour<'a> {
     pair: PairQuery<'a>,
 }
 
+impl Neighbour<'_> {
+    /// How far a place lies from this piece, where the box of a piece of `size` there comes nearer
+    /// than `more` to its box \[m\].
+    #[inline(always)]
+    fn apart(&self, at: Vec2, size: Vec2, more: f64) -> Option<Vec2> {
+        let apart = at - self.at;
+        let meets = apart.x < self.size.x + more
+            && apart.y < self.size.y + more
+            && apart.x > -size.x - more
+            && apart.y > -size.y - more;
+        meets.then_some(apart)
+    }
+}
+
 /// Lists used again and again.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch<'a> {
@@ -98,14 +112,9 @@ impl Mover<'_, '_> {
         let more = self.job.widest_gap + self.job.growth();
         let mut sum = 0.0;
         for near in &self.scratch.neighbours {
-            let apart = at - near.at;
-            let meets = apart.x < near.size.x + more
-                && apart.y < near.size.y + more
-                && apart.x > -size.x - more
-                && apart.y > -size.y - more;
-            if !meets {
+            let Some(apart) = near.apart(at, size, more) else {
                 continue;
-            }
+            };
             self.queries += 1;
             sum += near.weight * near.pair.loss(apart);
             if sum > limit {
@@ -126,14 +135,9 @@ impl Mover<'_, '_> {
         } = &mut *self.scratch;
         lines.clear();
         for near in neighbours.iter() {
-            let apart = at - near.at;
-            let meets = apart.x < near.size.x + more
-                && apart.y < near.size.y + more
-                && apart.x > -size.x - more
-                && apart.y > -size.y - more;
-            if !meets {
+            let Some(apart) = near.apart(at, size, more) else {
                 continue;
-            }
+            };
             self.queries += 1;
             let Some((probe, gap)) = near.pair.probe(apart) else {
                 continue;

@@ -245,40 +245,30 @@ impl Workspace {
     /// Gradient of the potential at `x`; zero at pins.
     pub(crate) fn fill_gradient(&mut self, model: &Model, x: &[Vec3], inertia: Option<&Inertia>) {
         let terms = &self.terms;
-        self.corner_gradients
-            .par_chunks_mut(CHUNK)
-            .enumerate()
-            .for_each(|(chunk, out)| {
-                for (k, out) in out.iter_mut().enumerate() {
-                    let t = chunk * CHUNK + k;
-                    let corners = model.triangles[t].map(|v| x[v as usize]);
-                    *out = model.elements[t].gradient(&terms.law(model, t), corners).1;
-                }
-            });
+        let each = self.corner_gradients.par_iter_mut().enumerate();
+        each.with_min_len(CHUNK).for_each(|(t, out)| {
+            let corners = model.triangles[t].map(|v| x[v as usize]);
+            *out = model.elements[t].gradient(&terms.law(model, t), corners).1;
+        });
         for (secant, elastic) in self.secants.iter_mut().zip(&model.elastics) {
             *secant = elastic.law.secant(elastic_gap(elastic.from, elastic.to, x));
         }
         let (corner_gradients, secants) = (&self.corner_gradients, &self.secants);
-        self.gradient
-            .par_chunks_mut(CHUNK)
-            .enumerate()
-            .for_each(|(chunk, out)| {
-                for (k, out) in out.iter_mut().enumerate() {
-                    let v = chunk * CHUNK + k;
-                    let mut g = model.bending.row_force(v, x) - model.gravity * model.mass[v];
-                    let uses = model.corner_start[v] as usize..model.corner_start[v + 1] as usize;
-                    for &corner in &model.corners[uses] {
-                        g += corner_gradients[corner as usize / 3][corner as usize % 3];
-                    }
-                    for (e, other) in elastics_of(model, v) {
-                        g += (x[v] - end_place(other, x)) * secants[e];
-                    }
-                    if let Some(inertia) = inertia {
-                        g += (x[v] - inertia.target[v]) * inertia.weight[v];
-                    }
-                    *out = g;
-                }
-            });
+        let each = self.gradient.par_iter_mut().enumerate();
+        each.with_min_len(CHUNK).for_each(|(v, out)| {
+            let mut g = model.bending.row_force(v, x) - model.gravity * model.mass[v];
+            let uses = model.corner_start[v] as usize..model.corner_start[v + 1] as usize;
+            for &corner in &model.corners[uses] {
+                g += corner_gradients[corner as usize / 3][corner as usize % 3];
+            }
+            for (e, other) in elastics_of(model, v) {
+                g += (x[v] - end_place(other, x)) * secants[e];
+            }
+            if let Some(inertia) = inertia {
+                g += (x[v] - inertia.target[v]) * inertia.weight[v];
+            }
+            *out = g;
+        });
         for contact in &self.contacts.active {
             let sample = &model.samples[contact.sample as usize];
             let (_, gradient, _) = contact.law.evaluate(&contact.plane, sample.place(x));
@@ -310,18 +300,13 @@ impl Workspace {
         curvature: Curvature,
     ) {
         let terms = &self.terms;
-        self.elements
-            .par_chunks_mut(CHUNK)
-            .enumerate()
-            .for_each(|(chunk, out)| {
-                for (k, out) in out.iter_mut().enumerate() {
-                    let t = chunk * CHUNK + k;
-                    let corners = model.triangles[t].map(|v| x[v as usize]);
-                    let law = terms.law(model, t);
-                    *out = model.elements[t].hessian(&law, corners, curvature);
-                    terms.add_hessian(t, out);
-                }
-            });
+        let each = self.elements.par_iter_mut().enumerate();
+        each.with_min_len(CHUNK).for_each(|(t, out)| {
+            let corners = model.triangles[t].map(|v| x[v as usize]);
+            let law = terms.law(model, t);
+            *out = model.elements[t].hessian(&law, corners, curvature);
+            terms.add_hessian(t, out);
+        });
         for (v, d) in self.diagonal.iter_mut().enumerate() {
             let pull: f64 = elastics_of(model, v).map(|(e, _)| self.secants[e]).sum();
             *d = Matrix3::identity() * (inertia.weight[v] + pull);
