@@ -3,13 +3,14 @@
 //!
 //! `cargo run --release -p toile-body --example survey -- SUBJECTS.csv [EVERY [FIRST] | ROW,ROW,...]`
 //!
-//! Twelve girths and ten lengths are asked; breadths and depths are not, and are held against the
+//! Twelve girths and ten lengths are asked, and girth and height at the navel, where the survey's waist lies; breadths and depths are not, and are held against the
 //! survey's own.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[path = "../tests/common/survey.rs"]
 mod survey;
 
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::process::ExitCode;
@@ -115,39 +116,18 @@ fn held_out(
         let values = ASKED.iter().map(|(name, _)| p.get(name));
         std::iter::once(1.0).chain(values).collect()
     };
-    let n = ASKED.len() + 1;
-    let (mut normal, mut right) = (vec![vec![0.0; n]; n], vec![0.0; n]);
-    for person in everyone.iter().filter(own).filter(|p| p.row % 2 == 1) {
-        let (x, y) = (inputs(person), person.get(HELD_OUT[which].0));
-        for i in 0..n {
-            right[i] += x[i] * y;
-            for j in 0..n {
-                normal[i][j] += x[i] * x[j];
-            }
-        }
-    }
-    // Gauss with pivots: the matrix is small and its columns are alike in size.
-    for k in 0..n {
-        let pivot = (k..n)
-            .max_by(|&a, &b| normal[a][k].abs().total_cmp(&normal[b][k].abs()))
-            .unwrap_or(k);
-        normal.swap(k, pivot);
-        right.swap(k, pivot);
-        let (above, below) = normal.split_at_mut(k + 1);
-        for (row, b) in below.iter_mut().zip(k + 1..) {
-            let factor = row[k] / above[k][k];
-            for (x, pivot) in row.iter_mut().zip(&above[k]).skip(k) {
-                *x -= factor * pivot;
-            }
-            right[b] -= factor * right[k];
-        }
-    }
-    for k in (0..n).rev() {
-        for j in k + 1..n {
-            right[k] -= normal[k][j] * right[j];
-        }
-        right[k] /= normal[k][k];
-    }
+    let half: Vec<&Person> = everyone
+        .iter()
+        .filter(own)
+        .filter(|p| p.row % 2 == 1)
+        .collect();
+    let rows: Vec<f64> = half.iter().flat_map(|p| inputs(p)).collect();
+    let rows = DMatrix::from_row_slice(half.len(), ASKED.len() + 1, &rows);
+    let actual = half.iter().map(|p| p.get(HELD_OUT[which].0));
+    let right = rows.tr_mul(&DVector::from_iterator(half.len(), actual));
+    let Some(line) = rows.tr_mul(&rows).cholesky().map(|n| n.solve(&right)) else {
+        return [f64::NAN; 2];
+    };
     let (mut sums, mut count) = ([0.0; 2], 0.0);
     for (person, body) in people.iter().zip(bodies) {
         let got = body.held_out[which];
@@ -155,8 +135,8 @@ fn held_out(
             continue;
         }
         let actual = person.get(HELD_OUT[which].0);
-        let line: f64 = inputs(person).iter().zip(&right).map(|(x, b)| x * b).sum();
-        sums[0] += (line - actual).powi(2);
+        let fitted: f64 = inputs(person).iter().zip(&line).map(|(x, b)| x * b).sum();
+        sums[0] += (fitted - actual).powi(2);
         sums[1] += (got - actual).powi(2);
         count += 1.0;
     }

@@ -9,6 +9,7 @@ use toile_measure::{Measurements, Origin};
 
 #[test]
 fn children_of_every_age_have_their_measurements() {
+    let mut before = 4.0;
     for figure in Figure::ALL {
         let Some(age) = figure.age() else { continue };
         let body = Mannequin::new(&figure.average(), figure).unwrap();
@@ -18,9 +19,12 @@ fn children_of_every_age_have_their_measurements() {
             let exact = row.origin == Origin::Asked && !row.is_angle();
             assert!(!exact || row.gap().abs() <= limit, "{age}: {row:?}");
         }
-        // Heads from crown to nape: four to seven and a half to the stature.
         let crown = body.levels().crown;
         assert!((crown - figure.average().get("height").unwrap()).abs() < 1e-3);
+        // Heads, from crown to nape, in the stature: more with every year, seven at the most.
+        let heads = crown / body.taken("head_l").unwrap();
+        assert!(heads > before && heads < 7.0, "{age} years: {heads}");
+        before = heads;
     }
 }
 

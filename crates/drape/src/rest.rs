@@ -44,12 +44,9 @@ pub struct RestRun {
     best: f64,
     waited: usize,
     linear_iterations: usize,
-    /// Share of the destabilising curvature left out of the Hessian.
-    left_out: f64,
+    curvature: Curvature,
 }
 
-/// Share of the destabilising curvature left out after a step that went well, over that before it.
-const LESS: f64 = 0.7;
 /// A direction of which the line search takes less than this is as bad as none.
 const CUT: f64 = 0.2;
 /// Steps without a new low of the residual before a cycle is suspected.
@@ -74,7 +71,7 @@ impl RestRun {
             best: f64::INFINITY,
             waited: 0,
             linear_iterations: 0,
-            left_out: 1.0,
+            curvature: Curvature::CONVEX,
         }
     }
 
@@ -145,7 +142,7 @@ impl RestRun {
                 iterations: 1,
                 tolerance: 0.0,
                 longest_move: self.settings.longest_move,
-                curvature: Curvature(1.0 - self.left_out),
+                curvature: self.curvature,
                 linear: LinearSolver::Direct {
                     otherwise: PcgLimits {
                         tolerance: 1e-3,
@@ -202,12 +199,10 @@ impl RestRun {
     /// matrix was not positive definite or whose direction had to be cut. With too little of it
     /// cloth that is about to buckle creeps away from its saddle by a few per cent a step.
     fn adapt_curvature(&mut self, report: &NewtonReport) {
-        let left_out = 1.0 - report.curvature.0;
-        self.left_out = if report.fraction > CUT {
-            let less = LESS * left_out;
-            if less < Curvature::FINEST { 0.0 } else { less }
+        self.curvature = if report.fraction > CUT {
+            report.curvature.more()
         } else {
-            (2.0 * left_out).clamp(Curvature::FINEST, 1.0)
+            report.curvature.less()
         };
     }
 

@@ -31,14 +31,14 @@ impl Workspace {
         settings: &NewtonSettings,
         report: &mut NewtonReport,
     ) {
-        let direct = matches!(settings.linear, LinearSolver::Direct { .. });
-        report.curvature = if direct {
-            settings.curvature
-        } else {
-            Curvature::CONVEX
-        };
+        if !matches!(settings.linear, LinearSolver::Direct { .. }) {
+            report.curvature = Curvature::CONVEX;
+            self.solve_with(model, x, inertia, settings, report);
+            return;
+        }
+        report.curvature = settings.curvature;
         self.solve_with(model, x, inertia, settings, report);
-        for _ in 0..if direct { FORESIGHTS } else { 0 } {
+        for _ in 0..FORESIGHTS {
             let promises = 0.5 * dot(&self.gradient, &self.direction);
             if !(self.contacts).foresee(model, x, &self.direction, promises) {
                 break;
