@@ -52,6 +52,7 @@ fn check(path: PathBuf) {
         measures.residual
     );
     assert_eq!(measures.body_intersections, 0, "{name}");
+    assert_eq!(measures.self_intersections, 0, "{name}");
     for direction in 0..2 {
         assert!(
             measures.strain_p99[direction] <= 0.05,

@@ -81,6 +81,8 @@ pub struct GarmentRun {
     setup: GarmentSetup,
     sew: SewRun,
     swing: Option<SwingRun>,
+    /// Whether crossings of cloth ended the swing before the cloth was calm.
+    cut_short: bool,
     rest: RestRun,
     stage: Stage,
     gap_before_merging: f64,
@@ -124,6 +126,7 @@ impl GarmentRun {
             level: 0,
             state: State::default(),
             swing: None,
+            cut_short: false,
             rest: RestRun::new(setup.rest),
             sew: SewRun::new(&mut model, Vec::new(), setup.sew),
             workspace: Workspace::default(),
@@ -256,6 +259,7 @@ impl GarmentRun {
         swing.advance(&self.model, &mut self.state)?;
         self.share = self.share.max(0.5 + 0.2 * swing.share());
         if swing.finished() {
+            self.cut_short = swing.stuck();
             self.swing = None;
             self.stage = Stage::Settling;
         }
@@ -265,6 +269,11 @@ impl GarmentRun {
     fn settle(&mut self) -> Result<(), DrapeError> {
         self.rest
             .advance(&self.model, &mut self.state, &mut self.workspace)?;
+        if self.cut_short && self.workspace.contacts.cloth.piercings == 0 {
+            self.cut_short = false;
+            self.stage = Stage::Swinging;
+            return Ok(());
+        }
         let decades = (1.0 / self.rest.residual().max(1e-9)).log10() / 3.0;
         self.share = self
             .share

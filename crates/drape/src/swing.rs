@@ -54,7 +54,12 @@ impl SwingRun {
 
     /// Whether the motion has died out, or has had its time.
     pub fn finished(&self) -> bool {
-        self.calm || self.time >= LONGEST
+        self.calm || self.stuck() || self.time >= LONGEST
+    }
+
+    /// Whether crossings of cloth that are pulled apart keep it moving: the peaks fall no more.
+    pub fn stuck(&self) -> bool {
+        self.waited > PATIENCE
     }
 
     /// Rough share of the way to calm, 0..=1.
@@ -77,7 +82,8 @@ impl SwingRun {
         self.time += self.substep * f64::from(ROUND);
         if report.kinetic_energy < self.energy {
             let mass: f64 = model.mass.iter().sum();
-            self.calm = self.energy < 0.5 * mass * CALM * CALM || self.is_stuck();
+            self.calm = self.energy < 0.5 * mass * CALM * CALM;
+            self.watch_crossings();
             self.energy = 0.0;
             stop(state);
         } else {
@@ -91,14 +97,13 @@ impl SwingRun {
 }
 
 impl SwingRun {
-    /// Whether crossings of cloth that are pulled apart keep it moving: the peaks fall no more.
-    fn is_stuck(&mut self) -> bool {
+    /// Counts the peaks of kinetic energy without a new low while cloth crosses cloth.
+    fn watch_crossings(&mut self) {
         if self.energy < LOWER * self.lowest || self.cloth.contacts.piercings == 0 {
             self.lowest = self.energy;
             self.waited = 0;
         }
         self.waited += 1;
-        self.waited > PATIENCE
     }
 }
 

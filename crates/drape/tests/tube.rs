@@ -107,10 +107,7 @@ fn setup(n: usize) -> GarmentSetup {
         levels: vec![GarmentLevel { cloth, stitches }],
         counted: Vec::new(),
         colliders: vec![Arc::new(body)],
-        contact: ContactSettings {
-            friction: std::env::var("NOFRIC").is_err(),
-            ..ContactSettings::default()
-        },
+        contact: ContactSettings::default(),
         gravity: Vec3::new(0.0, -9.81, 0.0),
         sew: SewSettings::default(),
         rest: RestSettings::default(),
