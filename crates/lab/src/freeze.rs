@@ -229,7 +229,7 @@ pub(crate) fn ball(radius: f64, cuts: usize) -> TriangleMesh {
 
 fn sphere(files: &mut Vec<File>) -> Result<(), LabError> {
     let title = "a square of 0.5 m falls on a ball of 0.12 m radius";
-    let mut card = blank("sphere", title, 0.22, &stiff_cotton());
+    let mut card = blank("sphere", title, 0.12, &stiff_cotton());
     card.friction = 0.3;
     card.collider = Some("ball.obj".to_owned());
     files.push(("ball.obj".to_owned(), solid_obj(&ball(0.12, 3))?));
