@@ -11,7 +11,14 @@
 //! is run on every solution, and what it prints is kept. Rows are added to `runs.csv` as they are
 //! made, with the commit; what is there already is not run again; `table.csv` sums up, with the 95 %
 //! interval of the difference.
+//!
+//! `soak hard [--out DIR] [NAME...]` runs the hard scenes of cloth on cloth at full size, and
+//! `soak tangles [COUNT]` so many planted tangles (100); both print a line each and fail where
+//! anything is left crossing. `--out` keeps pictures of the ends.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
+
+#[path = "soak/cloth.rs"]
+mod cloth;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -471,7 +478,11 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let done = match arguments.split_first() {
         Some((first, rest)) if first == "nest" => parse(rest).and_then(|task| nest(&task)),
-        _ => Err("say what: soak nest [OPTIONS] INSTANCE.json...".to_owned()),
+        Some((first, rest)) if first == "hard" => cloth::hard(rest),
+        Some((first, rest)) if first == "tangles" => cloth::tangles(rest),
+        _ => Err(
+            "say what: soak nest [OPTIONS] INSTANCE.json..., soak hard, soak tangles".to_owned(),
+        ),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

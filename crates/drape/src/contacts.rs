@@ -4,7 +4,7 @@ use crate::collision::ClothContacts;
 use crate::laws::contact::{ContactLaw, ContactPlane, damped_push, gentle_push};
 use crate::model::FIELD_REACH;
 use crate::state::Memory as StateMemory;
-use crate::{Model, State};
+use crate::{Model, Pose, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -59,6 +59,11 @@ impl Contacts {
             clearance: 0.0,
         };
         self.memory.resize(model.samples.len(), unknown);
+        let poses: Vec<Option<Pose>> = model.colliders.iter().map(|c| c.pose(state.time)).collect();
+        if poses.iter().any(Option::is_some) {
+            // What was measured holds for a surface that stands still.
+            self.memory.fill(unknown);
+        }
         let found: Vec<Vec<Contact>> = self
             .memory
             .par_chunks_mut(128)
@@ -66,14 +71,13 @@ impl Contacts {
             .map(|(chunk, memory)| {
                 let mut contacts = Vec::new();
                 for (k, memory) in memory.iter_mut().enumerate() {
-                    find(
+                    let at = chunk * 128 + k;
+                    let scene = Surfaces {
                         model,
                         state,
-                        positions,
-                        chunk * 128 + k,
-                        memory,
-                        &mut contacts,
-                    );
+                        poses: &poses,
+                    };
+                    find(&scene, positions, at, memory, &mut contacts);
                 }
                 contacts
             })
@@ -149,14 +153,25 @@ fn is_buried(model: &Model, state: &State, contact: &Contact, place: Vec3) -> bo
     depth > offset || (depth > 0.0 && remembered())
 }
 
+/// What samples are measured against.
+struct Surfaces<'a> {
+    model: &'a Model,
+    state: &'a State,
+    poses: &'a [Option<Pose>],
+}
+
 fn find(
-    model: &Model,
-    state: &State,
+    scene: &Surfaces,
     positions: &[Vec3],
     at: usize,
     memory: &mut Memory,
     out: &mut Vec<Contact>,
 ) {
+    let Surfaces {
+        model,
+        state,
+        poses,
+    } = scene;
     let sample = &model.samples[at];
     let place = sample.place(positions);
     let offset = model.contact.offset + sample.extra_offset;
@@ -167,12 +182,12 @@ fn find(
     }
     let mut nearest: Option<(f64, Vec3)> = None;
     let mut owner = None;
-    for collider in &model.colliders {
-        if let Some(found) = collider.field.distance(place)
+    for (collider, pose) in model.colliders.iter().zip(*poses) {
+        if let Some(found) = collider.distance(pose.as_ref(), place)
             && nearest.is_none_or(|(distance, _)| found.0 < distance)
         {
             nearest = Some(found);
-            owner = Some(collider);
+            owner = Some((collider, pose));
         }
     }
     let Some((distance, slope)) = nearest else {
@@ -193,7 +208,7 @@ fn find(
     let depth = offset - distance;
     let bent = owner.filter(|_| depth > 0.0);
     let [hollow, bulge] = bent
-        .and_then(|collider| collider.field.curvature(place))
+        .and_then(|(collider, pose)| collider.curvature(pose.as_ref(), place))
         .map_or([Matrix3::zeros(); 2], parts);
     let normal = model.contact.stiffness * sample.area;
     let plane = ContactPlane {

@@ -2,6 +2,7 @@
 //! the finest. One `advance` is one step, so that a command line, a window and a test drive it
 //! alike.
 
+use crate::collision::Tally;
 use crate::measure::{Measures, measure};
 use crate::swing::SwingRun;
 use crate::{
@@ -93,6 +94,7 @@ pub struct GarmentRun {
     warnings: Vec<String>,
     /// Steps of sewing and of settling on the levels left behind.
     steps: [usize; 2],
+    tally: Tally,
 }
 
 /// Net force over weight at which a coarser level is left.
@@ -137,6 +139,7 @@ impl GarmentRun {
             share: 0.0,
             warnings: Vec::new(),
             steps: [0; 2],
+            tally: Tally::default(),
             model,
             setup,
         };
@@ -225,6 +228,11 @@ impl GarmentRun {
         ]
     }
 
+    /// What contact of cloth with cloth found and did in the swings that are over.
+    pub fn cloth_tally(&self) -> Tally {
+        self.tally
+    }
+
     /// What went less than well, in plain words.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
@@ -260,6 +268,7 @@ impl GarmentRun {
         self.share = self.share.max(0.5 + 0.2 * swing.share());
         if swing.finished() {
             self.cut_short = swing.stuck();
+            self.tally = self.tally.then(swing.cloth_tally());
             self.swing = None;
             self.stage = Stage::Settling;
         }
@@ -341,13 +350,8 @@ impl GarmentRun {
         let mesh = self.model.mesh(&self.state.positions);
         let mut crossing: Vec<u32> = Vec::new();
         for collider in &self.model.colliders {
-            crossing.extend(
-                collider
-                    .surface
-                    .intersections_with(&mesh)
-                    .iter()
-                    .map(|pair| pair[0]),
-            );
+            let pairs = collider.crossings(self.state.time, &mesh);
+            crossing.extend(pairs.iter().map(|pair| pair[0]));
         }
         crossing.sort_unstable();
         crossing.dedup();

@@ -22,6 +22,7 @@ mod measure;
 mod merge;
 mod methods;
 mod model;
+mod motion;
 mod newton;
 mod patches;
 mod pcg;
@@ -51,11 +52,12 @@ pub use merge::merge_map;
 pub use methods::{
     Method, MethodKind, MethodSettings, RelaxationRun, StepReport, largest_frequency,
 };
-pub use model::{Collider, ContactSample, ContactSettings, Elastic, ElasticEnd, Model};
+pub use model::{Collider, ContactSample, ContactSettings, Elastic, ElasticEnd, Grip, Model};
+pub use motion::{Motion, MotionKey, Pose};
 pub use newton::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 pub use pcg::PcgLimits;
 pub use rest::{RestRun, RestSettings};
-pub use scene::{Damping, ObjectKind, Scene, SceneElastic, SceneEnd, SceneObject};
+pub use scene::{Damping, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject};
 pub use scene_run::SceneRun;
 pub use sew::{SewRun, SewSettings};
 pub use state::{Memory, State};

@@ -90,14 +90,12 @@ pub fn measure(
         ) = top_of(&mut stretch);
     }
     let mesh = model.mesh(x);
-    for tree in model.colliders.iter().map(|c| &c.surface) {
-        measures.body_intersections += tree.intersections_with(&mesh).len();
+    for collider in &model.colliders {
+        measures.body_intersections += collider.crossings(state.time, &mesh).len();
+        let pose = collider.pose(state.time);
         let depths: Vec<f64> = x
             .par_iter()
-            .map(|&p| {
-                tree.closest_point(p, f64::INFINITY)
-                    .map_or(0.0, |c| -c.signed_distance)
-            })
+            .map(|&p| -collider.exact_distance(pose.as_ref(), p))
             .collect();
         measures.penetration_max = depths
             .iter()

@@ -1,6 +1,6 @@
 //! The scene: every object of a simulation in one form, whatever file it came from.
 
-use crate::{Air, Cloth, DrapeError, Material, MethodSettings};
+use crate::{Air, Cloth, DrapeError, Material, MethodKind, MethodSettings, Motion};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// Rayleigh damping (Rayleigh 1877): forces -(mass M + stiffness K) v. The stiffness part acts on
@@ -36,6 +36,8 @@ pub struct Scene {
     pub objects: Vec<SceneObject>,
     /// Attachment forces between them.
     pub elastics: Vec<SceneElastic>,
+    /// Vertices of cloth that are led along motions.
+    pub grips: Vec<SceneGrip>,
 }
 
 impl Default for Scene {
@@ -52,6 +54,7 @@ impl Default for Scene {
             contact: crate::ContactSettings::default(),
             objects: Vec::new(),
             elastics: Vec::new(),
+            grips: Vec::new(),
         }
     }
 }
@@ -61,6 +64,11 @@ impl Default for Scene {
 pub enum ObjectKind {
     /// Nothing: cloth collides with it.
     Static,
+    /// A motion that nothing can stop: cloth collides with it. Only `xpbd` follows it.
+    Animated {
+        /// The motion.
+        motion: Motion,
+    },
     /// The simulation: it is cloth.
     Deformable {
         /// What it is made of.
@@ -81,6 +89,17 @@ pub struct SceneObject {
     pub mesh: TriangleMesh,
     /// Rest shape of a garment's panels; nothing when the mesh itself is the rest shape.
     pub cloth: Option<Cloth>,
+}
+
+/// Vertices of one cloth that are led along a motion. Only `xpbd` leads them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneGrip {
+    /// Index of the object.
+    pub object: usize,
+    /// The vertices.
+    pub vertices: Vec<u32>,
+    /// The motion.
+    pub motion: Motion,
 }
 
 /// One end of an elastic in a scene.
@@ -182,6 +201,7 @@ impl Scene {
             );
         }
         self.check_objects()?;
+        self.check_motions()?;
         for (index, elastic) in self.elastics.iter().enumerate() {
             let place = format!("elastics[{index}]");
             if !(elastic.stiffness.is_finite() && elastic.stiffness >= 0.0) {
@@ -210,6 +230,55 @@ impl Scene {
                     }
                 }
             }
+        }
+        Ok(())
+    }
+
+    fn check_motions(&self) -> Result<(), DrapeError> {
+        let refuse = |place: String, what: String, remedy: &str| {
+            Err(DrapeError::Scene {
+                place,
+                what,
+                remedy: remedy.to_owned(),
+            })
+        };
+        let mut moved: Vec<(String, &Motion)> = Vec::new();
+        for object in &self.objects {
+            if let ObjectKind::Animated { motion } = &object.kind {
+                moved.push((format!("motion of \"{}\"", object.name), motion));
+            }
+        }
+        for (index, grip) in self.grips.iter().enumerate() {
+            let place = format!("grip {index}");
+            let Some(object) = self.objects.get(grip.object) else {
+                return refuse(
+                    place,
+                    format!("there is no object {}", grip.object),
+                    "name an object of the scene",
+                );
+            };
+            if !matches!(object.kind, ObjectKind::Deformable { .. }) {
+                let what = format!("\"{}\" is not deformable", object.name);
+                return refuse(place, what, "grip cloth; a solid moves as a whole");
+            }
+            let count = object.mesh.positions.len();
+            if let Some(vertex) = grip.vertices.iter().find(|&&v| v as usize >= count) {
+                let what = format!("\"{}\" has no vertex {vertex}", object.name);
+                return refuse(place, what, "name a vertex below the object's vertex count");
+            }
+            moved.push((place, &grip.motion));
+        }
+        for (place, motion) in &moved {
+            if let Some(what) = motion.defect() {
+                let remedy = "give keys with rising times and finite numbers";
+                return refuse(place.clone(), what, remedy);
+            }
+        }
+        if let Some((place, _)) = moved.first()
+            && self.method.kind != MethodKind::Xpbd
+        {
+            let what = format!("method \"{}\" cannot follow it", self.method.kind.name());
+            return refuse(place.clone(), what, "use the method \"xpbd\"");
         }
         Ok(())
     }

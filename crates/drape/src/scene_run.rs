@@ -1,10 +1,13 @@
 //! Running a scene: all deformable objects in one model, stepped in time or led to rest.
 
+use crate::collision::Tally;
 use crate::laws::elastic::ElasticLaw;
 use crate::measure::{Measures, measure};
-use crate::methods::Method;
+use crate::methods::{Method, whole_energy};
 use crate::scene::{ObjectKind, Scene, SceneEnd};
-use crate::{Cloth, Collider, DrapeError, Elastic, ElasticEnd, Model, State, Workspace, merge_map};
+use crate::{
+    Cloth, Collider, DrapeError, Elastic, ElasticEnd, Grip, Model, State, Workspace, merge_map,
+};
 use std::sync::Arc;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
@@ -27,7 +30,13 @@ pub struct SceneRun {
     method: Box<dyn Method>,
     steps: usize,
     split_steps: usize,
+    refinements: usize,
 }
+
+/// Steps between two looks for cloth that crosses a body between its samples, and how often it may
+/// be tested more finely.
+const STEPS_TO_REFINE: usize = 4;
+const MOST_REFINEMENTS: usize = 24;
 
 impl SceneRun {
     /// Builds the model of a scene.
@@ -85,6 +94,7 @@ impl SceneRun {
             acting,
             steps: 0,
             split_steps: 0,
+            refinements: 0,
         };
         run.state = State::at_rest(&run.model, run.cloth.positions.clone());
         run.furnish();
@@ -93,15 +103,16 @@ impl SceneRun {
 
     /// Gives the model its colliders, pins and elastics.
     fn furnish(&mut self) {
-        let solids = self
-            .scene
-            .objects
-            .iter()
-            .filter(|o| o.kind == ObjectKind::Static);
         if self.model.colliders.is_empty() {
-            self.model.colliders = solids
-                .map(|o| Collider::new(Arc::new(SurfaceTree::new(o.mesh.clone()))))
-                .collect();
+            let surface = |mesh: &TriangleMesh| Arc::new(SurfaceTree::new(mesh.clone()));
+            let solids = self.scene.objects.iter().filter_map(|o| match &o.kind {
+                ObjectKind::Static => Some(Collider::new(surface(&o.mesh))),
+                ObjectKind::Animated { motion } => {
+                    Some(Collider::moving(surface(&o.mesh), motion.clone()))
+                }
+                ObjectKind::Deformable { .. } => None,
+            });
+            self.model.colliders = solids.collect();
         }
         self.model.contact = self.scene.contact;
         self.model.gravity = self.scene.gravity;
@@ -110,12 +121,33 @@ impl SceneRun {
         for &pin in &self.pins {
             self.model.pinned[self.target[pin as usize] as usize] = true;
         }
+        self.model.grips = self.grips();
+        for grip in &self.model.grips {
+            self.model.pinned[grip.vertex as usize] = true;
+        }
         let elastics = self
             .acting
             .iter()
             .filter_map(|&e| self.elastic(e))
             .collect();
         self.model.set_elastics(elastics);
+    }
+
+    fn grips(&self) -> Vec<Grip> {
+        let mut grips = Vec::new();
+        for grip in &self.scene.grips {
+            let Some(first) = self.first[grip.object] else {
+                continue;
+            };
+            let motion = Arc::new(grip.motion.clone());
+            let mesh = &self.scene.objects[grip.object].mesh;
+            grips.extend(grip.vertices.iter().map(|&v| Grip {
+                vertex: self.target[(first + v) as usize],
+                home: mesh.positions[v as usize],
+                motion: motion.clone(),
+            }));
+        }
+        grips
     }
 
     /// A vertex of the present structure, or a place.
@@ -186,7 +218,43 @@ impl SceneRun {
             .advance(&self.model, &mut self.state, self.scene.step)?;
         self.split_steps += usize::from(report.pieces > 1);
         self.steps += 1;
+        if self.steps.is_multiple_of(STEPS_TO_REFINE) {
+            self.refine();
+        }
         self.merge_close()
+    }
+
+    /// Tests contact more finely where cloth crosses a body although its corners keep off: where a
+    /// body is too sharp for the triangles on it.
+    fn refine(&mut self) {
+        if self.model.colliders.is_empty() || self.refinements >= MOST_REFINEMENTS {
+            return;
+        }
+        let mesh = self.model.mesh(&self.state.positions);
+        let mut found: Vec<u32> = Vec::new();
+        for collider in &self.model.colliders {
+            let pose = collider.pose(self.state.time);
+            let clear = |&v: &u32| {
+                let place = self.state.positions[v as usize];
+                let off = 0.5 * self.model.contact.offset;
+                collider.exact_distance(pose.as_ref(), place) > off
+            };
+            let pairs = collider.crossings(self.state.time, &mesh);
+            let crossing = pairs.iter().map(|pair| pair[0]);
+            found.extend(crossing.filter(|&t| mesh.triangles[t as usize].iter().all(clear)));
+        }
+        found.sort_unstable();
+        found.dedup();
+        self.refinements += usize::from(!found.is_empty());
+        for triangle in found {
+            self.model.refine_contact(triangle);
+        }
+        self.state.follow_samples(&self.model);
+    }
+
+    /// What contact of cloth with cloth found and did, where the method counts it.
+    pub fn cloth_tally(&self) -> Option<Tally> {
+        self.method.cloth_tally()
     }
 
     /// Merges the ends of elastics that are close enough. Positions and velocities of joined
@@ -264,7 +332,16 @@ impl SceneRun {
             .iter()
             .zip(&self.first)
             .map(|(object, first)| match first {
-                None => object.mesh.clone(),
+                None => {
+                    let mut mesh = object.mesh.clone();
+                    if let ObjectKind::Animated { motion } = &object.kind {
+                        let pose = motion.pose(self.state.time);
+                        for place in &mut mesh.positions {
+                            *place = pose.apply(*place);
+                        }
+                    }
+                    mesh
+                }
                 Some(first) => TriangleMesh {
                     positions: (0..object.mesh.positions.len())
                         .map(|v| self.state.positions[self.target[*first as usize + v] as usize])
@@ -293,6 +370,17 @@ impl SceneRun {
                 (self.state.positions[elastic.from as usize] - other).norm()
             })
             .fold(0.0, f64::max)
+    }
+
+    /// Energy of motion, strain, weight, elastics and contact [J]; heights count from the origin.
+    pub fn energy(&mut self) -> f64 {
+        whole_energy(&self.model, &self.state, &mut self.workspace)
+    }
+
+    /// Pairs of cloth triangles that intersect and share no vertex, exactly.
+    pub fn crossings(&self) -> usize {
+        let mesh = self.model.mesh(&self.state.positions);
+        SurfaceTree::new(mesh).self_intersections().len()
     }
 
     /// Measures the present state.

@@ -2,6 +2,7 @@
 //! damping. A substep costs less than a thousandth of a Newton step and leaves saddles as the real
 //! cloth does; Newton's method finishes.
 
+use crate::collision::Tally;
 use crate::xpbd::{ClothWatch, Span};
 use crate::{DrapeError, Model, State, Xpbd};
 use toile_geometry::Vec3;
@@ -50,6 +51,11 @@ impl SwingRun {
             lowest: f64::INFINITY,
             waited: 0,
         }
+    }
+
+    /// What contact of cloth with cloth found and did.
+    pub fn cloth_tally(&self) -> Tally {
+        self.cloth.contacts.tally
     }
 
     /// Whether the motion has died out, or has had its time.

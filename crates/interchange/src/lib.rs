@@ -32,6 +32,7 @@ mod obj;
 mod obj_read;
 mod pdf;
 mod scene;
+mod scene_motion;
 
 pub use atomic::{write_all_atomically, write_atomically};
 pub use bvh::read_bvh;
@@ -66,3 +67,4 @@ pub use scene::{
     AirFile, DampingFile, ElasticFile, EndFile, MaterialFile, ObjectFile, SceneFile, TransformFile,
     read_scene,
 };
+pub use scene_motion::{GripFile, KeyFile, MotionFile};

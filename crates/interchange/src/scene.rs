@@ -4,6 +4,7 @@
 //! path; whoever has them loaded turns a [`SceneFile`] into a scene.
 
 use crate::FormatError;
+use crate::scene_motion::{GripFile, MotionFile};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -49,7 +50,7 @@ pub struct SceneFile {
     unknown: Unknown,
 }
 
-type Unknown = BTreeMap<String, Value>;
+pub(crate) type Unknown = BTreeMap<String, Value>;
 
 /// The air of a scene.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
@@ -186,6 +187,12 @@ pub struct ObjectFile {
     /// Vertices that do not move.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pins: Vec<u32>,
+    /// How an animated object moves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<MotionFile>,
+    /// Vertices of a deformable object that are led.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub grips: Vec<GripFile>,
     #[serde(flatten)]
     unknown: Unknown,
 }
@@ -445,6 +452,18 @@ impl SceneFile {
         for (k, object) in self.objects.iter().enumerate() {
             add(format!("objects[{k}]"), &object.unknown);
             add(format!("objects[{k}].transform"), &object.transform.unknown);
+            let grips = object.grips.iter().enumerate();
+            let led = grips.map(|(g, grip)| (format!("grips[{g}]"), grip));
+            for (place, grip) in led {
+                for (inner, unknown) in grip.unknown_fields() {
+                    add(format!("objects[{k}].{place}{inner}"), unknown);
+                }
+            }
+            if let Some(motion) = &object.motion {
+                for (inner, unknown) in motion.unknown_fields() {
+                    add(format!("objects[{k}].motion{inner}"), unknown);
+                }
+            }
             if let Some(material) = &object.material {
                 add(format!("objects[{k}].material"), &material.unknown);
             }

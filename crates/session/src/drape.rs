@@ -4,6 +4,7 @@ use crate::hands::HandledRun;
 use crate::watcher::tell;
 use crate::{Draped, Event, GarmentJob, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
+use toile_drape::collision::Tally;
 use toile_drape::{Measures, Stage, stretch_per_triangle};
 use toile_geometry::{TriangleMesh, Vec3};
 
@@ -24,6 +25,8 @@ pub(crate) struct Drape {
     pub steps: [usize; 2],
     /// Largest seam gap in the step before merging [m].
     pub seam_gap: f64,
+    /// What contact of cloth with cloth found and did while it swung.
+    pub tally: Tally,
     pub warnings: Vec<String>,
     /// What was done to the cloth meanwhile.
     pub inputs: Vec<StampedInput>,
@@ -51,6 +54,7 @@ impl Drape {
             stretch: stretch_per_triangle(&run.model, &run.state.positions),
             steps: run.steps(),
             seam_gap: run.gap_before_merging(),
+            tally: run.cloth_tally(),
             target: run.target,
             job,
             mesh,

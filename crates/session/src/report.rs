@@ -5,6 +5,7 @@ use crate::choice::figure_name;
 use crate::cut::sewn_outline;
 use crate::drape::Drape;
 use crate::laying::Laying;
+use crate::scene::Tangles;
 use serde::Serialize;
 use toile_pattern::{Draft, DraftSpan};
 
@@ -95,6 +96,7 @@ struct DrapeReport {
     body_penetration_max_m: f64,
     body_intersections: usize,
     self_intersections: usize,
+    tangles: Tangles,
 }
 
 fn by_direction([warp, weft]: [f64; 2]) -> ByDirection {
@@ -193,6 +195,7 @@ impl Report {
             body_penetration_max_m: measures.penetration_max.max(0.0),
             body_intersections: measures.body_intersections,
             self_intersections: measures.self_intersections,
+            tangles: Tangles::of(&drape.tally),
         });
     }
 

@@ -10,9 +10,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 use toile_body::Figure;
+use toile_drape::collision::Tally;
 use toile_drape::{
-    Cloth, GarmentRun, Material, ObjectKind, Scene, SceneElastic, SceneEnd, SceneObject, SceneRun,
-    Stage,
+    Cloth, GarmentRun, Material, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject,
+    SceneRun, Stage,
 };
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_interchange::{
@@ -150,8 +151,27 @@ fn report(run: &mut SceneRun, unknown: &[String]) -> serde_json::Value {
         "body_penetration_max_m": measures.penetration_max,
         "body_intersections": measures.body_intersections,
         "self_intersections": measures.self_intersections,
+        "tangles": run.cloth_tally().map(|tally| Tangles::of(&tally)),
         "warnings": warnings,
     })
+}
+
+/// Edges of cloth that crossed a face of cloth, as a report counts them.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub(crate) struct Tangles {
+    /// At the first look.
+    found: usize,
+    /// Most at one look.
+    most: usize,
+    /// At the last look.
+    left: usize,
+}
+
+impl Tangles {
+    pub(crate) fn of(tally: &Tally) -> Self {
+        let [found, most, left] = tally.crossings;
+        Self { found, most, left }
+    }
 }
 
 /// Turns a scene file into a scene.
@@ -179,6 +199,14 @@ impl Builder<'_> {
         for (index, object) in file.objects.iter().enumerate() {
             objects.push(self.object(index, object, watcher)?);
         }
+        let mut grips = Vec::new();
+        for (index, object) in file.objects.iter().enumerate() {
+            grips.extend(object.grips.iter().map(|grip| SceneGrip {
+                object: index,
+                vertices: grip.vertices.clone(),
+                motion: grip.motion.motion(),
+            }));
+        }
         let mut elastics = Vec::new();
         for (index, elastic) in file.elastics.iter().enumerate() {
             elastics.push(SceneElastic {
@@ -199,6 +227,7 @@ impl Builder<'_> {
             contact: file.contact(),
             objects,
             elastics,
+            grips,
         })
     }
 
@@ -237,12 +266,21 @@ impl Builder<'_> {
         watcher: &mut dyn Watcher,
     ) -> Result<SceneObject, SessionError> {
         let place = format!("objects[{index}]");
-        let deformable = match object.kind.as_str() {
-            "static" => false,
-            "deformable" => true,
-            other => {
+        let deformable = match (object.kind.as_str(), &object.motion) {
+            ("static", None) | ("animated", Some(_)) => false,
+            ("deformable", None) => true,
+            ("animated", None) => {
+                let what = "it is animated but has no motion".to_owned();
+                return Err(self.wrong(place, what, "give it a motion, or write static"));
+            }
+            ("static" | "deformable", Some(_)) => {
+                let what = format!("it is {} but has a motion", object.kind);
+                let hint = "write animated; vertices of cloth are led by grips";
+                return Err(self.wrong(place, what, hint));
+            }
+            (other, _) => {
                 let what = format!("kind \"{other}\" cannot be simulated here");
-                return Err(self.wrong(place, what, "write static or deformable"));
+                return Err(self.wrong(place, what, "write static, animated or deformable"));
             }
         };
         let (mut mesh, mut cloth) = match (&object.mesh, &object.pattern, &object.body) {
@@ -283,7 +321,12 @@ impl Builder<'_> {
                 pins: object.pins.clone(),
             }
         } else {
-            ObjectKind::Static
+            match &object.motion {
+                Some(motion) => ObjectKind::Animated {
+                    motion: motion.motion(),
+                },
+                None => ObjectKind::Static,
+            }
         };
         Ok(SceneObject {
             name: object.name.clone(),

@@ -1,8 +1,10 @@
-//! How far a motion may go: moves are cut where features would meet, vertex by vertex, until
+//! How far a motion may go. Where features would meet on the way, impulses along their normal take
+//! back what brings them together, pair by pair, each keeping momentum (Provot 1997; Bridson, Fedkiw
+//! and Anderson 2002). What still meets after some rounds of that is cut, vertex by vertex, until
 //! nothing meets any more.
 
 use super::impact::{edge_edge_impact, vertex_face_impact};
-use super::proximity::Nearness;
+use super::proximity::{Nearness, closest, is_far};
 use super::surface::{ClothSurface, FeaturePair};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -11,7 +13,18 @@ use toile_geometry::Vec3;
 const KEPT: f64 = 0.2;
 
 /// Features nearer than this touch already: recovery, not the bound, sees to them [m].
-const TOUCHING: f64 = 1e-8;
+const TOUCHING: f64 = 1e-12;
+
+/// Below this distance [m] features keep nearly all of it: what presses for long without end would
+/// else come as near as numbers can tell, and pass.
+const FLOOR: f64 = 1e-4;
+
+/// The share they keep there.
+const KEPT_AT_FLOOR: f64 = 0.9;
+
+/// Rounds of impulses, and what they aim at beyond the distance to be kept, as a share of it.
+const IMPULSE_ROUNDS: usize = 10;
+const BEYOND: f64 = 0.05;
 
 /// Rounds in which moves are shortened; those that meet even then are stopped.
 const ROUNDS: usize = 6;
@@ -35,6 +48,130 @@ impl Meeting {
     }
 }
 
+/// A motion in hand.
+pub struct Motions<'a> {
+    /// Where vertices are [m].
+    pub x: &'a [Vec3],
+    /// Where each goes from there [m].
+    pub moves: &'a mut [Vec3],
+    /// Their velocities at the end [m/s].
+    pub velocities: &'a mut [Vec3],
+    /// One over the mass of each [1/kg]; zero where nothing moves it.
+    pub lightness: &'a [f64],
+    /// The time that the motion takes [s].
+    pub span: f64,
+}
+
+/// How a motion was corrected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Kept {
+    /// Impulses given.
+    pub impulses: usize,
+    /// Vertices whose moves were cut.
+    pub cut: usize,
+}
+
+/// Corrects a motion so that no two features of the cloth meet on the way; pairs with a tangled
+/// vertex on either side are let through. `near` gives pairs of triangles that hold all that may
+/// meet in some moves.
+pub fn keep_apart(
+    surface: &mut ClothSurface,
+    tangled: &[bool],
+    motion: &mut Motions,
+    mut near: impl FnMut(&mut ClothSurface, &[Vec3]) -> Vec<[u32; 2]>,
+) -> Kept {
+    let mut kept = Kept::default();
+    for _ in 0..IMPULSE_ROUNDS {
+        let pairs = near(surface, motion.moves);
+        let met = met(surface, &pairs, tangled, motion);
+        if met.is_empty() {
+            return kept;
+        }
+        for &(meeting, time) in &met {
+            kept.impulses += usize::from(push(&meeting, time, motion));
+        }
+    }
+    // Cut about the mean motion, which nothing can meet by.
+    let held = motion.lightness.contains(&0.0);
+    let count = motion.moves.len().max(1) as f64;
+    let mean = |all: &[Vec3]| all.iter().sum::<Vec3>() / if held { f64::INFINITY } else { count };
+    let (drift, speed) = (mean(motion.moves), mean(motion.velocities));
+    for d in motion.moves.iter_mut() {
+        *d -= drift;
+    }
+    let before = motion.moves.to_vec();
+    kept.cut = bound_moves(surface, tangled, motion.x, motion.moves);
+    let moved = motion.moves.iter_mut().zip(motion.velocities.iter_mut());
+    for ((d, v), before) in moved.zip(&before) {
+        if d != before {
+            let share = d.norm() / before.norm();
+            *v = speed + (*v - speed) * share;
+        }
+        *d += drift;
+    }
+    kept
+}
+
+/// Features that meet in a motion, with the times.
+fn met(
+    surface: &ClothSurface,
+    near: &[[u32; 2]],
+    tangled: &[bool],
+    motion: &Motions,
+) -> Vec<(Meeting, f64)> {
+    let (x, moves) = (motion.x, &*motion.moves);
+    let mean = |pair: FeaturePair| {
+        pair.vertices()
+            .map(|v| moves[v as usize])
+            .iter()
+            .sum::<Vec3>()
+            / 4.0
+    };
+    let way = |pair: FeaturePair| {
+        let mean = mean(pair);
+        let ways = pair.vertices().map(|v| (moves[v as usize] - mean).norm());
+        2.0 * ways.into_iter().fold(0.0, f64::max)
+    };
+    let meetings = meetings(surface, near, tangled, |pair| meeting(pair, x, way(pair)));
+    let times = meetings.par_iter().with_min_len(64);
+    let times: Vec<Option<f64>> = times.map(|m| m.time(x, moves)).collect();
+    let both = meetings.into_iter().zip(times);
+    both.filter_map(|(meeting, time)| Some((meeting, time?)))
+        .collect()
+}
+
+/// Takes back what brings two features together; whether there was anything.
+fn push(meeting: &Meeting, time: f64, motion: &mut Motions) -> bool {
+    let vertices = meeting.pair.vertices().map(|v| v as usize);
+    let place = |share: f64| vertices.map(|v| motion.x[v] + motion.moves[v] * share);
+    let then = place(time);
+    let w = closest(meeting.pair, &then);
+    let sum = |p: &[Vec3; 4]| p.iter().zip(w).map(|(p, w)| p * w).sum::<Vec3>();
+    let Some(n) = sum(&then).try_normalize(0.0) else {
+        return false;
+    };
+    let lightness = vertices.map(|v| motion.lightness[v]);
+    let yielding: f64 = lightness.iter().zip(w).map(|(l, w)| l * w * w).sum();
+    let lacking = (1.0 + BEYOND) * meeting.gap - n.dot(&sum(&place(1.0)));
+    if yielding <= 0.0 || lacking <= 0.0 {
+        return false;
+    }
+    let velocity = |k: usize| {
+        if lightness[k] > 0.0 {
+            motion.velocities[vertices[k]]
+        } else {
+            motion.moves[vertices[k]] / motion.span
+        }
+    };
+    let leaving = n.dot(&sum(&[velocity(0), velocity(1), velocity(2), velocity(3)]));
+    for k in 0..4 {
+        let share = n * (w[k] * lightness[k] / yielding);
+        motion.moves[vertices[k]] += share * lacking;
+        motion.velocities[vertices[k]] += share * (-leaving).max(0.0);
+    }
+    true
+}
+
 /// Shortens `moves` so that no two features of the cloth meet on the way; pairs with a tangled
 /// vertex on either side are let through. Returns the number of vertices held back.
 pub fn bound_moves(
@@ -45,7 +182,28 @@ pub fn bound_moves(
 ) -> usize {
     let target: Vec<Vec3> = x.iter().zip(&*moves).map(|(x, d)| x + d).collect();
     let near = surface.near_triangles(x, &target, 0.0);
-    let mut meetings = meetings(surface, &near, tangled, x, moves);
+    bound_pairs(surface, &near, tangled, x, moves)
+}
+
+/// [`bound_moves`] for pairs of triangles that hold all that may meet.
+fn bound_pairs(
+    surface: &ClothSurface,
+    near: &[[u32; 2]],
+    tangled: &[bool],
+    x: &[Vec3],
+    moves: &mut [Vec3],
+) -> usize {
+    // One of two that go together may be held by a third: each counts with its whole way.
+    let way = |pair: FeaturePair| {
+        let long = |range: std::ops::Range<usize>| {
+            let vertices = pair.vertices();
+            let lengths = vertices[range].iter().map(|&v| moves[v as usize].norm());
+            lengths.fold(0.0, f64::max)
+        };
+        let first = pair.first();
+        long(0..first) + long(first..4)
+    };
+    let mut meetings = meetings(surface, near, tangled, |pair| meeting(pair, x, way(pair)));
     let mut held = vec![false; x.len()];
     let mut round = 0;
     while !meetings.is_empty() {
@@ -84,8 +242,7 @@ fn meetings(
     surface: &ClothSurface,
     near: &[[u32; 2]],
     tangled: &[bool],
-    x: &[Vec3],
-    moves: &[Vec3],
+    meeting: impl Fn(FeaturePair) -> Option<Meeting> + Sync,
 ) -> Vec<Meeting> {
     let found: Vec<Vec<Meeting>> = near
         .par_chunks(512)
@@ -93,19 +250,13 @@ fn meetings(
             let mut found = Vec::new();
             for &pair in pairs {
                 surface.features(pair, |pair| {
-                    let vertices = pair.vertices();
+                    let (vertices, first) = (pair.vertices(), pair.first());
                     let knot = |range: std::ops::Range<usize>| {
                         vertices[range].iter().any(|&v| tangled[v as usize])
                     };
-                    let cut = if matches!(pair, FeaturePair::VertexFace(_)) {
-                        1
-                    } else {
-                        2
-                    };
-                    if knot(0..cut) && knot(cut..4) {
-                        return;
+                    if !(knot(0..first) && knot(first..4)) {
+                        found.extend(meeting(pair));
                     }
-                    found.extend(meeting(pair, x, moves));
                 });
             }
             found
@@ -114,19 +265,18 @@ fn meetings(
     found.concat()
 }
 
-/// A pair that may meet: its distance is less than the way its vertices go.
-fn meeting(pair: FeaturePair, x: &[Vec3], moves: &[Vec3]) -> Option<Meeting> {
-    let vertices = pair.vertices();
-    let mean = vertices.iter().map(|&v| moves[v as usize]).sum::<Vec3>() / 4.0;
-    let way = vertices.iter().map(|&v| (moves[v as usize] - mean).norm());
-    // Each side goes at most this far against the mean of all.
-    let reach = 2.0 * way.fold(0.0, f64::max) / (1.0 - KEPT);
+/// A pair that may meet when its features come nearer by up to `way` [m]: its distance is less.
+fn meeting(pair: FeaturePair, x: &[Vec3], way: f64) -> Option<Meeting> {
+    let reach = (way / (1.0 - KEPT)).max((FLOOR + way).min(way / (1.0 - KEPT_AT_FLOOR)));
+    if is_far(pair, &pair.vertices().map(|v| x[v as usize]), reach) {
+        return None;
+    }
     let distance = Nearness::distance(pair, x);
     if distance > reach || distance < TOUCHING {
         return None;
     }
     Some(Meeting {
         pair,
-        gap: KEPT * distance,
+        gap: (KEPT * distance).max(KEPT_AT_FLOOR * distance.min(FLOOR)),
     })
 }

@@ -1,6 +1,7 @@
 //! Contact of cloth with cloth: the laws of contact with a surface, on the vector between two
 //! features in place of the point.
 
+use super::bound::{Kept, Motions};
 use super::proximity::{Nearness, nearnesses};
 use super::surface::{ClothSurface, FeaturePair};
 use super::tangle::{Piercing, crossings, piercings};
@@ -52,6 +53,48 @@ pub struct ClothMemory {
     pub held: Vec<Held>,
 }
 
+/// What was found and done so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Looks.
+    pub looks: usize,
+    /// Edges that crossed a face: at the first look, most at one look, at the last look.
+    pub crossings: [usize; 3],
+    /// Impulses that kept features from passing through each other between looks.
+    pub impulses: usize,
+    /// Moves of vertices that were cut because impulses were not enough.
+    pub cut: usize,
+}
+
+impl Tally {
+    fn look(&mut self, crossings: usize) {
+        if self.looks == 0 {
+            self.crossings[0] = crossings;
+        }
+        self.looks += 1;
+        self.crossings[1] = self.crossings[1].max(crossings);
+        self.crossings[2] = crossings;
+    }
+
+    /// With another's counts after these.
+    #[must_use]
+    pub fn then(self, next: Self) -> Self {
+        if self.looks == 0 || next.looks == 0 {
+            return if self.looks == 0 { next } else { self };
+        }
+        Self {
+            looks: self.looks + next.looks,
+            crossings: [
+                self.crossings[0],
+                self.crossings[1].max(next.crossings[1]),
+                next.crossings[2],
+            ],
+            impulses: self.impulses + next.impulses,
+            cut: self.cut + next.cut,
+        }
+    }
+}
+
 /// Contacts of the present positions.
 #[derive(Clone, Debug, Default)]
 pub struct ClothContacts {
@@ -61,6 +104,8 @@ pub struct ClothContacts {
     pub piercings: usize,
     /// Vertices at a crossing.
     pub tangled: Vec<bool>,
+    /// What was found and done so far.
+    pub tally: Tally,
     surface: ClothSurface,
     near: Vec<[u32; 2]>,
     near_at: Vec<Vec3>,
@@ -121,6 +166,7 @@ impl ClothContacts {
         self.look(model, x, reach);
         let crossings = crossings(&self.surface, &self.near, x);
         self.piercings = crossings.len();
+        self.tally.look(self.piercings);
         for &[e, t] in &crossings {
             let face = self.surface.triangles[t as usize];
             for v in self.surface.edges[e as usize].into_iter().chain(face) {
@@ -287,6 +333,43 @@ impl ClothContacts {
         if model.contact.cloth_offset > 0.0 {
             state.cloth.places.clone_from(&state.positions);
         }
+    }
+
+    /// Corrects a motion so that cloth does not pass through cloth on the way.
+    pub fn keep_apart(&mut self, model: &Model, motion: &mut Motions) -> Kept {
+        if model.contact.cloth_offset <= 0.0 {
+            return Kept::default();
+        }
+        self.surface(model);
+        self.tangled.resize(motion.x.len(), false);
+        let x = motion.x;
+        let farthest = |a: f64, b: f64| a.max(b);
+        let since = (self.near_at.iter().zip(x)).map(|(a, b)| (a - b).norm());
+        let since = if self.near_at.len() == x.len() {
+            since.fold(0.0, farthest)
+        } else {
+            f64::INFINITY
+        };
+        let Self {
+            surface,
+            near,
+            near_reach,
+            tangled,
+            ..
+        } = self;
+        let kept = super::bound::keep_apart(surface, tangled, motion, |surface, moves| {
+            // Pairs in hand hold all that may meet while nothing goes farther than half their reach.
+            let mean = moves.iter().sum::<Vec3>() / moves.len().max(1) as f64;
+            let way = moves.iter().map(|d| (d - mean).norm());
+            if 2.0 * (since + way.fold(0.0, farthest)) <= *near_reach + SLACK {
+                return near.clone();
+            }
+            let target: Vec<Vec3> = x.iter().zip(moves).map(|(x, d)| x + d).collect();
+            surface.near_triangles(x, &target, 0.0)
+        });
+        self.tally.impulses += kept.impulses;
+        self.tally.cut += kept.cut;
+        kept
     }
 
     /// Shortens moves so that cloth does not pass through cloth on the way; returns the number of

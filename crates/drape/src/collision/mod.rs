@@ -10,9 +10,9 @@ mod proximity;
 mod surface;
 mod tangle;
 
-pub use bound::bound_moves;
+pub use bound::{Kept, Motions, bound_moves};
 pub use boxes::{Bounds, BoxTree, Node, Region};
-pub use contact::{ClothContact, ClothContacts, ClothMemory, Held};
+pub use contact::{ClothContact, ClothContacts, ClothMemory, Held, Tally};
 pub use coupling::Couplings;
 pub use impact::{edge_edge_impact, vertex_face_impact};
 pub use proximity::{Nearness, nearnesses};

@@ -17,8 +17,23 @@ pub struct Nearness {
     pub distance: f64,
 }
 
+/// Weights of the closest points of two features, those of the second negative; `p` are the places
+/// of the four vertices.
+pub(super) fn closest(pair: FeaturePair, p: &[Vec3; 4]) -> [f64; 4] {
+    match pair {
+        FeaturePair::VertexFace(_) => {
+            let w = closest_on_face(p[0], [p[1], p[2], p[3]]);
+            [1.0, -w[0], -w[1], -w[2]]
+        }
+        FeaturePair::EdgeEdge(_) => {
+            let [s, t] = closest_on_segments([p[0], p[1]], [p[2], p[3]]);
+            [1.0 - s, s, t - 1.0, -t]
+        }
+    }
+}
+
 /// Below this distance no direction is known [m].
-const TOUCHING: f64 = 1e-9;
+const TOUCHING: f64 = 1e-12;
 
 impl Nearness {
     /// Measures two features; nothing when they are farther than `reach` [m], or touch. Two edges
@@ -28,20 +43,12 @@ impl Nearness {
         if is_far(pair, &p, reach) {
             return None;
         }
-        let weights = match pair {
-            FeaturePair::VertexFace(_) => {
-                let w = closest_on_face(p[0], [p[1], p[2], p[3]]);
-                [1.0, -w[0], -w[1], -w[2]]
-            }
-            FeaturePair::EdgeEdge(_) => {
-                let [s, t] = closest_on_segments([p[0], p[1]], [p[2], p[3]]);
-                let inside = |s: f64| s > 0.0 && s < 1.0;
-                if !(inside(s) && inside(t)) {
-                    return None;
-                }
-                [1.0 - s, s, t - 1.0, -t]
-            }
-        };
+        let weights = closest(pair, &p);
+        if let FeaturePair::EdgeEdge(_) = pair
+            && weights.contains(&0.0)
+        {
+            return None;
+        }
         let between: Vec3 = p.iter().zip(weights).map(|(p, w)| p * w).sum();
         let distance = between.norm();
         (distance <= reach && distance > TOUCHING).then(|| Self {
@@ -76,7 +83,7 @@ impl Nearness {
 
 /// Whether boxes round two features are farther apart than `reach` [m].
 #[inline(always)]
-fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
+pub(super) fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
     let (low, high, other_low, other_high) = match pair {
         FeaturePair::VertexFace(_) => (
             p[0],

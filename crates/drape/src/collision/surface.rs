@@ -15,6 +15,14 @@ pub enum FeaturePair {
 }
 
 impl FeaturePair {
+    /// How many of the vertices are the first feature's.
+    pub fn first(&self) -> usize {
+        match self {
+            Self::VertexFace(_) => 1,
+            Self::EdgeEdge(_) => 2,
+        }
+    }
+
     /// The four vertices.
     pub fn vertices(&self) -> [u32; 4] {
         let (Self::VertexFace(v) | Self::EdgeEdge(v)) = *self;

@@ -61,6 +61,13 @@ impl EnergyWatch {
     }
 }
 
+/// Energy of motion, strain, weight, elastics and contact [J]; places count from the origin.
+pub fn whole_energy(model: &Model, state: &State, workspace: &mut Workspace) -> f64 {
+    let weight = |(x, m): (&toile_geometry::Vec3, &f64)| m * model.gravity.dot(x);
+    let gravity: f64 = state.positions.iter().zip(&model.mass).map(weight).sum();
+    EnergyWatch::default().energy(model, state, workspace) - gravity
+}
+
 /// The most energy of motion, strain, elastics and contact [J] that a cloth with `before` [J] of it
 /// can show after `step` [s]. All potentials but gravity's are above zero, so this energy H obeys
 /// dH/dt = sum m g.v <= |g| sqrt(2 M H), and sqrt(H) grows by |g| sqrt(M/2) a second at most.

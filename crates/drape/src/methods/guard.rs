@@ -56,4 +56,8 @@ impl<M: Method> Method for Guarded<M> {
     fn residual(&self) -> Option<f64> {
         self.method.residual()
     }
+
+    fn cloth_tally(&self) -> Option<crate::collision::Tally> {
+        self.method.cloth_tally()
+    }
 }

@@ -21,11 +21,12 @@ mod runge_kutta;
 mod symplectic_euler;
 mod velocity_verlet;
 
-pub(crate) use energy::{energy_bound, is_possible_speed};
+pub(crate) use energy::{energy_bound, is_possible_speed, whole_energy};
 pub(crate) use frequency::damped_contact_frequency;
 pub use frequency::largest_frequency;
 pub use relaxation::RelaxationRun;
 
+use crate::collision::Tally;
 use crate::patches::PatchVerlet;
 use crate::{DrapeError, Model, State};
 use block_descent::BlockDescent;
@@ -68,6 +69,11 @@ pub trait Method: Send {
     /// for. Methods in time never have.
     fn finished(&self) -> bool {
         false
+    }
+
+    /// What contact of cloth with cloth found and did so far, where the method counts it.
+    fn cloth_tally(&self) -> Option<Tally> {
+        None
     }
 
     /// Net force over weight after the last step, where the method knows it.

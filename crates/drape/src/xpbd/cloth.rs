@@ -2,8 +2,9 @@
 
 use super::contact::{ContactStencil, Touch};
 use super::{Xpbd, XpbdReport};
-use crate::collision::{ClothContact, ClothContacts};
+use crate::collision::{ClothContact, ClothContacts, Kept, Motions};
 use crate::{DrapeError, Model, State};
+use toile_geometry::Vec3;
 
 /// Some substeps.
 #[derive(Clone, Copy, Debug)]
@@ -16,8 +17,11 @@ pub(crate) struct Span {
     pub drag: f64,
 }
 
-/// How far the fastest vertex may go before contacts are looked for anew [m].
+/// How far the fastest vertex may go, the motion of the whole cloth left out, before contacts are
+/// looked for anew [m]: at the most, and where everything is slow. What is looked for reaches twice
+/// as far beyond the offset.
 const LOOK_AGAIN: f64 = 2e-3;
+const LEAST_WAY: f64 = 2e-4;
 
 /// Longest time that contacts are kept [s]: forces are not known ahead.
 const LONGEST: f64 = 5e-3;
@@ -32,8 +36,14 @@ pub(crate) struct ClothWatch {
     pub contacts: ClothContacts,
     /// How far the fastest vertex may have gone since [m]; none before the first look.
     travelled: Option<f64>,
+    /// How far it may go before the next look [m].
+    allowed: f64,
     /// Time since [s].
     time: f64,
+    /// Positions before the last substeps [m], and how far they went.
+    before: Vec<Vec3>,
+    moves: Vec<Vec3>,
+    lightness: Vec<f64>,
 }
 
 impl ClothWatch {
@@ -41,6 +51,39 @@ impl ClothWatch {
     pub fn forget(&mut self) {
         self.travelled = None;
     }
+
+    /// Corrects the way of the last substeps, `span` [s] long, where cloth would have passed through cloth.
+    fn keep_apart(&mut self, model: &Model, state: &mut State, span: f64) {
+        let ways = state.positions.iter().zip(&self.before);
+        self.moves.clear();
+        self.moves.extend(ways.map(|(x, from)| x - from));
+        let masses = model.mass.iter().zip(&model.pinned);
+        self.lightness.clear();
+        self.lightness
+            .extend(masses.map(|(m, &pinned)| if pinned { 0.0 } else { 1.0 / m }));
+        let mut motion = Motions {
+            x: &self.before,
+            moves: &mut self.moves,
+            velocities: &mut state.velocities,
+            lightness: &self.lightness,
+            span,
+        };
+        let kept = self.contacts.keep_apart(model, &mut motion);
+        if kept != Kept::default() {
+            let ends = self.before.iter().zip(&self.moves);
+            for (x, (from, way)) in state.positions.iter_mut().zip(ends) {
+                *x = from + way;
+            }
+        }
+    }
+}
+
+/// Speed of the fastest vertex, the mean velocity left out [m/s].
+fn spread(state: &State) -> f64 {
+    let count = state.velocities.len().max(1) as f64;
+    let mean = state.velocities.iter().sum::<Vec3>() / count;
+    let speed2 = state.velocities.iter().map(|v| (v - mean).norm_squared());
+    speed2.fold(0.0, f64::max).sqrt()
 }
 
 impl Xpbd {
@@ -61,24 +104,26 @@ impl Xpbd {
         let mut pieces = 1;
         while left > 0 {
             let fewest = f64::from(FEWEST) * span.substep;
-            let speed2 = state.velocities.iter().map(|v| v.norm_squared());
-            let speed = speed2.fold(0.0, f64::max).sqrt() + model.gravity.norm() * fewest;
+            let speed = spread(state) + model.gravity.norm() * fewest;
             let ahead = watch.travelled.map(|t| t + speed * fewest);
-            if ahead.is_none_or(|far| far > LOOK_AGAIN) || watch.time + fewest > LONGEST {
+            if ahead.is_none_or(|far| far > watch.allowed) || watch.time + fewest > LONGEST {
+                watch.allowed = (2.0 * speed * LONGEST).clamp(LEAST_WAY, LOOK_AGAIN);
                 // Two vertices may come nearer by twice the way.
-                let reach = model.contact.cloth_offset + 2.0 * LOOK_AGAIN;
+                let reach = model.contact.cloth_offset + 2.0 * watch.allowed;
                 watch.contacts.find(model, state, &state.positions, reach);
                 watch.travelled = Some(0.0);
                 watch.time = 0.0;
                 self.touch_cloth(&watch.contacts.active);
             }
             let travelled = watch.travelled.unwrap_or(0.0);
-            let time = ((LOOK_AGAIN - travelled) / speed).min(LONGEST - watch.time);
+            let time = ((watch.allowed - travelled) / speed).min(LONGEST - watch.time);
             let count = ((time / span.substep) as u32).max(FEWEST).min(left);
+            watch.before.clone_from(&state.positions);
             report = self.advance(model, state, span.substep, count, span.drag)?;
+            watch.keep_apart(model, state, span.substep * f64::from(count));
             pieces = pieces.max(report.pieces);
             let time = span.substep * f64::from(count);
-            watch.travelled = Some(travelled + speed.max(report.fastest) * time);
+            watch.travelled = Some(travelled + speed.max(spread(state)) * time);
             watch.time += time;
             left -= count;
         }

@@ -6,7 +6,7 @@
 //! not creep. Contacts of cloth with cloth are stencils of the same form with other weights.
 
 use super::lanes::{LANES, Point, Row, add_scaled, dot, load, store, sub};
-use crate::Model;
+use crate::{Model, Pose};
 use pulp::Simd;
 use toile_geometry::Vec3;
 
@@ -34,6 +34,8 @@ pub struct Touch {
     pub push: f32,
     /// Tangential impulse likewise.
     pub rub: [f32; 3],
+    /// How far the surface moves there in the substep [m].
+    pub drift: [f32; 3],
 }
 
 /// No sample of the model stands behind a touch.
@@ -83,6 +85,7 @@ impl Touch {
             sample: NO_SAMPLE,
             push: 0.0,
             rub: [0.0; 3],
+            drift: [0.0; 3],
         }
     }
 
@@ -90,6 +93,13 @@ impl Touch {
     pub fn forget(&mut self) {
         if self.sample != NO_SAMPLE {
             self.radius2 = -1.0;
+        }
+    }
+
+    /// What a substep in which surfaces move by up to `travel` [m] leaves of a look: nothing near them.
+    pub fn age(&mut self, travel: f32) {
+        if self.sample != NO_SAMPLE {
+            self.radius2 = aged(self.radius2, travel, self.normal != [0.0; 3]);
         }
     }
 
@@ -102,20 +112,28 @@ impl Touch {
         distance2 > self.radius2
     }
 
-    /// Looks at the surfaces from a point; `origin` is that of the points' numbers.
+    /// Looks at the surfaces from a point.
     #[inline(never)]
-    pub fn look(&mut self, model: &Model, origin: Vec3, point: [f32; 3]) {
+    pub fn look(&mut self, solid: &Solid, point: [f32; 3]) {
+        let origin = solid.origin;
         let place = origin + Vec3::from(point.map(f64::from));
         let offset = f64::from(self.offset);
         let reach = crate::model::FIELD_REACH;
         let mut nearest: Option<(f64, Vec3)> = None;
-        for collider in &model.colliders {
-            if let Some(found) = collider.field.distance(place)
+        let mut drift = Vec3::zeros();
+        for (k, collider) in solid.model.colliders.iter().enumerate() {
+            let poses = solid.poses.get(k).and_then(Option::as_ref);
+            if let Some(found) = collider.distance(poses.map(|[_, to]| to), place)
                 && nearest.is_none_or(|(distance, _)| found.0 < distance)
             {
                 nearest = Some(found);
+                drift = poses.map_or(Vec3::zeros(), |[from, to]| {
+                    let own = to.undo(place);
+                    to.apply(own) - from.apply(own)
+                });
             }
         }
+        self.drift = [drift.x as f32, drift.y as f32, drift.z as f32];
         self.place = point;
         self.normal = [0.0; 3];
         self.level = -1.0;
@@ -154,7 +172,7 @@ impl Touch {
         if (depth >= 0.0 && self.push == 0.0) || weight <= 0.0 {
             return [0.0; 3];
         }
-        let moved = [0, 1, 2].map(|k| point[k] - start[k]);
+        let moved = [0, 1, 2].map(|k| point[k] - start[k] - self.drift[k]);
         let soft = self.softness * step.kappa;
         let mut change = -(depth + soft * self.push) / (weight + soft);
         let outward = dot(n, moved);
@@ -176,6 +194,35 @@ impl Touch {
     }
 }
 
+/// Square of how far a look still holds [m2] after surfaces moved.
+fn aged(radius2: f32, travel: f32, near: bool) -> f32 {
+    let left = radius2.max(0.0).sqrt() - travel;
+    if near || left <= 0.0 {
+        -1.0
+    } else {
+        left * left
+    }
+}
+
+/// The solid surfaces as they stand in a substep.
+#[derive(Clone, Copy)]
+pub struct Solid<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// What the points' numbers are relative to [m].
+    pub origin: Vec3,
+    /// Where each collider that moves stands when the substep begins and when it ends; empty where
+    /// none moves.
+    pub poses: &'a [Option<[Pose; 2]>],
+}
+
+impl Solid<'_> {
+    /// Whether there are any.
+    pub fn stands(&self) -> bool {
+        !self.model.colliders.is_empty()
+    }
+}
+
 /// Touches of sixteen vertices side by side; rows as in [`Touch`].
 #[derive(Clone, Debug)]
 pub struct TouchBlock {
@@ -188,6 +235,7 @@ pub struct TouchBlock {
     offset: Row,
     push: Row,
     rub: [Row; 3],
+    drift: [Row; 3],
     sample: [u32; LANES],
 }
 
@@ -205,6 +253,7 @@ impl TouchBlock {
             offset: zero,
             push: zero,
             rub: [zero; 3],
+            drift: [zero; 3],
             sample: [NO_SAMPLE; LANES],
         };
         for lane in 0..LANES {
@@ -227,6 +276,7 @@ impl TouchBlock {
             sample: self.sample[lane],
             push: self.push.0[lane],
             rub: three(&self.rub),
+            drift: three(&self.drift),
         }
     }
 
@@ -236,6 +286,7 @@ impl TouchBlock {
             self.normal[k].0[lane] = touch.normal[k];
             self.place[k].0[lane] = touch.place[k];
             self.rub[k].0[lane] = touch.rub[k];
+            self.drift[k].0[lane] = touch.drift[k];
         }
         self.level.0[lane] = touch.level;
         self.radius2.0[lane] = touch.radius2;
@@ -251,6 +302,16 @@ impl TouchBlock {
         for (radius2, &sample) in self.radius2.0.iter_mut().zip(&self.sample) {
             if sample != NO_SAMPLE {
                 *radius2 = -1.0;
+            }
+        }
+    }
+
+    /// [`Touch::age`] for all lanes.
+    pub fn age(&mut self, travel: f32) {
+        for lane in 0..LANES {
+            if self.sample[lane] != NO_SAMPLE {
+                let near = self.normal.iter().any(|row| row.0[lane] != 0.0);
+                self.radius2.0[lane] = aged(self.radius2.0[lane], travel, near);
             }
         }
     }
@@ -277,19 +338,12 @@ impl TouchBlock {
 
     /// Looks at the surfaces from those of some lanes that have to.
     #[inline(never)]
-    pub fn look(
-        &mut self,
-        model: &Model,
-        origin: Vec3,
-        points: &[Point; LANES],
-        first: usize,
-        count: usize,
-    ) {
-        for lane in first..first + count {
+    pub fn look(&mut self, solid: &Solid, points: &[Point; LANES], lanes: std::ops::Range<usize>) {
+        for lane in lanes {
             let [x, y, z, _] = points[lane];
             let mut touch = self.get(lane);
             if touch.is_stale([x, y, z]) {
-                touch.look(model, origin, [x, y, z]);
+                touch.look(solid, [x, y, z]);
                 self.set(lane, &touch);
             }
         }
@@ -325,7 +379,12 @@ pub fn press<S: Simd>(
     if simd.reduce_max_f32s(flag) == 0.0 {
         return;
     }
-    let moved = sub(simd, [x, y, z], [x0, y0, z0]);
+    let drift = [
+        touch.drift[0].part::<S>(part),
+        touch.drift[1].part::<S>(part),
+        touch.drift[2].part::<S>(part),
+    ];
+    let moved = sub(simd, sub(simd, [x, y, z], [x0, y0, z0]), drift);
     let soft = simd.mul_f32s(touch.softness.part::<S>(part), simd.splat_f32s(step.kappa));
     let per_weight = simd.div_f32s(simd.splat_f32s(1.0), weight);
     let wanted = simd.mul_add_e_f32s(soft, push, depth);

@@ -32,11 +32,12 @@ mod particles;
 mod region;
 mod run;
 
+use crate::collision::Tally;
 use crate::methods::{Method, MethodSettings, StepReport};
 use crate::{DrapeError, Model, State};
 use bending::{BendingForce, Filter};
 pub(crate) use cloth::{ClothWatch, Span};
-use contact::{ContactStep, Touch};
+use contact::{ContactStep, Solid, Touch};
 use lanes::LANES;
 use membrane::{LawRow, inverse_mass};
 use order::Order;
@@ -241,8 +242,14 @@ impl Xpbd {
         for halvings in 0..=STEP_HALVINGS {
             let pieces = 1u32 << halvings;
             self.load(model, state, origin);
+            self.lead(model, state, substep * f64::from(count));
             let h = substep / f64::from(pieces);
-            self.run(model, origin, h, count * pieces, drag);
+            let motion = Free {
+                h,
+                drag,
+                time: state.time,
+            };
+            self.run(model, origin, &motion, count * pieces);
             match self.first_not_finite() {
                 Some(vertex) => failed = vertex,
                 None => {
@@ -301,6 +308,23 @@ impl Xpbd {
         }
     }
 
+    /// Gives pinned vertices that are led the velocity that takes them where they have to be after
+    /// `span` [s].
+    fn lead(&mut self, model: &Model, state: &State, span: f64) {
+        for grip in &model.grips {
+            let v = grip.vertex as usize;
+            if !model.pinned[v] {
+                continue;
+            }
+            let there = grip.motion.pose(state.time + span).apply(grip.home);
+            let velocity = (there - state.positions[v]) / span;
+            let slot = self.order.slot_of[v] as usize;
+            for k in 0..3 {
+                self.particles.velocity[slot][k] = velocity[k] as f32;
+            }
+        }
+    }
+
     /// Writes the state.
     fn store(&self, model: &Model, state: &mut State, origin: Vec3) -> XpbdReport {
         let particles = &self.particles;
@@ -309,16 +333,19 @@ impl Xpbd {
             let Some(v) = *vertex else {
                 continue;
             };
-            if model.pinned[v as usize] {
-                state.velocities[v as usize] = Vec3::zeros();
-                continue;
-            }
             let (start, low, velocity) = (
                 particles.start[slot],
                 particles.low[slot],
                 particles.velocity[slot],
             );
             let wide = |p: [f32; 4]| Vec3::new(p[0].into(), p[1].into(), p[2].into());
+            if model.pinned[v as usize] {
+                state.velocities[v as usize] = Vec3::zeros();
+                if velocity != [0.0; 4] {
+                    state.positions[v as usize] = origin + (wide(start) + wide(low));
+                }
+                continue;
+            }
             state.positions[v as usize] = origin + (wide(start) + wide(low));
             state.velocities[v as usize] = wide(velocity);
             fastest = fastest.max(wide(velocity).norm_squared());
@@ -356,7 +383,8 @@ impl Xpbd {
             .find_map(|(_, vertex)| vertex.map(|v| v as usize))
     }
 
-    fn run(&mut self, model: &Model, origin: Vec3, h: f64, count: u32, drag: f64) {
+    fn run(&mut self, model: &Model, origin: Vec3, motion: &Free, count: u32) {
+        let &Free { h, drag, time } = motion;
         let kappa = (1.0 + drag * h) / (h * h);
         self.set_step(model, origin, h, kappa);
         let g = model.gravity;
@@ -368,9 +396,12 @@ impl Xpbd {
         };
         let run = Run {
             sweep: SweepStep {
-                model,
+                solid: Solid {
+                    model,
+                    origin,
+                    poses: &[],
+                },
                 laws: &self.laws,
-                origin,
                 contact: ContactStep::new(kappa as f32, h as f32),
                 iterated: self.settings.iterations > 1,
                 bends: self.filter.is_none(),
@@ -378,7 +409,7 @@ impl Xpbd {
             motion,
             bending: &self.bending,
             filter: self.filter.as_ref(),
-            solid: (!model.colliders.is_empty()).then_some((model, origin)),
+            time,
             iterations: self.settings.iterations.max(1),
             domain_starts: &self.domain_starts,
             cut_starts: &self.cut_starts,
@@ -434,6 +465,16 @@ fn middle(places: &[Vec3]) -> Vec3 {
     ((low + high) * 4.0).map(f64::round) / 8.0
 }
 
+/// The numbers of some substeps.
+struct Free {
+    /// Substep [s].
+    h: f64,
+    /// Drag per mass [1/s].
+    drag: f64,
+    /// Time when they begin [s].
+    time: f64,
+}
+
 /// XPBD as a method in time.
 pub(crate) struct XpbdMethod {
     settings: XpbdSettings,
@@ -462,6 +503,10 @@ impl XpbdMethod {
 }
 
 impl Method for XpbdMethod {
+    fn cloth_tally(&self) -> Option<Tally> {
+        Some(self.cloth.contacts.tally)
+    }
+
     fn advance(
         &mut self,
         model: &Model,

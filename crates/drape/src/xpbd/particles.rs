@@ -1,12 +1,10 @@
 //! The points: where they go by themselves, and what the constraints did to their velocities.
 
 use super::bending::{BendingForce, Filter};
-use super::contact::{ContactStep, TouchBlock, press};
+use super::contact::{ContactStep, Solid, TouchBlock, press};
 use super::lanes::{LANES, Point, load, parts, store};
-use crate::Model;
 use pulp::bytemuck::cast_slice;
 use pulp::{Simd, WithSimd};
-use toile_geometry::Vec3;
 
 /// Farthest that a vertex may go in one substep [m]: what goes farther was thrown by a substep that
 /// is too large.
@@ -87,7 +85,8 @@ pub struct Free<'a> {
     pub velocity: &'a mut [Point],
 }
 
-/// Free motion of a domain: v = (v + h (g - W K x)) / (1 + drag h), x = x + h v.
+/// Free motion of a domain: v = (v + h (g - W K x)) / (1 + drag h), x = x + h v; pinned points go on
+/// at the velocity they have.
 pub struct Predict<'a, 'b> {
     /// The domain.
     pub fields: &'b mut Free<'a>,
@@ -170,7 +169,7 @@ impl MotionStep {
         for k in 0..3 {
             let fall = simd.splat_f32s(self.step * self.gravity[k]);
             let gained = simd.add_f32s(simd.add_f32s(speed[k], fall), gain[k]);
-            let v = simd.select_f32s(moves, simd.mul_f32s(gained, kept), zero);
+            let v = simd.select_f32s(moves, simd.mul_f32s(gained, kept), speed[k]);
             // The sum and what rounding leaves out of it (Knuth's two-sum).
             let d = simd.mul_add_e_f32s(h, v, rest[k]);
             let sum = simd.add_f32s(here[k], d);
@@ -285,8 +284,8 @@ pub struct Bound<'a> {
 pub struct Settle<'a, 'b> {
     /// The domain.
     pub fields: &'b mut Bound<'a>,
-    /// The model and the origin of the points' numbers, where there are surfaces.
-    pub solid: Option<(&'a Model, Vec3)>,
+    /// The surfaces, where there are any.
+    pub solid: Option<Solid<'a>>,
     /// Contact's numbers.
     pub contact: &'a ContactStep,
     /// The substep, at its end.
@@ -303,12 +302,13 @@ impl WithSimd for Settle<'_, '_> {
         let (free, _) = self.fields.free.as_chunks::<LANES>();
         let (velocity, _) = self.fields.velocity.as_chunks_mut::<LANES>();
         for b in 0..now.len() {
-            if let Some((model, origin)) = self.solid {
+            if let Some(solid) = &self.solid {
                 for part in 0..parts::<S>() {
                     let touch = &mut self.fields.touch[b];
                     let now = &mut now[b];
                     if touch.is_stale(simd, now, part) {
-                        touch.look(model, origin, now, part * S::F32_LANES, S::F32_LANES);
+                        let first = part * S::F32_LANES;
+                        touch.look(solid, now, first..first + S::F32_LANES);
                     }
                     press(simd, touch, now, &start[b], self.contact, part);
                 }

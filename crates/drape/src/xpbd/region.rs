@@ -1,7 +1,7 @@
 //! A region: the constraints that one core solves in one go, on one slice of the points.
 
 use super::bending::{self, BendingBatch, Stencil};
-use super::contact::{ContactStencil, ContactStep, Tie, Touch, solve_stencils, solve_ties};
+use super::contact::{ContactStencil, ContactStep, Solid, Tie, Touch, solve_stencils, solve_ties};
 use super::lanes::{LANES, Point, Row};
 use super::membrane::{self, LawRow, MembraneBatch};
 use super::order::{Order, Place, batches};
@@ -214,12 +214,10 @@ fn by_place<'a, T>(
 /// What the constraints of a substep share.
 #[derive(Clone, Copy)]
 pub struct SweepStep<'a> {
-    /// The model.
-    pub model: &'a Model,
-    /// The laws of its materials.
+    /// The surfaces.
+    pub solid: Solid<'a>,
+    /// The laws of the materials.
     pub laws: &'a [LawRow],
-    /// What the points' numbers are relative to [m].
-    pub origin: Vec3,
     /// (1 + drag h) / h^2 [1/s2], and the like for contacts.
     pub contact: ContactStep,
     /// Whether forces are kept from iteration to iteration.
@@ -268,12 +266,19 @@ impl Region {
         }
     }
 
+    /// Surfaces move by up to `travel` [m] in the substep that begins.
+    pub fn age(&mut self, travel: f32) {
+        for contact in &mut self.contacts {
+            contact.touch.age(travel);
+        }
+    }
+
     /// Solves every constraint once.
     pub fn sweep(&mut self, step: &SweepStep, points: &mut [Point], starts: &[Point]) {
         for contact in &mut self.contacts {
             let point = contact.point(points);
             if contact.touch.is_stale(point) {
-                contact.touch.look(step.model, step.origin, point);
+                contact.touch.look(&step.solid, point);
             }
         }
         pulp::Arch::new().dispatch(Sweep {

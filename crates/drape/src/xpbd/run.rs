@@ -1,13 +1,13 @@
 //! Substeps: free motion, constraints, contact, velocities, each shared between cores.
 
 use super::bending::{BendingForce, Filter};
+use super::contact::Solid;
 use super::domains::{Of, Swept, for_domains};
 use super::particles::{
     Bend, Bound, Free, MotionStep, Particles, Predict, RunStage, Settle, Stage,
 };
 use super::region::{Regions, SweepStep};
-use crate::Model;
-use toile_geometry::Vec3;
+use crate::Pose;
 
 /// What substeps of one size share.
 pub struct Run<'a> {
@@ -19,8 +19,8 @@ pub struct Run<'a> {
     pub bending: &'a BendingForce,
     /// How its force is filtered; none where bending is constraints.
     pub filter: Option<&'a Filter>,
-    /// The model and the origin of the points' numbers, where there are surfaces.
-    pub solid: Option<(&'a Model, Vec3)>,
+    /// Time when the first substep begins [s].
+    pub time: f64,
     /// Sweeps a substep.
     pub iterations: u32,
     /// First slots of the domains, and the end.
@@ -34,24 +34,60 @@ pub struct Run<'a> {
 impl Run<'_> {
     /// Takes some substeps.
     pub fn substeps(&self, regions: &mut Regions, particles: &mut Particles, count: u32) {
-        for _ in 0..count {
+        let mut poses = Vec::new();
+        for number in 0..count {
+            let travel = self.place_surfaces(number, &mut poses);
+            let sweep = SweepStep {
+                solid: Solid {
+                    poses: &poses,
+                    ..self.sweep.solid
+                },
+                ..self.sweep
+            };
             for region in regions.all_mut() {
                 region.clear();
+                if travel > 0.0 {
+                    region.age(travel);
+                }
             }
-            if self.solid.is_some() {
+            if sweep.solid.stands() {
                 for touch in &mut particles.touch {
                     touch.clear();
+                    if travel > 0.0 {
+                        touch.age(travel);
+                    }
                 }
             }
             self.filter_bending(particles);
             for iteration in 0..self.iterations {
-                self.domains(regions, particles, iteration == 0);
-                self.cuts(regions, particles);
+                self.domains(regions, particles, &sweep, iteration == 0);
+                self.cuts(regions, particles, &sweep);
                 let Particles { start, now, .. } = &mut *particles;
-                regions.rest.sweep(&self.sweep, now, start);
-                self.settle(particles, iteration + 1 == self.iterations);
+                regions.rest.sweep(&sweep, now, start);
+                self.settle(particles, &sweep, iteration + 1 == self.iterations);
             }
         }
+    }
+
+    /// Where moving surfaces stand before and after a substep; returns how far they move [m].
+    fn place_surfaces(&self, number: u32, poses: &mut Vec<Option<[Pose; 2]>>) -> f32 {
+        let colliders = &self.sweep.solid.model.colliders;
+        poses.clear();
+        if colliders.iter().all(|collider| collider.motion.is_none()) {
+            return 0.0;
+        }
+        let step = f64::from(self.motion.step);
+        let times = [0, 1].map(|k| self.time + step * f64::from(number + k));
+        let mut travel = 0.0f64;
+        for collider in colliders {
+            let [from, to] = times.map(|time| collider.pose(time));
+            let both = from.zip(to).map(|(from, to)| [from, to]);
+            if let Some([from, to]) = &both {
+                travel = travel.max(collider.travel(from, to));
+            }
+            poses.push(both);
+        }
+        travel as f32
     }
 
     /// Finds the moves of the bending filter, stage by stage.
@@ -83,7 +119,13 @@ impl Run<'_> {
     }
 
     /// Free motion and the domains' own constraints, in one go.
-    fn domains(&self, regions: &mut Regions, particles: &mut Particles, first: bool) {
+    fn domains(
+        &self,
+        regions: &mut Regions,
+        particles: &mut Particles,
+        sweep: &SweepStep,
+        first: bool,
+    ) {
         let Particles {
             start,
             now,
@@ -101,7 +143,7 @@ impl Run<'_> {
                 start,
             };
             for_domains(self.domain_starts, 0, all, &|_, all| {
-                all.regions[0].sweep(&self.sweep, all.now, all.start);
+                all.regions[0].sweep(sweep, all.now, all.start);
             });
             return;
         }
@@ -134,13 +176,13 @@ impl Run<'_> {
                     step: &self.motion,
                 });
                 let end = at + fields.now.len();
-                own.regions[0].sweep(&self.sweep, fields.now, &start[at..end]);
+                own.regions[0].sweep(sweep, fields.now, &start[at..end]);
             },
         );
     }
 
     /// Constraints across cuts.
-    fn cuts(&self, regions: &mut Regions, particles: &mut Particles) {
+    fn cuts(&self, regions: &mut Regions, particles: &mut Particles, sweep: &SweepStep) {
         let (Some(&from), Some(&to)) = (self.cut_starts.first(), self.cut_starts.last()) else {
             return;
         };
@@ -150,12 +192,12 @@ impl Run<'_> {
             start: &particles.start[from..to],
         };
         for_domains(self.cut_starts, 0, all, &|_, all| {
-            all.regions[0].sweep(&self.sweep, all.now, all.start);
+            all.regions[0].sweep(sweep, all.now, all.start);
         });
     }
 
     /// Contacts of vertices and, at the end of the substep, velocities.
-    fn settle(&self, particles: &mut Particles, last: bool) {
+    fn settle(&self, particles: &mut Particles, sweep: &SweepStep, last: bool) {
         let Particles {
             start,
             now,
@@ -174,8 +216,8 @@ impl Run<'_> {
         for_domains(self.domain_starts, 0, all, &|_, mut fields| {
             self.arch.dispatch(Settle {
                 fields: &mut fields,
-                solid: self.solid,
-                contact: &self.sweep.contact,
+                solid: sweep.solid.stands().then_some(sweep.solid),
+                contact: &sweep.contact,
                 finish: last.then_some(&self.motion),
             });
         });

@@ -1,0 +1,528 @@
+//! Hard scenes for contact of cloth with cloth and with bodies that move, small for tests and large
+//! for long runs, and what is measured on their way.
+
+use super::solids::{block, cylinder, sphere, torus};
+use toile_drape::{
+    Cloth, Compression, ContactSettings, Damping, Material, MethodKind, Motion, MotionKey,
+    ObjectKind, Scene, SceneGrip, SceneObject, SceneRun,
+};
+use toile_geometry::{TriangleMesh, Vec3};
+
+/// A scene and what must hold in it.
+pub struct HardScene {
+    /// Its name.
+    pub name: &'static str,
+    /// The scene.
+    pub scene: Scene,
+    /// When the last body or grip stops [s]: from then on nothing puts work in.
+    pub driven_until: f64,
+    /// Velocity of each object at the start [m/s]; empty for rest.
+    pub velocities: Vec<Vec3>,
+}
+
+/// What a run showed.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// Pairs of cloth triangles that cross, exactly: most on the way, and at the end.
+    pub crossings: [usize; 2],
+    /// Pairs of a cloth triangle and a body's at the end.
+    pub body_crossings: usize,
+    /// How far the energy rose above that when nothing drove any more [J].
+    pub energy_rise: f64,
+    /// What energies are compared with [J]: the weight at 0.1 m, the motion at the start, or motion
+    /// and strain when nothing drives any more.
+    pub energy_scale: f64,
+    /// Change of momentum over that of the faster half of the cloth, linear and angular.
+    pub momentum: [f64; 2],
+    /// Steps taken.
+    pub steps: usize,
+    /// What contact of cloth with cloth counted.
+    pub tally: toile_drape::collision::Tally,
+}
+
+/// What grips that cloth held back may be late by [s].
+const LATE: f64 = 0.02;
+
+/// How fine and how many.
+#[allow(dead_code)] // Tests run short ones, long runs long ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// For tests.
+    Short,
+    /// For long runs.
+    Long,
+}
+
+impl Size {
+    fn pick<T>(self, short: T, long: T) -> T {
+        match self {
+            Self::Short => short,
+            Self::Long => long,
+        }
+    }
+}
+
+/// Every hard scene.
+pub fn hard_scenes(size: Size) -> Vec<HardScene> {
+    vec![
+        crumpled_in_a_box(size),
+        layers_on_a_cylinder(size),
+        twisted(size),
+        through_a_ring(size),
+        stacked(size),
+        knotted(size),
+        pinched(size),
+        curtain_and_sphere(size),
+        folded_and_dropped(size),
+        two_in_free_flight(size),
+    ]
+}
+
+/// The hard scene of a name.
+#[allow(dead_code)]
+pub fn hard_scene(name: &str, size: Size) -> HardScene {
+    let mut found = hard_scenes(size).into_iter().filter(|s| s.name == name);
+    found.next().expect("a name of the list")
+}
+
+fn sheet(cells: [usize; 2], size: [f64; 2], place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
+    super::sheets::sheet(cells, size, place)
+}
+
+fn cloth(name: &str, mesh: TriangleMesh, pins: Vec<u32>) -> SceneObject {
+    SceneObject {
+        name: name.to_owned(),
+        kind: ObjectKind::Deformable {
+            material: Material::default(),
+            pins,
+        },
+        mesh,
+        cloth: None,
+    }
+}
+
+fn solid(name: &str, mesh: TriangleMesh, keys: Vec<MotionKey>) -> SceneObject {
+    let motion = Motion {
+        pivot: Vec3::zeros(),
+        keys,
+    };
+    SceneObject {
+        name: name.to_owned(),
+        kind: if motion.keys.is_empty() {
+            ObjectKind::Static
+        } else {
+            ObjectKind::Animated { motion }
+        },
+        mesh,
+        cloth: None,
+    }
+}
+
+fn key(time: f64, translation: Vec3, rotation: Vec3) -> MotionKey {
+    MotionKey {
+        time,
+        translation,
+        rotation,
+    }
+}
+
+/// Goes from rest by `way` between two times.
+fn shifted(from: f64, to: f64, way: Vec3) -> Vec<MotionKey> {
+    let still = Vec3::zeros();
+    vec![key(from, still, still), key(to, way, still)]
+}
+
+fn floor() -> SceneObject {
+    let corner = Vec3::new(1.0, 0.0, 1.0);
+    solid("floor", block(-corner - Vec3::y() * 0.1, corner), vec![])
+}
+
+fn base(duration: f64, objects: Vec<SceneObject>) -> Scene {
+    Scene {
+        duration,
+        method: MethodKind::Xpbd.into(),
+        damping: Damping {
+            mass: 0.5,
+            stiffness: 0.0,
+        },
+        contact: ContactSettings {
+            cloth_offset: 2e-3,
+            ..ContactSettings::default()
+        },
+        objects,
+        ..Scene::default()
+    }
+}
+
+fn of(name: &'static str, scene: Scene, driven_until: f64) -> HardScene {
+    HardScene {
+        name,
+        scene,
+        driven_until,
+        velocities: Vec::new(),
+    }
+}
+
+/// Walls and a lid press a sheet into a quarter of its room.
+fn crumpled_in_a_box(size: Size) -> HardScene {
+    let n = size.pick(20, 60);
+    let wavy = |x: f64, z: f64| {
+        let up = 0.08 + 0.02 * (17.0 * x + 9.0 * z).sin() + 0.015 * (31.0 * z - 11.0 * x).sin();
+        Vec3::new(x - 0.15, up, z - 0.15)
+    };
+    let wall = |x: f64, z: f64| {
+        let (middle, half) = (
+            Vec3::new(x, 0.1, z) * 0.22 + Vec3::y() * 0.1,
+            Vec3::new(
+                if x == 0.0 { 0.3 } else { 0.05 },
+                0.2,
+                if z == 0.0 { 0.3 } else { 0.05 },
+            ),
+        );
+        block(middle - half, middle + half)
+    };
+    let mut objects = vec![
+        cloth("sheet", sheet([n, n], [0.3; 2], wavy), vec![]),
+        floor(),
+    ];
+    for (name, x, z) in [
+        ("left", -1.0, 0.0),
+        ("right", 1.0, 0.0),
+        ("back", 0.0, -1.0),
+        ("front", 0.0, 1.0),
+    ] {
+        let way = Vec3::new(-x, 0.0, -z) * 0.08;
+        objects.push(solid(name, wall(x, z), shifted(0.1, 0.9, way)));
+    }
+    let lid = block(Vec3::new(-0.3, 0.16, -0.3), Vec3::new(0.3, 0.26, 0.3));
+    let way = Vec3::new(0.0, -0.1, 0.0);
+    objects.push(solid("lid", lid, shifted(0.1, 0.9, way)));
+    of("crumpled in a box", base(1.2, objects), 0.9)
+}
+
+fn layers_on_a_cylinder(size: Size) -> HardScene {
+    let (count, cells) = size.pick((6, [16, 10]), (50, [30, 20]));
+    let mut objects: Vec<SceneObject> = (0..count)
+        .map(|k| {
+            let lie = |x: f64, z: f64| Vec3::new(x - 0.15, 0.086 + 0.004 * f64::from(k), z - 0.1);
+            cloth(&format!("layer {k}"), sheet(cells, [0.3, 0.2], lie), vec![])
+        })
+        .collect();
+    objects.push(solid("cylinder", cylinder(0.08, 0.3, 48), vec![]));
+    of(
+        "layers on a cylinder",
+        base(size.pick(0.8, 1.0), objects),
+        0.0,
+    )
+}
+
+/// A strip held at both ends, one of which turns.
+fn twisted(size: Size) -> HardScene {
+    let (cells, turns, time) = size.pick(([8, 24], 3.0, 1.2), ([24, 72], 10.0, 4.0));
+    let mesh = sheet(cells, [0.12, 0.36], |u, v| Vec3::new(u - 0.06, 0.0, v));
+    let row = |j: usize| (0..=cells[0]).map(move |i| (j * (cells[0] + 1) + i) as u32);
+    let mut scene = base(time + 0.4, vec![cloth("strip", mesh, row(0).collect())]);
+    let turn = Vec3::new(0.0, 0.0, 2.0 * std::f64::consts::PI * turns);
+    let way = Vec3::new(0.0, 0.0, -0.12);
+    scene.grips.push(SceneGrip {
+        object: 0,
+        vertices: row(cells[1]).collect(),
+        motion: Motion {
+            pivot: Vec3::new(0.0, 0.0, 0.36),
+            keys: vec![key(0.0, Vec3::zeros(), Vec3::zeros()), key(time, way, turn)],
+        },
+    });
+    of("twisted", scene, time)
+}
+
+/// A scarf pulled by a corner through a ring of a third of its diagonal.
+fn through_a_ring(size: Size) -> HardScene {
+    let n = size.pick(20, 60);
+    let mesh = sheet([n, n], [0.26; 2], |u, v| {
+        let (across, up) = ((u - v) * 0.5f64.sqrt(), (u + v) * 0.5f64.sqrt());
+        let wave = 0.003 * ((90.0 * across).sin() + (70.0 * up).sin());
+        Vec3::new(across, up - 0.05, wave)
+    });
+    let corner = |v: &u32| mesh.positions[*v as usize].y < -0.03;
+    let held: Vec<u32> = (0..mesh.positions.len() as u32).filter(corner).collect();
+    let ring = solid("ring", torus(0.075, 0.012), vec![]);
+    let silky = Material {
+        friction: 0.1,
+        compression: Compression::TensionField,
+        ..Material::default()
+    };
+    let mut scarf = cloth("scarf", mesh, vec![]);
+    scarf.kind = ObjectKind::Deformable {
+        material: silky,
+        pins: vec![],
+    };
+    let mut scene = base(1.6, vec![scarf, ring]);
+    scene.grips.push(SceneGrip {
+        object: 0,
+        vertices: held,
+        motion: Motion {
+            pivot: Vec3::zeros(),
+            keys: shifted(0.1, 1.1, Vec3::new(0.0, -0.4, 0.0)),
+        },
+    });
+    of("through a ring", scene, 1.1)
+}
+
+fn stacked(size: Size) -> HardScene {
+    let n = size.pick(12, 40);
+    let mut objects: Vec<SceneObject> = (0..5)
+        .map(|k| {
+            let (sine, cosine) = (0.4 * f64::from(k)).sin_cos();
+            let lie = |x: f64, z: f64| {
+                let (x, z) = (x - 0.1, z - 0.1);
+                let up = 0.02 + 0.015 * f64::from(k);
+                Vec3::new(cosine * x - sine * z, up, sine * x + cosine * z)
+            };
+            cloth(&format!("cloth {k}"), sheet([n, n], [0.2; 2], lie), vec![])
+        })
+        .collect();
+    objects.push(floor());
+    objects.push(solid("ball", sphere(0.04, Vec3::zeros()), vec![]));
+    of("five stacked", base(0.8, objects), 0.0)
+}
+
+/// A ribbon along an overhand knot, its ends drawn apart.
+fn knotted(size: Size) -> HardScene {
+    let cells = size.pick([2, 100], [4, 240]);
+    let curve = |t: f64| {
+        Vec3::new(
+            0.03 * (t * t * t - 3.0 * t),
+            0.03 * (t.powi(4) - 4.0 * t * t),
+            0.008 * (t.powi(5) - 10.0 * t),
+        )
+    };
+    let (rows, width) = (cells[1] + 1, 0.012);
+    // Rows evenly along the curve, their directions carried along without twist.
+    let fine: Vec<Vec3> = (0..=4000)
+        .map(|k| curve(-2.2 + 4.4 * f64::from(k) / 4000.0))
+        .collect();
+    let mut walked = vec![0.0];
+    for pair in fine.windows(2) {
+        walked.push(walked.last().unwrap_or(&0.0) + (pair[1] - pair[0]).norm());
+    }
+    let length = walked[walked.len() - 1];
+    let centre: Vec<Vec3> = (0..rows)
+        .map(|j| {
+            let goal = length * j as f64 / (rows - 1) as f64;
+            let k = walked.partition_point(|&w| w < goal).min(fine.len() - 1);
+            fine[k]
+        })
+        .collect();
+    let mut across = Vec3::x();
+    let mut directions = Vec::new();
+    for j in 0..rows {
+        let along = (centre[(j + 1).min(rows - 1)] - centre[j.saturating_sub(1)]).normalize();
+        across = (across - along * across.dot(&along)).normalize();
+        directions.push(across);
+    }
+    let mesh = sheet(cells, [1.0, (rows - 1) as f64], |u, v| {
+        let j = v.round() as usize;
+        centre[j] + directions[j] * (width * (u - 0.5))
+    });
+    let row = |j: usize| (0..=cells[0]).map(move |i| (j * (cells[0] + 1) + i) as u32);
+    let mut scene = base(2.0, vec![cloth("ribbon", mesh, vec![])]);
+    scene.gravity = Vec3::zeros();
+    let apart = 0.5 * (0.78 * length - (centre[rows - 1] - centre[0]).norm());
+    for (j, sign) in [(0, -1.0), (rows - 1, 1.0)] {
+        let way = Vec3::new(0.0, 0.0, sign * apart);
+        scene.grips.push(SceneGrip {
+            object: 0,
+            vertices: row(j).chain(row(if j == 0 { 1 } else { j - 1 })).collect(),
+            motion: Motion {
+                pivot: Vec3::zeros(),
+                keys: shifted(0.0, 1.6, way),
+            },
+        });
+    }
+    of("knot", scene, 1.6)
+}
+
+/// Two cloths hang beside a trunk; an arm closes on them and rubs.
+fn pinched(size: Size) -> HardScene {
+    let cells = size.pick([14, 20], [40, 60]);
+    let top: Vec<u32> = (0..=cells[0] as u32).collect();
+    let hung = |x0: f64| {
+        sheet(cells, [0.28, 0.4], move |u, v| {
+            let fold = 0.02 * (38.0 * u).sin() * (v / 0.4);
+            Vec3::new(x0 + fold, 0.2 - v, u - 0.14)
+        })
+    };
+    let upright = |radius: f64, length: f64, x: f64| {
+        let mut mesh = cylinder(radius, length, 48);
+        for p in &mut mesh.positions {
+            *p = Vec3::new(p.x + x, p.z, -p.y);
+        }
+        mesh
+    };
+    let arm =
+        |time: f64, x: f64, turn: f64| key(time, Vec3::new(x, 0.0, 0.0), Vec3::new(turn, 0.0, 0.0));
+    let keys = vec![
+        arm(0.1, 0.0, 0.0),
+        arm(0.6, -0.079, 0.0),
+        arm(0.8, -0.079, 0.3),
+        arm(1.0, -0.079, -0.2),
+    ];
+    let mut arm_shape = upright(0.045, 0.22, 0.26);
+    for p in &mut arm_shape.positions {
+        p.y -= 0.03;
+    }
+    let objects = vec![
+        cloth("inner", hung(0.17), top.clone()),
+        cloth("outer", hung(0.182), top),
+        solid("trunk", upright(0.12, 0.6, 0.0), vec![]),
+        solid("arm", arm_shape, keys),
+    ];
+    of("pinched by an arm", base(1.2, objects), 1.0)
+}
+
+/// Two halves of a curtain that overlap, and a sphere at 10 m/s.
+fn curtain_and_sphere(size: Size) -> HardScene {
+    let cells = size.pick([10, 20], [32, 64]);
+    let half = |x0: f64, z0: f64| {
+        sheet(cells, [0.3, 0.6], move |u, v| {
+            Vec3::new(x0 + u, -v, z0 + 0.004 * (60.0 * u).sin())
+        })
+    };
+    let top: Vec<u32> = (0..=cells[0] as u32).collect();
+    let ball = sphere(0.07, Vec3::new(0.0, -0.35, -0.2));
+    let keys = shifted(0.05, 0.15, Vec3::new(0.0, 0.0, 1.0));
+    let objects = vec![
+        cloth("left", half(-0.28, 0.0), top.clone()),
+        cloth("right", half(-0.02, 0.012), top),
+        solid("sphere", ball, keys),
+    ];
+    of("sphere at 10 m/s", base(0.7, objects), 0.15)
+}
+
+/// A strip folded in four like an accordion falls on a floor.
+fn folded_and_dropped(size: Size) -> HardScene {
+    let n = size.pick(1, 3);
+    let (straight, radius) = (0.06, 0.006);
+    let arc = std::f64::consts::PI * radius;
+    let length = 4.0 * straight + 3.0 * arc;
+    let cells = [14 * n, 40 * n];
+    let flat = sheet(cells, [0.12, length], |u, v| Vec3::new(v, 0.0, u));
+    let fold = |s: f64, z: f64| {
+        let piece = (s / (straight + arc)).floor().min(3.0);
+        let (along, level) = (s - piece * (straight + arc), 2.0 * radius * piece);
+        let (x, y) = if along <= straight {
+            (along, level)
+        } else {
+            let angle = (along - straight) / radius;
+            (
+                straight + radius * angle.sin(),
+                level + radius * (1.0 - angle.cos()),
+            )
+        };
+        let x = if (piece as usize).is_multiple_of(2) {
+            x
+        } else {
+            straight - x
+        };
+        Vec3::new(x - 0.5 * straight, 0.05 + y, z - 0.06)
+    };
+    let rest = Cloth::from_mesh("strip", &flat, Material::default()).expect("a sound sheet");
+    let places: Vec<Vec3> = flat.positions.iter().map(|p| fold(p.x, p.z)).collect();
+    let mut object = cloth("strip", flat, vec![]);
+    object.mesh.positions.clone_from(&places);
+    object.cloth = Some(Cloth {
+        positions: places,
+        ..rest
+    });
+    let scene = base(0.8, vec![object, floor()]);
+    of("folded and dropped", scene, 0.0)
+}
+
+/// Two sheets meet in flight: nothing else acts.
+fn two_in_free_flight(size: Size) -> HardScene {
+    let n = size.pick(14, 50);
+    let low = sheet([n, n], [0.2; 2], |x, z| Vec3::new(x, 0.0, z));
+    let high = sheet([n, n], [0.2; 2], |x, z| {
+        Vec3::new(x + 0.07, 0.05 + 0.2 * x, z - 0.06 + 0.1 * x)
+    });
+    let objects = vec![cloth("low", low, vec![]), cloth("high", high, vec![])];
+    let mut scene = base(0.3, objects);
+    scene.gravity = Vec3::zeros();
+    scene.damping = Damping::default();
+    HardScene {
+        velocities: vec![Vec3::new(0.0, 2.0, 0.0), Vec3::new(0.5, -2.0, 0.3)],
+        ..of("two in free flight", scene, 0.0)
+    }
+}
+
+/// Momentum and angular momentum about the origin.
+fn momenta(run: &SceneRun) -> [Vec3; 2] {
+    let state = &run.state;
+    let mut sums = [Vec3::zeros(); 2];
+    for ((x, v), m) in state
+        .positions
+        .iter()
+        .zip(&state.velocities)
+        .zip(&run.model.mass)
+    {
+        sums[0] += v * *m;
+        sums[1] += x.cross(v) * *m;
+    }
+    sums
+}
+
+/// Runs a scene to its end.
+pub fn run(hard: HardScene) -> (SceneRun, Outcome) {
+    let mut run = SceneRun::new(hard.scene).expect("a sound scene");
+    let mut first = 0;
+    for (object, velocity) in hard.velocities.iter().enumerate() {
+        let count = run.scene().objects[object].mesh.positions.len();
+        run.state.velocities[first..first + count].fill(*velocity);
+        first += count;
+    }
+    let mass: f64 = run.model.mass.iter().sum();
+    let motion = run.state.kinetic_energy(&run.model);
+    let mut outcome = Outcome {
+        energy_scale: if motion > 0.0 {
+            motion
+        } else {
+            mass * 9.81 * 0.1
+        },
+        ..Outcome::default()
+    };
+    let start = momenta(&run);
+    let driven = hard.driven_until > 0.0;
+    let mut level = if driven { f64::INFINITY } else { run.energy() };
+    while !run.finished() {
+        run.advance().expect("a step that succeeds");
+        outcome.steps += 1;
+        // Grips that cloth held back arrive a little later.
+        if !driven || run.state.time >= hard.driven_until + LATE {
+            let energy = run.energy();
+            if level.is_infinite() {
+                level = energy;
+                let weight = run.state.positions.iter().zip(&run.model.mass);
+                let fallen: f64 = weight.map(|(x, m)| m * run.model.gravity.dot(x)).sum();
+                outcome.energy_scale = outcome.energy_scale.max(energy + fallen);
+            }
+            outcome.energy_rise = outcome.energy_rise.max(energy - level);
+        }
+        if outcome.steps.is_multiple_of(8) {
+            outcome.crossings[0] = outcome.crossings[0].max(run.crossings());
+        }
+    }
+    let end = momenta(&run);
+    let speed = (2.0 * motion / mass).sqrt();
+    if speed > 0.0 {
+        outcome.momentum = [
+            (end[0] - start[0]).norm() / (mass * speed),
+            (end[1] - start[1]).norm() / (mass * speed * 0.2),
+        ];
+    }
+    outcome.tally = run.cloth_tally().unwrap_or_default();
+    let measures = run.measure();
+    outcome.crossings[1] = measures.self_intersections;
+    outcome.crossings[0] = outcome.crossings[0].max(outcome.crossings[1]);
+    outcome.body_crossings = measures.body_intersections;
+    (run, outcome)
+}

@@ -1,0 +1,99 @@
+//! Rigid motions in the scene file.
+
+use crate::scene::Unknown;
+use serde::{Deserialize, Serialize};
+use toile_drape::{Motion, MotionKey};
+use toile_geometry::Vec3;
+
+/// A rigid motion as written: straight from key to key, still before the first and after the last.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct MotionFile {
+    /// The place it turns about, in the scene [m].
+    #[serde(default)]
+    pub pivot: [f64; 3],
+    /// Where it is when.
+    pub keys: Vec<KeyFile>,
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+/// One key of a motion.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct KeyFile {
+    /// The time [s].
+    pub time: f64,
+    /// Translation from where it was loaded [m].
+    #[serde(default)]
+    pub translation: [f64; 3],
+    /// Rotation vector: axis times angle [rad].
+    #[serde(default)]
+    pub rotation: [f64; 3],
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+/// Vertices that are led along a motion.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct GripFile {
+    /// The vertices.
+    pub vertices: Vec<u32>,
+    /// The motion.
+    pub motion: MotionFile,
+    #[serde(flatten)]
+    unknown: Unknown,
+}
+
+impl MotionFile {
+    /// The motion.
+    pub fn motion(&self) -> Motion {
+        let keys = self.keys.iter().map(|key| MotionKey {
+            time: key.time,
+            translation: Vec3::from(key.translation),
+            rotation: Vec3::from(key.rotation),
+        });
+        Motion {
+            pivot: Vec3::from(self.pivot),
+            keys: keys.collect(),
+        }
+    }
+
+    /// Fields that are not known, by the place they stand in.
+    pub(crate) fn unknown_fields(&self) -> Vec<(String, &Unknown)> {
+        let keys = self.keys.iter().enumerate();
+        std::iter::once((String::new(), &self.unknown))
+            .chain(keys.map(|(k, key)| (format!(".keys[{k}]"), &key.unknown)))
+            .collect()
+    }
+}
+
+impl GripFile {
+    /// Fields that are not known, by the place they stand in.
+    pub(crate) fn unknown_fields(&self) -> Vec<(String, &Unknown)> {
+        let motion = self.motion.unknown_fields().into_iter();
+        std::iter::once((String::new(), &self.unknown))
+            .chain(motion.map(|(place, unknown)| (format!(".motion{place}"), unknown)))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_motion_is_read_and_unknown_fields_are_named() {
+        let text = r#"{ "vertices": [0, 1], "motion": { "pivot": [0, 1, 0], "speed": 3,
+            "keys": [ { "time": 0 }, { "time": 1, "rotation": [0, 12.5, 0], "ease": "in" } ] } }"#;
+        let grip: GripFile = serde_json::from_str(text).expect("readable");
+        let motion = grip.motion.motion();
+        assert_eq!(motion.pivot, Vec3::new(0.0, 1.0, 0.0));
+        assert_eq!(motion.keys.len(), 2);
+        assert_eq!(motion.keys[1].rotation.y, 12.5);
+        assert!(motion.defect().is_none());
+        let named: Vec<String> = (grip.unknown_fields().iter())
+            .flat_map(|(place, fields)| fields.keys().map(move |key| format!("{place}.{key}")))
+            .collect();
+        assert_eq!(named, [".motion.speed", ".motion.keys[1].ease"]);
+        assert!(serde_json::from_str::<MotionFile>("{}").is_err());
+    }
+}

@@ -1,0 +1,135 @@
+//! Long runs of cloth on cloth: hard scenes at full size, and planted tangles.
+
+#[path = "../../../crates/drape/tests/support/hard_scenes.rs"]
+mod hard_scenes;
+#[path = "../../../crates/drape/tests/support/tangles.rs"]
+mod planted;
+#[path = "../../../crates/drape/tests/support/sheets.rs"]
+mod sheets;
+#[path = "../../../crates/drape/tests/support/solids.rs"]
+mod solids;
+
+use hard_scenes::{Size, hard_scenes, run};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use toile_drape::{ObjectKind, SceneRun};
+use toile_picture::{Finish, Scene, Sheet, Surface, drape_picture};
+
+/// Colours of the cloths of a scene, in turn.
+const COLOURS: [[f64; 3]; 6] = [
+    [0.75, 0.30, 0.28],
+    [0.30, 0.52, 0.36],
+    [0.28, 0.40, 0.68],
+    [0.78, 0.66, 0.30],
+    [0.50, 0.36, 0.60],
+    [0.32, 0.60, 0.62],
+];
+
+/// Runs the hard scenes named, or all.
+pub fn hard(arguments: &[String]) -> Result<(), String> {
+    let mut out = None;
+    let mut names = Vec::new();
+    let mut rest = arguments.iter();
+    while let Some(argument) = rest.next() {
+        match argument.as_str() {
+            "--out" => out = Some(PathBuf::from(rest.next().ok_or("--out needs a folder")?)),
+            name => names.push(name.to_owned()),
+        }
+    }
+    println!(
+        "scene,triangles,steps,crossings_most,crossings_end,body_crossings,energy_rise_J,energy_scale_J,impulses,cut,wall_s"
+    );
+    let mut left = Vec::new();
+    for scene in hard_scenes(Size::Long) {
+        if !names.is_empty() && !names.iter().any(|name| name == scene.name) {
+            continue;
+        }
+        let (name, start) = (scene.name, Instant::now());
+        let (end, found) = run(scene);
+        println!(
+            "{name},{},{},{},{},{},{:.2e},{:.2e},{},{},{:.1}",
+            end.model.triangles.len(),
+            found.steps,
+            found.crossings[0],
+            found.crossings[1],
+            found.body_crossings,
+            found.energy_rise,
+            found.energy_scale,
+            found.tally.impulses,
+            found.tally.cut,
+            start.elapsed().as_secs_f64()
+        );
+        if let Some(out) = &out {
+            picture(
+                &end,
+                &out.join(format!("{}.png", name.replace([' ', '/'], "-"))),
+            )?;
+        }
+        if found.crossings[1] + found.body_crossings > 0 {
+            left.push(name);
+        }
+    }
+    match left.is_empty() {
+        true => Ok(()),
+        false => Err(format!("crossings are left: {}", left.join(", "))),
+    }
+}
+
+/// Runs so many planted tangles.
+pub fn tangles(arguments: &[String]) -> Result<(), String> {
+    let count = match arguments.first() {
+        None => 100,
+        Some(text) => text.parse().map_err(|_| format!("{text}: no number"))?,
+    };
+    println!("seed,kind,cloth_start,body_start,cloth_end,body_end,wall_s");
+    let mut left = Vec::new();
+    for seed in 0..count {
+        let said = |error: toile_drape::DrapeError| format!("seed {seed}: {error}");
+        let start = Instant::now();
+        let mut run = SceneRun::new(planted::tangle(seed)).map_err(said)?;
+        let before = run.measure();
+        while !run.finished() {
+            run.advance().map_err(said)?;
+        }
+        let after = run.measure();
+        let (cloth, body) = (after.self_intersections, after.body_intersections);
+        println!(
+            "{seed},{},{},{},{cloth},{body},{:.1}",
+            planted::KINDS[seed as usize % planted::KINDS.len()],
+            before.self_intersections,
+            before.body_intersections,
+            start.elapsed().as_secs_f64()
+        );
+        if cloth + body > 0 {
+            left.push(seed.to_string());
+        }
+    }
+    match left.is_empty() {
+        true => Ok(()),
+        false => Err(format!("crossings are left in seeds {}", left.join(", "))),
+    }
+}
+
+/// Draws where everything lies.
+fn picture(run: &SceneRun, file: &Path) -> Result<(), String> {
+    let mut surfaces = Vec::new();
+    let mut cloths = COLOURS.iter().cycle();
+    for (object, mesh) in run.scene().objects.iter().zip(run.meshes()) {
+        if let ObjectKind::Deformable { .. } = object.kind {
+            let colour = cloths.next().copied().unwrap_or_default();
+            surfaces.push(Surface::plain(mesh, colour, Finish::Cloth));
+        } else if !matches!(
+            object.name.as_str(),
+            "floor" | "lid" | "left" | "right" | "front" | "back"
+        ) {
+            surfaces.push(Surface::plain(mesh, [0.8; 3], Finish::Smooth));
+        }
+    }
+    let said = |error: toile_picture::PictureError| error.to_string();
+    let picture = drape_picture(&Scene { surfaces }, &Sheet::studio("")).map_err(said)?;
+    let bytes = picture.to_png().map_err(said)?;
+    if let Some(folder) = file.parent() {
+        std::fs::create_dir_all(folder).map_err(|error| error.to_string())?;
+    }
+    std::fs::write(file, bytes).map_err(|error| error.to_string())
+}
