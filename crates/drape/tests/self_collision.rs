@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 use toile_drape::collision::{
-    ClothContacts, ClothSurface, FeaturePair, Nearness, bound_moves, crossings, nearnesses,
+    ClothContacts, ClothSurface, FeaturePair, Motions, Nearness, bound_moves, crossings, nearnesses,
 };
 use toile_drape::{
     Cloth, ContactSettings, Material, Measures, MethodKind, Model, ObjectKind, Scene, SceneObject,
@@ -176,6 +176,74 @@ fn bounded_moves_never_cross() {
         }
     }
     assert!(held > 1000, "{held}");
+}
+
+#[test]
+fn impulses_keep_layers_apart_and_keep_their_momentum() {
+    let mut mesh = TriangleMesh::default();
+    for layer in 0..4 {
+        let part = sheet(6, |u, v| {
+            Vec3::new(0.1 * u, 0.003 * f64::from(layer), 0.1 * v)
+        });
+        let first = mesh.positions.len() as u32;
+        mesh.positions.extend(part.positions);
+        mesh.triangles
+            .extend(part.triangles.iter().map(|t| t.map(|v| v + first)));
+    }
+    let cloth = Cloth::from_mesh("layers", &mesh, Material::default()).unwrap();
+    let mut model = Model::new("layers", &cloth).unwrap();
+    model.contact.cloth_offset = 2e-3;
+    let lightness: Vec<f64> = model.mass.iter().map(|m| 1.0 / m).collect();
+    let (mut uncut, mut impulses) = (0, 0);
+    for seed in 0..40 {
+        let mut numbers = Numbers(seed);
+        let state = State::at_rest(&model, mesh.positions.clone());
+        let mut contacts = ClothContacts::default();
+        contacts.refresh(&model, &state, &state.positions);
+        // All fly along; every second run is wilder than impulses can undo.
+        let wild = if seed % 2 == 0 { 2e-3 } else { 2e-2 };
+        let along = Vec3::new(0.01, -0.02, 0.005);
+        let mut moves: Vec<Vec3> = (mesh.positions.iter())
+            .map(|_| along + numbers.vector(wild))
+            .collect();
+        let momentum = |moves: &[Vec3]| {
+            let each = moves.iter().zip(&model.mass);
+            each.map(|(d, m)| d * *m).sum::<Vec3>()
+        };
+        let before = momentum(&moves);
+        let mut velocities = moves.clone();
+        let mut motion = Motions {
+            x: &mesh.positions,
+            moves: &mut moves,
+            velocities: &mut velocities,
+            lightness: &lightness,
+            span: 1.0,
+        };
+        let kept = contacts.keep_apart(&model, &mut motion);
+        impulses += kept.impulses;
+        let end: Vec<Vec3> = mesh
+            .positions
+            .iter()
+            .zip(&moves)
+            .map(|(x, d)| x + d)
+            .collect();
+        let mut surface = ClothSurface::of_mesh(&mesh);
+        let near = surface.near_triangles(&end, &end, 0.0);
+        assert!(crossings(&surface, &near, &end).is_empty(), "seed {seed}");
+        if kept.cut == 0 {
+            uncut += 1;
+            for after in [momentum(&moves), momentum(&velocities)] {
+                assert!(
+                    (after - before).norm() < 1e-12 * before.norm(),
+                    "seed {seed}"
+                );
+            }
+        }
+    }
+    assert!(
+        uncut >= 5 && uncut < 40 && impulses > 1000,
+        "{uncut} {impulses}"
+    );
 }
 
 fn object(name: &str, mesh: TriangleMesh, pins: Vec<u32>) -> SceneObject {
