@@ -200,8 +200,8 @@ fn impulses_keep_layers_apart_and_keep_their_momentum() {
         let state = State::at_rest(&model, mesh.positions.clone());
         let mut contacts = ClothContacts::default();
         contacts.refresh(&model, &state, &state.positions);
-        // All fly along; every second run is wilder than impulses can undo.
-        let wild = if seed % 2 == 0 { 2e-3 } else { 2e-2 };
+        // All fly along; every second run is wilder than impulses may undo.
+        let wild = if seed % 2 == 0 { 2e-2 } else { 0.2 };
         let along = Vec3::new(0.01, -0.02, 0.005);
         let mut moves: Vec<Vec3> = (mesh.positions.iter())
             .map(|_| along + numbers.vector(wild))
