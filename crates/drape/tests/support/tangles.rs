@@ -125,7 +125,7 @@ fn pushed_through(numbers: &mut Numbers) -> Vec<SceneObject> {
 /// A border or a corner of the upper layer dips through the lower.
 fn crossed(numbers: &mut Numbers) -> Vec<SceneObject> {
     let low = sheet(|x, z| Vec3::new(x, 0.0, z));
-    let (sine, cosine) = numbers.between(0.0, 6.28).sin_cos();
+    let (sine, cosine) = numbers.between(0.0, std::f64::consts::TAU).sin_cos();
     let (depth, share) = (numbers.between(0.01, 0.03), numbers.between(0.2, 0.5));
     let shift = Vec3::new(
         numbers.between(-0.03, 0.03),
