@@ -12,7 +12,7 @@
 //! made, with the commit; what is there already is not run again; `table.csv` sums up, with the 95 %
 //! interval of the difference.
 //!
-//! `soak hard [--out DIR] [NAME...]` runs the hard scenes of cloth on cloth at full size, and
+//! `soak hard [--short] [--out DIR] [NAME...]` runs the hard scenes of cloth on cloth at full size, or as tests do, and
 //! `soak tangles [COUNT]` so many planted tangles (100); both print a line each and fail where
 //! anything is left crossing. `--out` keeps pictures of the ends.
 #![allow(clippy::print_stdout, clippy::print_stderr)]

@@ -220,6 +220,13 @@ impl Scene {
                             "name an object of the scene",
                         );
                     };
+                    if let ObjectKind::Animated { .. } = named.kind {
+                        return refuse(
+                            place,
+                            format!("\"{}\" moves by itself", named.name),
+                            "tie cloth to cloth, to what stands still or to a place",
+                        );
+                    }
                     if vertex as usize >= named.mesh.positions.len() {
                         let what = format!("\"{}\" has no vertex {vertex}", named.name);
                         return refuse(

@@ -8,7 +8,8 @@ mod sheets;
 mod solids;
 
 use toile_drape::{
-    Material, MethodKind, Motion, MotionKey, ObjectKind, Scene, SceneGrip, SceneObject, SceneRun,
+    Material, MethodKind, Motion, MotionKey, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip,
+    SceneObject, SceneRun,
 };
 use toile_geometry::Vec3;
 
@@ -134,6 +135,21 @@ fn motions_that_cannot_be_followed_are_refused() {
         };
     });
     assert!(said.contains("no key"), "{said}");
+    let said = refused(&|scene| {
+        scene.elastics.push(SceneElastic {
+            from: SceneEnd::Vertex {
+                object: 0,
+                vertex: 0,
+            },
+            to: SceneEnd::Vertex {
+                object: 1,
+                vertex: 0,
+            },
+            stiffness: 1.0,
+            merge_within: None,
+        });
+    });
+    assert!(said.contains("moves by itself"), "{said}");
     for (object, vertex, word) in [
         (1, 0, "not deformable"),
         (0, 999, "no vertex 999"),

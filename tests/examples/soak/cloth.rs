@@ -27,27 +27,28 @@ const COLOURS: [[f64; 3]; 6] = [
 
 /// Runs the hard scenes named, or all.
 pub fn hard(arguments: &[String]) -> Result<(), String> {
-    let mut out = None;
+    let (mut out, mut size) = (None, Size::Long);
     let mut names = Vec::new();
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         match argument.as_str() {
             "--out" => out = Some(PathBuf::from(rest.next().ok_or("--out needs a folder")?)),
+            "--short" => size = Size::Short,
             name => names.push(name.to_owned()),
         }
     }
     println!(
-        "scene,triangles,steps,crossings_most,crossings_end,body_crossings,energy_rise_J,energy_scale_J,impulses,cut,wall_s"
+        "scene,triangles,steps,crossings_most,crossings_end,body_crossings,energy_rise_J,energy_scale_J,momentum,angular_momentum,impulses,cut,wall_s"
     );
     let mut left = Vec::new();
-    for scene in hard_scenes(Size::Long) {
+    for scene in hard_scenes(size) {
         if !names.is_empty() && !names.iter().any(|name| name == scene.name) {
             continue;
         }
         let (name, start) = (scene.name, Instant::now());
         let (end, found) = run(scene);
         println!(
-            "{name},{},{},{},{},{},{:.2e},{:.2e},{},{},{:.1}",
+            "{name},{},{},{},{},{},{:.2e},{:.2e},{:.1e},{:.1e},{},{},{:.1}",
             end.model.triangles.len(),
             found.steps,
             found.crossings[0],
@@ -55,6 +56,8 @@ pub fn hard(arguments: &[String]) -> Result<(), String> {
             found.body_crossings,
             found.energy_rise,
             found.energy_scale,
+            found.momentum[0],
+            found.momentum[1],
             found.tally.impulses,
             found.tally.cut,
             start.elapsed().as_secs_f64()

@@ -327,7 +327,7 @@ fn knotted(size: Size) -> HardScene {
     let row = |j: usize| (0..=cells[0]).map(move |i| (j * (cells[0] + 1) + i) as u32);
     let mut scene = base(2.0, vec![cloth("ribbon", mesh, vec![])]);
     scene.gravity = Vec3::zeros();
-    let apart = 0.5 * (0.78 * length - (centre[rows - 1] - centre[0]).norm());
+    let apart = 0.5 * (0.88 * length - (centre[rows - 1] - centre[0]).norm());
     for (j, sign) in [(0, -1.0), (rows - 1, 1.0)] {
         let way = Vec3::new(0.0, 0.0, sign * apart);
         scene.grips.push(SceneGrip {
