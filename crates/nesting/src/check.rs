@@ -1,13 +1,15 @@
 //! Jobs that cannot be done, said before any work.
 
-use crate::{Fold, FoldEdge, Item, Mirror, Nap, Pose, Strip};
+use crate::{Fold, FoldEdge, Item, Marker, Mirror, Nap, Placement, Pose, Strip, Violation, judge};
+use std::collections::BTreeMap;
 use toile_geometry::{CrossingKind, PolygonDefect, Vec2};
 
 /// Rounding allowed when a piece is exactly as wide as the fabric \[m\].
 pub(crate) const SNUG: f64 = 1e-9;
 
-/// Most copies of a piece: more are a mistake.
-const MOST_COPIES: u32 = 10_000;
+/// Most pieces of a marker: tables of all pairs grow with their square, a hundred megabytes for
+/// each island at this number.
+pub const MOST_PIECES: u32 = 2_000;
 /// Most points of an outline: more are a mistake, and no-fit polygons grow with their square.
 const MOST_POINTS: usize = 10_000;
 
@@ -17,6 +19,14 @@ pub enum NestingError {
     /// There is nothing to lay.
     #[error("there are no pieces to lay: mark at least one piece to be cut from this fabric")]
     NoItems,
+    /// More pieces than can be laid at once.
+    #[error(
+        "there are {0} pieces to lay; at most {MOST_PIECES} can be laid at once: make several markers"
+    )]
+    TooManyPieces(u64),
+    /// The search makes no sense.
+    #[error("search: {0}")]
+    Search(String),
     /// The fabric makes no sense.
     #[error("fabric: {0}")]
     Strip(String),
@@ -96,8 +106,8 @@ pub enum ItemProblem {
         "the fabric has a nap and the piece may not lie with its grain forward; allow turn 0 or use fabric without nap"
     )]
     AgainstNap,
-    /// More than one billion copies, or so many that the job cannot be held.
-    #[error("its quantity is {0}; at most {MOST_COPIES} pieces can be laid at once")]
+    /// More copies than can be laid at once.
+    #[error("its quantity is {0}; at most {MOST_PIECES} pieces can be laid at once")]
     TooMany(u32),
     /// So many points that its no-fit polygons cannot be held.
     #[error(
@@ -123,6 +133,14 @@ pub enum ItemProblem {
     /// A locked copy that does not exist, or not in an orientation it may take, or twice.
     #[error("locked copy {0} does not exist, or may not lie so; unlock it or correct it")]
     Locked(u32),
+    /// A locked copy that breaks a rule of the marker where it is.
+    #[error("locked copy {copy} cannot stay there: {why}")]
+    LockedBadly {
+        /// Number of the copy.
+        copy: u32,
+        /// What is wrong and what helps.
+        why: String,
+    },
     /// Too wide for the fabric.
     #[error(
         "it is {:.0} mm across the fabric and {:.0} mm are usable; use fabric at least {:.0} mm wide, split the piece with a seam, or allow another orientation",
@@ -133,7 +151,7 @@ pub enum ItemProblem {
         needed: f64,
         /// Width between the selvedges \[m\].
         usable: f64,
-        /// Least full width of fabric that takes it \[m\].
+        /// Least full width of fabric that takes it, laid open \[m\].
         fabric: f64,
     },
     /// Too long for the fabric.
@@ -150,10 +168,19 @@ pub enum ItemProblem {
 }
 
 /// Where within its tolerance the grain is tried.
-const TILTS: [f64; 5] = [0.0, -0.5, 0.5, -1.0, 1.0];
+pub(crate) const TILTS: [f64; 5] = [0.0, -0.5, 0.5, -1.0, 1.0];
 
 /// Turns and sides an item's copy may take on a strip, without repeats.
 pub(crate) fn orientations(item: &Item, strip: &Strip, copy: u32) -> Vec<(f64, bool)> {
+    orientations_within(item, strip, (copy, &TILTS))
+}
+
+/// The same with the grain at some parts of its tolerance only.
+pub(crate) fn orientations_within(
+    item: &Item,
+    strip: &Strip,
+    (copy, tilts): (u32, &[f64]),
+) -> Vec<(f64, bool)> {
     let sides: &[bool] = match item.allowed.mirror {
         Mirror::Never => &[false],
         Mirror::Pairs if copy % 2 == 1 => &[true],
@@ -163,7 +190,7 @@ pub(crate) fn orientations(item: &Item, strip: &Strip, copy: u32) -> Vec<(f64, b
     };
     let mut found: Vec<(f64, bool)> = Vec::new();
     let tilt = item.allowed.tilt;
-    let tilts: &[f64] = if tilt > 0.0 { &TILTS } else { &[0.0] };
+    let tilts = if tilt > 0.0 { tilts } else { &[0.0] };
     for (base, part) in item
         .allowed
         .turns
@@ -248,7 +275,7 @@ fn check_item(item: &Item, strip: &Strip) -> Option<ItemProblem> {
     if !(0.0..=std::f64::consts::FRAC_PI_4).contains(&item.allowed.tilt) {
         return Some(ItemProblem::Tilt(item.allowed.tilt));
     }
-    if item.quantity > MOST_COPIES {
+    if item.quantity > MOST_PIECES {
         return Some(ItemProblem::TooMany(item.quantity));
     }
     if let Some(problem) = check_fold(item, strip).or_else(|| check_locks(item)) {
@@ -330,7 +357,7 @@ fn check_size(item: &Item, strip: &Strip, copy: u32) -> Option<ItemProblem> {
         return Some(ItemProblem::TooWide {
             needed,
             usable,
-            fabric: needed + 2.0 * strip.selvedge,
+            fabric: strip.layers() * (needed + strip.width - usable),
         });
     }
     let fitting = sizes.iter().filter(|s| s.y <= usable + SNUG);
@@ -393,10 +420,92 @@ pub(crate) fn check(items: &[Item], strip: &Strip) -> Result<(), NestingError> {
             problem,
         })
     };
-    let refusals: Vec<Refusal> = items.iter().enumerate().filter_map(refusal).collect();
+    let mut refusals: Vec<Refusal> = items.iter().enumerate().filter_map(refusal).collect();
+    let total: u64 = items.iter().map(|i| u64::from(i.quantity)).sum();
+    if refusals.is_empty() && total > u64::from(MOST_PIECES) {
+        return Err(NestingError::TooManyPieces(total));
+    }
+    if refusals.is_empty() {
+        refusals = check_places(items, strip);
+    }
     if refusals.is_empty() {
         Ok(())
     } else {
         Err(NestingError::Refused(refusals))
     }
+}
+
+/// Locked copies as a marker of their own: what is wrong there can never be mended.
+fn check_places(items: &[Item], strip: &Strip) -> Vec<Refusal> {
+    let placed = |(item, what): (usize, &Item)| {
+        let place = move |lock: &crate::Locked| Placement {
+            item,
+            copy: lock.copy,
+            turn: lock.turn,
+            mirrored: lock.mirrored,
+            translation: lock.translation,
+        };
+        what.locked.iter().map(place).collect::<Vec<_>>()
+    };
+    let marker = Marker {
+        placements: items.iter().enumerate().flat_map(placed).collect(),
+        ..Marker::default()
+    };
+    if marker.placements.is_empty() {
+        return Vec::new();
+    }
+    let laid = |k: usize| (&marker.placements[k], &items[marker.placements[k].item]);
+    let name = |k: usize| format!("\"{}\" {}", laid(k).1.name, laid(k).0.copy);
+    let refuse = |k: usize, why: String| Refusal {
+        item: laid(k).0.item,
+        name: laid(k).1.name.clone(),
+        problem: ItemProblem::LockedBadly {
+            copy: laid(k).0.copy,
+            why,
+        },
+    };
+    let mut refusals = Vec::new();
+    for violation in judge(items, strip, &marker).violations {
+        let at = match violation {
+            Violation::Copy { .. } | Violation::Length { .. } => continue,
+            Violation::Overlap { pair, .. }
+            | Violation::Gap { pair, .. }
+            | Violation::Nap { pair, .. } => pair[1],
+            Violation::Outside { placement, .. }
+            | Violation::Orientation { placement, .. }
+            | Violation::OffFold { placement, .. }
+            | Violation::OffPrint { placement, .. }
+            | Violation::OnDefect { placement, .. }
+            | Violation::Moved { placement }
+            | Violation::Nonsense { placement } => placement,
+        };
+        refusals.push(refuse(at, violation.in_words(&name)));
+    }
+    if refusals.is_empty() && strip.nap == Nap::PerBundle {
+        refusals.extend(stranded(items, strip, &marker).map(|(k, why)| refuse(k, why)));
+    }
+    refusals
+}
+
+/// A locked placement whose garment runs a way that another piece of it may not, and why.
+fn stranded(items: &[Item], strip: &Strip, marker: &Marker) -> Option<(usize, String)> {
+    let mut ways: BTreeMap<u32, (usize, bool)> = BTreeMap::new();
+    for (k, placement) in marker.placements.iter().enumerate() {
+        let bundle = items[placement.item].bundle(placement.copy);
+        ways.insert(bundle, (k, placement.turn.cos() >= 0.0));
+    }
+    items.iter().find_map(|item| {
+        (0..item.quantity).find_map(|copy| {
+            let &(k, forward) = ways.get(&item.bundle(copy))?;
+            let mut own = orientations(item, strip, copy).into_iter();
+            let can = own.any(|way| (way.0.cos() >= 0.0) == forward);
+            (!can).then(|| {
+                let why = format!(
+                    "piece \"{}\" of its garment may not run that way; turn the locked piece round",
+                    item.name
+                );
+                (k, why)
+            })
+        })
+    })
 }

@@ -26,6 +26,8 @@ const TRIES: usize = 25;
 const LONGER: [f64; 3] = [3e-7, 2e-6, 1e-5];
 /// How often the ends of a failed layout are exchanged rather than two pieces.
 const ENDS: f64 = 0.2;
+/// How often a garment is turned round when the strip is cut down.
+const TURNED: f64 = 0.1;
 /// Most failed layouts kept.
 const POOL: usize = 24;
 
@@ -70,10 +72,11 @@ impl<'a> Island<'a> {
             .map_or((f64::INFINITY, f64::INFINITY), score)
     }
 
-    /// Takes a better layout from elsewhere. A try for a strip shorter still goes on.
+    /// Takes a better layout from elsewhere. A try for a strip shorter still goes on; one to lay a
+    /// piece more beside the old best does not.
     pub fn adopt(&mut self, layout: &Layout) {
         self.best = Some(layout.clone());
-        if self.target >= layout.length {
+        if self.target <= 0.0 || self.target >= layout.length {
             self.separator.give_up();
             self.pool.clear();
             self.target = 0.0;
@@ -126,8 +129,13 @@ impl<'a> Island<'a> {
         let Some(mut layout) = self.best.clone() else {
             return;
         };
-        let cut = self.separator.sequence.unit() * layout.length;
-        layout.resize(self.separator.job, target, cut);
+        let job = self.separator.job;
+        let sequence = &mut self.separator.sequence;
+        let cut = sequence.unit() * layout.length;
+        layout.resize(job, target, cut);
+        if job.bundles > 1 && sequence.unit() < TURNED {
+            turn_round(job, &mut layout, sequence.below(job.bundles));
+        }
         self.separator.load(layout);
     }
 
@@ -203,15 +211,13 @@ impl<'a> Island<'a> {
 
     /// Moves the pieces of the best layout that touch within rounding truly apart, where there is
     /// room for that, on a strip longer by as little as it takes.
-    pub fn polish(&mut self) {
+    ///
+    /// Where the limit comes first they stay as near as they are, which the referee allows.
+    pub fn polish(&mut self, limit: &Limit<'_>) {
         let Some(best) = self.best.clone() else {
             return;
         };
         let job = self.separator.job;
-        let limit = Limit {
-            queries: u64::MAX,
-            stop: &|| false,
-        };
         // Rounding of the no-fit polygons stays under half of what touching pieces keep.
         self.separator.tolerance = 0.5 * job.safe();
         for more in LONGER {
@@ -219,7 +225,7 @@ impl<'a> Island<'a> {
             layout.length = (best.length + more * job.height).min(job.longest());
             layout.length = layout.length.max(best.length);
             self.separator.load(layout);
-            if self.separator.separate(PRESS, &limit) == Outcome::Apart {
+            if self.separator.separate(PRESS, limit) == Outcome::Apart {
                 self.keep();
                 break;
             }
@@ -241,6 +247,9 @@ fn disturb(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
         }
         1 if job.sets > 0 => {
             let set = sequence.below(job.sets);
+            if job.is_fixed(set) {
+                return exchange(job, layout, sequence);
+            }
             let repeat = job.strip.stripes.map_or_else(Vec2::zeros, |s| s.repeat);
             let chance = Vec2::new(sequence.unit(), sequence.unit());
             layout.phases[set] = repeat.component_mul(&chance);

@@ -3,11 +3,12 @@
 //! Shapes are moved so that their boxes start at the origin. Moves are measured from the corner of
 //! the usable fabric.
 
-use crate::check::{folds_up, orientations};
+use crate::check::{TILTS, folds_up, orientations_within};
 use crate::marker::{Phase, turned};
 use crate::nofit::NoFit;
 use crate::pair::{Pair, PairQuery};
 use crate::raster::DepthRaster;
+use crate::side_by_side::side_by_side;
 use crate::simplify::simplify_outward;
 use crate::{FoldEdge, Item, Nap, Pose, Strip};
 use std::collections::BTreeMap;
@@ -28,14 +29,21 @@ const WINDOW: f64 = 0.02;
 const ROWS: f64 = 64.0;
 /// Outlines of more corners are not compared with each other.
 const MOST_CORNERS: usize = 500;
-/// Most numbers in all depth rasters together: 128 MB.
+/// Most numbers in all depth rasters together, padding included: 128 MB.
 const RASTER_NUMBERS: f64 = 32e6;
+/// Most no-fit polygons, about 50 kB each: where tilts would need more, fewer tilts are tried.
+const MOST_NO_FITS: usize = 4000;
+const FEW_TILTS: [f64; 3] = [0.0, -1.0, 1.0];
 
 /// A piece in one orientation.
 #[derive(Clone, Debug)]
 pub(crate) struct Shape {
     /// Index of the item, or of the defect after all items.
     pub kind: usize,
+    /// Number of its outline, which other items may share.
+    pub ring: usize,
+    /// The first shape with the same outline that lies alike.
+    pub look: usize,
     /// Angle from the warp to the grain \[rad\].
     pub turn: f64,
     pub mirrored: bool,
@@ -77,7 +85,7 @@ impl Piece {
     }
 }
 
-/// Kinds, angle between them \[rad\], and whether one of them is turned over.
+/// Outlines, angle between them \[rad\], and whether one of them is turned over.
 type Key = (usize, usize, f64, bool);
 
 /// What a coordinate of a piece's place may be.
@@ -145,32 +153,52 @@ impl<'a> Job<'a> {
             no_fits: Vec::new(),
             rasters: Vec::new(),
         };
-        job.add_items(copies);
-        job.add_defects();
-        job.pair_up();
-        let area = |(a, b): (&Shape, &Shape)| (a.size + b.size).x * (a.size + b.size).y;
-        let all = job.shapes.iter();
-        let total: f64 = all
-            .flat_map(|a| job.shapes.iter().map(move |b| area((a, b))))
-            .sum();
-        job.spacing = (job.height / ROWS).max((total / RASTER_NUMBERS).sqrt());
+        for tilts in [&TILTS[..], &FEW_TILTS, &[0.0]] {
+            job.add_items(copies, tilts);
+            job.add_defects();
+            job.pair_up();
+            if job.no_fits.len() <= MOST_NO_FITS {
+                break;
+            }
+        }
+        job.spacing = job.height / ROWS;
+        while job.raster_numbers() > RASTER_NUMBERS {
+            job.spacing *= 1.05;
+        }
         job
     }
 
-    fn add_items(&mut self, copies: &[(usize, u32)]) {
+    /// Numbers in all depth rasters together.
+    fn raster_numbers(&self) -> f64 {
+        let count = self.shapes.len();
+        let mut seen = vec![false; self.rasters.len()];
+        let mut sum = 0.0;
+        for (k, pair) in self.pairs.iter().enumerate() {
+            if !std::mem::replace(&mut seen[pair.raster as usize], true) {
+                sum += DepthRaster::numbers(self, k / count, k % count) as f64;
+            }
+        }
+        sum
+    }
+
+    fn add_items(&mut self, copies: &[(usize, u32)], tilts: &[f64]) {
+        self.shapes.clear();
+        self.pieces.clear();
+        self.rings.clear();
         let mut bundles = BTreeMap::new();
         let mut sets = BTreeMap::new();
         let mut known: BTreeMap<(usize, i64, bool), usize> = BTreeMap::new();
+        let mut looks: BTreeMap<(usize, i64, bool), usize> = BTreeMap::new();
         for (kind, item) in self.items.iter().enumerate() {
             let straight = Polygon::new(turned(&item.outline.outer, -item.grain, false)).oriented();
             let ring = simplify_outward(&straight.outer, SIMPLIFY * self.height);
-            self.rings.push(ring);
+            let ring = self.ring(ring);
             let own = copies.iter().filter(|c| c.0 == kind).map(|c| c.1);
             for copy in own {
                 let lock = item.locked.iter().find(|l| l.copy == copy);
                 let ways = match lock {
                     Some(lock) => vec![(lock.turn, lock.mirrored)],
-                    None => orientations(item, self.strip, copy),
+                    None => orientations_within(item, self.strip, (copy, tilts)),
                 };
                 let shapes: Vec<usize> = ways
                     .into_iter()
@@ -179,7 +207,10 @@ impl<'a> Job<'a> {
                         if let Some(&shape) = known.get(&key) {
                             return Some(shape);
                         }
-                        let shape = Shape::new(kind, item, way, self.strip)?;
+                        let mut shape = Shape::new(kind, item, way, self.strip)?;
+                        shape.ring = ring;
+                        let next = self.shapes.len();
+                        shape.look = *looks.entry((ring, key.1, way.1)).or_insert(next);
                         self.shapes.push(shape);
                         known.insert(key, self.shapes.len() - 1);
                         Some(self.shapes.len() - 1)
@@ -190,7 +221,7 @@ impl<'a> Job<'a> {
                     let at = lock.translation + self.shapes[shape].offset - self.corner();
                     (shape, at)
                 });
-                let bundle = (self.strip.nap == Nap::PerBundle && lock.is_none()).then(|| {
+                let bundle = (self.strip.nap == Nap::PerBundle).then(|| {
                     let count = bundles.len();
                     *bundles.entry(item.bundle(copy)).or_insert(count)
                 });
@@ -213,6 +244,28 @@ impl<'a> Job<'a> {
             }
         }
         (self.bundles, self.sets) = (bundles.len(), sets.len());
+    }
+
+    /// The number of an outline, the old one if there is one just alike.
+    fn ring(&mut self, ring: Vec<Vec2>) -> usize {
+        let known = self.rings.iter().position(|old| *old == ring);
+        known.unwrap_or_else(|| {
+            self.rings.push(ring);
+            self.rings.len() - 1
+        })
+    }
+
+    /// Which way a garment runs at first: every second one backwards, if all its pieces may.
+    pub fn starts_forward(&self, bundle: usize) -> bool {
+        let mut own = self.pieces.iter().filter(|p| p.bundle == Some(bundle));
+        let may = |p: &Piece| p.shapes.iter().any(|&s| !self.shapes[s].forward);
+        bundle % 2 == 0 || !own.all(may)
+    }
+
+    /// Whether locked pieces fix where a matched set lies.
+    pub fn is_fixed(&self, set: usize) -> bool {
+        let fixes = |p: &Piece| p.set == Some(set) && p.locked.is_some();
+        self.pieces.iter().any(fixes)
     }
 
     /// Shapes without those that look like an earlier one: a rectangle turned half round is the
@@ -244,9 +297,11 @@ impl<'a> Job<'a> {
         for (k, defect) in self.strip.defects.iter().enumerate() {
             let outline = defect.outline.oriented();
             let bounds = outline.bounds();
-            self.rings.push(outline.outer);
+            let ring = self.ring(outline.outer);
             self.shapes.push(Shape {
                 kind: self.items.len() + k,
+                ring,
+                look: self.shapes.len(),
                 turn: 0.0,
                 mirrored: false,
                 offset: bounds.min,
@@ -338,23 +393,25 @@ impl<'a> Job<'a> {
     /// With N(a, b) = a + (-b) and an isometry Q: N(Qa, Qb) = Q N(a, b) and N(b, a) = -N(a, b), so
     /// one polygon serves all pairs that lie alike.
     fn pair_up(&mut self) {
+        self.keys.clear();
         let count = self.shapes.len();
+        let mut rasters: BTreeMap<(usize, usize, u64), u32> = BTreeMap::new();
         let mut known: BTreeMap<(usize, usize, i64, bool), u32> = BTreeMap::new();
         let mut pairs = Vec::with_capacity(count * count);
         for a in &self.shapes {
             for b in &self.shapes {
-                let swapped = b.kind < a.kind;
+                let swapped = b.ring < a.ring;
                 let (fixed, moving) = if swapped { (b, a) } else { (a, b) };
                 let apart = moving.turn - fixed.turn;
                 let apart = if fixed.mirrored { -apart } else { apart };
                 let angle = (apart.rem_euclid(TAU) * 1e9).round() as i64;
                 let angle = angle % (TAU * 1e9).round() as i64;
                 let mirrored = fixed.mirrored != moving.mirrored;
-                let key = (fixed.kind, moving.kind, angle, mirrored);
+                let key = (fixed.ring, moving.ring, angle, mirrored);
                 let next = known.len() as u32;
                 let no_fit = *known.entry(key).or_insert(next);
                 if no_fit == next {
-                    self.keys.push((fixed.kind, moving.kind, apart, mirrored));
+                    self.keys.push((fixed.ring, moving.ring, apart, mirrored));
                 }
                 let sign = if swapped { -1.0 } else { 1.0 };
                 let pose = Pose {
@@ -365,18 +422,22 @@ impl<'a> Job<'a> {
                 };
                 let axes = pose.axes().map(|axis| axis * sign);
                 let between = a.offset - b.offset;
+                let gap = self.gap(a.kind, b.kind);
+                let next = rasters.len() as u32;
+                let raster = rasters.entry((a.look, b.look, gap.to_bits()));
                 pairs.push(Pair {
                     no_fit,
+                    raster: *raster.or_insert(next),
                     axes,
                     shift: Vec2::new(between.dot(&axes[0]), between.dot(&axes[1])),
-                    gap: self.gap(a.kind, b.kind),
+                    gap,
                 });
             }
         }
         let gaps = pairs.iter().map(|p| p.gap);
         self.widest_gap = gaps.filter(|g| g.is_finite()).fold(0.0, f64::max);
         self.no_fits = known.iter().map(|_| OnceLock::new()).collect();
-        self.rasters = pairs.iter().map(|_| OnceLock::new()).collect();
+        self.rasters = rasters.iter().map(|_| OnceLock::new()).collect();
         self.pairs = pairs;
     }
 
@@ -384,7 +445,7 @@ impl<'a> Job<'a> {
         self.no_fits[number as usize].get_or_init(|| {
             let (fixed, moving, angle, mirrored) = self.keys[number as usize];
             let ring = turned(&self.rings[moving], angle, mirrored);
-            let reach = self.gap(fixed, moving).max(0.0) + self.window();
+            let reach = self.widest_gap + self.window();
             NoFit::new(&no_fit_polygon(&self.rings[fixed], &ring), reach)
         })
     }
@@ -411,20 +472,26 @@ impl<'a> Job<'a> {
     /// The outline of a shape as the search takes it, from the corner of its box \[m\].
     pub fn taken(&self, shape: usize) -> Polygon {
         let shape = &self.shapes[shape];
-        let ring = turned(&self.rings[shape.kind], shape.turn, shape.mirrored);
+        let ring = turned(&self.rings[shape.ring], shape.turn, shape.mirrored);
         Polygon::new(ring).translated(-shape.offset)
     }
 
     /// The losses of a moving shape at regular moves from a fixed one.
     pub fn raster(&self, fixed: usize, moving: usize) -> &DepthRaster {
-        self.rasters[fixed * self.shapes.len() + moving]
-            .get_or_init(|| DepthRaster::new(self, fixed, moving))
+        let number = self.pairs[fixed * self.shapes.len() + moving].raster;
+        self.rasters[number as usize].get_or_init(|| DepthRaster::new(self, fixed, moving))
     }
 
-    /// Makes all no-fit polygons, on as many threads as asked; stops early if `stop` says so.
-    pub fn prepare(&self, threads: usize, stop: &(dyn Fn() -> bool + Sync)) {
+    /// Makes all no-fit polygons, on as many threads as asked, and says so now and then; stops
+    /// early if `stop` says so: those left are made when they are needed.
+    pub fn prepare(
+        &self,
+        threads: usize,
+        stop: &(dyn Fn() -> bool + Sync),
+        told: &mut dyn FnMut(),
+    ) {
         let next = AtomicUsize::new(0);
-        let work = || {
+        let work = |_: usize| {
             while !stop() {
                 let number = next.fetch_add(1, Ordering::Relaxed);
                 if number >= self.no_fits.len() {
@@ -433,12 +500,8 @@ impl<'a> Job<'a> {
                 self.no_fit(number as u32);
             }
         };
-        std::thread::scope(|scope| {
-            for _ in 1..threads {
-                scope.spawn(work);
-            }
-            work();
-        });
+        let threads = threads.clamp(1, self.no_fits.len().max(1));
+        side_by_side((0..threads).collect(), &work, told);
     }
 
     /// What the coordinates of a piece's place may be, for the phases chosen for the sets.
@@ -493,6 +556,8 @@ impl Shape {
         };
         Some(Self {
             kind,
+            ring: 0,
+            look: 0,
             turn,
             mirrored,
             offset: bounds.min,

@@ -1,6 +1,7 @@
 //! Where all pieces lie, overlaps allowed.
 
 use crate::job::{Axis, Job, Piece};
+use crate::marker::Phase;
 use toile_geometry::Vec2;
 
 /// Where a piece lies that is not laid: far from the strip and from all others.
@@ -33,26 +34,61 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// No piece laid but the locked ones.
+    /// No piece laid but the locked ones. Garments run either way in turn, where they may.
     pub fn new(job: &Job<'_>, length: f64) -> Self {
-        let runs_forward = |&&s: &&usize| job.shapes[s].forward;
-        let forward = |p: &Piece| p.shapes.iter().find(runs_forward).copied();
+        let forward: Vec<bool> = (0..job.bundles).map(|b| job.starts_forward(b)).collect();
+        let as_garment = |p: &Piece| {
+            let way = p.bundle.is_none_or(|b| forward[b]);
+            let runs = |&&s: &&usize| job.shapes[s].forward == way;
+            p.shapes.iter().find(runs).copied()
+        };
         let first = |p: &Piece| {
             p.locked
                 .map(|l| l.0)
-                .or_else(|| forward(p))
+                .or_else(|| as_garment(p))
                 .unwrap_or_else(|| p.shapes[0])
         };
         let shape: Vec<usize> = job.pieces.iter().map(first).collect();
         let place = |(k, p): (usize, &Piece)| p.locked.map_or_else(|| nowhere(job, k), |l| l.1);
-        Self {
+        let mut layout = Self {
             present: job.pieces.iter().map(|p| p.locked.is_some()).collect(),
             at: job.pieces.iter().enumerate().map(place).collect(),
             size: shape.iter().map(|&s| job.shapes[s].size).collect(),
             shape,
             length,
-            forward: vec![true; job.bundles],
+            forward,
             phases: vec![Vec2::zeros(); job.sets],
+        };
+        layout.obey_locks(job);
+        layout
+    }
+
+    /// Ways of garments and phases of sets that locked pieces fix.
+    pub fn obey_locks(&mut self, job: &Job<'_>) {
+        for (k, piece) in job.pieces.iter().enumerate() {
+            let Some((shape, _)) = piece.locked else {
+                continue;
+            };
+            if let Some(bundle) = piece.bundle {
+                self.forward[bundle] = job.shapes[shape].forward;
+            }
+            self.set_phase(job, k);
+        }
+    }
+
+    /// Where in the repeat a matched set lies follows from one of its pieces.
+    pub fn set_phase(&mut self, job: &Job<'_>, piece: usize) {
+        let (Some(set), Some(stripes)) = (job.pieces[piece].set, job.strip.stripes) else {
+            return;
+        };
+        let item = job.pieces[piece].item.map(|k| &job.items[k]);
+        let point = item.and_then(|i| i.match_point);
+        let anchor = job.shapes[self.shape[piece]].anchor;
+        if let (Some(anchor), Some(Phase::Set(_))) = (anchor, point.map(|p| p.phase)) {
+            let at: Vec2 = self.at[piece] + anchor + job.corner() - stripes.origin;
+            for axis in (0..2).filter(|&axis| stripes.repeat[axis] > 0.0) {
+                self.phases[set][axis] = at[axis].rem_euclid(stripes.repeat[axis]);
+            }
         }
     }
 

@@ -24,12 +24,14 @@ mod rules;
 mod search;
 mod separate;
 mod sequence;
+mod side_by_side;
 mod simplify;
 mod slide;
 mod start;
 mod warm;
+mod words;
 
-pub use check::{ItemProblem, NestingError, Refusal};
+pub use check::{ItemProblem, MOST_PIECES, NestingError, Refusal};
 pub use marker::{
     Allowed, Defect, Fold, FoldEdge, Item, Locked, Marker, MatchPoint, Mirror, Nap, Phase,
     Placement, Pose, Strip, Stripes, Unplaced,

@@ -255,6 +255,14 @@ impl Strip {
         }
     }
 
+    /// Layers of one ply: two where it is folded.
+    pub(crate) fn layers(&self) -> f64 {
+        match self.fold {
+            Fold::Open => 1.0,
+            Fold::Lower | Fold::Both => 2.0,
+        }
+    }
+
     /// Width between the selvedges \[m\].
     pub fn usable_width(&self) -> f64 {
         self.upper() - self.lower()

@@ -5,8 +5,8 @@
 
 use toile_geometry::{Bounds2, Polygon, Vec2};
 
-/// Cells along either side of the grid.
-const CELLS: usize = 64;
+/// Cells along either side of the grid: at least, and at most.
+const CELLS: [usize; 2] = [16, 64];
 /// Points of an outline nearer to each other than this part of its extent are one: rounding of the
 /// polygon operations leaves such pairs.
 const REPEATED: f64 = 8e-9;
@@ -37,6 +37,8 @@ pub(crate) struct NoFit {
     edges: Vec<Edge>,
     /// For every cell where its list starts and ends.
     cells: Vec<[u32; 2]>,
+    /// Cells along either side.
+    count: usize,
     lists: Vec<u32>,
     corner: Vec2,
     per_metre: Vec2,
@@ -56,16 +58,19 @@ impl NoFit {
         let bounds = Bounds2::of(regions.iter().flat_map(|r| r.outer.iter().copied()));
         let bounds = bounds.grown(reach);
         let size = bounds.size();
+        let count = (2 * edges.len()).next_power_of_two();
+        let count = count.clamp(CELLS[0], CELLS[1]);
         let mut no_fit = Self {
             edges,
-            cells: vec![[0, 0]; CELLS * CELLS],
+            cells: vec![[0, 0]; count * count],
+            count,
             lists: Vec::new(),
             corner: bounds.min,
-            per_metre: Vec2::new(CELLS as f64 / size.x, CELLS as f64 / size.y),
+            per_metre: Vec2::new(count as f64 / size.x, count as f64 / size.y),
         };
         let all: Vec<u32> = (0..no_fit.edges.len() as u32).collect();
         if !all.is_empty() {
-            no_fit.divide([0, 0], CELLS, &all, reach);
+            no_fit.divide([0, 0], count, &all, reach);
         }
         no_fit
     }
@@ -99,7 +104,8 @@ impl NoFit {
         self.lists.extend(&kept);
         let range = [start, self.lists.len() as u32];
         for y in row..row + count {
-            self.cells[y * CELLS + column..y * CELLS + column + count].fill(range);
+            let start = y * self.count + column;
+            self.cells[start..start + count].fill(range);
         }
     }
 
@@ -143,12 +149,12 @@ impl NoFit {
     #[inline]
     pub fn probe(&self, at: Vec2) -> Option<Probe> {
         let cell = (at - self.corner).component_mul(&self.per_metre);
-        let inside =
-            cell.x >= 0.0 && cell.y >= 0.0 && cell.x < CELLS as f64 && cell.y < CELLS as f64;
+        let end = self.count as f64;
+        let inside = cell.x >= 0.0 && cell.y >= 0.0 && cell.x < end && cell.y < end;
         if !inside {
             return None;
         }
-        let [start, end] = self.cells[cell.y as usize * CELLS + cell.x as usize];
+        let [start, end] = self.cells[cell.y as usize * self.count + cell.x as usize];
         (start < end).then(|| self.side(&self.lists[start as usize..end as usize], at))
     }
 }

@@ -7,6 +7,8 @@ use toile_geometry::Vec2;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
     pub no_fit: u32,
+    /// Number of its depth raster.
+    pub raster: u32,
     /// Columns of the map from the kept polygon's plane.
     pub axes: [Vec2; 2],
     pub shift: Vec2,

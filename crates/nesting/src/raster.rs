@@ -30,30 +30,39 @@ fn padded(columns: usize) -> usize {
 }
 
 impl DepthRaster {
-    /// Samples a pair of shapes at every cell where it may lose.
-    pub fn new(job: &Job<'_>, fixed: usize, moving: usize) -> Self {
+    /// First cell of a pair's raster, its columns and its rows.
+    fn extent(job: &Job<'_>, fixed: usize, moving: usize) -> ([i32; 2], usize, usize) {
         let (a, b) = (&job.shapes[fixed], &job.shapes[moving]);
         let more = job.widest_gap + job.growth();
         let low = |k: usize| ((-b.size[k] - more) / job.spacing).floor() as i32;
         let high = |k: usize| ((a.size[k] + more) / job.spacing).ceil() as i32;
-        let (columns, rows) = (
-            (high(0) - low(0) + 1) as usize,
-            (high(1) - low(1) + 1) as usize,
-        );
+        let count = |k: usize| (high(k) - low(k) + 1) as usize;
+        ([low(0), low(1)], count(0), count(1))
+    }
+
+    /// Numbers that the raster of a pair holds.
+    pub fn numbers(job: &Job<'_>, fixed: usize, moving: usize) -> usize {
+        let (_, columns, rows) = Self::extent(job, fixed, moving);
+        padded(columns) * rows
+    }
+
+    /// Samples a pair of shapes at every cell where it may lose.
+    pub fn new(job: &Job<'_>, fixed: usize, moving: usize) -> Self {
+        let (first, columns, rows) = Self::extent(job, fixed, moving);
         let stride = padded(columns);
         let mut values = Vec::with_capacity(stride * rows);
         for row in 0..rows {
             for column in 0..columns {
                 let cell = Vec2::new(
-                    f64::from(low(0) + column as i32),
-                    f64::from(low(1) + row as i32),
+                    f64::from(first[0] + column as i32),
+                    f64::from(first[1] + row as i32),
                 );
                 values.push(job.loss(fixed, moving, cell * job.spacing) as f32);
             }
             values.resize((row + 1) * stride, 0.0);
         }
         Self {
-            first: [low(0), low(1)],
+            first,
             columns,
             stride,
             values,

@@ -60,7 +60,11 @@ fn check_orientation(
         apart.min(std::f64::consts::TAU - apart) < tilt
     };
     let turned = item.allowed.turns.iter().any(|&t| near(t));
-    let with_nap = strip.nap != Nap::OneWay || near(0.0);
+    let with_nap = match strip.nap {
+        Nap::None => true,
+        Nap::OneWay => near(0.0),
+        Nap::PerBundle => near(0.0) || near(std::f64::consts::PI),
+    };
     let sided = match item.allowed.mirror {
         Mirror::Never => !placement.mirrored,
         Mirror::Pairs => placement.mirrored == (placement.copy % 2 == 1),
@@ -86,7 +90,9 @@ fn check_fold(
     // Turning half round and turning over each bring the upper side down.
     let flipped = placement.mirrored != (placement.turn.cos() < 0.0);
     let lower = (edge == FoldEdge::Lower) != flipped;
+    let along = placement.turn.sin().abs() < SAME_ANGLE;
     let by = match (strip.fold, lower) {
+        _ if !along => f64::INFINITY,
         (Fold::Lower | Fold::Both, true) => bounds.min.y.abs(),
         (Fold::Both, false) => (bounds.max.y - strip.width).abs(),
         _ => f64::INFINITY,
@@ -100,8 +106,9 @@ fn check_fold(
 fn check_locked(index: usize, placement: &Placement, item: &Item) -> Option<Violation> {
     let lock = item.locked.iter().find(|l| l.copy == placement.copy)?;
     let moved = (lock.translation - placement.translation).norm();
+    let apart = (lock.turn - placement.turn).rem_euclid(std::f64::consts::TAU);
     let same = !beyond_limit(moved)
-        && (lock.turn - placement.turn).abs() < SAME_ANGLE
+        && apart.min(std::f64::consts::TAU - apart) < SAME_ANGLE
         && lock.mirrored == placement.mirrored;
     (!same).then_some(Violation::Moved { placement: index })
 }
@@ -113,9 +120,6 @@ fn check_nap(strip: &Strip, laid: &[Laid<'_>], marker: &Marker, violations: &mut
     let mut ways: BTreeMap<u32, (usize, bool)> = BTreeMap::new();
     for (k, item, _) in laid {
         let placement = &marker.placements[*k];
-        if item.locked.iter().any(|l| l.copy == placement.copy) {
-            continue;
-        }
         let bundle = item.bundle(placement.copy);
         let forward = placement.turn.cos() >= 0.0;
         let (first, way) = *ways.entry(bundle).or_insert((*k, forward));

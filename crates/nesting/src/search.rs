@@ -5,6 +5,7 @@ use crate::explore::Island;
 use crate::job::Job;
 use crate::layout::Layout;
 use crate::separate::Limit;
+use crate::side_by_side::side_by_side;
 use crate::warm::{finish, layout_of};
 use crate::{Item, Marker, Strip, judge};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -27,8 +28,10 @@ pub struct Search {
     /// Start of the sequences of chance; the same seed gives the same marker.
     pub seed: u64,
     /// Searches side by side; their number changes the marker, the number of processors does not.
+    /// 0 for two, or for one a processor where the clock decides.
     pub islands: usize,
-    /// Threads; 0 for as many as the machine has. More than there are islands are not used.
+    /// Threads; 0 for as many as the machine has. The search uses one an island at most, the
+    /// tables made before it as many as the machine has at most.
     pub threads: usize,
 }
 
@@ -37,7 +40,7 @@ impl Default for Search {
         Self {
             budget: Budget::Evaluations(10_000_000),
             seed: 1,
-            islands: 2,
+            islands: 0,
             threads: 0,
         }
     }
@@ -68,19 +71,27 @@ pub struct Progress {
     pub done: f64,
     /// Pairs of pieces evaluated.
     pub evaluations: u64,
-    /// Length of the best so far, end margins included \[m\].
+    /// Length of the best so far, end margins included \[m\]; infinite before the first.
     pub length: f64,
 }
 
 /// How the outside follows and stops a search.
 pub struct Control<'a> {
-    /// Told now and then.
+    /// Told some twenty times a second, with the same numbers where nothing is new.
     pub progress: &'a mut dyn FnMut(Progress),
     /// Set from anywhere to stop: the search ends with the best marker so far, or with
     /// [`NestingError::Cancelled`] if there is none yet.
     pub cancel: &'a AtomicBool,
 }
 
+/// Most islands: each holds tables of all pairs of pieces.
+const MOST_ISLANDS: usize = 64;
+/// Islands where the bytes must not depend on the machine, and the fewest anywhere.
+const USUAL_ISLANDS: usize = 2;
+/// Part of the time in which no-fit polygons are made beforehand; the rest are made when needed.
+const PREPARING: f64 = 0.3;
+/// Part of the time after which the last touch ends too.
+const POLISHING: f64 = 1.1;
 /// Part of the budget spent on new layouts; the rest presses the best one.
 const EXPLORING: f64 = 0.8;
 /// Evaluations of an island between two exchanges.
@@ -190,6 +201,7 @@ fn run(
     (search, control): (Search, &mut Control<'_>),
 ) -> Result<Marker, NestingError> {
     check(items, strip)?;
+    let search = checked(search)?;
     let meter = Meter {
         search,
         cancel: control.cancel,
@@ -199,7 +211,8 @@ fn run(
         .flat_map(|k| (0..items[k].quantity).map(move |copy| (k, copy)))
         .collect();
     let job = Job::new(items, strip, &copies);
-    job.prepare(threads(search), &|| control.cancel.load(Ordering::Relaxed));
+    let mut told = || (control.progress)(BEGUN);
+    job.prepare(threads(search), &|| meter.stops(PREPARING), &mut told);
     let layout = start.map(|marker| layout_of(&job, marker));
     let best = hunt(&job, layout.as_ref(), &meter, control)?;
     let marker = finish(&job, &best);
@@ -210,8 +223,48 @@ fn run(
     }
     match judge(items, strip, &marker).violations.first() {
         None => Ok(marker),
-        Some(violation) => Err(NestingError::Unsound(format!("{violation:?}"))),
+        Some(violation) => {
+            let name = |k: usize| {
+                let placement = &marker.placements[k];
+                format!("\"{}\" {}", items[placement.item].name, placement.copy)
+            };
+            Err(NestingError::Unsound(violation.in_words(&name)))
+        }
     }
+}
+
+/// What is told before there is a first layout.
+const BEGUN: Progress = Progress {
+    done: 0.0,
+    evaluations: 0,
+    length: f64::INFINITY,
+};
+
+/// A search that can be made, with its islands counted.
+fn checked(mut search: Search) -> Result<Search, NestingError> {
+    let refuse = |what: String| Err(NestingError::Search(what));
+    if let Budget::Seconds(seconds) = search.budget
+        && !(seconds >= 0.0)
+    {
+        return refuse(format!("the time is {seconds} s; give 0 or more"));
+    }
+    if search.islands > MOST_ISLANDS {
+        let count = search.islands;
+        return refuse(format!(
+            "{count} islands are too many; give {MOST_ISLANDS} at most"
+        ));
+    }
+    if search.islands == 0 {
+        search.islands = match search.budget {
+            Budget::Evaluations(_) => USUAL_ISLANDS,
+            Budget::Seconds(_) => processors().clamp(USUAL_ISLANDS, MOST_ISLANDS),
+        };
+    }
+    Ok(search)
+}
+
+fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// Whether a marker has less laid than another, or as much on more fabric.
@@ -222,8 +275,8 @@ fn is_behind(marker: &Marker, other: &Marker) -> bool {
 
 fn threads(search: Search) -> usize {
     match search.threads {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
-        threads => threads,
+        0 => processors(),
+        threads => threads.min(processors().max(search.islands)),
     }
 }
 
@@ -244,7 +297,8 @@ fn hunt(
 ) -> Result<Layout, NestingError> {
     let mut islands = islands(job, meter.search);
     let threads = threads(meter.search);
-    each(&mut islands, threads, &|island| {
+    let mut told = || (control.progress)(BEGUN);
+    let begin = |island: &mut Island<'_>| {
         let limit = Limit {
             queries: u64::MAX,
             stop: &|| meter.cancel.load(Ordering::Relaxed),
@@ -253,18 +307,20 @@ fn hunt(
             Some(layout) => island.start_from(layout, &limit),
             None => island.start(&limit),
         }
-    });
+    };
+    each(&mut islands, threads, (&begin, &mut told));
     share(&mut islands);
-    tell(&islands, meter, control);
+    let mut last = tell(&islands, meter, control);
     for (part, press) in [(EXPLORING, false), (1.0, true)] {
         loop {
             let most = islands.iter().map(Island::queries).max().unwrap_or(0);
             if meter.stops(part) || most >= meter.share(part) {
                 break;
             }
-            epoch(&mut islands, meter, (part, press));
+            let mut again = || (control.progress)(last);
+            epoch(&mut islands, meter, (part, press), &mut again);
             share(&mut islands);
-            tell(&islands, meter, control);
+            last = tell(&islands, meter, control);
             let now = islands.iter().map(Island::queries).max().unwrap_or(0);
             if now == most {
                 // Nothing is left to try.
@@ -273,17 +329,25 @@ fn hunt(
         }
     }
     let best = best_of(&islands).map(|k| islands.swap_remove(k));
-    let mut best = best.ok_or(NestingError::NoItems)?;
-    best.polish();
+    let mut best = best.ok_or(NestingError::Cancelled)?;
+    best.polish(&Limit {
+        queries: u64::MAX,
+        stop: &|| meter.stops(POLISHING),
+    });
     best.best.ok_or(NestingError::Cancelled)
 }
 
 /// Lets every island search until the next exchange.
-fn epoch(islands: &mut [Island<'_>], meter: &Meter<'_>, (part, press): (f64, bool)) {
+fn epoch(
+    islands: &mut [Island<'_>],
+    meter: &Meter<'_>,
+    (part, press): (f64, bool),
+    told: &mut dyn FnMut(),
+) {
     let count = islands.len() as u64;
     let queries = EPOCH.min(meter.share(1.0) / 16 + 1);
     let ends = meter.end_of_epoch();
-    each(islands, threads(meter.search), &|island| {
+    let work = |island: &mut Island<'_>| {
         let limit = Limit {
             queries: match ends {
                 Some(_) => u64::MAX,
@@ -297,20 +361,20 @@ fn epoch(islands: &mut [Island<'_>], meter: &Meter<'_>, (part, press): (f64, boo
         } else {
             island.explore(&limit);
         }
-    });
+    };
+    each(islands, threads(meter.search), (&work, told));
 }
 
 /// Works on all islands, on so many threads.
-fn each<'a>(islands: &mut [Island<'a>], threads: usize, work: &(dyn Fn(&mut Island<'a>) + Sync)) {
+fn each<'a>(
+    islands: &mut [Island<'a>],
+    threads: usize,
+    (work, told): (&(dyn Fn(&mut Island<'a>) + Sync), &mut dyn FnMut()),
+) {
     let share = islands.len().div_ceil(threads.max(1)).max(1);
-    std::thread::scope(|scope| {
-        let mut chunks = islands.chunks_mut(share);
-        let own = chunks.next();
-        for chunk in chunks {
-            scope.spawn(move || chunk.iter_mut().for_each(work));
-        }
-        own.into_iter().flatten().for_each(work);
-    });
+    let chunks = islands.chunks_mut(share).collect();
+    let chunk = |chunk: &mut [Island<'a>]| chunk.iter_mut().for_each(work);
+    side_by_side(chunks, &chunk, told);
 }
 
 /// The best layout goes to islands that are clearly behind.
@@ -332,15 +396,17 @@ fn best_of(islands: &[Island<'_>]) -> Option<usize> {
     (0..islands.len()).min_by(|&a, &b| order(islands[a].score(), islands[b].score()))
 }
 
-fn tell(islands: &[Island<'_>], meter: &Meter<'_>, control: &mut Control<'_>) {
+fn tell(islands: &[Island<'_>], meter: &Meter<'_>, control: &mut Control<'_>) -> Progress {
     let evaluations: u64 = islands.iter().map(Island::queries).sum();
     let length = best_of(islands).map_or(f64::INFINITY, |k| islands[k].score().1);
     let margin = islands
         .first()
         .map_or(0.0, |i| 2.0 * i.separator.job.strip.end_margin);
-    (control.progress)(Progress {
+    let progress = Progress {
         done: meter.done(evaluations).min(1.0),
         evaluations,
         length: length + margin,
-    });
+    };
+    (control.progress)(progress);
+    progress
 }

@@ -119,9 +119,12 @@ impl<'a> Separator<'a> {
     fn measure_piece(&mut self, piece: usize) {
         let count = self.layout.at.len();
         let (shape, at) = (self.layout.shape[piece], self.layout.at[piece]);
+        let stays = |k: usize| self.job.pieces[k].locked.is_some();
+        let locked = stays(piece);
         for other in 0..count {
             let apart = at - self.layout.at[other];
-            let loss = if other == piece {
+            // Two that lie already lie as they do.
+            let loss = if other == piece || (locked && stays(other)) {
                 0.0
             } else {
                 self.job.loss(self.layout.shape[other], shape, apart)

@@ -68,7 +68,12 @@ impl Island<'_> {
             fits
         });
         self.construct(longest, &order);
-        while self.separator.separate(CROWDED, limit) != Outcome::Apart {
+        loop {
+            match self.separator.separate(CROWDED, limit) {
+                Outcome::Apart => break,
+                Outcome::Paused => return,
+                Outcome::Failed => {}
+            }
             let worst = |&a: &usize, &b: &usize| {
                 let loss = |k: usize| self.separator.loss_of(k) / job.pieces[k].area;
                 loss(a).total_cmp(&loss(b)).then(a.cmp(&b))

@@ -4,9 +4,8 @@ use crate::explore::Island;
 use crate::job::Job;
 use crate::layout::Layout;
 use crate::separate::{Limit, Outcome, Patience};
-use crate::{Marker, Phase, Placement, Unplaced};
+use crate::{Marker, Placement, Unplaced};
 use std::f64::consts::TAU;
-use toile_geometry::Vec2;
 
 /// Patience with a layout given that is not sound.
 const REPAIR: Patience = Patience {
@@ -105,25 +104,10 @@ pub(crate) fn layout_of(job: &Job<'_>, marker: &Marker) -> Layout {
             layout.forward[bundle] = job.shapes[shape].forward;
         }
         layout.put(job, piece, shape, at - job.corner());
-        set_phase(job, &mut layout, piece);
+        layout.set_phase(job, piece);
     }
+    layout.obey_locks(job);
     layout
-}
-
-/// Where in the repeat a matched set lies follows from its pieces.
-fn set_phase(job: &Job<'_>, layout: &mut Layout, piece: usize) {
-    let (Some(set), Some(stripes)) = (job.pieces[piece].set, job.strip.stripes) else {
-        return;
-    };
-    let item = job.pieces[piece].item.map(|k| &job.items[k]);
-    let point = item.and_then(|i| i.match_point);
-    let anchor = job.shapes[layout.shape[piece]].anchor;
-    if let (Some(anchor), Some(Phase::Set(_))) = (anchor, point.map(|p| p.phase)) {
-        let at: Vec2 = layout.at[piece] + anchor + job.corner() - stripes.origin;
-        for axis in (0..2).filter(|&axis| stripes.repeat[axis] > 0.0) {
-            layout.phases[set][axis] = at[axis].rem_euclid(stripes.repeat[axis]);
-        }
-    }
 }
 
 impl Island<'_> {

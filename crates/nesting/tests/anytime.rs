@@ -216,3 +216,60 @@ fn locks_and_print_hold_when_going_on() {
     assert!(more.length <= marker.length);
     assert!(more.placements.contains(&laid), "it stays");
 }
+
+#[test]
+fn searches_that_make_no_sense_are_refused() {
+    let (items, strip) = (pieces(), Strip::of_width(1.2));
+    for search in [
+        Search::seconds(f64::NAN),
+        Search::seconds(-1.0),
+        Search {
+            islands: 1_000_000,
+            ..Search::evaluations(1_000)
+        },
+    ] {
+        let mut control = Control {
+            progress: &mut |_| {},
+            cancel: &AtomicBool::new(false),
+        };
+        let error = make_marker(&items, &strip, search, &mut control).unwrap_err();
+        assert!(error.to_string().starts_with("search: "), "{error}");
+    }
+}
+
+#[test]
+fn a_search_stopped_before_a_marker_is_there_says_so() {
+    let (items, strip) = (pieces(), Strip::of_width(1.2));
+    let short = Strip {
+        max_length: Some(0.6),
+        ..strip.clone()
+    };
+    for strip in [strip, short] {
+        let mut control = Control {
+            progress: &mut |_| {},
+            cancel: &AtomicBool::new(true),
+        };
+        let made = make_marker(&items, &strip, Search::seconds(5.0), &mut control);
+        assert_eq!(made, Err(NestingError::Cancelled));
+    }
+}
+
+#[test]
+fn many_tilts_are_thinned_so_that_the_clock_is_kept() {
+    let item = |k: u32| {
+        let bulge = 0.003 * f64::from(k);
+        let outline = polygon(&[(0.0, 0.0), (0.3, bulge), (0.25, 0.2), (0.05, 0.2 + bulge)]);
+        let mut item = Item::new(format!("piece {k}"), outline);
+        item.allowed.tilt = 0.03;
+        item
+    };
+    let items: Vec<Item> = (0..40).map(item).collect();
+    let started = std::time::Instant::now();
+    let marker = make(&items, &Strip::of_width(1.5), Search::seconds(1.0));
+    assert_eq!(marker.placements.len(), 40);
+    assert!(
+        started.elapsed().as_secs_f64() < 20.0,
+        "{:?}",
+        started.elapsed()
+    );
+}

@@ -384,3 +384,34 @@ fn too_many_points_and_copies_are_refused_by_name() {
         }
     }
 }
+
+#[test]
+fn too_many_pieces_together_are_refused() {
+    let item = |name: &str| Item {
+        quantity: 1_500,
+        ..Item::new(name, rectangle(0.0, 0.0, 0.01, 0.01))
+    };
+    let error = try_make(&[item("one"), item("two")], &Strip::of_width(1.0)).unwrap_err();
+    assert!(error.to_string().contains("3000 pieces"), "{error}");
+}
+
+#[test]
+fn the_remedy_for_wide_pieces_is_the_width_of_the_open_fabric() {
+    let items = [Item::new("yoke", rectangle(0.0, 0.0, 0.3, 0.9))];
+    for (fold, open) in [
+        (Fold::Open, "940 mm"),
+        (Fold::Lower, "1840 mm"),
+        (Fold::Both, "1800 mm"),
+    ] {
+        let strip = Strip {
+            fold,
+            selvedge: 0.02,
+            ..Strip::of_width(0.8)
+        };
+        let words = try_make(&items, &strip).unwrap_err().to_string();
+        assert!(
+            words.contains(&format!("at least {open} wide")),
+            "{fold:?}: {words}"
+        );
+    }
+}

@@ -203,7 +203,8 @@ fn progress_is_told_and_cancelling_stops() {
     let mut seen: Vec<toile_nesting::Progress> = Vec::new();
     let mut note = |p: toile_nesting::Progress| {
         seen.push(p);
-        cancel.store(seen.len() == 3, std::sync::atomic::Ordering::Relaxed);
+        let better = seen.iter().filter(|p| p.done > 0.0).count() > 2;
+        cancel.fetch_or(better, std::sync::atomic::Ordering::Relaxed);
     };
     let mut control = Control {
         progress: &mut note,
@@ -213,14 +214,15 @@ fn progress_is_told_and_cancelling_stops() {
     let (items, strip) = (shirt(3), Strip::of_width(1.5));
     let stopped = make_marker(&items, &strip, search, &mut control).unwrap();
     assert!(judge(&items, &strip, &stopped).is_sound());
-    assert_eq!(seen.len(), 3);
+    let last = seen.last().unwrap();
+    assert!(last.done < 1.0, "stopped early");
     assert!(
-        (stopped.length - seen[2].length).abs() < 1e-4,
+        (stopped.length - last.length).abs() < 1e-4,
         "the best so far"
     );
     assert!(
         seen.windows(2)
-            .all(|w| w[0].done < w[1].done && w[0].length >= w[1].length)
+            .all(|w| w[0].done <= w[1].done && w[0].length >= w[1].length)
     );
     let mut at_once = Control {
         progress: &mut |_| {},
