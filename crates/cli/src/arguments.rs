@@ -276,7 +276,7 @@ pub struct Nest {
     /// Full width of the fabric, as in 150cm. Default: the fabric's own.
     #[arg(long, value_name = "LENGTH")]
     pub width: Option<Length>,
-    /// Length of fabric at hand. Default: as long as it takes.
+    /// Length of fabric at hand, all plies together. Default: as long as it takes.
     #[arg(long, value_name = "LENGTH")]
     pub length: Option<Length>,
     /// Unusable edge at either side. Default: 10mm.
@@ -297,8 +297,8 @@ pub struct Nest {
     /// Layers cut at once. Default: 1; face to face 2.
     #[arg(long, value_name = "COUNT")]
     pub plies: Option<u32>,
-    /// A roll at hand: its length, and its width if that is not the fabric's. May be given again;
-    /// rolls are filled in this order, and what fits none is named with the reason.
+    /// A roll at hand: its length, all plies together, and its width if that is not the fabric's.
+    /// May be given again; rolls are filled in this order, and what fits none is named with the reason.
     #[arg(long, value_name = "L[,L]", value_parser = roll, conflicts_with = "length")]
     pub roll: Vec<(f64, Option<f64>)>,
     /// Price of a metre of the fabric's length.
@@ -320,14 +320,15 @@ pub struct Nest {
         default_value = "svg,json"
     )]
     pub write: Vec<MarkerFormatName>,
-    /// How far the grain may lie off the warp (degrees).
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0)]
-    pub tilt: f64,
+    /// How far the grain of every piece may lie off the warp (degrees). Default: 0.
+    #[arg(long, value_name = "DEGREES")]
+    pub tilt: Option<f64>,
     /// Repeat of stripes or checks along the warp and across, as in 50mm,40mm; 0mm where it does
     /// not repeat. The hem and the middle of every piece lie on its lines.
-    #[arg(long, value_name = "L,L", value_delimiter = ',', num_args = 1..=2)]
-    pub repeat: Vec<Length>,
-    /// A flaw no piece may lie on: x along the warp, y across, length, width. May be given again.
+    #[arg(long, value_name = "L[,L]", value_parser = repeat)]
+    pub repeat: Option<[f64; 2]>,
+    /// A flaw no piece may lie on: x along the warp, y across the fabric laid open, length, width.
+    /// May be given again.
     #[arg(long, value_name = "L,L,L,L", value_parser = four_lengths)]
     pub defect: Vec<[f64; 4]>,
     /// Named size. Default: each pattern's base size.
@@ -336,15 +337,32 @@ pub struct Nest {
     /// Several sizes in a ratio, as in S:1,M:2,L:1. Each garment is a bundle.
     #[arg(long, value_name = "NAME:COUNT", value_delimiter = ',', value_parser = size_count)]
     pub sizes: Vec<(String, u32)>,
-    /// Time to search (s). The result depends on the machine; see --evaluations.
+    /// Time to search each fabric (s). The result depends on the machine; see --evaluations.
     #[arg(long, value_name = "SECONDS", conflicts_with = "evaluations")]
     pub time: Option<f64>,
-    /// Evaluations of pairs of pieces to search for: the same ones give the same bytes.
+    /// Evaluations of pairs of pieces to search for on each fabric: the same ones give the same
+    /// bytes.
     #[arg(long, value_name = "COUNT", default_value_t = 10_000_000)]
     pub evaluations: u64,
     /// Start of the sequence of chance.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
+    /// Searches side by side. Default: 2; with --time one a processor, 2 at least.
+    #[arg(
+        long,
+        value_name = "COUNT",
+        default_value_t = 0,
+        hide_default_value = true
+    )]
+    pub islands: usize,
+    /// Threads. Default: as many as there are processors; their number does not change the bytes.
+    #[arg(
+        long,
+        value_name = "COUNT",
+        default_value_t = 0,
+        hide_default_value = true
+    )]
+    pub threads: usize,
     /// A marker.json to go on from, made before or changed by hand; one for each fabric.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["roll", "study"])]
     pub from: Vec<PathBuf>,
@@ -441,13 +459,16 @@ impl From<NapName> for toile_session::Nap {
     }
 }
 
+/// Most garments of one size: far more than can be laid at once.
+const MOST_GARMENTS: u32 = 10_000;
+
 /// A size and how many garments of it, as in M:2.
 fn size_count(text: &str) -> Result<(String, u32), String> {
     let (name, count) = text.rsplit_once(':').unwrap_or((text, "1"));
     match count.parse() {
-        Ok(count @ 1..) => Ok((name.to_owned(), count)),
+        Ok(count @ 1..=MOST_GARMENTS) => Ok((name.to_owned(), count)),
         _ => Err(format!(
-            "{count:?} is no number of garments; write NAME:COUNT"
+            "{count:?} is no number of garments from 1 to {MOST_GARMENTS}; write NAME:COUNT"
         )),
     }
 }
@@ -471,6 +492,18 @@ fn roll(text: &str) -> Result<(f64, Option<f64>), String> {
         [length, width] => Ok((length, Some(width))),
         ref more => Err(format!(
             "there are {} lengths; give the roll's length, or length,width",
+            more.len()
+        )),
+    }
+}
+
+/// Repeat along the warp and, if it repeats there, across [m].
+fn repeat(text: &str) -> Result<[f64; 2], String> {
+    match lengths(text)?[..] {
+        [along] => Ok([along, 0.0]),
+        [along, across] => Ok([along, across]),
+        ref more => Err(format!(
+            "there are {} lengths; give the repeat along the warp, or along,across",
             more.len()
         )),
     }

@@ -59,4 +59,8 @@ impl Watcher for Bar {
             _ => ControlFlow::Continue(()),
         }
     }
+
+    fn stop_flag(&self) -> Option<Arc<AtomicBool>> {
+        self.stop.clone()
+    }
 }

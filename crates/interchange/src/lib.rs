@@ -48,12 +48,12 @@ pub use mannequin_json::{read_mannequin, write_mannequin};
 pub use marker_drawing::{MarkerDrawing, MarkerFacts, MarkerPiece};
 pub use marker_json::{
     MarkerDefect, MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, MarkerFold,
-    MarkerPrint, read_marker_json, write_marker_json,
+    MarkerMatch, MarkerPrint, read_marker_json, write_marker_json,
 };
 pub use marker_plot::{write_marker_dxf, write_marker_hpgl, write_marker_pdf};
 pub use marker_report::write_marker_report;
 pub use marker_settings::{
-    ALL, FabricSettings, FlawSettings, LockSettings, MarkerSettings, Metres, NapField,
+    ANY_NAME, FabricSettings, FlawSettings, LockSettings, MarkerSettings, Metres, NapField,
     PieceSettings, PrintSettings, RollSettings, Spread, read_marker_settings,
 };
 pub use marker_svg::write_marker_svg;

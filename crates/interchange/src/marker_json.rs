@@ -3,7 +3,9 @@
 use crate::FormatError;
 use serde::{Deserialize, Serialize};
 use toile_geometry::{Polygon, Vec2};
-use toile_nesting::{Defect, Fold, Item, Marker, Nap, Placement, Strip, Stripes, Unplaced};
+use toile_nesting::{
+    Defect, Fold, Item, Marker, MatchPoint, Nap, Phase, Placement, Strip, Stripes, Unplaced,
+};
 
 const FORMAT: &str = "toile-marker";
 const VERSION: u32 = 1;
@@ -47,6 +49,9 @@ pub struct MarkerFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerFabric {
+    /// Its name in the pattern.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// Full width \[m\].
     pub width: f64,
     /// Unusable edge at either side \[m\].
@@ -96,6 +101,14 @@ fn one() -> u32 {
     1
 }
 
+fn is_nought(number: &u32) -> bool {
+    *number == 0
+}
+
+fn is_nothing(length: &f64) -> bool {
+    *length == 0.0
+}
+
 fn is_one(plies: &u32) -> bool {
     *plies == 1
 }
@@ -138,8 +151,59 @@ pub struct MarkerFilePiece {
     pub face_down: bool,
     /// Move after turning \[m\].
     pub at: [f64; 2],
+    /// Number of the garment it belongs to, from 0.
+    #[serde(default, skip_serializing_if = "is_nought")]
+    pub garment: u32,
+    /// Free fabric it needs to any other piece \[m\].
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub gap: f64,
+    /// Whether it may hide flaws.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub over_flaws: bool,
+    /// The point that must lie on the print.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on_print: Option<MarkerMatch>,
     /// Cut outline as laid, to the nearest micrometre \[m\].
     pub outline: Vec<[f64; 2]>,
+}
+
+/// A point of a piece that must lie on the print, in a marker file.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MarkerMatch {
+    /// In the piece as drawn \[m\].
+    pub point: [f64; 2],
+    /// How far after the lines of the print, along the warp and across \[m\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub after: Option<[f64; 2]>,
+    /// Number of the set whose members all lie alike, if it need not be on the lines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub set: Option<u32>,
+}
+
+impl MarkerMatch {
+    fn of(point: MatchPoint) -> Self {
+        let (after, set) = match point.phase {
+            Phase::At(phase) => (Some(phase.into()), None),
+            Phase::Set(set) => (None, Some(set)),
+        };
+        Self {
+            point: point.point.into(),
+            after,
+            set,
+        }
+    }
+
+    /// The point as the referee takes it.
+    pub fn match_point(&self) -> MatchPoint {
+        MatchPoint {
+            point: Vec2::from(self.point),
+            phase: match self.set {
+                Some(set) => Phase::Set(set),
+                None => Phase::At(Vec2::from(self.after.unwrap_or_default())),
+            },
+        }
+    }
 }
 
 /// A copy that found no place, in a marker file.
@@ -170,6 +234,13 @@ impl MarkerFile {
                 turn: placement.turn.to_degrees(),
                 face_down: placement.mirrored,
                 at: [placement.translation.x, placement.translation.y],
+                garment: item.bundle(placement.copy),
+                gap: item.gap,
+                over_flaws: item.over_defects,
+                on_print: item
+                    .match_point
+                    .filter(|_| strip.stripes.is_some())
+                    .map(MarkerMatch::of),
                 outline: outline
                     .iter()
                     .map(|p| [micrometres(p.x), micrometres(p.y)])
@@ -190,6 +261,7 @@ impl MarkerFile {
             unit: "m".into(),
             name: name.into(),
             fabric: MarkerFabric {
+                name: None,
                 width: strip.width,
                 selvedge: strip.selvedge,
                 end_margin: strip.end_margin,
@@ -372,7 +444,10 @@ fn check_numbers(file: &MarkerFile) -> Result<(), FormatError> {
         return bad("marker".into());
     }
     for piece in &file.pieces {
-        let numbers = [piece.grain, piece.turn].into_iter().chain(piece.at);
+        let print = piece.on_print.iter();
+        let print = print.flat_map(|p| p.point.into_iter().chain(p.after.unwrap_or_default()));
+        let numbers = [piece.grain, piece.turn, piece.gap].into_iter();
+        let numbers = numbers.chain(piece.at).chain(print);
         let mut all = numbers.chain(piece.outline.iter().flatten().copied());
         if !all.all(f64::is_finite) {
             return bad(format!("piece \"{}\"", piece.name));

@@ -11,8 +11,8 @@ use toile_nesting::Nap;
 
 const KIND: &str = "marker-settings";
 
-/// The name that stands for all fabrics, or all pieces, that have no entry of their own.
-pub const ALL: &str = "*";
+/// The name that stands for any fabric, or any piece: for what its own entry leaves open.
+pub const ANY_NAME: &str = "*";
 
 /// The content of a file of marker settings.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]

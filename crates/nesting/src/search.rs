@@ -216,12 +216,14 @@ fn run(
     let layout = start.map(|marker| layout_of(&job, marker));
     let best = hunt(&job, layout.as_ref(), &meter, control)?;
     let marker = finish(&job, &best);
-    if let Some(start) =
-        start.filter(|s| is_behind(&marker, s) && judge(items, strip, s).is_sound())
+    let verdict = judge(items, strip, &marker);
+    let is_worse = |s: &&Marker| !verdict.is_sound() || is_behind(&marker, s);
+    if let Some(start) = start.filter(is_worse)
+        && judge(items, strip, start).is_sound()
     {
         return Ok(start.clone());
     }
-    match judge(items, strip, &marker).violations.first() {
+    match verdict.violations.first() {
         None => Ok(marker),
         Some(violation) => {
             let name = |k: usize| {

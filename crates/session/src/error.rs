@@ -46,6 +46,9 @@ pub enum SessionError {
         /// What there is instead.
         hint: String,
     },
+    /// Things asked for that do not go together.
+    #[error("{0}")]
+    Conflict(String),
     /// A number given makes no sense.
     #[error("{what} is {value}; {hint}")]
     Number {
@@ -104,7 +107,10 @@ impl SessionError {
                     | toile_drape::DrapeError::Material { .. }
                     | toile_drape::DrapeError::Scene { .. }
             ),
-            Self::Write { .. } | Self::Picture(_) | Self::Cancelled => false,
+            Self::Nesting(toile_nesting::NestingError::Unsound(_))
+            | Self::Write { .. }
+            | Self::Picture(_)
+            | Self::Cancelled => false,
             _ => true,
         }
     }

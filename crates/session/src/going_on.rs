@@ -3,7 +3,7 @@
 use crate::{NestOptions, SessionError};
 use std::path::Path;
 use toile_interchange::{MarkerFile, read_marker_json, read_text};
-use toile_nesting::{Item, Locked, Marker, Placement, Unplaced};
+use toile_nesting::{Item, Locked, Marker, Placement, Strip, Unplaced};
 
 /// The markers that a job goes on from.
 pub(crate) fn read_starts(options: &NestOptions) -> Result<Vec<MarkerFile>, SessionError> {
@@ -41,18 +41,27 @@ fn read_start(path: &Path) -> Result<MarkerFile, SessionError> {
     })
 }
 
-/// The start that has pieces of these names, if any: the one with the most.
-pub(crate) fn start_of(starts: &[MarkerFile], items: &[Item]) -> Option<Marker> {
-    let marker = |file: &MarkerFile| start_from(file, items);
-    starts
-        .iter()
-        .map(marker)
-        .filter(|m| !m.placements.is_empty())
-        .max_by_key(|m| m.placements.len())
+/// The start on a fabric that has pieces of these names, if any: the one with the most, the first
+/// of equal ones. A file that names no fabric may be of any.
+pub(crate) fn start_of(
+    starts: &[MarkerFile],
+    fabric: &str,
+    (items, strip): (&[Item], &Strip),
+) -> Option<Marker> {
+    let of_fabric = |file: &&MarkerFile| file.fabric.name.as_deref().is_none_or(|n| n == fabric);
+    let markers = starts.iter().filter(of_fabric);
+    let mut best: Option<Marker> = None;
+    for marker in markers.map(|file| start_from(file, items, strip)) {
+        let most = best.as_ref().map_or(0, |b| b.placements.len());
+        if marker.placements.len() > most {
+            best = Some(marker);
+        }
+    }
+    best
 }
 
 /// A file's placements as those of items: by number and name, or by name alone.
-fn start_from(file: &MarkerFile, items: &[Item]) -> Marker {
+fn start_from(file: &MarkerFile, items: &[Item], strip: &Strip) -> Marker {
     let mut marker = Marker::default();
     let mut left: Vec<Vec<u32>> = items.iter().map(|i| (0..i.quantity).collect()).collect();
     for piece in &file.pieces {
@@ -75,10 +84,28 @@ fn start_from(file: &MarkerFile, items: &[Item]) -> Marker {
         marker.unplaced.extend(copies.iter().map(|&copy| Unplaced {
             item,
             copy,
-            reason: String::new(),
+            reason: "it does not lie on the marker gone on from; search longer".to_owned(),
         }));
     }
+    marker.measure(items, strip);
     marker
+}
+
+/// A name to lock that no marker gone on from has on the fabric where the piece is laid.
+pub(crate) fn check_locks<'a>(
+    items: impl Iterator<Item = &'a Item>,
+    names: &[String],
+) -> Result<(), SessionError> {
+    let held: Vec<&str> = items
+        .filter(|item| !item.locked.is_empty())
+        .map(|item| item.name.as_str())
+        .collect();
+    match names.iter().find(|name| !held.contains(&name.as_str())) {
+        None => Ok(()),
+        Some(name) => Err(SessionError::Conflict(format!(
+            "piece {name:?} cannot be locked: no marker to go on from has it on the fabric it is laid on; give that fabric's marker with --from"
+        ))),
+    }
 }
 
 /// Locks the pieces of some names where a marker has them.

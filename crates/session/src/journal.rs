@@ -3,14 +3,20 @@
 use crate::{Command, SessionError};
 
 /// The commands as text, one JSON object a line.
-pub fn journal_lines(commands: &[Command]) -> String {
+///
+/// # Errors
+/// A command cannot be written, as with a path that is no text.
+pub fn journal_lines(commands: &[Command]) -> Result<String, SessionError> {
     let mut text = String::new();
-    for command in commands {
-        // Commands hold nothing that JSON cannot: numbers that are not finite become null.
-        text.push_str(&serde_json::to_string(command).unwrap_or_default());
+    for (k, command) in commands.iter().enumerate() {
+        let line = serde_json::to_string(command).map_err(|error| SessionError::Journal {
+            line: k + 1,
+            what: error.to_string(),
+        })?;
+        text.push_str(&line);
         text.push('\n');
     }
-    text
+    Ok(text)
 }
 
 /// Reads a journal. Empty lines are skipped.

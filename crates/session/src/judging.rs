@@ -10,7 +10,7 @@ use toile_interchange::{
     MarkerDrawing, MarkerFacts, MarkerFile, MarkerPiece, read_marker_json, read_text,
     write_all_atomically, write_marker_svg,
 };
-use toile_nesting::{Allowed, Item, Mirror, Violation, judge};
+use toile_nesting::{Allowed, Item, Marker, Mirror, Violation, judge};
 
 /// Outlines in the file are rounded to a micrometre, so that touching pieces may seem to overlap
 /// by so much [m].
@@ -36,7 +36,8 @@ pub fn is_marker_file(path: &Path) -> bool {
     read_text(path).is_ok_and(|text| marked(&text))
 }
 
-/// Judges a `marker.json` by its own outlines: overlaps, gaps, margins, nap, print, flaws. What only
+/// Judges a `marker.json` by its own outlines: overlaps, gaps, margins, nap of each garment, print,
+/// flaws. What only
 /// the pattern knows (tilt allowed, folds, pairs, locks) is not judged. With a folder, writes
 /// `marker-judged.svg`, where what is cut twice is red.
 ///
@@ -55,6 +56,7 @@ pub fn judge_marker_file(path: &Path, folder: Option<&Path>) -> Result<JudgedMar
     }
     let strip = file.strip();
     let verdict = judge(&items, &strip, &marker);
+    marker.measure(&items, &strip);
     let name = |k: usize| {
         file.pieces
             .get(k)
@@ -64,7 +66,7 @@ pub fn judge_marker_file(path: &Path, folder: Option<&Path>) -> Result<JudgedMar
         .violations
         .iter()
         .filter(|v| !within_rounding(v))
-        .map(|v| in_words(v, &name))
+        .map(|v| v.in_words(&name))
         .collect();
     let overlaps: Vec<Polygon> = verdict
         .overlaps
@@ -81,14 +83,14 @@ pub fn judge_marker_file(path: &Path, folder: Option<&Path>) -> Result<JudgedMar
         width: strip.width,
         plies: file.plies,
         yardage: verdict.length * f64::from(file.plies),
-        efficiency: file.efficiency,
-        utilisation: file.utilisation,
+        efficiency: marker.efficiency,
+        utilisation: marker.utilisation,
         sound: faults.is_empty(),
         ..Nested::default()
     };
     let mut files = Vec::new();
     if let Some(folder) = folder {
-        let drawing = drawing_of(&file, (items, overlaps), verdict.length);
+        let drawing = drawing_of(&file, (items, overlaps), &marker);
         let svg = write_marker_svg(&drawing).map_err(cannot("marker-judged.svg"))?;
         let written = [("marker-judged.svg".to_owned(), svg.into_bytes())];
         write_all_atomically(folder, &written)?;
@@ -124,6 +126,10 @@ fn items_of(file: &MarkerFile) -> Vec<Item> {
                 mirror: Mirror::Free,
                 ..Allowed::turned(vec![0.0, PI])
             },
+            gap: piece.gap,
+            bundles: vec![piece.garment],
+            over_defects: piece.over_flaws,
+            match_point: piece.on_print.map(|p| p.match_point()),
             ..Item::new(piece.name.clone(), outline)
         }
     };
@@ -133,7 +139,7 @@ fn items_of(file: &MarkerFile) -> Vec<Item> {
 fn drawing_of(
     file: &MarkerFile,
     (items, overlaps): (Vec<Item>, Vec<Polygon>),
-    length: f64,
+    judged: &Marker,
 ) -> MarkerDrawing {
     let marker = file.marker();
     let mut kinds: BTreeMap<usize, usize> = BTreeMap::new();
@@ -141,8 +147,8 @@ fn drawing_of(
     MarkerDrawing {
         title: file.name.clone(),
         strip: file.strip(),
-        length,
-        efficiency: file.efficiency,
+        length: judged.length,
+        efficiency: judged.efficiency,
         pieces: pieces
             .map(|(item, placement)| {
                 let count = kinds.len();
@@ -168,7 +174,7 @@ fn drawing_of(
             roll: file.roll.clone(),
             plies: file.plies,
             face_to_face: file.face_to_face,
-            utilisation: file.utilisation,
+            utilisation: judged.utilisation,
             ..MarkerFacts::default()
         },
     }
@@ -183,71 +189,7 @@ fn within_rounding(violation: &Violation) -> bool {
         } => needed - distance < ROUNDING,
         Violation::Outside { by, .. } => *by < ROUNDING,
         Violation::Length { stated, found } => (stated - found).abs() < ROUNDING,
+        Violation::OffPrint { by, .. } => by.amax() < ROUNDING,
         _ => false,
-    }
-}
-
-/// What is wrong and where, in words.
-fn in_words(violation: &Violation, name: &dyn Fn(usize) -> String) -> String {
-    let mm = |metres: f64| format!("{:.2} mm", metres * 1e3);
-    match violation {
-        Violation::Overlap {
-            pair, depth, area, ..
-        } => format!(
-            "{} and {} overlap by {}, {:.2} cm2 are cut twice; move them apart",
-            name(pair[0]),
-            name(pair[1]),
-            mm(*depth),
-            area * 1e4
-        ),
-        Violation::Gap {
-            pair,
-            distance,
-            needed,
-        } => format!(
-            "{} and {} lie {} apart and need {}; move them apart",
-            name(pair[0]),
-            name(pair[1]),
-            mm(*distance),
-            mm(*needed)
-        ),
-        Violation::Outside {
-            placement,
-            side,
-            by,
-        } => format!(
-            "{} sticks out by {} ({}); move it in",
-            name(*placement),
-            mm(*by),
-            match side {
-                toile_nesting::Side::Start => "at the start",
-                toile_nesting::Side::End => "at the end",
-                toile_nesting::Side::Lower => "at the lower selvedge",
-                toile_nesting::Side::Upper => "at the upper selvedge",
-            }
-        ),
-        Violation::Orientation {
-            placement, turn, ..
-        } => format!(
-            "{} is turned by {:.1} degrees on fabric with a nap; turn it to 0",
-            name(*placement),
-            turn.to_degrees()
-        ),
-        Violation::OnDefect {
-            placement, defect, ..
-        } => format!(
-            "{} lies on flaw {} or too near; move it away",
-            name(*placement),
-            defect + 1
-        ),
-        Violation::Length { stated, found } => format!(
-            "the length is said to be {} and is {}; correct it",
-            mm(*stated),
-            mm(*found)
-        ),
-        Violation::Nonsense { placement } => {
-            format!("{} lies nowhere; give it a place", name(*placement))
-        }
-        other => format!("{other:?}"),
     }
 }

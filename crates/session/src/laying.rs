@@ -1,16 +1,20 @@
 //! Markers of drafts: one for each fabric their pieces are cut from, and for each roll of it.
 
-use crate::going_on::{lock, read_starts, start_of};
+use crate::going_on::{check_locks, lock, read_starts, start_of};
 use crate::laying_items::{LaidPiece, Wanted, items_on, wanted_of};
 use crate::matching::runs_one_way;
 use crate::nest_options::{FabricPlan, PlannedRoll};
 use crate::watcher::tell;
 use crate::{Budget, NestOptions, Nested, SessionError, Watcher};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use toile_interchange::{MarkerDrawing, MarkerFacts, MarkerFile, MarkerPiece, Spread};
+use toile_interchange::{
+    ANY_NAME, MarkerDrawing, MarkerFabric, MarkerFacts, MarkerFile, MarkerFileUnplaced,
+    MarkerPiece, Spread,
+};
 use toile_nesting::{
-    Control, Item, Marker, Nap, NestingError, Progress, Strip, Verdict, improve_marker, judge,
-    make_marker, make_markers_on_rolls,
+    Control, Item, Marker, Nap, NestingError, Progress, Search, Strip, Verdict, improve_marker,
+    judge, make_marker, make_markers_on_rolls,
 };
 use toile_pattern::{Draft, Fabric, Pattern};
 
@@ -26,8 +30,8 @@ pub(crate) struct Laying {
     pub strip: Strip,
     pub marker: Marker,
     pub verdict: Verdict,
-    /// Copies that lie on no marker of this fabric: names, and why.
-    pub missing: Vec<[String; 2]>,
+    /// Copies that lie on no marker of this fabric.
+    pub missing: Vec<MarkerFileUnplaced>,
     /// What else is known.
     pub facts: MarkerFacts,
 }
@@ -41,7 +45,7 @@ impl Laying {
             roll: self.facts.roll.clone(),
             pieces: self.marker.placements.len(),
             unplaced: self.missing.len(),
-            missing: self.missing.clone(),
+            missing: self.reasons(),
             length: self.marker.length,
             width: self.strip.width,
             plies: self.facts.plies,
@@ -83,7 +87,7 @@ impl Laying {
             length: self.marker.length,
             efficiency: self.marker.efficiency,
             pieces: self.marker.placements.iter().map(piece).collect(),
-            unplaced: self.missing.clone(),
+            unplaced: self.reasons(),
             overlaps: overlaps.cloned().collect(),
             facts: MarkerFacts {
                 utilisation: self.marker.utilisation,
@@ -94,12 +98,25 @@ impl Laying {
 
     /// The marker as its file.
     pub fn file(&self, pattern: &str) -> MarkerFile {
+        let title = self.title(pattern);
+        let file = MarkerFile::new(&title, &self.items, &self.strip, &self.marker);
         MarkerFile {
             roll: self.facts.roll.clone(),
             plies: self.facts.plies,
             face_to_face: self.facts.face_to_face,
-            ..MarkerFile::new(&self.title(pattern), &self.items, &self.strip, &self.marker)
+            unplaced: self.missing.clone(),
+            fabric: MarkerFabric {
+                name: Some(self.fabric.clone()),
+                ..file.fabric
+            },
+            ..file
         }
+    }
+
+    /// Names of the copies that lie nowhere, and why.
+    fn reasons(&self) -> Vec<[String; 2]> {
+        let reason = |u: &MarkerFileUnplaced| [u.name.clone(), u.reason.clone()];
+        self.missing.iter().map(reason).collect()
     }
 
     fn title(&self, pattern: &str) -> String {
@@ -141,19 +158,20 @@ pub(crate) fn lay(
     check_fabric_names(&groups, options)?;
     let fabrics = || garments.iter().flat_map(|g| &g.draft.fabrics);
     let starts = read_starts(options)?;
-    let count = groups.len() as f64;
+    // Everything is refused before anything is searched for.
+    let jobs: Vec<FabricJob<'_>> = groups
+        .iter()
+        .map(|(name, wanted)| {
+            let own: Option<&Fabric> = fabrics().find(|f| f.name == *name);
+            FabricJob::new((name, wanted), own, (options, &starts))
+        })
+        .collect::<Result<_, _>>()?;
+    check_locks(jobs.iter().flat_map(|job| &job.items), &options.locked)?;
+    let count = jobs.len() as f64;
+    let flag = watcher.stop_flag().unwrap_or_default();
     let mut layings = Vec::new();
     let mut stopped = false;
-    for (k, (name, wanted)) in groups.iter().enumerate() {
-        let own: Option<&Fabric> = fabrics().find(|f| f.name == *name);
-        let mut plan = options.plan(name, own)?;
-        if runs_one_way(wanted) {
-            for roll in &mut plan.rolls {
-                if roll.strip.stripes.is_some() && roll.strip.nap == Nap::None {
-                    roll.strip.nap = Nap::PerBundle;
-                }
-            }
-        }
+    for (k, job) in jobs.into_iter().enumerate() {
         let from = k as f64 / count;
         let mut part = |done: f64, detail: &str| {
             stopped |= tell(watcher, "laying out", from + done / count, detail).is_err();
@@ -161,14 +179,13 @@ pub(crate) fn lay(
         };
         let going_on = part(0.0, "");
         let laid = match going_on {
-            true => lay_fabric((name, wanted), (&plan, options), (&starts, &mut part)),
+            true => job.lay(options, (&flag, &mut part)),
             false if !options.keep_best => return Err(SessionError::Cancelled),
             false => {
                 // Stopped on an earlier fabric: this one gets the first marker that is found.
                 let mut shortly = options.clone();
                 shortly.budget = Budget::Evaluations(1);
-                let mut unheard = |_: f64, _: &str| true;
-                lay_fabric((name, wanted), (&plan, &shortly), (&starts, &mut unheard))
+                job.lay(&shortly, (&Arc::default(), &mut |_, _| true))
             }
         };
         if stopped && !options.keep_best {
@@ -192,7 +209,7 @@ fn check_fabric_names(
     groups: &[(String, Vec<Wanted>)],
     options: &NestOptions,
 ) -> Result<(), SessionError> {
-    let known = |name: &str| name == "*" || groups.iter().any(|g| g.0 == name);
+    let known = |name: &str| name == ANY_NAME || groups.iter().any(|g| g.0 == name);
     let given = options.settings.fabrics.keys();
     match given.into_iter().find(|name| !known(name)) {
         None => Ok(()),
@@ -210,42 +227,133 @@ fn check_fabric_names(
 /// Told the part done of one fabric and a detail; answers whether to go on.
 type Told<'a> = &'a mut dyn FnMut(f64, &str) -> bool;
 
-/// All markers of one fabric.
-fn lay_fabric(
-    (fabric, wanted): (&str, &[Wanted]),
-    (plan, options): (&FabricPlan, &NestOptions),
-    (starts, told): (&[MarkerFile], Told<'_>),
-) -> Result<Vec<Laying>, SessionError> {
-    let (mut items, pieces, notes) = items_on(wanted, plan, options)?;
-    let start = start_of(starts, &items);
-    if let Some(start) = &start {
-        lock(&mut items, start, &options.locked);
-    }
-    let cancel = AtomicBool::new(false);
-    let mut follow = |progress: Progress| {
-        let detail = format!("{:.0} mm of fabric", progress.length * 1e3);
-        if !told(progress.done, &detail) {
-            cancel.store(true, Ordering::Relaxed);
+/// What is to be laid on one fabric.
+struct FabricJob<'a> {
+    fabric: &'a str,
+    plan: FabricPlan,
+    items: Vec<Item>,
+    pieces: Vec<LaidPiece>,
+    notes: Vec<String>,
+    /// What to go on from.
+    start: Option<Marker>,
+}
+
+impl<'a> FabricJob<'a> {
+    fn new(
+        (fabric, wanted): (&'a str, &[Wanted]),
+        own: Option<&Fabric>,
+        (options, starts): (&NestOptions, &[MarkerFile]),
+    ) -> Result<Self, SessionError> {
+        let mut plan = options.plan(fabric, own)?;
+        if plan.rolled && !starts.is_empty() {
+            return Err(SessionError::Conflict(format!(
+                "fabric {fabric:?} is laid on rolls, and markers on rolls cannot be gone on from; leave out --from, or the rolls"
+            )));
         }
-    };
-    let mut control = Control {
-        progress: &mut follow,
-        cancel: &cancel,
-    };
-    let laying = |roll: &PlannedRoll, items: Vec<Item>, pieces: Vec<LaidPiece>, marker: Marker| {
+        if runs_one_way(wanted) {
+            for roll in &mut plan.rolls {
+                if roll.strip.stripes.is_some() && roll.strip.nap == Nap::None {
+                    roll.strip.nap = Nap::PerBundle;
+                }
+            }
+        }
+        let (mut items, pieces, notes) = items_on(wanted, &plan, options)?;
+        let start = start_of(starts, fabric, (&items, &plan.rolls[0].strip));
+        if let Some(start) = &start {
+            lock(&mut items, start, &options.locked);
+        }
+        Ok(Self {
+            fabric,
+            plan,
+            items,
+            pieces,
+            notes,
+            start,
+        })
+    }
+
+    /// All markers of the fabric. Stops when the flag is set, or the one told says so.
+    fn lay(
+        self,
+        options: &NestOptions,
+        (flag, told): (&Arc<AtomicBool>, Told<'_>),
+    ) -> Result<Vec<Laying>, SessionError> {
+        let mut follow = |progress: Progress| {
+            let detail = match progress.length.is_finite() {
+                true => format!("{:.0} mm of fabric", progress.length * 1e3),
+                false => "making ready".to_owned(),
+            };
+            if !told(progress.done, &detail) {
+                flag.store(true, Ordering::Relaxed);
+            }
+        };
+        let mut control = Control {
+            progress: &mut follow,
+            cancel: flag,
+        };
+        let search = options.search();
+        if self.plan.rolled {
+            return self.lay_on_rolls(options, (search, &mut control));
+        }
+        let strip = &self.plan.rolls[0].strip;
+        let marker = match &self.start {
+            Some(start) => improve_marker(&self.items, strip, start, search, &mut control)?,
+            None => make_marker(&self.items, strip, search, &mut control)?,
+        };
+        let missing = named(&self.items, &marker.unplaced);
+        let of = (self.items.clone(), self.pieces.clone());
+        let mut only = self.laying(&self.plan.rolls[0], of, (marker, options));
+        only.missing = missing;
+        Ok(vec![only])
+    }
+
+    fn lay_on_rolls(
+        &self,
+        options: &NestOptions,
+        (search, control): (Search, &mut Control<'_>),
+    ) -> Result<Vec<Laying>, SessionError> {
+        let strips: Vec<Strip> = self.plan.rolls.iter().map(|r| r.strip.clone()).collect();
+        let out = make_markers_on_rolls(&self.items, &strips, search, control)?;
+        let missing = named(&self.items, &out.unplaced);
+        let mut layings: Vec<Laying> = out
+            .markers
+            .into_iter()
+            .map(|made| {
+                let drawn = made.sources.iter().map(|s| self.pieces[s.0].clone());
+                let of = (made.items, drawn.collect());
+                self.laying(&self.plan.rolls[made.roll], of, (made.marker, options))
+            })
+            .collect();
+        let Some(last) = layings.last_mut() else {
+            let reasons = missing.iter().map(|u| format!("{}: {}", u.name, u.reason));
+            let reasons: Vec<String> = reasons.collect();
+            let what = format!("no piece fits any roll: {}", reasons.join("; "));
+            return Err(NestingError::Strip(what).into());
+        };
+        last.missing = missing;
+        Ok(layings)
+    }
+
+    /// A marker with what a drawing of it needs; nothing counts as missing yet.
+    fn laying(
+        &self,
+        roll: &PlannedRoll,
+        (items, pieces): (Vec<Item>, Vec<LaidPiece>),
+        (marker, options): (Marker, &NestOptions),
+    ) -> Laying {
         let verdict = judge(&items, &roll.strip, &marker);
         Laying {
-            fabric: fabric.to_owned(),
+            fabric: self.fabric.to_owned(),
             strip: roll.strip.clone(),
             facts: MarkerFacts {
-                fabric: fabric.to_owned(),
+                fabric: self.fabric.to_owned(),
                 roll: roll.name.clone(),
-                plies: plan.plies,
-                face_to_face: plan.spread == Spread::FaceToFace,
+                plies: self.plan.plies,
+                face_to_face: self.plan.spread == Spread::FaceToFace,
                 utilisation: marker.utilisation,
                 price_per_metre: roll.price_per_metre,
                 currency: options.settings.currency.clone().unwrap_or_default(),
-                notes: notes.clone(),
+                notes: self.notes.clone(),
             },
             missing: Vec::new(),
             items,
@@ -253,44 +361,16 @@ fn lay_fabric(
             marker,
             verdict,
         }
-    };
-    if !plan.rolled {
-        let roll = &plan.rolls[0];
-        let search = options.search();
-        let marker = match &start {
-            Some(start) => improve_marker(&items, &roll.strip, start, search, &mut control)?,
-            None => make_marker(&items, &roll.strip, search, &mut control)?,
-        };
-        let mut only = laying(roll, items, pieces, marker);
-        only.missing = named(&only.items, &only.marker.unplaced);
-        return Ok(vec![only]);
     }
-    let strips: Vec<Strip> = plan.rolls.iter().map(|r| r.strip.clone()).collect();
-    let out = make_markers_on_rolls(&items, &strips, options.search(), &mut control)?;
-    let missing = named(&items, &out.unplaced);
-    let mut layings: Vec<Laying> = out
-        .markers
-        .into_iter()
-        .map(|made| {
-            let drawn = made.sources.iter().map(|s| pieces[s.0].clone());
-            let drawn = drawn.collect();
-            laying(&plan.rolls[made.roll], made.items, drawn, made.marker)
-        })
-        .collect();
-    match layings.last_mut() {
-        Some(last) => last.missing = missing,
-        None => {
-            let reasons = missing.iter().map(|[name, why]| format!("{name}: {why}"));
-            let reasons: Vec<String> = reasons.collect();
-            let what = format!("no piece fits any roll: {}", reasons.join("; "));
-            return Err(NestingError::Strip(what).into());
-        }
-    }
-    Ok(layings)
 }
 
-/// Names of copies that found no place, and why.
-fn named(items: &[Item], unplaced: &[toile_nesting::Unplaced]) -> Vec<[String; 2]> {
-    let name = |u: &toile_nesting::Unplaced| [items[u.item].name.clone(), u.reason.clone()];
+/// Copies that found no place, by name.
+fn named(items: &[Item], unplaced: &[toile_nesting::Unplaced]) -> Vec<MarkerFileUnplaced> {
+    let name = |u: &toile_nesting::Unplaced| MarkerFileUnplaced {
+        name: items[u.item].name.clone(),
+        item: u.item,
+        copy: u.copy,
+        reason: u.reason.clone(),
+    };
     unplaced.iter().map(name).collect()
 }

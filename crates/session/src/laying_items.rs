@@ -6,10 +6,13 @@ use crate::laying::Garments;
 use crate::matching::{match_up, resolve_marks};
 use crate::nest_options::FabricPlan;
 use crate::{NestOptions, SessionError};
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use toile_geometry::{Polygon, Vec2, ring_area};
-use toile_interchange::{ALL, PieceSettings, Spread};
-use toile_nesting::{Allowed, FoldEdge, Item, Locked, MatchPoint, Mirror, NestingError, Phase};
+use toile_interchange::{ANY_NAME, PieceSettings, Spread};
+use toile_nesting::{
+    Allowed, FoldEdge, Item, Locked, MOST_PIECES, MatchPoint, Mirror, Nap, NestingError, Phase,
+};
 use toile_pattern::Piece;
 
 /// Length of a notch's stroke on the drawing [m].
@@ -45,6 +48,7 @@ pub(crate) fn wanted_of(
     options: &NestOptions,
 ) -> Result<Vec<Wanted>, SessionError> {
     check_piece_names(garments, options)?;
+    check_count(garments, options)?;
     let mut all = Vec::new();
     let mut first = 0;
     for garment in garments {
@@ -104,6 +108,24 @@ fn panel_name<'a>(garment: &Garments<'a>, piece: &Piece) -> &'a str {
     panel.map_or("", |p| p.name.as_str())
 }
 
+/// More pieces than can be laid at once are refused before any list of them is made.
+fn check_count(garments: &[Garments<'_>], options: &NestOptions) -> Result<(), SessionError> {
+    let of = |garment: &Garments<'_>| {
+        let each = |piece: &Piece| {
+            let settings = options.piece(panel_name(garment, piece), &piece.name);
+            let also = settings.also.iter().flatten();
+            1 + also.map(|(_, &count)| u64::from(count)).sum::<u64>()
+        };
+        let pieces: u64 = garment.draft.pieces.iter().map(each).sum();
+        pieces.saturating_mul(u64::from(garment.count))
+    };
+    let total = garments.iter().map(of).fold(0, u64::saturating_add);
+    match total > u64::from(MOST_PIECES) {
+        true => Err(NestingError::TooManyPieces(total).into()),
+        false => Ok(()),
+    }
+}
+
 /// Settings, locks and marks that name nothing are mistakes.
 fn check_piece_names(garments: &[Garments<'_>], options: &NestOptions) -> Result<(), SessionError> {
     let mut names: Vec<String> = Vec::new();
@@ -129,7 +151,7 @@ fn check_piece_names(garments: &[Garments<'_>], options: &NestOptions) -> Result
         },
     };
     let given = options.settings.pieces.keys();
-    for name in given.filter(|name| *name != ALL) {
+    for name in given.filter(|name| *name != ANY_NAME) {
         if !names.contains(name) {
             return Err(unknown("piece", name, &names));
         }
@@ -156,6 +178,7 @@ pub(crate) fn items_on(
     let mut notes = Vec::new();
     let printed = plan.rolls.iter().any(|r| r.strip.stripes.is_some());
     let matched = wanted.iter().any(|w| !w.marks.is_empty());
+    let each_alone = plan.rolls.iter().any(|r| r.strip.nap == Nap::PerBundle);
     for (k, role) in roles(wanted, plan)?.into_iter().enumerate() {
         let wanted = &wanted[k];
         let on_print = wanted.settings.on_print.unwrap_or(!matched);
@@ -172,17 +195,13 @@ pub(crate) fn items_on(
                 continue;
             }
             Role::Two { spare } => {
-                let count = item.quantity;
-                item.allowed.mirror = Mirror::Free;
-                item.quantity = if spare { count } else { count.div_ceil(2) };
-                let left = 2 * item.quantity - count;
+                let left = two_at_once(&mut item, spare, each_alone);
                 if left > 0 {
                     notes.push(format!(
                         "{}: two plies are cut at once, {left} more than needed",
                         item.name
                     ));
                 }
-                item.bundles.truncate(item.quantity as usize);
             }
         }
         items.push(item);
@@ -199,6 +218,26 @@ pub(crate) fn items_on(
         ));
     }
     Ok((items, drawn.into_iter().map(|d| d.1).collect(), notes))
+}
+
+/// Lays a piece half as often, or as often if one of two is the wrong way round; how many more come
+/// out than are needed. Where each garment runs one way, two at once belong to one garment.
+fn two_at_once(item: &mut Item, spare: bool, each_alone: bool) -> u32 {
+    let count = item.quantity;
+    item.allowed.mirror = Mirror::Free;
+    if !spare && each_alone {
+        let garments: BTreeSet<u32> = item.bundles.iter().copied().collect();
+        let laid = |garment: u32| {
+            let own = item.bundles.iter().filter(|&&b| b == garment).count();
+            std::iter::repeat_n(garment, own.div_ceil(2))
+        };
+        item.bundles = garments.into_iter().flat_map(laid).collect();
+        item.quantity = item.bundles.len() as u32;
+    } else {
+        item.quantity = if spare { count } else { count.div_ceil(2) };
+        item.bundles.truncate(item.quantity as usize);
+    }
+    2 * item.quantity - count
 }
 
 /// What becomes of a piece on fabric of several layers.
@@ -305,7 +344,10 @@ fn item_of(wanted: &Wanted, print: bool, options: &NestOptions) -> (Item, LaidPi
             phase: Phase::At(Vec2::zeros()),
         }),
         allowed: Allowed {
-            tilt: settings.tilt.map_or(options.tilt, f64::to_radians),
+            tilt: options
+                .tilt
+                .or(settings.tilt.map(f64::to_radians))
+                .unwrap_or(0.0),
             mirror: match settings.turn_over {
                 Some(true) => Mirror::Free,
                 _ => Mirror::Never,

@@ -14,6 +14,7 @@ mod error;
 mod event;
 mod export;
 mod fabrics;
+mod flaws;
 mod going_on;
 mod halves;
 mod hands;

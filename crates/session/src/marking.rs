@@ -7,7 +7,7 @@ use crate::watcher::tell;
 use crate::{NestOptions, Nested, SessionError, Watcher};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use toile_interchange::{
     MarkerSettings, is_jagua_instance, read_jagua, read_marker_settings, read_text,
     write_all_atomically, write_jagua,
@@ -51,10 +51,10 @@ pub(crate) fn drafts_of(
                 .map(|(s, n)| (Some(s.as_str()), *n))
                 .collect(),
         };
+        let several = options.sizes.len() > 1;
         for (size, count) in sizes {
             let (project, _) = project_of(path, size)?;
             let draft = sound_draft(&project)?;
-            let several = options.sizes.len() > 1;
             let name = &project.pattern.name;
             names.push(match (size, several || count > 1) {
                 (Some(size), true) => format!("{name} {count} x {size}"),
@@ -64,11 +64,20 @@ pub(crate) fn drafts_of(
                 pattern: project.pattern.clone(),
                 draft,
                 count,
-                label: size.filter(|_| several).map(str::to_owned),
+                label: label_of(
+                    (patterns.len() > 1).then_some(name.as_str()),
+                    size.filter(|_| several),
+                ),
             });
         }
     }
     Ok((drafts, names))
+}
+
+/// What tells pieces of one pattern and size from those of others, if there are several.
+fn label_of(pattern: Option<&str>, size: Option<&str>) -> Option<String> {
+    let parts: Vec<&str> = pattern.into_iter().chain(size).collect();
+    (!parts.is_empty()).then(|| parts.join(" "))
 }
 
 /// Lays the pieces of one or more patterns together and writes the markers. Returns a summary of
@@ -111,7 +120,8 @@ pub fn is_nesting_instance(path: &Path) -> bool {
 /// `NAME.json`. Returns a summary, the density of the strip (0..=1), notes and the file written.
 ///
 /// # Errors
-/// The instance cannot be read or laid, an option does not apply, or the file cannot be written.
+/// The instance cannot be read or laid, an option does not apply (all but budget, seed, threads and
+/// tilt), or the file cannot be written.
 pub fn nest_instance(
     path: &Path,
     options: &NestOptions,
@@ -122,14 +132,31 @@ pub fn nest_instance(
         path: path.to_owned(),
         error,
     })?;
-    instance.strip = options.applied(instance.strip);
-    for item in &mut instance.items {
-        item.allowed.tilt = options.tilt;
+    let plain = NestOptions {
+        tilt: options.tilt,
+        keep_best: options.keep_best,
+        budget: options.budget,
+        seed: options.seed,
+        islands: options.islands,
+        threads: options.threads,
+        ..NestOptions::default()
+    };
+    if *options != plain {
+        return Err(SessionError::Conflict(format!(
+            "{}: an instance has its own strip and items; give only --time, --evaluations, --seed, --islands, --threads, --tilt and --out",
+            path.display()
+        )));
     }
-    let cancel = AtomicBool::new(false);
+    for item in &mut instance.items {
+        item.allowed.tilt = options.tilt.unwrap_or(0.0);
+    }
+    let cancel = watcher.stop_flag().unwrap_or_default();
     let scale = instance.scale;
     let mut follow = |progress: Progress| {
-        let detail = format!("length {:.1}", progress.length / scale);
+        let detail = match progress.length.is_finite() {
+            true => format!("length {:.1}", progress.length / scale),
+            false => "making ready".to_owned(),
+        };
         if tell(watcher, "laying out", progress.done, &detail).is_err() {
             cancel.store(true, Ordering::Relaxed);
         }

@@ -2,12 +2,14 @@
 //! pattern's own, else usual.
 
 use crate::SessionError;
+use crate::flaws::flaws_on;
 use std::path::PathBuf;
-use toile_geometry::{Bounds2, Polygon, Vec2};
+use toile_geometry::Vec2;
 use toile_interchange::{
-    ALL, FabricSettings, FlawSettings, MarkerSettings, Metres, PieceSettings, RollSettings, Spread,
+    ANY_NAME, FabricSettings, FlawSettings, MarkerSettings, Metres, PieceSettings, RollSettings,
+    Spread,
 };
-use toile_nesting::{Budget, Defect, Fold, Nap, Search, Strip, Stripes};
+use toile_nesting::{Budget, Fold, Nap, Search, Strip, Stripes};
 use toile_pattern::Fabric;
 
 /// Unusable edge at either side of the fabric [m].
@@ -42,7 +44,7 @@ pub struct NestOptions {
     pub sizes: Vec<(String, u32)>,
     /// Full width of the fabric [m].
     pub width: Option<f64>,
-    /// Length at hand [m].
+    /// Length at hand [m], all plies together.
     pub length: Option<f64>,
     /// Unusable edge at either side [m].
     pub selvedge: Option<f64>,
@@ -52,12 +54,12 @@ pub struct NestOptions {
     pub gap: Option<f64>,
     /// Nap.
     pub nap: Option<Nap>,
-    /// How far the grain may lie off the warp [rad].
-    pub tilt: f64,
+    /// How far the grain of every piece may lie off the warp [rad].
+    pub tilt: Option<f64>,
     /// Repeat of the print along the warp and across [m], 0 where it does not repeat: the hem and
     /// the middle of every piece lie on its lines.
     pub repeat: Option<[f64; 2]>,
-    /// Flaws of the fabric: x and y of the corner, length and width [m].
+    /// Flaws of the fabric laid open: x and y of the corner, length and width [m].
     pub defects: Vec<[f64; 4]>,
     /// How the fabric is spread.
     pub spread: Option<Spread>,
@@ -65,7 +67,7 @@ pub struct NestOptions {
     pub plies: Option<u32>,
     /// Price of a metre of length.
     pub price_per_metre: Option<f64>,
-    /// Rolls at hand: length and, if it is not the fabric's, width [m].
+    /// Rolls at hand: length, all plies together, and, if it is not the fabric's, width [m].
     pub rolls: Vec<(f64, Option<f64>)>,
     /// Everything else, by fabric and by piece.
     pub settings: MarkerSettings,
@@ -79,6 +81,10 @@ pub struct NestOptions {
     pub formats: Vec<MarkerFormat>,
     /// When the search ends.
     pub budget: Budget,
+    /// Searches side by side; 0 as usual.
+    pub islands: usize,
+    /// Threads; 0 for as many as the machine has.
+    pub threads: usize,
     /// Start of the sequences of chance.
     pub seed: u64,
 }
@@ -94,7 +100,7 @@ impl Default for NestOptions {
             end_margin: None,
             gap: None,
             nap: None,
-            tilt: 0.0,
+            tilt: None,
             repeat: None,
             defects: Vec::new(),
             spread: None,
@@ -107,6 +113,8 @@ impl Default for NestOptions {
             keep_best: false,
             formats: vec![MarkerFormat::Svg, MarkerFormat::Json],
             budget: search.budget,
+            islands: search.islands,
+            threads: search.threads,
             seed: search.seed,
         }
     }
@@ -136,29 +144,19 @@ fn metres(length: Option<Metres>) -> Option<f64> {
     length.map(|m| m.0)
 }
 
-fn flaw(flaw: &FlawSettings) -> Defect {
-    let corner = Vec2::new(flaw.at[0].0, flaw.at[1].0);
-    Defect {
-        outline: Polygon::rectangle(Bounds2 {
-            min: corner,
-            max: corner + Vec2::new(flaw.size[0].0, flaw.size[1].0),
-        }),
-        clearance: flaw.clearance.0,
-    }
-}
-
 impl NestOptions {
     pub(crate) fn search(&self) -> Search {
         Search {
             budget: self.budget,
             seed: self.seed,
-            ..Search::default()
+            islands: self.islands,
+            threads: self.threads,
         }
     }
 
     /// What the settings say of a piece: under its own name, else its panel's, else of all.
     pub(crate) fn piece(&self, panel: &str, piece: &str) -> PieceSettings {
-        let names = [piece, panel, ALL];
+        let names = [piece, panel, ANY_NAME];
         let mut found = names
             .iter()
             .filter_map(|name| self.settings.pieces.get(*name));
@@ -179,12 +177,29 @@ impl NestOptions {
         one
     }
 
-    /// What the settings say of a fabric: under its own name, else of all.
+    /// What the settings say of a fabric: under its own name, and what that leaves open, of all.
     fn fabric(&self, name: &str) -> FabricSettings {
-        let own = self.settings.fabrics.get(name);
-        own.or_else(|| self.settings.fabrics.get(ALL))
-            .cloned()
-            .unwrap_or_default()
+        let entry = |name: &str| self.settings.fabrics.get(name).cloned();
+        let mut one = entry(name).unwrap_or_default();
+        let Some(more) = entry(ANY_NAME) else {
+            return one;
+        };
+        one.width = one.width.or(more.width);
+        one.selvedge = one.selvedge.or(more.selvedge);
+        one.end_margin = one.end_margin.or(more.end_margin);
+        one.gap = one.gap.or(more.gap);
+        one.nap = one.nap.or(more.nap);
+        one.spread = one.spread.or(more.spread);
+        one.plies = one.plies.or(more.plies);
+        one.price_per_metre = one.price_per_metre.or(more.price_per_metre);
+        one.print = one.print.or(more.print);
+        if one.flaws.is_empty() {
+            one.flaws = more.flaws;
+        }
+        if one.rolls.is_empty() {
+            one.rolls = more.rolls;
+        }
+        one
     }
 
     /// How a fabric is laid, by name; the pattern's own figures where it has it.
@@ -213,46 +228,26 @@ impl NestOptions {
                     .to_owned(),
             });
         };
-        let strip = self.strip(&given, (width, own.is_some_and(|f| f.nap)), spread);
-        let rolls: Vec<RollSettings> = match self.rolls.is_empty() {
-            true => given.rolls.clone(),
-            false => self
-                .rolls
-                .iter()
-                .map(|&(length, width)| RollSettings {
-                    width: width.map(Metres),
-                    length: Some(Metres(length)),
-                    ..RollSettings::default()
-                })
-                .collect(),
+        let cloth = Cloth {
+            width,
+            nap: own.is_some_and(|f| f.nap),
+            spread,
+            plies,
         };
+        let rolls = self.rolls_of(name, &given)?;
         let rolled = !rolls.is_empty();
-        let price = self.price_per_metre.or(given.price_per_metre);
-        let planned = |(k, roll): (usize, &RollSettings)| {
-            let mut strip = strip.clone();
-            if let Some(Metres(width)) = roll.width {
-                strip.width = folded(width, spread);
+        let planned = match rolled {
+            true => {
+                let planned = rolls.iter().enumerate();
+                let planned = planned.map(|(k, roll)| self.roll(&given, &cloth, (k, roll)));
+                planned.collect::<Result<_, _>>()?
             }
-            strip.max_length = metres(roll.length).or(strip.max_length);
-            strip.defects.extend(roll.flaws.iter().map(flaw));
-            PlannedRoll {
-                name: Some(
-                    roll.name
-                        .clone()
-                        .unwrap_or_else(|| format!("roll {}", k + 1)),
-                ),
-                strip,
-                price_per_metre: self.price_per_metre.or(roll.price_per_metre).or(price),
-            }
-        };
-        let mut planned: Vec<PlannedRoll> = rolls.iter().enumerate().map(planned).collect();
-        if planned.is_empty() {
-            planned.push(PlannedRoll {
+            false => vec![PlannedRoll {
                 name: None,
-                strip,
-                price_per_metre: price,
-            });
-        }
+                strip: self.strip(&given, &cloth, &given.flaws)?,
+                price_per_metre: self.price_per_metre.or(given.price_per_metre),
+            }],
+        };
         Ok(FabricPlan {
             spread,
             plies,
@@ -261,60 +256,108 @@ impl NestOptions {
         })
     }
 
-    fn strip(&self, given: &FabricSettings, (width, nap): (f64, bool), spread: Spread) -> Strip {
-        let own = if nap { Nap::OneWay } else { Nap::None };
-        let print = given.print.map(|print| Stripes {
+    /// The rolls at hand: those of the command line, else those of the settings.
+    fn rolls_of(
+        &self,
+        name: &str,
+        given: &FabricSettings,
+    ) -> Result<Vec<RollSettings>, SessionError> {
+        if self.rolls.is_empty() {
+            let has = |field: fn(&RollSettings) -> bool| given.rolls.iter().any(field);
+            let width = self.width.is_some() && has(|roll| roll.width.is_some());
+            let length = self.length.is_some() && has(|roll| roll.length.is_some());
+            if width || length {
+                return Err(SessionError::Conflict(format!(
+                    "the settings have rolls of fabric {name:?} with a {} of their own; leave --{0} out, or give the rolls with --roll",
+                    if width { "width" } else { "length" }
+                )));
+            }
+            return Ok(given.rolls.clone());
+        }
+        let roll = |&(length, width): &(f64, Option<f64>)| RollSettings {
+            width: width.map(Metres),
+            length: Some(Metres(length)),
+            ..RollSettings::default()
+        };
+        Ok(self.rolls.iter().map(roll).collect())
+    }
+
+    /// One roll, with what it has of its own.
+    fn roll(
+        &self,
+        given: &FabricSettings,
+        cloth: &Cloth,
+        (number, roll): (usize, &RollSettings),
+    ) -> Result<PlannedRoll, SessionError> {
+        let cloth = Cloth {
+            width: roll.width.map_or(cloth.width, |w| w.0),
+            ..*cloth
+        };
+        let flaws: Vec<FlawSettings> = given.flaws.iter().chain(&roll.flaws).copied().collect();
+        let mut strip = self.strip(given, &cloth, &flaws)?;
+        let own = metres(roll.length).map(|length| length / f64::from(cloth.plies));
+        strip.max_length = own.or(strip.max_length);
+        let name = roll.name.clone();
+        let price = self.price_per_metre.or(roll.price_per_metre);
+        Ok(PlannedRoll {
+            name: Some(name.unwrap_or_else(|| format!("roll {}", number + 1))),
+            strip,
+            price_per_metre: price.or(given.price_per_metre),
+        })
+    }
+
+    /// Fabric as it lies, with flaws of the fabric laid open.
+    fn strip(
+        &self,
+        given: &FabricSettings,
+        cloth: &Cloth,
+        flaws: &[FlawSettings],
+    ) -> Result<Strip, SessionError> {
+        let own = if cloth.nap { Nap::OneWay } else { Nap::None };
+        let of_all = self.repeat.map(|repeat| Stripes {
+            repeat: Vec2::from(repeat),
+            origin: Vec2::zeros(),
+        });
+        let of_fabric = given.print.map(|print| Stripes {
             repeat: Vec2::new(print.repeat[0].0, print.repeat[1].0),
             origin: Vec2::new(print.origin[0].0, print.origin[1].0),
         });
-        let mut strip = Strip {
+        let margin = self.end_margin.or(metres(given.end_margin));
+        let more = self
+            .defects
+            .iter()
+            .map(|&[x, y, length, width]| FlawSettings {
+                at: [Metres(x), Metres(y)],
+                size: [Metres(length), Metres(width)],
+                clearance: Metres(0.0),
+            });
+        let flaws: Vec<FlawSettings> = flaws.iter().copied().chain(more).collect();
+        Ok(Strip {
             selvedge: self.selvedge.or(metres(given.selvedge)).unwrap_or(SELVEDGE),
-            end_margin: self
-                .end_margin
-                .or(metres(given.end_margin))
-                .unwrap_or_default(),
+            end_margin: margin.unwrap_or_default(),
             gap: self.gap.or(metres(given.gap)).unwrap_or(GAP),
+            max_length: self.length.map(|length| length / f64::from(cloth.plies)),
             nap: self.nap.or(given.nap.map(|n| n.0)).unwrap_or(own),
-            fold: match spread {
+            fold: match cloth.spread {
                 Spread::Open | Spread::FaceToFace => Fold::Open,
                 Spread::Folded => Fold::Lower,
                 Spread::Tubular => Fold::Both,
             },
-            stripes: print,
-            defects: given.flaws.iter().map(flaw).collect(),
-            ..Strip::of_width(folded(width, spread))
-        };
-        strip = self.applied(strip);
-        strip.width = folded(width, spread);
-        strip
+            stripes: of_all.or(of_fabric),
+            defects: flaws_on(&flaws, cloth.width, cloth.spread)?,
+            ..Strip::of_width(folded(cloth.width, cloth.spread))
+        })
     }
+}
 
-    /// A strip with what is given on the command line instead of its own.
-    pub(crate) fn applied(&self, strip: Strip) -> Strip {
-        let rectangle = |&[x, y, length, width]: &[f64; 4]| Defect {
-            outline: Polygon::rectangle(Bounds2 {
-                min: Vec2::new(x, y),
-                max: Vec2::new(x + length, y + width),
-            }),
-            clearance: 0.0,
-        };
-        let given = self.repeat.map(|repeat| Stripes {
-            repeat: Vec2::from(repeat),
-            origin: Vec2::zeros(),
-        });
-        let flaws = self.defects.iter().map(rectangle);
-        Strip {
-            width: self.width.unwrap_or(strip.width),
-            selvedge: self.selvedge.unwrap_or(strip.selvedge),
-            end_margin: self.end_margin.unwrap_or(strip.end_margin),
-            gap: self.gap.unwrap_or(strip.gap),
-            max_length: self.length.or(strip.max_length),
-            nap: self.nap.unwrap_or(strip.nap),
-            stripes: given.or(strip.stripes),
-            defects: strip.defects.iter().cloned().chain(flaws).collect(),
-            ..strip
-        }
-    }
+/// Fabric as it comes, and how it is spread.
+#[derive(Clone, Copy, Debug)]
+struct Cloth {
+    /// Laid open [m].
+    width: f64,
+    nap: bool,
+    spread: Spread,
+    plies: u32,
 }
 
 /// Width of fabric as it lies, from its full width [m].

@@ -78,6 +78,8 @@ impl Session {
     ) -> Outcome {
         let mut next =
             step(&mut self.history, &self.project).ok_or(SessionError::Nothing { action, hint })?;
+        // Where the pattern is kept is no step of the history.
+        next.source = self.project.source.clone();
         // Ids are never given twice, not even those of what was undone.
         let given = self.project.pattern.ids;
         let mut ids = next.pattern.ids;
@@ -277,7 +279,7 @@ impl Session {
         }]));
         files.push((
             "journal.jsonl".into(),
-            journal_lines(&commands).into_bytes(),
+            journal_lines(&commands)?.into_bytes(),
         ));
         let mut timing = self.timing.clone();
         timing.add("export", start);

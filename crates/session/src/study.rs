@@ -6,7 +6,7 @@ use crate::marking::drafts_of;
 use crate::watcher::Part;
 use crate::{Budget, Nap, NestOptions, Nested, SessionError, Spread, Watcher};
 use std::path::PathBuf;
-use toile_interchange::{ALL, Metres, PieceSettings};
+use toile_interchange::{ANY_NAME, Metres, PieceSettings};
 use toile_pattern::Pattern;
 
 /// What a rule costs.
@@ -16,12 +16,10 @@ pub struct RuleCost {
     pub rule: String,
     /// Fabric a set of garments needs, on average over the seeds [m].
     pub fabric: f64,
-    /// Area of the garments' pieces over width times that, 0..=1.
+    /// Area of the garments' pieces over that of the fabric, 0..=1.
     pub efficiency: f64,
     /// Efficiency without the rule less that with it.
     pub cost: f64,
-    /// Markers that the referee refused.
-    pub unsound: usize,
     /// Pieces that found no place.
     pub unplaced: usize,
     /// Why it could not be done, if so.
@@ -40,14 +38,18 @@ fn rule(words: &str, change: impl Fn(&mut NestOptions) + 'static) -> Rule {
 
 /// What holds for all pieces, to change.
 fn every_piece(options: &mut NestOptions) -> &mut PieceSettings {
-    options.settings.pieces.entry(ALL.to_owned()).or_default()
+    options
+        .settings
+        .pieces
+        .entry(ANY_NAME.to_owned())
+        .or_default()
 }
 
 /// The rules, for a marker of a length and a width [m] without any.
 fn rules(patterns: &[&Pattern], length: f64, width: f64) -> Vec<Rule> {
     let mut all = vec![
         rule("grain within 2 degrees instead of exact", |o| {
-            o.tilt = 2f64.to_radians();
+            o.tilt = Some(2f64.to_radians());
         }),
         rule("pieces may be turned over", |o| {
             every_piece(o).turn_over = Some(true);
@@ -139,13 +141,12 @@ pub fn study_rules(
     };
     let base = try_rule(&|_| {}, &mut Part::new(watcher, 0.0, 0.06))?;
     let area = base.area;
-    let efficiency = |found: &Found| area / (base.width * found.fabric);
+    let efficiency = |found: &Found| area / found.fabric_area;
     let row = |rule: &str, found: &Found| RuleCost {
         rule: rule.to_owned(),
         fabric: found.fabric,
         efficiency: efficiency(found),
         cost: efficiency(&base) - efficiency(found),
-        unsound: found.unsound,
         unplaced: found.unplaced,
         refused: None,
     };
@@ -164,7 +165,6 @@ pub fn study_rules(
                 fabric: f64::NAN,
                 efficiency: f64::NAN,
                 cost: f64::NAN,
-                unsound: 0,
                 unplaced: 0,
                 refused: Some(error.to_string()),
             }),
@@ -180,9 +180,10 @@ struct Found {
     fabric: f64,
     /// Area of the pieces [m2].
     area: f64,
-    /// Full width [m].
+    /// Fabric it lies on [m2].
+    fabric_area: f64,
+    /// Width of the widest fabric [m].
     width: f64,
-    unsound: usize,
     unplaced: usize,
 }
 
@@ -191,7 +192,7 @@ impl Found {
         self.fabric += nested.length;
         self.area += area;
         self.width = self.width.max(nested.width);
-        self.unsound += usize::from(!nested.sound);
+        self.fabric_area += nested.length * nested.width;
         self.unplaced += nested.unplaced;
     }
 
@@ -199,6 +200,7 @@ impl Found {
         Self {
             fabric: self.fabric / seeds,
             area: self.area / seeds,
+            fabric_area: self.fabric_area / seeds,
             ..self
         }
     }
@@ -211,18 +213,17 @@ pub fn rule_table(rows: &[RuleCost], budget: Budget) -> String {
         Budget::Seconds(seconds) => format!("{seconds} s"),
     };
     let mut text = format!(
-        "| rule added ({budget} a marker) | fabric, m | efficiency, % | cost, points | refused by the referee | not laid |\n|---|---|---|---|---|---|\n"
+        "| rule added ({budget} a marker) | fabric, m | efficiency, % | cost, points | not laid |\n|---|---|---|---|---|\n"
     );
     for row in rows {
         let cells = match &row.refused {
-            Some(why) => format!("| {} | {why} | | | | |\n", row.rule),
+            Some(why) => format!("| {} | {why} | | | |\n", row.rule),
             None => format!(
-                "| {} | {:.3} | {:.2} | {:.2} | {} | {} |\n",
+                "| {} | {:.3} | {:.2} | {:.2} | {} |\n",
                 row.rule,
                 row.fabric,
                 row.efficiency * 100.0,
                 row.cost * 100.0 + 0.0,
-                row.unsound,
                 row.unplaced
             ),
         };

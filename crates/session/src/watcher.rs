@@ -2,6 +2,8 @@
 
 use crate::SessionError;
 use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Follows long work; may stop it.
 pub trait Watcher {
@@ -9,6 +11,12 @@ pub trait Watcher {
     /// a command), and a detail. `Break` cancels: the command fails with
     /// [`SessionError::Cancelled`] and leaves everything as it was.
     fn progress(&mut self, stage: &str, share: f64, detail: &str) -> ControlFlow<()>;
+
+    /// Set from anywhere when the work is to stop, if there is such a flag: work that is not told
+    /// on looks at it.
+    fn stop_flag(&self) -> Option<Arc<AtomicBool>> {
+        None
+    }
 }
 
 /// A watcher that watches nothing.
@@ -52,6 +60,10 @@ impl Watcher for Part<'_> {
         let share = self.from + (self.to - self.from) * share.clamp(0.0, 1.0);
         self.reached = self.reached.max(share);
         self.whole.progress(stage, self.reached, detail)
+    }
+
+    fn stop_flag(&self) -> Option<Arc<AtomicBool>> {
+        self.whole.stop_flag()
     }
 }
 

@@ -331,7 +331,7 @@ proptest! {
                 }
             }
         }
-        let journal = read_journal(&journal_lines(session.journal())).unwrap();
+        let journal = read_journal(&journal_lines(session.journal()).unwrap()).unwrap();
         prop_assert_eq!(&journal[..], session.journal());
         let (replayed, _) = Session::replay(&journal, folder.path(), &mut Silent).unwrap();
         prop_assert_eq!(replayed.project(), session.project());
@@ -349,4 +349,29 @@ proptest! {
         }
         prop_assert_eq!(session.project(), &end);
     }
+}
+
+#[test]
+fn undo_does_not_forget_where_the_pattern_is_kept() {
+    let (mut session, folder) = opened();
+    let step = move_point(&session, 0, [-0.2, -0.051]);
+    run(&mut session, edit(vec![step], None)).unwrap();
+    let path = folder.path().join("kept.toile.json");
+    run(&mut session, Command::SavePattern { path: path.clone() }).unwrap();
+    for command in [Command::Undo, Command::Redo] {
+        run(&mut session, command).unwrap();
+        assert_eq!(session.project().source.as_ref(), Some(&path));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_command_that_cannot_be_written_is_an_error() {
+    use std::os::unix::ffi::OsStringExt;
+    let path = std::ffi::OsString::from_vec(vec![0xff, 0xfe]).into();
+    let error = journal_lines(&[Command::Check, Command::SavePattern { path }]).unwrap_err();
+    assert!(
+        error.to_string().starts_with("journal, line 2: "),
+        "{error}"
+    );
 }

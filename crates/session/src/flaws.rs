@@ -1,0 +1,123 @@
+//! Flaws measured on the fabric laid open, where they lie once it is spread.
+
+use crate::SessionError;
+use toile_geometry::{Bounds2, Polygon, Vec2};
+use toile_interchange::{FlawSettings, Spread};
+use toile_nesting::Defect;
+
+/// What a flaw may reach beyond the edge of the fabric and count as within [m].
+const ROUNDING: f64 = 1e-9;
+
+/// The flaws of fabric of a width laid open [m], in the plane of the fabric as it is spread. One
+/// across a fold lies on both sides of it.
+pub(crate) fn flaws_on(
+    flaws: &[FlawSettings],
+    width: f64,
+    spread: Spread,
+) -> Result<Vec<Defect>, SessionError> {
+    let mut defects = Vec::new();
+    for (k, flaw) in flaws.iter().enumerate() {
+        let [x, low] = flaw.at.map(|m| m.0);
+        let [length, high] = [flaw.size[0].0, low + flaw.size[1].0];
+        let inside = x >= 0.0 && low >= -ROUNDING && high <= width + ROUNDING;
+        if !inside {
+            return Err(SessionError::Conflict(format!(
+                "flaw {} reaches from {:.0} to {:.0} mm across and starts at {:.0} mm; the fabric laid open is {:.0} mm wide and starts at 0: measure the flaw on the open fabric",
+                k + 1,
+                low * 1e3,
+                high * 1e3,
+                x * 1e3,
+                width * 1e3
+            )));
+        }
+        for [low, high] in as_spread([low, high], width, spread) {
+            defects.push(Defect {
+                outline: Polygon::rectangle(Bounds2 {
+                    min: Vec2::new(x, low),
+                    max: Vec2::new(x + length, high),
+                }),
+                clearance: flaw.clearance.0,
+            });
+        }
+    }
+    Ok(defects)
+}
+
+/// Where a span across the open fabric lies once that is spread [m]. Folded, the middle of the
+/// fabric is the fold at 0 and the selvedges meet; a tube is measured round from its fold at 0.
+fn as_spread([low, high]: [f64; 2], width: f64, spread: Spread) -> Vec<[f64; 2]> {
+    let middle = 0.5 * width;
+    if matches!(spread, Spread::Open | Spread::FaceToFace) {
+        return vec![[low, high]];
+    }
+    let lower = [low.min(middle), high.min(middle)];
+    let upper = [low.max(middle), high.max(middle)];
+    let placed = |[low, high]: [f64; 2]| match spread {
+        Spread::Folded if high <= middle => [middle - high, middle - low],
+        Spread::Folded => [low - middle, high - middle],
+        _ if high <= middle => [low, high],
+        _ => [width - high, width - low],
+    };
+    if high <= middle || low >= middle {
+        // All on one side, or without any width, which the referee of the job refuses.
+        return vec![placed([low, high])];
+    }
+    vec![placed(lower), placed(upper)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toile_interchange::Metres;
+
+    fn spans(low: f64, high: f64, spread: Spread) -> Vec<[f64; 2]> {
+        let flaw = FlawSettings {
+            at: [Metres(1.0), Metres(low)],
+            size: [Metres(0.1), Metres(high - low)],
+            clearance: Metres(0.0),
+        };
+        let found = flaws_on(&[flaw], 1.6, spread).unwrap();
+        let span = |d: &Defect| [d.outline.bounds().min.y, d.outline.bounds().max.y];
+        found.iter().map(span).collect()
+    }
+
+    fn same(found: &[[f64; 2]], wanted: &[[f64; 2]]) {
+        assert_eq!(found.len(), wanted.len(), "{found:?}");
+        for (a, b) in found.iter().flatten().zip(wanted.iter().flatten()) {
+            assert!((a - b).abs() < 1e-12, "{found:?} {wanted:?}");
+        }
+    }
+
+    #[test]
+    fn flaws_lie_where_the_fabric_is_folded_to() {
+        same(&spans(1.2, 1.3, Spread::Open), &[[1.2, 1.3]]);
+        same(&spans(1.2, 1.3, Spread::Folded), &[[0.4, 0.5]]);
+        same(&spans(0.1, 0.2, Spread::Folded), &[[0.6, 0.7]]);
+        same(&spans(0.7, 0.9, Spread::Folded), &[[0.0, 0.1], [0.0, 0.1]]);
+        same(&spans(1.2, 1.3, Spread::Tubular), &[[0.3, 0.4]]);
+        same(&spans(0.1, 0.2, Spread::Tubular), &[[0.1, 0.2]]);
+        same(
+            &spans(0.75, 0.9, Spread::Tubular),
+            &[[0.75, 0.8], [0.7, 0.8]],
+        );
+    }
+
+    #[test]
+    fn flaws_beside_the_fabric_are_refused() {
+        for (x, y) in [
+            (1.0, 2.0),
+            (1.0, 1.55),
+            (1.0, -0.1),
+            (-0.2, 0.5),
+            (f64::NAN, 0.5),
+        ] {
+            let flaw = FlawSettings {
+                at: [Metres(x), Metres(y)],
+                size: [Metres(0.1), Metres(0.1)],
+                clearance: Metres(0.0),
+            };
+            let error = flaws_on(&[flaw], 1.6, Spread::Open).unwrap_err();
+            assert!(error.to_string().contains("flaw 1"), "{error}");
+        }
+    }
+}
