@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 use toile_geometry::Vec2;
-use toile_interchange::read_jagua;
+use toile_interchange::{read_jagua, write_atomically};
 use toile_nesting::{Marker, Placement, judge};
 use toile_tests::root;
 
@@ -36,6 +36,8 @@ const SAMPLES: usize = 2000;
 const HEADER: &str = "commit,instance,seconds,seed,place,program,allowed_s,wall_s,cpu_s,load,pieces,length,density_percent,sound,deepest_m";
 /// A run that had less of the processors than this is named at the end: the machine was not idle.
 const LEAST_LOAD: f64 = 0.85;
+/// Fewer pairs say nothing of how far their mean may be off.
+const LEAST_PAIRS: usize = 3;
 
 /// What is asked.
 #[derive(Debug)]
@@ -186,7 +188,8 @@ fn call(
             let mut made = Command::new(&task.toile);
             made.arg("nest")
                 .arg(file)
-                .args(["--time", &limit.to_string(), "--seed", &seed]);
+                .args(["--time", &limit.to_string(), "--seed", &seed])
+                .args(["--threads", &task.threads.to_string()]);
             made.arg("--out")
                 .arg(solution.parent().unwrap_or(Path::new(".")));
             made
@@ -323,12 +326,14 @@ fn plan(task: &Task) -> Vec<(Run, PathBuf, f64)> {
 type Table = BTreeMap<(String, String), BTreeMap<(String, String), f64>>;
 
 /// The densities of the sound rows of `runs.csv`, and rows to look at.
-fn table(rows: &str) -> (Table, Vec<String>) {
+///
+/// Rows of other commits are left out.
+fn table(rows: &str, commit: &str) -> (Table, Vec<String>) {
     let (mut table, mut named) = (Table::new(), Vec::new());
     for row in rows.lines().skip(1) {
         let fields: Vec<&str> = row.split(',').collect();
         let [
-            _,
+            made_at,
             instance,
             seconds,
             seed,
@@ -347,6 +352,9 @@ fn table(rows: &str) -> (Table, Vec<String>) {
         else {
             continue;
         };
+        if made_at != commit {
+            continue;
+        }
         let number = |text: &str| text.parse::<f64>().unwrap_or(f64::NAN);
         if sound != "true" {
             named.push(format!("not sound, not counted: {row}"));
@@ -419,12 +427,18 @@ fn summary(table: &Table, commit: &str) -> String {
             text += ",,,,,,,\n";
             continue;
         }
-        let [low, high] = interval(&paired);
+        let bounds = match paired.len() {
+            ..LEAST_PAIRS => ",".to_owned(),
+            _ => {
+                let [low, high] = interval(&paired);
+                format!("{low:+.3},{high:+.3}")
+            }
+        };
         let wins = paired.iter().filter(|d| **d > 0.0).count();
         let losses = paired.iter().filter(|d| **d < 0.0).count();
         let _ = writeln!(
             text,
-            ",{:.3},{:.3},{:+.3},{low:+.3},{high:+.3},{wins},{losses}",
+            ",{:.3},{:.3},{:+.3},{bounds},{wins},{losses}",
             mean(&theirs),
             best(&theirs),
             mean(&paired)
@@ -438,11 +452,12 @@ fn nest(task: &Task) -> Result<(), String> {
     std::fs::create_dir_all(&task.out).map_err(said)?;
     let file = task.out.join("runs.csv");
     let mut rows = std::fs::read_to_string(&file).unwrap_or_else(|_| format!("{HEADER}\n"));
+    let commit = commit();
     let known = |rows: &str, run: &Run| {
-        let key = run.key();
+        let key = format!("{commit},{}", run.key());
         rows.lines().any(|row| {
             let f: Vec<&str> = row.split(',').collect();
-            f.len() > 5 && [f[1], f[2], f[3], f[5]].join(",") == key
+            f.len() > 5 && [f[0], f[1], f[2], f[3], f[5]].join(",") == key
         })
     };
     let plan = plan(task);
@@ -456,14 +471,15 @@ fn nest(task: &Task) -> Result<(), String> {
                 println!("{}/{} {row}", number + 1, plan.len());
                 rows += &row;
                 rows.push('\n');
-                std::fs::write(&file, &rows).map_err(said)?;
+                write_atomically(&file, rows.as_bytes()).map_err(|e| e.to_string())?;
             }
             Err(why) => failed.push(format!("{}: {}", run.key(), why.trim())),
         }
     }
-    let (table, named) = table(&rows);
-    let text = summary(&table, &commit());
-    std::fs::write(task.out.join("table.csv"), &text).map_err(said)?;
+    let (table, named) = table(&rows, &commit);
+    let text = summary(&table, &commit);
+    let file = task.out.join("table.csv");
+    write_atomically(&file, text.as_bytes()).map_err(|e| e.to_string())?;
     println!("{text}");
     for row in &named {
         println!("{row}");

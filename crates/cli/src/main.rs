@@ -10,6 +10,7 @@ mod nest_commands;
 mod output;
 mod session_commands;
 mod tool_commands;
+mod values;
 
 use arguments::{Arguments, Task};
 use clap::Parser;

@@ -54,6 +54,9 @@ fn a_marker_maker_gets_rolls_spreads_costs_and_files_for_machines() {
         (["--plies", "0"], "plies"),
         (["--settings", "gone.json"], "gone.json"),
         (["--write", "png"], "png"),
+        (["--repeat", "50mm,40mm,30mm"], "3 lengths"),
+        (["--sizes", "M:4000000000"], "number of garments"),
+        (["--islands", "1000000"], "islands are too many"),
     ] {
         let output = toile(folder.path(), &["nest", trousers, bad[0], bad[1]]);
         assert_eq!(output.status.code(), Some(2), "{bad:?}");
@@ -212,6 +215,38 @@ fn damaged_pieces_are_refused_by_name_and_nothing_is_written() {
 }
 
 #[test]
+fn a_repeat_takes_no_pattern_for_its_second_length() {
+    let folder = tempfile::tempdir().unwrap();
+    let shirt = patterns().join("t-shirt.toile.json");
+    let shirt = shirt.to_str().unwrap();
+    let usual = ["nest", "--evaluations", "1000", "--repeat", "50mm", shirt];
+    let output = toile(folder.path(), &usual);
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output.stderr));
+    let instance = [
+        "nest",
+        "out/marker-instance.json",
+        "--evaluations",
+        "1000",
+        "--study",
+    ];
+    let made = toile(
+        folder.path(),
+        &[
+            "nest",
+            shirt,
+            "--evaluations",
+            "1000",
+            "--write",
+            "instance",
+        ],
+    );
+    assert_eq!(made.status.code(), Some(0));
+    let output = toile(folder.path(), &instance);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(words(&output.stderr).contains("--study"));
+}
+
+#[test]
 fn the_study_prints_what_rules_cost() {
     let folder = tempfile::tempdir().unwrap();
     let shirt = patterns().join("t-shirt.toile.json");
@@ -230,6 +265,8 @@ fn the_study_prints_what_rules_cost() {
     let rules = report["rules"].as_array().unwrap();
     assert!(rules.len() >= 15);
     assert!(rules.iter().all(|r| r["refused"].is_null()), "{rules:?}");
+    let share = |r: &Value| (0.05..0.95).contains(&r["efficiency"].as_f64().unwrap());
+    assert!(rules.iter().all(share), "{rules:?}");
     let base = rules[0]["efficiency"].as_f64().unwrap();
     assert!((0.5..0.9).contains(&base), "{base}");
     assert!(!folder.path().join("out").exists());

@@ -29,6 +29,19 @@ pub struct JaguaInstance {
     document: Map<String, Value>,
 }
 
+/// Fields of an instance and of an item that are known; `solution` and `dxf`, where an outline came
+/// from, are passed over.
+const TOP_FIELDS: [&str; 4] = ["name", "strip_height", "items", "solution"];
+const ITEM_FIELDS: [&str; 5] = ["id", "demand", "allowed_orientations", "shape", "dxf"];
+
+/// A note for every field that is not known.
+fn unknown(fields: &Map<String, Value>, place: &str, (known, notes): (&[&str], &mut Vec<String>)) {
+    for name in fields.keys().filter(|name| !known.contains(&name.as_str())) {
+        let dot = if place.is_empty() { "" } else { "." };
+        notes.push(format!("{place}{dot}{name} is not known here and ignored"));
+    }
+}
+
 /// Whether a text looks like such an instance rather than like a pattern.
 pub fn is_jagua_instance(text: &str) -> bool {
     let document: Result<Value, _> = serde_json::from_str(text);
@@ -59,6 +72,7 @@ pub fn read_jagua(text: &str) -> Result<JaguaInstance, FormatError> {
     let listed = document.get("items").and_then(Value::as_array);
     let listed = listed.ok_or_else(|| wrong("items", "there is no list of items"))?;
     let (mut items, mut ids, mut notes) = (Vec::new(), Vec::new(), Vec::new());
+    unknown(&document, "", (&TOP_FIELDS, &mut notes));
     for (k, value) in listed.iter().enumerate() {
         items.push(read_item(value, &format!("items[{k}]"), scale, &mut notes)?);
         ids.push(value.get("id").cloned().unwrap_or_else(|| json!(k)));
@@ -85,6 +99,12 @@ fn read_item(
     notes: &mut Vec<String>,
 ) -> Result<Item, FormatError> {
     let field = |name: &str| format!("{place}.{name}");
+    if let Value::Object(fields) = value {
+        unknown(fields, place, (&ITEM_FIELDS, notes));
+    }
+    if let Some(Value::Object(fields)) = value.get("shape") {
+        unknown(fields, &field("shape"), (&["type", "data"], notes));
+    }
     let name = match value.get("id") {
         Some(Value::String(id)) => id.clone(),
         Some(id) => id.to_string(),
@@ -195,9 +215,29 @@ pub fn write_jagua(
     text.map_err(|error| wrong("solution", error.to_string()))
 }
 
-/// Items and the usable width of a strip as an instance, in millimetres, grain along x. Gaps, print,
-/// flaws, folds and locks are not in this format.
-pub fn write_jagua_instance(name: &str, items: &[Item], strip: &Strip) -> String {
+/// Items and the usable width of a strip as an instance, in millimetres, grain along x. Gaps, tilt,
+/// turning over, nap, end margins, length at hand, print, flaws, folds and locks are not in this
+/// format.
+///
+/// # Errors
+/// A number is not finite.
+pub fn write_jagua_instance(
+    name: &str,
+    items: &[Item],
+    strip: &Strip,
+) -> Result<String, FormatError> {
+    for item in items {
+        let mut points = item.outline.outer.iter();
+        let turns = item.allowed.turns.iter().all(|t| t.is_finite());
+        let finite = points.all(|p| p.x.is_finite() && p.y.is_finite());
+        if !(finite && turns && item.grain.is_finite()) {
+            let place = format!("piece \"{}\"", item.name);
+            return Err(wrong(place, "a number is not finite"));
+        }
+    }
+    if !strip.usable_width().is_finite() {
+        return Err(wrong("the fabric", "its width is not finite"));
+    }
     let item = |(id, item): (usize, &Item)| {
         let straight = item.outline.rotated(-item.grain);
         let corner = straight.bounds().min;
@@ -218,7 +258,7 @@ pub fn write_jagua_instance(name: &str, items: &[Item], strip: &Strip) -> String
         "strip_height": strip.usable_width() * 1e3,
         "items": items.iter().enumerate().map(item).collect::<Vec<_>>(),
     });
-    format!("{instance}\n")
+    Ok(format!("{instance}\n"))
 }
 
 #[cfg(test)]
@@ -237,7 +277,12 @@ mod tests {
             selvedge: 0.01,
             ..Strip::of_width(1.5)
         };
-        let text = write_jagua_instance("shirt", std::slice::from_ref(&item), &strip);
+        let text = write_jagua_instance("shirt", std::slice::from_ref(&item), &strip).unwrap();
+        let damaged = Item {
+            grain: f64::NAN,
+            ..item.clone()
+        };
+        assert!(write_jagua_instance("shirt", &[damaged], &strip).is_err());
         assert!(is_jagua_instance(&text));
         let back = read_jagua(&text).unwrap();
         assert_eq!((back.items.len(), back.items[0].quantity), (1, 3));
@@ -287,6 +332,27 @@ mod tests {
         assert!(value["solution"]["strip_width"].as_f64().unwrap() >= 2000.0);
         assert_eq!(value["items"][0]["demand"], 2);
         assert_eq!(read_jagua(&text).unwrap().items, instance.items);
+    }
+
+    #[test]
+    fn fields_that_are_not_known_are_noted_with_their_path() {
+        for (old, new, path) in [
+            (
+                "\"allowed_orientations\": [",
+                "\"allowed_orientation\": [",
+                "items[0].allowed_orientation",
+            ),
+            ("\"name\":", "\"title\":", "title"),
+            (
+                "\"type\":",
+                "\"holes\": [], \"type\":",
+                "items[0].shape.holes",
+            ),
+        ] {
+            let instance = read_jagua(&SMALL.replacen(old, new, 1)).unwrap();
+            let note = format!("{path} is not known here and ignored");
+            assert!(instance.notes.contains(&note), "{:?}", instance.notes);
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::dxf::DxfWriter;
 use crate::hpgl::HpglWriter;
 use crate::marker_strokes::{Layer, Strokes};
-use crate::pdf::{Align, PdfPage, PdfSheets, PdfText};
+use crate::pdf::{Align, PdfPage, PdfSheets, PdfText, fitted, wrapped};
 use crate::{FormatError, MarkerDrawing};
 use toile_geometry::Vec2;
 
@@ -60,10 +60,17 @@ const BORDER: f64 = 0.02;
 /// A coordinate is not finite.
 pub fn write_marker_pdf(drawing: &MarkerDrawing) -> Result<Vec<u8>, FormatError> {
     drawing.check_numbers()?;
-    let header = 0.02 * (2 + drawing.summary().len()) as f64;
     let fabric = Vec2::new(drawing.length, drawing.strip.width);
-    let size = fabric + Vec2::new(2.0 * BORDER, 2.0 * BORDER + header);
-    let mut page = PdfPage::new(Vec2::new(size.x.max(0.4), size.y));
+    let wide = (fabric.x + 2.0 * BORDER).max(0.4);
+    let room = wide - 2.0 * BORDER;
+    let summary = drawing.summary();
+    let lines: Vec<String> = summary
+        .iter()
+        .flat_map(|s| wrapped(s, 0.011, room))
+        .collect();
+    let header = 0.02 * (2 + lines.len()) as f64;
+    let size = Vec2::new(wide, fabric.y + 2.0 * BORDER + header);
+    let mut page = PdfPage::new(size);
     let look = PlotLook {
         origin: Vec2::new(BORDER, BORDER),
         scale: 1.0,
@@ -83,9 +90,9 @@ pub fn write_marker_pdf(drawing: &MarkerDrawing) -> Result<Vec<u8>, FormatError>
         });
         line -= 0.02;
     };
-    write(&drawing.title, 0.018);
-    for words in drawing.summary() {
-        write(&words, 0.011);
+    write(&fitted(&drawing.title, 0.018, room), 0.018);
+    for words in &lines {
+        write(words, 0.011);
     }
     let mut sheets = PdfSheets::default();
     sheets.push(page);
@@ -103,6 +110,9 @@ pub(crate) struct PlotLook {
     /// Whether words are written.
     pub words: bool,
 }
+
+/// Fill of what is cut twice.
+const CUT_TWICE: [f32; 3] = [0.9, 0.0, 0.0];
 
 /// Pale fills, one after another by item.
 const FILLS: [[f32; 3]; 8] = [
@@ -128,7 +138,7 @@ pub(crate) fn plot(page: &mut PdfPage, drawing: &MarkerDrawing, look: &PlotLook)
     }
     for overlap in &drawing.overlaps {
         let rings: Vec<Vec<Vec2>> = overlap.rings().map(|r| mapped(r)).collect();
-        page.fill(rings.iter().map(Vec::as_slice), Layer::Overlap.ink());
+        page.fill(rings.iter().map(Vec::as_slice), CUT_TWICE);
     }
     let all = Strokes::of(drawing);
     for stroke in &all.strokes {

@@ -1,8 +1,8 @@
 //! A marker's report on A4: picture, numbers, table of pieces.
 
 use crate::marker_plot::{PlotLook, plot};
-use crate::pdf::{Align, Ink, PdfPage, PdfSheets, PdfText, fitted};
-use crate::{FormatError, MarkerDrawing};
+use crate::pdf::{Align, Ink, PdfPage, PdfSheets, PdfText, fitted, wrapped};
+use crate::{FormatError, MarkerDrawing, MarkerPiece};
 use toile_geometry::Vec2;
 
 /// A4, upright \[m\].
@@ -112,6 +112,15 @@ impl Report {
         self.next_line(LINE);
     }
 
+    /// Small words in as many lines as they take.
+    fn small(&mut self, text: &str) {
+        let size = 0.85 * LETTERS;
+        for line in wrapped(text, size, PAGE[0] - 2.0 * BORDER) {
+            self.word(&line, (BORDER, Align::Left), (size, BLACK));
+            self.next_line(LINE);
+        }
+    }
+
     fn rule(&mut self) {
         let y = self.at + 0.7 * LINE;
         let ends = [Vec2::new(BORDER, y), Vec2::new(PAGE[0] - BORDER, y)];
@@ -139,14 +148,11 @@ impl Report {
             self.word("Not on this marker", (BORDER, Align::Left), (LETTERS, RED));
             self.next_line(LINE);
             for [name, reason] in &marker.unplaced {
-                let text = format!("{name}: {reason}");
-                self.word(&text, (BORDER, Align::Left), (0.85 * LETTERS, BLACK));
-                self.next_line(LINE);
+                self.small(&format!("{name}: {reason}"));
             }
         }
         for note in &marker.facts.notes {
-            self.word(note, (BORDER, Align::Left), (0.85 * LETTERS, BLACK));
-            self.next_line(LINE);
+            self.small(note);
         }
     }
 
@@ -191,13 +197,15 @@ impl Report {
         ];
         self.row(&columns, &head.map(str::to_owned));
         self.rule();
-        let mut seen: Vec<&str> = Vec::new();
+        let mut seen: Vec<(usize, &str)> = Vec::new();
         for piece in &marker.pieces {
-            if seen.contains(&piece.name.as_str()) {
+            let kind = (piece.item, piece.name.as_str());
+            if seen.contains(&kind) {
                 continue;
             }
-            seen.push(&piece.name);
-            let same = || marker.pieces.iter().filter(|p| p.name == piece.name);
+            seen.push(kind);
+            let is_it = |p: &&MarkerPiece| (p.item, p.name.as_str()) == kind;
+            let same = || marker.pieces.iter().filter(is_it);
             let size = piece.pose.lay(&piece.cut).bounds().size();
             self.row(
                 &columns,

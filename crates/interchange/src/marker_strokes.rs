@@ -20,11 +20,10 @@ pub(crate) enum Layer {
     Notch,
     Grain,
     Text,
-    Overlap,
 }
 
 impl Layer {
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 11] = [
         Self::Fabric,
         Self::Margin,
         Self::Fold,
@@ -36,7 +35,6 @@ impl Layer {
         Self::Notch,
         Self::Grain,
         Self::Text,
-        Self::Overlap,
     ];
 
     /// Name in files.
@@ -53,7 +51,6 @@ impl Layer {
             Self::Notch => "NOTCH",
             Self::Grain => "GRAIN",
             Self::Text => "TEXT",
-            Self::Overlap => "OVERLAP",
         }
     }
 
@@ -67,7 +64,7 @@ impl Layer {
             Self::Grain => 5,
             Self::Print => 4,
             Self::Fold => 6,
-            Self::Flaw | Self::Overlap => 1,
+            Self::Flaw => 1,
         }
     }
 
@@ -83,14 +80,13 @@ impl Layer {
             Self::Print => [0.62, 0.72, 0.85],
             Self::Fold => [0.55, 0.2, 0.55],
             Self::Flaw => [0.85, 0.28, 0.37],
-            Self::Overlap => [0.9, 0.0, 0.0],
         }
     }
 
     /// Pen of a plotter: 1 what is cut, 2 what is drawn on the pieces, 3 the fabric.
     pub fn pen(self) -> u8 {
         match self {
-            Self::Cut | Self::Notch | Self::Overlap => 1,
+            Self::Cut | Self::Notch => 1,
             Self::Sew | Self::Line | Self::Grain | Self::Text => 2,
             Self::Fabric | Self::Margin | Self::Fold | Self::Print | Self::Flaw => 3,
         }
@@ -133,9 +129,6 @@ impl Strokes {
         all.fabric(drawing);
         for piece in &drawing.pieces {
             all.piece(piece);
-        }
-        for overlap in &drawing.overlaps {
-            all.rings(Layer::Overlap, overlap);
         }
         all
     }

@@ -194,6 +194,23 @@ fn text_width(encoded: &[u8]) -> f64 {
     encoded.iter().map(width).sum::<f64>() / 1e3
 }
 
+/// A text in lines of at most a width \[m\] at a size \[m\], broken between words; a longer word is
+/// cut.
+pub(crate) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
+    let fits = |line: &str| text_width(&win_ansi(line)) * size <= width;
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if fits(&format!("{line} {word}")) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(fitted(word, size, width)),
+        }
+    }
+    lines
+}
+
 /// As many letters from the start of a text as fit a width \[m\] at a size \[m\].
 pub(crate) fn fitted(text: &str, size: f64, width: f64) -> String {
     if text_width(&win_ansi(text)) * size <= width {

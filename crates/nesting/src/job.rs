@@ -3,14 +3,15 @@
 //! Shapes are moved so that their boxes start at the origin. Moves are measured from the corner of
 //! the usable fabric.
 
-use crate::check::{TILTS, folds_up, orientations_within};
+use crate::check::{TILTS, orientations_within};
 use crate::marker::{Phase, turned};
 use crate::nofit::NoFit;
 use crate::pair::{Pair, PairQuery};
 use crate::raster::DepthRaster;
+use crate::shape::{Shape, coincide};
 use crate::side_by_side::side_by_side;
 use crate::simplify::simplify_outward;
-use crate::{FoldEdge, Item, Nap, Pose, Strip};
+use crate::{Item, Nap, Pose, Strip};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
@@ -34,30 +35,6 @@ const RASTER_NUMBERS: f64 = 32e6;
 /// Most no-fit polygons, about 50 kB each: where tilts would need more, fewer tilts are tried.
 const MOST_NO_FITS: usize = 4000;
 const FEW_TILTS: [f64; 3] = [0.0, -1.0, 1.0];
-
-/// A piece in one orientation.
-#[derive(Clone, Debug)]
-pub(crate) struct Shape {
-    /// Index of the item, or of the defect after all items.
-    pub kind: usize,
-    /// Number of its outline, which other items may share.
-    pub ring: usize,
-    /// The first shape with the same outline that lies alike.
-    pub look: usize,
-    /// Angle from the warp to the grain \[rad\].
-    pub turn: f64,
-    pub mirrored: bool,
-    /// From the box's corner to the origin of the posed outline, negated \[m\].
-    pub offset: Vec2,
-    /// Extent \[m\].
-    pub size: Vec2,
-    /// Whether the grain points along +x rather than -x.
-    pub forward: bool,
-    /// The match point from the box's corner \[m\].
-    pub anchor: Option<Vec2>,
-    /// The only y it may have \[m\]: that of the fold.
-    pub on_fold: Option<f64>,
-}
 
 /// One copy to lay, or something that lies already.
 #[derive(Clone, Debug)]
@@ -259,7 +236,7 @@ impl<'a> Job<'a> {
     pub fn starts_forward(&self, bundle: usize) -> bool {
         let mut own = self.pieces.iter().filter(|p| p.bundle == Some(bundle));
         let may = |p: &Piece| p.shapes.iter().any(|&s| !self.shapes[s].forward);
-        bundle % 2 == 0 || !own.all(may)
+        bundle.is_multiple_of(2) || !own.all(may)
     }
 
     /// Whether locked pieces fix where a matched set lies.
@@ -535,55 +512,6 @@ impl<'a> Job<'a> {
         }
         axes
     }
-}
-
-impl Shape {
-    /// Nothing if the orientation does not bring the fold edge to a fold.
-    fn new(kind: usize, item: &Item, (turn, mirrored): (f64, bool), strip: &Strip) -> Option<Self> {
-        let pose = Pose {
-            grain: item.grain,
-            turn,
-            mirrored,
-            translation: Vec2::zeros(),
-        };
-        let bounds = pose.lay(&item.outline).bounds();
-        let forward = turn.cos() >= 0.0;
-        let on_fold = match folds_up(item, strip, (turn, mirrored)) {
-            None => None,
-            Some(None) => return None,
-            Some(Some(FoldEdge::Lower)) => Some(0.0),
-            Some(Some(FoldEdge::Upper)) => Some(strip.usable_width() - bounds.size().y),
-        };
-        Some(Self {
-            kind,
-            ring: 0,
-            look: 0,
-            turn,
-            mirrored,
-            offset: bounds.min,
-            size: bounds.size(),
-            forward,
-            anchor: item.match_point.map(|m| pose.apply(m.point) - bounds.min),
-            on_fold,
-        })
-    }
-
-    /// The outline from the box's corner \[m\].
-    pub fn outline(&self, item: &Item) -> Polygon {
-        let pose = Pose {
-            grain: item.grain,
-            turn: self.turn,
-            mirrored: self.mirrored,
-            translation: -self.offset,
-        };
-        pose.lay(&item.outline)
-    }
-}
-
-/// Whether two rings have the same corners, in whatever order, to a tolerance \[m\].
-fn coincide(a: &[Vec2], b: &[Vec2], tolerance: f64) -> bool {
-    let found = |p: &Vec2| b.iter().any(|q| (p - q).amax() <= tolerance);
-    a.len() == b.len() && a.iter().all(found)
 }
 
 #[cfg(test)]

@@ -24,6 +24,7 @@ mod rules;
 mod search;
 mod separate;
 mod sequence;
+mod shape;
 mod side_by_side;
 mod simplify;
 mod slide;

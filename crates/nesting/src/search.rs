@@ -246,7 +246,7 @@ const BEGUN: Progress = Progress {
 fn checked(mut search: Search) -> Result<Search, NestingError> {
     let refuse = |what: String| Err(NestingError::Search(what));
     if let Budget::Seconds(seconds) = search.budget
-        && !(seconds >= 0.0)
+        && (seconds.is_nan() || seconds < 0.0)
     {
         return refuse(format!("the time is {seconds} s; give 0 or more"));
     }
@@ -367,11 +367,14 @@ fn epoch(
     each(islands, threads(meter.search), (&work, told));
 }
 
+/// What is done with an island.
+type Work<'w, 'a> = &'w (dyn Fn(&mut Island<'a>) + Sync);
+
 /// Works on all islands, on so many threads.
 fn each<'a>(
     islands: &mut [Island<'a>],
     threads: usize,
-    (work, told): (&(dyn Fn(&mut Island<'a>) + Sync), &mut dyn FnMut()),
+    (work, told): (Work<'_, 'a>, &mut dyn FnMut()),
 ) {
     let share = islands.len().div_ceil(threads.max(1)).max(1);
     let chunks = islands.chunks_mut(share).collect();

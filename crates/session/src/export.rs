@@ -88,7 +88,8 @@ pub(crate) fn marker_files(
                 MarkerFormat::Hpgl => ("plt", write_marker_hpgl(&drawing).map(String::into_bytes)),
                 MarkerFormat::Pdf => ("pdf", write_marker_pdf(&drawing)),
                 MarkerFormat::Instance => {
-                    let text = write_jagua_instance(name, &laying.items, &laying.strip);
+                    let text = write_jagua_instance(name, &laying.items, &laying.strip)
+                        .map_err(cannot("marker-instance.json"))?;
                     files.push((format!("{stem}-instance.json"), text.into_bytes()));
                     continue;
                 }

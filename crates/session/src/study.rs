@@ -1,12 +1,13 @@
 //! What each rule of the trade costs: the same garments laid with and without it, with the same
 //! number of evaluations.
 
-use crate::laying::{Garments, lay};
+use crate::laying::{Garments, Laying, lay};
 use crate::marking::drafts_of;
 use crate::watcher::Part;
-use crate::{Budget, Nap, NestOptions, Nested, SessionError, Spread, Watcher};
+use crate::{Budget, Nap, NestOptions, SessionError, Spread, Watcher};
 use std::path::PathBuf;
 use toile_interchange::{ANY_NAME, Metres, PieceSettings};
+use toile_nesting::Fold;
 use toile_pattern::Pattern;
 
 /// What a rule costs.
@@ -16,7 +17,7 @@ pub struct RuleCost {
     pub rule: String,
     /// Fabric a set of garments needs, on average over the seeds [m].
     pub fabric: f64,
-    /// Area of the garments' pieces over that of the fabric, 0..=1.
+    /// Area of the garments' pieces without any rule over that of the fabric laid open, 0..=1.
     pub efficiency: f64,
     /// Efficiency without the rule less that with it.
     pub cost: f64,
@@ -134,7 +135,7 @@ pub fn study_rules(
             change(&mut own);
             own.seed = options.seed + seed;
             for laying in lay(&garments, &own, watcher)? {
-                found.add(&laying.summary(), laying.cut_area());
+                found.add(&laying);
             }
         }
         Ok::<_, SessionError>(found.mean(seeds as f64))
@@ -180,7 +181,7 @@ struct Found {
     fabric: f64,
     /// Area of the pieces [m2].
     area: f64,
-    /// Fabric it lies on [m2].
+    /// Fabric it lies on, laid open [m2].
     fabric_area: f64,
     /// Width of the widest fabric [m].
     width: f64,
@@ -188,11 +189,16 @@ struct Found {
 }
 
 impl Found {
-    fn add(&mut self, nested: &Nested, area: f64) {
+    fn add(&mut self, laying: &Laying) {
+        let nested = laying.summary();
+        let layers = match laying.strip.fold {
+            Fold::Open => 1.0,
+            Fold::Lower | Fold::Both => 2.0,
+        };
         self.fabric += nested.length;
-        self.area += area;
+        self.area += laying.cut_area();
         self.width = self.width.max(nested.width);
-        self.fabric_area += nested.length * nested.width;
+        self.fabric_area += nested.length * nested.width * layers;
         self.unplaced += nested.unplaced;
     }
 

@@ -1,0 +1,83 @@
+//! A piece in one orientation.
+
+use crate::check::folds_up;
+use crate::{FoldEdge, Item, Pose, Strip};
+use toile_geometry::{Polygon, Vec2};
+
+/// A piece in one orientation.
+#[derive(Clone, Debug)]
+pub(crate) struct Shape {
+    /// Index of the item, or of the defect after all items.
+    pub kind: usize,
+    /// Number of its outline, which other items may share.
+    pub ring: usize,
+    /// The first shape with the same outline that lies alike.
+    pub look: usize,
+    /// Angle from the warp to the grain \[rad\].
+    pub turn: f64,
+    pub mirrored: bool,
+    /// From the box's corner to the origin of the posed outline, negated \[m\].
+    pub offset: Vec2,
+    /// Extent \[m\].
+    pub size: Vec2,
+    /// Whether the grain points along +x rather than -x.
+    pub forward: bool,
+    /// The match point from the box's corner \[m\].
+    pub anchor: Option<Vec2>,
+    /// The only y it may have \[m\]: that of the fold.
+    pub on_fold: Option<f64>,
+}
+
+impl Shape {
+    /// Nothing if the orientation does not bring the fold edge to a fold.
+    pub fn new(
+        kind: usize,
+        item: &Item,
+        (turn, mirrored): (f64, bool),
+        strip: &Strip,
+    ) -> Option<Self> {
+        let pose = Pose {
+            grain: item.grain,
+            turn,
+            mirrored,
+            translation: Vec2::zeros(),
+        };
+        let bounds = pose.lay(&item.outline).bounds();
+        let forward = turn.cos() >= 0.0;
+        let on_fold = match folds_up(item, strip, (turn, mirrored)) {
+            None => None,
+            Some(None) => return None,
+            Some(Some(FoldEdge::Lower)) => Some(0.0),
+            Some(Some(FoldEdge::Upper)) => Some(strip.usable_width() - bounds.size().y),
+        };
+        Some(Self {
+            kind,
+            ring: 0,
+            look: 0,
+            turn,
+            mirrored,
+            offset: bounds.min,
+            size: bounds.size(),
+            forward,
+            anchor: item.match_point.map(|m| pose.apply(m.point) - bounds.min),
+            on_fold,
+        })
+    }
+
+    /// The outline from the box's corner \[m\].
+    pub fn outline(&self, item: &Item) -> Polygon {
+        let pose = Pose {
+            grain: item.grain,
+            turn: self.turn,
+            mirrored: self.mirrored,
+            translation: -self.offset,
+        };
+        pose.lay(&item.outline)
+    }
+}
+
+/// Whether two rings have the same corners, in whatever order, to a tolerance \[m\].
+pub(crate) fn coincide(a: &[Vec2], b: &[Vec2], tolerance: f64) -> bool {
+    let found = |p: &Vec2| b.iter().any(|q| (p - q).amax() <= tolerance);
+    a.len() == b.len() && a.iter().all(found)
+}
