@@ -17,9 +17,10 @@ pub struct RuleCost {
     pub rule: String,
     /// Fabric a set of garments needs, on average over the seeds [m].
     pub fabric: f64,
-    /// Area of the garments' pieces without any rule over that of the fabric laid open, 0..=1.
+    /// Area of the garments' pieces without any rule over that of the fabric laid open, 0..=1; not
+    /// a number where pieces found no place.
     pub efficiency: f64,
-    /// Efficiency without the rule less that with it.
+    /// Efficiency without the rule less that with it; not a number where that is none.
     pub cost: f64,
     /// Pieces that found no place.
     pub unplaced: usize,
@@ -142,7 +143,11 @@ pub fn study_rules(
     };
     let base = try_rule(&|_| {}, &mut Part::new(watcher, 0.0, 0.06))?;
     let area = base.area;
-    let efficiency = |found: &Found| area / found.fabric_area;
+    // Pieces that lie nowhere take no fabric: then there is nothing to compare.
+    let efficiency = |found: &Found| match found.unplaced {
+        0 => area / found.fabric_area,
+        _ => f64::NAN,
+    };
     let row = |rule: &str, found: &Found| RuleCost {
         rule: rule.to_owned(),
         fabric: found.fabric,
@@ -212,6 +217,14 @@ impl Found {
     }
 }
 
+/// A share in points, if it is a number.
+fn points(share: f64) -> String {
+    match share.is_nan() {
+        true => "-".to_owned(),
+        false => format!("{:.2}", share * 100.0 + 0.0),
+    }
+}
+
 /// The rows as a table.
 pub fn rule_table(rows: &[RuleCost], budget: Budget) -> String {
     let budget = match budget {
@@ -225,11 +238,11 @@ pub fn rule_table(rows: &[RuleCost], budget: Budget) -> String {
         let cells = match &row.refused {
             Some(why) => format!("| {} | {why} | | | |\n", row.rule),
             None => format!(
-                "| {} | {:.3} | {:.2} | {:.2} | {} |\n",
+                "| {} | {:.3} | {} | {} | {} |\n",
                 row.rule,
                 row.fabric,
-                row.efficiency * 100.0,
-                row.cost * 100.0 + 0.0,
+                points(row.efficiency),
+                points(row.cost),
                 row.unplaced
             ),
         };
