@@ -9,7 +9,7 @@
 //! The other program is called with INSTANCE SECONDS SEED THREADS OUT and writes a solution in the
 //! instance's own format. `--seconds 1:5` gives it five seconds for our one. `--referee COMMAND`
 //! is run on every solution, and what it prints is kept. Rows are added to `runs.csv` as they are
-//! made, with the commit; what is there already is not run again; `table.csv` sums up, with the 95 %
+//! made, with the commit; what is there already of the same commit is not run again; `table.csv` sums up, with the 95 %
 //! interval of the difference.
 //!
 //! `soak hard [--short] [--out DIR] [NAME...]` runs the hard scenes of cloth on cloth at full size, or as tests do, and
