@@ -14,7 +14,7 @@ pub(crate) fn skeleton(template: &Template, warp: &Warp) -> Skeleton {
             Joint::LHip | Joint::LKnee | Joint::LAnkle | Joint::LMidtarsal => leg,
             _ => Follow::default(),
         };
-        warp.apply(place(template.joints, joint), follow)
+        warp.apply(place(&template.joints, joint), follow)
     };
     Skeleton::new(Joint::ALL.map(|joint| {
         let left = joint.min(joint.mirrored());
@@ -82,7 +82,7 @@ pub(crate) fn joint_of(template: &Template, primitive: &Primitive) -> Joint {
     if primitive.is_right() {
         return joint_of(template, &primitive.mirrored()).mirrored();
     }
-    let (joints, height) = (template.joints, template.height);
+    let (joints, height) = (&template.joints, template.height);
     let at = |joint: Joint| place(joints, joint);
     let crown = Vec3::new(0.0, height, at(Joint::Skullbase).z);
     let wrist = at(Joint::LWrist);

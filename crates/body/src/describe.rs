@@ -1,7 +1,8 @@
 //! The mannequin as a small file: what it is grown from, not what it looks like.
 
 use crate::template::Template;
-use crate::{BodyError, Figure, Mannequin, Primitive};
+use crate::{BodyError, BodyFrame, Figure, Mannequin, Primitive};
+use toile_geometry::Vec3;
 use serde::{Deserialize, Serialize};
 use toile_measure::Measurements;
 
@@ -17,6 +18,10 @@ pub struct Description {
     /// applied: those off the middle stand for a pair. Empty for the figure's own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub primitives: Vec<Primitive>,
+    /// Levels and joints of a body fitted to a mesh, which stands as its primitives say; none for
+    /// a body grown from the figure's to its measurements.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<BodyFrame>,
 }
 
 impl Mannequin {
@@ -25,6 +30,7 @@ impl Mannequin {
         Description {
             figure: self.figure,
             measurements: self.measurements.clone(),
+            frame: self.cast.template.frame(),
             primitives: self
                 .cast
                 .template
@@ -49,6 +55,11 @@ impl Mannequin {
             }
             template.primitives = both_sides(description.primitives.clone());
         }
+        if let Some(frame) = &description.frame {
+            sound(frame)?;
+            let template = Template::framed(frame, template.primitives);
+            return Self::still(&description.measurements, description.figure, template);
+        }
         Self::from_template(&description.measurements, description.figure, template)
     }
 }
@@ -64,6 +75,51 @@ pub(crate) fn both_sides(mut primitives: Vec<Primitive>) -> Vec<Primitive> {
     primitives
 }
 
+/// Refuses a frame no body has.
+fn sound(frame: &BodyFrame) -> Result<(), BodyError> {
+    let bad = |what: &str| Err(BodyError::Description(format!("the frame {what}")));
+    let j = &frame.joints;
+    let places = [
+        j.shoulder, j.elbow, j.wrist, j.hip, j.knee, j.ankle, j.toe, j.pelvis, j.chest, j.neck,
+        j.head,
+    ];
+    let lengths = [
+        frame.height,
+        frame.crotch,
+        frame.armpit,
+        frame.hand,
+        frame.neck_radius,
+    ];
+    if !(0.12..=6.0).contains(&frame.height) {
+        return bad("is not between 0.12 and 6 m tall: give metres");
+    }
+    let within = |x: &f64| x.is_finite() && x.abs() <= frame.height;
+    if !places.iter().flatten().chain(&lengths).all(within) {
+        return bad("has a place beyond its height: give metres");
+    }
+    let rising = [
+        0.0, j.ankle[1], j.knee[1], frame.crotch, j.pelvis[1], frame.armpit, j.neck[1], j.head[1],
+        frame.height,
+    ];
+    if rising.windows(2).any(|w| w[1] - w[0] < 0.005 * frame.height) {
+        return bad("has levels out of order from the floor to the crown: correct them");
+    }
+    let far = |a: [f64; 3], b: [f64; 3]| (Vec3::from(a) - Vec3::from(b)).norm();
+    let bones = [
+        far(j.shoulder, j.elbow),
+        far(j.elbow, j.wrist),
+        frame.hand,
+        frame.neck_radius,
+        j.shoulder[0] - frame.neck_radius,
+        j.hip[0],
+        j.toe[2] - j.ankle[2],
+    ];
+    if bones.iter().any(|&length| length < 0.01 * frame.height) {
+        return bad("has a bone of no length, or one on the right (-X): give the left ones");
+    }
+    Ok(())
+}
+
 fn check(index: usize, p: &Primitive) -> Result<(), BodyError> {
     let bad = |what: &str| Err(BodyError::Description(format!("primitive {index} {what}")));
     let numbers = p.centre.iter().chain(&p.radii).chain(&p.rotation);
@@ -72,6 +128,9 @@ fn check(index: usize, p: &Primitive) -> Result<(), BodyError> {
     }
     if p.radii.iter().any(|&r| r < 1e-3) {
         return bad("has a semi-axis under 0.001 m: enlarge it or remove the primitive");
+    }
+    if !(0.01..=100.0).contains(&p.weight) {
+        return bad("has a weight that is not between 0.01 and 100: give 1");
     }
     if p.is_right() {
         return bad("is on the right: give the left one, the right is its mirror image");

@@ -65,7 +65,7 @@ impl Part {
     }
 }
 
-/// A blendable ellipsoid: density `(1 - q)^2` inside `q < 1`, with
+/// A blendable ellipsoid: density `w (1 - q)^2` inside `q < 1`, with
 /// `q = |S^-1 R^T (x - c)|^2` (Murakami and Ichihara 1987, on an ellipsoid).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Primitive {
@@ -77,6 +77,17 @@ pub struct Primitive {
     pub radii: [f64; 3],
     /// Rotation R as axis times angle [rad].
     pub rotation: [f64; 3],
+    /// What the density is multiplied by [1].
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub weight: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn is_one(weight: &f64) -> bool {
+    *weight == 1.0
 }
 
 impl Primitive {
@@ -94,6 +105,7 @@ impl Primitive {
             centre: [-x, y, z],
             radii: self.radii,
             rotation: [a, -b, -c],
+            weight: self.weight,
         }
     }
 
@@ -122,6 +134,7 @@ struct Density {
     unit_from_body: Matrix3<f64>,
     /// Square of the largest semi-axis [m2].
     reach_squared: f64,
+    weight: f64,
 }
 
 /// Every part's field, for evaluation.
@@ -141,6 +154,7 @@ impl Field {
                 centre: Vec3::from(primitive.centre),
                 unit_from_body: inverse * primitive.rotation().matrix().transpose(),
                 reach_squared: largest * largest,
+                weight: primitive.weight,
             });
         }
         Self { parts }
@@ -154,7 +168,7 @@ impl Field {
             if offset.norm_squared() < density.reach_squared {
                 let q = (density.unit_from_body * offset).norm_squared();
                 if q < 1.0 {
-                    sum += (1.0 - q) * (1.0 - q);
+                    sum += density.weight * (1.0 - q) * (1.0 - q);
                 }
             }
         }
@@ -171,7 +185,7 @@ impl Field {
                 let unit = density.unit_from_body * offset;
                 let q = unit.norm_squared();
                 if q < 1.0 {
-                    sum -= density.unit_from_body.tr_mul(&unit) * (4.0 * (1.0 - q));
+                    sum -= density.unit_from_body.tr_mul(&unit) * (4.0 * density.weight * (1.0 - q));
                 }
             }
         }
@@ -241,6 +255,7 @@ impl Field {
                     step.norm_squared(),
                     2.0 * start.dot(&step),
                     start.norm_squared(),
+                    density.weight,
                 ];
                 // Least q on the whole line.
                 if row[2] - 0.25 * row[1] * row[1] / row[0] < 1.0 {
@@ -256,8 +271,8 @@ impl Field {
 /// Densities along a ray: on a straight line the q of each primitive is a quadratic in the
 /// distance t, `q = a t^2 + b t + c`.
 struct Along {
-    /// a, b, c of the primitives the line meets, part after part.
-    rows: Vec<[f64; 3]>,
+    /// a, b, c and the weight of the primitives the line meets, part after part.
+    rows: Vec<[f64; 4]>,
     /// Where each part's rows end.
     ends: [usize; 6],
     /// How many parts.
@@ -271,10 +286,10 @@ impl Along {
         let mut from = 0;
         for &end in &self.ends[..self.count] {
             let mut sum = [0.0, 0.0];
-            for &[a, b, c] in &self.rows[from..end] {
+            for &[a, b, c, weight] in &self.rows[from..end] {
                 let within = (1.0 - ((a * t + b) * t + c)).max(0.0);
-                sum[0] += within * within;
-                sum[1] -= 2.0 * within * (2.0 * a * t + b);
+                sum[0] += weight * within * within;
+                sum[1] -= 2.0 * weight * within * (2.0 * a * t + b);
             }
             if sum[0] > best[0] {
                 best = sum;
@@ -290,9 +305,9 @@ impl Along {
             let rows = &self.rows[from..end];
             from = end;
             let mut sum = 0.0;
-            for &[a, b, c] in rows {
+            for &[a, b, c, weight] in rows {
                 let within = (1.0 - ((a * t + b) * t + c)).max(0.0);
-                sum += within * within;
+                sum += weight * within * within;
             }
             sum >= THRESHOLD
         })

@@ -1,9 +1,13 @@
 //! The rings of an arm with its hand and of a leg with its foot.
 
+use crate::curve::smooth_step;
 use crate::rings::{CROTCH_POINTS, Half, SPACING, TRANSITION, at_length, follow};
 use crate::{BodyError, Part};
 use std::f64::consts::{FRAC_PI_2, PI};
 use toile_geometry::Vec3;
+
+/// Angle between the bones from which on an arm counts as bent [rad].
+pub(crate) const BENT: f64 = 0.02;
 
 /// The plane of a ring: rays leave `centre` towards `cos a * first + sin a * second`.
 #[derive(Clone, Copy)]
@@ -59,24 +63,34 @@ impl Half<'_> {
     pub(crate) fn arm(&mut self, border: &[u32]) -> Result<(), BodyError> {
         let j = self.template.joints;
         let scale = self.template.height / 1.7;
-        let [shoulder, wrist] = [Vec3::from(j.shoulder), Vec3::from(j.wrist)];
-        let along = (wrist - shoulder).normalize();
-        let up = Vec3::z().cross(&along);
+        let [shoulder, elbow, wrist] = [j.shoulder, j.elbow, j.wrist].map(Vec3::from);
+        let [upper, lower] = [elbow - shoulder, wrist - elbow].map(|bone| bone.normalize());
+        let is_bent = upper.dot(&lower) < BENT.cos();
+        let along = match is_bent {
+            true => upper,
+            false => (wrist - shoulder).normalize(),
+        };
         let points: Vec<Vec3> = border.iter().map(|&v| self.positions[v as usize]).collect();
         let start = points
             .iter()
             .map(|p| (p - shoulder).dot(&along))
             .fold(f64::NEG_INFINITY, f64::max)
             + 0.03 * scale;
-        let end = (wrist - shoulder).norm() + 0.165 * scale;
-        let count = ((end - start) / (SPACING * scale)).round() as usize;
-        let frames = (0..count)
-            .map(|k| Frame {
-                centre: shoulder + along * (start + (end - start) * k as f64 / count as f64),
-                first: up,
-                second: Vec3::z(),
-            })
-            .collect();
+        let hand = self.template.hand;
+        let frames = if is_bent {
+            let path = [shoulder, elbow, wrist, wrist + lower * hand];
+            self.bent_frames(&path, start)
+        } else {
+            let end = (wrist - shoulder).norm() + hand;
+            let count = ((end - start) / (SPACING * scale)).round() as usize;
+            (0..count)
+                .map(|k| Frame {
+                    centre: shoulder + along * (start + (end - start) * k as f64 / count as f64),
+                    first: Vec3::z().cross(&along),
+                    second: Vec3::z(),
+                })
+                .collect()
+        };
         let behind = points.iter().sum::<Vec3>() / points.len() as f64;
         self.limb(&Limb {
             part: Part::LeftArm,
@@ -84,8 +98,37 @@ impl Half<'_> {
             border,
             behind,
             frames,
-            tip: along,
+            tip: if is_bent { lower } else { along },
         })
+    }
+
+    /// Rings across a bent arm from a place along its bones [m]: square to them, turning evenly
+    /// round the elbow.
+    fn bent_frames(&self, path: &[Vec3; 4], start: f64) -> Vec<Frame> {
+        /// Half the way over which the rings turn, for a stature of 1.7 m [m].
+        const TURN: f64 = 0.045;
+        let scale = self.template.height / 1.7;
+        let [upper, lower] = [path[1] - path[0], path[3] - path[1]];
+        let elbow = upper.norm();
+        let end = elbow + (path[2] - path[1]).norm() + (path[3] - path[2]).norm();
+        let count = ((end - start) / (SPACING * scale)).round().max(4.0) as usize;
+        let (upper, lower) = (upper.normalize(), lower.normalize());
+        (0..count)
+            .map(|k| {
+                let at = start + (end - start) * k as f64 / count as f64;
+                let share = smooth_step(0.5 + 0.5 * (at - elbow) / (TURN * scale));
+                let along = (upper + (lower - upper) * share).normalize();
+                let first = Vec3::z().cross(&along).normalize();
+                self.recentred(
+                    Part::LeftArm,
+                    Frame {
+                        centre: at_length(path, at),
+                        first,
+                        second: along.cross(&first),
+                    },
+                )
+            })
+            .collect()
     }
 
     /// The left leg, from the lowest ring of the trunk to the toes.
@@ -104,11 +147,12 @@ impl Half<'_> {
         for k in 0..=count {
             let point = at_length(&path, start + (length - start) * k as f64 / count as f64);
             if point.y > turn {
-                frames.push(self.recentred(Frame {
+                let level = Frame {
                     centre: point,
                     first: -Vec3::z(),
                     second: Vec3::x(),
-                }));
+                };
+                frames.push(self.recentred(Part::LeftLeg, level));
             }
         }
         let last = frames.last().map_or(ankle, |f: &Frame| f.centre);
@@ -161,11 +205,11 @@ impl Half<'_> {
         frames
     }
 
-    /// The frame with its centre moved to the middle of the leg.
-    fn recentred(&self, frame: Frame) -> Frame {
+    /// The frame with its centre moved to the middle of the limb.
+    fn recentred(&self, part: Part, frame: Frame) -> Frame {
         let mut centre = frame.centre;
-        for axis in [Vec3::x(), Vec3::z(), Vec3::x()] {
-            let exit = |d: Vec3| self.field.first_exit(&[Part::LeftLeg], centre, d);
+        for axis in [frame.second, -frame.first, frame.second] {
+            let exit = |d: Vec3| self.field.first_exit(&[part], centre, d);
             if let (Some(ahead), Some(behind)) = (exit(axis), exit(-axis)) {
                 centre += axis * (0.5 * (ahead - behind));
             }
@@ -244,6 +288,12 @@ impl Half<'_> {
         /// Beyond any arm's and any leg's radius, short of the next limb, for a stature of
         /// 1.7 m [m].
         const REACH: [f64; 2] = [0.11, 0.17];
+        // Of what was fitted to a mesh, specks off the limb are not meant.
+        if self.template.armpit.is_some()
+            && let Some(distance) = self.field.first_exit(&[part], origin, direction)
+        {
+            return Ok(origin + direction * distance);
+        }
         let reach = REACH[usize::from(part == Part::LeftLeg)] * self.template.height / 1.7;
         match self.field.last_exit(part, [origin, direction], reach) {
             Some(distance) => Ok(origin + direction * distance),

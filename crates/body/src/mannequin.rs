@@ -5,7 +5,7 @@ use crate::bones;
 use crate::field::VISIBLE_RATIO;
 use crate::hang::hang;
 use crate::landmarks::Landmarks;
-use crate::levels::Levels;
+use crate::levels::{self, Excess, Levels};
 use crate::marks::Marks;
 use crate::refit::refitted;
 use crate::request::Request;
@@ -94,6 +94,20 @@ impl Mannequin {
         Self::grown(measurements, figure, Cast::of(template)?)
     }
 
+    /// The body of a template of its own frame as it is: nothing is solved for.
+    pub(crate) fn still(
+        measurements: &Measurements,
+        figure: Figure,
+        template: Template,
+    ) -> Result<Self, BodyError> {
+        let cast = Cast::of(template)?;
+        let request = Request::read(measurements, figure)?;
+        let warp = Warp::still(&cast.template, &cast.marks);
+        let levels = levels::solve(&request.table, &cast.marks, &Excess::default());
+        let mesh = cast.skin.mesh.clone();
+        Ok(Self::with((measurements, figure, request), cast, (levels, warp), mesh))
+    }
+
     fn grown(
         measurements: &Measurements,
         figure: Figure,
@@ -111,31 +125,55 @@ impl Mannequin {
             mesh,
         } = grown.solve()?;
         let warp = Warp::new(&cast.template, &cast.marks, shape);
-        Ok(Self {
+        let request = grown.request;
+        Ok(Self::with((measurements, figure, request), cast, (levels, warp), mesh))
+    }
+
+    fn with(
+        (measurements, figure, request): (&Measurements, Figure, Request),
+        cast: Arc<Cast>,
+        (levels, warp): (Levels, Warp),
+        skin: TriangleMesh,
+    ) -> Self {
+        let grown = Grown {
+            template: &cast.template,
+            skin: &cast.skin,
+            marks: cast.marks,
+            request,
+        };
+        Self {
             figure,
             measurements: measurements.clone(),
             skeleton: hung(
                 bones::skeleton(&cast.template, &warp),
-                &mesh,
+                &skin,
                 &cast.skin.arm,
             ),
-            landmarks: Landmarks::find(&grown, (&levels, &warp), &mesh),
+            landmarks: Landmarks::find(&grown, (&levels, &warp), &skin),
             crotch: grown.crotch_vertices(),
             request: grown.request,
             levels,
             warp,
-            skin: mesh,
+            skin,
             tree: OnceLock::new(),
             skinning: OnceLock::new(),
             primitives: OnceLock::new(),
             field: OnceLock::new(),
             cast,
-        })
+        }
     }
 
     /// The template's primitives carried by the map, scaled to lie on the skin, and fixed.
     fn fitted_primitives(&self) -> Vec<AttachedPrimitive> {
         let template = &self.cast.template;
+        let attached = |(primitive, of_template): (&Primitive, &Primitive)| {
+            let joint = bones::joint_of(template, of_template);
+            AttachedPrimitive::new(joint, primitive, &self.skeleton)
+        };
+        if self.warp.is_still() {
+            let own = template.primitives.iter();
+            return own.map(|p| attached((p, p))).collect();
+        }
         let left: Vec<Primitive> = template
             .primitives
             .iter()
@@ -153,10 +191,7 @@ impl Mannequin {
         refitted(left, &self.skin, &self.cast.skin.parts)
             .iter()
             .zip(&template.primitives)
-            .map(|(primitive, of_template)| {
-                let joint = bones::joint_of(template, of_template);
-                AttachedPrimitive::new(joint, primitive, &self.skeleton)
-            })
+            .map(attached)
             .collect()
     }
 
@@ -303,5 +338,6 @@ fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
         centre: warp.apply(centre, follow).into(),
         radii: order.map(|k| values[k]),
         rotation: Rotation3::from_matrix_unchecked(axes).scaled_axis().into(),
+        weight: primitive.weight,
     }
 }

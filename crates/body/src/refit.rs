@@ -23,11 +23,11 @@ pub(crate) fn refitted(
         let mut step = vec![0.0; primitives.len()];
         let mut weight = vec![0.0; primitives.len()];
         for (part, points) in &points {
-            let own: Vec<(usize, [Vec3; 2], Matrix3<f64>)> = primitives
+            let own: Vec<Own> = primitives
                 .iter()
                 .enumerate()
                 .filter(|(_, p)| p.part == *part)
-                .map(|(i, p)| (i, sides(p), inverse(p)))
+                .map(|(i, p)| (i, p.weight, sides(p), inverse(p)))
                 .collect();
             for &point in points {
                 sweep(point, &own, (&mut step, &mut weight));
@@ -42,6 +42,9 @@ pub(crate) fn refitted(
     }
     both_sides(primitives)
 }
+
+/// A primitive by its number, weight, centre, its image's centre and `S^-1 R^T`.
+type Own = (usize, f64, [Vec3; 2], Matrix3<f64>);
 
 /// A point in the frames of a primitive and of its mirror image.
 fn sides(primitive: &Primitive) -> [Vec3; 2] {
@@ -65,18 +68,18 @@ fn inverse(primitive: &Primitive) -> Matrix3<f64> {
 /// Adds what one point asks of the primitives.
 fn sweep(
     point: Vec3,
-    own: &[(usize, [Vec3; 2], Matrix3<f64>)],
+    own: &[Own],
     (step, weight): (&mut [f64], &mut [f64]),
 ) {
     let (mut density, mut row) = (0.0, 0.0);
     let mut touched: Vec<(usize, f64)> = Vec::new();
-    for (i, [centre, twin], matrix) in own {
+    for (i, strength, [centre, twin], matrix) in own {
         let mut slope = 0.0;
         let mut add = |offset: Vec3| {
             let q = (matrix * offset).norm_squared();
             if q < 1.0 {
-                density += (1.0 - q) * (1.0 - q);
-                slope += 4.0 * q * (1.0 - q);
+                density += strength * (1.0 - q) * (1.0 - q);
+                slope += 4.0 * strength * q * (1.0 - q);
             }
         };
         add(point - centre);

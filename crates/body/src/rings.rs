@@ -22,9 +22,8 @@ pub(crate) const SPACING: f64 = 0.0165;
 /// Rings that lead from a border to the first plane ring of a limb.
 pub(crate) const TRANSITION: usize = 5;
 
-/// A distance from the axis that lies outside the neck and under the shoulder's slope, for a
-/// stature of 1.7 m [m]: the rays of shoulders and neck cross beyond it.
-const NECK_RADIUS: f64 = 0.082;
+/// Distance of the rows over the shoulder along the side, for a stature of 1.7 m [m].
+pub(crate) const FAN: f64 = 0.0145;
 
 /// A skin before any measurement is applied.
 pub(crate) struct TemplateSkin {
@@ -179,7 +178,7 @@ impl Half<'_> {
         let t = self.template;
         let scale = t.height / 1.7;
         let j = t.joints;
-        let armpit = self.armpit();
+        let armpit = t.armpit.unwrap_or_else(|| self.armpit());
         let (neck, head) = (Vec3::from(j.neck), Vec3::from(j.head));
         let row = |origin: Vec3, elevation: f64, part: Part| Row {
             origin,
@@ -189,7 +188,8 @@ impl Half<'_> {
         let mut rows = Vec::new();
         // Level rings up to the armpit.
         let bottom = t.crotch + 0.035 * scale;
-        let base = armpit - 0.02 * scale;
+        // Below the armpit by a row where its place is known.
+        let base = armpit - if t.armpit.is_some() { FAN } else { 0.02 } * scale;
         let count = ((base - bottom) / (0.016 * scale)).round() as usize;
         let focus = Vec3::new(0.0, base, self.middle_z(j.chest, base));
         let bottom_z = self.middle_z(j.pelvis, bottom);
@@ -201,10 +201,10 @@ impl Half<'_> {
         }
         // A fan over the shoulders, even along the side.
         let tip = Vec3::new(j.shoulder[0] + 0.005, j.shoulder[1] + 0.045 * scale, 0.0);
-        let foot_of_neck = Vec3::new(NECK_RADIUS * scale, neck.y - 0.002 * scale, 0.0);
+        let foot_of_neck = Vec3::new(t.neck_radius, neck.y - 0.002 * scale, 0.0);
         let path = [Vec3::new(tip.x - 0.01, base, 0.0), tip, foot_of_neck];
         let mut elevation = 0.0;
-        for p in along(&path, 0.0145 * scale) {
+        for p in along(&path, FAN * scale) {
             elevation = (p.y - base).atan2(p.x);
             rows.push(row(focus, elevation, Part::Trunk));
         }
@@ -216,7 +216,7 @@ impl Half<'_> {
             let u = k as f64 / neck_rows as f64;
             let tilt = elevation * (1.0 - u) * (1.0 - 0.4 * u);
             let target = foot_of_neck.y + (straight - foot_of_neck.y) * u;
-            let y = (target - NECK_RADIUS * scale * tilt.tan()).max(base + 1e-3);
+            let y = (target - t.neck_radius * tilt.tan()).max(base + 1e-3);
             let z = focus.z + (neck_top.z - focus.z) * 0.45 * u;
             rows.push(row(Vec3::new(0.0, y, z), tilt, Part::Head));
         }
@@ -247,10 +247,14 @@ impl Half<'_> {
 
     /// The last row whose point at the side lies below the arm.
     fn armpit_row(&self, rows: &[Row]) -> Result<usize, BodyError> {
+        let scale = self.template.height / 1.7;
         for (t, row) in rows.iter().enumerate() {
             let (sin, cos) = row.elevation.sin_cos();
             let point = self.hit(&[Part::Trunk], row.origin, Vec3::new(cos, sin, 0.0))?;
-            if self.field.density(Part::LeftArm, point) >= crate::THRESHOLD {
+            let above = self.template.armpit.map(|armpit| point.y > armpit + 0.3 * FAN * scale);
+            let is_under_the_arm =
+                || self.field.density(Part::LeftArm, point) >= crate::THRESHOLD;
+            if above.unwrap_or_else(is_under_the_arm) {
                 return Ok(t.saturating_sub(1));
             }
         }

@@ -133,9 +133,37 @@ impl Scan {
         Ok(scan)
     }
 
+    /// What moves it to stand on y = 0 with its middle at x = 0 [m].
+    pub(crate) fn shift(&self) -> Vec3 {
+        -Vec3::new(self.middle, self.floor, 0.0)
+    }
+
+    /// The same mesh elsewhere [m].
+    pub(crate) fn moved(&self, shift: Vec3) -> Result<Self, BodyError> {
+        let mut mesh = self.mesh.clone();
+        for p in &mut mesh.positions {
+            *p += shift;
+        }
+        let moved = |p: Option<[f64; 3]>| p.map(|p| (Vec3::from(p) + shift).into());
+        let l = &self.landmarks;
+        let landmarks = ScanLandmarks {
+            nape: moved(l.nape),
+            shoulder_tip: moved(l.shoulder_tip),
+            neck_side: moved(l.neck_side),
+            wrist: moved(l.wrist),
+            ..l.clone()
+        };
+        Self::new(mesh, landmarks)
+    }
+
     /// The mesh.
     pub fn mesh(&self) -> &TriangleMesh {
         &self.mesh
+    }
+
+    /// Floor to crown [m].
+    pub fn height(&self) -> f64 {
+        self.height
     }
 
     /// The landmarks, given and found.
@@ -217,7 +245,7 @@ impl Scan {
     }
 
     /// The left arm's loop beside the trunk at a height: the outermost on the left.
-    fn arm(&self, height: f64) -> Option<Loop> {
+    pub(crate) fn arm(&self, height: f64) -> Option<Loop> {
         let trunk = self.trunk(height)?;
         self.level(height)
             .into_iter()
@@ -244,9 +272,11 @@ impl Scan {
     fn find(&mut self) {
         let h = self.height;
         if self.landmarks.crotch.is_none() {
-            // From the hips down, the last level at which one loop holds the middle.
+            // From the hips down, the last level at which one loop as large as a trunk's holds the
+            // middle.
+            let is_trunk = |y: f64| self.trunk(y).is_some_and(|l| l.length() > 0.2 * h);
             let mut y = 0.6 * h;
-            while y > 0.3 * h && self.trunk(y).is_some() {
+            while y > 0.3 * h && is_trunk(y) {
                 y -= 0.001 * h;
             }
             self.landmarks.crotch = (y > 0.3 * h).then_some(y + 0.0005 * h);

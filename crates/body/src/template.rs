@@ -102,19 +102,50 @@ impl Figure {
     }
 }
 
-/// Joint centres of the left side and the middle [m].
-pub(crate) struct Joints {
-    pub(crate) shoulder: [f64; 3],
-    pub(crate) elbow: [f64; 3],
-    pub(crate) wrist: [f64; 3],
-    pub(crate) hip: [f64; 3],
-    pub(crate) knee: [f64; 3],
-    pub(crate) ankle: [f64; 3],
-    pub(crate) toe: [f64; 3],
-    pub(crate) pelvis: [f64; 3],
-    pub(crate) chest: [f64; 3],
-    pub(crate) neck: [f64; 3],
-    pub(crate) head: [f64; 3],
+/// Joint centres of the left side and the middle.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Joints {
+    /// Shoulder joint [m].
+    pub shoulder: [f64; 3],
+    /// Elbow [m].
+    pub elbow: [f64; 3],
+    /// Wrist [m].
+    pub wrist: [f64; 3],
+    /// Hip joint [m].
+    pub hip: [f64; 3],
+    /// Knee [m].
+    pub knee: [f64; 3],
+    /// Ankle [m].
+    pub ankle: [f64; 3],
+    /// Tip of the foot [m].
+    pub toe: [f64; 3],
+    /// Middle of the pelvis [m].
+    pub pelvis: [f64; 3],
+    /// Spine at the chest [m].
+    pub chest: [f64; 3],
+    /// Base of the neck [m].
+    pub neck: [f64; 3],
+    /// Base of the skull [m].
+    pub head: [f64; 3],
+}
+
+/// What the skin is cast about, besides the primitives: levels, joints and a few lengths.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyFrame {
+    /// Floor to crown [m].
+    pub height: f64,
+    /// Height of the crotch [m].
+    pub crotch: f64,
+    /// Height of the armpits [m].
+    pub armpit: f64,
+    /// From the wrist to where the last ring of the hand is cast [m].
+    pub hand: f64,
+    /// A distance from the middle outside the neck and under the shoulder's slope [m].
+    pub neck_radius: f64,
+    /// Joint centres.
+    pub joints: Joints,
 }
 
 /// A template as it is stored. Rows: centre, effective semi-axes [m], rotation vector [rad]. Rows
@@ -135,10 +166,21 @@ pub(crate) struct Template {
     pub(crate) height: f64,
     /// Height of the crotch [m].
     pub(crate) crotch: f64,
-    pub(crate) joints: &'static Joints,
+    pub(crate) joints: Joints,
+    /// Height of the armpits [m]; none where they are found on the primitives.
+    pub(crate) armpit: Option<f64>,
+    /// From the wrist to where the last ring of the hand is cast [m].
+    pub(crate) hand: f64,
+    /// A distance from the middle outside the neck and under the shoulder's slope: the rays of
+    /// shoulders and neck cross beyond it [m].
+    pub(crate) neck_radius: f64,
     /// Primitives of both sides.
     pub(crate) primitives: Vec<Primitive>,
 }
+
+/// Of a body of 1.7 m: from the wrist to the last ring of the hand, and the neck's radius [m].
+pub(crate) const HAND: f64 = 0.165;
+pub(crate) const NECK_RADIUS: f64 = 0.082;
 
 impl Template {
     /// The template of a figure.
@@ -159,12 +201,41 @@ impl Template {
         for (part, rows) in rows {
             primitives.extend(rows.iter().map(|&row| from_row(part, row)));
         }
+        let scale = table.height / 1.7;
         Self {
             height: table.height,
             crotch: table.crotch,
-            joints: &table.joints,
+            joints: table.joints,
+            armpit: None,
+            hand: HAND * scale,
+            neck_radius: NECK_RADIUS * scale,
             primitives: crate::describe::both_sides(primitives),
         }
+    }
+
+    /// A template of given frame and primitives of both sides.
+    pub(crate) fn framed(frame: &BodyFrame, primitives: Vec<Primitive>) -> Self {
+        Self {
+            height: frame.height,
+            crotch: frame.crotch,
+            joints: frame.joints,
+            armpit: Some(frame.armpit),
+            hand: frame.hand,
+            neck_radius: frame.neck_radius,
+            primitives,
+        }
+    }
+
+    /// Its frame, if it is no figure's own.
+    pub(crate) fn frame(&self) -> Option<BodyFrame> {
+        Some(BodyFrame {
+            height: self.height,
+            crotch: self.crotch,
+            armpit: self.armpit?,
+            hand: self.hand,
+            neck_radius: self.neck_radius,
+            joints: self.joints,
+        })
     }
 }
 
@@ -175,5 +246,6 @@ fn from_row(part: Part, row: [f64; 9]) -> Primitive {
         centre: [x, y, z],
         radii: [a, b, c],
         rotation: [u, v, w],
+        weight: 1.0,
     }
 }

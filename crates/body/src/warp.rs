@@ -78,6 +78,8 @@ pub(crate) struct Warp {
     shape: Shape,
     leg_axis: [Vec3; 3],
     shoulder: Vec3,
+    /// Shoulder, elbow and wrist, where the map leaves everything as it is.
+    still: Option<[Vec3; 3]>,
     arm_from: [Vec3; 2],
     arm_to: [Vec3; 2],
 }
@@ -104,10 +106,49 @@ impl Warp {
             marks: *marks,
             leg_axis: [j.hip, j.knee, j.ankle].map(Vec3::from),
             shoulder,
+            still: None,
             arm_from: [along, Vec3::z().cross(&along)],
             arm_to: [target, Vec3::z().cross(&target)],
             shape,
         }
+    }
+
+    /// The map that leaves everything as it is.
+    pub(crate) fn still(template: &Template, marks: &Marks) -> Self {
+        let level = |y: f64| [y, y];
+        let one = vec![[0.0, 1.0], [marks.crown, 1.0]];
+        let none = vec![[0.0, 0.0], [marks.crown, 0.0]];
+        let j = template.joints;
+        let [shoulder, elbow, wrist] = [j.shoulder, j.elbow, j.wrist].map(Vec3::from);
+        let along = wrist - shoulder;
+        let shape = Shape {
+            levels: [0.0, marks.crown].map(level).into(),
+            lateral: one.clone(),
+            front: one.clone(),
+            back: one.clone(),
+            corners: none.clone(),
+            leg: one.clone(),
+            arm: one,
+            arm_length: [0.0, along.norm()].map(level).into(),
+            arm_angle: (-along.y).atan2(along.x),
+            global: 1.0,
+            stance: 1.0,
+            depth: 0.0,
+            middle: none.clone(),
+            middle_to: none,
+            shoulder_rise: 0.0,
+            armpit_rise: 0.0,
+            bust_spread: 0.0,
+        };
+        Self {
+            still: Some([shoulder, elbow, wrist]),
+            ..Self::new(template, marks, shape)
+        }
+    }
+
+    /// Whether it leaves everything as it is.
+    pub(crate) fn is_still(&self) -> bool {
+        self.still.is_some()
     }
 
     fn trunk(&self, p: Vec3) -> Vec3 {
@@ -206,6 +247,9 @@ impl Warp {
 
     /// The place on the body of a place on the template.
     pub(crate) fn apply(&self, p: Vec3, follow: Follow) -> Vec3 {
+        if self.is_still() {
+            return p;
+        }
         let mut mapped = self.trunk(p);
         if follow.arm > 0.0 {
             mapped += (self.arm(p) - mapped) * follow.arm;
@@ -245,6 +289,18 @@ impl Warp {
     /// The plane across the arm at a template distance from the shoulder joint: a point of the
     /// axis and its direction.
     pub(crate) fn arm_plane(&self, distance: f64) -> [Vec3; 2] {
+        if let Some([shoulder, elbow, wrist]) = self.still {
+            // Across the bone at the place whose distance along the straight line is this.
+            let straight = (wrist - shoulder).normalize();
+            let at = (elbow - shoulder).dot(&straight);
+            let (from, to, before) = match distance < at {
+                true => (shoulder, elbow, 0.0),
+                false => (elbow, wrist, at),
+            };
+            let along = (to - from).normalize();
+            let way = (distance - before) / along.dot(&straight).max(0.1);
+            return [from + along * way, along];
+        }
         let along = self.arm_to[0] * self.arm_length.at(distance);
         [self.trunk(self.shoulder) + along, self.arm_to[0]]
     }

@@ -494,10 +494,14 @@ pub struct Body {
     /// table of measurements (JSON), ready for --measurements.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["measurements", "motion"])]
     pub mesh: Option<PathBuf>,
-    /// Landmarks of --mesh (JSON): heights over the sole (m) crotch, hips, waist, underbust, bust,
+    /// Fit a mannequin of 150 ellipsoids to somebody's mesh: a closed OBJ file (m, Y up, facing
+    /// +Z, arms held off the trunk). Both sides become alike. Says how far it lies from the mesh.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["measurements", "mesh", "mannequin"])]
+    pub fit: Option<PathBuf>,
+    /// Landmarks of --mesh or --fit (JSON): heights over the sole (m) crotch, hips, waist, underbust, bust,
     /// armpit, knee, and points (m) nape, shoulder_tip, neck_side, wrist of the left side, +X.
     /// Default: heights are found, what needs points is left out.
-    #[arg(long, value_name = "FILE", requires = "mesh")]
+    #[arg(long, value_name = "FILE")]
     pub landmarks: Option<PathBuf>,
     /// Motion to pose it by: walk, run, or a BVH file. Default: at rest.
     #[arg(long, value_name = "MOTION")]

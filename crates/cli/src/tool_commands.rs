@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_measure::Origin;
 use toile_session::{
-    BodyChoice, BodyReport, BodySource, Moment, Project, convert as convert_file, figure_named,
-    make_body, measure_mesh, mesh_panels, open_mannequin, open_measurements, run_scene,
+    BodyChoice, BodyReport, BodySource, Figure, Fit, Moment, Project, convert as convert_file, figure_named,
+    fit_mesh, make_body, measure_mesh, mesh_panels, open_mannequin, open_measurements, run_scene,
 };
 
 /// A pattern in another format.
@@ -90,12 +90,20 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         motion,
         time: body.time,
     });
-    let described = body
-        .mannequin
-        .as_deref()
-        .map(open_mannequin)
-        .transpose()
-        .map_err(Failure::from)?;
+    if body.landmarks.is_some() && body.fit.is_none() {
+        return Err(Failure::bad_input(
+            "--landmarks goes with --mesh or --fit".to_owned(),
+        ));
+    }
+    let fit = match &body.fit {
+        Some(mesh) => Some(fitted_mesh(mesh, figure, body, output)?),
+        None => None,
+    };
+    let described = match (&fit, &body.mannequin) {
+        (Some(fit), _) => Some(fit.description.clone()),
+        (None, Some(path)) => Some(open_mannequin(path).map_err(Failure::from)?),
+        (None, None) => None,
+    };
     let source = match &described {
         Some(description) => BodySource::Described(description),
         None => BodySource::Wearer(&project),
@@ -126,12 +134,48 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         .iter()
         .map(|c| json!({ "names": c.names, "gap_m": c.gap, "why": c.why }))
         .collect();
-    Ok(json!({
+    let mut made = json!({
         "files": [body.out],
         "measurements": listed,
         "not_taken": report.untaken,
         "conflicts": conflicts,
-    }))
+    });
+    if let Some(fit) = &fit {
+        let m = &fit.misfit;
+        made["fit"] = json!({
+            "primitives": m.primitives,
+            "sections": m.sections,
+            "radial_rms_m": m.radial,
+            "radial_max_m": m.radial_max,
+            "girth_rms_m": m.girth,
+            "girth_max_m": m.girth_max,
+            "trunk_legs_arms_radial_rms_m": m.parts,
+            "moved_by_m": [fit.shift.x, fit.shift.y, fit.shift.z],
+        });
+    }
+    Ok(made)
+}
+
+/// A mannequin fitted to a mesh, with what it misses it by.
+fn fitted_mesh(mesh: &Path, figure: Figure, body: &Body, output: &Output) -> Result<Fit, Failure> {
+    let fit = fit_mesh(mesh, body.landmarks.as_deref(), figure).map_err(Failure::from)?;
+    let m = &fit.misfit;
+    output.say(format!(
+        "{} primitives; over {} level sections from ankles to chin, without hands: radial {:.2} mm rms ({:.1} at most), girth {:.2} mm rms ({:.1} at most)",
+        m.primitives,
+        m.sections,
+        m.radial * 1e3,
+        m.radial_max * 1e3,
+        m.girth * 1e3,
+        m.girth_max * 1e3,
+    ));
+    if fit.shift.norm() > 0.0 {
+        output.say(format!(
+            "moved by ({:.4}, {:.4}, {:.4}) m to stand on y = 0 with its middle at x = 0",
+            fit.shift.x, fit.shift.y, fit.shift.z,
+        ));
+    }
+    Ok(fit)
 }
 
 /// What a tape finds on somebody's mesh.

@@ -3,14 +3,15 @@
 use crate::FormatError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use toile_body::{Description, Figure, Part, Primitive};
+use toile_body::{BodyFrame, Description, Figure, Joints, Part, Primitive};
 use toile_measure::{Measurements, Origin, UnitKind, definition};
 
 const KIND: &str = "mannequin";
 const VERSION: u32 = 1;
 
-/// Centre, effective semi-axes [0.1 mm] and rotation vector [mrad] of a primitive.
-type Row = [i32; 9];
+/// Centre, effective semi-axes [0.1 mm] and rotation vector [mrad] of a primitive, and its weight
+/// [0.001] where it is not one.
+type Row = Vec<i32>;
 
 /// The native file. Lengths of measurements in centimetres, angles in degrees.
 #[derive(Serialize, Deserialize)]
@@ -30,11 +31,42 @@ struct MannequinFile {
     arm: Vec<Row>,
     #[serde(default)]
     leg: Vec<Row>,
+    /// Levels and joints [m] of a body fitted to a mesh.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    frame: Option<BodyFrame>,
 }
 
-/// Lengths are kept to 0.1 mm and turns to 1 mrad, as the templates are.
+/// Lengths are kept to 0.1 mm and turns to 1 mrad, as the templates are; weights to 0.001.
 const LENGTH: f64 = 1e-4;
 const TURN: f64 = 1e-3;
+const WEIGHT: f64 = 1e-3;
+
+/// A frame with its lengths as they are kept.
+fn rounded(frame: &BodyFrame) -> BodyFrame {
+    let length = |x: f64| (x / LENGTH).round() / (1.0 / LENGTH).round();
+    let place = |p: [f64; 3]| p.map(length);
+    let j = &frame.joints;
+    BodyFrame {
+        height: length(frame.height),
+        crotch: length(frame.crotch),
+        armpit: length(frame.armpit),
+        hand: length(frame.hand),
+        neck_radius: length(frame.neck_radius),
+        joints: Joints {
+            shoulder: place(j.shoulder),
+            elbow: place(j.elbow),
+            wrist: place(j.wrist),
+            hip: place(j.hip),
+            knee: place(j.knee),
+            ankle: place(j.ankle),
+            toe: place(j.toe),
+            pelvis: place(j.pelvis),
+            chest: place(j.chest),
+            neck: place(j.neck),
+            head: place(j.head),
+        },
+    }
+}
 
 /// Writes all a mannequin is made from: the same file gives the same body.
 ///
@@ -51,7 +83,10 @@ pub fn write_mannequin(description: &Description) -> Result<String, FormatError>
                 p.radii.map(length),
                 p.rotation.map(turn),
             );
-            [x, y, z, a, b, c, u, v, w]
+            let mut row = vec![x, y, z, a, b, c, u, v, w];
+            let weight = (p.weight / WEIGHT).round() as i32;
+            row.extend((weight != 1000).then_some(weight));
+            row
         })
         .collect()
     };
@@ -74,6 +109,7 @@ pub fn write_mannequin(description: &Description) -> Result<String, FormatError>
         head: rows(Part::Head),
         arm: rows(Part::LeftArm),
         leg: rows(Part::LeftLeg),
+        frame: description.frame.as_ref().map(rounded),
     };
     let text = serde_json::to_string(&file)
         .map_err(|error| FormatError::new("mannequin", error.to_string(), "check the values"))?;
@@ -121,23 +157,34 @@ pub fn read_mannequin(text: &str) -> Result<Description, FormatError> {
         (Part::LeftArm, file.arm),
         (Part::LeftLeg, file.leg),
     ];
-    let primitive = |part: Part, row: Row| {
+    let primitive = |part: Part, number: usize, row: Row| {
+        if !(9..=10).contains(&row.len()) {
+            let what = format!("{} numbers stand where 9 or 10 should", row.len());
+            let place = format!("primitive {number} of the {}", part.name());
+            let remedy = "give centre, semi-axes (0.1 mm), turn (mrad) and, if not 1000, the weight";
+            return Err(FormatError::new(place, what, remedy));
+        }
         let length = |k: usize| f64::from(row[k]) * LENGTH;
         let turn = |k: usize| f64::from(row[k]) * TURN;
-        Primitive {
+        Ok(Primitive {
             part,
             centre: [length(0), length(1), length(2)],
             radii: [length(3), length(4), length(5)],
             rotation: [turn(6), turn(7), turn(8)],
-        }
+            weight: row.get(9).map_or(1.0, |&weight| f64::from(weight) * WEIGHT),
+        })
     };
+    let mut primitives = Vec::new();
+    for (part, rows) in parts {
+        for (number, row) in rows.into_iter().enumerate() {
+            primitives.push(primitive(part, number + 1, row)?);
+        }
+    }
     Ok(Description {
         figure: file.figure,
         measurements,
-        primitives: parts
-            .into_iter()
-            .flat_map(|(part, rows)| rows.into_iter().map(move |row| primitive(part, row)))
-            .collect(),
+        primitives,
+        frame: file.frame,
     })
 }
 
@@ -184,7 +231,7 @@ mod tests {
             ),
             (
                 "{\"toile\":1,\"kind\":\"mannequin\",\"figure\":\"man\",\"measurements\":{},\"arm\":[[1,2]]}",
-                "line",
+                "primitive 1 of the left arm",
             ),
         ] {
             let error = read_mannequin(text).unwrap_err();

@@ -7,7 +7,9 @@ use crate::{PatternFormat, Project, SessionError};
 use std::path::Path;
 use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
-use toile_body::{Conflict, Description, Gap, Mannequin, Motion, Scan, ScanLandmarks};
+use toile_body::{
+    BodyError, Conflict, Description, Figure, Fit, Gap, Mannequin, Motion, Scan, ScanLandmarks,
+};
 use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{
     FormatError, ObjGroup, ObjMesh, read_bvh, read_mannequin, read_obj, read_text,
@@ -155,16 +157,9 @@ pub struct MeshMeasured {
     pub landmarks: ScanLandmarks,
 }
 
-/// Measures a closed mesh of a standing person (OBJ, metres, Y up, facing +Z) by the tape of our
-/// own bodies, at landmarks from a file (JSON) or found, and writes the table of measurements.
-///
-/// # Errors
-/// A file that cannot be read, a mesh that is not closed, or the table cannot be written.
-pub fn measure_mesh(
-    mesh: &Path,
-    landmarks: Option<&Path>,
-    to: &Path,
-) -> Result<MeshMeasured, SessionError> {
+/// A closed mesh of a standing person (OBJ, metres, Y up, facing +Z), with landmarks from a file
+/// (JSON) or found.
+fn open_scan(mesh: &Path, landmarks: Option<&Path>) -> Result<Scan, SessionError> {
     let at = |path: &Path, error: FormatError| SessionError::Format {
         path: path.to_owned(),
         error,
@@ -187,12 +182,27 @@ pub fn measure_mesh(
         positions: read.positions,
         triangles: read.triangles,
     };
-    let scan = Scan::new(surface, given).map_err(|error| {
-        at(
-            mesh,
-            FormatError::new("the mesh", error.to_string(), "repair it"),
-        )
-    })?;
+    Scan::new(surface, given).map_err(|error| scan_error(mesh, &error))
+}
+
+fn scan_error(mesh: &Path, error: &BodyError) -> SessionError {
+    SessionError::Format {
+        path: mesh.to_owned(),
+        error: FormatError::new("the mesh", error.to_string(), "correct it"),
+    }
+}
+
+/// Measures a closed mesh of a standing person by the tape of our own bodies and writes the table
+/// of measurements.
+///
+/// # Errors
+/// A file that cannot be read, a mesh that is not closed, or the table cannot be written.
+pub fn measure_mesh(
+    mesh: &Path,
+    landmarks: Option<&Path>,
+    to: &Path,
+) -> Result<MeshMeasured, SessionError> {
+    let scan = open_scan(mesh, landmarks)?;
     let measurements = scan.measurements();
     let text = write_measurements(&measurements).map_err(cannot("the measurements"))?;
     write_atomically(to, text.as_bytes())?;
@@ -200,6 +210,20 @@ pub fn measure_mesh(
         measurements,
         landmarks: scan.landmarks().clone(),
     })
+}
+
+/// Fits a mannequin to a closed mesh of a standing person.
+///
+/// # Errors
+/// As [`measure_mesh`]; and a limb or a landmark that cannot be found.
+pub fn fit_mesh(
+    mesh: &Path,
+    landmarks: Option<&Path>,
+    figure: Figure,
+) -> Result<Fit, SessionError> {
+    open_scan(mesh, landmarks)?
+        .fit(figure)
+        .map_err(|error| scan_error(mesh, &error))
 }
 
 /// The description in a mannequin file.

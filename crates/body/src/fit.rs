@@ -1,0 +1,183 @@
+//! Our own mannequin fitted to somebody's closed mesh.
+
+use crate::describe::{Description, both_sides};
+use crate::fit_check::{FitMisfit, misfit};
+use crate::fit_frame::{self, Found};
+use crate::fit_samples::{PARTS, Sample, Wanted, samples};
+use crate::rings::TemplateSkin;
+use crate::fit_start::start;
+use crate::template::{BodyFrame, Template};
+use crate::request::Request;
+use crate::{BodyError, Field, Figure, Part, Primitive, Scan, ScanLandmarks, rings, template_skin};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
+use toile_measure::Measurements;
+
+/// Our own body fitted to somebody's mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// All the body is made from: give it to [`Mannequin::from_description`].
+    pub description: Description,
+    /// How far its skin lies from the mesh.
+    pub misfit: FitMisfit,
+    /// How the mesh was moved to stand on y = 0 with its middle at x = 0 [m].
+    pub shift: Vec3,
+}
+
+impl Scan {
+    /// Fits a mannequin: joints from the sections of the limbs, then 150 primitives by least
+    /// squares of their densities on the surface, and anew twice with what the cast skin misses.
+    /// The mesh is taken as symmetric: both halves count for the one that is fitted.
+    ///
+    /// # Errors
+    /// A landmark or a limb that cannot be found, and what to give.
+    pub fn fit(&self, figure: Figure) -> Result<Fit, BodyError> {
+        let shift = self.shift();
+        if shift.norm() > 1e-9 {
+            let moved = self.moved(shift)?;
+            return Ok(Fit {
+                shift,
+                ..moved.fit_standing(figure)?
+            });
+        }
+        self.fit_standing(figure)
+    }
+
+    fn fit_standing(&self, figure: Figure) -> Result<Fit, BodyError> {
+        let mut found = fit_frame::find(self)?;
+        let (primitives, mut misfit) = fitted(self, &mut found)?;
+        misfit.primitives = primitives.len();
+        let description = Description {
+            figure,
+            measurements: sound(self.measurements(), figure)?,
+            primitives: primitives.into_iter().filter(|p| !p.is_right()).collect(),
+            frame: Some(found.frame),
+        };
+        Ok(Fit {
+            description,
+            misfit,
+            shift: Vec3::zeros(),
+        })
+    }
+}
+
+/// The table without what no body has: a tape at a place that was found wrongly.
+fn sound(mut table: Measurements, figure: Figure) -> Result<Measurements, BodyError> {
+    loop {
+        match Request::read(&table, figure) {
+            Ok(_) => return Ok(table),
+            Err(BodyError::OutOfRange { name, .. }) if name != "height" => {
+                let mut rest = Measurements::new();
+                for (other, measured) in table.iter().filter(|row| row.0 != name) {
+                    rest.set(other, measured.value, measured.origin)
+                        .map_err(|error| BodyError::Description(error.to_string()))?;
+                }
+                table = rest;
+            }
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// Primitives of both sides, and how far their skin lies from the mesh.
+fn fitted(scan: &Scan, found: &mut Found) -> Result<(Vec<Primitive>, FitMisfit), BodyError> {
+    let own = Scan::new(template_skin(Figure::Woman)?, ScanLandmarks::default())?;
+    let rows = start(scan, found, &own);
+    let tree = SurfaceTree::new(scan.mesh().clone());
+    let mut wanted = samples(scan, &tree, found);
+    let height = found.frame.height;
+    let mut groups: Vec<Vec<Primitive>> = PARTS
+        .iter()
+        .map(|&part| rows.iter().filter(|p| p.part == part).copied().collect())
+        .collect();
+    let mut round = 0;
+    let (primitives, skin) = loop {
+        groups
+            .par_iter_mut()
+            .zip(&wanted)
+            .for_each(|(own, samples)| crate::fit_field::fit(own, samples, height));
+        let primitives = both_sides(groups.concat());
+        let skin = cast(&mut found.frame, &primitives)?;
+        round += 1;
+        if round > ROUNDS {
+            break (primitives, skin.mesh);
+        }
+        for (part, samples) in PARTS.iter().zip(&mut wanted) {
+            drawn(samples, *part, &skin, height);
+        }
+    };
+    let checked = Scan::new(skin, scan.landmarks().clone())?;
+    let misfit = misfit(scan, &checked, &found.frame.joints, found.chin);
+    Ok((primitives, misfit))
+}
+
+/// Casts the skin; a hand whose tip the primitives leave bare is made shorter.
+fn cast(frame: &mut BodyFrame, primitives: &[Primitive]) -> Result<TemplateSkin, BodyError> {
+    let field = Field::new(primitives);
+    let least = 0.5 * frame.hand;
+    loop {
+        let template = Template::framed(frame, primitives.to_vec());
+        match rings::cast(&template, &field) {
+            Err(BodyError::Open { part, .. })
+                if part == Part::LeftArm.name() && frame.hand > least =>
+            {
+                frame.hand *= 0.93;
+            }
+            other => return other,
+        }
+    }
+}
+
+/// How often the skin is cast and what it misses by is added to what is wanted.
+const ROUNDS: usize = 2;
+
+/// Moves the surface wanted of a part by what the skin misses it by, averaged over a
+/// neighbourhood: a cast skin's chords lie within the surface, and a fit has its bias.
+fn drawn(samples: &mut [Sample], part: Part, skin: &TemplateSkin, height: f64) {
+    let cell = 0.03 * height;
+    let mut own = TriangleMesh {
+        positions: skin.mesh.positions.clone(),
+        triangles: Vec::new(),
+    };
+    for (t, triangle) in skin.mesh.triangles.iter().enumerate() {
+        if skin.parts[t] == part {
+            own.triangles.push(*triangle);
+        }
+    }
+    let tree = SurfaceTree::new(own);
+    let key = |p: Vec3| [p.x, p.y, p.z].map(|x| (x / cell).floor() as i64);
+    let mut cells: BTreeMap<[i64; 3], Vec<(Vec3, Vec3, f64, f64)>> = BTreeMap::new();
+    for sample in samples.iter() {
+        let Wanted::Surface { normal, own } = sample.wanted else {
+            continue;
+        };
+        let Some(closest) = tree.closest_point(own, 0.02 * height) else {
+            continue;
+        };
+        let miss = (closest.point - own).dot(&normal);
+        cells
+            .entry(key(own))
+            .or_default()
+            .push((own, normal, miss, sample.weight));
+    }
+    for sample in samples {
+        let Wanted::Surface { normal, own } = sample.wanted else {
+            continue;
+        };
+        let [x, y, z] = key(own);
+        let (mut sum, mut weights) = (0.0, 1e-12);
+        for (i, j, k) in (0..27).map(|n| (n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)) {
+            for (place, other, miss, weight) in cells.get(&[x + i, y + j, z + k]).into_iter().flatten() {
+                let near = 1.0 - (place - own).norm_squared() / (cell * cell);
+                let same = other.dot(&normal);
+                if near > 0.0 && same > 0.5 {
+                    sum += miss * near * weight;
+                    weights += near * weight;
+                }
+            }
+        }
+        let far = 0.006 * height;
+        sample.place -= normal * (sum / weights).clamp(-far, far);
+    }
+}

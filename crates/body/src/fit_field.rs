@@ -1,0 +1,268 @@
+//! Primitives of one part fitted to samples of its surface by damped least squares (Levenberg
+//! 1944, Marquardt 1963) with derivatives in closed form.
+
+use crate::fit_samples::{Sample, Wanted};
+use crate::{Part, Primitive, THRESHOLD};
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, Rotation3};
+use toile_geometry::Vec3;
+
+/// Unknowns of a primitive: centre, logarithms of the semi-axes, turn, logarithm of the weight.
+const UNKNOWNS: usize = 10;
+/// Steps tried at the most.
+const STEPS: usize = 150;
+/// Of a stature: a residual from which on samples count less (Huber 1964).
+const FAR: f64 = 0.004;
+/// Room that densities keep from the threshold within and beyond the surface.
+const ROOM: [f64; 2] = [0.05, 0.03];
+/// Limits of the weight.
+const WEIGHT: [f64; 2] = [0.3, 3.0];
+
+/// A primitive made ready.
+struct Ready {
+    centre: Vec3,
+    turn: Matrix3<f64>,
+    inverse: Vec3,
+    weight: f64,
+    reach: f64,
+    /// Whether its mirror image adds to the same part.
+    twin: bool,
+    /// Whether it is its own mirror image: then it neither goes nor turns sideways.
+    central: bool,
+}
+
+/// A sum of squares with its derivatives.
+struct System {
+    normal: DMatrix<f64>,
+    right: DVector<f64>,
+    sum: f64,
+}
+
+/// Fits the primitives of one part of the left side and the middle, in place.
+pub(crate) fn fit(primitives: &mut [Primitive], samples: &[Sample], height: f64) {
+    if primitives.is_empty() || samples.is_empty() {
+        return;
+    }
+    let start = primitives.to_vec();
+    let mut damping = 1e-2;
+    let mut system = assembled(primitives, &start, samples, height);
+    for _ in 0..STEPS {
+        let mut damped = system.normal.clone();
+        for k in 0..damped.nrows() {
+            damped[(k, k)] += damping * system.normal[(k, k)].max(1e-12);
+        }
+        let Some(factor) = Cholesky::new(damped) else {
+            damping *= 10.0;
+            continue;
+        };
+        let step = factor.solve(&system.right);
+        let mut tried = primitives.to_vec();
+        for (primitive, own) in tried.iter_mut().zip(step.as_slice().chunks(UNKNOWNS)) {
+            moved(primitive, own, height);
+        }
+        let next = assembled(&tried, &start, samples, height);
+        if next.sum < system.sum {
+            let gain = 1.0 - next.sum / system.sum;
+            primitives.copy_from_slice(&tried);
+            system = next;
+            damping = (damping * 0.3).max(1e-7);
+            if gain < 3e-5 {
+                break;
+            }
+        } else {
+            damping *= 4.0;
+            if damping > 1e6 {
+                break;
+            }
+        }
+    }
+}
+
+/// Takes a step, none larger than what the linear model may be trusted for.
+fn moved(primitive: &mut Primitive, step: &[f64], height: f64) {
+    let central = primitive.is_central();
+    let far = 0.02 * height;
+    for k in 0..3 {
+        if !(central && k == 0) {
+            primitive.centre[k] += step[k].clamp(-far, far);
+        }
+        let grown = primitive.radii[k] * step[3 + k].clamp(-0.3, 0.3).exp();
+        primitive.radii[k] = grown.clamp(0.008 * height, 0.35 * height);
+    }
+    let mut turn = Vec3::new(step[6], step[7], step[8]).map(|x| x.clamp(-0.3, 0.3));
+    if central {
+        turn.y = 0.0;
+        turn.z = 0.0;
+    }
+    let rotation = (Rotation3::new(turn) * primitive.rotation()).scaled_axis();
+    primitive.rotation = match central {
+        true => [rotation.x, 0.0, 0.0],
+        false => rotation.into(),
+    };
+    let weight = primitive.weight * step[9].clamp(-0.3, 0.3).exp();
+    primitive.weight = weight.clamp(WEIGHT[0], WEIGHT[1]);
+    // What is off the middle stays there: a pair that met would be one.
+    if !central && matches!(primitive.part, Part::Trunk | Part::Head) {
+        primitive.centre[0] = primitive.centre[0].max(0.004 * height);
+    }
+}
+
+fn ready(p: &Primitive) -> Ready {
+    Ready {
+        centre: Vec3::from(p.centre),
+        turn: *p.rotation().matrix(),
+        inverse: Vec3::from(p.radii).map(|r| 1.0 / r),
+        weight: p.weight,
+        reach: p.radii.iter().copied().fold(0.0, f64::max).powi(2),
+        twin: matches!(p.part, Part::Trunk | Part::Head) && !p.is_central(),
+        central: p.is_central(),
+    }
+}
+
+/// Density of a primitive at a place with its gradient by place and by the unknowns; the centre's
+/// derivative is the opposite of the place's.
+fn density(p: &Ready, place: Vec3) -> Option<(f64, Vec3, [f64; UNKNOWNS])> {
+    let offset = place - p.centre;
+    if offset.norm_squared() >= p.reach {
+        return None;
+    }
+    let unit = p.turn.tr_mul(&offset).component_mul(&p.inverse);
+    let q = unit.norm_squared();
+    if q >= 1.0 {
+        return None;
+    }
+    let value = p.weight * (1.0 - q) * (1.0 - q);
+    let slope = -2.0 * p.weight * (1.0 - q);
+    let toward = p.turn * unit.component_mul(&p.inverse);
+    let gradient = toward * (2.0 * slope);
+    // A turn of the ellipsoid by w turns the offset by -w.
+    let turned = toward.cross(&offset) * (2.0 * slope);
+    let sized = unit.component_mul(&unit) * (-2.0 * slope);
+    let row = [
+        -gradient.x,
+        -gradient.y,
+        -gradient.z,
+        sized.x,
+        sized.y,
+        sized.z,
+        turned.x,
+        turned.y,
+        turned.z,
+        value,
+    ];
+    Some((value, gradient, row))
+}
+
+fn assembled(
+    primitives: &[Primitive],
+    start: &[Primitive],
+    samples: &[Sample],
+    height: f64,
+) -> System {
+    let all: Vec<Ready> = primitives.iter().map(ready).collect();
+    let size = UNKNOWNS * primitives.len();
+    let mut system = System {
+        normal: DMatrix::zeros(size, size),
+        right: DVector::zeros(size),
+        sum: 0.0,
+    };
+    let mut touched: Vec<(usize, [f64; UNKNOWNS])> = Vec::new();
+    // Where the field is flat a residual counts as if it rose so [1/m].
+    let least = 6.0 / height;
+    for sample in samples {
+        touched.clear();
+        let (mut value, mut gradient) = (0.0, Vec3::zeros());
+        for (k, p) in all.iter().enumerate() {
+            let own = density(p, sample.place);
+            let place = Vec3::new(-sample.place.x, sample.place.y, sample.place.z);
+            let twin = if p.twin { density(p, place) } else { None };
+            let mut row = [0.0; UNKNOWNS];
+            if let Some((v, g, r)) = own {
+                value += v;
+                gradient += g;
+                row = r;
+            }
+            if let Some((v, g, r)) = twin {
+                value += v;
+                gradient += Vec3::new(-g.x, g.y, g.z);
+                row.iter_mut().zip(r).for_each(|(a, b)| *a += b);
+            }
+            if p.central {
+                [row[0], row[7], row[8]] = [0.0; 3];
+            }
+            if own.is_some() || twin.is_some() {
+                touched.push((k, row));
+            }
+        }
+        let miss = match sample.wanted {
+            Wanted::Surface { .. } => value - THRESHOLD,
+            Wanted::Within => (value - THRESHOLD - ROOM[0]).min(0.0),
+            Wanted::Beyond => (value - THRESHOLD + ROOM[1]).max(0.0),
+            Wanted::Far => (value - 0.4 * THRESHOLD).max(0.0),
+            Wanted::Below => (value - THRESHOLD).max(0.0),
+        };
+        if miss == 0.0 {
+            continue;
+        }
+        let steep = gradient.norm().max(least);
+        let steep = match sample.wanted {
+            Wanted::Surface { .. } => steep,
+            _ => steep.max(2.5 * least),
+        };
+        system.add(&touched, miss / steep, steep, (sample.weight, FAR * height));
+    }
+    system.hold(primitives, start, height);
+    system
+}
+
+impl System {
+    /// Adds a residual [m] whose derivatives are those of the density over its slope.
+    fn add(
+        &mut self,
+        touched: &[(usize, [f64; UNKNOWNS])],
+        miss: f64,
+        steep: f64,
+        (weight, far): (f64, f64),
+    ) {
+        let size = miss.abs();
+        let (cost, factor) = match size <= far {
+            true => (miss * miss, 1.0),
+            false => (far * (2.0 * size - far), far / size),
+        };
+        self.sum += weight * cost;
+        let weight = weight * factor;
+        let over = 1.0 / steep;
+        for (k, row) in touched {
+            for i in 0..UNKNOWNS {
+                let a = row[i] * over;
+                self.right[UNKNOWNS * k + i] -= weight * a * miss;
+                let wa = weight * a * over;
+                for (l, other) in touched {
+                    for j in 0..UNKNOWNS {
+                        self.normal[(UNKNOWNS * l + j, UNKNOWNS * k + i)] += wa * other[j];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Holds the primitives weakly to where they started, so that none wanders where nothing
+    /// holds it.
+    fn hold(&mut self, primitives: &[Primitive], start: &[Primitive], height: f64) {
+        // A whole body's area times the square of a residual that matters little.
+        let weak = 2e-10 * height.powi(4);
+        for (k, (p, s)) in primitives.iter().zip(start).enumerate() {
+            let mut pull = |i: usize, gap: f64, scale: f64| {
+                let weight = weak / (scale * scale);
+                self.sum += weight * gap * gap;
+                self.right[UNKNOWNS * k + i] -= weight * gap;
+                self.normal[(UNKNOWNS * k + i, UNKNOWNS * k + i)] += weight;
+            };
+            for i in 0..3 {
+                pull(i, p.centre[i] - s.centre[i], 0.05 * height);
+                pull(3 + i, (p.radii[i] / s.radii[i]).ln(), 0.5);
+                pull(6 + i, 0.0, 1.0);
+            }
+            pull(9, (p.weight / s.weight).ln(), 0.5);
+        }
+    }
+}

@@ -1,0 +1,292 @@
+//! Where levels and joints of somebody's mesh lie: found by sections of its limbs.
+
+use crate::template::{BodyFrame, Joints};
+use crate::{BodyError, Loop, Scan};
+use toile_geometry::Vec3;
+
+/// A frame with what else was found on the way.
+pub(crate) struct Found {
+    pub(crate) frame: BodyFrame,
+    /// The tip of the left hand [m].
+    pub(crate) finger_tip: Vec3,
+    /// Where along the bone from the shoulder the arm's own sections begin [m].
+    pub(crate) arm_begins: f64,
+    /// Height below which there is no face [m].
+    pub(crate) chin: f64,
+}
+
+/// A section of the left arm: its middle [m] and girth [m].
+type Ring = (Vec3, f64);
+
+/// Height of the shoulder joint over the armpit, over stature.
+const JOINT_RISE: f64 = 0.037;
+
+/// Finds them on a mesh that stands on y = 0 with its middle at x = 0.
+///
+/// # Errors
+/// What could not be found, and which landmark to give.
+pub(crate) fn find(scan: &Scan) -> Result<Found, BodyError> {
+    let missing = |what: &str| BodyError::Mesh(format!("has no {what} that could be found"));
+    let marks = scan.landmarks();
+    let height = scan.height();
+    let crotch = marks
+        .crotch
+        .ok_or_else(|| missing("crotch: give its height as landmark crotch"))?;
+    let armpit = marks.armpit.ok_or_else(|| {
+        missing("armpit with arms beside the trunk: give its height as landmark armpit")
+    })?;
+    let tip = finger_tip(scan);
+    let rings = arm_rings(scan, tip, armpit);
+    if rings.len() < 12 {
+        return Err(missing(
+            "left arm (+X) as a limb of its own: hold the arms off the trunk",
+        ));
+    }
+    let given = marks.wrist.map(Vec3::from);
+    let wrist_at = match given {
+        Some(p) => nearest(&rings, p),
+        None => wrist_ring(&rings, height),
+    };
+    let wrist = rings[wrist_at].0;
+    let elbow_at = elbow_ring(&rings, wrist_at);
+    let elbow = rings[elbow_at].0;
+    let last = rings[rings.len() - 1].0;
+    let shoulder = shoulder_joint(&rings, elbow, armpit, height);
+    let along = (elbow - shoulder).normalize();
+    let [hip, knee, ankle, toe] = leg(scan, crotch).ok_or_else(|| missing("left leg (+X)"))?;
+    let neck = neck(scan, armpit).ok_or_else(|| missing("neck narrower than head and trunk"))?;
+    let middle = |y: f64| scan.trunk(y).map_or(0.0, |l| l.centre().y);
+    // The fold between arm and trunk.
+    let beside = scan.trunk(armpit - 0.004 * height);
+    let half = beside.map_or(0.1 * height, |l| 0.5 * l.extent()[0]);
+    let fold = Vec3::new(half, armpit, shoulder.z);
+    let head_y = neck.base + 0.43 * (height - neck.base);
+    let brow = neck.base + 0.68 * (height - neck.base);
+    let chest_y = shoulder.y - 0.0375 * height;
+    let pelvis_y = crotch + 0.0575 * height;
+    let joints = Joints {
+        shoulder: shoulder.into(),
+        elbow: elbow.into(),
+        wrist: wrist.into(),
+        hip: hip.into(),
+        knee: knee.into(),
+        ankle: ankle.into(),
+        toe: toe.into(),
+        pelvis: [0.0, pelvis_y, middle(pelvis_y)],
+        chest: [0.0, chest_y, middle(chest_y.min(armpit - 0.01 * height))],
+        neck: [0.0, neck.base, neck.depth],
+        head: [0.0, head_y, middle(brow) - 0.002 * height],
+    };
+    Ok(Found {
+        frame: BodyFrame {
+            height,
+            crotch,
+            armpit,
+            hand: 0.86 * (tip - wrist).norm(),
+            neck_radius: neck.radius,
+            joints,
+        },
+        finger_tip: tip,
+        chin: neck.narrowest - 0.004 * height,
+        arm_begins: (last - shoulder)
+            .dot(&along)
+            .max((fold - shoulder).dot(&along) + 0.004 * height),
+    })
+}
+
+/// The tip of the left hand: what reaches farthest out and, less so, down.
+fn finger_tip(scan: &Scan) -> Vec3 {
+    let height = scan.height();
+    let reach = |p: &Vec3| p.x - 0.3 * p.y;
+    let upper = scan.mesh().positions.iter().filter(|p| p.y > 0.33 * height);
+    upper
+        .copied()
+        .max_by(|a, b| reach(a).total_cmp(&reach(b)))
+        .unwrap_or_default()
+}
+
+/// Sections of the left arm from the finger tips to where it becomes one with the trunk: each
+/// square to the way the middles go.
+fn arm_rings(scan: &Scan, tip: Vec3, armpit: f64) -> Vec<Ring> {
+    let height = scan.height();
+    let step = 0.012 * height;
+    let beside = scan.trunk(armpit - 0.02 * height);
+    let half = beside.map_or(0.1 * height, |l| 0.5 * l.extent()[0]);
+    let goal = Vec3::new(half, armpit + 0.02 * height, 0.01 * height);
+    let mut along = (goal - tip).normalize();
+    let mut rings: Vec<Ring> = Vec::new();
+    let mut at = tip;
+    for _ in 0..90 {
+        let origin = at + along * step;
+        let Some((centre, girth)) = ring_at(scan, origin, along, rings.len() < 9) else {
+            break;
+        };
+        // Where the trunk joins in, a section grows at once.
+        let before = rings.iter().rev().take(4).map(|r| r.1);
+        let usual = before.clone().sum::<f64>() / before.count().max(1) as f64;
+        let grown = rings.len() > 14 && girth > 1.35 * usual;
+        let jumped = (centre - origin).norm() > 0.03 * height && rings.len() > 9;
+        if grown || jumped || centre.x < 0.4 * half {
+            break;
+        }
+        at = centre;
+        rings.push((centre, girth));
+        if rings.len() > 4 {
+            let way = (at - rings[rings.len() - 5].0).normalize();
+            along = (along * 0.5 + way * 0.5).normalize();
+        }
+        if (goal - at).norm() < 0.5 * step {
+            break;
+        }
+    }
+    rings
+}
+
+/// The section square to a direction: the loop nearest to a place, all near ones of a hand.
+fn ring_at(scan: &Scan, origin: Vec3, along: Vec3, is_hand: bool) -> Option<Ring> {
+    let first = along.cross(&Vec3::z()).try_normalize(1e-6)?;
+    let second = first.cross(&along);
+    let loops = scan.section(origin, [first, second]);
+    let far = |l: &Loop| l.centre().norm();
+    let near: Vec<&Loop> = match is_hand {
+        true => loops
+            .iter()
+            .filter(|l| far(l) < 0.05 * scan.height())
+            .collect(),
+        false => loops
+            .iter()
+            .filter(|l| l.length() > 0.03 * scan.height())
+            .min_by(|a, b| far(a).total_cmp(&far(b)))
+            .into_iter()
+            .collect(),
+    };
+    let girth: f64 = near.iter().map(|l| l.girth()).sum();
+    if girth <= 0.0 {
+        return None;
+    }
+    let centre = near
+        .iter()
+        .map(|l| l.centre() * (l.girth() / girth))
+        .fold(nalgebra::Vector2::zeros(), |a, b| a + b);
+    Some((origin + first * centre.x + second * centre.y, girth))
+}
+
+fn nearest(rings: &[Ring], p: Vec3) -> usize {
+    let far = |k: &usize| (rings[*k].0 - p).norm();
+    (0..rings.len())
+        .min_by(|a, b| far(a).total_cmp(&far(b)))
+        .unwrap_or_default()
+}
+
+/// The wrist: the thinnest section at a hand's length from the tip.
+fn wrist_ring(rings: &[Ring], height: f64) -> usize {
+    let tip = rings[0].0;
+    let window = |k: &usize| (0.085..0.15).contains(&((rings[*k].0 - tip).norm() / height));
+    (0..rings.len())
+        .filter(window)
+        .min_by(|&a, &b| rings[a].1.total_cmp(&rings[b].1))
+        .unwrap_or(8.min(rings.len() - 1))
+}
+
+/// The elbow: the ring at which two straight bones lie nearest to the middles; near the middle of
+/// a straight arm.
+fn elbow_ring(rings: &[Ring], wrist: usize) -> usize {
+    let last = rings.len() - 1;
+    let span = last - wrist;
+    let distance = |p: Vec3, [a, b]: [Vec3; 2]| (p - a).cross(&(b - a).normalize()).norm();
+    let misfit = |k: usize| -> f64 {
+        let bones = (wrist..=last).map(|i| {
+            let bone = if i <= k { [wrist, k] } else { [k, last] };
+            distance(rings[i].0, bone.map(|j| rings[j].0)).powi(2)
+        });
+        let mean = (bones.sum::<f64>() / (span + 1) as f64).sqrt();
+        // Within the noise of the middles, the usual place decides.
+        let share = (k - wrist) as f64 / span as f64;
+        mean + 0.02 * (share - 0.52).powi(2) * (rings[last].0 - rings[wrist].0).norm()
+    };
+    let window = wrist + (0.38 * span as f64) as usize..=wrist + (0.68 * span as f64) as usize;
+    window
+        .min_by(|&a, &b| misfit(a).total_cmp(&misfit(b)))
+        .unwrap_or((wrist + last) / 2)
+}
+
+/// The shoulder joint: on the upper arm's line, so much above the armpit; as far out as usual for
+/// level arms.
+fn shoulder_joint(rings: &[Ring], elbow: Vec3, armpit: f64, height: f64) -> Vec3 {
+    let last = rings[rings.len() - 1].0;
+    let along = (last - elbow).normalize();
+    let rise = armpit + JOINT_RISE * height - last.y;
+    let way = match along.y > 0.4 {
+        true => rise / along.y,
+        false => (last.x - 0.1 * height) / -along.x.min(-0.3),
+    };
+    last + along * way.clamp(0.0, 0.09 * height)
+}
+
+/// Hip, knee, ankle and tip of the foot of the left leg.
+fn leg(scan: &Scan, crotch: f64) -> Option<[Vec3; 4]> {
+    let height = scan.height();
+    let centre = |y: f64| {
+        let middle = scan.leg(y)?.centre();
+        Some(Vec3::new(middle.x, y, middle.y))
+    };
+    let knee_y = scan.landmarks().knee.unwrap_or(0.28 * height);
+    let knee = centre(knee_y)?;
+    let thigh = centre(crotch - 0.06 * height)?;
+    let hip_y = crotch + 0.05 * height;
+    let trunk = scan.trunk(hip_y)?;
+    // Thighs are fuller outside and behind than their bones are.
+    let hip = Vec3::new(
+        (0.06 * height).min(thigh.x),
+        hip_y,
+        0.5 * (thigh.z + trunk.centre().y),
+    );
+    let shin = centre(0.07 * height)?;
+    let ankle_y = 0.043 * height;
+    let ankle = Vec3::new(shin.x, ankle_y, shin.z);
+    let low = scan
+        .mesh()
+        .positions
+        .iter()
+        .filter(|p| p.x > 0.0 && p.y < 0.06 * height);
+    let toe = low.max_by(|a, b| a.z.total_cmp(&b.z))?;
+    let sole = centre(0.012 * height)?;
+    let toe = Vec3::new(0.5 * (toe.x + sole.x), 0.014 * height, toe.z);
+    Some([hip, knee, ankle, toe])
+}
+
+/// The neck: height and depth of its base, a distance from the middle outside of it, and the
+/// height of its narrowest section [m].
+struct Neck {
+    base: f64,
+    depth: f64,
+    radius: f64,
+    narrowest: f64,
+}
+
+fn neck(scan: &Scan, armpit: f64) -> Option<Neck> {
+    let height = scan.height();
+    let step = 0.0025 * height;
+    let levels = |from: f64, to: f64| {
+        let count = ((to - from) / step) as usize;
+        (0..=count).map(move |k| from + step * k as f64)
+    };
+    let (narrowest, least) = levels(armpit + 0.03 * height, 0.93 * height)
+        .filter_map(|y| Some((y, scan.trunk(y)?)))
+        .min_by(|a, b| a.1.girth().total_cmp(&b.1.girth()))?;
+    let radius = 0.8 * least.extent()[0];
+    // Down to where the shoulder's slope is as wide as that.
+    let base = levels(armpit, narrowest)
+        .filter(|&y| {
+            scan.trunk(y)
+                .is_some_and(|l| l.extent()[0] >= 2.0 * radius)
+        })
+        .fold(armpit, f64::max);
+    let depth = scan.trunk(base)?.centre().y - 0.008 * height;
+    Some(Neck {
+        base,
+        depth,
+        radius,
+        narrowest,
+    })
+}

@@ -1,0 +1,159 @@
+//! Our own body fitted to closed meshes.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::path::PathBuf;
+use toile_body::{Description, Figure, Fit, Mannequin, Scan, ScanLandmarks};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
+
+fn shared(file: &str) -> Option<PathBuf> {
+    let start = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let found = start
+        .ancestors()
+        .map(|folder| folder.join("shared/data").join(file))
+        .find(|path| path.is_file());
+    if found.is_none() {
+        println!("skipped: no shared data folder");
+    }
+    found
+}
+
+/// A published body as a scan.
+fn scan(path: &std::path::Path) -> Scan {
+    let mut mesh = TriangleMesh::default();
+    for line in std::fs::read_to_string(path).unwrap().lines() {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => {
+                let p: Vec<f64> = words.map(|w| w.parse().unwrap()).collect();
+                mesh.positions.push(Vec3::new(p[0], p[1], p[2]));
+            }
+            Some("f") => {
+                let corner = |w: &str| w.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
+                let f: Vec<u32> = words.map(corner).collect();
+                for k in 2..f.len() {
+                    mesh.triangles.push([f[0], f[k - 1], f[k]]);
+                }
+            }
+            _ => {}
+        }
+    }
+    Scan::new(mesh, ScanLandmarks::default()).unwrap()
+}
+
+fn report(name: &str, fit: &Fit, body: &Mannequin) {
+    let m = &fit.misfit;
+    println!(
+        "{name}: {} primitives, {} sections, radial {:.2} mm rms {:.1} most (trunk, legs, arms {:.2?}), girth {:.2} rms {:.1} most, {} crossings",
+        m.primitives,
+        m.sections,
+        m.radial * 1e3,
+        m.radial_max * 1e3,
+        m.parts.map(|x| x * 1e3),
+        m.girth * 1e3,
+        m.girth_max * 1e3,
+        SurfaceTree::new(body.skin().clone()).self_intersections().len(),
+    );
+}
+
+#[test]
+fn published_bodies_within_two_millimetres() {
+    // Two of them, all with TOILE_ALL=1.
+    let names = [
+        "male-child-averagemuscle-averageweight",
+        "female-young-averagemuscle-averageweight",
+        "female-child-averagemuscle-averageweight",
+        "female-old-averagemuscle-averageweight",
+        "female-young-averagemuscle-maxweight",
+        "male-old-averagemuscle-averageweight",
+        "male-young-averagemuscle-averageweight",
+        "male-young-averagemuscle-maxweight",
+    ];
+    let count = if std::env::var("TOILE_ALL").is_ok() { 8 } else { 2 };
+    for name in &names[..count] {
+        let Some(path) = shared(&format!("body/makehuman/{name}.obj")) else {
+            return;
+        };
+        let mesh = scan(&path);
+        let fit = mesh.fit(Figure::Mean).unwrap();
+        let body = Mannequin::from_description(&fit.description).unwrap();
+        report(name, &fit, &body);
+        assert!(fit.misfit.primitives <= 150);
+        assert!(fit.misfit.sections > 80);
+        assert!(fit.misfit.radial <= 2.0e-3, "{name}: {}", fit.misfit.radial);
+        assert!(body.skin().is_closed_and_oriented());
+        assert_eq!(body.skin().euler_characteristic(), 2);
+        assert!(body.skin().volume() > 0.97 * mesh.mesh().volume());
+        assert!(body.skin().volume() < 1.03 * mesh.mesh().volume());
+        // It moves as any of our bodies does.
+        let walk = toile_body::Motion::walk(body.skeleton());
+        let posed = body.posed_skin(&walk.pose_for(body.skeleton(), 0.3));
+        let change = posed.volume() / body.skin().volume();
+        assert!((0.95..1.05).contains(&change), "{name}: {change}");
+    }
+}
+
+#[test]
+fn our_own_body_is_fitted_wherever_it_stands() {
+    let own = Mannequin::new(&Figure::Man.average(), Figure::Man).unwrap();
+    let mut mesh = own.skin().clone();
+    for p in &mut mesh.positions {
+        *p += Vec3::new(0.4, -0.2, 0.0);
+    }
+    let there = Scan::new(mesh, ScanLandmarks::default()).unwrap();
+    let fit = there.fit(Figure::Man).unwrap();
+    assert!((fit.shift - Vec3::new(-0.4, 0.2, 0.0)).norm() < 1e-3);
+    assert!(fit.misfit.radial < 2e-3, "{}", fit.misfit.radial);
+    let body = Mannequin::from_description(&fit.description).unwrap();
+    report("our own man", &fit, &body);
+    // The same fit gives the same body.
+    let again = Mannequin::from_description(&body.description()).unwrap();
+    assert_eq!(again.skin(), body.skin());
+}
+
+#[test]
+fn what_cannot_be_fitted_is_refused_with_a_remedy() {
+    // A post has neither arms nor legs.
+    let mut mesh = TriangleMesh::default();
+    for y in [0.0, 1.7] {
+        for [x, z] in [[-0.2, -0.1], [0.2, -0.1], [0.2, 0.1], [-0.2, 0.1]] {
+            mesh.positions.push(Vec3::new(x, y, z));
+        }
+    }
+    mesh.triangles = vec![
+        [0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6], [0, 5, 1], [0, 4, 5], [1, 6, 2], [1, 5, 6],
+        [2, 7, 3], [2, 6, 7], [3, 4, 0], [3, 7, 4],
+    ];
+    let post = Scan::new(mesh, ScanLandmarks::default()).unwrap();
+    let error = post.fit(Figure::Mean).unwrap_err().to_string();
+    assert!(error.contains("give its height as landmark"), "{error}");
+    let marked = ScanLandmarks {
+        crotch: Some(0.8),
+        armpit: Some(1.3),
+        ..ScanLandmarks::default()
+    };
+    let post = Scan::new(post.mesh().clone(), marked).unwrap();
+    assert!(post.fit(Figure::Mean).is_err());
+}
+
+#[test]
+fn a_damaged_frame_is_refused() {
+    let own = Mannequin::new(&Figure::Woman.average(), Figure::Woman).unwrap();
+    let fit = Scan::new(own.skin().clone(), ScanLandmarks::default())
+        .unwrap()
+        .fit(Figure::Woman)
+        .unwrap();
+    let good = fit.description;
+    type Spoil = fn(&mut Description);
+    let spoils: [Spoil; 5] = [
+        |d| d.frame.as_mut().unwrap().height = f64::NAN,
+        |d| d.frame.as_mut().unwrap().crotch = 1.5,
+        |d| d.frame.as_mut().unwrap().joints.elbow = d.frame.unwrap().joints.wrist,
+        |d| d.frame.as_mut().unwrap().joints.shoulder[0] *= -1.0,
+        |d| d.primitives[3].weight = 0.0,
+    ];
+    for spoil in spoils {
+        let mut bad = good.clone();
+        spoil(&mut bad);
+        assert!(Mannequin::from_description(&bad).is_err());
+    }
+}
