@@ -2,8 +2,8 @@
 
 use crate::template::Template;
 use crate::{BodyError, BodyFrame, Figure, Mannequin, Primitive};
-use toile_geometry::Vec3;
 use serde::{Deserialize, Serialize};
+use toile_geometry::Vec3;
 use toile_measure::Measurements;
 
 /// All a mannequin is made from: the same description gives the same body, bit by bit.
@@ -98,10 +98,20 @@ fn sound(frame: &BodyFrame) -> Result<(), BodyError> {
         return bad("has a place beyond its height: give metres");
     }
     let rising = [
-        0.0, j.ankle[1], j.knee[1], frame.crotch, j.pelvis[1], frame.armpit, j.neck[1], j.head[1],
+        0.0,
+        j.ankle[1],
+        j.knee[1],
+        frame.crotch,
+        j.pelvis[1],
+        frame.armpit,
+        j.neck[1],
+        j.head[1],
         frame.height,
     ];
-    if rising.windows(2).any(|w| w[1] - w[0] < 0.005 * frame.height) {
+    if rising
+        .windows(2)
+        .any(|w| w[1] - w[0] < 0.005 * frame.height)
+    {
         return bad("has levels out of order from the floor to the crown: correct them");
     }
     let far = |a: [f64; 3], b: [f64; 3]| (Vec3::from(a) - Vec3::from(b)).norm();

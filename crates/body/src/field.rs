@@ -185,7 +185,8 @@ impl Field {
                 let unit = density.unit_from_body * offset;
                 let q = unit.norm_squared();
                 if q < 1.0 {
-                    sum -= density.unit_from_body.tr_mul(&unit) * (4.0 * density.weight * (1.0 - q));
+                    sum -=
+                        density.unit_from_body.tr_mul(&unit) * (4.0 * density.weight * (1.0 - q));
                 }
             }
         }

@@ -4,10 +4,10 @@ use crate::describe::{Description, both_sides};
 use crate::fit_check::{FitMisfit, misfit};
 use crate::fit_frame::{self, Found};
 use crate::fit_samples::{PARTS, Sample, Wanted, samples};
-use crate::rings::TemplateSkin;
 use crate::fit_start::start;
-use crate::template::{BodyFrame, Template};
 use crate::request::Request;
+use crate::rings::TemplateSkin;
+use crate::template::{BodyFrame, Template};
 use crate::{BodyError, Field, Figure, Part, Primitive, Scan, ScanLandmarks, rings, template_skin};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -168,7 +168,9 @@ fn drawn(samples: &mut [Sample], part: Part, skin: &TemplateSkin, height: f64) {
         let [x, y, z] = key(own);
         let (mut sum, mut weights) = (0.0, 1e-12);
         for (i, j, k) in (0..27).map(|n| (n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)) {
-            for (place, other, miss, weight) in cells.get(&[x + i, y + j, z + k]).into_iter().flatten() {
+            for (place, other, miss, weight) in
+                cells.get(&[x + i, y + j, z + k]).into_iter().flatten()
+            {
                 let near = 1.0 - (place - own).norm_squared() / (cell * cell);
                 let same = other.dot(&normal);
                 if near > 0.0 && same > 0.5 {

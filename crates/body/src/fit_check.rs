@@ -50,7 +50,9 @@ pub(crate) fn misfit(mesh: &Scan, skin: &Scan, joints: &Joints, chin: f64) -> Fi
             found.sections += 1;
         }
     }
-    let [sum, count] = radial.iter().fold([0.0, 0.0], |a, b| [a[0] + b[0], a[1] + b[1]]);
+    let [sum, count] = radial
+        .iter()
+        .fold([0.0, 0.0], |a, b| [a[0] + b[0], a[1] + b[1]]);
     let root = |square: f64, count: f64| (square / count.max(1.0)).sqrt();
     found.radial = root(sum, count);
     found.girth = root(girth, found.sections as f64);

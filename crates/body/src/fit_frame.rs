@@ -277,10 +277,7 @@ fn neck(scan: &Scan, armpit: f64) -> Option<Neck> {
     let radius = 0.8 * least.extent()[0];
     // Down to where the shoulder's slope is as wide as that.
     let base = levels(armpit, narrowest)
-        .filter(|&y| {
-            scan.trunk(y)
-                .is_some_and(|l| l.extent()[0] >= 2.0 * radius)
-        })
+        .filter(|&y| scan.trunk(y).is_some_and(|l| l.extent()[0] >= 2.0 * radius))
         .fold(armpit, f64::max);
     let depth = scan.trunk(base)?.centre().y - 0.008 * height;
     Some(Neck {

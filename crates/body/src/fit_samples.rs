@@ -105,7 +105,11 @@ pub(crate) fn samples(scan: &Scan, tree: &SurfaceTree, found: &Found) -> [Vec<Sa
                 for times in [2.5, 5.0, 9.0, 14.0] {
                     let far = spot.place + spot.normal * (times * beyond);
                     if free(far) {
-                        let wanted = if times < 4.0 { Wanted::Beyond } else { Wanted::Far };
+                        let wanted = if times < 4.0 {
+                            Wanted::Beyond
+                        } else {
+                            Wanted::Far
+                        };
                         add(far, wanted, 0.4 * own);
                     }
                 }
@@ -331,8 +335,7 @@ impl<'a> Zones<'a> {
         let end = wrist + (wrist - elbow).normalize() * f.hand;
         let instep = Vec3::new(ankle.x, 0.025 * f.height, ankle.z + 0.05 * f.height);
         let foot = Vec3::from(j.toe) - Vec3::z() * (0.03 * f.height);
-        let [pelvis, chest, neck, head] =
-            [j.pelvis, j.chest, j.neck, j.head].map(Vec3::from);
+        let [pelvis, chest, neck, head] = [j.pelvis, j.chest, j.neck, j.head].map(Vec3::from);
         let low = Vec3::new(0.0, f.crotch + 0.02 * f.height, pelvis.z);
         let top = Vec3::new(0.0, f.height - 0.05 * f.height, head.z);
         let path: Vec<Vec3> = match part {

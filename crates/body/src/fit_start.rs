@@ -93,7 +93,8 @@ pub(crate) fn start(scan: &Scan, found: &Found, own: &Scan) -> Vec<Primitive> {
         .copied()
         .collect();
     rows.retain(|p| p.part != Part::LeftLeg);
-    let mut all: Vec<Primitive> =     rows.iter()
+    let mut all: Vec<Primitive> = rows
+        .iter()
         .map(|p| match p.part {
             Part::Trunk | Part::Head => carried(p, &from, &to),
             _ => along_bone(p, &from, &to),

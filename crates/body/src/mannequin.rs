@@ -105,7 +105,12 @@ impl Mannequin {
         let warp = Warp::still(&cast.template, &cast.marks);
         let levels = levels::solve(&request.table, &cast.marks, &Excess::default());
         let mesh = cast.skin.mesh.clone();
-        Ok(Self::with((measurements, figure, request), cast, (levels, warp), mesh))
+        Ok(Self::with(
+            (measurements, figure, request),
+            cast,
+            (levels, warp),
+            mesh,
+        ))
     }
 
     fn grown(
@@ -126,7 +131,12 @@ impl Mannequin {
         } = grown.solve()?;
         let warp = Warp::new(&cast.template, &cast.marks, shape);
         let request = grown.request;
-        Ok(Self::with((measurements, figure, request), cast, (levels, warp), mesh))
+        Ok(Self::with(
+            (measurements, figure, request),
+            cast,
+            (levels, warp),
+            mesh,
+        ))
     }
 
     fn with(

@@ -66,11 +66,7 @@ fn inverse(primitive: &Primitive) -> Matrix3<f64> {
 }
 
 /// Adds what one point asks of the primitives.
-fn sweep(
-    point: Vec3,
-    own: &[Own],
-    (step, weight): (&mut [f64], &mut [f64]),
-) {
+fn sweep(point: Vec3, own: &[Own], (step, weight): (&mut [f64], &mut [f64])) {
     let (mut density, mut row) = (0.0, 0.0);
     let mut touched: Vec<(usize, f64)> = Vec::new();
     for (i, strength, [centre, twin], matrix) in own {

@@ -251,9 +251,11 @@ impl Half<'_> {
         for (t, row) in rows.iter().enumerate() {
             let (sin, cos) = row.elevation.sin_cos();
             let point = self.hit(&[Part::Trunk], row.origin, Vec3::new(cos, sin, 0.0))?;
-            let above = self.template.armpit.map(|armpit| point.y > armpit + 0.3 * FAN * scale);
-            let is_under_the_arm =
-                || self.field.density(Part::LeftArm, point) >= crate::THRESHOLD;
+            let above = self
+                .template
+                .armpit
+                .map(|armpit| point.y > armpit + 0.3 * FAN * scale);
+            let is_under_the_arm = || self.field.density(Part::LeftArm, point) >= crate::THRESHOLD;
             if above.unwrap_or_else(is_under_the_arm) {
                 return Ok(t.saturating_sub(1));
             }

@@ -51,7 +51,9 @@ fn report(name: &str, fit: &Fit, body: &Mannequin) {
         m.parts.map(|x| x * 1e3),
         m.girth * 1e3,
         m.girth_max * 1e3,
-        SurfaceTree::new(body.skin().clone()).self_intersections().len(),
+        SurfaceTree::new(body.skin().clone())
+            .self_intersections()
+            .len(),
     );
 }
 
@@ -68,7 +70,11 @@ fn published_bodies_within_two_millimetres() {
         "male-young-averagemuscle-averageweight",
         "male-young-averagemuscle-maxweight",
     ];
-    let count = if std::env::var("TOILE_ALL").is_ok() { 8 } else { 2 };
+    let count = if std::env::var("TOILE_ALL").is_ok() {
+        8
+    } else {
+        2
+    };
     for name in &names[..count] {
         let Some(path) = shared(&format!("body/makehuman/{name}.obj")) else {
             return;
@@ -120,8 +126,18 @@ fn what_cannot_be_fitted_is_refused_with_a_remedy() {
         }
     }
     mesh.triangles = vec![
-        [0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6], [0, 5, 1], [0, 4, 5], [1, 6, 2], [1, 5, 6],
-        [2, 7, 3], [2, 6, 7], [3, 4, 0], [3, 7, 4],
+        [0, 1, 2],
+        [0, 2, 3],
+        [4, 6, 5],
+        [4, 7, 6],
+        [0, 5, 1],
+        [0, 4, 5],
+        [1, 6, 2],
+        [1, 5, 6],
+        [2, 7, 3],
+        [2, 6, 7],
+        [3, 4, 0],
+        [3, 7, 4],
     ];
     let post = Scan::new(mesh, ScanLandmarks::default()).unwrap();
     let error = post.fit(Figure::Mean).unwrap_err().to_string();

@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_measure::Origin;
 use toile_session::{
-    BodyChoice, BodyReport, BodySource, Figure, Fit, Moment, Project, convert as convert_file, figure_named,
-    fit_mesh, make_body, measure_mesh, mesh_panels, open_mannequin, open_measurements, run_scene,
+    BodyChoice, BodyReport, BodySource, Figure, Fit, Moment, Project, convert as convert_file,
+    figure_named, fit_mesh, make_body, measure_mesh, mesh_panels, open_mannequin,
+    open_measurements, run_scene,
 };
 
 /// A pattern in another format.

@@ -161,7 +161,8 @@ pub fn read_mannequin(text: &str) -> Result<Description, FormatError> {
         if !(9..=10).contains(&row.len()) {
             let what = format!("{} numbers stand where 9 or 10 should", row.len());
             let place = format!("primitive {number} of the {}", part.name());
-            let remedy = "give centre, semi-axes (0.1 mm), turn (mrad) and, if not 1000, the weight";
+            let remedy =
+                "give centre, semi-axes (0.1 mm), turn (mrad) and, if not 1000, the weight";
             return Err(FormatError::new(place, what, remedy));
         }
         let length = |k: usize| f64::from(row[k]) * LENGTH;
