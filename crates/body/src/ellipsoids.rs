@@ -39,6 +39,9 @@ struct Rows {
     shift: [Vec<f64>; 3],
 }
 
+/// Ellipsoids tested beside one another.
+const RUN: usize = 32;
+
 /// Ellipsoids of a body in a pose. Inside tests are exact; the matrices are made anew only for
 /// joints that moved, themselves or by one they hang on.
 #[derive(Clone, Debug)]
@@ -141,27 +144,30 @@ impl EllipsoidTree {
     }
 
     /// `|q|^2` of a place for a run of rows, written beside one another. One test each.
-    fn ratios(&self, [from, to]: [usize; 2], p: Vec3, into: &mut Vec<f64>) {
+    fn ratios(&self, [from, to]: [usize; 2], p: Vec3, into: &mut [f64; RUN]) {
         let [a, b, c, d, e, f, g, h, i] = &self.rows.unit;
         let [s, t, u] = &self.rows.shift;
-        into.clear();
-        into.extend((from..to).map(|k| {
+        for (k, ratio) in (from..to).zip(into) {
             let x = a[k] * p.x + b[k] * p.y + c[k] * p.z - s[k];
             let y = d[k] * p.x + e[k] * p.y + f[k] * p.z - t[k];
             let z = g[k] * p.x + h[k] * p.y + i[k] * p.z - u[k];
-            x * x + y * y + z * z
-        }));
+            *ratio = x * x + y * y + z * z;
+        }
     }
 
     /// The row nearest to a place in the measure of the unit spheres, among some parts.
-    fn nearest_of(&self, parts: &[Part], p: Vec3, scratch: &mut Vec<f64>) -> Option<(usize, f64)> {
+    fn nearest_of(&self, parts: &[Part], p: Vec3) -> Option<(usize, f64)> {
         let mut best: Option<(usize, f64)> = None;
+        let mut run = [0.0; RUN];
         for &part in parts {
-            let range = self.ranges[part as usize];
-            self.ratios(range, p, scratch);
-            for (k, &q) in scratch.iter().enumerate() {
-                if best.is_none_or(|known| q < known.1) {
-                    best = Some((range[0] + k, q));
+            let [first, last] = self.ranges[part as usize];
+            for from in (first..last).step_by(RUN) {
+                let to = (from + RUN).min(last);
+                self.ratios([from, to], p, &mut run);
+                for (k, &q) in run[..to - from].iter().enumerate() {
+                    if best.is_none_or(|known| q < known.1) {
+                        best = Some((from + k, q));
+                    }
                 }
             }
         }
@@ -171,9 +177,11 @@ impl EllipsoidTree {
     fn contact(&self, (row, squared): (usize, f64), p: Vec3) -> EllipsoidContact {
         let (matrix, centre) = &self.body_from_unit[row];
         let ratio = squared.sqrt();
-        let unit = matrix
-            .try_inverse()
-            .map_or(Vec3::y(), |inverse| inverse * (p - centre));
+        let row_of = |i: usize| {
+            let [x, y, z] = [0, 1, 2].map(|j| self.rows.unit[3 * i + j][row]);
+            x * p.x + y * p.y + z * p.z - self.rows.shift[i][row]
+        };
+        let unit = Vec3::new(row_of(0), row_of(1), row_of(2));
         let direction = unit.try_normalize(1e-12).unwrap_or(Vec3::y());
         EllipsoidContact {
             ellipsoid: self.order[row],
@@ -199,20 +207,23 @@ impl EllipsoidTree {
         if !p.iter().all(|x| x.is_finite()) {
             return None;
         }
-        let mut scratch = Vec::with_capacity(self.len());
-        let best = self.nearest_of(parts, p, &mut scratch)?;
+        let best = self.nearest_of(parts, p)?;
         Some(self.contact(best, p))
     }
 
     /// For each of some places whether it lies inside any ellipsoid. Exact up to rounding.
     pub fn inside(&self, places: &[Vec3]) -> Vec<bool> {
-        let mut scratch = Vec::with_capacity(self.len());
-        places
-            .iter()
-            .map(|&p| {
-                self.ratios([0, self.len()], p, &mut scratch);
-                scratch.iter().fold(f64::INFINITY, |a, &b| a.min(b)) < 1.0
+        let mut run = [0.0; RUN];
+        let mut is_inside = |p: Vec3| {
+            (0..self.len()).step_by(RUN).any(|from| {
+                let to = (from + RUN).min(self.len());
+                self.ratios([from, to], p, &mut run);
+                run[..to - from]
+                    .iter()
+                    .fold(f64::INFINITY, |a, &b| a.min(b))
+                    < 1.0
             })
-            .collect()
+        };
+        places.iter().map(|&p| is_inside(p)).collect()
     }
 }

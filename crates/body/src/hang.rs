@@ -3,7 +3,7 @@
 use toile_geometry::Vec3;
 
 /// Steepest angle below the horizontal [rad].
-const STEEPEST: f64 = 1.15;
+pub(crate) const STEEPEST: f64 = 1.15;
 /// Least distance between arm and trunk, over stature: arms swing and trunks turn.
 const CLEAR: f64 = 0.012;
 /// Height of the bands in which the trunk's breadth is known, over stature.

@@ -76,7 +76,8 @@ impl JointFrames {
 
 impl Skeleton {
     pub(crate) fn new(rest: [Vec3; Joint::COUNT]) -> Self {
-        Self { rest, hang: 1.15 }
+        let hang = crate::hang::STEEPEST;
+        Self { rest, hang }
     }
 
     /// The same with the angle at which straight arms hang [rad].

@@ -503,7 +503,8 @@ pub struct Body {
     /// Default: heights are found, what needs points is left out.
     #[arg(long, value_name = "FILE")]
     pub landmarks: Option<PathBuf>,
-    /// Motion to pose it by: walk, run, or a BVH file. Default: at rest.
+    /// Motion to pose it by: walk, run, a BVH file, or a VRML 97 or X3D file (.wrl, .x3d, .x3dv)
+    /// with OrientationInterpolators routed to H-Anim joints. Default: at rest.
     #[arg(long, value_name = "MOTION")]
     pub motion: Option<String>,
     /// Time in the motion (s).

@@ -7,21 +7,21 @@ use toile_geometry::Vec3;
 
 /// One channel of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Channel {
+pub(crate) enum Channel {
     Position(usize),
     Rotation(usize),
 }
 
 /// A joint of the file.
 #[derive(Debug)]
-struct Bone {
-    name: String,
-    parent: Option<usize>,
+pub(crate) struct Bone {
+    pub(crate) name: String,
+    pub(crate) parent: Option<usize>,
     /// From the parent's origin at rest, in the file's unit.
-    offset: Vec3,
+    pub(crate) offset: Vec3,
     /// Where it ends, for the last one of a limb.
-    end: Option<Vec3>,
-    channels: Vec<Channel>,
+    pub(crate) end: Option<Vec3>,
+    pub(crate) channels: Vec<Channel>,
 }
 
 struct Words<'a> {
@@ -277,7 +277,7 @@ fn end_of(joint: Joint) -> Option<Joint> {
 }
 
 /// From the file's bones to a skeleton's joints.
-struct Carrier {
+pub(crate) struct Carrier {
     /// The bone of each joint.
     bone: [Option<usize>; Joint::COUNT],
     /// What turns each joint's bone from where it points at rest to where the file's does.
@@ -288,7 +288,7 @@ struct Carrier {
 }
 
 impl Carrier {
-    fn new(bones: &[Bone], skeleton: &Skeleton) -> Result<Self, FormatError> {
+    pub(crate) fn new(bones: &[Bone], skeleton: &Skeleton) -> Result<Self, FormatError> {
         let mut bone = [None; Joint::COUNT];
         for (k, b) in bones.iter().enumerate() {
             match joint_named(&b.name) {
@@ -354,7 +354,7 @@ impl Carrier {
         })
     }
 
-    fn pose(&self, bones: &[Bone], local: &[UnitQuaternion<f64>], place: Vec3) -> Pose {
+    pub(crate) fn pose(&self, bones: &[Bone], local: &[UnitQuaternion<f64>], place: Vec3) -> Pose {
         let mut global = local.to_vec();
         for (k, bone) in bones.iter().enumerate() {
             if let Some(parent) = bone.parent {

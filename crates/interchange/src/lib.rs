@@ -33,6 +33,8 @@ mod obj_read;
 mod pdf;
 mod scene;
 mod scene_motion;
+mod x3d;
+mod x3d_nodes;
 
 pub use atomic::{write_all_atomically, write_atomically};
 pub use bvh::read_bvh;
@@ -68,3 +70,4 @@ pub use scene::{
     read_scene,
 };
 pub use scene_motion::{GripFile, KeyFile, MotionFile};
+pub use x3d::read_x3d;

@@ -70,6 +70,19 @@ fn row(name: &str) -> Option<&'static [u16; AGES.len()]> {
     ROWS.iter().find(|row| row.0 == name).map(|row| &row.1)
 }
 
+/// A row at an age [m]: even between the ages known, held beyond them.
+fn at_age(values: &[u16; AGES.len()], age: u8) -> f64 {
+    let age = age.clamp(AGES[0], AGES[AGES.len() - 1]);
+    let k = AGES.partition_point(|&known| known <= age) - 1;
+    let next = (k + 1).min(AGES.len() - 1);
+    let share = match next > k {
+        true => f64::from(age - AGES[k]) / f64::from(AGES[next] - AGES[k]),
+        false => 0.0,
+    };
+    let [low, high] = [values[k], values[next]].map(f64::from);
+    (low + (high - low) * share) * 1e-3
+}
+
 /// A row at a stature [m]: even between the ages, in proportion beyond them.
 fn at_stature(values: &[u16; AGES.len()], stature: f64) -> f64 {
     let heights = ROWS[0].1.map(|mm| f64::from(mm) * 1e-3);
@@ -91,16 +104,9 @@ impl Measurements {
     /// beyond them. Angles and what no table of sizes lists are predicted.
     pub fn child(age: u8) -> Self {
         let age = age.clamp(AGES[0], AGES[AGES.len() - 1]);
-        let k = AGES.partition_point(|&known| known <= age) - 1;
-        let next = (k + 1).min(AGES.len() - 1);
-        let share = match next > k {
-            true => f64::from(age - AGES[k]) / f64::from(AGES[next] - AGES[k]),
-            false => 0.0,
-        };
         let mut table = Self::new();
         for (name, values) in ROWS {
-            let [low, high] = [values[k], values[next]].map(f64::from);
-            let _ = table.set(name, (low + (high - low) * share) * 1e-3, Origin::Asked);
+            let _ = table.set(name, at_age(values, age), Origin::Asked);
         }
         table.completed_child(age)
     }
@@ -159,10 +165,7 @@ impl Measurements {
         if let Some(height) = self.get("height") {
             return height;
         }
-        let of_age = {
-            let k = AGES.partition_point(|&known| known <= age.max(AGES[0])) - 1;
-            f64::from(ROWS[0].1[k]) * 1e-3
-        };
+        let of_age = at_age(&ROWS[0].1, age);
         let ratios: Vec<f64> = ROWS
             .iter()
             .filter(|row| !GIRTHS.contains(&row.0))
@@ -221,6 +224,11 @@ mod tests {
         assert!(full.get("hips").unwrap() > 1.1 * usual.get("hips").unwrap());
         assert!((full.get("head").unwrap() - usual.get("head").unwrap()).abs() < 2e-3);
         assert_eq!(full.measured("hips").unwrap().origin, Origin::Predicted);
+        // Of an age alone, between those of the table too.
+        for age in 2..=14 {
+            let of_age = Measurements::new().completed(Build::Child(age));
+            assert_eq!(of_age.get("height"), Measurements::child(age).get("height"));
+        }
         // From a length alone.
         let mut arm = Measurements::new();
         arm.set("arm_length", 0.35, Origin::Asked).unwrap();

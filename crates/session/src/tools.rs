@@ -12,7 +12,7 @@ use toile_body::{
 };
 use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{
-    FormatError, ObjGroup, ObjMesh, read_bvh, read_mannequin, read_obj, read_text,
+    FormatError, ObjGroup, ObjMesh, read_bvh, read_mannequin, read_obj, read_text, read_x3d,
     write_atomically, write_body_glb, write_garmentcode, write_mannequin, write_measurements,
     write_obj, write_pattern,
 };
@@ -115,7 +115,7 @@ pub struct BodyReport {
     pub conflicts: Vec<Conflict>,
 }
 
-/// A moment of a motion: `walk`, `run` or a BVH file, and the time [s].
+/// A moment of a motion: `walk`, `run`, a BVH file or a VRML or X3D one, and the time [s].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
     /// Which motion.
@@ -133,7 +133,12 @@ impl Moment {
             "run" => Motion::run(skeleton),
             path => {
                 let path = Path::new(path);
-                read_bvh(&read_text(path)?, skeleton).map_err(|error| SessionError::Format {
+                let ending = path.extension().map(|end| end.to_ascii_lowercase());
+                let read = match ending.as_ref().and_then(|end| end.to_str()) {
+                    Some("wrl" | "vrml" | "x3d" | "x3dv") => read_x3d,
+                    _ => read_bvh,
+                };
+                read(&read_text(path)?, skeleton).map_err(|error| SessionError::Format {
                     path: path.to_owned(),
                     error,
                 })?

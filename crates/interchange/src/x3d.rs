@@ -1,0 +1,363 @@
+//! Motions from VRML 97 and X3D files: OrientationInterpolators routed to H-Anim joints.
+
+use crate::FormatError;
+use crate::bvh::{Bone, Carrier};
+use crate::x3d_nodes::{Node, Scene, read_scene};
+use nalgebra::UnitQuaternion;
+use std::collections::BTreeMap;
+use toile_body::{Joint, Motion, Skeleton};
+use toile_geometry::Vec3;
+
+/// Poses a second that a motion is taken at.
+const RATE: f64 = 30.0;
+/// Longest cycle taken [s]: beyond it a file is damaged.
+const LONGEST: f64 = 3600.0;
+
+/// Turns over the share of the cycle.
+struct Turns(Vec<(f64, UnitQuaternion<f64>)>);
+
+impl Turns {
+    /// The turn at a share of the cycle: slerped between keys, held beyond them.
+    fn at(&self, share: f64) -> UnitQuaternion<f64> {
+        let next = self.0.partition_point(|key| key.0 <= share);
+        match (next.checked_sub(1).map(|k| self.0[k]), self.0.get(next)) {
+            (Some((from, a)), Some(&(to, b))) => {
+                let share = (share - from) / (to - from);
+                a.try_slerp(&b, share, 1e-12).unwrap_or(a)
+            }
+            (Some((_, a)), None) => a,
+            (None, Some(&(_, b))) => b,
+            (None, None) => UnitQuaternion::identity(),
+        }
+    }
+}
+
+/// Reads a VRML 97 or X3D (XML) file for a skeleton: every OrientationInterpolator that a ROUTE
+/// leads to a joint turns that joint; joints are known by their H-Anim names, as the name of the
+/// Joint node or its DEF with or without `hanim_`. A PositionInterpolator led to the root moves
+/// the body. The TimeSensor gives the length (one second without it) and whether it is a loop.
+/// Bones point as the file's do where it has joints with centres; else a figure with hanging arms
+/// is meant.
+///
+/// # Errors
+/// What is wrong, in which line or node, and the remedy; a file that turns no joint.
+pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<Motion, FormatError> {
+    let scene = read_scene(text)?;
+    let joints = joint_nodes(&scene);
+    let (mut turns, mut moves) = (BTreeMap::new(), None);
+    for route in &scene.routes {
+        let Some(from) = scene.named(&route.from) else {
+            return Err(lost(route.line, &route.from));
+        };
+        let target = scene.named(&route.to);
+        let joint = target
+            .and_then(joint_of)
+            .or_else(|| joint_called(&route.to));
+        match (from.kind.as_str(), joint) {
+            ("OrientationInterpolator", Some(joint)) => {
+                turns.insert(joint, turns_of(from)?);
+            }
+            ("PositionInterpolator", Some(Joint::HumanoidRoot)) => moves = Some(places_of(from)?),
+            _ => {}
+        }
+    }
+    if turns.is_empty() {
+        return Err(FormatError::new(
+            "the routes",
+            "no OrientationInterpolator leads to a joint",
+            "give ROUTEs from value_changed to set_rotation of joints with H-Anim names such as l_hip",
+        ));
+    }
+    let clock = scene.nodes.iter().find(|node| node.kind == "TimeSensor");
+    let length = clock
+        .and_then(|node| node.numbers("cycleInterval").first().copied())
+        .unwrap_or(1.0);
+    if !(length > 0.0 && length <= LONGEST) {
+        let line = clock.map_or(1, |node| node.line);
+        return Err(FormatError::new(
+            format!("line {line}, TimeSensor"),
+            format!("cycleInterval {length} is not a length of time"),
+            "give seconds from above 0 to 3600",
+        ));
+    }
+    let is_loop = clock.is_some_and(|node| node.is_true("loop"));
+    let bones = bones(&joints, skeleton);
+    let carrier = Carrier::new(&bones, skeleton)?;
+    let count = ((length * RATE).round() as usize).max(2);
+    let rest = rest_of_root(&bones);
+    let poses = (0..count)
+        .map(|k| {
+            let share = match is_loop {
+                true => k as f64 / count as f64,
+                false => k as f64 / (count - 1) as f64,
+            };
+            let local: Vec<UnitQuaternion<f64>> = bones
+                .iter()
+                .map(|bone| {
+                    let own = joint_called(&bone.name).and_then(|joint| turns.get(&joint));
+                    own.map_or(UnitQuaternion::identity(), |turns: &Turns| turns.at(share))
+                })
+                .collect();
+            let moved = moves.as_ref().map_or(Vec3::zeros(), |m| place_at(m, share));
+            carrier.pose(&bones, &local, rest + moved)
+        })
+        .collect();
+    Ok(Motion {
+        step: match is_loop {
+            true => length / count as f64,
+            false => length / (count - 1) as f64,
+        },
+        poses,
+        is_loop,
+    })
+}
+
+fn lost(line: usize, name: &str) -> FormatError {
+    FormatError::new(
+        format!("line {line}, ROUTE"),
+        format!("there is no node {name:?}"),
+        "give the node this DEF, or correct the ROUTE",
+    )
+}
+
+/// Our joint of an H-Anim name, also of a DEF such as `hanim_l_hip`.
+fn joint_called(name: &str) -> Option<Joint> {
+    let name = name.strip_prefix("hanim_").unwrap_or(name);
+    let name = name.strip_suffix("_joint").unwrap_or(name);
+    match name {
+        "humanoid_root" | "humanoidroot" => Some(Joint::HumanoidRoot),
+        _ => Joint::named(name),
+    }
+}
+
+/// The joint a node is: by its own name, else its DEF.
+fn joint_of(node: &Node) -> Option<Joint> {
+    let own = node.text("name").and_then(joint_called);
+    own.or_else(|| joint_called(&node.name))
+}
+
+/// Joint nodes of the scene with their centres.
+fn joint_nodes(scene: &Scene) -> BTreeMap<Joint, Vec3> {
+    let is_joint = |node: &&Node| matches!(node.kind.as_str(), "Joint" | "HAnimJoint");
+    scene
+        .nodes
+        .iter()
+        .filter(is_joint)
+        .filter_map(|node| {
+            let centre = node.numbers("center");
+            let place = match centre.as_slice() {
+                [x, y, z] => Vec3::new(*x, *y, *z),
+                _ => return None,
+            };
+            Some((joint_of(node)?, place))
+        })
+        .collect()
+}
+
+/// The file's figure as bones: its joints where they have centres, else our own skeleton's with
+/// arms and legs hanging.
+fn bones(centres: &BTreeMap<Joint, Vec3>, skeleton: &Skeleton) -> Vec<Bone> {
+    let needed = [
+        Joint::HumanoidRoot,
+        Joint::LHip,
+        Joint::RHip,
+        Joint::LKnee,
+        Joint::RKnee,
+        Joint::LAnkle,
+        Joint::LShoulder,
+        Joint::LElbow,
+    ];
+    let whole = needed.iter().all(|joint| centres.contains_key(joint));
+    let hanging = |joint: Joint| {
+        let limb = match joint {
+            Joint::LKnee | Joint::RKnee | Joint::LAnkle | Joint::RAnkle => true,
+            Joint::LElbow | Joint::RElbow | Joint::LWrist | Joint::RWrist => true,
+            _ => false,
+        };
+        match limb {
+            true => -Vec3::y() * skeleton.offset(joint).norm(),
+            false => skeleton.offset(joint),
+        }
+    };
+    let mut place = BTreeMap::new();
+    for joint in Joint::ALL {
+        let above = joint.parent().and_then(|p| place.get(&p).copied());
+        let own = match whole {
+            true => centres.get(&joint).copied(),
+            false => None,
+        };
+        // What a file leaves out lies where it does on our own body, seen from the joint above.
+        let at = own.unwrap_or_else(|| above.unwrap_or_default() + hanging(joint));
+        place.insert(joint, at);
+    }
+    let end = |joint: Joint| matches!(joint, Joint::LAnkle | Joint::RAnkle);
+    Joint::ALL
+        .into_iter()
+        .map(|joint| {
+            let above = joint.parent().and_then(|p| place.get(&p).copied());
+            Bone {
+                name: joint.name().to_owned(),
+                parent: joint.parent().map(|p| p as usize),
+                offset: place[&joint] - above.unwrap_or_default(),
+                end: end(joint).then(|| -Vec3::y() * place[&joint].y.max(0.0)),
+                channels: Vec::new(),
+            }
+        })
+        .collect()
+}
+
+/// Where the root is at rest, above the soles.
+fn rest_of_root(bones: &[Bone]) -> Vec3 {
+    let mut place: Vec<Vec3> = Vec::new();
+    for bone in bones {
+        let above = bone.parent.map_or(Vec3::zeros(), |p| place[p]);
+        place.push(above + bone.offset);
+    }
+    let low = bones
+        .iter()
+        .zip(&place)
+        .map(|(bone, p)| p.y + bone.end.map_or(0.0, |end| end.y.min(0.0)))
+        .fold(f64::INFINITY, f64::min);
+    Vec3::new(0.0, place[0].y - low, 0.0)
+}
+
+/// Keys of an interpolator: as many as values of a width, in ascending order.
+fn keys(node: &Node, width: usize) -> Result<Vec<(f64, Vec<f64>)>, FormatError> {
+    let place = || format!("line {}, {} {}", node.line, node.kind, node.name);
+    let (key, value) = (node.numbers("key"), node.numbers("keyValue"));
+    if key.is_empty() || key.len() * width != value.len() {
+        return Err(FormatError::new(
+            place(),
+            format!(
+                "{} keys and {} numbers of keyValue do not go together",
+                key.len(),
+                value.len()
+            ),
+            format!("give {width} numbers of keyValue for every key"),
+        ));
+    }
+    if key.windows(2).any(|w| w[1] < w[0]) {
+        return Err(FormatError::new(
+            place(),
+            "the keys do not ascend",
+            "order them from 0 to 1",
+        ));
+    }
+    let mut rows: Vec<(f64, Vec<f64>)> = key
+        .into_iter()
+        .zip(value.chunks(width).map(<[f64]>::to_vec))
+        .collect();
+    // Of equal keys the last holds.
+    rows.reverse();
+    rows.dedup_by(|a, b| a.0 == b.0);
+    rows.reverse();
+    Ok(rows)
+}
+
+fn turns_of(node: &Node) -> Result<Turns, FormatError> {
+    let rows = keys(node, 4)?.into_iter().map(|(key, value)| {
+        let axis = Vec3::new(value[0], value[1], value[2]);
+        let axis = nalgebra::Unit::try_new(axis, 1e-9);
+        let turn = axis.map_or(UnitQuaternion::identity(), |axis| {
+            UnitQuaternion::from_axis_angle(&axis, value[3])
+        });
+        (key, turn)
+    });
+    Ok(Turns(rows.collect()))
+}
+
+fn places_of(node: &Node) -> Result<Vec<(f64, Vec3)>, FormatError> {
+    let rows = keys(node, 3)?;
+    let place = |v: Vec<f64>| Vec3::new(v[0], v[1], v[2]);
+    Ok(rows.into_iter().map(|(key, v)| (key, place(v))).collect())
+}
+
+fn place_at(rows: &[(f64, Vec3)], share: f64) -> Vec3 {
+    let next = rows.partition_point(|row| row.0 <= share);
+    match (next.checked_sub(1).map(|k| rows[k]), rows.get(next)) {
+        (Some((from, a)), Some(&(to, b))) => a + (b - a) * ((share - from) / (to - from)),
+        (Some((_, a)), None) => a,
+        (None, Some(&(_, b))) => b,
+        (None, None) => Vec3::zeros(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use toile_body::{Figure, Mannequin, Pose};
+
+    const VRML: &str = "#VRML V2.0 utf8\n\
+        DEF clock TimeSensor { cycleInterval 2 loop TRUE }\n\
+        DEF hanim_humanoid_root Joint { name \"humanoid_root\" children [\n\
+        DEF hanim_l_hip Joint { name \"l_hip\" children [ DEF hanim_l_knee Joint { name \"l_knee\" } ] } ] }\n\
+        DEF hip_turn OrientationInterpolator {\n\
+        key [ 0, 0.5, 1 ] keyValue [ 1 0 0 0, 1 0 0 -1.5707963, 1 0 0 0 ] }\n\
+        ROUTE clock.fraction_changed TO hip_turn.set_fraction\n\
+        ROUTE hip_turn.value_changed TO hanim_l_hip.set_rotation\n";
+
+    const XML: &str = "<?xml version='1.0'?>\n<X3D><Scene>\n\
+        <TimeSensor DEF='clock' cycleInterval='2' loop='true'/>\n\
+        <HAnimJoint DEF='hanim_l_hip' name='l_hip'/>\n\
+        <OrientationInterpolator DEF='hip_turn' key='0 0.5 1'\n keyValue='1 0 0 0 1 0 0 -1.5707963 1 0 0 0'/>\n\
+        <ROUTE fromNode='hip_turn' fromField='value_changed' toNode='hanim_l_hip' toField='rotation'/>\n\
+        </Scene></X3D>\n";
+
+    fn skeleton() -> Skeleton {
+        let body = Mannequin::new(&Figure::Woman.average(), Figure::Woman);
+        body.unwrap().skeleton().clone()
+    }
+
+    #[test]
+    fn both_encodings_lift_the_thigh() {
+        let skeleton = skeleton();
+        let [a, b] = [VRML, XML].map(|text| read_x3d(text, &skeleton).unwrap());
+        assert_eq!(a, b);
+        assert!(a.is_loop && (a.duration() - 2.0).abs() < 1e-12);
+        let thigh = |pose: &Pose| {
+            let frames = skeleton.frames(pose);
+            (frames.centre(Joint::LKnee) - frames.centre(Joint::LHip)).normalize()
+        };
+        // Hanging straight down, then lifted by a quarter turn to where the body faces.
+        assert!((thigh(&a.at(0.0)) + Vec3::y()).norm() < 1e-6);
+        assert!((thigh(&a.at(1.0)) - Vec3::z()).norm() < 1e-6);
+        let half = thigh(&a.at(0.5));
+        assert!((half.y + half.z).abs() < 1e-6, "{half:?}");
+        // Nothing else moves.
+        let frames = [0.0, 1.0].map(|t| skeleton.frames(&a.at(t)));
+        let still = |joint: Joint| (frames[0].centre(joint) - frames[1].centre(joint)).norm();
+        assert!(still(Joint::RKnee) < 1e-9 && still(Joint::LWrist) < 1e-9);
+    }
+
+    #[test]
+    fn damage_is_refused_with_line_and_node() {
+        let skeleton = skeleton();
+        let error = |text: &str| read_x3d(text, &skeleton).unwrap_err().to_string();
+        let short = VRML.replace("0, 0.5, 1 ]", "0, 1 ]");
+        assert!(error(&short).contains("line 5, OrientationInterpolator hip_turn"));
+        let lost = VRML.replace("ROUTE hip_turn", "ROUTE other");
+        assert!(error(&lost).contains("line 8"), "{}", error(&lost));
+        let word = VRML.replace("0.5", "half");
+        assert!(error(&word).contains("line 6"), "{}", error(&word));
+        assert!(error("").contains("VRML"));
+        let none = VRML.replace("hanim_l_hip.set", "clock.set");
+        assert!(error(&none).contains("no OrientationInterpolator"));
+        let long = VRML.replace("cycleInterval 2", "cycleInterval -2");
+        assert!(error(&long).contains("TimeSensor"));
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_read_or_refused(cut in 0..VRML.len(), add in "[A-Za-z0-9 {}\\[\\]<>='.#-]{0,20}") {
+            let skeleton = skeleton();
+            for text in [VRML, XML] {
+                let cut = cut.min(text.len());
+                let text = format!("{}{add}{}", &text[..cut], &text[cut..]);
+                if let Ok(motion) = read_x3d(&text, &skeleton) {
+                    prop_assert!(motion.poses.len() > 1);
+                }
+            }
+        }
+    }
+}
