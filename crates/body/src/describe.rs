@@ -42,6 +42,28 @@ impl Mannequin {
         }
     }
 
+    /// The description of a figure's own primitives as they are, with their frame: what stands by
+    /// itself and can be scaled and edited.
+    ///
+    /// # Errors
+    /// As [`Mannequin::new`].
+    pub fn framed(figure: Figure) -> Result<Description, BodyError> {
+        let body = Self::new(&figure.average(), figure)?;
+        let cast = &body.cast;
+        Ok(Description {
+            frame: Some(BodyFrame {
+                height: cast.template.height,
+                crotch: cast.template.crotch,
+                armpit: cast.marks.armpit,
+                hand: cast.template.hand,
+                neck_radius: cast.template.neck_radius,
+                joints: cast.template.joints,
+            }),
+            measurements: Measurements::new(),
+            ..body.description()
+        })
+    }
+
     /// Grows the body of a description.
     ///
     /// # Errors

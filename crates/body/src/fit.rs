@@ -7,8 +7,8 @@ use crate::fit_samples::{PARTS, Sample, Wanted, samples};
 use crate::fit_start::start;
 use crate::request::Request;
 use crate::rings::TemplateSkin;
-use crate::template::{BodyFrame, Template};
-use crate::{BodyError, Field, Figure, Part, Primitive, Scan, ScanLandmarks, rings, template_skin};
+use crate::template::Template;
+use crate::{BodyError, Figure, Part, Primitive, Scan, ScanLandmarks, rings, template_skin};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
@@ -98,7 +98,9 @@ fn fitted(scan: &Scan, found: &mut Found) -> Result<(Vec<Primitive>, FitMisfit),
             .zip(&wanted)
             .for_each(|(own, samples)| crate::fit_field::fit(own, samples, height));
         let primitives = both_sides(groups.concat());
-        let skin = cast(&mut found.frame, &primitives)?;
+        let mut template = Template::framed(&found.frame, primitives.clone());
+        let skin = rings::cast_framed(&mut template)?;
+        found.frame.hand = template.hand;
         round += 1;
         if round > ROUNDS {
             break (primitives, skin.mesh);
@@ -110,23 +112,6 @@ fn fitted(scan: &Scan, found: &mut Found) -> Result<(Vec<Primitive>, FitMisfit),
     let checked = Scan::new(skin, scan.landmarks().clone())?;
     let misfit = misfit(scan, &checked, &found.frame.joints, found.chin);
     Ok((primitives, misfit))
-}
-
-/// Casts the skin; a hand whose tip the primitives leave bare is made shorter.
-fn cast(frame: &mut BodyFrame, primitives: &[Primitive]) -> Result<TemplateSkin, BodyError> {
-    let field = Field::new(primitives);
-    let least = 0.5 * frame.hand;
-    loop {
-        let template = Template::framed(frame, primitives.to_vec());
-        match rings::cast(&template, &field) {
-            Err(BodyError::Open { part, .. })
-                if part == Part::LeftArm.name() && frame.hand > least =>
-            {
-                frame.hand *= 0.93;
-            }
-            other => return other,
-        }
-    }
 }
 
 /// How often the skin is cast and what it misses by is added to what is wanted.

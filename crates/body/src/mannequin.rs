@@ -48,8 +48,11 @@ pub(crate) struct Cast {
 }
 
 impl Cast {
-    fn of(template: Template) -> Result<Arc<Self>, BodyError> {
-        let skin = rings::cast(&template, &Field::new(&template.primitives))?;
+    fn of(mut template: Template) -> Result<Arc<Self>, BodyError> {
+        let skin = match template.armpit {
+            Some(_) => rings::cast_framed(&mut template)?,
+            None => rings::cast(&template, &Field::new(&template.primitives))?,
+        };
         let marks = Marks::of(&template, &skin)?;
         Ok(Arc::new(Self {
             template,

@@ -112,6 +112,23 @@ pub(crate) fn cast(template: &Template, field: &Field) -> Result<TemplateSkin, B
     Ok(half.mirrored(border.armpit, border.side))
 }
 
+/// Casts the skin of a template of its own frame; a hand whose tip the primitives leave bare is
+/// made shorter, by half at the most.
+pub(crate) fn cast_framed(template: &mut Template) -> Result<TemplateSkin, BodyError> {
+    let field = Field::new(&template.primitives);
+    let least = 0.5 * template.hand;
+    loop {
+        match cast(template, &field) {
+            Err(BodyError::Open { part, .. })
+                if part == Part::LeftArm.name() && template.hand > least =>
+            {
+                template.hand *= 0.93;
+            }
+            other => return other,
+        }
+    }
+}
+
 /// Rings where limbs begin, in the limbs' own order of walking.
 struct Borders {
     armpit: u32,

@@ -1,5 +1,6 @@
 //! What can be asked on the command line.
 
+use crate::stretch::Stretch;
 use crate::values::{four_lengths, repeat, roll, size_count};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -503,6 +504,8 @@ pub struct Body {
     /// Default: heights are found, what needs points is left out.
     #[arg(long, value_name = "FILE")]
     pub landmarks: Option<PathBuf>,
+    #[command(flatten)]
+    pub stretch: Stretch,
     /// Motion to pose it by: walk, run, a BVH file, or a VRML 97 or X3D file (.wrl, .x3d, .x3dv)
     /// with OrientationInterpolators routed to H-Anim joints. Default: at rest.
     #[arg(long, value_name = "MOTION")]

@@ -9,6 +9,7 @@ mod lab_commands;
 mod nest_commands;
 mod output;
 mod session_commands;
+mod stretch;
 mod tool_commands;
 mod values;
 

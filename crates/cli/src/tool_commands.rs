@@ -10,7 +10,7 @@ use toile_measure::Origin;
 use toile_session::{
     BodyChoice, BodyReport, BodySource, Figure, Fit, Moment, Project, convert as convert_file,
     figure_named, fit_mesh, make_body, measure_mesh, mesh_panels, open_mannequin,
-    open_measurements, run_scene,
+    open_measurements, run_scene, stretch_body,
 };
 
 /// A pattern in another format.
@@ -104,6 +104,15 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         (Some(fit), _) => Some(fit.description.clone()),
         (None, Some(path)) => Some(open_mannequin(path).map_err(Failure::from)?),
         (None, None) => None,
+    };
+    let described = match body.stretch.asked() {
+        Some(_) if body.measurements.is_some() => {
+            return Err(Failure::bad_input(
+                "--stature and the ratios scale a body as it is: leave out --measurements, or give lengths there".to_owned(),
+            ));
+        }
+        Some(stretch) => Some(stretch_body(described, figure, &stretch).map_err(Failure::from)?),
+        None => described,
     };
     let source = match &described {
         Some(description) => BodySource::Described(description),

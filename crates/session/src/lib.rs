@@ -64,12 +64,12 @@ pub use setup::{GarmentJob, JobPanel};
 pub use study::{RuleCost, rule_table, study_rules};
 pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
-pub use toile_body::{Figure, Fit};
+pub use toile_body::{Figure, Fit, Scaling};
 pub use toile_drape::Stage;
 pub use toile_interchange::{MarkerSettings, Spread};
 pub use toile_nesting::{Budget, Nap};
 pub use tools::{
-    BodyReport, BodySource, MeshMeasured, Moment, convert, fit_mesh, make_body, measure_mesh,
-    mesh_panels, open_mannequin,
+    BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, convert, fit_mesh, make_body,
+    measure_mesh, mesh_panels, open_mannequin, stretch_body,
 };
 pub use watcher::{Silent, Watcher};

@@ -8,7 +8,8 @@ use std::path::Path;
 use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_body::{
-    BodyError, Conflict, Description, Figure, Fit, Gap, Mannequin, Motion, Scan, ScanLandmarks,
+    BodyError, Conflict, Description, Figure, Fit, Gap, Mannequin, Motion, Scaling, Scan,
+    ScanLandmarks,
 };
 use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{
@@ -240,6 +241,35 @@ pub fn open_mannequin(path: &Path) -> Result<Description, SessionError> {
         path: path.to_owned(),
         error,
     })
+}
+
+/// The five scaling parameters as they are asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyStretch {
+    /// Stature to bring the body to [m].
+    pub stature: Option<f64>,
+    /// The ratios; the global one counts besides the stature.
+    pub ratios: Scaling,
+}
+
+/// Scales a body with a frame of its own, or the figure's own, as it is.
+///
+/// # Errors
+/// A body grown to measurements, or ratios no body has.
+pub fn stretch_body(
+    described: Option<Description>,
+    figure: Figure,
+    stretch: &BodyStretch,
+) -> Result<Description, SessionError> {
+    let body = match described {
+        Some(body) => body,
+        None => Mannequin::framed(figure)?,
+    };
+    let mut ratios = stretch.ratios;
+    if let (Some(stature), Some(frame)) = (stretch.stature, &body.frame) {
+        ratios.global *= Scaling::to_stature(frame, stature * 1e3).global;
+    }
+    Ok(ratios.apply(&body)?)
 }
 
 /// Where a body comes from.
