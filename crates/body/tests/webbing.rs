@@ -67,20 +67,11 @@ fn no_triangle_joins_an_arm_to_the_trunk_or_thigh_to_thigh() {
     table.set("leg_circ", thighs, Origin::Asked).unwrap();
     let arm = [Joint::LShoulder, Joint::LElbow, Joint::LWrist];
     let trunk = [Joint::Sacroiliac, Joint::Vl5, Joint::Vt6];
-    let hips = 1.05 * table.get("hips").unwrap();
-    table.set("hips", hips, Origin::Asked).unwrap();
-    // Arms let down until hand or forearm is 5 mm from hip or thigh.
-    let (body, gap) = (0..29)
-        .map(|k| {
-            let angle = 1.2 + 0.005 * f64::from(k);
-            table.set("arm_pose_angle", angle, Origin::Asked).unwrap();
-            let body = Mannequin::new(&table, Figure::Woman).unwrap();
-            let gap = beside(&body, &arm);
-            (body, gap)
-        })
-        .find(|(_, gap)| *gap < 0.008)
-        .unwrap();
-    assert!((0.001..0.008).contains(&gap), "{gap}");
+    // As steep as arms may be asked for: the hand a centimetre from hip and thigh.
+    table.set("arm_pose_angle", 1.34, Origin::Asked).unwrap();
+    let body = Mannequin::new(&table, Figure::Woman).unwrap();
+    let gap = beside(&body, &arm);
+    assert!((0.005..0.012).contains(&gap), "{gap}");
     let crotch = body.landmarks().crotch.y;
     let mesh = body.skin();
     for triangle in &mesh.triangles {
