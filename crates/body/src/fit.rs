@@ -117,6 +117,15 @@ fn fitted(scan: &Scan, found: &mut Found) -> Result<(Vec<Primitive>, FitMisfit),
 /// How often the skin is cast and what it misses by is added to what is wanted.
 const ROUNDS: usize = 2;
 
+/// By how much the skin misses a place of the surface wanted.
+struct Missed {
+    place: Vec3,
+    normal: Vec3,
+    /// Along the normal [m].
+    miss: f64,
+    weight: f64,
+}
+
 /// Moves the surface wanted of a part by what the skin misses it by, averaged over a
 /// neighbourhood: a cast skin's chords lie within the surface, and a fit has its bias.
 fn drawn(samples: &mut [Sample], part: Part, skin: &TemplateSkin, height: f64) {
@@ -132,7 +141,7 @@ fn drawn(samples: &mut [Sample], part: Part, skin: &TemplateSkin, height: f64) {
     }
     let tree = SurfaceTree::new(own);
     let key = |p: Vec3| [p.x, p.y, p.z].map(|x| (x / cell).floor() as i64);
-    let mut cells: BTreeMap<[i64; 3], Vec<(Vec3, Vec3, f64, f64)>> = BTreeMap::new();
+    let mut cells: BTreeMap<[i64; 3], Vec<Missed>> = BTreeMap::new();
     for sample in samples.iter() {
         let Wanted::Surface { normal, own } = sample.wanted else {
             continue;
@@ -141,10 +150,12 @@ fn drawn(samples: &mut [Sample], part: Part, skin: &TemplateSkin, height: f64) {
             continue;
         };
         let miss = (closest.point - own).dot(&normal);
-        cells
-            .entry(key(own))
-            .or_default()
-            .push((own, normal, miss, sample.weight));
+        cells.entry(key(own)).or_default().push(Missed {
+            place: own,
+            normal,
+            miss,
+            weight: sample.weight,
+        });
     }
     for sample in samples {
         let Wanted::Surface { normal, own } = sample.wanted else {
@@ -153,14 +164,11 @@ fn drawn(samples: &mut [Sample], part: Part, skin: &TemplateSkin, height: f64) {
         let [x, y, z] = key(own);
         let (mut sum, mut weights) = (0.0, 1e-12);
         for (i, j, k) in (0..27).map(|n| (n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)) {
-            for (place, other, miss, weight) in
-                cells.get(&[x + i, y + j, z + k]).into_iter().flatten()
-            {
-                let near = 1.0 - (place - own).norm_squared() / (cell * cell);
-                let same = other.dot(&normal);
-                if near > 0.0 && same > 0.5 {
-                    sum += miss * near * weight;
-                    weights += near * weight;
+            for other in cells.get(&[x + i, y + j, z + k]).into_iter().flatten() {
+                let near = 1.0 - (other.place - own).norm_squared() / (cell * cell);
+                if near > 0.0 && other.normal.dot(&normal) > 0.5 {
+                    sum += other.miss * near * other.weight;
+                    weights += near * other.weight;
                 }
             }
         }

@@ -232,13 +232,13 @@ impl System {
         let weight = weight * factor;
         let over = 1.0 / steep;
         for (k, row) in touched {
-            for i in 0..UNKNOWNS {
-                let a = row[i] * over;
+            for (i, slope) in row.iter().enumerate() {
+                let a = slope * over;
                 self.right[UNKNOWNS * k + i] -= weight * a * miss;
                 let wa = weight * a * over;
                 for (l, other) in touched {
-                    for j in 0..UNKNOWNS {
-                        self.normal[(UNKNOWNS * l + j, UNKNOWNS * k + i)] += wa * other[j];
+                    for (j, slope) in other.iter().enumerate() {
+                        self.normal[(UNKNOWNS * l + j, UNKNOWNS * k + i)] += wa * slope;
                     }
                 }
             }

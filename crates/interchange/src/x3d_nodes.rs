@@ -148,13 +148,13 @@ fn read_vrml(text: &str) -> Result<Scene, FormatError> {
                 open.push(scene.nodes.len() - 1);
             }
             "}" if !quoted => {
-                if open.pop().is_none() {
-                    return Err(FormatError::new(
+                open.pop().ok_or_else(|| {
+                    FormatError::new(
                         format!("line {line}"),
                         "a bracket closes what is not open",
                         "export the motion again",
-                    ));
-                }
+                    )
+                })?;
             }
             "ROUTE" => {
                 let node = |text: &str| text.split('.').next().unwrap_or_default().to_owned();
