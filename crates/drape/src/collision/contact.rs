@@ -121,8 +121,9 @@ const ROOM: f64 = 0.5;
 /// How much farther pairs of triangles are looked for, so that they serve for some time [m].
 const SLACK: f64 = 2e-3;
 
-/// How far an edge that pierces a face is pulled at a time, in offsets.
-const PULL: f64 = 1.0;
+/// How far an edge that pierces a face is pulled at a time, in offsets: by less, a fold caught in a seam
+/// stays there.
+const PULL: f64 = 2.0;
 
 impl ClothContacts {
     /// The surface in hand, made anew for another model.
