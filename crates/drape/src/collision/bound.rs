@@ -72,18 +72,17 @@ pub struct Kept {
 }
 
 /// Corrects a motion so that no two features of the cloth meet on the way; pairs with a tangled
-/// vertex on either side are let through. `near` gives pairs of triangles that hold all that may
-/// meet in some moves.
+/// vertex on either side are let through. `near` gives all features that may meet in some moves.
 pub fn keep_apart(
     surface: &mut ClothSurface,
     tangled: &[bool],
     motion: &mut Motions,
-    mut near: impl FnMut(&mut ClothSurface, &[Vec3]) -> Vec<[u32; 2]>,
+    mut near: impl FnMut(&mut ClothSurface, &[Vec3]) -> Vec<FeaturePair>,
 ) -> Kept {
     let mut kept = Kept::default();
     for _ in 0..IMPULSE_ROUNDS {
         let pairs = near(surface, motion.moves);
-        let met = met(surface, &pairs, tangled, motion);
+        let met = met(&pairs, tangled, motion);
         if met.is_empty() {
             return kept;
         }
@@ -113,12 +112,7 @@ pub fn keep_apart(
 }
 
 /// Features that meet in a motion, with the times.
-fn met(
-    surface: &ClothSurface,
-    near: &[[u32; 2]],
-    tangled: &[bool],
-    motion: &Motions,
-) -> Vec<(Meeting, f64)> {
+fn met(near: &[FeaturePair], tangled: &[bool], motion: &Motions) -> Vec<(Meeting, f64)> {
     let (x, moves) = (motion.x, &*motion.moves);
     let mean = |pair: FeaturePair| {
         pair.vertices()
@@ -132,7 +126,15 @@ fn met(
         let ways = pair.vertices().map(|v| (moves[v as usize] - mean).norm());
         2.0 * ways.into_iter().fold(0.0, f64::max)
     };
-    let meetings = meetings(surface, near, tangled, |pair| meeting(pair, x, way(pair)));
+    let meets = |pair: &FeaturePair| match is_tangled(*pair, tangled) {
+        true => None,
+        false => meeting(*pair, x, way(*pair)),
+    };
+    let found: Vec<Vec<Meeting>> = near
+        .par_chunks(512)
+        .map(|pairs| pairs.iter().filter_map(meets).collect())
+        .collect();
+    let meetings = found.concat();
     let times = meetings.par_iter().with_min_len(64);
     let times: Vec<Option<f64>> = times.map(|m| m.time(x, moves)).collect();
     let both = meetings.into_iter().zip(times);
@@ -250,11 +252,7 @@ fn meetings(
             let mut found = Vec::new();
             for &pair in pairs {
                 surface.features(pair, |pair| {
-                    let (vertices, first) = (pair.vertices(), pair.first());
-                    let knot = |range: std::ops::Range<usize>| {
-                        vertices[range].iter().any(|&v| tangled[v as usize])
-                    };
-                    if !(knot(0..first) && knot(first..4)) {
+                    if !is_tangled(pair, tangled) {
                         found.extend(meeting(pair));
                     }
                 });
@@ -263,6 +261,50 @@ fn meetings(
         })
         .collect();
     found.concat()
+}
+
+/// Whether both features have a tangled vertex.
+fn is_tangled(pair: FeaturePair, tangled: &[bool]) -> bool {
+    let vertices = pair.vertices();
+    let (first, second) = vertices.split_at(pair.first());
+    let knot = |feature: &[u32]| feature.iter().any(|&v| tangled[v as usize]);
+    knot(first) && knot(second)
+}
+
+/// Features of pairs of triangles that are no farther apart than `reach` [m], with their distances.
+pub fn features_within(
+    surface: &ClothSurface,
+    near: &[[u32; 2]],
+    x: &[Vec3],
+    reach: f64,
+) -> Vec<(FeaturePair, f64)> {
+    let found: Vec<Vec<(FeaturePair, f64)>> = near
+        .par_chunks(512)
+        .map(|pairs| {
+            let mut found = Vec::new();
+            for &pair in pairs {
+                surface.features(pair, |pair| {
+                    if is_far(pair, &pair.vertices().map(|v| x[v as usize]), reach) {
+                        return;
+                    }
+                    let distance = Nearness::distance(pair, x);
+                    if distance <= reach {
+                        found.push((pair, distance));
+                    }
+                });
+            }
+            found
+        })
+        .collect();
+    found.concat()
+}
+
+/// How near two features must be [m] to be looked at in moves that stray by no more than `stray` [m]
+/// from their mean: farther ones keep their share of the distance whatever they do.
+pub fn reach_of(stray: f64) -> f64 {
+    // Each strays from the mean of its four by twice that, and comes nearer by twice as much again.
+    let way = 4.0 * stray;
+    (way / (1.0 - KEPT)).max(FLOOR + way)
 }
 
 /// A pair that may meet when its features come nearer by up to `way` [m]: its distance is less.

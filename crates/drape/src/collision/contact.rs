@@ -1,7 +1,7 @@
 //! Contact of cloth with cloth: the laws of contact with a surface, on the vector between two
 //! features in place of the point.
 
-use super::bound::{Kept, Motions};
+use super::bound::{Kept, Motions, features_within, reach_of};
 use super::proximity::{Nearness, nearnesses};
 use super::surface::{ClothSurface, FeaturePair};
 use super::tangle::{Piercing, crossings, piercings};
@@ -108,6 +108,8 @@ pub struct ClothContacts {
     pub tally: Tally,
     surface: ClothSurface,
     near: Vec<[u32; 2]>,
+    /// Features of those as near, with their distances then [m]; found when asked for.
+    features: Option<Vec<(FeaturePair, f64)>>,
     near_at: Vec<Vec3>,
     near_reach: f64,
 }
@@ -149,6 +151,7 @@ impl ClothContacts {
             && self.near_at.iter().zip(x).map(moved).fold(0.0, f64::max) < 0.25 * SLACK * SLACK;
         if !fresh {
             self.near = self.surface.near_triangles(x, x, reach + SLACK);
+            self.features = None;
             self.near_at.clear();
             self.near_at.extend_from_slice(x);
             self.near_reach = reach;
@@ -354,19 +357,29 @@ impl ClothContacts {
         let Self {
             surface,
             near,
+            near_at,
+            features,
             near_reach,
             tangled,
             ..
         } = self;
         let kept = super::bound::keep_apart(surface, tangled, motion, |surface, moves| {
-            // Pairs in hand hold all that may meet while nothing goes farther than half their reach.
             let mean = moves.iter().sum::<Vec3>() / moves.len().max(1) as f64;
             let way = moves.iter().map(|d| (d - mean).norm());
-            if 2.0 * (since + way.fold(0.0, farthest)) <= *near_reach + SLACK {
-                return near.clone();
+            let reach = 2.0 * since + reach_of(way.fold(0.0, farthest));
+            if reach <= *near_reach + SLACK {
+                let all = features.get_or_insert_with(|| {
+                    features_within(surface, near, near_at, *near_reach + SLACK)
+                });
+                let near = all.iter().filter(|(_, distance)| *distance <= reach);
+                return near.map(|(pair, _)| *pair).collect();
             }
             let target: Vec<Vec3> = x.iter().zip(moves).map(|(x, d)| x + d).collect();
-            surface.near_triangles(x, &target, 0.0)
+            let mut all = Vec::new();
+            for pair in surface.near_triangles(x, &target, 0.0) {
+                surface.features(pair, |pair| all.push(pair));
+            }
+            all
         });
         self.tally.impulses += kept.impulses;
         self.tally.cut += kept.cut;
