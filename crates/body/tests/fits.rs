@@ -1,42 +1,15 @@
 //! Our own body fitted to closed meshes.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::path::PathBuf;
+mod common;
+
+use common::{obj, shared};
 use toile_body::{Description, Figure, Fit, Mannequin, Scan, ScanLandmarks};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-fn shared(file: &str) -> Option<PathBuf> {
-    let start = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    let found = start
-        .ancestors()
-        .map(|folder| folder.join("shared/data").join(file))
-        .find(|path| path.is_file());
-    if found.is_none() {
-        println!("skipped: no shared data folder");
-    }
-    found
-}
-
 /// A published body as a scan.
 fn scan(path: &std::path::Path) -> Scan {
-    let mut mesh = TriangleMesh::default();
-    for line in std::fs::read_to_string(path).unwrap().lines() {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => {
-                let p: Vec<f64> = words.map(|w| w.parse().unwrap()).collect();
-                mesh.positions.push(Vec3::new(p[0], p[1], p[2]));
-            }
-            Some("f") => {
-                let corner = |w: &str| w.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
-                let f: Vec<u32> = words.map(corner).collect();
-                for k in 2..f.len() {
-                    mesh.triangles.push([f[0], f[k - 1], f[k]]);
-                }
-            }
-            _ => {}
-        }
-    }
+    let mesh = obj(&std::fs::read_to_string(path).unwrap());
     Scan::new(mesh, ScanLandmarks::default()).unwrap()
 }
 

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::shared;
+use common::{obj, shared};
 use std::f64::consts::{PI, TAU};
 use toile_body::{Figure, Mannequin, Scan, ScanLandmarks};
 use toile_geometry::{TriangleMesh, Vec3};
@@ -124,29 +124,6 @@ fn our_own_body_measured_as_a_mesh_has_its_measurements() {
         // And a body can be grown from what was measured.
         assert!(Mannequin::new(&found.measurements(), figure).is_ok());
     }
-}
-
-/// Positions and triangles of a plain OBJ file of triangles and quads.
-fn obj(text: &str) -> TriangleMesh {
-    let mut mesh = TriangleMesh::default();
-    for line in text.lines() {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => {
-                let p: Vec<f64> = words.map(|w| w.parse().unwrap()).collect();
-                mesh.positions.push(Vec3::new(p[0], p[1], p[2]));
-            }
-            Some("f") => {
-                let corner = |w: &str| w.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
-                let f: Vec<u32> = words.map(corner).collect();
-                for k in 2..f.len() {
-                    mesh.triangles.push([f[0], f[k - 1], f[k]]);
-                }
-            }
-            _ => {}
-        }
-    }
-    mesh
 }
 
 #[test]

@@ -3,6 +3,10 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/numbers.rs"]
+mod numbers;
+
+use numbers::Numbers;
 use toile_drape::collision::{
     ClothContacts, ClothSurface, FeaturePair, Motions, Nearness, bound_moves, crossings, nearnesses,
 };
@@ -34,23 +38,6 @@ fn sheet(n: usize, place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
         }
     }
     mesh
-}
-
-/// Numbers in 0..1 that repeat from run to run.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn vector(&mut self, scale: f64) -> Vec3 {
-        Vec3::new(self.next() - 0.5, self.next() - 0.5, self.next() - 0.5) * (2.0 * scale)
-    }
 }
 
 /// A sheet crumpled by a few waves.

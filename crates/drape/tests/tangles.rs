@@ -1,5 +1,7 @@
 //! Planted tangles: each is undone. A hundred of them run in `soak tangles`.
 
+#[path = "support/numbers.rs"]
+mod numbers;
 #[path = "support/sheets.rs"]
 mod sheets;
 #[path = "support/solids.rs"]

@@ -1,24 +1,16 @@
 //! Markers: what is asked for holds on the fabric as it is spread, cut in plies and gone on from.
 #![allow(clippy::unwrap_used)]
 
-use std::path::{Path, PathBuf};
-use toile_interchange::{
-    MarkerFile, MarkerSettings, read_marker_json, read_marker_settings, write_marker_json,
-};
+#[path = "support/markers.rs"]
+mod markers;
+
+use markers::{pattern, settings};
+use std::path::PathBuf;
+use toile_interchange::{MarkerFile, read_marker_json, write_marker_json};
 use toile_session::{
     Budget, MarkerFormat, Nap, NestOptions, Nested, SessionError, Silent, Spread,
     judge_marker_file, nest_instance, nest_patterns,
 };
-
-fn pattern(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../patterns");
-    folder.join(format!("{name}.toile.json"))
-}
-
-fn settings(body: &str) -> MarkerSettings {
-    let text = format!("{{ \"toile\": 1, \"kind\": \"marker-settings\", {body} }}");
-    read_marker_settings(&text).unwrap()
-}
 
 fn options() -> NestOptions {
     NestOptions {

@@ -1,22 +1,15 @@
 //! What a marker maker asks for, from a pattern file and settings to the files written.
 #![allow(clippy::unwrap_used)]
 
-use std::path::{Path, PathBuf};
-use toile_interchange::{MarkerFile, read_marker_json, read_marker_settings};
+#[path = "support/markers.rs"]
+mod markers;
+
+use markers::{pattern, settings};
+use std::path::PathBuf;
+use toile_interchange::{MarkerFile, MarkerSettings, read_marker_json};
 use toile_session::{
-    Budget, MarkerFormat, MarkerSettings, NestOptions, Nested, SessionError, Silent, Spread,
-    nest_patterns,
+    Budget, MarkerFormat, NestOptions, Nested, SessionError, Silent, Spread, nest_patterns,
 };
-
-fn pattern(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../patterns");
-    folder.join(format!("{name}.toile.json"))
-}
-
-fn settings(body: &str) -> MarkerSettings {
-    let text = format!("{{ \"toile\": 1, \"kind\": \"marker-settings\", {body} }}");
-    read_marker_settings(&text).unwrap()
-}
 
 fn options() -> NestOptions {
     NestOptions {

@@ -2,6 +2,8 @@
 
 #[path = "../../../crates/drape/tests/support/hard_scenes.rs"]
 mod hard_scenes;
+#[path = "../../../crates/drape/tests/support/numbers.rs"]
+mod numbers;
 #[path = "../../../crates/drape/tests/support/tangles.rs"]
 mod planted;
 #[path = "../../../crates/drape/tests/support/sheets.rs"]

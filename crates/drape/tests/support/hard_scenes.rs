@@ -1,6 +1,7 @@
 //! Hard scenes for contact of cloth with cloth and with bodies that move, small for tests and large
 //! for long runs, and what is measured on their way.
 
+use super::sheets::{object, sheet};
 use super::solids::{block, cylinder, sphere, torus};
 use toile_drape::{
     Cloth, Compression, ContactSettings, Damping, Material, MethodKind, Motion, MotionKey,
@@ -85,22 +86,6 @@ pub fn hard_scene(name: &str, size: Size) -> HardScene {
     found.next().expect("a name of the list")
 }
 
-fn sheet(cells: [usize; 2], size: [f64; 2], place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
-    super::sheets::sheet(cells, size, place)
-}
-
-fn cloth(name: &str, mesh: TriangleMesh, pins: Vec<u32>) -> SceneObject {
-    SceneObject {
-        name: name.to_owned(),
-        kind: ObjectKind::Deformable {
-            material: Material::default(),
-            pins,
-        },
-        mesh,
-        cloth: None,
-    }
-}
-
 fn solid(name: &str, mesh: TriangleMesh, keys: Vec<MotionKey>) -> SceneObject {
     let motion = Motion {
         pivot: Vec3::zeros(),
@@ -182,7 +167,7 @@ fn crumpled_in_a_box(size: Size) -> HardScene {
         block(middle - half, middle + half)
     };
     let mut objects = vec![
-        cloth("sheet", sheet([n, n], [0.3; 2], wavy), vec![]),
+        object("sheet", sheet([n, n], [0.3; 2], wavy), vec![]),
         floor(),
     ];
     for (name, x, z) in [
@@ -205,7 +190,7 @@ fn layers_on_a_cylinder(size: Size) -> HardScene {
     let mut objects: Vec<SceneObject> = (0..count)
         .map(|k| {
             let lie = |x: f64, z: f64| Vec3::new(x - 0.15, 0.086 + 0.004 * f64::from(k), z - 0.1);
-            cloth(&format!("layer {k}"), sheet(cells, [0.3, 0.2], lie), vec![])
+            object(&format!("layer {k}"), sheet(cells, [0.3, 0.2], lie), vec![])
         })
         .collect();
     objects.push(solid("cylinder", cylinder(0.08, 0.3, 48), vec![]));
@@ -221,7 +206,7 @@ fn twisted(size: Size) -> HardScene {
     let (cells, turns, time) = size.pick(([8, 24], 3.0, 1.2), ([24, 72], 10.0, 4.0));
     let mesh = sheet(cells, [0.12, 0.36], |u, v| Vec3::new(u - 0.06, 0.0, v));
     let row = |j: usize| (0..=cells[0]).map(move |i| (j * (cells[0] + 1) + i) as u32);
-    let mut scene = base(time + 0.4, vec![cloth("strip", mesh, row(0).collect())]);
+    let mut scene = base(time + 0.4, vec![object("strip", mesh, row(0).collect())]);
     let turn = Vec3::new(0.0, 0.0, 2.0 * std::f64::consts::PI * turns);
     let way = Vec3::new(0.0, 0.0, -0.12);
     scene.grips.push(SceneGrip {
@@ -251,7 +236,7 @@ fn through_a_ring(size: Size) -> HardScene {
         compression: Compression::TensionField,
         ..Material::default()
     };
-    let mut scarf = cloth("scarf", mesh, vec![]);
+    let mut scarf = object("scarf", mesh, vec![]);
     scarf.kind = ObjectKind::Deformable {
         material: silky,
         pins: vec![],
@@ -278,7 +263,7 @@ fn stacked(size: Size) -> HardScene {
                 let up = 0.02 + 0.015 * f64::from(k);
                 Vec3::new(cosine * x - sine * z, up, sine * x + cosine * z)
             };
-            cloth(&format!("cloth {k}"), sheet([n, n], [0.2; 2], lie), vec![])
+            object(&format!("cloth {k}"), sheet([n, n], [0.2; 2], lie), vec![])
         })
         .collect();
     objects.push(floor());
@@ -325,7 +310,7 @@ fn knotted(size: Size) -> HardScene {
         centre[j] + directions[j] * (width * (u - 0.5))
     });
     let row = |j: usize| (0..=cells[0]).map(move |i| (j * (cells[0] + 1) + i) as u32);
-    let mut scene = base(2.0, vec![cloth("ribbon", mesh, vec![])]);
+    let mut scene = base(2.0, vec![object("ribbon", mesh, vec![])]);
     scene.gravity = Vec3::zeros();
     let apart = 0.5 * (0.88 * length - (centre[rows - 1] - centre[0]).norm());
     for (j, sign) in [(0, -1.0), (rows - 1, 1.0)] {
@@ -372,8 +357,8 @@ fn pinched(size: Size) -> HardScene {
         p.y -= 0.03;
     }
     let objects = vec![
-        cloth("inner", hung(0.17), top.clone()),
-        cloth("outer", hung(0.182), top),
+        object("inner", hung(0.17), top.clone()),
+        object("outer", hung(0.182), top),
         solid("trunk", upright(0.12, 0.6, 0.0), vec![]),
         solid("arm", arm_shape, keys),
     ];
@@ -392,8 +377,8 @@ fn curtain_and_sphere(size: Size) -> HardScene {
     let ball = sphere(0.07, Vec3::new(0.0, -0.35, -0.2));
     let keys = shifted(0.05, 0.15, Vec3::new(0.0, 0.0, 1.0));
     let objects = vec![
-        cloth("left", half(-0.28, 0.0), top.clone()),
-        cloth("right", half(-0.02, 0.012), top),
+        object("left", half(-0.28, 0.0), top.clone()),
+        object("right", half(-0.02, 0.012), top),
         solid("sphere", ball, keys),
     ];
     of("sphere at 10 m/s", base(0.7, objects), 0.15)
@@ -428,7 +413,7 @@ fn folded_and_dropped(size: Size) -> HardScene {
     };
     let rest = Cloth::from_mesh("strip", &flat, Material::default()).expect("a sound sheet");
     let places: Vec<Vec3> = flat.positions.iter().map(|p| fold(p.x, p.z)).collect();
-    let mut object = cloth("strip", flat, vec![]);
+    let mut object = object("strip", flat, vec![]);
     object.mesh.positions.clone_from(&places);
     object.cloth = Some(Cloth {
         positions: places,
@@ -445,7 +430,7 @@ fn two_in_free_flight(size: Size) -> HardScene {
     let high = sheet([n, n], [0.2; 2], |x, z| {
         Vec3::new(x + 0.07, 0.05 + 0.2 * x, z - 0.06 + 0.1 * x)
     });
-    let objects = vec![cloth("low", low, vec![]), cloth("high", high, vec![])];
+    let objects = vec![object("low", low, vec![]), object("high", high, vec![])];
     let mut scene = base(0.3, objects);
     scene.gravity = Vec3::zeros();
     scene.damping = Damping::default();

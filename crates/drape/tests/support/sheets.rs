@@ -1,6 +1,6 @@
 //! Sheets of cloth that tests and benchmarks share.
 
-use toile_drape::{Cloth, Material, Model, State};
+use toile_drape::{Cloth, Material, Model, ObjectKind, SceneObject, State};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// A grid of `cells` over `size` [m] in a plane, alternating diagonals.
@@ -35,4 +35,18 @@ pub fn cloth(mesh: &TriangleMesh, material: Material) -> (Model, State) {
     let model = Model::new("cloth", &cloth).expect("sound");
     let state = State::at_rest(&model, mesh.positions.clone());
     (model, state)
+}
+
+/// A cloth of a scene; not for all who share this file.
+#[allow(dead_code)]
+pub fn object(name: &str, mesh: TriangleMesh, pins: Vec<u32>) -> SceneObject {
+    SceneObject {
+        name: name.to_owned(),
+        kind: ObjectKind::Deformable {
+            material: Material::default(),
+            pins,
+        },
+        mesh,
+        cloth: None,
+    }
 }

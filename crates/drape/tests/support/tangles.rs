@@ -1,6 +1,8 @@
 //! Cloth that starts tangled, made from a seed: points pushed through a layer, layers that cross, a
 //! fold through itself, a panel half inside a body.
 
+use super::numbers::Numbers;
+use super::sheets::object;
 use super::solids::sphere;
 use toile_drape::{ContactSettings, Damping, Material, MethodKind, ObjectKind, Scene, SceneObject};
 use toile_geometry::{TriangleMesh, Vec3};
@@ -14,40 +16,11 @@ pub const KINDS: [&str; 4] = [
     "a panel half in a body",
 ];
 
-/// Numbers in 0..1 that repeat from run to run.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-}
-
 const CELLS: usize = 12;
 const WIDTH: f64 = 0.18;
 
 fn sheet(place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
     super::sheets::sheet([CELLS, CELLS], [WIDTH; 2], place)
-}
-
-fn cloth(name: &str, mesh: TriangleMesh, pins: Vec<u32>) -> SceneObject {
-    SceneObject {
-        name: name.to_owned(),
-        kind: ObjectKind::Deformable {
-            material: Material::default(),
-            pins,
-        },
-        mesh,
-        cloth: None,
-    }
 }
 
 fn corners() -> Vec<u32> {
@@ -58,7 +31,7 @@ fn corners() -> Vec<u32> {
 /// Flat layers as they rest, and where they start.
 fn starting(name: &str, rest: TriangleMesh, start: Vec<Vec3>, pins: Vec<u32>) -> SceneObject {
     let laid = toile_drape::Cloth::from_mesh(name, &rest, Material::default()).expect("sound");
-    let mut object = cloth(name, rest, pins);
+    let mut object = object(name, rest, pins);
     object.mesh.positions.clone_from(&start);
     object.cloth = Some(toile_drape::Cloth {
         positions: start,
@@ -117,7 +90,7 @@ fn pushed_through(numbers: &mut Numbers) -> Vec<SceneObject> {
     });
     let start: Vec<Vec3> = start.collect();
     vec![
-        cloth("low", low, corners()),
+        object("low", low, corners()),
         starting("high", high, start, corners()),
     ]
 }
@@ -137,7 +110,7 @@ fn crossed(numbers: &mut Numbers) -> Vec<SceneObject> {
         let dip = depth * ((share - along) / share).max(0.0);
         Vec3::new(x, -dip, z) + shift
     });
-    vec![cloth("low", low, corners()), cloth("high", high, vec![])]
+    vec![object("low", low, corners()), object("high", high, vec![])]
 }
 
 /// A sheet folded over, the free end passing through the part below.
@@ -189,5 +162,5 @@ fn half_inside(numbers: &mut Numbers) -> Vec<SceneObject> {
         mesh: sphere(radius, Vec3::zeros()),
         cloth: None,
     };
-    vec![cloth("panel", panel, vec![]), ball]
+    vec![object("panel", panel, vec![]), ball]
 }
