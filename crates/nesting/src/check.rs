@@ -1,5 +1,6 @@
 //! Jobs that cannot be done, said before any work.
 
+use crate::turns::orientations;
 use crate::{Fold, FoldEdge, Item, Marker, Mirror, Nap, Placement, Pose, Strip, Violation, judge};
 use std::collections::BTreeMap;
 use toile_geometry::{CrossingKind, PolygonDefect, Vec2};
@@ -27,6 +28,16 @@ pub enum NestingError {
     /// The search makes no sense.
     #[error("search: {0}")]
     Search(String),
+    /// So many or so large shapes that tables of all pairs cannot be held.
+    #[error(
+        "{outlines} different outlines, in {orientations} orientations together, are more than the search can hold; allow fewer turns, give flaws as fewer areas, or make several markers"
+    )]
+    TooManyShapes {
+        /// Outlines of pieces and flaws that differ.
+        outlines: usize,
+        /// Orientations of all of them together, with few turns each.
+        orientations: usize,
+    },
     /// The fabric makes no sense.
     #[error("fabric: {0}")]
     Strip(String),
@@ -167,56 +178,8 @@ pub enum ItemProblem {
     },
 }
 
-/// Where within its tolerance the grain is tried.
-pub(crate) const TILTS: [f64; 5] = [0.0, -0.5, 0.5, -1.0, 1.0];
-
-/// Turns and sides an item's copy may take on a strip, without repeats.
-pub(crate) fn orientations(item: &Item, strip: &Strip, copy: u32) -> Vec<(f64, bool)> {
-    orientations_within(item, strip, (copy, &TILTS))
-}
-
-/// The same with the grain at some parts of its tolerance only.
-pub(crate) fn orientations_within(
-    item: &Item,
-    strip: &Strip,
-    (copy, tilts): (u32, &[f64]),
-) -> Vec<(f64, bool)> {
-    let sides: &[bool] = match item.allowed.mirror {
-        Mirror::Never => &[false],
-        Mirror::Pairs if copy % 2 == 1 => &[true],
-        Mirror::Pairs => &[false],
-        Mirror::Always => &[true],
-        Mirror::Free => &[false, true],
-    };
-    let mut found: Vec<(f64, bool)> = Vec::new();
-    let tilt = item.allowed.tilt;
-    let tilts = if tilt > 0.0 { tilts } else { &[0.0] };
-    for (base, part) in item
-        .allowed
-        .turns
-        .iter()
-        .flat_map(|b| tilts.iter().map(move |t| (b, t)))
-    {
-        let turn = base + part * tilt;
-        let runs_off = match strip.nap {
-            Nap::None => false,
-            Nap::OneWay => *base != 0.0,
-            Nap::PerBundle => base.sin().abs() > 1e-9,
-        };
-        if runs_off {
-            continue;
-        }
-        for &side in sides {
-            if !found.contains(&(turn, side)) {
-                found.push((turn, side));
-            }
-        }
-    }
-    found
-}
-
 /// Extent of an item in an orientation \[m\].
-fn extent(item: &Item, (turn, mirrored): (f64, bool)) -> Vec2 {
+pub(crate) fn extent(item: &Item, (turn, mirrored): (f64, bool)) -> Vec2 {
     let pose = Pose {
         grain: item.grain,
         turn,
@@ -321,7 +284,7 @@ pub(crate) fn folds_up(
     })
 }
 
-fn check_locks(item: &Item) -> Option<ItemProblem> {
+pub(crate) fn check_locks(item: &Item) -> Option<ItemProblem> {
     let mut seen = Vec::new();
     for lock in &item.locked {
         let finite = [lock.turn, lock.translation.x, lock.translation.y];
@@ -407,6 +370,18 @@ fn check_strip(strip: &Strip) -> Option<String> {
 
 /// Everything that keeps a job from being done.
 pub(crate) fn check(items: &[Item], strip: &Strip) -> Result<(), NestingError> {
+    check_numbered(items, strip, &|_, copy| copy)
+}
+
+/// The number by which a copy of an item is called.
+type Number<'a> = &'a dyn Fn(usize, u32) -> u32;
+
+/// The same, with copies called by other numbers.
+pub(crate) fn check_numbered(
+    items: &[Item],
+    strip: &Strip,
+    number: Number<'_>,
+) -> Result<(), NestingError> {
     if items.is_empty() {
         return Err(NestingError::NoItems);
     }
@@ -426,7 +401,7 @@ pub(crate) fn check(items: &[Item], strip: &Strip) -> Result<(), NestingError> {
         return Err(NestingError::TooManyPieces(total));
     }
     if refusals.is_empty() {
-        refusals = check_places(items, strip);
+        refusals = check_places(items, strip, number);
     }
     if refusals.is_empty() {
         Ok(())
@@ -436,7 +411,7 @@ pub(crate) fn check(items: &[Item], strip: &Strip) -> Result<(), NestingError> {
 }
 
 /// Locked copies as a marker of their own: what is wrong there can never be mended.
-fn check_places(items: &[Item], strip: &Strip) -> Vec<Refusal> {
+fn check_places(items: &[Item], strip: &Strip, number: Number<'_>) -> Vec<Refusal> {
     let placed = |(item, what): (usize, &Item)| {
         let place = move |lock: &crate::Locked| Placement {
             item,
@@ -455,14 +430,12 @@ fn check_places(items: &[Item], strip: &Strip) -> Vec<Refusal> {
         return Vec::new();
     }
     let laid = |k: usize| (&marker.placements[k], &items[marker.placements[k].item]);
-    let name = |k: usize| format!("\"{}\" {}", laid(k).1.name, laid(k).0.copy);
+    let copy = |k: usize| number(laid(k).0.item, laid(k).0.copy);
+    let name = |k: usize| format!("\"{}\" {}", laid(k).1.name, copy(k));
     let refuse = |k: usize, why: String| Refusal {
         item: laid(k).0.item,
         name: laid(k).1.name.clone(),
-        problem: ItemProblem::LockedBadly {
-            copy: laid(k).0.copy,
-            why,
-        },
+        problem: ItemProblem::LockedBadly { copy: copy(k), why },
     };
     let mut refusals = Vec::new();
     for violation in judge(items, strip, &marker).violations {

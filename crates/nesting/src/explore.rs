@@ -113,14 +113,29 @@ impl<'a> Island<'a> {
                 }
             }
             match self.separator.separate(EXPLORE, limit) {
-                Outcome::Apart => {
+                Outcome::Apart if self.is_whole() => {
                     self.keep();
                     self.target = 0.0;
                     self.step = (self.step * 1.25).min(STEPS[0]);
                 }
-                Outcome::Failed => self.fail(),
+                Outcome::Apart | Outcome::Failed => self.fail(),
                 Outcome::Paused => {}
             }
+        }
+    }
+
+    /// Whether every piece of the layout in hand is laid.
+    fn is_whole(&self) -> bool {
+        !self.separator.layout.present.contains(&false)
+    }
+
+    /// Takes a layout up and lays what is missing where it overlaps least.
+    fn load(&mut self, layout: Layout) {
+        let laid = |k: &usize| layout.present[*k];
+        let missing: Vec<usize> = (0..layout.at.len()).filter(|k| !laid(k)).collect();
+        self.separator.load(layout);
+        for piece in missing {
+            self.separator.move_piece(piece, 0.0);
         }
     }
 
@@ -136,7 +151,7 @@ impl<'a> Island<'a> {
         if job.bundles > 1 && sequence.unit() < TURNED {
             turn_round(job, &mut layout, sequence.below(job.bundles));
         }
-        self.separator.load(layout);
+        self.load(layout);
     }
 
     /// Counts a failure.
@@ -154,7 +169,12 @@ impl<'a> Island<'a> {
             self.target = 0.0;
             return;
         }
-        let failed = (self.separator.total(), self.separator.layout.clone());
+        // What lacks a piece is worse than any overlap.
+        let total = match self.is_whole() {
+            true => self.separator.total(),
+            false => f64::INFINITY,
+        };
+        let failed = (total, self.separator.layout.clone());
         let place = self.pool.partition_point(|known| known.0 <= failed.0);
         self.pool.insert(place, failed);
         self.pool.truncate(POOL);
@@ -182,7 +202,7 @@ impl<'a> Island<'a> {
             None => separator.layout.clone(),
         };
         disturb(separator.job, &mut layout, &mut separator.sequence);
-        separator.load(layout);
+        self.load(layout);
     }
 
     /// Presses the best layout by less and less until the limit. `done` says how far the press is.
@@ -202,8 +222,8 @@ impl<'a> Island<'a> {
                 self.shorten(self.target);
             }
             match self.separator.separate(PRESS, limit) {
-                Outcome::Apart => self.keep(),
-                Outcome::Failed => self.failures += 1,
+                Outcome::Apart if self.is_whole() => self.keep(),
+                Outcome::Apart | Outcome::Failed => self.failures += 1,
                 Outcome::Paused => {}
             }
         }
@@ -252,15 +272,27 @@ fn disturb(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
             }
             let repeat = job.strip.stripes.map_or_else(Vec2::zeros, |s| s.repeat);
             let chance = Vec2::new(sequence.unit(), sequence.unit());
-            layout.phases[set] = repeat.component_mul(&chance);
-            for piece in (0..layout.at.len()).filter(|&k| job.pieces[k].set == Some(set)) {
-                let place = layout.settle(job, piece, layout.shape[piece], layout.at[piece]);
-                layout.at[piece] = place.unwrap_or(layout.at[piece]);
-            }
+            move_set(job, layout, (set, repeat.component_mul(&chance)));
         }
         _ if sequence.unit() < ENDS => swap_ends(job, layout, sequence),
         _ => exchange(job, layout, sequence),
     }
+}
+
+/// Moves a matched set to another place in the repeat, if all its pieces find a place there.
+fn move_set(job: &Job<'_>, layout: &mut Layout, (set, phase): (usize, Vec2)) {
+    let mut moved = layout.clone();
+    moved.phases[set] = phase;
+    for piece in (0..layout.at.len()).filter(|&k| job.pieces[k].set == Some(set)) {
+        if !moved.present[piece] {
+            continue;
+        }
+        match moved.settle(job, piece, moved.shape[piece], moved.at[piece]) {
+            Some(at) => moved.at[piece] = at,
+            None => return,
+        }
+    }
+    *layout = moved;
 }
 
 /// Cuts the strip anywhere and exchanges its two parts.
@@ -297,7 +329,8 @@ fn scatter(job: &Job<'_>, layout: &mut Layout, piece: usize, sequence: &mut Sequ
     }
 }
 
-/// Turns the pieces of a garment the other way, each about its middle, if all of them may.
+/// Turns the pieces of a garment the other way, each about its middle, if all of them may and find
+/// a place so.
 fn turn_round(job: &Job<'_>, layout: &mut Layout, bundle: usize) {
     let mut turned = layout.clone();
     turned.forward[bundle] = !turned.forward[bundle];
@@ -314,7 +347,9 @@ fn turn_round(job: &Job<'_>, layout: &mut Layout, bundle: usize) {
         };
         if turned.present[piece] {
             let middle = turned.at[piece] + old.size * 0.5;
-            move_middle(job, &mut turned, (piece, shape), middle);
+            if !move_middle(job, &mut turned, (piece, shape), middle) {
+                return;
+            }
         } else {
             turned.shape[piece] = shape;
         }
@@ -322,12 +357,19 @@ fn turn_round(job: &Job<'_>, layout: &mut Layout, bundle: usize) {
     *layout = turned;
 }
 
-/// Puts a shape where its middle is near a point.
-fn move_middle(job: &Job<'_>, layout: &mut Layout, (piece, shape): (usize, usize), middle: Vec2) {
+/// Puts a shape where its middle is near a point. Whether there is a place for it.
+fn move_middle(
+    job: &Job<'_>,
+    layout: &mut Layout,
+    (piece, shape): (usize, usize),
+    middle: Vec2,
+) -> bool {
     let at = middle - job.shapes[shape].size * 0.5;
-    if let Some(at) = layout.settle(job, piece, shape, at) {
+    let place = layout.settle(job, piece, shape, at);
+    if let Some(at) = place {
         layout.put(job, piece, shape, at);
     }
+    place.is_some()
 }
 
 /// Exchanges two of the larger pieces.
@@ -351,4 +393,66 @@ fn exchange(job: &Job<'_>, layout: &mut Layout, sequence: &mut Sequence) {
     let middles = [middle(a), middle(b)];
     move_middle(job, layout, (a, layout.shape[a]), middles[1]);
     move_middle(job, layout, (b, layout.shape[b]), middles[0]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Item, Strip, Stripes};
+    use crate::{MatchPoint, marker::Phase};
+    use toile_geometry::{Bounds2, Polygon};
+
+    fn item(length: f64, width: f64, quantity: u32) -> Item {
+        let outline = Polygon::rectangle(Bounds2 {
+            min: Vec2::zeros(),
+            max: Vec2::new(length, width),
+        });
+        Item {
+            quantity,
+            match_point: Some(MatchPoint {
+                point: Vec2::new(0.1, 0.0),
+                phase: Phase::At(Vec2::zeros()),
+            }),
+            ..Item::new("box", outline)
+        }
+    }
+
+    /// What has no place on the shorter strip is off the strip, not beyond its end.
+    #[test]
+    fn a_shorter_strip_holds_no_piece_that_sticks_out() {
+        let items = [item(0.5, 0.3, 2), item(0.2, 0.2, 3)];
+        let strip = Strip {
+            stripes: Some(Stripes {
+                repeat: Vec2::new(0.4, 0.0),
+                origin: Vec2::zeros(),
+            }),
+            ..Strip::of_width(0.7)
+        };
+        let copies = [(0, 0), (0, 1), (1, 0), (1, 1), (1, 2)];
+        let job = Job::new(&items, &strip, &copies, &|| false).unwrap();
+        let mut island = Island::new(&job, 1);
+        let limit = Limit {
+            queries: u64::MAX,
+            stop: &|| false,
+        };
+        island.start(&limit);
+        let first = island.score();
+        assert_eq!(first.0, 0.0);
+        for target in [0.95, 0.75, 0.6, 0.45] {
+            island.shorten(target);
+            let layout = &island.separator.layout;
+            for k in (0..5).filter(|&k| layout.present[k]) {
+                let end = layout.at[k].x + layout.size[k].x;
+                assert!(end <= target + 1e-9, "{target}: piece {k} ends at {end}");
+            }
+        }
+        let limit = Limit {
+            queries: 200_000,
+            ..limit
+        };
+        island.separator.give_up();
+        island.target = 0.0;
+        island.explore(&limit);
+        assert!(island.score() <= first, "{:?} {first:?}", island.score());
+    }
 }

@@ -3,39 +3,28 @@
 //! Shapes are moved so that their boxes start at the origin. Moves are measured from the corner of
 //! the usable fabric.
 
-use crate::check::{TILTS, orientations_within};
+use crate::check::NestingError;
 use crate::marker::{Phase, turned};
 use crate::nofit::NoFit;
 use crate::pair::{Pair, PairQuery};
 use crate::raster::DepthRaster;
-use crate::shape::{Shape, coincide};
+use crate::shape::Shape;
 use crate::side_by_side::side_by_side;
-use crate::simplify::simplify_outward;
-use crate::{Item, Nap, Pose, Strip};
-use std::collections::BTreeMap;
-use std::f64::consts::TAU;
+use crate::tables::most_cells;
+use crate::turns::Fineness;
+use crate::{Item, Strip};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use toile_geometry::{Polygon, Vec2, no_fit_polygon};
 
 /// How far outlines may grow when they are simplified, over the width of the fabric: a tenth of a
 /// millimetre on the roll.
-const SIMPLIFY: f64 = 6e-5;
+pub(crate) const SIMPLIFY: f64 = 6e-5;
 /// Distance kept between touching pieces over the width of the fabric: above the rounding of the
 /// no-fit polygons, far under what can be cut.
-const SAFE: f64 = 6e-8;
+pub(crate) const SAFE: f64 = 6e-8;
 /// How far outside of a no-fit polygon its edges are still found, over the width of the fabric.
 const WINDOW: f64 = 0.02;
-/// Most rows of the loss maps.
-const ROWS: f64 = 64.0;
-/// Outlines of more corners are not compared with each other.
-const MOST_CORNERS: usize = 500;
-/// Most numbers in all depth rasters together, padding included: 128 MB.
-const RASTER_NUMBERS: f64 = 32e6;
-/// Most no-fit polygons, about 50 kB each: where tilts would need more, fewer tilts are tried.
-const MOST_NO_FITS: usize = 4000;
-const FEW_TILTS: [f64; 3] = [0.0, -1.0, 1.0];
-
 /// One copy to lay, or something that lies already.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
@@ -63,7 +52,7 @@ impl Piece {
 }
 
 /// Outlines, angle between them \[rad\], and whether one of them is turned over.
-type Key = (usize, usize, f64, bool);
+pub(crate) type Key = (usize, usize, f64, bool);
 
 /// What a coordinate of a piece's place may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,16 +93,25 @@ pub(crate) struct Job<'a> {
     /// Numbers of garments and of matched sets.
     pub bundles: usize,
     pub sets: usize,
-    pairs: Vec<Pair>,
-    keys: Vec<Key>,
-    rings: Vec<Vec<Vec2>>,
-    no_fits: Vec<OnceLock<NoFit>>,
-    rasters: Vec<OnceLock<DepthRaster>>,
+    pub(crate) pairs: Vec<Pair>,
+    pub(crate) keys: Vec<Key>,
+    pub(crate) rings: Vec<Vec<Vec2>>,
+    pub(crate) no_fits: Vec<OnceLock<NoFit>>,
+    pub(crate) rasters: Vec<OnceLock<DepthRaster>>,
 }
 
 impl<'a> Job<'a> {
-    /// Poses every copy in every allowed orientation. Items and strip are sound.
-    pub fn new(items: &'a [Item], strip: &'a Strip, copies: &[(usize, u32)]) -> Self {
+    /// Poses every copy in every allowed orientation, in fewer where the tables of all pairs would
+    /// be too large. Items and strip are sound.
+    ///
+    /// # Errors
+    /// Even with few turns the tables are too large, or `stop` says so.
+    pub fn new(
+        items: &'a [Item],
+        strip: &'a Strip,
+        copies: &[(usize, u32)],
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Self, NestingError> {
         let mut job = Self {
             items,
             strip,
@@ -130,173 +128,41 @@ impl<'a> Job<'a> {
             no_fits: Vec::new(),
             rasters: Vec::new(),
         };
-        for tilts in [&TILTS[..], &FEW_TILTS, &[0.0]] {
-            job.add_items(copies, tilts);
+        for (fineness, maps) in Fineness::levels(items) {
+            job.add_items(copies, fineness);
             job.add_defects();
-            job.pair_up();
-            if job.no_fits.len() <= MOST_NO_FITS {
-                break;
+            let held = job.pair_up(fineness.no_fits, stop) && job.choose_spacing(maps);
+            if stop() {
+                return Err(NestingError::Cancelled);
+            }
+            if held {
+                return Ok(job);
             }
         }
-        job.spacing = job.height / ROWS;
-        while job.raster_numbers() > RASTER_NUMBERS {
-            job.spacing *= 1.05;
-        }
-        job
-    }
-
-    /// Numbers in all depth rasters together.
-    fn raster_numbers(&self) -> f64 {
-        let count = self.shapes.len();
-        let mut seen = vec![false; self.rasters.len()];
-        let mut sum = 0.0;
-        for (k, pair) in self.pairs.iter().enumerate() {
-            if !std::mem::replace(&mut seen[pair.raster as usize], true) {
-                sum += DepthRaster::numbers(self, k / count, k % count) as f64;
-            }
-        }
-        sum
-    }
-
-    fn add_items(&mut self, copies: &[(usize, u32)], tilts: &[f64]) {
-        self.shapes.clear();
-        self.pieces.clear();
-        self.rings.clear();
-        let mut bundles = BTreeMap::new();
-        let mut sets = BTreeMap::new();
-        let mut known: BTreeMap<(usize, i64, bool), usize> = BTreeMap::new();
-        let mut looks: BTreeMap<(usize, i64, bool), usize> = BTreeMap::new();
-        for (kind, item) in self.items.iter().enumerate() {
-            let straight = Polygon::new(turned(&item.outline.outer, -item.grain, false)).oriented();
-            let ring = simplify_outward(&straight.outer, SIMPLIFY * self.height);
-            let ring = self.ring(ring);
-            let own = copies.iter().filter(|c| c.0 == kind).map(|c| c.1);
-            for copy in own {
-                let lock = item.locked.iter().find(|l| l.copy == copy);
-                let ways = match lock {
-                    Some(lock) => vec![(lock.turn, lock.mirrored)],
-                    None => orientations_within(item, self.strip, (copy, tilts)),
-                };
-                let shapes: Vec<usize> = ways
-                    .into_iter()
-                    .filter_map(|way| {
-                        let key = (kind, (way.0.rem_euclid(TAU) * 1e9).round() as i64, way.1);
-                        if let Some(&shape) = known.get(&key) {
-                            return Some(shape);
-                        }
-                        let mut shape = Shape::new(kind, item, way, self.strip)?;
-                        shape.ring = ring;
-                        let next = self.shapes.len();
-                        shape.look = *looks.entry((ring, key.1, way.1)).or_insert(next);
-                        self.shapes.push(shape);
-                        known.insert(key, self.shapes.len() - 1);
-                        Some(self.shapes.len() - 1)
-                    })
-                    .collect();
-                let shapes = self.distinct(item, shapes);
-                let locked = lock.zip(shapes.first()).map(|(lock, &shape)| {
-                    let at = lock.translation + self.shapes[shape].offset - self.corner();
-                    (shape, at)
-                });
-                let bundle = (self.strip.nap == Nap::PerBundle).then(|| {
-                    let count = bundles.len();
-                    *bundles.entry(item.bundle(copy)).or_insert(count)
-                });
-                let set = match item.match_point.map(|m| m.phase) {
-                    Some(Phase::Set(set)) if self.strip.stripes.is_some() => {
-                        let count = sets.len();
-                        Some(*sets.entry(set).or_insert(count))
-                    }
-                    _ => None,
-                };
-                self.pieces.push(Piece {
-                    item: Some(kind),
-                    copy,
-                    shapes,
-                    locked,
-                    bundle,
-                    set,
-                    area: item.outline.area(),
-                });
-            }
-        }
-        (self.bundles, self.sets) = (bundles.len(), sets.len());
-    }
-
-    /// The number of an outline, the old one if there is one just alike.
-    fn ring(&mut self, ring: Vec<Vec2>) -> usize {
-        let known = self.rings.iter().position(|old| *old == ring);
-        known.unwrap_or_else(|| {
-            self.rings.push(ring);
-            self.rings.len() - 1
+        Err(NestingError::TooManyShapes {
+            outlines: job.rings.len(),
+            orientations: job.shapes.len(),
         })
     }
 
-    /// Which way a garment runs at first: every second one backwards, if all its pieces may.
+    /// Which way a garment runs at first: the only way in which all its pieces may; where both are
+    /// possible every second garment runs backwards.
     pub fn starts_forward(&self, bundle: usize) -> bool {
-        let mut own = self.pieces.iter().filter(|p| p.bundle == Some(bundle));
-        let may = |p: &Piece| p.shapes.iter().any(|&s| !self.shapes[s].forward);
-        bundle.is_multiple_of(2) || !own.all(may)
+        let may = |forward: bool| {
+            let mut own = self.pieces.iter().filter(|p| p.bundle == Some(bundle));
+            own.all(|p| p.shapes.iter().any(|&s| self.shapes[s].forward == forward))
+        };
+        match (may(true), may(false)) {
+            (true, true) => bundle.is_multiple_of(2),
+            (false, true) => false,
+            _ => true,
+        }
     }
 
     /// Whether locked pieces fix where a matched set lies.
     pub fn is_fixed(&self, set: usize) -> bool {
         let fixes = |p: &Piece| p.set == Some(set) && p.locked.is_some();
         self.pieces.iter().any(fixes)
-    }
-
-    /// Shapes without those that look like an earlier one: a rectangle turned half round is the
-    /// same to everything but a garment that runs one way.
-    fn distinct(&self, item: &Item, shapes: Vec<usize>) -> Vec<usize> {
-        let corners = item.outline.outer.len();
-        if self.strip.nap == Nap::PerBundle || corners > MOST_CORNERS {
-            return shapes;
-        }
-        let mut kept: Vec<(usize, Vec<Vec2>)> = Vec::new();
-        for index in shapes {
-            let shape = &self.shapes[index];
-            let ring = shape.outline(item).outer;
-            let same = |(k, other): &(usize, Vec<Vec2>)| {
-                let known = &self.shapes[*k];
-                known.anchor == shape.anchor
-                    && known.on_fold == shape.on_fold
-                    && coincide(&ring, other, SAFE * self.height)
-            };
-            if !kept.iter().any(same) {
-                kept.push((index, ring));
-            }
-        }
-        kept.into_iter().map(|(index, _)| index).collect()
-    }
-
-    /// Defects lie where they lie.
-    fn add_defects(&mut self) {
-        for (k, defect) in self.strip.defects.iter().enumerate() {
-            let outline = defect.outline.oriented();
-            let bounds = outline.bounds();
-            let ring = self.ring(outline.outer);
-            self.shapes.push(Shape {
-                kind: self.items.len() + k,
-                ring,
-                look: self.shapes.len(),
-                turn: 0.0,
-                mirrored: false,
-                offset: bounds.min,
-                size: bounds.size(),
-                forward: true,
-                anchor: None,
-                on_fold: None,
-            });
-            self.pieces.push(Piece {
-                item: None,
-                copy: 0,
-                shapes: Vec::new(),
-                locked: Some((self.shapes.len() - 1, bounds.min - self.corner())),
-                bundle: None,
-                set: None,
-                area: 0.0,
-            });
-        }
     }
 
     /// Lower left corner of the usable fabric \[m\].
@@ -341,7 +207,7 @@ impl<'a> Job<'a> {
         2.0 * each + end
     }
 
-    fn gap(&self, a: usize, b: usize) -> f64 {
+    pub(crate) fn gap(&self, a: usize, b: usize) -> f64 {
         let count = self.items.len();
         let gap = match (self.items.get(a), self.items.get(b)) {
             (Some(one), Some(other)) => self.strip.gap_between(one, other),
@@ -367,63 +233,13 @@ impl<'a> Job<'a> {
         2.0 * SIMPLIFY * self.height
     }
 
-    /// With N(a, b) = a + (-b) and an isometry Q: N(Qa, Qb) = Q N(a, b) and N(b, a) = -N(a, b), so
-    /// one polygon serves all pairs that lie alike.
-    fn pair_up(&mut self) {
-        self.keys.clear();
-        let count = self.shapes.len();
-        let mut rasters: BTreeMap<(usize, usize, u64), u32> = BTreeMap::new();
-        let mut known: BTreeMap<(usize, usize, i64, bool), u32> = BTreeMap::new();
-        let mut pairs = Vec::with_capacity(count * count);
-        for a in &self.shapes {
-            for b in &self.shapes {
-                let swapped = b.ring < a.ring;
-                let (fixed, moving) = if swapped { (b, a) } else { (a, b) };
-                let apart = moving.turn - fixed.turn;
-                let apart = if fixed.mirrored { -apart } else { apart };
-                let angle = (apart.rem_euclid(TAU) * 1e9).round() as i64;
-                let angle = angle % (TAU * 1e9).round() as i64;
-                let mirrored = fixed.mirrored != moving.mirrored;
-                let key = (fixed.ring, moving.ring, angle, mirrored);
-                let next = known.len() as u32;
-                let no_fit = *known.entry(key).or_insert(next);
-                if no_fit == next {
-                    self.keys.push((fixed.ring, moving.ring, apart, mirrored));
-                }
-                let sign = if swapped { -1.0 } else { 1.0 };
-                let pose = Pose {
-                    grain: 0.0,
-                    turn: fixed.turn,
-                    mirrored: fixed.mirrored,
-                    translation: Vec2::zeros(),
-                };
-                let axes = pose.axes().map(|axis| axis * sign);
-                let between = a.offset - b.offset;
-                let gap = self.gap(a.kind, b.kind);
-                let next = rasters.len() as u32;
-                let raster = rasters.entry((a.look, b.look, gap.to_bits()));
-                pairs.push(Pair {
-                    no_fit,
-                    raster: *raster.or_insert(next),
-                    axes,
-                    shift: Vec2::new(between.dot(&axes[0]), between.dot(&axes[1])),
-                    gap,
-                });
-            }
-        }
-        let gaps = pairs.iter().map(|p| p.gap);
-        self.widest_gap = gaps.filter(|g| g.is_finite()).fold(0.0, f64::max);
-        self.no_fits = known.iter().map(|_| OnceLock::new()).collect();
-        self.rasters = rasters.iter().map(|_| OnceLock::new()).collect();
-        self.pairs = pairs;
-    }
-
     fn no_fit(&self, number: u32) -> &NoFit {
         self.no_fits[number as usize].get_or_init(|| {
             let (fixed, moving, angle, mirrored) = self.keys[number as usize];
             let ring = turned(&self.rings[moving], angle, mirrored);
             let reach = self.widest_gap + self.window();
-            NoFit::new(&no_fit_polygon(&self.rings[fixed], &ring), reach)
+            let cells = most_cells(self.no_fits.len());
+            NoFit::new(&no_fit_polygon(&self.rings[fixed], &ring), reach, cells)
         })
     }
 
@@ -481,6 +297,14 @@ impl<'a> Job<'a> {
         side_by_side((0..threads).collect(), &work, told);
     }
 
+    /// Whether a shape of a piece has any place at all, for the phases chosen for the sets.
+    pub fn can_lie(&self, piece: usize, shape: usize, phases: &[Vec2]) -> bool {
+        let room = Vec2::new(self.longest(), self.height) - self.shapes[shape].size;
+        let axes = self.axes(piece, shape, phases);
+        let snug = -crate::check::SNUG;
+        (0..2).all(|k| room[k] >= snug && axes[k].nearest(0.0, room[k].max(0.0)).is_some())
+    }
+
     /// What the coordinates of a piece's place may be, for the phases chosen for the sets.
     pub fn axes(&self, piece: usize, shape: usize, phases: &[Vec2]) -> [Axis; 2] {
         let (piece, shape) = (&self.pieces[piece], &self.shapes[shape]);
@@ -517,8 +341,9 @@ impl<'a> Job<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Allowed, Mirror};
-    use toile_geometry::PreparedPolygon;
+    use crate::{Allowed, MatchPoint, Mirror, Stripes};
+    use std::f64::consts::TAU;
+    use toile_geometry::{Bounds2, PreparedPolygon};
 
     fn notched() -> Polygon {
         let points = [
@@ -548,7 +373,7 @@ mod tests {
             ..Allowed::two_way()
         };
         let strip = Strip::of_width(1.0);
-        let job = Job::new(&items, &strip, &[(0, 0), (1, 0)]);
+        let job = Job::new(&items, &strip, &[(0, 0), (1, 0)], &|| false).unwrap();
         assert_eq!(job.shapes.len(), 4 + 10);
         let mut sequence = crate::sequence::Sequence(7);
         for a in 0..job.shapes.len() {
@@ -574,6 +399,86 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    /// Garments whose pieces are matched are items of their own, and yet alike.
+    #[test]
+    fn pieces_of_many_matched_garments_share_their_shapes() {
+        let item = |garment: u32| Item {
+            allowed: Allowed {
+                tilt: 0.03,
+                ..Allowed::two_way()
+            },
+            match_point: Some(MatchPoint {
+                point: Vec2::new(0.1, 0.1),
+                phase: Phase::Set(garment),
+            }),
+            ..Item::new("notched", notched())
+        };
+        let items: Vec<Item> = (0..60).map(item).collect();
+        let strip = Strip {
+            stripes: Some(Stripes {
+                repeat: Vec2::new(0.05, 0.0),
+                origin: Vec2::zeros(),
+            }),
+            ..Strip::of_width(1.0)
+        };
+        let copies: Vec<(usize, u32)> = (0..60).map(|k| (k, 0)).collect();
+        let job = Job::new(&items, &strip, &copies, &|| false).unwrap();
+        assert_eq!((job.shapes.len(), job.pairs.len()), (10, 100));
+        let other = Item {
+            gap: 0.01,
+            ..items[0].clone()
+        };
+        let items = [items[0].clone(), other];
+        let job = Job::new(&items, &strip, &[(0, 0), (1, 0)], &|| false).unwrap();
+        assert_eq!(job.shapes.len(), 20, "another gap, another shape");
+    }
+
+    /// Loss maps stay fine enough to mean something, however many shapes there are.
+    #[test]
+    fn many_turns_do_not_coarsen_the_loss_maps_without_end() {
+        let item = |k: u32| {
+            let bulge = 1e-4 * f64::from(k);
+            let points = [(0.0, 0.0), (0.1, bulge), (0.08, 0.07), (0.02, 0.06 + bulge)];
+            let points = points.iter().map(|&(x, y)| Vec2::new(x, y)).collect();
+            let turns = (0..24).map(|k| TAU * f64::from(k) / 24.0).collect();
+            Item {
+                allowed: Allowed::turned(turns),
+                ..Item::new("piece", Polygon::new(points))
+            }
+        };
+        // Along the diagonal of the strip only: at the second turn, or the fourteenth.
+        let bar = Item {
+            grain: -10f64.to_radians(),
+            ..Item::new(
+                "bar",
+                Polygon::rectangle(Bounds2 {
+                    min: Vec2::zeros(),
+                    max: Vec2::new(1.3, 0.001),
+                }),
+            )
+        };
+        let strip = Strip {
+            max_length: Some(1.2),
+            ..Strip::of_width(0.56)
+        };
+        for (count, turns) in [(5, 24), (10, 12), (60, 4)] {
+            let mut items: Vec<Item> = (0..count).map(item).collect();
+            items.push(Item {
+                allowed: items[0].allowed.clone(),
+                ..bar.clone()
+            });
+            let copies: Vec<(usize, u32)> = (0..items.len()).map(|k| (k, 0)).collect();
+            let job = Job::new(&items, &strip, &copies, &|| false).unwrap();
+            assert!(job.spacing <= 1.05 * 0.56 / 8.0, "{count}: {}", job.spacing);
+            assert_eq!(job.pieces[0].shapes.len(), turns, "{count}");
+            let fits = |&&s: &&usize| job.shapes[s].size.x <= 1.2 && job.shapes[s].size.y <= 0.56;
+            let bar = &job.pieces[copies.len() - 1];
+            assert!(bar.shapes.iter().any(|s| fits(&s)), "{count}");
+            let stopped = Job::new(&items, &strip, &copies, &|| true);
+            assert!(matches!(stopped, Err(NestingError::Cancelled)));
         }
     }
 }

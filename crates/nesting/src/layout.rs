@@ -14,6 +14,9 @@ fn nowhere(job: &Job<'_>, piece: usize) -> Vec2 {
     Vec2::new(-10.0 * extent * (2.0 + piece as f64), 0.0)
 }
 
+/// Phases tried along either axis of the repeat.
+const PHASES: usize = 32;
+
 /// A layout on a strip of some length.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Layout {
@@ -60,7 +63,41 @@ impl Layout {
             phases: vec![Vec2::zeros(); job.sets],
         };
         layout.obey_locks(job);
+        layout.ease_phases(job);
         layout
+    }
+
+    /// Moves the matched sets that have a piece without a place, where another phase gives all of
+    /// them one: phases are tried evenly over the repeat.
+    pub fn ease_phases(&mut self, job: &Job<'_>) {
+        let Some(stripes) = job.strip.stripes else {
+            return;
+        };
+        let tries = |axis: usize| match stripes.repeat[axis] > 0.0 {
+            true => PHASES,
+            false => 1,
+        };
+        for set in (0..job.sets).filter(|&set| !job.is_fixed(set)) {
+            let first = self.phases[set];
+            let all = (0..tries(0)).flat_map(|x| (0..tries(1)).map(move |y| (x, y)));
+            let share = |(x, y): (usize, usize)| Vec2::new(x as f64, y as f64) / PHASES as f64;
+            let mut more = all.map(|k| first + stripes.repeat.component_mul(&share(k)));
+            let good = more.find(|&phase| {
+                self.phases[set] = phase;
+                self.set_can_lie(job, set)
+            });
+            self.phases[set] = good.unwrap_or(first);
+        }
+    }
+
+    /// Whether every piece of a matched set has a place, as its garment runs now.
+    fn set_can_lie(&self, job: &Job<'_>, set: usize) -> bool {
+        let lies = |piece: usize| {
+            let mut shapes = job.pieces[piece].shapes.iter();
+            shapes.any(|&s| self.allows(job, piece, s) && job.can_lie(piece, s, &self.phases))
+        };
+        let own = (0..job.pieces.len()).filter(|&k| job.pieces[k].set == Some(set));
+        own.into_iter().all(lies)
     }
 
     /// Ways of garments and phases of sets that locked pieces fix.
@@ -155,7 +192,8 @@ impl Layout {
             .fold(0.0, f64::max)
     }
 
-    /// Shortens or lengthens the strip: what lies beyond `cut` moves along \[m\].
+    /// Shortens or lengthens the strip: what lies beyond `cut` moves along \[m\]; what has no place
+    /// on it as it lies is taken off.
     pub fn resize(&mut self, job: &Job<'_>, length: f64, cut: f64) {
         let by = length - self.length;
         self.length = length;
@@ -167,8 +205,9 @@ impl Layout {
             if at.x + 0.5 * self.size[piece].x > cut {
                 at.x += by;
             }
-            if let Some(at) = self.settle(job, piece, self.shape[piece], at) {
-                self.at[piece] = at;
+            match self.settle(job, piece, self.shape[piece], at) {
+                Some(at) => self.at[piece] = at,
+                None => self.remove(job, piece),
             }
         }
     }

@@ -15,6 +15,7 @@ mod layout;
 mod marker;
 mod nofit;
 mod pair;
+mod poses;
 mod queries;
 mod raster;
 mod referee;
@@ -29,6 +30,8 @@ mod side_by_side;
 mod simplify;
 mod slide;
 mod start;
+mod tables;
+mod turns;
 mod warm;
 mod words;
 

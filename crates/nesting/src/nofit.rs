@@ -5,8 +5,8 @@
 
 use toile_geometry::{Bounds2, Polygon, Vec2};
 
-/// Cells along either side of the grid: at least, and at most.
-const CELLS: [usize; 2] = [16, 64];
+/// Fewest cells along either side of the grid.
+const LEAST_CELLS: usize = 16;
 /// Points of an outline nearer to each other than this part of its extent are one: rounding of the
 /// polygon operations leaves such pairs.
 const REPEATED: f64 = 8e-9;
@@ -45,8 +45,9 @@ pub(crate) struct NoFit {
 }
 
 impl NoFit {
-    /// Prepares the polygon for queries as far as `reach` \[m\] outside of it.
-    pub fn new(regions: &[Polygon], reach: f64) -> Self {
+    /// Prepares the polygon for queries as far as `reach` \[m\] outside of it, with so many cells
+    /// along the grid at most, 16 or more.
+    pub fn new(regions: &[Polygon], reach: f64, most_cells: usize) -> Self {
         let mut edges = Vec::new();
         for region in regions {
             let region = region.oriented();
@@ -59,7 +60,7 @@ impl NoFit {
         let bounds = bounds.grown(reach);
         let size = bounds.size();
         let count = (2 * edges.len()).next_power_of_two();
-        let count = count.clamp(CELLS[0], CELLS[1]);
+        let count = count.clamp(LEAST_CELLS, most_cells);
         let mut no_fit = Self {
             edges,
             cells: vec![[0, 0]; count * count],
@@ -243,10 +244,11 @@ mod tests {
             a in prop::collection::vec(0.2..1.0f64, 3..12),
             b in prop::collection::vec(0.2..1.0f64, 3..12),
             points in prop::collection::vec((-2.2..2.2f64, -2.2..2.2f64), 50),
+            cells in prop::sample::select(vec![16usize, 32, 64]),
         ) {
             let regions = no_fit_polygon(&star(&a, 0.1), &star(&b, 0.7));
             let reach = 0.3;
-            let no_fit = NoFit::new(&regions, reach);
+            let no_fit = NoFit::new(&regions, reach, cells);
             for (x, y) in points {
                 let at = Vec2::new(x, y);
                 let edges = regions.iter().flat_map(|r| r.edges());

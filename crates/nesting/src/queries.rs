@@ -43,7 +43,7 @@ pub fn with_pair_queries<R>(
 ) -> Result<R, NestingError> {
     check(items, strip)?;
     let copies: Vec<(usize, u32)> = (0..items.len()).map(|item| (item, 0)).collect();
-    let job = Job::new(items, strip, &copies);
+    let job = Job::new(items, strip, &copies, &|| false)?;
     let mut sequence = Sequence(seed);
     let shapes = job.shapes.len();
     let mut asks = Vec::with_capacity(count);

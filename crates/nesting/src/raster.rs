@@ -30,25 +30,36 @@ fn padded(columns: usize) -> usize {
 }
 
 impl DepthRaster {
-    /// First cell of a pair's raster, its columns and its rows.
-    fn extent(job: &Job<'_>, fixed: usize, moving: usize) -> ([i32; 2], usize, usize) {
+    /// First and last cell of a pair's raster along an axis.
+    fn ends(job: &Job<'_>, (fixed, moving): (usize, usize), axis: usize) -> [f64; 2] {
         let (a, b) = (&job.shapes[fixed], &job.shapes[moving]);
         let more = job.widest_gap + job.growth();
-        let low = |k: usize| ((-b.size[k] - more) / job.spacing).floor() as i32;
-        let high = |k: usize| ((a.size[k] + more) / job.spacing).ceil() as i32;
-        let count = |k: usize| (high(k) - low(k) + 1) as usize;
-        ([low(0), low(1)], count(0), count(1))
+        [
+            ((-b.size[axis] - more) / job.spacing).floor(),
+            ((a.size[axis] + more) / job.spacing).ceil(),
+        ]
     }
 
-    /// Numbers that the raster of a pair holds.
-    pub fn numbers(job: &Job<'_>, fixed: usize, moving: usize) -> usize {
-        let (_, columns, rows) = Self::extent(job, fixed, moving);
-        padded(columns) * rows
+    /// First cell of a pair's raster, its columns and its rows.
+    fn extent(job: &Job<'_>, pair: (usize, usize)) -> ([i32; 2], usize, usize) {
+        let [x, y] = [0, 1].map(|axis| Self::ends(job, pair, axis));
+        let count = |[low, high]: [f64; 2]| (high - low + 1.0) as usize;
+        ([x[0] as i32, y[0] as i32], count(x), count(y))
+    }
+
+    /// Numbers that the raster of a pair holds, however many.
+    pub fn numbers(job: &Job<'_>, pair: (usize, usize)) -> f64 {
+        let count = |axis: usize| {
+            let [low, high] = Self::ends(job, pair, axis);
+            high - low + 1.0
+        };
+        let lanes = LANES as f64;
+        ((count(0) / lanes).ceil() + 1.0) * lanes * count(1)
     }
 
     /// Samples a pair of shapes at every cell where it may lose.
     pub fn new(job: &Job<'_>, fixed: usize, moving: usize) -> Self {
-        let (first, columns, rows) = Self::extent(job, fixed, moving);
+        let (first, columns, rows) = Self::extent(job, (fixed, moving));
         let stride = padded(columns);
         let mut values = Vec::with_capacity(stride * rows);
         for row in 0..rows {

@@ -1,6 +1,6 @@
 //! Several pieces of fabric of given width and length, filled one after another.
 
-use crate::check::{NestingError, check};
+use crate::check::{NestingError, Refusal, check_locks, check_numbered};
 use crate::{
     Budget, Control, Item, ItemProblem, Marker, Mirror, Progress, Search, Strip, Unplaced,
     make_marker,
@@ -53,6 +53,7 @@ pub fn make_markers_on_rolls(
     if items.is_empty() {
         return Err(NestingError::NoItems);
     }
+    check_all_locks(items)?;
     let mut left: Vec<Remainder> = (0..items.len())
         .map(|item| Remainder {
             copies: (0..items[item].quantity).collect(),
@@ -63,7 +64,7 @@ pub fn make_markers_on_rolls(
     let shares = shares(items, rolls);
     let mut done = 0.0;
     for (roll, strip) in rolls.iter().enumerate() {
-        let (laid, sources) = jobs_of(items, &mut left, (roll, strip))?;
+        let RollJob { laid, sources } = RollJob::new(items, &mut left, (roll, strip))?;
         if !laid.is_empty() && shares[roll] > 0.0 {
             let mut told = |progress: Progress| {
                 (control.progress)(Progress {
@@ -148,59 +149,90 @@ fn part(search: Search, share: f64) -> Search {
     Search { budget, ..search }
 }
 
-/// What is left to lay on a roll, and which items of the job that is. What is too large for the
-/// roll is left out, with the reason.
-#[allow(clippy::type_complexity)]
-fn jobs_of(
-    items: &[Item],
-    left: &mut [Remainder],
-    (roll, strip): (usize, &Strip),
-) -> Result<(Vec<Item>, Vec<(usize, Vec<u32>)>), NestingError> {
-    let mut laid = Vec::new();
-    let mut sources = Vec::new();
-    for (k, item) in items.iter().enumerate() {
-        if item.quantity == 0 {
-            // Refused below with its name.
-            laid.push(item.clone());
-            sources.push((k, Vec::new()));
-        }
-        for copies in groups(item, &left[k].copies) {
-            laid.push(part_of(item, &copies, roll));
-            sources.push((k, copies));
-        }
-    }
-    if laid.is_empty() {
-        return Ok((laid, sources));
-    }
-    let refused = match check(&laid, strip) {
-        Ok(()) => return Ok((laid, sources)),
-        Err(NestingError::Refused(refused)) => refused,
-        Err(error) => return Err(error),
-    };
-    let too_large = |problem: &ItemProblem| {
-        matches!(
+/// Locks of copies that do not exist would lie on no roll.
+fn check_all_locks(items: &[Item]) -> Result<(), NestingError> {
+    let refusal = |(k, item): (usize, &Item)| {
+        // What has no copies is refused for that.
+        let problem = check_locks(item).filter(|_| item.quantity > 0)?;
+        Some(Refusal {
+            item: k,
+            name: item.name.clone(),
             problem,
-            ItemProblem::TooWide { .. } | ItemProblem::TooLong { .. }
-        )
+        })
     };
-    if refused.iter().any(|r| !too_large(&r.problem)) {
-        let other = refused.into_iter().filter(|r| !too_large(&r.problem));
-        let named = other.map(|mut r| {
-            r.item = sources[r.item].0;
-            r
-        });
-        return Err(NestingError::Refused(named.collect()));
+    let refused: Vec<Refusal> = items.iter().enumerate().filter_map(refusal).collect();
+    match refused.is_empty() {
+        true => Ok(()),
+        false => Err(NestingError::Refused(refused)),
     }
-    for refusal in refused.iter().rev() {
-        let reason = format!("roll {}: {}", roll + 1, refusal.problem);
-        let reasons = &mut left[sources[refusal.item].0].reasons;
-        if !reasons.contains(&reason) {
-            reasons.push(reason);
+}
+
+/// What is left to lay on a roll.
+struct RollJob {
+    laid: Vec<Item>,
+    /// For each, its index in the job and the numbers of its copies there.
+    sources: Vec<(usize, Vec<u32>)>,
+}
+
+impl RollJob {
+    /// What is left, less what is too large for the roll; the reason for that is noted.
+    fn new(
+        items: &[Item],
+        left: &mut [Remainder],
+        (roll, strip): (usize, &Strip),
+    ) -> Result<Self, NestingError> {
+        let mut job = Self {
+            laid: Vec::new(),
+            sources: Vec::new(),
+        };
+        for (k, item) in items.iter().enumerate() {
+            if item.quantity == 0 {
+                // Refused below with its name.
+                job.laid.push(item.clone());
+                job.sources.push((k, Vec::new()));
+            }
+            for copies in groups(item, &left[k].copies) {
+                job.laid.push(part_of(item, &copies, roll));
+                job.sources.push((k, copies));
+            }
         }
-        laid.remove(refusal.item);
-        sources.remove(refusal.item);
+        if job.laid.is_empty() {
+            return Ok(job);
+        }
+        let copy_of = |item: usize, copy: u32| {
+            let copies = &job.sources[item].1;
+            copies.get(copy as usize).copied().unwrap_or(copy)
+        };
+        let refused = match check_numbered(&job.laid, strip, &copy_of) {
+            Ok(()) => return Ok(job),
+            Err(NestingError::Refused(refused)) => refused,
+            Err(error) => return Err(error),
+        };
+        let too_large = |refusal: &Refusal| {
+            matches!(
+                refusal.problem,
+                ItemProblem::TooWide { .. } | ItemProblem::TooLong { .. }
+            )
+        };
+        if !refused.iter().all(too_large) {
+            let other = refused.into_iter().filter(|r| !too_large(r));
+            let named = other.map(|mut r| {
+                r.item = job.sources[r.item].0;
+                r
+            });
+            return Err(NestingError::Refused(named.collect()));
+        }
+        for refusal in refused.iter().rev() {
+            let reason = format!("roll {}: {}", roll + 1, refusal.problem);
+            let reasons = &mut left[job.sources[refusal.item].0].reasons;
+            if !reasons.contains(&reason) {
+                reasons.push(reason);
+            }
+            job.laid.remove(refusal.item);
+            job.sources.remove(refusal.item);
+        }
+        Ok(job)
     }
-    Ok((laid, sources))
 }
 
 /// Copies that may lie alike: of a pair the even ones and the odd ones.

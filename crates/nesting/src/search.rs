@@ -7,7 +7,7 @@ use crate::layout::Layout;
 use crate::separate::Limit;
 use crate::side_by_side::side_by_side;
 use crate::warm::{finish, layout_of};
-use crate::{Item, Marker, Strip, judge};
+use crate::{Item, Marker, PENETRATION_LIMIT, Strip, judge};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -84,8 +84,10 @@ pub struct Control<'a> {
     pub cancel: &'a AtomicBool,
 }
 
-/// Most islands: each holds tables of all pairs of pieces.
+/// Most islands.
 const MOST_ISLANDS: usize = 64;
+/// Most pairs of pieces that all islands hold together, 24 bytes each: 1 GB.
+const PAIRS_HELD: usize = 40_000_000;
 /// Islands where the bytes must not depend on the machine, and the fewest anywhere.
 const USUAL_ISLANDS: usize = 2;
 /// Part of the time in which no-fit polygons are made beforehand; the rest are made when needed.
@@ -201,7 +203,8 @@ fn run(
     (search, control): (Search, &mut Control<'_>),
 ) -> Result<Marker, NestingError> {
     check(items, strip)?;
-    let search = checked(search)?;
+    let count: usize = items.iter().map(|item| item.quantity as usize).sum();
+    let search = checked(search, count + strip.defects.len())?;
     let meter = Meter {
         search,
         cancel: control.cancel,
@@ -210,15 +213,18 @@ fn run(
     let copies: Vec<(usize, u32)> = (0..items.len())
         .flat_map(|k| (0..items[k].quantity).map(move |copy| (k, copy)))
         .collect();
-    let job = Job::new(items, strip, &copies);
-    let mut told = || (control.progress)(BEGUN);
-    job.prepare(threads(search), &|| meter.stops(PREPARING), &mut told);
-    let layout = start.map(|marker| layout_of(&job, marker));
-    let best = hunt(&job, layout.as_ref(), &meter, control)?;
-    let marker = finish(&job, &best);
+    let found = search_for((items, strip, &copies), start, (&meter, control));
+    let marker = match (found, start) {
+        (Ok(marker), _) => marker,
+        // Stopped before anything was found: a sound start is something.
+        (Err(NestingError::Cancelled), Some(start)) if judge(items, strip, start).is_sound() => {
+            return Ok(start.clone());
+        }
+        (Err(error), _) => return Err(error),
+    };
     let verdict = judge(items, strip, &marker);
-    let is_worse = |s: &&Marker| !verdict.is_sound() || is_behind(&marker, s);
-    if let Some(start) = start.filter(is_worse)
+    let gains = |s: &&Marker| verdict.is_sound() && is_ahead(&marker, s);
+    if let Some(start) = start.filter(|s| !gains(s))
         && judge(items, strip, start).is_sound()
     {
         return Ok(start.clone());
@@ -235,6 +241,22 @@ fn run(
     }
 }
 
+/// Makes the tables and searches.
+fn search_for(
+    (items, strip, copies): (&[Item], &Strip, &[(usize, u32)]),
+    start: Option<&Marker>,
+    (meter, control): (&Meter<'_>, &mut Control<'_>),
+) -> Result<Marker, NestingError> {
+    let stop = || meter.cancel.load(Ordering::Relaxed);
+    let job = Job::new(items, strip, copies, &stop)?;
+    let mut told = || (control.progress)(BEGUN);
+    let threads = threads(meter.search);
+    job.prepare(threads, &|| meter.stops(PREPARING), &mut told);
+    let layout = start.map(|marker| layout_of(&job, marker));
+    let best = hunt(&job, layout.as_ref(), meter, control)?;
+    Ok(finish(&job, &best))
+}
+
 /// What is told before there is a first layout.
 const BEGUN: Progress = Progress {
     done: 0.0,
@@ -242,25 +264,27 @@ const BEGUN: Progress = Progress {
     length: f64::INFINITY,
 };
 
-/// A search that can be made, with its islands counted.
-fn checked(mut search: Search) -> Result<Search, NestingError> {
+/// A search that can be made with so many pieces and flaws, with its islands counted.
+fn checked(mut search: Search, count: usize) -> Result<Search, NestingError> {
     let refuse = |what: String| Err(NestingError::Search(what));
     if let Budget::Seconds(seconds) = search.budget
         && (seconds.is_nan() || seconds < 0.0)
     {
         return refuse(format!("the time is {seconds} s; give 0 or more"));
     }
-    if search.islands > MOST_ISLANDS {
-        let count = search.islands;
+    let most = (PAIRS_HELD / count.pow(2).max(1)).clamp(1, MOST_ISLANDS);
+    if search.islands > most {
         return refuse(format!(
-            "{count} islands are too many; give {MOST_ISLANDS} at most"
+            "{} islands are too many for {count} pieces and flaws; give {most} at most",
+            search.islands
         ));
     }
     if search.islands == 0 {
         search.islands = match search.budget {
             Budget::Evaluations(_) => USUAL_ISLANDS,
-            Budget::Seconds(_) => processors().clamp(USUAL_ISLANDS, MOST_ISLANDS),
+            Budget::Seconds(_) => processors().max(USUAL_ISLANDS),
         };
+        search.islands = search.islands.min(most);
     }
     Ok(search)
 }
@@ -269,10 +293,11 @@ fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Whether a marker has less laid than another, or as much on more fabric.
-fn is_behind(marker: &Marker, other: &Marker) -> bool {
+/// Whether a marker has more laid than another, or as much on clearly less fabric.
+fn is_ahead(marker: &Marker, other: &Marker) -> bool {
     let (left, other_left) = (marker.unplaced.len(), other.unplaced.len());
-    left > other_left || (left == other_left && marker.length > other.length)
+    let shorter = marker.length < other.length - PENETRATION_LIMIT;
+    left < other_left || (left == other_left && shorter)
 }
 
 fn threads(search: Search) -> usize {

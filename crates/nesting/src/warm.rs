@@ -140,6 +140,7 @@ impl Island<'_> {
         let job = self.separator.job;
         let mut layout = given.clone();
         layout.length = length;
+        layout.ease_phases(job);
         let movable = |k: &usize| job.pieces[*k].locked.is_none();
         let mut missing = Vec::new();
         for piece in (0..layout.at.len()).filter(movable) {

@@ -125,8 +125,25 @@ fn nothing_to_do_leaves_a_sound_marker_as_it_is() {
     let (items, strip) = (pieces(), Strip::of_width(1.2));
     let marker = make(&items, &strip, Search::evaluations(300_000));
     let same = improve(&items, &strip, &marker, Search::evaluations(0));
-    assert!(same.length <= marker.length);
-    assert_eq!(same.placements.len(), marker.placements.len());
+    assert_eq!(same, marker);
+}
+
+#[test]
+fn a_sound_marker_gone_on_from_is_kept_when_the_search_is_stopped_at_once() {
+    let (items, strip) = (pieces(), Strip::of_width(1.2));
+    let marker = make(&items, &strip, Search::evaluations(300_000));
+    let stopped = |start: &Marker| {
+        let mut control = Control {
+            progress: &mut |_| {},
+            cancel: &AtomicBool::new(true),
+        };
+        let search = Search::evaluations(1_000_000);
+        improve_marker(&items, &strip, start, search, &mut control)
+    };
+    assert_eq!(stopped(&marker), Ok(marker.clone()));
+    let mut broken = marker.clone();
+    broken.placements[0].translation = marker.placements[1].translation;
+    assert_eq!(stopped(&broken), Err(NestingError::Cancelled));
 }
 
 /// What a user may have done to a marker by hand.
@@ -268,7 +285,7 @@ fn many_tilts_are_thinned_so_that_the_clock_is_kept() {
     let marker = make(&items, &Strip::of_width(1.5), Search::seconds(1.0));
     assert_eq!(marker.placements.len(), 40);
     assert!(
-        started.elapsed().as_secs_f64() < 20.0,
+        started.elapsed().as_secs_f64() < 5.0,
         "{:?}",
         started.elapsed()
     );

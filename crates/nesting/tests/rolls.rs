@@ -170,3 +170,39 @@ fn damaged_pieces_and_rolls_are_refused() {
     let bad = Strip::of_width(f64::NAN);
     assert!(matches!(make(&items, &[bad]), Err(NestingError::Strip(_))));
 }
+
+#[test]
+fn refused_locks_are_named_by_the_copies_of_the_job() {
+    let mut sleeve = Item {
+        quantity: 4,
+        ..Item::new("sleeve", rectangle(0.4, 0.3))
+    };
+    sleeve.allowed.mirror = Mirror::Pairs;
+    let rolls = [of_length(0.7, 2.0), Strip::of_width(0.9)];
+    let lock = |copy: u32, x: f64| Locked {
+        copy,
+        turn: 0.0,
+        mirrored: copy % 2 == 1,
+        translation: Vec2::new(x, 0.35),
+    };
+    let refused = |locked: Vec<Locked>| {
+        let items = [Item {
+            locked,
+            ..sleeve.clone()
+        }];
+        match make(&items, &rolls) {
+            Err(NestingError::Refused(list)) => list[0].problem.clone(),
+            other => panic!("{other:?}"),
+        }
+    };
+    // Copies 1 and 3 are the first and the second of those that lie face down.
+    match refused(vec![lock(1, 0.5), lock(3, 0.6)]) {
+        ItemProblem::LockedBadly { copy, why } => {
+            assert_eq!(copy, 3);
+            assert!(why.contains("\"sleeve\" 1 and \"sleeve\" 3"), "{why}");
+        }
+        other => panic!("{other:?}"),
+    }
+    // What does not exist is not passed over.
+    assert_eq!(refused(vec![lock(9, 0.5)]), ItemProblem::Locked(9));
+}

@@ -1,0 +1,145 @@
+//! What each pair of shapes may not do: tables of all pairs, as far as they can be held.
+
+use crate::job::Job;
+use crate::marker::Pose;
+use crate::pair::Pair;
+use crate::raster::DepthRaster;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::sync::OnceLock;
+use toile_geometry::Vec2;
+
+/// Most pairs of shapes, 64 bytes each: 256 MB.
+const MOST_PAIRS: usize = 4_000_000;
+/// Most rows of the loss maps.
+const ROWS: f64 = 64.0;
+/// Numbers in all depth rasters together, padding included, above which loss maps get fewer rows:
+/// 128 MB.
+const RASTER_NUMBERS: f64 = 32e6;
+
+/// How coarse loss maps may get.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Maps {
+    /// Fewest rows.
+    rows: f64,
+    /// Most numbers in all depth rasters together.
+    numbers: f64,
+}
+
+impl Maps {
+    /// Maps that tell places of all but the smallest pieces apart, in 128 MB.
+    pub const FINE: Self = Self {
+        rows: 24.0,
+        numbers: RASTER_NUMBERS,
+    };
+    /// Maps that still mean something, in 512 MB.
+    pub const COARSE: Self = Self {
+        rows: 8.0,
+        numbers: 4.0 * RASTER_NUMBERS,
+    };
+}
+
+/// Fewest numbers a depth raster holds: three rows of two groups.
+const LEAST_NUMBERS: f64 = 96.0;
+
+/// Stands for the polygon of two shapes that may overlap.
+const NO_POLYGON: u32 = u32::MAX;
+
+/// Most cells along the grids of so many no-fit polygons: together they stay under some 600 MB.
+pub(crate) fn most_cells(no_fits: usize) -> usize {
+    match no_fits {
+        0..=4_000 => 64,
+        4_001..=16_000 => 32,
+        _ => 16,
+    }
+}
+
+impl Job<'_> {
+    /// With N(a, b) = a + (-b) and an isometry Q: N(Qa, Qb) = Q N(a, b) and N(b, a) = -N(a, b), so
+    /// one polygon serves all pairs that lie alike. Whether the tables can be held, with so many
+    /// polygons at most; says no as soon as they cannot, or `stop` says so.
+    pub(crate) fn pair_up(&mut self, most: usize, stop: &dyn Fn() -> bool) -> bool {
+        self.keys.clear();
+        let count = self.shapes.len();
+        if count * count > MOST_PAIRS {
+            return false;
+        }
+        let mut rasters: BTreeMap<(usize, usize, u64), u32> = BTreeMap::new();
+        let mut known: BTreeMap<(usize, usize, i64, bool), u32> = BTreeMap::new();
+        let mut pairs = Vec::with_capacity(count * count);
+        for a in &self.shapes {
+            let too_many =
+                known.len() > most || rasters.len() as f64 * LEAST_NUMBERS > Maps::COARSE.numbers;
+            if too_many || stop() {
+                return false;
+            }
+            for b in &self.shapes {
+                let gap = self.gap(a.kind, b.kind);
+                let swapped = b.ring < a.ring;
+                let (fixed, moving) = if swapped { (b, a) } else { (a, b) };
+                let apart = moving.turn - fixed.turn;
+                let apart = if fixed.mirrored { -apart } else { apart };
+                let angle = (apart.rem_euclid(TAU) * 1e9).round() as i64;
+                let angle = angle % (TAU * 1e9).round() as i64;
+                let mirrored = fixed.mirrored != moving.mirrored;
+                let key = (fixed.ring, moving.ring, angle, mirrored);
+                let next = known.len() as u32;
+                let no_fit = match gap.is_finite() {
+                    true => *known.entry(key).or_insert(next),
+                    false => NO_POLYGON,
+                };
+                if no_fit == next {
+                    self.keys.push((fixed.ring, moving.ring, apart, mirrored));
+                }
+                let sign = if swapped { -1.0 } else { 1.0 };
+                let pose = Pose {
+                    grain: 0.0,
+                    turn: fixed.turn,
+                    mirrored: fixed.mirrored,
+                    translation: Vec2::zeros(),
+                };
+                let axes = pose.axes().map(|axis| axis * sign);
+                let between = a.offset - b.offset;
+                let next = rasters.len() as u32;
+                let raster = rasters.entry((a.look, b.look, gap.to_bits()));
+                pairs.push(Pair {
+                    no_fit,
+                    raster: *raster.or_insert(next),
+                    axes,
+                    shift: Vec2::new(between.dot(&axes[0]), between.dot(&axes[1])),
+                    gap,
+                });
+            }
+        }
+        let gaps = pairs.iter().map(|p| p.gap);
+        self.widest_gap = gaps.filter(|g| g.is_finite()).fold(0.0, f64::max);
+        self.no_fits = known.iter().map(|_| OnceLock::new()).collect();
+        self.rasters = rasters.iter().map(|_| OnceLock::new()).collect();
+        self.pairs = pairs;
+        self.no_fits.len() <= most
+    }
+
+    /// Chooses the spacing of the loss maps so that the depth rasters stay small. Whether they can
+    /// be held.
+    pub(crate) fn choose_spacing(&mut self, maps: Maps) -> bool {
+        let count = self.shapes.len();
+        let mut seen = vec![false; self.rasters.len()];
+        let mut firsts = Vec::with_capacity(self.rasters.len());
+        for (k, pair) in self.pairs.iter().enumerate() {
+            if !std::mem::replace(&mut seen[pair.raster as usize], true) {
+                firsts.push((k / count, k % count));
+            }
+        }
+        let numbers = |job: &Self| -> f64 {
+            let each = firsts.iter().map(|&pair| DepthRaster::numbers(job, pair));
+            each.sum()
+        };
+        self.spacing = self.height / ROWS;
+        let mut sum = numbers(self);
+        while sum > RASTER_NUMBERS && self.spacing < self.height / maps.rows {
+            self.spacing *= 1.05;
+            sum = numbers(self);
+        }
+        sum <= maps.numbers
+    }
+}
