@@ -125,6 +125,9 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
             None => failure,
         }
     })?;
+    for note in &report.notes {
+        output.warn(format!("note: {note}"));
+    }
     body_table(&report, output);
     output.say(format!(
         "wrote {} ({} compared)",
@@ -149,6 +152,7 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         "measurements": listed,
         "not_taken": report.untaken,
         "conflicts": conflicts,
+        "notes": report.notes,
     });
     if let Some(fit) = &fit {
         let m = &fit.misfit;

@@ -35,6 +35,8 @@ mod scene;
 mod scene_motion;
 mod x3d;
 mod x3d_nodes;
+mod x3d_vrml;
+mod x3d_xml;
 
 pub use atomic::{write_all_atomically, write_atomically};
 pub use bvh::read_bvh;

@@ -37,51 +37,16 @@ impl Turns {
 /// Joint node or its DEF with or without `hanim_`. A PositionInterpolator led to the root moves
 /// the body. The TimeSensor gives the length (one second without it) and whether it is a loop.
 /// Bones point as the file's do where it has joints with centres; else a figure with hanging arms
-/// is meant.
+/// is meant. Where several TimeSensors lead to interpolators of joints, each is a clip, and the
+/// first is taken. Also tells what was left out.
 ///
 /// # Errors
 /// What is wrong, in which line or node, and the remedy; a file that turns no joint.
-pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<Motion, FormatError> {
+pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<(Motion, Vec<String>), FormatError> {
     let scene = read_scene(text)?;
-    let joints = joint_nodes(&scene);
-    let (mut turns, mut moves) = (BTreeMap::new(), None);
-    for route in &scene.routes {
-        let Some(from) = scene.named(&route.from) else {
-            return Err(lost(route.line, &route.from));
-        };
-        let target = scene.named(&route.to);
-        let joint = target
-            .and_then(joint_of)
-            .or_else(|| joint_called(&route.to));
-        match (from.kind.as_str(), joint) {
-            ("OrientationInterpolator", Some(joint)) => {
-                turns.insert(joint, turns_of(from)?);
-            }
-            ("PositionInterpolator", Some(Joint::HumanoidRoot)) => moves = Some(places_of(from)?),
-            _ => {}
-        }
-    }
-    if turns.is_empty() {
-        return Err(FormatError::new(
-            "the routes",
-            "no OrientationInterpolator leads to a joint",
-            "give ROUTEs from value_changed to set_rotation of joints with H-Anim names such as l_hip",
-        ));
-    }
-    let clock = scene.nodes.iter().find(|node| node.kind == "TimeSensor");
-    let length = clock
-        .and_then(|node| node.numbers("cycleInterval").first().copied())
-        .unwrap_or(1.0);
-    if !(length > 0.0 && length <= LONGEST) {
-        let line = clock.map_or(1, |node| node.line);
-        return Err(FormatError::new(
-            format!("line {line}, TimeSensor"),
-            format!("cycleInterval {length} is not a length of time"),
-            "give seconds from above 0 to 3600",
-        ));
-    }
-    let is_loop = clock.is_some_and(|node| node.is_true("loop"));
-    let bones = bones(&joints, skeleton);
+    let clip = Clip::of(&scene)?;
+    let (length, is_loop) = clip.cycle()?;
+    let bones = bones(&joint_nodes(&scene)?, skeleton);
     let carrier = Carrier::new(&bones, skeleton)?;
     let count = ((length * RATE).round() as usize).max(2);
     let rest = rest_of_root(&bones);
@@ -94,22 +59,168 @@ pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<Motion, FormatError> 
             let local: Vec<UnitQuaternion<f64>> = bones
                 .iter()
                 .map(|bone| {
-                    let own = joint_called(&bone.name).and_then(|joint| turns.get(&joint));
+                    let own = joint_called(&bone.name).and_then(|joint| clip.turns.get(&joint));
                     own.map_or(UnitQuaternion::identity(), |turns: &Turns| turns.at(share))
                 })
                 .collect();
-            let moved = moves.as_ref().map_or(Vec3::zeros(), |m| place_at(m, share));
+            let moves = clip.moves.as_ref();
+            let moved = moves.map_or(Vec3::zeros(), |m| place_at(m, share));
             carrier.pose(&bones, &local, rest + moved)
         })
         .collect();
-    Ok(Motion {
+    let motion = Motion {
         step: match is_loop {
             true => length / count as f64,
             false => length / (count - 1) as f64,
         },
         poses,
         is_loop,
-    })
+    };
+    Ok((motion, clip.notes))
+}
+
+/// What turns and moves joints in one clip.
+struct Clip<'a> {
+    clock: Option<&'a Node>,
+    turns: BTreeMap<Joint, Turns>,
+    moves: Option<Vec<(f64, Vec3)>>,
+    notes: Vec<String>,
+}
+
+impl<'a> Clip<'a> {
+    /// The first clip of a scene.
+    fn of(scene: &'a Scene) -> Result<Self, FormatError> {
+        let leads: Vec<Lead<'_>> = leads(scene)?;
+        let turning = || leads.iter().filter(|lead| lead.turns());
+        let clocks: Vec<&Node> = scene
+            .nodes
+            .iter()
+            .filter(|node| turning().any(|lead| lead.has_clock(node)))
+            .collect();
+        let mut clip = Self {
+            clock: clocks.first().copied(),
+            turns: BTreeMap::new(),
+            moves: None,
+            notes: Vec::new(),
+        };
+        let (mut still, mut strange) = (Vec::new(), Vec::new());
+        for lead in &leads {
+            match clip.clock {
+                Some(_) if lead.clocks.is_empty() => still.push(lead.by.name.as_str()),
+                Some(clock) if !lead.has_clock(clock) => {}
+                _ => match (lead.by.kind.as_str(), lead.joint) {
+                    ("OrientationInterpolator", Some(joint)) => {
+                        clip.turns.insert(joint, turns_of(lead.by)?);
+                    }
+                    ("OrientationInterpolator", None) => strange.push(lead.to),
+                    (_, Some(Joint::HumanoidRoot)) => clip.moves = Some(places_of(lead.by)?),
+                    _ => {}
+                },
+            }
+        }
+        if clip.turns.is_empty() {
+            return Err(FormatError::new(
+                "the routes",
+                "no OrientationInterpolator leads to a joint",
+                "give ROUTEs from value_changed to set_rotation of joints with H-Anim names such as l_hip",
+            ));
+        }
+        if clocks.len() > 1 {
+            let names: Vec<&str> = clocks.iter().map(|clock| clock.name.as_str()).collect();
+            clip.notes.push(format!(
+                "the file has {} clips, of the TimeSensors {}: {} is taken",
+                names.len(),
+                names.join(", "),
+                names[0]
+            ));
+        }
+        for (names, why) in [
+            (still, "no TimeSensor leads to them"),
+            (strange, "the body has no such joints"),
+        ] {
+            if !names.is_empty() {
+                let names = names.join(", ");
+                clip.notes.push(format!("left out: {names}; {why}"));
+            }
+        }
+        if clip.clock.is_none() {
+            clip.clock = scene.nodes.iter().find(|node| node.kind == "TimeSensor");
+        }
+        Ok(clip)
+    }
+
+    /// Its length \[s\], and whether it is a loop.
+    fn cycle(&self) -> Result<(f64, bool), FormatError> {
+        let Some(clock) = self.clock else {
+            return Ok((1.0, false));
+        };
+        let length = clock.numbers("cycleInterval")?.first().copied();
+        let length = length.unwrap_or(1.0);
+        if !(length > 0.0 && length <= LONGEST) {
+            return Err(FormatError::new(
+                clock.place(),
+                format!("cycleInterval {length} is not a length of time"),
+                "give seconds from above 0 to 3600",
+            ));
+        }
+        Ok((length, clock.is_true("loop")))
+    }
+}
+
+/// An interpolator that a route leads to a node.
+struct Lead<'a> {
+    by: &'a Node,
+    /// The joint it leads to, if it is one of ours.
+    joint: Option<Joint>,
+    /// Name of the node it leads to.
+    to: &'a str,
+    /// Names of the TimeSensors that lead to it.
+    clocks: Vec<&'a str>,
+}
+
+impl Lead<'_> {
+    /// Whether it turns a joint of ours.
+    fn turns(&self) -> bool {
+        self.by.kind == "OrientationInterpolator" && self.joint.is_some()
+    }
+
+    fn has_clock(&self, clock: &Node) -> bool {
+        clock.kind == "TimeSensor" && self.clocks.contains(&clock.name.as_str())
+    }
+}
+
+/// The interpolators that turn or move something.
+fn leads(scene: &Scene) -> Result<Vec<Lead<'_>>, FormatError> {
+    let mut leads = Vec::new();
+    for route in &scene.routes {
+        let target = scene.named(&route.to);
+        let joint = target
+            .and_then(joint_of)
+            .or_else(|| joint_called(&route.to));
+        let Some(by) = scene.named(&route.from) else {
+            match joint {
+                Some(_) => return Err(lost(route.line, &route.from)),
+                None => continue,
+            }
+        };
+        let field = match by.kind.as_str() {
+            "OrientationInterpolator" => "rotation",
+            "PositionInterpolator" => "translation",
+            _ => continue,
+        };
+        if route.field != field && !route.field.is_empty() {
+            continue;
+        }
+        let is_clock = |name: &&str| scene.named(name).is_some_and(|n| n.kind == "TimeSensor");
+        let into = scene.routes.iter().filter(|r| r.to == by.name);
+        leads.push(Lead {
+            by,
+            joint,
+            to: &route.to,
+            clocks: into.map(|r| r.from.as_str()).filter(is_clock).collect(),
+        });
+    }
+    Ok(leads)
 }
 
 fn lost(line: usize, name: &str) -> FormatError {
@@ -137,21 +248,15 @@ fn joint_of(node: &Node) -> Option<Joint> {
 }
 
 /// Joint nodes of the scene with their centres.
-fn joint_nodes(scene: &Scene) -> BTreeMap<Joint, Vec3> {
+fn joint_nodes(scene: &Scene) -> Result<BTreeMap<Joint, Vec3>, FormatError> {
     let is_joint = |node: &&Node| matches!(node.kind.as_str(), "Joint" | "HAnimJoint");
-    scene
-        .nodes
-        .iter()
-        .filter(is_joint)
-        .filter_map(|node| {
-            let centre = node.numbers("center");
-            let place = match centre.as_slice() {
-                [x, y, z] => Vec3::new(*x, *y, *z),
-                _ => return None,
-            };
-            Some((joint_of(node)?, place))
-        })
-        .collect()
+    let mut centres = BTreeMap::new();
+    for node in scene.nodes.iter().filter(is_joint) {
+        if let (Some(joint), [x, y, z]) = (joint_of(node), &node.numbers("center")?[..]) {
+            centres.insert(joint, Vec3::new(*x, *y, *z));
+        }
+    }
+    Ok(centres)
 }
 
 /// The file's figure as bones: its joints where they have centres, else our own skeleton's with
@@ -223,11 +328,10 @@ fn rest_of_root(bones: &[Bone]) -> Vec3 {
 
 /// Keys of an interpolator: as many as values of a width, in ascending order.
 fn keys(node: &Node, width: usize) -> Result<Vec<(f64, Vec<f64>)>, FormatError> {
-    let place = || format!("line {}, {} {}", node.line, node.kind, node.name);
-    let (key, value) = (node.numbers("key"), node.numbers("keyValue"));
+    let (key, value) = (node.numbers("key")?, node.numbers("keyValue")?);
     if key.is_empty() || key.len() * width != value.len() {
         return Err(FormatError::new(
-            place(),
+            node.place(),
             format!(
                 "{} keys and {} numbers of keyValue do not go together",
                 key.len(),
@@ -238,7 +342,7 @@ fn keys(node: &Node, width: usize) -> Result<Vec<(f64, Vec<f64>)>, FormatError> 
     }
     if key.windows(2).any(|w| w[1] < w[0]) {
         return Err(FormatError::new(
-            place(),
+            node.place(),
             "the keys do not ascend",
             "order them from 0 to 1",
         ));
@@ -316,7 +420,7 @@ mod tests {
     #[test]
     fn both_encodings_lift_the_thigh() {
         let skeleton = skeleton();
-        let [a, b] = [VRML, XML].map(|text| read_x3d(text, &skeleton).unwrap());
+        let [a, b] = [VRML, XML].map(|text| read_x3d(text, &skeleton).unwrap().0);
         assert_eq!(a, b);
         assert!(a.is_loop && (a.duration() - 2.0).abs() < 1e-12);
         let thigh = |pose: &Pose| {
@@ -355,6 +459,42 @@ mod tests {
         assert!(error(&long).contains("TimeSensor"));
     }
 
+    /// A walk and a run of a figure whose joints are a prototype's, with a finger and a sequencer.
+    const CLIPS: &str = "#VRML V2.0 utf8\n\
+        PROTO Joint [ exposedField SFVec3f center 0 0 0 exposedField SFString name \"\" ]\n\
+        { Transform { center IS center } }\n\
+        DEF hanim_l_hip Joint { name \"l_hip\" } DEF hanim_l_index1 Joint { name \"l_index1\" }\n\
+        DEF walk TimeSensor { cycleInterval 2 loop TRUE } DEF run TimeSensor { cycleInterval 1 }\n\
+        DEF steps BooleanSequencer { key [ 0 1 ] keyValue [ TRUE FALSE ] }\n\
+        DEF walk_hip OrientationInterpolator { key [ 0 1 ] keyValue [ 1 0 0 0 1 0 0 -1 ] }\n\
+        DEF run_hip OrientationInterpolator { key [ 0 1 ] keyValue [ 1 0 0 0 1 0 0 -2 ] }\n\
+        DEF idle_hip OrientationInterpolator { key [ 0 1 ] keyValue [ 1 0 0 0 1 0 0 -3 ] }\n\
+        ROUTE walk.fraction_changed TO walk_hip.set_fraction\n\
+        ROUTE run.fraction_changed TO run_hip.set_fraction\n\
+        ROUTE walk_hip.value_changed TO hanim_l_hip.set_rotation\n\
+        ROUTE walk_hip.value_changed TO hanim_l_index1.set_rotation\n\
+        ROUTE run_hip.value_changed TO hanim_l_hip.set_rotation\n\
+        ROUTE idle_hip.value_changed TO hanim_l_hip.set_rotation\n";
+
+    #[test]
+    fn of_several_clips_the_first_is_taken_and_what_is_left_out_is_told() {
+        let skeleton = skeleton();
+        let (motion, notes) = read_x3d(CLIPS, &skeleton).unwrap();
+        assert!(motion.is_loop && (motion.duration() - 2.0).abs() < 1e-12);
+        let frames = skeleton.frames(&motion.at(1.0));
+        let thigh = (frames.centre(Joint::LKnee) - frames.centre(Joint::LHip)).normalize();
+        assert!((thigh.z - 0.5f64.sin()).abs() < 1e-6, "{thigh}");
+        assert_eq!(
+            notes,
+            [
+                "the file has 2 clips, of the TimeSensors walk, run: walk is taken",
+                "left out: idle_hip; no TimeSensor leads to them",
+                "left out: hanim_l_index1; the body has no such joints",
+            ]
+        );
+        assert!(read_x3d(VRML, &skeleton).unwrap().1.is_empty());
+    }
+
     proptest! {
         #[test]
         fn any_text_is_read_or_refused(cut in 0..VRML.len(), add in "[A-Za-z0-9 {}\\[\\]<>='.#-]{0,20}") {
@@ -362,7 +502,7 @@ mod tests {
             for text in [VRML, XML] {
                 let cut = cut.min(text.len());
                 let text = format!("{}{add}{}", &text[..cut], &text[cut..]);
-                if let Ok(motion) = read_x3d(&text, &skeleton) {
+                if let Ok((motion, _)) = read_x3d(&text, &skeleton) {
                     prop_assert!(motion.poses.len() > 1);
                 }
             }

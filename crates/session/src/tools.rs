@@ -114,6 +114,8 @@ pub struct BodyReport {
     pub untaken: Vec<String>,
     /// What was asked for and contradicts itself.
     pub conflicts: Vec<Conflict>,
+    /// What of the motion's file was left out.
+    pub notes: Vec<String>,
 }
 
 /// A moment of a motion: `walk`, `run`, a BVH file or a VRML or X3D one, and the time [s].
@@ -126,31 +128,25 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// The whole motion, for a mannequin.
-    fn motion_for(&self, mannequin: &Mannequin) -> Result<Motion, SessionError> {
+    /// The whole motion, for a mannequin, and what of its file was left out.
+    fn motion_for(&self, mannequin: &Mannequin) -> Result<(Motion, Vec<String>), SessionError> {
         let skeleton = mannequin.skeleton();
-        Ok(match self.motion.as_str() {
-            "walk" => Motion::walk(skeleton),
-            "run" => Motion::run(skeleton),
-            path => {
-                let path = Path::new(path);
-                let ending = path.extension().map(|end| end.to_ascii_lowercase());
-                let read = match ending.as_ref().and_then(|end| end.to_str()) {
-                    Some("wrl" | "vrml" | "x3d" | "x3dv") => read_x3d,
-                    _ => read_bvh,
-                };
-                read(&read_text(path)?, skeleton).map_err(|error| SessionError::Format {
-                    path: path.to_owned(),
-                    error,
-                })?
-            }
+        let own = |motion| Ok((motion, Vec::new()));
+        let path = match self.motion.as_str() {
+            "walk" => return own(Motion::walk(skeleton)),
+            "run" => return own(Motion::run(skeleton)),
+            path => Path::new(path),
+        };
+        let ending = path.extension().map(|end| end.to_ascii_lowercase());
+        let text = read_text(path)?;
+        let read = match ending.as_ref().and_then(|end| end.to_str()) {
+            Some("wrl" | "vrml" | "x3d" | "x3dv") => read_x3d(&text, skeleton),
+            _ => read_bvh(&text, skeleton).map(|motion| (motion, Vec::new())),
+        };
+        read.map_err(|error| SessionError::Format {
+            path: path.to_owned(),
+            error,
         })
-    }
-
-    /// The skin of a mannequin at this moment.
-    fn skin(&self, mannequin: &Mannequin) -> Result<TriangleMesh, SessionError> {
-        let motion = self.motion_for(mannequin)?;
-        Ok(mannequin.posed_skin(&motion.pose_for(mannequin.skeleton(), self.time)))
     }
 }
 
@@ -300,17 +296,26 @@ pub fn make_body(
         .extension()
         .and_then(|end| end.to_str())
         .unwrap_or_default();
+    let motion = moment.map(|m| m.motion_for(&mannequin)).transpose()?;
+    let (motion, notes) = match motion {
+        Some((motion, notes)) => (moment.map(|m| (m, motion)), notes),
+        None => (None, Vec::new()),
+    };
     let bytes = match extension.to_ascii_lowercase().as_str() {
         "glb" => {
-            let motion = moment.map(|m| m.motion_for(&mannequin)).transpose()?;
-            let name = moment.map_or("", |m| m.motion.as_str());
-            write_body_glb(&mannequin, motion.as_ref().map(|m| (name, m)))
+            let named = motion
+                .as_ref()
+                .map(|(m, motion)| (m.motion.as_str(), motion));
+            write_body_glb(&mannequin, named)
         }
         "json" => write_mannequin(&mannequin.description()).map(String::into_bytes),
         _ => {
-            let obj = match moment {
+            let obj = match &motion {
                 None => body_obj(mannequin.skin()),
-                Some(moment) => body_obj(&moment.skin(&mannequin)?),
+                Some((moment, motion)) => {
+                    let pose = motion.pose_for(mannequin.skeleton(), moment.time);
+                    body_obj(&mannequin.posed_skin(&pose))
+                }
             };
             write_obj(&obj).map(String::into_bytes)
         }
@@ -320,5 +325,6 @@ pub fn make_body(
         rows: mannequin.measure(),
         untaken: mannequin.untaken(),
         conflicts: mannequin.conflicts(),
+        notes,
     })
 }
