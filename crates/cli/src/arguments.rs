@@ -1,11 +1,11 @@
 //! What can be asked on the command line.
 
 use crate::stretch::Stretch;
-use crate::values::{four_lengths, repeat, roll, size_count};
+use crate::values::{flaw, repeat, roll, size_count};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::Length;
-use toile_session::{Command, MarkerFormat, PatternFormat, Quality, Spread};
+use toile_session::{Command, GivenFlaw, MarkerFormat, PatternFormat, Quality, Spread};
 
 /// Sewing patterns checked, laid out on fabric, sewn round a mannequin, draped and exported.
 ///
@@ -329,10 +329,11 @@ pub struct Nest {
     /// not repeat. The hem and the middle of every piece lie on its lines.
     #[arg(long, value_name = "L[,L]", value_parser = repeat)]
     pub repeat: Option<[f64; 2]>,
-    /// A flaw no piece may lie on: x along the warp, y across the fabric laid open, length, width.
-    /// May be given again.
-    #[arg(long, value_name = "L,L,L,L", value_parser = four_lengths)]
-    pub defect: Vec<[f64; 4]>,
+    /// A flaw no piece may lie on: x along the warp, y across the fabric laid open, length, width;
+    /// where there are several fabrics after its name, as in lining:1m,20cm,3cm,3cm. May be given
+    /// again.
+    #[arg(long, value_name = "[FABRIC:]L,L,L,L", value_parser = flaw)]
+    pub defect: Vec<GivenFlaw>,
     /// Named size. Default: each pattern's base size.
     #[arg(long, value_name = "NAME", conflicts_with = "sizes")]
     pub size: Option<String>,

@@ -1,6 +1,7 @@
 //! Values of options that have several parts.
 
 use toile_geometry::Length;
+use toile_session::GivenFlaw;
 
 /// Most garments of one size: far more than can be laid at once.
 const MOST_GARMENTS: u32 = 10_000;
@@ -52,11 +53,35 @@ pub fn repeat(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-/// Four lengths with commas between [m].
-pub fn four_lengths(text: &str) -> Result<[f64; 4], String> {
-    let lengths = lengths(text)?;
+/// A flaw: four lengths with commas between [m], after the name of its fabric if there are several.
+pub fn flaw(text: &str) -> Result<GivenFlaw, String> {
+    let (fabric, place) = match text.rsplit_once(':') {
+        Some((fabric, place)) => (Some(fabric.to_owned()), place),
+        None => (None, text),
+    };
+    let lengths = lengths(place)?;
     let count = lengths.len();
-    lengths
+    let place = lengths
         .try_into()
-        .map_err(|_| format!("there are {count} lengths; give four"))
+        .map_err(|_| format!("there are {count} lengths; give four"))?;
+    Ok(GivenFlaw { fabric, place })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flaw_may_name_its_fabric() {
+        let place = [1.0, 0.2, 0.03, 0.01];
+        assert_eq!(flaw("1m,20cm,3cm,10mm"), Ok(GivenFlaw::at(place)));
+        let named = flaw("fine: lining:1m,20cm,3cm,10mm").unwrap();
+        assert_eq!(named.fabric.as_deref(), Some("fine: lining"));
+        assert_eq!(named.place, place);
+        assert!(
+            flaw("lining:1m,20cm,3cm")
+                .unwrap_err()
+                .contains("3 lengths")
+        );
+    }
 }

@@ -57,6 +57,7 @@ fn a_marker_maker_gets_rolls_spreads_costs_and_files_for_machines() {
         (["--repeat", "50mm,40mm,30mm"], "3 lengths"),
         (["--sizes", "M:4000000000"], "number of garments"),
         (["--islands", "1000000"], "islands are too many"),
+        (["--defect", "denim:1m,2cm,1cm,1cm"], "denim"),
     ] {
         let output = toile(folder.path(), &["nest", trousers, bad[0], bad[1]]);
         assert_eq!(output.status.code(), Some(2), "{bad:?}");

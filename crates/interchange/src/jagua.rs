@@ -7,7 +7,7 @@
 use crate::FormatError;
 use serde_json::{Map, Value, json};
 use toile_geometry::{Polygon, Vec2};
-use toile_nesting::{Allowed, Item, Marker, Strip};
+use toile_nesting::{Allowed, Item, Marker, Mirror, Nap, Strip};
 
 /// Orientations given to items that may be turned freely: every fifteen degrees.
 const FREE_TURNS: u32 = 24;
@@ -215,9 +215,8 @@ pub fn write_jagua(
     text.map_err(|error| wrong("solution", error.to_string()))
 }
 
-/// Items and the usable width of a strip as an instance, in millimetres, grain along x. Gaps, tilt,
-/// turning over, nap, end margins, length at hand, print, flaws, folds and locks are not in this
-/// format.
+/// Items and the usable width of a strip as an instance, in millimetres, grain along x; also what
+/// this format could not carry over. On fabric that runs one way only turn 0 is allowed.
 ///
 /// # Errors
 /// A number is not finite.
@@ -225,7 +224,7 @@ pub fn write_jagua_instance(
     name: &str,
     items: &[Item],
     strip: &Strip,
-) -> Result<String, FormatError> {
+) -> Result<(String, Vec<&'static str>), FormatError> {
     for item in items {
         let mut points = item.outline.outer.iter();
         let turns = item.allowed.turns.iter().all(|t| t.is_finite());
@@ -242,7 +241,9 @@ pub fn write_jagua_instance(
         let straight = item.outline.rotated(-item.grain);
         let corner = straight.bounds().min;
         let point = |p: &Vec2| [(p.x - corner.x) * 1e3, (p.y - corner.y) * 1e3];
-        let turns: Vec<f64> = item.allowed.turns.iter().map(|t| t.to_degrees()).collect();
+        let runs = |turn: &&f64| strip.nap != Nap::OneWay || **turn == 0.0;
+        let turns = item.allowed.turns.iter().filter(runs);
+        let turns: Vec<f64> = turns.map(|t| t.to_degrees()).collect();
         json!({
             "id": id,
             "demand": item.quantity,
@@ -258,7 +259,27 @@ pub fn write_jagua_instance(
         "strip_height": strip.usable_width() * 1e3,
         "items": items.iter().enumerate().map(item).collect::<Vec<_>>(),
     });
-    Ok(format!("{instance}\n"))
+    Ok((format!("{instance}\n"), left_out(items, strip)))
+}
+
+/// What of a job an instance does not say.
+fn left_out(items: &[Item], strip: &Strip) -> Vec<&'static str> {
+    let any = |has: &dyn Fn(&Item) -> bool| items.iter().any(has);
+    let all = [
+        ("gaps", strip.gap > 0.0 || any(&|i| i.gap > 0.0)),
+        ("tilt", any(&|i| i.allowed.tilt > 0.0)),
+        ("turning over", any(&|i| i.allowed.mirror != Mirror::Never)),
+        ("the nap of each garment", strip.nap == Nap::PerBundle),
+        ("end margins", strip.end_margin > 0.0),
+        ("the length at hand", strip.max_length.is_some()),
+        ("the print", strip.stripes.is_some()),
+        ("flaws", !strip.defects.is_empty()),
+        ("folds", any(&|i| i.fold_edge.is_some())),
+        ("locked pieces", any(&|i| !i.locked.is_empty())),
+        ("holes", any(&|i| !i.outline.holes.is_empty())),
+    ];
+    let lost = all.into_iter().filter(|what| what.1);
+    lost.map(|what| what.0).collect()
 }
 
 #[cfg(test)]
@@ -277,7 +298,9 @@ mod tests {
             selvedge: 0.01,
             ..Strip::of_width(1.5)
         };
-        let text = write_jagua_instance("shirt", std::slice::from_ref(&item), &strip).unwrap();
+        let (text, lost) =
+            write_jagua_instance("shirt", std::slice::from_ref(&item), &strip).unwrap();
+        assert!(lost.is_empty(), "{lost:?}");
         let damaged = Item {
             grain: f64::NAN,
             ..item.clone()
@@ -291,6 +314,36 @@ mod tests {
         let area = back.items[0].outline.area() / (scale * scale);
         assert!((area - item.outline.area()).abs() < 1e-12);
         assert_eq!(back.items[0].allowed.turns, item.allowed.turns);
+    }
+
+    #[test]
+    fn what_an_instance_cannot_say_is_listed() {
+        let square = [[0.0, 0.0], [0.4, 0.0], [0.4, 0.4], [0.0, 0.4]].map(Vec2::from);
+        let mut item = Item::new("square", Polygon::new(square.to_vec()));
+        item.allowed.mirror = Mirror::Free;
+        item.allowed.tilt = 0.02;
+        item.gap = 0.001;
+        let hole = square.map(|p| p * 0.5 + Vec2::new(0.1, 0.1));
+        item.outline.holes.push(hole.to_vec());
+        let strip = Strip {
+            nap: Nap::OneWay,
+            end_margin: 0.01,
+            max_length: Some(3.0),
+            ..Strip::of_width(1.5)
+        };
+        let (text, lost) = write_jagua_instance("a", std::slice::from_ref(&item), &strip).unwrap();
+        assert_eq!(
+            lost,
+            [
+                "gaps",
+                "tilt",
+                "turning over",
+                "end margins",
+                "the length at hand",
+                "holes"
+            ]
+        );
+        assert_eq!(read_jagua(&text).unwrap().items[0].allowed.turns, [0.0]);
     }
 
     use toile_nesting::{Control, Search, make_marker};

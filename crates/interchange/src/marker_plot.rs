@@ -2,7 +2,7 @@
 
 use crate::dxf::DxfWriter;
 use crate::hpgl::HpglWriter;
-use crate::marker_strokes::{Layer, Strokes};
+use crate::marker_strokes::{Layer, Strokes, fill_of};
 use crate::pdf::{Align, PdfPage, PdfSheets, PdfText, fitted, wrapped};
 use crate::{FormatError, MarkerDrawing};
 use toile_geometry::Vec2;
@@ -114,18 +114,6 @@ pub(crate) struct PlotLook {
 /// Fill of what is cut twice.
 const CUT_TWICE: [f32; 3] = [0.9, 0.0, 0.0];
 
-/// Pale fills, one after another by item.
-const FILLS: [[f32; 3]; 8] = [
-    [0.96, 0.85, 0.78],
-    [0.81, 0.89, 0.95],
-    [0.85, 0.93, 0.82],
-    [0.96, 0.90, 0.72],
-    [0.89, 0.84, 0.93],
-    [0.95, 0.82, 0.85],
-    [0.80, 0.92, 0.90],
-    [0.90, 0.88, 0.83],
-];
-
 /// Draws a marker on a page.
 pub(crate) fn plot(page: &mut PdfPage, drawing: &MarkerDrawing, look: &PlotLook) {
     let on_page = |p: Vec2| look.origin + p * look.scale;
@@ -133,7 +121,7 @@ pub(crate) fn plot(page: &mut PdfPage, drawing: &MarkerDrawing, look: &PlotLook)
     for piece in &drawing.pieces {
         let cut = piece.pose.lay(&piece.cut);
         let rings: Vec<Vec<Vec2>> = cut.rings().map(|r| mapped(r)).collect();
-        let fill = FILLS[piece.item % FILLS.len()];
+        let fill = fill_of(piece.item).map(|part| f32::from(part) / 255.0);
         page.fill(rings.iter().map(Vec::as_slice), fill);
     }
     for overlap in &drawing.overlaps {

@@ -53,6 +53,24 @@ pub enum Spread {
     FaceToFace,
 }
 
+impl Spread {
+    /// The numbers of plies that are right.
+    pub const PLIES: &'static str = "give 1 or more, face to face an even number";
+
+    /// Layers cut at once where nothing is said.
+    pub fn usual_plies(self) -> u32 {
+        match self {
+            Self::FaceToFace => 2,
+            Self::Open | Self::Folded | Self::Tubular => 1,
+        }
+    }
+
+    /// Whether fabric can be spread so in so many plies.
+    pub fn allows(self, plies: u32) -> bool {
+        plies > 0 && (self != Self::FaceToFace || plies.is_multiple_of(2))
+    }
+}
+
 /// What a marker maker knows of a fabric. What is not given is the pattern's, or usual.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -251,10 +269,11 @@ fn check(settings: &MarkerSettings) -> Result<(), FormatError> {
                 return refuse(place, what, "give 0 or more");
             }
         }
-        let plies = fabric.plies.unwrap_or(2);
-        if plies == 0 || (fabric.spread == Some(Spread::FaceToFace) && plies % 2 == 1) {
-            let hint = "give 1 or more, face to face an even number";
-            return refuse(place, format!("it is spread in {plies} plies"), hint);
+        let spread = fabric.spread.unwrap_or_default();
+        let plies = fabric.plies.unwrap_or(spread.usual_plies());
+        if !spread.allows(plies) {
+            let what = format!("it is spread in {plies} plies");
+            return refuse(place, what, Spread::PLIES);
         }
     }
     for (k, set) in settings.matched.iter().enumerate() {

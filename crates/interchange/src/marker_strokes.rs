@@ -119,18 +119,53 @@ pub(crate) struct Strokes {
     pub words: Vec<Words>,
 }
 
+/// Pale fills, one after another by item: red, green, blue.
+const FILLS: [[u8; 3]; 8] = [
+    [0xf6, 0xd9, 0xc8],
+    [0xcf, 0xe3, 0xf2],
+    [0xd9, 0xec, 0xd0],
+    [0xf5, 0xe6, 0xb8],
+    [0xe3, 0xd6, 0xee],
+    [0xf3, 0xd0, 0xd8],
+    [0xcd, 0xea, 0xe6],
+    [0xe6, 0xe0, 0xd4],
+];
+
+/// The fill of an item's pieces: red, green, blue.
+pub(crate) fn fill_of(item: usize) -> [u8; 3] {
+    FILLS[item % FILLS.len()]
+}
+
 /// Most lines of a print that are drawn along one side.
 const MOST_LINES: f64 = 2000.0;
 
 impl Strokes {
     /// Everything on a marker.
     pub fn of(drawing: &MarkerDrawing) -> Self {
-        let mut all = Self::default();
-        all.fabric(drawing);
+        let mut all = Self::of_fabric(drawing);
         for piece in &drawing.pieces {
             all.piece(piece);
         }
         all
+    }
+
+    /// What is drawn of the fabric.
+    pub fn of_fabric(drawing: &MarkerDrawing) -> Self {
+        let mut all = Self::default();
+        all.fabric(drawing);
+        all
+    }
+
+    /// What is drawn of one piece.
+    pub fn of_piece(piece: &MarkerPiece) -> Self {
+        let mut all = Self::default();
+        all.piece(piece);
+        all
+    }
+
+    /// The lines of a layer.
+    pub fn on(&self, layer: Layer) -> impl Iterator<Item = &Stroke> {
+        self.strokes.iter().filter(move |s| s.layer == layer)
     }
 
     fn line(&mut self, layer: Layer, points: Vec<Vec2>, closed: bool) {

@@ -3,21 +3,16 @@
 //! The fabric lies along x from the origin of the drawing, the upper selvedge at y = 0. Numbers
 //! have a fixed count of decimals, so that the same marker gives the same bytes.
 
-use crate::marker_label::{Spot, roomiest_spot, size_on};
+use crate::marker_strokes::{Layer, Stroke, Strokes, Words, fill_of};
 use crate::{FormatError, MarkerDrawing, MarkerPiece};
 use std::fmt::Write as _;
-use toile_geometry::{Polygon, Vec2};
-use toile_nesting::{Fold, Pose};
+use toile_geometry::Vec2;
+use toile_nesting::Fold;
 
 /// White round the fabric \[mm\].
 const BORDER: f64 = 20.0;
 /// Height of the text above the fabric \[mm\].
 const HEADER: f64 = 90.0;
-/// Pale fills, one after another by item.
-const FILLS: [&str; 8] = [
-    "#f6d9c8", "#cfe3f2", "#d9ecd0", "#f5e6b8", "#e3d6ee", "#f3d0d8", "#cdeae6", "#e6e0d4",
-];
-
 /// The SVG text of a marker.
 ///
 /// # Errors
@@ -158,113 +153,64 @@ fn fabric(text: &mut String, drawing: &MarkerDrawing) {
     print_and_flaws(text, drawing);
 }
 
-/// Most lines of a print that are drawn along one side.
-const MOST_LINES: f64 = 2000.0;
-
-/// The lines of the print and the flaws of the fabric; y runs down on the page.
+/// The lines of the print and the flaws of the fabric.
 fn print_and_flaws(text: &mut String, drawing: &MarkerDrawing) {
-    let (length, width) = (drawing.length * 1e3, drawing.strip.width * 1e3);
-    let mut path = |class: &str, d: &str, style: &str| {
-        if !d.is_empty() {
-            let _ = writeln!(text, "<path class=\"{class}\" d=\"{d}\" {style}/>");
-        }
-    };
-    if let Some(print) = &drawing.strip.stripes {
-        let mut d = String::new();
-        for axis in 0..2 {
-            let (repeat, end) = (print.repeat[axis] * 1e3, [length, width][axis]);
-            if repeat <= 0.0 || end / repeat > MOST_LINES {
-                continue;
-            }
-            let mut at = (print.origin[axis] * 1e3).rem_euclid(repeat);
-            while at <= end {
-                let _ = match axis {
-                    0 => write!(d, "M{} 0V{}", number(at), number(width)),
-                    _ => write!(d, "M0 {}H{}", number(width - at), number(length)),
-                };
-                at += repeat;
-            }
-        }
-        path(
-            "print",
-            &d,
-            "fill=\"none\" stroke=\"#9db8d9\" stroke-width=\"1\"",
-        );
+    let page = Page(drawing.strip.width);
+    let own = Strokes::of_fabric(drawing);
+    let print = "fill=\"none\" stroke=\"#9db8d9\" stroke-width=\"1\"";
+    draw(text, "print", &page.lines(own.on(Layer::Print)), print);
+    for flaw in own.on(Layer::Flaw) {
+        let d = page.path(&flaw.points, flaw.closed);
+        draw(text, "flaw", &d, "fill=\"#d9485f\" stroke=\"none\"");
     }
-    for defect in &drawing.strip.defects {
-        let mut d = String::new();
-        for (k, p) in defect.outline.outer.iter().enumerate() {
-            let step = if k == 0 { 'M' } else { 'L' };
-            let _ = write!(
-                d,
-                "{step}{} {}",
-                number(p.x * 1e3),
-                number(width - p.y * 1e3)
-            );
-        }
-        d.push('Z');
-        path("flaw", &d, "fill=\"#d9485f\" stroke=\"none\"");
+}
+
+/// A path of a class, if it is not empty.
+fn draw(text: &mut String, class: &str, d: &str, style: &str) {
+    if !d.is_empty() {
+        let _ = writeln!(text, "<path class=\"{class}\" d=\"{d}\" {style}/>");
     }
 }
 
 /// What is cut twice.
 fn overlaps(text: &mut String, drawing: &MarkerDrawing) {
-    let width = drawing.strip.width;
+    let page = Page(drawing.strip.width);
+    let style = "fill=\"#e60000\" fill-opacity=\"0.8\" fill-rule=\"evenodd\" stroke=\"#e60000\" stroke-width=\"2\"";
     for polygon in &drawing.overlaps {
-        let mut d = String::new();
-        for ring in polygon.rings() {
-            for (k, p) in ring.iter().enumerate() {
-                let step = if k == 0 { 'M' } else { 'L' };
-                let (x, y) = (number(p.x * 1e3), number((width - p.y) * 1e3));
-                let _ = write!(d, "{step}{x} {y}");
-            }
-            d.push('Z');
-        }
-        let _ = writeln!(
-            text,
-            "<path class=\"overlap\" d=\"{d}\" fill=\"#e60000\" fill-opacity=\"0.8\" fill-rule=\"evenodd\" stroke=\"#e60000\" stroke-width=\"2\"/>"
-        );
+        let d: String = polygon.rings().map(|ring| page.path(ring, true)).collect();
+        draw(text, "overlap", &d, style);
     }
 }
 
-/// From a piece's plane to the page.
-struct Page<'a> {
-    pose: &'a Pose,
-    width: f64,
-}
+/// From the fabric, of a width \[m\], to the page \[mm\]: there y runs down.
+struct Page(f64);
 
-impl Page<'_> {
-    fn at(&self, point: Vec2) -> Vec2 {
-        self.flat(self.pose.apply(point))
+impl Page {
+    fn at(&self, laid: Vec2) -> [String; 2] {
+        [number(laid.x * 1e3), number((self.0 - laid.y) * 1e3)]
     }
 
-    /// From the fabric to the page.
-    fn flat(&self, laid: Vec2) -> Vec2 {
-        Vec2::new(laid.x, self.width - laid.y) * 1e3
-    }
-
-    fn path(&self, points: &[Vec2], end: &str) -> String {
+    fn path(&self, points: &[Vec2], closed: bool) -> String {
         let mut path = String::new();
         for (k, &p) in points.iter().enumerate() {
-            let p = self.at(p);
+            let [x, y] = self.at(p);
             let command = if k == 0 { 'M' } else { 'L' };
-            let _ = write!(path, "{command}{} {}", number(p.x), number(p.y));
+            let _ = write!(path, "{command}{x} {y}");
         }
-        path + end
+        if closed {
+            path.push('Z');
+        }
+        path
     }
 
-    fn rings(&self, polygon: &Polygon) -> String {
-        let rings = polygon.rings().filter(|r| r.len() > 1);
-        rings.map(|r| self.path(r, "Z")).collect()
+    fn lines<'a>(&self, strokes: impl Iterator<Item = &'a Stroke>) -> String {
+        strokes.map(|s| self.path(&s.points, s.closed)).collect()
     }
 }
 
 fn write_piece(text: &mut String, piece: &MarkerPiece, width: f64) {
-    let page = Page {
-        pose: &piece.pose,
-        width,
-    };
-    let spot = roomiest_spot(&piece.pose.lay(&piece.cut));
+    let page = Page(width);
+    let own = Strokes::of_piece(piece);
     let name = escape(&piece.name);
     let _ = writeln!(
         text,
@@ -272,99 +218,54 @@ fn write_piece(text: &mut String, piece: &MarkerPiece, width: f64) {
         number(piece.pose.turn.to_degrees()),
         piece.pose.mirrored
     );
-    let _ = writeln!(
-        text,
-        "<title>{name}</title>\n<path class=\"cut\" d=\"{}\" fill=\"{}\" fill-rule=\"evenodd\" stroke=\"#111111\" stroke-width=\"0.8\"/>",
-        page.rings(&piece.cut),
-        FILLS[piece.item % FILLS.len()]
+    let _ = writeln!(text, "<title>{name}</title>");
+    let [red, green, blue] = fill_of(piece.item);
+    let cut = format!(
+        "fill=\"#{red:02x}{green:02x}{blue:02x}\" fill-rule=\"evenodd\" stroke=\"#111111\" stroke-width=\"0.8\""
     );
-    let mut stroke = |class: &str, path: &str, style: &str| {
-        if !path.is_empty() {
-            let _ = writeln!(
-                text,
-                "<path class=\"{class}\" d=\"{path}\" fill=\"none\" {style}/>"
-            );
-        }
-    };
-    let dashed = "stroke=\"#666666\" stroke-width=\"0.5\" stroke-dasharray=\"4 2\"";
-    stroke("sew", &page.rings(&piece.sew), dashed);
-    let lines: String = piece.lines.iter().map(|l| page.path(l, "")).collect();
-    stroke("line", &lines, "stroke=\"#888888\" stroke-width=\"0.5\"");
-    let notches: String = piece.notches.iter().map(|n| page.path(n, "")).collect();
-    stroke("notch", &notches, "stroke=\"#111111\" stroke-width=\"0.8\"");
-    let size = (spot.room * 300.0).clamp(4.0, 22.0);
-    let grain = piece.grain.map_or_else(
-        || grain_through(&page, &spot),
-        |ends| ends.map(|p| page.at(p)),
-    );
-    stroke(
-        "grain",
-        &arrow(grain, size),
-        "stroke=\"#1f4e9e\" stroke-width=\"1\"",
-    );
-    write_label(text, &page, (piece, &spot, size));
+    let looks = [
+        (Layer::Cut, "cut", cut.as_str()),
+        (
+            Layer::Sew,
+            "sew",
+            "fill=\"none\" stroke=\"#666666\" stroke-width=\"0.5\" stroke-dasharray=\"4 2\"",
+        ),
+        (
+            Layer::Line,
+            "line",
+            "fill=\"none\" stroke=\"#888888\" stroke-width=\"0.5\"",
+        ),
+        (
+            Layer::Notch,
+            "notch",
+            "fill=\"none\" stroke=\"#111111\" stroke-width=\"0.8\"",
+        ),
+        (
+            Layer::Grain,
+            "grain",
+            "fill=\"none\" stroke=\"#1f4e9e\" stroke-width=\"1\"",
+        ),
+    ];
+    for (layer, class, style) in looks {
+        draw(text, class, &page.lines(own.on(layer)), style);
+    }
+    for words in &own.words {
+        write_words(text, &page, words);
+    }
     text.push_str("</g>\n");
 }
 
-/// A grain line just above the label.
-fn grain_through(page: &Page<'_>, spot: &Spot) -> [Vec2; 2] {
-    // The piece's grain lies at the turn from the warp; y is down on the page.
-    let (sin, cos) = page.pose.turn.sin_cos();
-    let along = Vec2::new(cos, -sin) * (spot.room * 750.0);
-    let centre = page.flat(spot.at) - Vec2::new(0.0, spot.room * 200.0);
-    [centre - along, centre + along]
-}
-
-/// A line with a head at its end.
-fn arrow([tail, head]: [Vec2; 2], size: f64) -> String {
-    let along = head - tail;
-    let length = along.norm();
-    if length == 0.0 {
-        return String::new();
-    }
-    let along = along / length;
-    let across = Vec2::new(-along.y, along.x);
-    let barb = (size * 0.6).min(length * 0.3);
-    let wings = [0.5, -0.5].map(|side| head - along * barb + across * (barb * side));
-    let point = |p: Vec2| format!("{} {}", number(p.x), number(p.y));
-    format!(
-        "M{}L{}M{}L{}L{}",
-        point(tail),
-        point(head),
-        point(wings[0]),
-        point(head),
-        point(wings[1])
-    )
-}
-
-fn write_label(
-    text: &mut String,
-    page: &Page<'_>,
-    (piece, spot, size): (&MarkerPiece, &Spot, f64),
-) {
-    let (size, upright) = size_on(spot, &piece.name, size * 1e-3);
-    let (size, room, at) = (size * 1e3, spot.room * 1e3, page.flat(spot.at));
-    let turn = if upright {
-        format!(
-            " transform=\"rotate(-90 {} {})\"",
-            number(at.x),
-            number(at.y)
-        )
-    } else {
-        String::new()
+fn write_words(text: &mut String, page: &Page, words: &Words) {
+    let [x, y] = page.at(words.at);
+    let turned = number(-words.angle.to_degrees());
+    let turn = match turned == "0" {
+        true => String::new(),
+        false => format!(" transform=\"rotate({turned} {x} {y})\""),
     };
-    let mut line = |offset: f64, size: f64, words: &str| {
-        let _ = writeln!(
-            text,
-            "<text x=\"{}\" y=\"{}\" font-size=\"{}\" text-anchor=\"middle\" fill=\"#111111\" stroke=\"none\"{turn}>{}</text>",
-            number(at.x),
-            number(at.y + offset),
-            number(size),
-            escape(words)
-        );
-    };
-    line(room * 0.05 + size, size, &piece.name);
-    if piece.pose.mirrored {
-        line(room * 0.05 + 1.9 * size, size * 0.7, "face down");
-    }
+    let _ = writeln!(
+        text,
+        "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\" text-anchor=\"middle\" fill=\"#111111\" stroke=\"none\"{turn}>{}</text>",
+        number(words.size * 1e3),
+        escape(&words.text)
+    );
 }

@@ -107,7 +107,9 @@ impl SessionError {
                     | toile_drape::DrapeError::Material { .. }
                     | toile_drape::DrapeError::Scene { .. }
             ),
-            Self::Nesting(toile_nesting::NestingError::Unsound(_))
+            Self::Nesting(
+                toile_nesting::NestingError::Unsound(_) | toile_nesting::NestingError::Cancelled,
+            )
             | Self::Write { .. }
             | Self::Picture(_)
             | Self::Cancelled => false,

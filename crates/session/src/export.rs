@@ -65,12 +65,13 @@ fn picture_title(project: &Project) -> String {
 }
 
 /// The files of markers: `marker.svg`, `marker.json` and others asked for, numbered from the second
-/// marker on.
+/// marker on. Returns for each marker what a format could not carry over.
 pub(crate) fn marker_files(
     (name, formats): (&str, &[MarkerFormat]),
     layings: &[Laying],
     files: &mut Vec<File>,
-) -> Result<(), SessionError> {
+) -> Result<Vec<Vec<String>>, SessionError> {
+    let mut lost = vec![Vec::new(); layings.len()];
     for (k, laying) in layings.iter().enumerate() {
         let stem = match k {
             0 => "marker".to_owned(),
@@ -88,9 +89,14 @@ pub(crate) fn marker_files(
                 MarkerFormat::Hpgl => ("plt", write_marker_hpgl(&drawing).map(String::into_bytes)),
                 MarkerFormat::Pdf => ("pdf", write_marker_pdf(&drawing)),
                 MarkerFormat::Instance => {
-                    let text = write_jagua_instance(name, &laying.items, &laying.strip)
+                    let (text, left_out) = write_jagua_instance(name, &laying.items, &laying.strip)
                         .map_err(cannot("marker-instance.json"))?;
-                    files.push((format!("{stem}-instance.json"), text.into_bytes()));
+                    let file = format!("{stem}-instance.json");
+                    if !left_out.is_empty() {
+                        let left_out = left_out.join(", ");
+                        lost[k].push(format!("{file} does not hold: {left_out}"));
+                    }
+                    files.push((file, text.into_bytes()));
                     continue;
                 }
                 MarkerFormat::Report => continue,
@@ -106,7 +112,16 @@ pub(crate) fn marker_files(
         let report = write_marker_report(name, &drawings).map_err(cannot("marker-report.pdf"))?;
         files.push(("marker-report.pdf".to_owned(), report));
     }
-    Ok(())
+    Ok(lost)
+}
+
+/// A name as one of a file: letters and digits of any language, `-`, `_` and `.` but at its start.
+pub(crate) fn file_name(name: &str) -> String {
+    let plain = |(k, c): (usize, char)| {
+        let keeps = c.is_alphanumeric() || "-_".contains(c) || (c == '.' && k > 0);
+        if keeps { c } else { '_' }
+    };
+    name.chars().enumerate().map(plain).collect()
 }
 
 fn garment_files(

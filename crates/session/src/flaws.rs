@@ -2,17 +2,75 @@
 
 use crate::SessionError;
 use toile_geometry::{Bounds2, Polygon, Vec2};
-use toile_interchange::{FlawSettings, Spread};
+use toile_interchange::{FlawSettings, Metres, Spread};
 use toile_nesting::Defect;
 
 /// What a flaw may reach beyond the edge of the fabric and count as within [m].
 const ROUNDING: f64 = 1e-9;
 
-/// The flaws of fabric of a width laid open [m], in the plane of the fabric as it is spread. One
+/// A flaw given on the command line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GivenFlaw {
+    /// The fabric it is on; not needed where there is one only.
+    pub fabric: Option<String>,
+    /// On the fabric laid open: x along the warp and y across of its corner, length and width [m].
+    pub place: [f64; 4],
+}
+
+impl GivenFlaw {
+    /// A flaw of the only fabric, from x, y, length and width [m].
+    pub fn at(place: [f64; 4]) -> Self {
+        Self {
+            fabric: None,
+            place,
+        }
+    }
+
+    /// The flaw as the settings have it.
+    pub(crate) fn settings(&self) -> FlawSettings {
+        let [x, y, length, width] = self.place;
+        FlawSettings {
+            at: [Metres(x), Metres(y)],
+            size: [Metres(length), Metres(width)],
+            clearance: Metres(0.0),
+        }
+    }
+
+    /// Whether it is on a fabric.
+    pub(crate) fn is_on(&self, fabric: &str) -> bool {
+        self.fabric.as_deref().is_none_or(|own| own == fabric)
+    }
+}
+
+/// A flaw that names no fabric where there are several, or one nothing is cut from, is a mistake.
+pub(crate) fn check_given(flaws: &[GivenFlaw], fabrics: &[&str]) -> Result<(), SessionError> {
+    for flaw in flaws {
+        match flaw.fabric.as_deref() {
+            None if fabrics.len() > 1 => {
+                return Err(SessionError::Conflict(format!(
+                    "a flaw lies on one fabric, and pieces are cut from several: {}; name it, as in --defect {}:20cm,30cm,1cm,1cm",
+                    fabrics.join(", "),
+                    fabrics[0]
+                )));
+            }
+            Some(name) if !fabrics.contains(&name) => {
+                return Err(SessionError::Unknown {
+                    kind: "fabric",
+                    name: name.to_owned(),
+                    hint: format!("pieces are cut from: {}", fabrics.join(", ")),
+                });
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// The flaws of a fabric of a width laid open [m], in the plane of the fabric as it is spread. One
 /// across a fold lies on both sides of it.
 pub(crate) fn flaws_on(
     flaws: &[FlawSettings],
-    width: f64,
+    (fabric, width): (&str, f64),
     spread: Spread,
 ) -> Result<Vec<Defect>, SessionError> {
     let mut defects = Vec::new();
@@ -22,7 +80,7 @@ pub(crate) fn flaws_on(
         let inside = x >= 0.0 && low >= -ROUNDING && high <= width + ROUNDING;
         if !inside {
             return Err(SessionError::Conflict(format!(
-                "flaw {} reaches from {:.0} to {:.0} mm across and starts at {:.0} mm; the fabric laid open is {:.0} mm wide and starts at 0: measure the flaw on the open fabric",
+                "flaw {} of fabric {fabric:?} reaches from {:.0} to {:.0} mm across and starts at {:.0} mm; the fabric laid open is {:.0} mm wide and starts at 0: measure the flaw on the open fabric",
                 k + 1,
                 low * 1e3,
                 high * 1e3,
@@ -76,7 +134,7 @@ mod tests {
             size: [Metres(0.1), Metres(high - low)],
             clearance: Metres(0.0),
         };
-        let found = flaws_on(&[flaw], 1.6, spread).unwrap();
+        let found = flaws_on(&[flaw], ("cloth", 1.6), spread).unwrap();
         let span = |d: &Defect| [d.outline.bounds().min.y, d.outline.bounds().max.y];
         found.iter().map(span).collect()
     }
@@ -116,7 +174,7 @@ mod tests {
                 size: [Metres(0.1), Metres(0.1)],
                 clearance: Metres(0.0),
             };
-            let error = flaws_on(&[flaw], 1.6, Spread::Open).unwrap_err();
+            let error = flaws_on(&[flaw], ("cloth", 1.6), Spread::Open).unwrap_err();
             assert!(error.to_string().contains("flaw 1"), "{error}");
         }
     }

@@ -3,18 +3,22 @@
 use crate::export::cannot;
 use crate::{Nested, SessionError};
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_4, PI};
 use std::path::{Path, PathBuf};
 use toile_geometry::{Polygon, Vec2, total_area};
 use toile_interchange::{
     MarkerDrawing, MarkerFacts, MarkerFile, MarkerPiece, read_marker_json, read_text,
     write_all_atomically, write_marker_svg,
 };
-use toile_nesting::{Allowed, Item, Marker, Mirror, Violation, judge};
+use toile_nesting::{Allowed, Item, Marker, Mirror, Nap, Violation, judge};
 
 /// Outlines in the file are rounded to a micrometre, so that touching pieces may seem to overlap
 /// by so much [m].
 const ROUNDING: f64 = 3e-6;
+
+/// Most that a grain may lie off the warp on fabric with a nap [rad]: what lies farther off does
+/// not run along it.
+const MOST_TILT: f64 = FRAC_PI_4;
 
 /// What was found in a marker.
 #[derive(Clone, Debug)]
@@ -105,6 +109,7 @@ pub fn judge_marker_file(path: &Path, folder: Option<&Path>) -> Result<JudgedMar
 
 /// Every piece as an item of its own, back in its own plane.
 fn items_of(file: &MarkerFile) -> Vec<Item> {
+    let has_nap = file.strip().nap != Nap::None;
     let item = |piece: &toile_interchange::MarkerFilePiece| {
         let pose = toile_nesting::Pose {
             grain: piece.grain.to_radians(),
@@ -119,10 +124,14 @@ fn items_of(file: &MarkerFile) -> Vec<Item> {
         };
         let outline = Polygon::new(piece.outline.iter().map(back).collect());
         let half_turns = (pose.turn / PI).round() * PI;
+        let most = match has_nap {
+            true => MOST_TILT,
+            false => PI,
+        };
         Item {
             grain: pose.grain,
             allowed: Allowed {
-                tilt: (pose.turn - half_turns).abs(),
+                tilt: (pose.turn - half_turns).abs().min(most),
                 mirror: Mirror::Free,
                 ..Allowed::turned(vec![0.0, PI])
             },

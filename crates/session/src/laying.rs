@@ -1,5 +1,6 @@
 //! Markers of drafts: one for each fabric their pieces are cut from, and for each roll of it.
 
+use crate::flaws::check_given;
 use crate::going_on::{check_locks, lock, read_starts, start_of};
 use crate::laying_items::{LaidPiece, Wanted, items_on, wanted_of};
 use crate::matching::runs_one_way;
@@ -30,8 +31,10 @@ pub(crate) struct Laying {
     pub strip: Strip,
     pub marker: Marker,
     pub verdict: Verdict,
-    /// Copies that lie on no marker of this fabric.
+    /// Copies that lie on no marker of this fabric, by the items and copies of the whole fabric.
     pub missing: Vec<MarkerFileUnplaced>,
+    /// On a roll: of each item, its index among those of the whole fabric, and its copies there.
+    pub sources: Option<Vec<(usize, Vec<u32>)>>,
     /// What else is known.
     pub facts: MarkerFacts,
 }
@@ -71,7 +74,7 @@ impl Laying {
             let (item, piece) = (&self.items[placement.item], &self.pieces[placement.item]);
             MarkerPiece {
                 name: item.name.clone(),
-                item: placement.item,
+                item: self.of_fabric(placement.item, placement.copy).0,
                 cut: item.outline.clone(),
                 sew: piece.sew.clone(),
                 grain: None,
@@ -99,7 +102,10 @@ impl Laying {
     /// The marker as its file.
     pub fn file(&self, pattern: &str) -> MarkerFile {
         let title = self.title(pattern);
-        let file = MarkerFile::new(&title, &self.items, &self.strip, &self.marker);
+        let mut file = MarkerFile::new(&title, &self.items, &self.strip, &self.marker);
+        for piece in &mut file.pieces {
+            (piece.item, piece.copy) = self.of_fabric(piece.item, piece.copy);
+        }
         MarkerFile {
             roll: self.facts.roll.clone(),
             plies: self.facts.plies,
@@ -111,6 +117,13 @@ impl Laying {
             },
             ..file
         }
+    }
+
+    /// The item and the copy of the whole fabric that an item and a copy of this marker are.
+    fn of_fabric(&self, item: usize, copy: u32) -> (usize, u32) {
+        let source = self.sources.as_ref().and_then(|s| s.get(item));
+        let own = source.and_then(|(item, copies)| Some((*item, *copies.get(copy as usize)?)));
+        own.unwrap_or((item, copy))
     }
 
     /// Names of the copies that lie nowhere, and why.
@@ -156,6 +169,8 @@ pub(crate) fn lay(
         return Err(NestingError::NoItems.into());
     }
     check_fabric_names(&groups, options)?;
+    let names: Vec<&str> = groups.iter().map(|group| group.0.as_str()).collect();
+    check_given(&options.defects, &names)?;
     let fabrics = || garments.iter().flat_map(|g| &g.draft.fabrics);
     let starts = read_starts(options)?;
     // Everything is refused before anything is searched for.
@@ -171,27 +186,30 @@ pub(crate) fn lay(
     let flag = watcher.stop_flag().unwrap_or_default();
     let mut layings = Vec::new();
     let mut stopped = false;
-    for (k, job) in jobs.into_iter().enumerate() {
+    for (k, job) in jobs.iter().enumerate() {
         let from = k as f64 / count;
         let mut part = |done: f64, detail: &str| {
             stopped |= tell(watcher, "laying out", from + done / count, detail).is_err();
             !stopped
         };
-        let going_on = part(0.0, "");
-        let laid = match going_on {
-            true => job.lay(options, (&flag, &mut part)),
-            false if !options.keep_best => return Err(SessionError::Cancelled),
-            false => {
-                // Stopped on an earlier fabric: this one gets the first marker that is found.
-                let mut shortly = options.clone();
-                shortly.budget = Budget::Evaluations(1);
-                job.lay(&shortly, (&Arc::default(), &mut |_, _| true))
-            }
+        let laid = match part(0.0, "") {
+            true => job.lay(options, &flag, &mut part),
+            false => Err(SessionError::Cancelled),
         };
+        stopped |= flag.load(Ordering::Relaxed);
         if stopped && !options.keep_best {
             return Err(SessionError::Cancelled);
         }
-        layings.extend(laid?);
+        layings.extend(match laid {
+            // Earlier fabrics are done: this one gets the first marker that is found.
+            Err(SessionError::Cancelled) if !layings.is_empty() => {
+                stopped = true;
+                let mut shortly = options.clone();
+                shortly.budget = Budget::Evaluations(1);
+                job.lay(&shortly, &Arc::default(), &mut |_, _| true)?
+            }
+            laid => laid?,
+        });
     }
     if stopped {
         for laying in &mut layings {
@@ -274,9 +292,10 @@ impl<'a> FabricJob<'a> {
 
     /// All markers of the fabric. Stops when the flag is set, or the one told says so.
     fn lay(
-        self,
+        &self,
         options: &NestOptions,
-        (flag, told): (&Arc<AtomicBool>, Told<'_>),
+        flag: &AtomicBool,
+        told: Told<'_>,
     ) -> Result<Vec<Laying>, SessionError> {
         let mut follow = |progress: Progress| {
             let detail = match progress.length.is_finite() {
@@ -293,7 +312,7 @@ impl<'a> FabricJob<'a> {
         };
         let search = options.search();
         if self.plan.rolled {
-            return self.lay_on_rolls(options, (search, &mut control));
+            return self.lay_on_rolls(options, search, &mut control);
         }
         let strip = &self.plan.rolls[0].strip;
         let marker = match &self.start {
@@ -302,7 +321,7 @@ impl<'a> FabricJob<'a> {
         };
         let missing = named(&self.items, &marker.unplaced);
         let of = (self.items.clone(), self.pieces.clone());
-        let mut only = self.laying(&self.plan.rolls[0], of, (marker, options));
+        let mut only = self.laying(&self.plan.rolls[0], of, marker, options);
         only.missing = missing;
         Ok(vec![only])
     }
@@ -310,7 +329,8 @@ impl<'a> FabricJob<'a> {
     fn lay_on_rolls(
         &self,
         options: &NestOptions,
-        (search, control): (Search, &mut Control<'_>),
+        search: Search,
+        control: &mut Control<'_>,
     ) -> Result<Vec<Laying>, SessionError> {
         let strips: Vec<Strip> = self.plan.rolls.iter().map(|r| r.strip.clone()).collect();
         let out = make_markers_on_rolls(&self.items, &strips, search, control)?;
@@ -321,7 +341,11 @@ impl<'a> FabricJob<'a> {
             .map(|made| {
                 let drawn = made.sources.iter().map(|s| self.pieces[s.0].clone());
                 let of = (made.items, drawn.collect());
-                self.laying(&self.plan.rolls[made.roll], of, (made.marker, options))
+                let roll = &self.plan.rolls[made.roll];
+                Laying {
+                    sources: Some(made.sources),
+                    ..self.laying(roll, of, made.marker, options)
+                }
             })
             .collect();
         let Some(last) = layings.last_mut() else {
@@ -339,7 +363,8 @@ impl<'a> FabricJob<'a> {
         &self,
         roll: &PlannedRoll,
         (items, pieces): (Vec<Item>, Vec<LaidPiece>),
-        (marker, options): (Marker, &NestOptions),
+        marker: Marker,
+        options: &NestOptions,
     ) -> Laying {
         let verdict = judge(&items, &roll.strip, &marker);
         Laying {
@@ -356,6 +381,7 @@ impl<'a> FabricJob<'a> {
                 notes: self.notes.clone(),
             },
             missing: Vec::new(),
+            sources: None,
             items,
             pieces,
             marker,

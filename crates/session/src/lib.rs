@@ -47,6 +47,7 @@ pub use command::Command;
 pub use drape::DrapeResult;
 pub use error::SessionError;
 pub use event::{Assembled, Draped, Event, Nested};
+pub use flaws::GivenFlaw;
 pub use hands::{LiveInput, StampedInput};
 pub use journal::{journal_lines, read_journal};
 pub use judging::{JudgedMarker, is_marker_file, judge_marker_file};

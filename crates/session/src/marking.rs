@@ -1,6 +1,6 @@
 //! Markers of several patterns and sizes, and of published nesting instances.
 
-use crate::export::{cannot, marker_files};
+use crate::export::{cannot, file_name, marker_files};
 use crate::laying::{Garments, lay};
 use crate::tools::{project_of, sound_draft};
 use crate::watcher::tell;
@@ -42,6 +42,7 @@ pub(crate) fn drafts_of(
 ) -> Result<(Vec<Drafted>, Vec<String>), SessionError> {
     let mut drafts = Vec::new();
     let mut names = Vec::new();
+    let mut known: Vec<String> = Vec::new();
     for path in patterns {
         let sizes: Vec<(Option<&str>, u32)> = match options.sizes.is_empty() {
             true => vec![(None, 1)],
@@ -52,14 +53,16 @@ pub(crate) fn drafts_of(
                 .collect(),
         };
         let several = options.sizes.len() > 1;
+        let mut own_name: Option<String> = None;
         for (size, count) in sizes {
             let (project, _) = project_of(path, size)?;
             let draft = sound_draft(&project)?;
-            let name = &project.pattern.name;
+            let name = own_name.get_or_insert_with(|| another(&project.pattern.name, &known));
             names.push(match (size, several || count > 1) {
                 (Some(size), true) => format!("{name} {count} x {size}"),
                 _ => name.clone(),
             });
+            known.push(name.clone());
             drafts.push(Drafted {
                 pattern: project.pattern.clone(),
                 draft,
@@ -72,6 +75,17 @@ pub(crate) fn drafts_of(
         }
     }
     Ok((drafts, names))
+}
+
+/// A name that is not known yet: of several patterns of one name the second is number 2.
+fn another(name: &str, known: &[String]) -> String {
+    let mut number = 1;
+    let mut own = name.to_owned();
+    while known.contains(&own) {
+        number += 1;
+        own = format!("{name} ({number})");
+    }
+    own
 }
 
 /// What tells pieces of one pattern and size from those of others, if there are several.
@@ -94,10 +108,14 @@ pub fn nest_patterns(
     let garments: Vec<Garments<'_>> = drafts.iter().map(|d| d.garments()).collect();
     let layings = lay(&garments, options, watcher)?;
     let mut files = Vec::new();
-    marker_files((&names.join(" + "), &options.formats), &layings, &mut files)?;
+    let lost = marker_files((&names.join(" + "), &options.formats), &layings, &mut files)?;
     write_all_atomically(folder, &files)?;
     let paths = files.iter().map(|(name, _)| folder.join(name)).collect();
-    Ok((layings.iter().map(|l| l.summary()).collect(), paths))
+    let mut nested: Vec<Nested> = layings.iter().map(|l| l.summary()).collect();
+    for (nested, lost) in nested.iter_mut().zip(lost) {
+        nested.notes.extend(lost);
+    }
+    Ok((nested, paths))
 }
 
 /// Reads a file of marker settings.
@@ -178,14 +196,7 @@ pub fn nest_instance(
         Budget::Evaluations(_) => None,
     };
     let text = write_jagua(&instance, &marker, seconds).map_err(cannot("the solution"))?;
-    let plain = |c: char| {
-        if c.is_alphanumeric() || "-_.".contains(c) {
-            c
-        } else {
-            '_'
-        }
-    };
-    let name: String = instance.name.chars().map(plain).collect();
+    let name = file_name(&instance.name);
     let file = (format!("{name}.json"), text.into_bytes());
     write_all_atomically(folder, std::slice::from_ref(&file))?;
     let nested = Nested {

@@ -2,7 +2,7 @@
 //! pattern's own, else usual.
 
 use crate::SessionError;
-use crate::flaws::flaws_on;
+use crate::flaws::{GivenFlaw, flaws_on};
 use std::path::PathBuf;
 use toile_geometry::Vec2;
 use toile_interchange::{
@@ -59,8 +59,8 @@ pub struct NestOptions {
     /// Repeat of the print along the warp and across [m], 0 where it does not repeat: the hem and
     /// the middle of every piece lie on its lines.
     pub repeat: Option<[f64; 2]>,
-    /// Flaws of the fabric laid open: x and y of the corner, length and width [m].
-    pub defects: Vec<[f64; 4]>,
+    /// Flaws of fabrics laid open.
+    pub defects: Vec<GivenFlaw>,
     /// How the fabric is spread.
     pub spread: Option<Spread>,
     /// Layers cut at once.
@@ -210,13 +210,12 @@ impl NestOptions {
     ) -> Result<FabricPlan, SessionError> {
         let given = self.fabric(name);
         let spread = self.spread.or(given.spread).unwrap_or_default();
-        let usual = if spread == Spread::FaceToFace { 2 } else { 1 };
-        let plies = self.plies.or(given.plies).unwrap_or(usual);
-        if plies == 0 || (spread == Spread::FaceToFace && plies % 2 == 1) {
+        let plies = self.plies.or(given.plies).unwrap_or(spread.usual_plies());
+        if !spread.allows(plies) {
             return Err(SessionError::Number {
                 what: "the number of plies",
                 value: f64::from(plies),
-                hint: "give 1 or more, face to face an even number",
+                hint: Spread::PLIES,
             });
         }
         let width = self.width.or(metres(given.width));
@@ -229,6 +228,7 @@ impl NestOptions {
             });
         };
         let cloth = Cloth {
+            name,
             width,
             nap: own.is_some_and(|f| f.nap),
             spread,
@@ -236,6 +236,12 @@ impl NestOptions {
         };
         let rolls = self.rolls_of(name, &given)?;
         let rolled = !rolls.is_empty();
+        if rolls.len() > 1 && self.defects.iter().any(|flaw| flaw.is_on(name)) {
+            return Err(SessionError::Conflict(format!(
+                "fabric {name:?} is laid on {} rolls, and a flaw lies on one of them; leave --defect out, and give the flaws under the rolls in the settings",
+                rolls.len()
+            )));
+        }
         let planned = match rolled {
             true => {
                 let planned = rolls.iter().enumerate();
@@ -286,7 +292,7 @@ impl NestOptions {
     fn roll(
         &self,
         given: &FabricSettings,
-        cloth: &Cloth,
+        cloth: &Cloth<'_>,
         (number, roll): (usize, &RollSettings),
     ) -> Result<PlannedRoll, SessionError> {
         let cloth = Cloth {
@@ -310,7 +316,7 @@ impl NestOptions {
     fn strip(
         &self,
         given: &FabricSettings,
-        cloth: &Cloth,
+        cloth: &Cloth<'_>,
         flaws: &[FlawSettings],
     ) -> Result<Strip, SessionError> {
         let own = if cloth.nap { Nap::OneWay } else { Nap::None };
@@ -323,15 +329,9 @@ impl NestOptions {
             origin: Vec2::new(print.origin[0].0, print.origin[1].0),
         });
         let margin = self.end_margin.or(metres(given.end_margin));
-        let more = self
-            .defects
-            .iter()
-            .map(|&[x, y, length, width]| FlawSettings {
-                at: [Metres(x), Metres(y)],
-                size: [Metres(length), Metres(width)],
-                clearance: Metres(0.0),
-            });
-        let flaws: Vec<FlawSettings> = flaws.iter().copied().chain(more).collect();
+        let own_flaws = self.defects.iter().filter(|flaw| flaw.is_on(cloth.name));
+        let own_flaws = own_flaws.map(GivenFlaw::settings);
+        let flaws: Vec<FlawSettings> = flaws.iter().copied().chain(own_flaws).collect();
         Ok(Strip {
             selvedge: self.selvedge.or(metres(given.selvedge)).unwrap_or(SELVEDGE),
             end_margin: margin.unwrap_or_default(),
@@ -344,7 +344,7 @@ impl NestOptions {
                 Spread::Tubular => Fold::Both,
             },
             stripes: of_all.or(of_fabric),
-            defects: flaws_on(&flaws, cloth.width, cloth.spread)?,
+            defects: flaws_on(&flaws, (cloth.name, cloth.width), cloth.spread)?,
             ..Strip::of_width(folded(cloth.width, cloth.spread))
         })
     }
@@ -352,7 +352,8 @@ impl NestOptions {
 
 /// Fabric as it comes, and how it is spread.
 #[derive(Clone, Copy, Debug)]
-struct Cloth {
+struct Cloth<'a> {
+    name: &'a str,
     /// Laid open [m].
     width: f64,
     nap: bool,

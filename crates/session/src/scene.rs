@@ -1,7 +1,7 @@
 //! Running a scene file: its meshes, patterns and bodies found, simulated, and written.
 
 use crate::choice::figure_named;
-use crate::export::cannot;
+use crate::export::{cannot, file_name};
 use crate::open::{open_measurements, read_text_file};
 use crate::timing::Timing;
 use crate::watcher::tell;
@@ -31,7 +31,7 @@ pub struct SceneOutcome {
 }
 
 /// Frames a scene may save: beyond this the frame step is surely a mistake.
-const MOST_FRAMES: usize = 100_000;
+const MOST_FRAMES: f64 = 100_000.0;
 
 /// Runs a scene file and writes its frames, its last state and a report into a folder.
 ///
@@ -60,16 +60,21 @@ pub fn run_scene(
     .scene(watcher)?;
     timing.add("read", start);
     let start = Instant::now();
+    let names = state_names(&scene).map_err(wrong)?;
     let frame_step = scene.frame_step;
+    check_frames(&scene).map_err(wrong)?;
     let mut run = SceneRun::new(scene)?;
-    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+    let mut written: Vec<PathBuf> = Vec::new();
+    let mut write = |files: &[(String, Vec<u8>)]| {
+        written.extend(files.iter().map(|(name, _)| folder.join(name)));
+        write_all_atomically(folder, files)
+    };
     let mut frame = 0usize;
     while !run.finished() {
         if let Some(step) = frame_step
             && run.state.time + 1e-9 >= frame as f64 * step
-            && frame < MOST_FRAMES
         {
-            files.extend(state_files(&run, &format!("frame-{frame:05}-"))?);
+            write(&state_files(&run, (&names, &format!("frame-{frame:05}-")))?)?;
             frame += 1;
         }
         run.advance()?;
@@ -80,7 +85,7 @@ pub fn run_scene(
             &format!("{:.2} s", run.state.time),
         )?;
     }
-    files.extend(state_files(&run, "")?);
+    let mut files = state_files(&run, (&names, ""))?;
     timing.add("simulate", start);
     let start = Instant::now();
     let report = report(&mut run, &unknown);
@@ -88,39 +93,69 @@ pub fn run_scene(
     let pretty = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
     files.push(("report.json".to_owned(), pretty.into_bytes()));
     files.push(("timing.json".to_owned(), timing.to_json().into_bytes()));
-    let named: Vec<(&str, &[u8])> = files
-        .iter()
-        .map(|(n, b)| (n.as_str(), b.as_slice()))
-        .collect();
-    write_all_atomically(folder, &named)?;
-    let files = files.iter().map(|(name, _)| folder.join(name)).collect();
-    Ok(SceneOutcome { files, report })
+    write(&files)?;
+    Ok(SceneOutcome {
+        files: written,
+        report,
+    })
 }
 
-/// The deformable objects of a scene as OBJ files.
-fn state_files(run: &SceneRun, prefix: &str) -> Result<Vec<(String, Vec<u8>)>, SessionError> {
-    let mut files = Vec::new();
-    for (object, mesh) in run.scene().objects.iter().zip(run.meshes()) {
-        if object.kind != ObjectKind::Static {
-            let obj = ObjMesh {
-                positions: mesh.positions,
-                triangles: mesh.triangles,
-                ..ObjMesh::default()
-            };
-            let text = write_obj(&obj).map_err(cannot("the state"))?;
-            let name: String = object
-                .name
-                .chars()
-                .map(|c| {
-                    if c.is_alphanumeric() || c == '-' || c == '_' {
-                        c
-                    } else {
-                        '_'
-                    }
-                })
-                .collect();
-            files.push((format!("{prefix}{name}.obj"), text.into_bytes()));
+/// Refuses a scene that would save more frames than anybody looks at.
+fn check_frames(scene: &Scene) -> Result<(), FormatError> {
+    let count = scene.frame_step.map_or(0.0, |step| scene.duration / step);
+    match count > MOST_FRAMES {
+        true => Err(FormatError::new(
+            "frame_step",
+            format!("{count:.0} frames would be saved; at most {MOST_FRAMES} are"),
+            "give a longer frame step, or a shorter duration",
+        )),
+        false => Ok(()),
+    }
+}
+
+/// Names of the files of the objects that move, of each its index; two of one name are refused.
+fn state_names(scene: &Scene) -> Result<Vec<(usize, String)>, FormatError> {
+    let mut names: Vec<(usize, String)> = Vec::new();
+    for (index, object) in scene.objects.iter().enumerate() {
+        if object.kind == ObjectKind::Static {
+            continue;
         }
+        let name = file_name(&object.name);
+        let same = |(_, known): &&(usize, String)| known.to_lowercase() == name.to_lowercase();
+        if let Some((other, _)) = names.iter().find(same) {
+            let other = &scene.objects[*other].name;
+            return Err(FormatError::new(
+                format!("objects[{index}]"),
+                format!(
+                    "{:?} and {other:?} would be written to one file",
+                    object.name
+                ),
+                "give one of them another name",
+            ));
+        }
+        names.push((index, name));
+    }
+    Ok(names)
+}
+
+/// The objects that move as OBJ files.
+fn state_files(
+    run: &SceneRun,
+    (names, prefix): (&[(usize, String)], &str),
+) -> Result<Vec<(String, Vec<u8>)>, SessionError> {
+    let mut files = Vec::new();
+    let mut meshes: Vec<_> = run.meshes().into_iter().map(Some).collect();
+    for (index, name) in names {
+        let Some(mesh) = meshes.get_mut(*index).and_then(Option::take) else {
+            continue;
+        };
+        let obj = ObjMesh {
+            positions: mesh.positions,
+            triangles: mesh.triangles,
+            ..ObjMesh::default()
+        };
+        let text = write_obj(&obj).map_err(cannot("the state"))?;
+        files.push((format!("{prefix}{name}.obj"), text.into_bytes()));
     }
     Ok(files)
 }

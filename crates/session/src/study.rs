@@ -1,10 +1,12 @@
 //! What each rule of the trade costs: the same garments laid with and without it, with the same
 //! number of evaluations.
 
+use crate::flaws::GivenFlaw;
 use crate::laying::{Garments, Laying, lay};
 use crate::marking::drafts_of;
 use crate::watcher::Part;
 use crate::{Budget, Nap, NestOptions, SessionError, Spread, Watcher};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toile_interchange::{ANY_NAME, Metres, PieceSettings};
 use toile_nesting::Fold;
@@ -47,8 +49,10 @@ fn every_piece(options: &mut NestOptions) -> &mut PieceSettings {
         .or_default()
 }
 
-/// The rules, for a marker of a length and a width [m] without any.
-fn rules(patterns: &[&Pattern], length: f64, width: f64) -> Vec<Rule> {
+/// The rules, for markers as they are without any.
+fn rules(patterns: &[&Pattern], base: &Found) -> Vec<Rule> {
+    let length = base.fabric;
+    let fabrics = base.fabrics.clone();
     let mut all = vec![
         rule("grain within 2 degrees instead of exact", |o| {
             o.tilt = Some(2f64.to_radians());
@@ -75,8 +79,12 @@ fn rules(patterns: &[&Pattern], length: f64, width: f64) -> Vec<Rule> {
             o.repeat = Some([REPEAT, REPEAT]);
         }),
         rule("three flaws of 50 mm, 5 mm kept from them", move |o| {
-            let at = |k: f64| [length * k / 4.0, width * k / 4.0, 0.06, 0.06];
-            o.defects = [1.0, 2.0, 3.0].map(at).to_vec();
+            for (name, [length, width]) in &fabrics {
+                o.defects.extend([1.0, 2.0, 3.0].map(|k| GivenFlaw {
+                    fabric: Some(name.clone()),
+                    place: [length * k / 4.0, width * k / 4.0, 0.06, 0.06],
+                }));
+            }
         }),
         rule("two rolls of 60 % of the length", move |o| {
             o.rolls = vec![(0.6 * length, None); 2];
@@ -134,7 +142,7 @@ pub fn study_rules(
         for seed in 0..seeds {
             let mut own = options.clone();
             change(&mut own);
-            own.seed = options.seed + seed;
+            own.seed = options.seed.wrapping_add(seed);
             for laying in lay(&garments, &own, watcher)? {
                 found.add(&laying);
             }
@@ -158,7 +166,7 @@ pub fn study_rules(
     };
     let mut rows = vec![row("none", &base)];
     let known: Vec<&Pattern> = garments.iter().map(|g| g.pattern).collect();
-    let rules = rules(&known, base.fabric, base.width);
+    let rules = rules(&known, &base);
     let count = rules.len() as f64;
     for (k, (words, change)) in rules.iter().enumerate() {
         let share = |k: f64| 0.06 + 0.94 * k / count;
@@ -180,7 +188,7 @@ pub fn study_rules(
 }
 
 /// What markers came to.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Found {
     /// Length for one set of garments [m].
     fabric: f64,
@@ -188,8 +196,8 @@ struct Found {
     area: f64,
     /// Fabric it lies on, laid open [m2].
     fabric_area: f64,
-    /// Width of the widest fabric [m].
-    width: f64,
+    /// Length of the longest marker of each fabric, and its width laid open [m].
+    fabrics: BTreeMap<String, [f64; 2]>,
     unplaced: usize,
 }
 
@@ -202,7 +210,9 @@ impl Found {
         };
         self.fabric += nested.length;
         self.area += laying.cut_area();
-        self.width = self.width.max(nested.width);
+        let own = self.fabrics.entry(nested.fabric).or_default();
+        own[0] = own[0].max(nested.length);
+        own[1] = own[1].max(nested.width * layers);
         self.fabric_area += nested.length * nested.width * layers;
         self.unplaced += nested.unplaced;
     }

@@ -8,7 +8,7 @@ use markers::{pattern, settings};
 use std::path::PathBuf;
 use toile_interchange::{MarkerFile, read_marker_json, write_marker_json};
 use toile_session::{
-    Budget, MarkerFormat, Nap, NestOptions, Nested, SessionError, Silent, Spread,
+    Budget, GivenFlaw, MarkerFormat, Nap, NestOptions, Nested, SessionError, Silent, Spread,
     judge_marker_file, nest_instance, nest_patterns,
 };
 
@@ -87,16 +87,19 @@ fn fabric_at_hand_is_shared_by_the_plies() {
 fn flaws_are_measured_on_the_open_fabric() {
     let mut options = options();
     options.spread = Some(Spread::Folded);
-    options.defects = vec![[0.2, 1.2, 0.05, 0.05]];
+    options.defects = vec![GivenFlaw::at([0.2, 1.2, 0.05, 0.05])];
     let made = nest(&["t-shirt"], &options).unwrap();
     let flaw = &made.marker("marker.json").fabric.defects[0].outline;
     let low = flaw.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
     assert!((low - 0.4).abs() < 1e-9, "{flaw:?}");
     assert!(faults(&made, "marker.json").is_empty());
     options.spread = None;
-    options.defects = vec![[0.0, 2.0, 0.05, 0.05]];
+    options.defects = vec![GivenFlaw::at([0.0, 2.0, 0.05, 0.05])];
     let words = refused(&["t-shirt"], &options);
-    assert!(words.contains("flaw 1 reaches"), "{words}");
+    assert!(
+        words.contains("flaw 1 of fabric \"jersey\" reaches"),
+        "{words}"
+    );
 }
 
 #[test]
@@ -192,7 +195,7 @@ fn our_own_markers_are_sound_to_the_check() {
     };
     let over = NestOptions {
         settings: settings(r#""pieces": { "*": { "over_flaws": true } }"#),
-        defects: vec![[0.2, 0.4, 0.1, 0.1]],
+        defects: vec![GivenFlaw::at([0.2, 0.4, 0.1, 0.1])],
         ..options()
     };
     let print = NestOptions {
@@ -343,4 +346,45 @@ fn instances_take_no_options_of_fabric() {
     };
     let words = place(&gap).unwrap_err().to_string();
     assert!(words.contains("own strip"), "{words}");
+}
+
+#[test]
+fn a_flaw_lies_on_one_fabric_and_one_roll() {
+    let mut options = options();
+    options.settings = settings(
+        r#""fabrics": { "lining": { "width": "140cm" } },
+           "pieces": { "sleeve": { "fabric": "lining" } }"#,
+    );
+    let flaw = GivenFlaw::at([0.2, 1.45, 0.03, 0.03]);
+    options.defects = vec![flaw.clone()];
+    let words = refused(&["t-shirt"], &options);
+    assert!(words.contains("several: jersey, lining"), "{words}");
+    let on = |fabric: &str| GivenFlaw {
+        fabric: Some(fabric.to_owned()),
+        ..flaw.clone()
+    };
+    options.defects = vec![on("lining")];
+    let words = refused(&["t-shirt"], &options);
+    assert!(words.contains("flaw 1 of fabric \"lining\""), "{words}");
+    options.defects = vec![on("denim")];
+    let words = refused(&["t-shirt"], &options);
+    assert!(words.contains("jersey, lining"), "{words}");
+    options.defects = vec![on("jersey")];
+    let made = nest(&["t-shirt"], &options).unwrap();
+    let flaws = |name: &str| made.marker(name).fabric.defects.len();
+    assert_eq!((flaws("marker.json"), flaws("marker-2.json")), (1, 0));
+    options.rolls = vec![(2.0, None), (3.0, None)];
+    let words = refused(&["t-shirt"], &options);
+    assert!(words.contains("laid on 2 rolls"), "{words}");
+}
+
+#[test]
+fn what_an_instance_cannot_hold_is_told() {
+    let mut options = options();
+    options.formats = vec![MarkerFormat::Instance];
+    options.nap = Some(Nap::PerBundle);
+    let made = nest(&["t-shirt"], &options).unwrap();
+    let told = "marker-instance.json does not hold: gaps, the nap of each garment";
+    let notes = &made.nested[0].notes;
+    assert!(notes.iter().any(|note| note == told), "{notes:?}");
 }
