@@ -15,10 +15,16 @@
 //! `soak hard [--short] [--out DIR] [NAME...]` runs the hard scenes of cloth on cloth at full size, or as tests do, and
 //! `soak tangles [COUNT]` so many planted tangles (100); both print a line each and fail where
 //! anything is left crossing. `--out` keeps pictures of the ends.
+//!
+//! `soak sizes [--quality preview|fit|final] [--out DIR] [NAME...]` drapes every pattern that ships, or those named, on
+//! five women, five men and two children, or those named, prints a line each with the crossings
+//! of cloth with body and with cloth, and fails where there are any.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[path = "soak/cloth.rs"]
 mod cloth;
+#[path = "soak/sizes.rs"]
+mod sizes;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -496,8 +502,10 @@ fn main() -> ExitCode {
         Some((first, rest)) if first == "nest" => parse(rest).and_then(|task| nest(&task)),
         Some((first, rest)) if first == "hard" => cloth::hard(rest),
         Some((first, rest)) if first == "tangles" => cloth::tangles(rest),
+        Some((first, rest)) if first == "sizes" => sizes::sizes(rest),
         _ => Err(
-            "say what: soak nest [OPTIONS] INSTANCE.json..., soak hard, soak tangles".to_owned(),
+            "say what: soak nest [OPTIONS] INSTANCE.json..., soak hard, soak tangles, soak sizes"
+                .to_owned(),
         ),
     };
     match done {

@@ -1,16 +1,20 @@
 //! Primitives fixed to joints.
 
-use crate::{Joint, Pose, Primitive, Skeleton};
+use crate::deform::Deformation;
+use crate::{Joint, JointFrames, Pose, Primitive, Skeleton};
 use nalgebra::Rotation3;
-use toile_geometry::{Rigid, Vec3};
+use toile_geometry::Vec3;
 
-/// A primitive that moves rigidly with a joint.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A primitive that moves with a joint: rigidly, or changing with a reference joint besides.
+#[derive(Clone, Debug, PartialEq)]
 pub struct AttachedPrimitive {
-    /// The joint it is fixed to: the nearer end, seen from the root, of the bone it lies round.
+    /// The joint it is fixed to: unless another was asked for, the nearer end, seen from the root,
+    /// of the bone it lies round.
     pub joint: Joint,
     /// The primitive, its centre and rotation in the joint's frame.
     pub local: Primitive,
+    /// How it changes with a reference joint; a rigid one does not.
+    pub deformation: Option<Deformation>,
 }
 
 impl AttachedPrimitive {
@@ -23,25 +27,31 @@ impl AttachedPrimitive {
                 centre: centre.into(),
                 ..*primitive
             },
+            deformation: None,
         }
     }
 
-    /// The primitive in the body's frame, where its joint's frame is given.
-    pub fn placed(&self, body_from_joint: &Rigid) -> Primitive {
-        let centre = body_from_joint * nalgebra::Point3::from(self.local.centre);
+    /// The primitive in the body's frame, in a pose with these frames.
+    pub fn placed(&self, frames: &JointFrames, pose: &Pose) -> Primitive {
+        let local = match &self.deformation {
+            Some(deformation) => deformation.at(&self.local, deformation.angle(pose)),
+            None => self.local,
+        };
+        let body_from_joint = frames.body_from_joint(self.joint);
+        let centre = body_from_joint * nalgebra::Point3::from(local.centre);
         let turn = body_from_joint.rotation;
         // At rest nothing is turned: the very numbers stay.
         let rotation = if turn == nalgebra::UnitQuaternion::identity() {
-            self.local.rotation
+            local.rotation
         } else {
-            (Rotation3::from(turn) * self.local.rotation())
+            (Rotation3::from(turn) * local.rotation())
                 .scaled_axis()
                 .into()
         };
         Primitive {
             centre: centre.coords.into(),
             rotation,
-            ..self.local
+            ..local
         }
     }
 }
@@ -55,6 +65,6 @@ pub(crate) fn posed(
     let frames = skeleton.frames(pose);
     primitives
         .iter()
-        .map(|primitive| primitive.placed(frames.body_from_joint(primitive.joint)))
+        .map(|primitive| primitive.placed(&frames, pose))
         .collect()
 }

@@ -1,5 +1,6 @@
 //! The mannequin as a small file: what it is grown from, not what it looks like.
 
+use crate::rigging::Rigging;
 use crate::template::Template;
 use crate::{BodyError, BodyFrame, Figure, Mannequin, Primitive};
 use serde::{Deserialize, Serialize};
@@ -22,6 +23,9 @@ pub struct Description {
     /// a body grown from the figure's to its measurements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<BodyFrame>,
+    /// What is particular about single primitives.
+    #[serde(default, skip_serializing_if = "Rigging::is_empty")]
+    pub rigging: Rigging,
 }
 
 impl Mannequin {
@@ -31,6 +35,7 @@ impl Mannequin {
             figure: self.figure,
             measurements: self.measurements.clone(),
             frame: self.cast.template.frame(),
+            rigging: self.cast.template.rigging.clone(),
             primitives: self
                 .cast
                 .template
@@ -77,9 +82,16 @@ impl Mannequin {
             }
             template.primitives = both_sides(description.primitives.clone());
         }
+        let left = template.primitives.iter().filter(|p| !p.is_right()).count();
+        description.rigging.check(left)?;
+        template.rigging = description.rigging.clone();
         if let Some(frame) = &description.frame {
             sound(frame)?;
-            let template = Template::framed(frame, template.primitives);
+            let rigging = template.rigging;
+            let template = Template {
+                rigging,
+                ..Template::framed(frame, template.primitives)
+            };
             return Self::still(&description.measurements, description.figure, template);
         }
         Self::from_template(&description.measurements, description.figure, template)
@@ -152,7 +164,8 @@ fn sound(frame: &BodyFrame) -> Result<(), BodyError> {
     Ok(())
 }
 
-fn check(index: usize, p: &Primitive) -> Result<(), BodyError> {
+/// Refuses a primitive no body has.
+pub(crate) fn check(index: usize, p: &Primitive) -> Result<(), BodyError> {
     let bad = |what: &str| Err(BodyError::Description(format!("primitive {index} {what}")));
     let numbers = p.centre.iter().chain(&p.radii).chain(&p.rotation);
     if !numbers.clone().all(|x| x.is_finite() && x.abs() < 10.0) {
@@ -166,6 +179,13 @@ fn check(index: usize, p: &Primitive) -> Result<(), BodyError> {
     }
     if p.is_right() {
         return bad("is on the right: give the left one, the right is its mirror image");
+    }
+    let in_the_middle = p.part == p.part.mirrored() && p.centre[0] == 0.0;
+    let of_a_side = p.also.is_some_and(|part| part != part.mirrored());
+    if in_the_middle && (!p.is_central() || of_a_side) {
+        return bad(
+            "in the middle is turned sideways or belongs to one side: move it off the middle",
+        );
     }
     Ok(())
 }

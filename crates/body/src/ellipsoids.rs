@@ -104,7 +104,7 @@ impl EllipsoidTree {
     }
 
     /// Takes another pose. Returns how many matrices were made anew: those of ellipsoids whose
-    /// joint, or one it hangs on, is turned otherwise.
+    /// joint, or one it hangs on, or whose reference joint is turned otherwise.
     pub fn pose(&mut self, pose: &Pose) -> usize {
         let all = self.pose.shift != pose.shift;
         let turned = Joint::ALL.map(|joint| self.pose.rotation(joint) != pose.rotation(joint));
@@ -114,19 +114,22 @@ impl EllipsoidTree {
                 .any(|above| turned[above as usize] && joint.follows(above))
         });
         self.pose = pose.clone();
-        self.place(|joint| moved[joint as usize])
+        self.place(|attached| {
+            let reference = attached.deformation.as_ref().map(|d| d.joint);
+            moved[attached.joint as usize] || reference.is_some_and(|joint| turned[joint as usize])
+        })
     }
 
-    fn place(&mut self, moved: impl Fn(Joint) -> bool) -> usize {
+    fn place(&mut self, moved: impl Fn(&AttachedPrimitive) -> bool) -> usize {
         let frames = self.skeleton.frames(&self.pose);
         let mut count = 0;
         for (row, &k) in self.order.iter().enumerate() {
             let attached = &self.primitives[k];
-            if !moved(attached.joint) {
+            if !moved(attached) {
                 continue;
             }
             count += 1;
-            let placed = attached.placed(frames.body_from_joint(attached.joint));
+            let placed = attached.placed(&frames, &self.pose);
             let radii = Vec3::from(placed.radii) * (VISIBLE_RATIO * self.scale);
             let turn = *placed.rotation().matrix();
             let centre = Vec3::from(placed.centre);

@@ -65,7 +65,24 @@ impl Part {
     }
 }
 
-/// A blendable ellipsoid: density `w (1 - q)^2` inside `q < 1`, with
+/// How a primitive goes with the others of its part (Volino et al. 1996).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Blend {
+    /// Its density adds to those of the part's other blendable ones.
+    #[default]
+    Blendable,
+    /// A plain ellipsoid: united with the rest of the part, it draws nothing towards itself.
+    Unblendable,
+}
+
+impl Blend {
+    fn is_default(&self) -> bool {
+        *self == Self::Blendable
+    }
+}
+
+/// An ellipsoid: density `w (1 - q)^2` inside `q < 1`, with
 /// `q = |S^-1 R^T (x - c)|^2` (Murakami and Ichihara 1987, on an ellipsoid).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Primitive {
@@ -80,6 +97,12 @@ pub struct Primitive {
     /// What the density is multiplied by [1].
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub weight: f64,
+    /// Whether its density adds to others.
+    #[serde(default, skip_serializing_if = "Blend::is_default")]
+    pub blend: Blend,
+    /// A second group it belongs to, as one near a shoulder or hip may.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub also: Option<Part>,
 }
 
 fn one() -> f64 {
@@ -91,6 +114,25 @@ fn is_one(weight: &f64) -> bool {
 }
 
 impl Primitive {
+    /// A blendable primitive of one part, its axes along the body's: centre and effective
+    /// semi-axes [m].
+    pub fn new(part: Part, centre: [f64; 3], radii: [f64; 3]) -> Self {
+        Self {
+            part,
+            centre,
+            radii,
+            rotation: [0.0; 3],
+            weight: 1.0,
+            blend: Blend::Blendable,
+            also: None,
+        }
+    }
+
+    /// Whether it belongs to a part, as its own or as a second group.
+    pub fn belongs_to(&self, part: Part) -> bool {
+        self.part == part || self.also == Some(part)
+    }
+
     /// The rotation R, from the primitive's axes to the body's.
     pub fn rotation(&self) -> Rotation3<f64> {
         Rotation3::new(Vec3::from(self.rotation))
@@ -105,7 +147,8 @@ impl Primitive {
             centre: [-x, y, z],
             radii: self.radii,
             rotation: [a, -b, -c],
-            weight: self.weight,
+            also: self.also.map(Part::mirrored),
+            ..*self
         }
     }
 
@@ -137,60 +180,89 @@ struct Density {
     weight: f64,
 }
 
+impl Density {
+    /// The density at a point [1].
+    fn at(&self, point: Vec3) -> f64 {
+        let offset = point - self.centre;
+        if offset.norm_squared() >= self.reach_squared {
+            return 0.0;
+        }
+        let q = (self.unit_from_body * offset).norm_squared();
+        let within = (1.0 - q).max(0.0);
+        self.weight * within * within
+    }
+
+    /// Its gradient [1/m]: `-4 w (1 - q) R S^-1 u`, `u = S^-1 R^T (x - c)`.
+    fn gradient(&self, point: Vec3) -> Vec3 {
+        let unit = self.unit_from_body * (point - self.centre);
+        let within = (1.0 - unit.norm_squared()).max(0.0);
+        self.unit_from_body.tr_mul(&unit) * (-4.0 * self.weight * within)
+    }
+}
+
+/// The primitives of one part.
+#[derive(Clone, Debug, Default)]
+struct Group {
+    /// Those whose densities add up.
+    blended: Vec<Density>,
+    /// Those that stand for themselves.
+    plain: Vec<Density>,
+}
+
 /// Every part's field, for evaluation.
 #[derive(Clone, Debug)]
 pub struct Field {
-    parts: [Vec<Density>; 6],
+    parts: [Group; 6],
 }
 
 impl Field {
     /// Makes primitives ready for evaluation.
     pub fn new(primitives: &[Primitive]) -> Self {
-        let mut parts: [Vec<Density>; 6] = Default::default();
+        let mut parts: [Group; 6] = Default::default();
         for primitive in primitives {
             let inverse = Matrix3::from_diagonal(&Vec3::from(primitive.radii).map(|r| 1.0 / r));
             let largest = primitive.radii.iter().copied().fold(0.0, f64::max);
-            parts[primitive.part as usize].push(Density {
+            let density = Density {
                 centre: Vec3::from(primitive.centre),
                 unit_from_body: inverse * primitive.rotation().matrix().transpose(),
                 reach_squared: largest * largest,
                 weight: primitive.weight,
-            });
+            };
+            let second = primitive.also.filter(|&part| part != primitive.part);
+            for part in std::iter::once(primitive.part).chain(second) {
+                let group = &mut parts[part as usize];
+                match primitive.blend {
+                    Blend::Blendable => group.blended.push(density),
+                    Blend::Unblendable => group.plain.push(density),
+                }
+            }
         }
         Self { parts }
     }
 
-    /// Density of one part at a point.
+    /// Density of one part at a point: the sum of its blendable primitives or, where one is
+    /// larger, that of an unblendable one.
     pub fn density(&self, part: Part, point: Vec3) -> f64 {
-        let mut sum = 0.0;
-        for density in &self.parts[part as usize] {
-            let offset = point - density.centre;
-            if offset.norm_squared() < density.reach_squared {
-                let q = (density.unit_from_body * offset).norm_squared();
-                if q < 1.0 {
-                    sum += density.weight * (1.0 - q) * (1.0 - q);
-                }
-            }
-        }
-        sum
+        let group = &self.parts[part as usize];
+        let sum: f64 = group.blended.iter().map(|d| d.at(point)).sum();
+        group.plain.iter().map(|d| d.at(point)).fold(sum, f64::max)
     }
 
-    /// Gradient of one part's density at a point [1/m]:
-    /// `-4 (1 - q) R S^-1 u` summed over its primitives, `u = S^-1 R^T (x - c)`.
+    /// Gradient of one part's density at a point [1/m].
     pub fn gradient(&self, part: Part, point: Vec3) -> Vec3 {
-        let mut sum = Vec3::zeros();
-        for density in &self.parts[part as usize] {
-            let offset = point - density.centre;
-            if offset.norm_squared() < density.reach_squared {
-                let unit = density.unit_from_body * offset;
-                let q = unit.norm_squared();
-                if q < 1.0 {
-                    sum -=
-                        density.unit_from_body.tr_mul(&unit) * (4.0 * density.weight * (1.0 - q));
-                }
+        let group = &self.parts[part as usize];
+        let sum: f64 = group.blended.iter().map(|d| d.at(point)).sum();
+        let mut best: (f64, Option<&Density>) = (sum, None);
+        for density in &group.plain {
+            let own = density.at(point);
+            if own > best.0 {
+                best = (own, Some(density));
             }
         }
-        sum
+        match best.1 {
+            Some(density) => density.gradient(point),
+            None => group.blended.iter().map(|d| d.gradient(point)).sum(),
+        }
     }
 
     /// Largest density of any part at a point: the body is where it is [`THRESHOLD`] or more.
@@ -236,56 +308,65 @@ impl Field {
         Some(along.exit([last * STEP, (last + 1.0) * STEP]))
     }
 
-    fn along(&self, parts: &[Part], [origin, direction]: [Vec3; 2]) -> Along {
+    fn along(&self, parts: &[Part], ray: [Vec3; 2]) -> Along {
         let mut along = Along {
             rows: Vec::with_capacity(24),
-            ends: [0; 6],
-            count: parts.len(),
+            ends: Vec::with_capacity(8),
         };
-        for (part, end) in parts.iter().zip(&mut along.ends) {
-            for density in &self.parts[*part as usize] {
-                let offset = origin - density.centre;
-                let towards = offset.dot(&direction);
-                let beside = offset.norm_squared() - towards * towards;
-                if beside >= density.reach_squared {
-                    continue;
-                }
-                let start = density.unit_from_body * offset;
-                let step = density.unit_from_body * direction;
-                let row = [
-                    step.norm_squared(),
-                    2.0 * start.dot(&step),
-                    start.norm_squared(),
-                    density.weight,
-                ];
-                // Least q on the whole line.
-                if row[2] - 0.25 * row[1] * row[1] / row[0] < 1.0 {
+        for part in parts {
+            let group = &self.parts[*part as usize];
+            for density in &group.blended {
+                along.rows.extend(density.along(ray));
+            }
+            along.ends.push(along.rows.len());
+            for density in &group.plain {
+                if let Some(row) = density.along(ray) {
                     along.rows.push(row);
+                    along.ends.push(along.rows.len());
                 }
             }
-            *end = along.rows.len();
         }
         along
+    }
+}
+
+impl Density {
+    /// q along a line as a quadratic in the distance, and the weight; none where it is not met.
+    fn along(&self, [origin, direction]: [Vec3; 2]) -> Option<[f64; 4]> {
+        let offset = origin - self.centre;
+        let towards = offset.dot(&direction);
+        let beside = offset.norm_squared() - towards * towards;
+        if beside >= self.reach_squared {
+            return None;
+        }
+        let start = self.unit_from_body * offset;
+        let step = self.unit_from_body * direction;
+        let row = [
+            step.norm_squared(),
+            2.0 * start.dot(&step),
+            start.norm_squared(),
+            self.weight,
+        ];
+        // Least q on the whole line.
+        (row[2] - 0.25 * row[1] * row[1] / row[0] < 1.0).then_some(row)
     }
 }
 
 /// Densities along a ray: on a straight line the q of each primitive is a quadratic in the
 /// distance t, `q = a t^2 + b t + c`.
 struct Along {
-    /// a, b, c and the weight of the primitives the line meets, part after part.
+    /// a, b, c and the weight of the primitives the line meets, sum after sum.
     rows: Vec<[f64; 4]>,
-    /// Where each part's rows end.
-    ends: [usize; 6],
-    /// How many parts.
-    count: usize,
+    /// Where the rows that add up end, one after another.
+    ends: Vec<usize>,
 }
 
 impl Along {
-    /// The largest density of a part [1] and its slope along the ray [1/m].
+    /// The largest sum of densities [1] and its slope along the ray [1/m].
     fn strongest(&self, t: f64) -> [f64; 2] {
         let mut best = [0.0, 0.0];
         let mut from = 0;
-        for &end in &self.ends[..self.count] {
+        for &end in &self.ends {
             let mut sum = [0.0, 0.0];
             for &[a, b, c, weight] in &self.rows[from..end] {
                 let within = (1.0 - ((a * t + b) * t + c)).max(0.0);
@@ -302,7 +383,7 @@ impl Along {
 
     fn is_inside(&self, t: f64) -> bool {
         let mut from = 0;
-        self.ends[..self.count].iter().any(|&end| {
+        self.ends.iter().any(|&end| {
             let rows = &self.rows[from..end];
             from = end;
             let mut sum = 0.0;

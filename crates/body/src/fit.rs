@@ -2,13 +2,18 @@
 
 use crate::describe::{Description, both_sides};
 use crate::fit_check::{FitMisfit, misfit};
+use crate::fit_field::{self, Goal};
 use crate::fit_frame::{self, Found};
+use crate::fit_girths::{Girth, girths};
 use crate::fit_samples::{PARTS, Sample, Wanted, samples};
 use crate::fit_start::start;
 use crate::request::Request;
+use crate::rigging::Rigging;
 use crate::rings::TemplateSkin;
 use crate::template::Template;
-use crate::{BodyError, Figure, Part, Primitive, Scan, ScanLandmarks, rings, template_skin};
+use crate::{
+    BodyError, BodyFrame, Figure, Part, Primitive, Scan, ScanLandmarks, rings, template_skin,
+};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
@@ -27,7 +32,8 @@ pub struct Fit {
 
 impl Scan {
     /// Fits a mannequin: joints from the sections of the limbs, then 150 primitives by least
-    /// squares of their densities on the surface, and anew twice with what the cast skin misses.
+    /// squares of their densities on the surface, and anew five times with what the cast skin misses
+    /// the surface and a level tape round it by; the best is kept.
     /// The mesh is taken as symmetric: both halves count for the one that is fitted.
     ///
     /// # Errors
@@ -53,6 +59,7 @@ impl Scan {
             measurements: sound(self.measurements(), figure)?,
             primitives: primitives.into_iter().filter(|p| !p.is_right()).collect(),
             frame: Some(found.frame),
+            rigging: Rigging::default(),
         };
         Ok(Fit {
             description,
@@ -91,31 +98,86 @@ fn fitted(scan: &Scan, found: &mut Found) -> Result<(Vec<Primitive>, FitMisfit),
         .iter()
         .map(|&part| rows.iter().filter(|p| p.part == part).copied().collect())
         .collect();
-    let mut round = 0;
-    let (primitives, skin) = loop {
+    let mut tapes: [Vec<Girth>; 4] = Default::default();
+    let mut best: Option<(Vec<Primitive>, FitMisfit, BodyFrame)> = None;
+    for round in 0..=ROUNDS {
         groups
             .par_iter_mut()
-            .zip(&wanted)
-            .for_each(|(own, samples)| crate::fit_field::fit(own, samples, height));
+            .zip(wanted.par_iter().zip(&tapes))
+            .for_each(|(own, (samples, girths))| {
+                let goal = Goal {
+                    samples,
+                    girths,
+                    height,
+                };
+                fit_field::fit(own, &goal);
+            });
         let primitives = both_sides(groups.concat());
-        let mut template = Template::framed(&found.frame, primitives.clone());
-        let skin = rings::cast_framed(&mut template)?;
-        found.frame.hand = template.hand;
-        round += 1;
-        if round > ROUNDS {
-            break (primitives, skin.mesh);
-        }
+        let (skin, checked) = cast_clear(scan, found, &primitives)?;
+        let misfit = misfit(scan, &checked, &found.frame.joints, [0.0, found.chin]);
         for (part, samples) in PARTS.iter().zip(&mut wanted) {
             drawn(samples, *part, &skin, height);
         }
-    };
-    let checked = Scan::new(skin, scan.landmarks().clone())?;
-    let misfit = misfit(scan, &checked, &found.frame.joints, found.chin);
+        tapes = girths([scan, &checked], found, (&groups, round + 1));
+        let bad = misfit.badness(height);
+        if best.as_ref().is_none_or(|b| bad < b.1.badness(height)) {
+            best = Some((primitives, misfit, found.frame));
+        }
+    }
+    let (primitives, misfit, frame) =
+        best.ok_or_else(|| BodyError::Mesh("was not fitted".into()))?;
+    found.frame = frame;
     Ok((primitives, misfit))
 }
 
-/// How often the skin is cast and what it misses by is added to what is wanted.
-const ROUNDS: usize = 2;
+/// Casts the skin with the armpits' rings where it misses the mesh least round there: between a
+/// thick arm and a full trunk few places are free.
+fn cast_clear(
+    scan: &Scan,
+    found: &mut Found,
+    primitives: &[Primitive],
+) -> Result<(TemplateSkin, Scan), BodyError> {
+    /// Places tried, nearest first, and how far round them the mesh is compared, over stature.
+    const ELSEWHERE: [f64; 7] = [0.0, -0.003, 0.003, -0.006, 0.006, -0.01, 0.01];
+    const ROUND: f64 = 0.035;
+    let height = found.frame.height;
+    let mut best: Option<(f64, TemplateSkin, Scan, BodyFrame)> = None;
+    let mut why = None;
+    for step in ELSEWHERE {
+        let armpit = found.frame.armpit + step * height;
+        let mut tried = BodyFrame {
+            armpit,
+            ..found.frame
+        };
+        let mut template = Template::framed(&tried, primitives.to_vec());
+        let skin = match rings::cast_framed(&mut template) {
+            Ok(skin) => skin,
+            Err(error) => {
+                why = why.or(Some(error));
+                continue;
+            }
+        };
+        tried.hand = template.hand;
+        let checked = Scan::new(skin.mesh.clone(), scan.landmarks().clone())?;
+        let range = [-ROUND, ROUND].map(|d| found.frame.armpit + d * height);
+        let bad = misfit(scan, &checked, &tried.joints, range).badness(height);
+        if best.as_ref().is_none_or(|known| bad < known.0) {
+            best = Some((bad, skin, checked, tried));
+        }
+    }
+    match (best, why) {
+        (Some((_, skin, checked, chosen)), _) => {
+            found.frame = chosen;
+            Ok((skin, checked))
+        }
+        (None, Some(error)) => Err(error),
+        (None, None) => Err(BodyError::Mesh("leaves no armpit".into())),
+    }
+}
+
+/// How often the skin is cast and what it misses by is added to what is wanted; the best of all
+/// is kept.
+const ROUNDS: usize = 5;
 
 /// By how much the skin misses a place of the surface wanted.
 struct Missed {

@@ -1,6 +1,8 @@
 //! How far a skin lies from the mesh it was fitted to, by sections.
 
+use crate::rings::crossings;
 use crate::{Joints, Loop, Scan};
+use serde::Serialize;
 use std::f64::consts::TAU;
 use toile_geometry::{Vec2, closed_length, convex_hull};
 
@@ -22,29 +24,88 @@ pub struct FitMisfit {
     pub sections: usize,
     /// Radial root mean square of trunk with neck, legs and arms [m].
     pub parts: [f64; 3],
+    /// Every section compared, from the floor up.
+    pub levels: Vec<LevelMisfit>,
+    /// Pairs of the skin's triangles that cross.
+    pub self_crossings: usize,
+}
+
+/// What a level tape compares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LevelPart {
+    /// Trunk, neck and head; where the arms are one with the trunk in either body, all of it.
+    Trunk,
+    /// The left leg.
+    Leg,
+    /// The left arm beside the trunk.
+    Arm,
+}
+
+/// How far two level sections lie apart.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LevelMisfit {
+    /// Height of the section [m].
+    #[serde(rename = "height_m")]
+    pub height: f64,
+    /// What was cut.
+    pub part: LevelPart,
+    /// Girth of the mesh by a tight tape [m].
+    #[serde(rename = "girth_m")]
+    pub girth: f64,
+    /// The fitted skin's girth less the mesh's [m].
+    #[serde(rename = "gap_m")]
+    pub gap: f64,
+    /// Root mean square of the distance along rays [m].
+    #[serde(rename = "radial_rms_m")]
+    pub radial: f64,
 }
 
 /// Rays of a section.
 const RAYS: usize = 72;
 
-/// Compares two bodies.
-pub(crate) fn misfit(mesh: &Scan, skin: &Scan, joints: &Joints, chin: f64) -> FitMisfit {
+impl FitMisfit {
+    /// One number to choose by: the larger of what misses by radius and by girth, against what
+    /// either may miss by, over stature [1]; a skin that crosses itself comes last.
+    pub(crate) fn badness(&self, stature: f64) -> f64 {
+        /// What an adult's fit may miss by, over stature: 2 mm and 3 mm.
+        const MAY: [f64; 2] = [2e-3 / 1.7, 3e-3 / 1.7];
+        let over = (self.radial / MAY[0]).max(self.girth / MAY[1]) / stature;
+        over + 100.0 * self.self_crossings as f64
+    }
+}
+
+/// Compares two bodies on the levels between two heights [m].
+pub(crate) fn misfit(
+    mesh: &Scan,
+    skin: &Scan,
+    joints: &Joints,
+    [low, high]: [f64; 2],
+) -> FitMisfit {
     let height = mesh.height();
     let mut found = FitMisfit::default();
     let (mut radial, mut girth) = ([[0.0_f64; 2]; 3], 0.0_f64);
     for k in 4..100 {
         let y = 0.01 * height * f64::from(k);
-        if y > chin {
-            break;
+        if y < low || y > high {
+            continue;
         }
-        for (part, pair) in pairs(mesh, skin, joints, y) {
+        for (part, pair) in pairs([mesh, skin], joints, y) {
             let rays = distances(&pair);
             let square: f64 = rays.iter().map(|d| d * d).sum();
-            radial[part][0] += square;
-            radial[part][1] += rays.len() as f64;
+            radial[part as usize][0] += square;
+            radial[part as usize][1] += rays.len() as f64;
             let most = rays.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
             found.radial_max = found.radial_max.max(most);
-            let gap = tape(&pair[1]) - tape(&pair[0]);
+            let [around, skin] = pair.map(|loops| tape(&loops));
+            let gap = skin - around;
+            found.levels.push(LevelMisfit {
+                height: y,
+                part,
+                girth: around,
+                gap,
+                radial: (square / rays.len().max(1) as f64).sqrt(),
+            });
             girth += gap * gap;
             found.girth_max = found.girth_max.max(gap.abs());
             found.sections += 1;
@@ -53,6 +114,7 @@ pub(crate) fn misfit(mesh: &Scan, skin: &Scan, joints: &Joints, chin: f64) -> Fi
     let [sum, count] = radial
         .iter()
         .fold([0.0, 0.0], |a, b| [a[0] + b[0], a[1] + b[1]]);
+    found.self_crossings = crossings(skin.mesh());
     let root = |square: f64, count: f64| (square / count.max(1.0)).sqrt();
     found.radial = root(sum, count);
     found.girth = root(girth, found.sections as f64);
@@ -62,29 +124,33 @@ pub(crate) fn misfit(mesh: &Scan, skin: &Scan, joints: &Joints, chin: f64) -> Fi
 
 /// The sections at a height that both have: of trunk, leg and arm. Where the arms are one with
 /// the trunk in one of them, all of it together.
-fn pairs(mesh: &Scan, skin: &Scan, joints: &Joints, y: f64) -> Vec<(usize, [Vec<Loop>; 2])> {
+pub(crate) fn pairs(
+    [mesh, skin]: [&Scan; 2],
+    joints: &Joints,
+    y: f64,
+) -> Vec<(LevelPart, [Vec<Loop>; 2])> {
     let both = |take: &dyn Fn(&Scan) -> Option<Loop>| Some([vec![take(mesh)?], vec![take(skin)?]]);
     let mut all = Vec::new();
     let crotch = mesh.landmarks().crotch.unwrap_or_default();
     if y < crotch {
-        all.extend(both(&|s| s.leg(y)).map(|pair| (1, pair)));
+        all.extend(both(&|s| s.leg(y)).map(|pair| (LevelPart::Leg, pair)));
         return all;
     }
     let apart = [mesh, skin].map(|s| s.arm(y).is_some());
     let armpit = mesh.landmarks().armpit.unwrap_or_default();
     if apart[0] != apart[1] && y > armpit - 0.03 * mesh.height() {
-        return vec![(0, [mesh.level(y), skin.level(y)])];
+        return vec![(LevelPart::Trunk, [mesh.level(y), skin.level(y)])];
     }
-    all.extend(both(&|s| s.trunk(y)).map(|pair| (0, pair)));
+    all.extend(both(&|s| s.trunk(y)).map(|pair| (LevelPart::Trunk, pair)));
     // Level sections of a slanting forearm reach over the wrist.
     if y > joints.wrist[1] + 0.02 * mesh.height() {
-        all.extend(both(&|s| s.arm(y)).map(|pair| (2, pair)));
+        all.extend(both(&|s| s.arm(y)).map(|pair| (LevelPart::Arm, pair)));
     }
     all
 }
 
 /// Girth of a tight tape round all loops [m].
-fn tape(loops: &[Loop]) -> f64 {
+pub(crate) fn tape(loops: &[Loop]) -> f64 {
     let points: Vec<Vec2> = loops.iter().flat_map(|l| &l.points).copied().collect();
     closed_length(&convex_hull(&points))
 }

@@ -1,6 +1,7 @@
 //! Primitives of one part fitted to samples of its surface by damped least squares (Levenberg
 //! 1944, Marquardt 1963) with derivatives in closed form.
 
+use crate::fit_girths::Girth;
 use crate::fit_samples::{Sample, Wanted};
 use crate::{Part, Primitive, THRESHOLD};
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, Rotation3};
@@ -30,6 +31,22 @@ struct Ready {
     central: bool,
 }
 
+/// The implicit surface of one part of the left side and the middle.
+pub(crate) struct Surface {
+    all: Vec<Ready>,
+}
+
+/// A primitive by its number with derivatives by its unknowns.
+pub(crate) type Row = (usize, [f64; UNKNOWNS]);
+
+/// What a part is fitted to.
+pub(crate) struct Goal<'a> {
+    pub(crate) samples: &'a [Sample],
+    pub(crate) girths: &'a [Girth],
+    /// Stature [m].
+    pub(crate) height: f64,
+}
+
 /// A sum of squares with its derivatives.
 struct System {
     normal: DMatrix<f64>,
@@ -38,13 +55,13 @@ struct System {
 }
 
 /// Fits the primitives of one part of the left side and the middle, in place.
-pub(crate) fn fit(primitives: &mut [Primitive], samples: &[Sample], height: f64) {
-    if primitives.is_empty() || samples.is_empty() {
+pub(crate) fn fit(primitives: &mut [Primitive], goal: &Goal) {
+    if primitives.is_empty() || goal.samples.is_empty() {
         return;
     }
     let start = primitives.to_vec();
     let mut damping = 1e-2;
-    let mut system = assembled(primitives, &start, samples, height);
+    let mut system = assembled(primitives, &start, goal);
     for _ in 0..STEPS {
         let mut damped = system.normal.clone();
         for k in 0..damped.nrows() {
@@ -57,9 +74,9 @@ pub(crate) fn fit(primitives: &mut [Primitive], samples: &[Sample], height: f64)
         let step = factor.solve(&system.right);
         let mut tried = primitives.to_vec();
         for (primitive, own) in tried.iter_mut().zip(step.as_slice().chunks(UNKNOWNS)) {
-            moved(primitive, own, height);
+            moved(primitive, own, goal.height);
         }
-        let next = assembled(&tried, &start, samples, height);
+        let next = assembled(&tried, &start, goal);
         if next.sum < system.sum {
             let gain = 1.0 - next.sum / system.sum;
             primitives.copy_from_slice(&tried);
@@ -152,29 +169,22 @@ fn density(p: &Ready, place: Vec3) -> Option<(f64, Vec3, [f64; UNKNOWNS])> {
     Some((value, gradient, row))
 }
 
-fn assembled(
-    primitives: &[Primitive],
-    start: &[Primitive],
-    samples: &[Sample],
-    height: f64,
-) -> System {
-    let all: Vec<Ready> = primitives.iter().map(ready).collect();
-    let size = UNKNOWNS * primitives.len();
-    let mut system = System {
-        normal: DMatrix::zeros(size, size),
-        right: DVector::zeros(size),
-        sum: 0.0,
-    };
-    let mut touched: Vec<(usize, [f64; UNKNOWNS])> = Vec::new();
-    // Where the field is flat a residual counts as if it rose so [1/m].
-    let least = 6.0 / height;
-    for sample in samples {
+impl Surface {
+    pub(crate) fn new(primitives: &[Primitive]) -> Self {
+        Self {
+            all: primitives.iter().map(ready).collect(),
+        }
+    }
+
+    /// Density at a place and its gradient; the rows of the primitives that reach there are put
+    /// into `touched`.
+    fn at(&self, place: Vec3, touched: &mut Vec<Row>) -> (f64, Vec3) {
         touched.clear();
         let (mut value, mut gradient) = (0.0, Vec3::zeros());
-        for (k, p) in all.iter().enumerate() {
-            let own = density(p, sample.place);
-            let place = Vec3::new(-sample.place.x, sample.place.y, sample.place.z);
-            let twin = if p.twin { density(p, place) } else { None };
+        let image = Vec3::new(-place.x, place.y, place.z);
+        for (k, p) in self.all.iter().enumerate() {
+            let own = density(p, place);
+            let twin = if p.twin { density(p, image) } else { None };
             let mut row = [0.0; UNKNOWNS];
             if let Some((v, g, r)) = own {
                 value += v;
@@ -193,6 +203,43 @@ fn assembled(
                 touched.push((k, row));
             }
         }
+        (value, gradient)
+    }
+
+    /// How far the surface lies beyond a place in its level plane, to first order [m], and the
+    /// density's slope that way [1/m].
+    pub(crate) fn beyond(&self, place: Vec3, touched: &mut Vec<Row>) -> (f64, f64) {
+        /// Of the slope: under it a surface is as good as level.
+        const LEVEL: f64 = 0.15;
+        let (value, gradient) = self.at(place, touched);
+        let steep = gradient.x.hypot(gradient.z).max(LEVEL * gradient.norm());
+        ((value - THRESHOLD) / steep.max(1e-6), steep.max(1e-6))
+    }
+
+    /// By how much a tape is longer for where the surface lies beyond its corners [m].
+    pub(crate) fn lengthening(&self, corners: &[(Vec3, f64)]) -> f64 {
+        let mut touched = Vec::new();
+        corners
+            .iter()
+            .map(|&(place, turn)| turn * self.beyond(place, &mut touched).0)
+            .sum()
+    }
+}
+
+fn assembled(primitives: &[Primitive], start: &[Primitive], goal: &Goal) -> System {
+    let height = goal.height;
+    let surface = Surface::new(primitives);
+    let size = UNKNOWNS * primitives.len();
+    let mut system = System {
+        normal: DMatrix::zeros(size, size),
+        right: DVector::zeros(size),
+        sum: 0.0,
+    };
+    let mut touched: Vec<Row> = Vec::new();
+    // Where the field is flat a residual counts as if it rose so [1/m].
+    let least = 6.0 / height;
+    for sample in goal.samples {
+        let (value, gradient) = surface.at(sample.place, &mut touched);
         let miss = match sample.wanted {
             Wanted::Surface { .. } => value - THRESHOLD,
             Wanted::Within => (value - THRESHOLD - ROOM[0]).min(0.0),
@@ -210,19 +257,16 @@ fn assembled(
         };
         system.add(&touched, miss / steep, steep, (sample.weight, FAR * height));
     }
+    for girth in goal.girths {
+        system.tape(&surface, girth);
+    }
     system.hold(primitives, start, height);
     system
 }
 
 impl System {
     /// Adds a residual [m] whose derivatives are those of the density over its slope.
-    fn add(
-        &mut self,
-        touched: &[(usize, [f64; UNKNOWNS])],
-        miss: f64,
-        steep: f64,
-        (weight, far): (f64, f64),
-    ) {
+    fn add(&mut self, touched: &[Row], miss: f64, steep: f64, (weight, far): (f64, f64)) {
         let size = miss.abs();
         let (cost, factor) = match size <= far {
             true => (miss * miss, 1.0),
@@ -243,6 +287,30 @@ impl System {
                 }
             }
         }
+    }
+
+    /// Adds the residual of a tape [m]: what the surface's moves off its corners lengthen it by,
+    /// less what is wanted.
+    fn tape(&mut self, surface: &Surface, girth: &Girth) {
+        let mut touched = Vec::new();
+        let mut rows = vec![None; surface.all.len()];
+        let mut long = -girth.wanted;
+        for &(place, turn) in &girth.corners {
+            let (beyond, steep) = surface.beyond(place, &mut touched);
+            long += turn * beyond;
+            for (k, own) in &touched {
+                let row = rows[*k].get_or_insert([0.0; UNKNOWNS]);
+                for (sum, slope) in row.iter_mut().zip(own) {
+                    *sum += turn * slope / steep;
+                }
+            }
+        }
+        let rows: Vec<Row> = rows
+            .into_iter()
+            .enumerate()
+            .filter_map(|(k, row)| Some((k, row?)))
+            .collect();
+        self.add(&rows, long, 1.0, (girth.weight, f64::INFINITY));
     }
 
     /// Holds the primitives weakly to where they started, so that none wanders where nothing

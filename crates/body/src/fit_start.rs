@@ -109,13 +109,8 @@ pub(crate) fn start(scan: &Scan, found: &Found, own: &Scan) -> Vec<Primitive> {
 fn leg(to: &Side) -> Vec<Primitive> {
     let bones = to.bones(Part::LeftLeg);
     let height = to.frame.height;
-    let primitive = |centre: Vec3, radii: [f64; 3]| Primitive {
-        part: Part::LeftLeg,
-        centre: centre.into(),
-        radii,
-        rotation: [0.0; 3],
-        weight: 1.0,
-    };
+    let primitive =
+        |centre: Vec3, radii: [f64; 3]| Primitive::new(Part::LeftLeg, centre.into(), radii);
     let path = &bones[..3];
     let length: f64 = path.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
     let spacing = length / PAIRS as f64;

@@ -44,15 +44,12 @@ impl Mannequin {
     /// Calls a function with the tape on the finished skin.
     pub(crate) fn with_tape<T>(&self, use_it: impl FnOnce(&Taken) -> T) -> T {
         let skinned = Skinned::finished(self.skin(), &self.cast.skin.parts);
-        use_it(&Taken {
-            skinned: &skinned,
-            marks: &self.cast.marks,
-            levels: &self.levels,
-            warp: &self.warp,
-            crotch: &self.crotch,
-            armpit: self.cast.skin.armpit,
-            hulls: Default::default(),
-        })
+        use_it(&Taken::new(
+            &skinned,
+            (&self.cast.marks, self.cast.skin.armpit),
+            (&self.levels, &self.warp),
+            &self.crotch,
+        ))
     }
 
     /// A measurement by its name in the catalogue, taken from the finished skin [m] or [rad]; none

@@ -13,6 +13,8 @@ use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
 pub struct Landmarks {
     /// Top of the head.
     pub crown: Vec3,
+    /// The chin: where the front middle between neck and brow reaches farthest forward and down.
+    pub chin: Vec3,
     /// Base of the neck at the back, over the seventh neck vertebra.
     pub nape: Vec3,
     /// Where neck and shoulder meet.
@@ -105,8 +107,14 @@ impl Landmarks {
             .max_by(|a, b| a.y.total_cmp(&b.y))
             .unwrap_or_default();
         let neck_base = warp.apply(Vec3::from(grown.template.joints.neck), Follow::default());
+        let outline: Vec<Vec3> = (0..mesh.positions.len())
+            .filter(middle)
+            .map(|v| mesh.positions[v])
+            .filter(|p| p.z > neck_base.z && p.y > neck_base.y)
+            .collect();
         Self {
             crown,
+            chin: chin(outline, [neck_base.y, crown.y]),
             nape: Vec3::new(0.0, level(Level::Nape), nape_z),
             neck_sides: pair(neck),
             shoulder_tips: pair(tip),
@@ -122,6 +130,39 @@ impl Landmarks {
                 Vec3::new(0.0, neck.y, neck_base.z),
             ],
         }
+    }
+}
+
+/// Where an outline of neck and face reaches farthest forward and down, 30 degrees below level,
+/// between the neck's base and the brow.
+fn chin(mut outline: Vec<Vec3>, [base, crown]: [f64; 2]) -> Vec3 {
+    /// Share of the way from the neck's base to the crown at which the brow begins.
+    const BROW: f64 = 0.62;
+    outline.retain(|p| p.y < base + BROW * (crown - base));
+    outline.sort_by(|a, b| a.y.total_cmp(&b.y));
+    let reach = |p: &Vec3| 3f64.sqrt() * p.z - p.y;
+    let best =
+        (0..outline.len()).max_by(|&a, &b| reach(&outline[a]).total_cmp(&reach(&outline[b])));
+    let Some(k) = best else {
+        return Vec3::new(0.0, crown, 0.0);
+    };
+    if k == 0 || k + 1 == outline.len() {
+        return outline[k];
+    }
+    // Between the points the parabola through three of them has its top.
+    let [a, b, c] = [outline[k - 1], outline[k], outline[k + 1]];
+    let (u, v) = ((b - a).norm(), (c - b).norm());
+    let (rise, fall) = (reach(&b) - reach(&a), reach(&c) - reach(&b));
+    let bend = fall / v - rise / u;
+    if u * v < 1e-12 || bend >= 0.0 {
+        return b;
+    }
+    // Slope at the middle point over the change of slope.
+    let slope = (rise / u * v + fall / v * u) / (u + v);
+    let way = (-slope * 0.5 * (u + v) / bend).clamp(-0.5 * u, 0.5 * v);
+    match way < 0.0 {
+        true => b + (a - b) * (-way / u),
+        false => b + (c - b) * (way / v),
     }
 }
 

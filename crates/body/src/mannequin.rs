@@ -9,6 +9,7 @@ use crate::levels::{self, Excess, Levels};
 use crate::marks::Marks;
 use crate::refit::refitted;
 use crate::request::Request;
+use crate::rigging::sources;
 use crate::rings::{self, TemplateSkin};
 use crate::skinning::Skinning;
 use crate::solve::{Grown, Solved};
@@ -179,18 +180,33 @@ impl Mannequin {
     /// The template's primitives carried by the map, scaled to lie on the skin, and fixed.
     fn fitted_primitives(&self) -> Vec<AttachedPrimitive> {
         let template = &self.cast.template;
-        let attached = |(primitive, of_template): (&Primitive, &Primitive)| {
-            let joint = bones::joint_of(template, of_template);
-            AttachedPrimitive::new(joint, primitive, &self.skeleton)
-        };
-        if self.warp.is_still() {
-            let own = template.primitives.iter();
-            return own.map(|p| attached((p, p))).collect();
-        }
-        let left: Vec<Primitive> = template
+        let own: Vec<Primitive> = template
             .primitives
             .iter()
             .filter(|primitive| !primitive.is_right())
+            .copied()
+            .collect();
+        let attached = |(primitive, (k, is_image)): (&Primitive, (usize, bool))| {
+            let side = |joint: Joint| if is_image { joint.mirrored() } else { joint };
+            let particular = template.rigging.of(k);
+            let asked = particular.and_then(|p| p.joint);
+            let joint = asked.unwrap_or_else(|| bones::joint_of(template, &own[k]));
+            let deformation = particular.and_then(|p| p.deformation.as_ref());
+            AttachedPrimitive {
+                deformation: deformation.map(|d| match is_image {
+                    true => d.mirrored(),
+                    false => d.clone(),
+                }),
+                ..AttachedPrimitive::new(side(joint), primitive, &self.skeleton)
+            }
+        };
+        let sources = sources(&own);
+        if self.warp.is_still() {
+            let all = template.primitives.iter();
+            return all.zip(sources).map(attached).collect();
+        }
+        let left: Vec<Primitive> = own
+            .iter()
             .map(|primitive| {
                 let mut body = carried(primitive, &self.warp);
                 if primitive.is_central() {
@@ -203,7 +219,7 @@ impl Mannequin {
             .collect();
         refitted(left, &self.skin, &self.cast.skin.parts)
             .iter()
-            .zip(&template.primitives)
+            .zip(sources)
             .map(attached)
             .collect()
     }
@@ -347,10 +363,9 @@ fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
         axes.set_column(2, &third);
     }
     Primitive {
-        part: primitive.part,
         centre: warp.apply(centre, follow).into(),
         radii: order.map(|k| values[k]),
         rotation: Rotation3::from_matrix_unchecked(axes).scaled_axis().into(),
-        weight: primitive.weight,
+        ..*primitive
     }
 }

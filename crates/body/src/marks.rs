@@ -54,6 +54,8 @@ const TIP: f64 = 0.003;
 
 /// Distance of the underbust below the bust, over stature.
 pub(crate) const UNDERBUST: f64 = 0.042;
+/// Between which heights the calf is looked for, over the knee's.
+pub(crate) const CALF: [f64; 2] = [0.55, 0.9];
 
 impl Marks {
     pub(crate) fn of(template: &Template, skin: &TemplateSkin) -> Result<Self, BodyError> {
@@ -77,7 +79,7 @@ impl Marks {
         let [elbow, wrist] = [elbow, wrist].map(|p| (p - shoulder).dot(&along));
         let arm = |d: f64| girth(&skinned, Part::LeftArm, [shoulder + along * d, along], None);
         let (knee, leg) = (j.knee[1], |y: f64| level(Part::LeftLeg, y));
-        let calf = extreme([0.55 * knee, 0.9 * knee], leg);
+        let calf = extreme(CALF.map(|share| share * knee), leg);
         let neck = neck_plane(template);
         let brow = extreme([h - 0.075 * h, h - 0.03 * h], |y| level(Part::Head, y));
         let depth = depth(skin, [crotch + 0.05 * h, bust]);

@@ -103,6 +103,20 @@ impl Motion {
 }
 
 impl Pose {
+    /// The pose between this one (0) and another (1) as linear blending has it: each joint's
+    /// rotation vector evenly mixed, as frames and animations are in Rudomin et al. (2002). It
+    /// neither turns evenly nor the short way; for comparison with [`Pose::blended`] alone.
+    #[must_use]
+    pub fn blended_linearly(&self, other: &Self, share: f64) -> Self {
+        let mut pose = Self::rest();
+        for joint in Joint::ALL {
+            let [a, b] = [self, other].map(|pose| pose.rotation(joint).scaled_axis());
+            pose.set(joint, UnitQuaternion::new(a + (b - a) * share));
+        }
+        pose.shift = self.shift + (other.shift - self.shift) * share;
+        pose
+    }
+
     /// The pose between this one (0) and another (1): each joint the short way round
     /// (Shoemake 1985), the root's place evenly.
     #[must_use]

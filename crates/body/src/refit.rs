@@ -1,7 +1,7 @@
 //! Primitives fitted anew to the skin that was grown from them.
 
 use crate::describe::both_sides;
-use crate::{Part, Primitive, THRESHOLD};
+use crate::{Blend, Part, Primitive, THRESHOLD};
 use nalgebra::Matrix3;
 use toile_geometry::{TriangleMesh, Vec3};
 
@@ -26,7 +26,7 @@ pub(crate) fn refitted(
             let own: Vec<Own> = primitives
                 .iter()
                 .enumerate()
-                .filter(|(_, p)| p.part == *part)
+                .filter(|(_, p)| p.belongs_to(*part) && p.blend == Blend::Blendable)
                 .map(|(i, p)| (i, p.weight, sides(p), inverse(p)))
                 .collect();
             for &point in points {

@@ -10,7 +10,7 @@ use crate::curve::smooth_step;
 use crate::template::Template;
 use crate::underarm::Underarm;
 use crate::{BodyError, Field, Part};
-use toile_geometry::{TriangleMesh, Vec3};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 /// Steps of a half ring of the trunk, from the front middle round the left to the back middle.
 /// Even, so that one column runs down the side.
@@ -124,9 +124,35 @@ pub(crate) fn cast_framed(template: &mut Template) -> Result<TemplateSkin, BodyE
             {
                 template.hand *= 0.93;
             }
-            other => return other,
+            other => return other.map(|skin| clear_under_the_arms(skin, template.height)),
         }
     }
+}
+
+/// A skin that does not cross itself, as it is; else with its first rings under the arms drawn
+/// even, as on bodies grown to measurements, where that helps.
+fn clear_under_the_arms(mut skin: TemplateSkin, stature: f64) -> TemplateSkin {
+    let before = crossings(&skin.mesh);
+    if before == 0 {
+        return skin;
+    }
+    let mut drawn = skin.mesh.clone();
+    skin.underarm.draw(&mut drawn.positions, stature);
+    for (v, &image) in skin.mirror.iter().enumerate() {
+        if image as usize > v {
+            let p = drawn.positions[v];
+            drawn.positions[image as usize] = Vec3::new(-p.x, p.y, p.z);
+        }
+    }
+    if crossings(&drawn) < before {
+        skin.mesh = drawn;
+    }
+    skin
+}
+
+/// Pairs of triangles that cross.
+pub(crate) fn crossings(mesh: &TriangleMesh) -> usize {
+    SurfaceTree::new(mesh.clone()).self_intersections().len()
 }
 
 /// Rings where limbs begin, in the limbs' own order of walking.

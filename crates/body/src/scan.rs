@@ -2,6 +2,7 @@
 //! found or given, and the same tape as on our own bodies: the convex hull of a section.
 
 use crate::BodyError;
+use crate::marks::{CALF, UNDERBUST};
 use crate::tape::extent;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -83,6 +84,16 @@ pub struct Scan {
 
 /// Steps in which levels are searched, over stature.
 const STEP: f64 = 0.0025;
+/// Where levels of an upright person are looked for, or taken to be where they cannot be found,
+/// over stature: crotch, knee over the crotch, waist and armpits.
+const CROTCH: f64 = 0.46;
+const KNEE: f64 = 0.58;
+const WAIST: f64 = 0.6;
+const ARMPIT: f64 = 0.74;
+/// No armpit is higher, over stature.
+const ARMPIT_MOST: f64 = 0.85;
+/// A shorter loop is a finger or a toe, over stature.
+const LIMB: f64 = 0.03;
 
 impl Scan {
     /// Takes a mesh in metres, Y up, with landmarks; finds those that are left out.
@@ -240,7 +251,7 @@ impl Scan {
     pub fn leg(&self, height: f64) -> Option<Loop> {
         self.level(height)
             .into_iter()
-            .filter(|l| l.centre().x > self.middle && l.length() > 0.03 * self.height)
+            .filter(|l| l.centre().x > self.middle && l.length() > LIMB * self.height)
             .min_by(|a, b| a.centre().x.total_cmp(&b.centre().x))
     }
 
@@ -275,7 +286,7 @@ impl Scan {
             // From the hips down, the last level at which one loop as large as a trunk's holds the
             // middle.
             let is_trunk = |y: f64| self.trunk(y).is_some_and(|l| l.length() > 0.2 * h);
-            let mut y = 0.6 * h;
+            let mut y = WAIST * h;
             while y > 0.3 * h && is_trunk(y) {
                 y -= 0.001 * h;
             }
@@ -283,15 +294,16 @@ impl Scan {
         }
         if self.landmarks.armpit.is_none() {
             // From the waist up, the first level with no arm beside the trunk.
-            let mut y = 0.62 * h;
-            while y < 0.85 * h && self.arm(y).is_some() {
+            let from = (WAIST + 0.02) * h;
+            let mut y = from;
+            while y < ARMPIT_MOST * h && self.arm(y).is_some() {
                 y += 0.002 * h;
             }
-            self.landmarks.armpit = (y > 0.63 * h && y < 0.85 * h).then_some(y);
+            self.landmarks.armpit = (y > from + 0.01 * h && y < ARMPIT_MOST * h).then_some(y);
         }
         let trunk = |y: f64| Some(self.trunk(y)?.girth());
-        let armpit = self.landmarks.armpit.unwrap_or(0.74 * h);
-        let crotch = self.landmarks.crotch.unwrap_or(0.46 * h);
+        let armpit = self.landmarks.armpit.unwrap_or(ARMPIT * h);
+        let crotch = self.landmarks.crotch.unwrap_or(CROTCH * h);
         let hips = self
             .landmarks
             .hips
@@ -301,11 +313,11 @@ impl Scan {
             self.extreme([from, armpit - 0.08 * h], |y| trunk(y).map(|g| -g))
         });
         let bust = self.landmarks.bust.or_else(|| {
-            let from = waist.unwrap_or(0.6 * h) + 0.05 * h;
+            let from = waist.unwrap_or(WAIST * h) + 0.05 * h;
             self.extreme([from, armpit - 0.004 * h], trunk)
         });
-        let knee = self.landmarks.knee.or(Some(0.58 * crotch));
-        let underbust = self.landmarks.underbust.or(bust.map(|y| y - 0.042 * h));
+        let knee = self.landmarks.knee.or(Some(KNEE * crotch));
+        let underbust = self.landmarks.underbust.or(bust.map(|y| y - UNDERBUST * h));
         self.landmarks = ScanLandmarks {
             hips,
             waist,
@@ -346,8 +358,8 @@ impl Scan {
         let leg = |y: f64| Some(self.leg(y)?.girth());
         put("leg_circ", l.crotch.and_then(|y| leg(y - 0.012 * h)));
         put("knee", l.knee.and_then(leg));
-        let knee = l.knee.unwrap_or(0.27 * h);
-        let calf = self.extreme([0.55 * knee, 0.9 * knee], leg);
+        let knee = l.knee.unwrap_or(KNEE * CROTCH * h);
+        let calf = self.extreme(CALF.map(|share| share * knee), leg);
         put("calf", calf.and_then(leg));
         let thin = |y: f64| leg(y).map(|g| -g);
         put(

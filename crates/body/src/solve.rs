@@ -90,18 +90,10 @@ impl Grown<'_> {
     pub(crate) fn taken<'a>(
         &'a self,
         skinned: &'a Skinned<'a>,
-        (levels, warp): (&'a Levels, &'a Warp),
+        on: (&'a Levels, &'a Warp),
         crotch: &'a [u32],
     ) -> Taken<'a> {
-        Taken {
-            skinned,
-            marks: &self.marks,
-            levels,
-            warp,
-            crotch,
-            armpit: self.skin.armpit,
-            hulls: Default::default(),
-        }
+        Taken::new(skinned, (&self.marks, self.skin.armpit), on, crotch)
     }
 
     /// Corrects scales and excesses by what the tape found. Returns the largest miss [m].

@@ -22,13 +22,31 @@ pub(crate) struct Taken<'a> {
     pub(crate) crotch: &'a [u32],
     /// Hulls that were taken before.
     pub(crate) hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
-    /// Vertex of the crown, and those at the ends of the left hand and foot.
+    /// Vertex in the left armpit.
     pub(crate) armpit: u32,
 }
 
 const TORSO: &[Part] = &[Part::Trunk, Part::Head];
 
-impl Taken<'_> {
+impl<'a> Taken<'a> {
+    /// The tape on a skin of a cast template.
+    pub(crate) fn new(
+        skinned: &'a Skinned<'a>,
+        (marks, armpit): (&'a Marks, u32),
+        (levels, warp): (&'a Levels, &'a Warp),
+        crotch: &'a [u32],
+    ) -> Self {
+        Self {
+            skinned,
+            marks,
+            levels,
+            warp,
+            crotch,
+            hulls: Default::default(),
+            armpit,
+        }
+    }
+
     /// The end of the left shoulder [m].
     pub(crate) fn tip(&self) -> Vec3 {
         self.marks.tip_on.on(self.skinned)
@@ -90,6 +108,14 @@ impl Taken<'_> {
         Some(self.warp.near(height, 0.08))
     }
 
+    /// Where triangles between two heights [m] lie.
+    fn between(&self, low: f64, high: f64) -> Option<Near> {
+        match (self.around(low)?, self.around(high)?) {
+            (Near::Level([from, _]), Near::Level([_, to])) => Some(Near::Level([from, to])),
+            _ => None,
+        }
+    }
+
     /// The upright section through a point, parallel to z and a direction.
     fn upright(&self, parts: &[Part], through: Vec3, sideways: Vec3) -> Vec<[Vec3; 2]> {
         let normal = Vec3::z().cross(&sideways).normalize();
@@ -129,9 +155,11 @@ impl Taken<'_> {
             .into_iter()
             .flatten()
             .max_by(|a, b| a.x.total_cmp(&b.x))?;
-        let section = self
-            .skinned
-            .section(&[Part::Trunk, Part::LeftLeg], [side, Vec3::z()], None);
+        let section = self.skinned.section(
+            &[Part::Trunk, Part::LeftLeg],
+            [side, Vec3::z()],
+            self.between(hips, waist),
+        );
         Some(fall(&section, side, hips, Vec3::x())? + hips)
     }
 

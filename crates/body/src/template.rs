@@ -7,6 +7,7 @@ mod mean;
 #[path = "template_woman.rs"]
 mod woman;
 
+use crate::rigging::Rigging;
 use crate::{Part, Primitive};
 use serde::{Deserialize, Serialize};
 use toile_measure::{Build, Measurements};
@@ -176,6 +177,8 @@ pub(crate) struct Template {
     pub(crate) neck_radius: f64,
     /// Primitives of both sides.
     pub(crate) primitives: Vec<Primitive>,
+    /// What is particular about those of the left side and the middle.
+    pub(crate) rigging: Rigging,
 }
 
 /// Of a body of 1.7 m: from the wrist to the last ring of the hand, and the neck's radius [m].
@@ -210,6 +213,7 @@ impl Template {
             hand: HAND * scale,
             neck_radius: NECK_RADIUS * scale,
             primitives: crate::describe::both_sides(primitives),
+            rigging: Rigging::default(),
         }
     }
 
@@ -223,6 +227,7 @@ impl Template {
             hand: frame.hand,
             neck_radius: frame.neck_radius,
             primitives,
+            rigging: Rigging::default(),
         }
     }
 
@@ -242,10 +247,7 @@ impl Template {
 fn from_row(part: Part, row: [f64; 9]) -> Primitive {
     let [x, y, z, a, b, c, u, v, w] = row;
     Primitive {
-        part,
-        centre: [x, y, z],
-        radii: [a, b, c],
         rotation: [u, v, w],
-        weight: 1.0,
+        ..Primitive::new(part, [x, y, z], [a, b, c])
     }
 }

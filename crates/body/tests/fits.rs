@@ -13,6 +13,70 @@ fn scan(path: &std::path::Path) -> Scan {
     Scan::new(mesh, ScanLandmarks::default()).unwrap()
 }
 
+/// Girths of trunk and leg of the finished skin against the mesh's by a tape of this test's own:
+/// hulls of level cuts between those the fit was judged by. Root mean square [m].
+fn independent_tape(mesh: &Scan, body: &Mannequin) -> f64 {
+    let height = mesh.height();
+    let marks = mesh.landmarks();
+    let (crotch, armpit) = (marks.crotch.unwrap(), marks.armpit.unwrap());
+    // A loop's hull by walking round its outermost points (Jarvis 1973).
+    let girth = |mesh: &TriangleMesh, y: f64, is_leg: bool| -> f64 {
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        let reach = if is_leg { 0.0 } else { -1.0 };
+        for t in 0..mesh.triangles.len() {
+            let corners = mesh.corners(t);
+            for k in 0..3 {
+                let (a, b) = (corners[k], corners[(k + 1) % 3]);
+                if (a.y >= y) != (b.y >= y) {
+                    let p = a + (b - a) * ((y - a.y) / (b.y - a.y));
+                    points.push([p.x, p.z]);
+                }
+            }
+        }
+        let wide = if is_leg { 0.13 } else { 0.15 };
+        points.retain(|p| p[0] > reach * height && p[0].abs() < wide * height);
+        let Some(&start) = points.iter().min_by(|a, b| a[0].total_cmp(&b[0])) else {
+            return f64::NAN;
+        };
+        let (mut at, mut length) = (start, 0.0);
+        loop {
+            let mut next = start;
+            for &p in &points {
+                let cross = (next[0] - at[0]) * (p[1] - at[1]) - (next[1] - at[1]) * (p[0] - at[0]);
+                let far = |q: [f64; 2]| (q[0] - at[0]).hypot(q[1] - at[1]);
+                if next == at || cross > 0.0 || (cross == 0.0 && far(p) > far(next)) {
+                    next = p;
+                }
+            }
+            length += (next[0] - at[0]).hypot(next[1] - at[1]);
+            at = next;
+            if at == start || length > 20.0 * height {
+                return length;
+            }
+        }
+    };
+    let (mut sum, mut count) = (0.0, 0.0);
+    let mut add = |y: f64, is_leg: bool| {
+        let [a, b] = [mesh.mesh(), body.skin()].map(|m| girth(m, y, is_leg));
+        sum += (a - b) * (a - b);
+        count += 1.0;
+    };
+    // Legs apart, and the trunk where the arms hang clear of it.
+    for k in 5..40 {
+        let y = (0.01 * f64::from(k) + 0.0033) * height;
+        if y < crotch - 0.03 * height {
+            add(y, true);
+        }
+    }
+    for k in 0..60 {
+        let y = (0.005 * f64::from(k) + 0.0033) * height + crotch;
+        if (crotch + 0.02 * height..armpit - 0.13 * height).contains(&y) {
+            add(y, false);
+        }
+    }
+    (sum / count).sqrt()
+}
+
 fn report(name: &str, fit: &Fit, body: &Mannequin) {
     let m = &fit.misfit;
     println!(
@@ -59,6 +123,12 @@ fn published_bodies_within_two_millimetres() {
         assert!(fit.misfit.primitives <= 150);
         assert!(fit.misfit.sections > 80);
         assert!(fit.misfit.radial <= 2.0e-3, "{name}: {}", fit.misfit.radial);
+        assert!(fit.misfit.girth <= 3.0e-3, "{name}: {}", fit.misfit.girth);
+        assert_eq!(fit.misfit.self_crossings, 0, "{name}");
+        assert_eq!(fit.misfit.levels.len(), fit.misfit.sections);
+        let tape = independent_tape(&mesh, &body);
+        println!("{name}: {:.2} mm by another tape", tape * 1e3);
+        assert!(tape <= 3.0e-3, "{name}: {tape}");
         assert!(body.skin().is_closed_and_oriented());
         assert_eq!(body.skin().euler_characteristic(), 2);
         assert!(body.skin().volume() > 0.97 * mesh.mesh().volume());

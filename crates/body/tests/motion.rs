@@ -157,3 +157,74 @@ fn walk_and_run_are_clean_away_from_creases() {
     assert!(worst < 0.03, "{worst}");
     assert_eq!(folds, 0);
 }
+
+#[test]
+fn slerp_turns_evenly_and_linear_blending_does_not() {
+    let joint = Joint::LShoulder;
+    let pose = |axis: Vec3, angle: f64| {
+        let turn = UnitQuaternion::new(axis.normalize() * angle);
+        Pose::rest().with(joint, turn)
+    };
+    // From hanging forward to reaching up and back.
+    let a = pose(Vec3::new(1.0, 0.2, 0.1), 1.2);
+    let b = pose(Vec3::new(-0.3, 0.4, 1.0), 2.6);
+    let whole = a.rotation(joint).angle_to(&b.rotation(joint));
+    let (mut uneven, mut astray) = (0.0_f64, 0.0_f64);
+    for k in 0..=20 {
+        let share = f64::from(k) / 20.0;
+        let even = a.blended(&b, share).rotation(joint);
+        let linear = a.blended_linearly(&b, share).rotation(joint);
+        let from = a.rotation(joint);
+        assert!((from.angle_to(&even) - share * whole).abs() < 1e-9);
+        uneven = uneven.max((from.angle_to(&linear) - share * whole).abs());
+        astray = astray.max(linear.angle_to(&even));
+    }
+    println!(
+        "turn of {:.0} degrees: linear {:.1} off its share, {:.1} off the shortest way",
+        whole.to_degrees(),
+        uneven.to_degrees(),
+        astray.to_degrees()
+    );
+    assert!(uneven > 0.1 && astray > 0.1, "{uneven} {astray}");
+    // The ends are the same.
+    for (share, end) in [(0.0, &a), (1.0, &b)] {
+        let got = a.blended_linearly(&b, share).rotation(joint);
+        assert!(got.angle_to(&end.rotation(joint)) < 1e-9);
+    }
+}
+
+/// How far joints lie apart between slerp and linear blending, on frames and between gaits.
+#[test]
+fn linear_blending_against_slerp_on_our_own_gaits() {
+    let skeleton = WOMAN.skeleton();
+    let apart = |a: &Pose, b: &Pose| {
+        let [a, b] = [a, b].map(|pose| skeleton.frames(pose));
+        let far = Joint::ALL.map(|joint| (a.centre(joint) - b.centre(joint)).norm());
+        far.into_iter().fold(0.0, f64::max)
+    };
+    let [walk, run] = [Motion::walk(skeleton), Motion::run(skeleton)];
+    // Every fourth frame kept, the others blended from them.
+    let mut frames = [0.0_f64; 2];
+    let mut gaits = 0.0_f64;
+    for k in 0..walk.poses.len() {
+        let low = k / 4 * 4;
+        let share = (k - low) as f64 / 4.0;
+        let ends = [low, (low + 4) % walk.poses.len()];
+        let [a, b] = ends.map(|k| &run.poses[k]);
+        let blended = [a.blended(b, share), a.blended_linearly(b, share)];
+        for (most, pose) in frames.iter_mut().zip(&blended) {
+            *most = most.max(apart(pose, &run.poses[k]));
+        }
+        let [a, b] = [&walk.poses[k], &run.poses[k]];
+        gaits = gaits.max(apart(&a.blended(b, 0.5), &a.blended_linearly(b, 0.5)));
+    }
+    println!(
+        "eight frames of a run: slerp {:.2} mm, linear {:.2} mm off; half way from walk to run {:.2} mm apart",
+        frames[0] * 1e3,
+        frames[1] * 1e3,
+        gaits * 1e3
+    );
+    // Single-axis turns of small angles: both do.
+    assert!(frames[0] < 0.08 && frames[1] < 0.08);
+    assert!(gaits < 0.02);
+}

@@ -124,7 +124,7 @@ fn every_primitive_is_in_the_frame_of_a_joint_of_its_part() {
         for (attached, placed) in body.primitives().iter().zip(&ellipsoids) {
             let image = placed.mirrored();
             let twin = ellipsoids.iter().position(|other| same(other, &image));
-            let twin = body.primitives()[twin.unwrap()];
+            let twin = &body.primitives()[twin.unwrap()];
             assert_eq!(twin.joint, attached.joint.mirrored(), "{placed:?}");
         }
     }

@@ -6,13 +6,7 @@ use toile_geometry::{SurfaceTree, Vec3};
 use toile_measure::Origin;
 
 fn ellipsoid(part: Part, x: f64, radii: [f64; 3]) -> Primitive {
-    Primitive {
-        part,
-        centre: [x, 1.0, 0.0],
-        radii,
-        rotation: [0.0; 3],
-        weight: 1.0,
-    }
+    Primitive::new(part, [x, 1.0, 0.0], radii)
 }
 
 #[test]

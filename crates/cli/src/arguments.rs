@@ -171,7 +171,7 @@ pub struct Make {
     /// Folder to write into; it is made if need be.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
-    /// Whose body: woman, man, mean, child-2, child-4, ... child-14 (by age), a file of
+    /// Whose body: woman, man, mean, child-2, child-4, ... child-14 (by age), a mannequin file, a file of
     /// measurements (native JSON or GarmentCode YAML), or FIGURE:FILE. Default: a woman of the pattern's size; mean for a pattern without sizes.
     #[arg(long, value_name = "BODY")]
     pub body: Option<String>,
@@ -507,6 +507,12 @@ pub struct Body {
     pub landmarks: Option<PathBuf>,
     #[command(flatten)]
     pub stretch: Stretch,
+    /// Edits of its ellipsoids, made last (JSON list, m and rad), as in
+    /// [{"edit": "weigh", "primitive": 3, "weight": 1.2}]; also create, delete, move, turn, scale,
+    /// group, blend, deform, attach, detach, join, part. Ellipsoids are counted from 0: those of
+    /// trunk, head, left arm and left leg as in a mannequin file.
+    #[arg(long, value_name = "FILE")]
+    pub edits: Option<PathBuf>,
     /// Motion to pose it by: walk, run, a BVH file, or a VRML 97 or X3D file (.wrl, .x3d, .x3dv)
     /// with OrientationInterpolators routed to H-Anim joints. Default: at rest.
     #[arg(long, value_name = "MOTION")]

@@ -1,13 +1,23 @@
-//! The five scaling parameters on the command line.
+//! Proportions and the five scaling parameters on the command line.
 
+use crate::output::Failure;
 use clap::Args;
 use toile_geometry::Length;
-use toile_session::{BodyStretch, Scaling};
+use toile_session::{BodyStretch, Scaling, proportions_named, proportions_of_heads};
 
-/// Five ratios, applied in this order to joints and ellipsoids of a fitted mannequin or of the
-/// figure's own.
+/// A proportion box and five ratios, applied in this order to joints and ellipsoids of a fitted
+/// mannequin or of the figure's own.
 #[derive(Debug, Args)]
 pub struct Stretch {
+    /// Proportions to bring it to first, at the stature it has: a box of the table (woman, man,
+    /// ideal-woman, ideal-man, loomis-1, loomis-3, loomis-5, loomis-10, loomis-15, draftsman-1,
+    /// draftsman-8, draftsman-12, by age), or of a file of boxes (JSON, head lengths), as in
+    /// boxes.json:tall.
+    #[arg(long, value_name = "BOX", conflicts_with = "heads")]
+    pub proportions: Option<String>,
+    /// Or so many head lengths from crown to chin, legs as in the boxes of the table next to it.
+    #[arg(long, value_name = "NUMBER")]
+    pub heads: Option<f64>,
     /// Stature to bring it to, all in proportion, as in 1700mm.
     #[arg(long, value_name = "LENGTH")]
     pub stature: Option<Length>,
@@ -27,18 +37,27 @@ pub struct Stretch {
 
 impl Stretch {
     /// What is asked for; none where nothing is.
-    pub fn asked(&self) -> Option<BodyStretch> {
+    ///
+    /// # Errors
+    /// A proportion box that is not there.
+    pub fn asked(&self) -> Result<Option<BodyStretch>, Failure> {
         let ratios = [
             self.frontal,
             self.high_lateral,
             self.spine_origin,
             self.low_lateral,
         ];
-        if self.stature.is_none() && ratios.iter().all(Option::is_none) {
-            return None;
+        let proportions = match (&self.proportions, self.heads) {
+            (Some(name), _) => Some(proportions_named(name)?),
+            (None, heads) => heads.map(proportions_of_heads),
+        };
+        let is_one = self.stature.is_none() && ratios.iter().all(Option::is_none);
+        if is_one && proportions.is_none() {
+            return Ok(None);
         }
         let [frontal, high_lateral, spine_origin, low_lateral] = ratios.map(|r| r.unwrap_or(1.0));
-        Some(BodyStretch {
+        Ok(Some(BodyStretch {
+            proportions,
             stature: self.stature.as_ref().map(|length| length.as_metres()),
             ratios: Scaling {
                 global: 1.0,
@@ -47,6 +66,6 @@ impl Stretch {
                 spine_origin,
                 low_lateral,
             },
-        })
+        }))
     }
 }

@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_measure::Origin;
 use toile_session::{
-    BodyChoice, BodyReport, BodySource, Figure, Fit, Moment, Project, convert as convert_file,
-    figure_named, fit_mesh, make_body, measure_mesh, mesh_panels, open_mannequin,
-    open_measurements, run_scene, stretch_body,
+    BodyChoice, BodyReport, BodySource, Description, Figure, Fit, Moment, Project,
+    convert as convert_file, edit_body, figure_named, fit_mesh, make_body, measure_mesh,
+    mesh_panels, open_body_edits, open_mannequin, open_measurements, run_scene, stretch_body,
 };
 
 /// A pattern in another format.
@@ -105,13 +105,17 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         (None, Some(path)) => Some(open_mannequin(path).map_err(Failure::from)?),
         (None, None) => None,
     };
-    let described = match body.stretch.asked() {
+    let described = match body.stretch.asked()? {
         Some(_) if body.measurements.is_some() => {
             return Err(Failure::bad_input(
-                "--stature and the ratios scale a body as it is: leave out --measurements, or give lengths there".to_owned(),
+                "--proportions, --heads, --stature and the ratios scale a body as it is: leave out --measurements, or give lengths there".to_owned(),
             ));
         }
         Some(stretch) => Some(stretch_body(described, figure, &stretch).map_err(Failure::from)?),
+        None => described,
+    };
+    let described = match &body.edits {
+        Some(edits) => Some(edited_body(edits, described, &project)?),
         None => described,
     };
     let source = match &described {
@@ -129,6 +133,7 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         output.warn(format!("note: {note}"));
     }
     body_table(&report, output);
+    output.say(format!("{:.2} head lengths tall", report.heads));
     output.say(format!(
         "wrote {} ({} compared)",
         body.out.display(),
@@ -153,6 +158,7 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         "not_taken": report.untaken,
         "conflicts": conflicts,
         "notes": report.notes,
+        "heads": report.heads,
     });
     if let Some(fit) = &fit {
         let m = &fit.misfit;
@@ -164,10 +170,22 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
             "girth_rms_m": m.girth,
             "girth_max_m": m.girth_max,
             "trunk_legs_arms_radial_rms_m": m.parts,
+            "self_crossings": m.self_crossings,
+            "levels": m.levels,
             "moved_by_m": [fit.shift.x, fit.shift.y, fit.shift.z],
         });
     }
     Ok(made)
+}
+
+/// A body with its ellipsoids edited as a file says.
+fn edited_body(
+    edits: &Path,
+    described: Option<Description>,
+    project: &Project,
+) -> Result<Description, Failure> {
+    let list = open_body_edits(edits).map_err(Failure::from)?;
+    edit_body(described, project, &list).map_err(|error| Failure::from(error).about(edits))
 }
 
 /// A mannequin fitted to a mesh, with what it misses it by.
@@ -183,6 +201,12 @@ fn fitted_mesh(mesh: &Path, figure: Figure, body: &Body, output: &Output) -> Res
         m.girth * 1e3,
         m.girth_max * 1e3,
     ));
+    if m.self_crossings > 0 {
+        output.say(format!(
+            "its skin crosses itself in {} of triangles",
+            count(m.self_crossings, "pair")
+        ));
+    }
     if fit.shift.norm() > 0.0 {
         output.say(format!(
             "moved by ({:.4}, {:.4}, {:.4}) m to stand on y = 0 with its middle at x = 0",

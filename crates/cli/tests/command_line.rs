@@ -343,6 +343,83 @@ fn a_body_goes_out_as_a_file_comes_back_and_is_measured_as_a_mesh() {
 }
 
 #[test]
+fn a_body_is_fitted_scaled_and_brought_to_heads_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |arguments: &str| {
+        let mut all = vec!["body"];
+        all.extend(arguments.split(' '));
+        all.push("--json");
+        let output = toile(folder.path(), &all);
+        assert!(output.status.success(), "{}", words(&output.stderr));
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    run("--figure woman --out woman.obj");
+    let fitted = run("--fit woman.obj --stature 1500mm --frontal 1.1 --out fitted.json");
+    assert!(fitted["fit"]["radial_rms_m"].as_f64().unwrap() < 2e-3);
+    assert!(fitted["fit"]["girth_rms_m"].as_f64().unwrap() < 3e-3);
+    let levels = fitted["fit"]["levels"].as_array().unwrap();
+    assert!(levels.len() > 80 && levels[0]["gap_m"].is_number());
+    let height = |report: &Value| {
+        let rows = report["measurements"].as_array().unwrap();
+        let row = rows.iter().find(|row| row["name"] == "height").unwrap();
+        row["got"].as_f64().unwrap()
+    };
+    assert!((height(&fitted) - 1.5).abs() < 3e-3, "{}", height(&fitted));
+    // From the file it is the same body, and takes proportions besides.
+    let again = run("--mannequin fitted.json --out again.obj");
+    assert!((height(&again) - height(&fitted)).abs() < 5e-4);
+    let six = run("--mannequin fitted.json --heads 6 --stature 1.2m --out six.json");
+    assert!((six["heads"].as_f64().unwrap() / 6.0 - 1.0).abs() < 0.01);
+    assert!((height(&six) - 1.2).abs() < 3e-3);
+    let named = run("--figure man --proportions loomis-10 --out ten.obj");
+    assert!((named["heads"].as_f64().unwrap() / 7.0 - 1.0).abs() < 0.01);
+    for refused in [
+        "--proportions giant --out x.obj",
+        "--heads 40 --out x.obj",
+        "--heads 6 --proportions man --out x.obj",
+    ] {
+        let mut all = vec!["body"];
+        all.extend(refused.split(' '));
+        let output = toile(folder.path(), &all);
+        assert_eq!(output.status.code(), Some(2), "{refused}");
+    }
+}
+
+#[test]
+fn ellipsoids_are_edited_and_the_mannequin_is_worn() {
+    let folder = tempfile::tempdir().unwrap();
+    let edits = r#"[{"edit": "weigh", "primitive": 3, "weight": 1.2},
+        {"edit": "blend", "primitive": 3, "blend": "blendable"},
+        {"edit": "attach", "primitive": 5, "joint": "vl5"},
+        {"edit": "join", "primitives": [3, 4]}]"#;
+    std::fs::write(folder.path().join("edits.json"), edits).unwrap();
+    let body = |arguments: &str| {
+        let mut all = vec!["body"];
+        all.extend(arguments.split(' '));
+        toile(folder.path(), &all)
+    };
+    let output = body("--figure woman --edits edits.json --out own.json");
+    assert!(output.status.success(), "{}", words(&output.stderr));
+    let text = std::fs::read_to_string(folder.path().join("own.json")).unwrap();
+    assert!(
+        text.contains("\"joined\"") && text.contains("vl5"),
+        "{text}"
+    );
+    let output = body("--mannequin own.json --out own.obj");
+    assert!(output.status.success(), "{}", words(&output.stderr));
+    let bad = edits.replace("\"primitive\": 3", "\"primitive\": 333");
+    std::fs::write(folder.path().join("edits.json"), bad).unwrap();
+    let output = body("--figure woman --edits edits.json --out x.json");
+    assert_eq!(output.status.code(), Some(2));
+    let said = words(&output.stderr);
+    assert!(
+        said.contains("333") && said.contains("edits.json"),
+        "{said}"
+    );
+    assert!(!folder.path().join("x.json").exists());
+}
+
+#[test]
 fn a_scene_is_simulated_and_a_bad_one_refused() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);

@@ -31,6 +31,7 @@ mod native;
 mod obj;
 mod obj_read;
 mod pdf;
+mod proportions;
 mod scene;
 mod scene_motion;
 mod x3d;
@@ -67,6 +68,7 @@ pub use measurements_json::{read_measurements, write_measurements};
 pub use native::{read_pattern, write_pattern};
 pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;
+pub use proportions::{proportion_boxes, read_proportions};
 pub use scene::{
     AirFile, DampingFile, ElasticFile, EndFile, MaterialFile, ObjectFile, SceneFile, TransformFile,
     read_scene,

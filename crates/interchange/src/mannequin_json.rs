@@ -3,7 +3,10 @@
 use crate::FormatError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use toile_body::{BodyFrame, Description, Figure, Joints, Part, Primitive};
+use toile_body::{
+    Blend, BodyFrame, Deformation, Description, Figure, Joint, Joints, Part, Particular, Primitive,
+    Rigging,
+};
 use toile_measure::{Measurements, Origin, UnitKind, definition};
 
 const KIND: &str = "mannequin";
@@ -34,6 +37,95 @@ struct MannequinFile {
     /// Levels and joints [m] of a body fitted to a mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     frame: Option<BodyFrame>,
+    /// What is particular about single primitives.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    particular: Vec<ParticularRow>,
+    /// Primitives that are moved together.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    joined: Vec<Vec<usize>>,
+}
+
+/// What is particular about a primitive, counted from 0 over trunk, head, arm and leg.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ParticularRow {
+    primitive: usize,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    unblendable: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    also: Option<Part>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    joint: Option<Joint>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    deformation: Option<Deformation>,
+}
+
+/// Parts in the file's order.
+const PARTS: [Part; 4] = [Part::Trunk, Part::Head, Part::LeftArm, Part::LeftLeg];
+
+/// What is particular about the primitives, and what is joined, by the numbers of the file.
+fn particular(description: &Description) -> (Vec<ParticularRow>, Vec<Vec<usize>>) {
+    let all = &description.primitives;
+    // Which primitive of the description stands at each place of the file.
+    let order: Vec<usize> = PARTS
+        .iter()
+        .flat_map(|part| (0..all.len()).filter(|&k| all[k].part == *part))
+        .collect();
+    let rows = order.iter().enumerate().filter_map(|(primitive, &k)| {
+        let own = description.rigging.of(k);
+        let row = ParticularRow {
+            primitive,
+            unblendable: all[k].blend == Blend::Unblendable,
+            also: all[k].also,
+            joint: own.and_then(|p| p.joint),
+            deformation: own.and_then(|p| p.deformation.clone()),
+        };
+        (own.is_some() || row.unblendable || row.also.is_some()).then_some(row)
+    });
+    let place = |k: &usize| order.iter().position(|other| other == k).unwrap_or(*k);
+    let mut joined: Vec<Vec<usize>> = description
+        .rigging
+        .joined
+        .iter()
+        .map(|set| {
+            let mut set: Vec<usize> = set.iter().map(place).collect();
+            set.sort_unstable();
+            set
+        })
+        .collect();
+    joined.sort();
+    (rows.collect(), joined)
+}
+
+/// Puts what is particular back to primitives in the file's order.
+fn rigged(
+    primitives: &mut [Primitive],
+    rows: Vec<ParticularRow>,
+    joined: Vec<Vec<usize>>,
+) -> Result<Rigging, FormatError> {
+    let mut particulars = Vec::new();
+    for row in rows {
+        let Some(own) = primitives.get_mut(row.primitive) else {
+            let what = format!("there is no primitive {}", row.primitive);
+            let remedy = "count from 0 over trunk, head, arm and leg";
+            return Err(FormatError::new("particular", what, remedy));
+        };
+        if row.unblendable {
+            own.blend = Blend::Unblendable;
+        }
+        own.also = row.also;
+        if row.joint.is_some() || row.deformation.is_some() {
+            particulars.push(Particular {
+                primitive: row.primitive,
+                joint: row.joint,
+                deformation: row.deformation,
+            });
+        }
+    }
+    Ok(Rigging {
+        particulars,
+        joined,
+    })
 }
 
 /// Lengths are kept to 0.1 mm and turns to 1 mrad, as the templates are; weights to 0.001.
@@ -91,6 +183,7 @@ pub fn write_mannequin(description: &Description) -> Result<String, FormatError>
         .collect()
     };
     let asked = description.measurements.iter();
+    let (particular, joined) = particular(description);
     let file = MannequinFile {
         toile: VERSION,
         kind: KIND.into(),
@@ -110,6 +203,8 @@ pub fn write_mannequin(description: &Description) -> Result<String, FormatError>
         arm: rows(Part::LeftArm),
         leg: rows(Part::LeftLeg),
         frame: description.frame.as_ref().map(rounded),
+        particular,
+        joined,
     };
     let text = serde_json::to_string(&file)
         .map_err(|error| FormatError::new("mannequin", error.to_string(), "check the values"))?;
@@ -168,11 +263,13 @@ pub fn read_mannequin(text: &str) -> Result<Description, FormatError> {
         let length = |k: usize| f64::from(row[k]) * LENGTH;
         let turn = |k: usize| f64::from(row[k]) * TURN;
         Ok(Primitive {
-            part,
-            centre: [length(0), length(1), length(2)],
-            radii: [length(3), length(4), length(5)],
             rotation: [turn(6), turn(7), turn(8)],
             weight: row.get(9).map_or(1.0, |&weight| f64::from(weight) * WEIGHT),
+            ..Primitive::new(
+                part,
+                [length(0), length(1), length(2)],
+                [length(3), length(4), length(5)],
+            )
         })
     };
     let mut primitives = Vec::new();
@@ -181,11 +278,13 @@ pub fn read_mannequin(text: &str) -> Result<Description, FormatError> {
             primitives.push(primitive(part, number + 1, row)?);
         }
     }
+    let rigging = rigged(&mut primitives, file.particular, file.joined)?;
     Ok(Description {
         figure: file.figure,
         measurements,
         primitives,
         frame: file.frame,
+        rigging,
     })
 }
 
@@ -212,6 +311,76 @@ mod tests {
             // Written again it is the same file.
             assert_eq!(write_mannequin(&again.description()).unwrap(), text);
         }
+    }
+
+    #[test]
+    fn what_is_particular_reads_back() {
+        use toile_body::{DeformationKey, PrimitiveEdit};
+        let own = Mannequin::framed(Figure::Woman).unwrap();
+        let key = |angle: f64, grown: f64| DeformationKey {
+            angle,
+            shift: [0.0, 0.0, grown - 1.0],
+            stretch: [1.0, 1.0, grown],
+            turn: [0.0; 3],
+        };
+        let edits = [
+            // Written among the trunk's, before the head's.
+            PrimitiveEdit::Create {
+                new: Primitive::new(Part::Trunk, [0.05, 1.1, 0.05], [0.08; 3]),
+            },
+            PrimitiveEdit::Join {
+                primitives: vec![own.primitives.len(), 2],
+            },
+            PrimitiveEdit::Blend {
+                primitive: own.primitives.len(),
+                blend: Blend::Unblendable,
+            },
+            PrimitiveEdit::Group {
+                primitive: 3,
+                part: Part::Trunk,
+                also: Some(Part::LeftLeg),
+            },
+            PrimitiveEdit::Deform {
+                primitive: own.primitives.len() - 1,
+                deformation: Some(Deformation {
+                    joint: Joint::LKnee,
+                    axis: [1.0, 0.0, 0.0],
+                    keys: vec![key(0.0, 1.0), key(1.5, 1.25)],
+                }),
+            },
+        ];
+        // A trunk's primitive in the middle has no second group of a side.
+        let pair = own.primitives.iter().position(|p| !p.is_central()).unwrap();
+        let edits = edits.map(|edit| match edit {
+            PrimitiveEdit::Group { part, also, .. } => PrimitiveEdit::Group {
+                primitive: pair,
+                part,
+                also,
+            },
+            other => other,
+        });
+        let made = own.edited(&edits).unwrap();
+        let text = write_mannequin(&made).unwrap();
+        let read = read_mannequin(&text).unwrap();
+        assert_eq!(write_mannequin(&read).unwrap(), text);
+        let plain = |d: &Description| {
+            let own = d
+                .primitives
+                .iter()
+                .position(|p| p.blend == Blend::Unblendable);
+            (own.unwrap(), d.primitives[own.unwrap()].part)
+        };
+        let (place, part) = plain(&read);
+        assert_eq!(part, Part::Trunk);
+        assert!(read.rigging.joined[0].contains(&place));
+        let bent = read.rigging.particulars[0].primitive;
+        assert_eq!(read.primitives[bent].part, Part::LeftLeg);
+        assert!(Mannequin::from_description(&read).is_ok());
+        let lost = text.replace(
+            "\"particular\":[{\"primitive\":",
+            "\"particular\":[{\"primitive\":9",
+        );
+        assert!(read_mannequin(&lost).is_err());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;
-use toile_body::Figure;
+use toile_body::{Description, Figure};
 use toile_measure::Measurements;
 
 /// Whose body the garment is draped on.
@@ -24,6 +24,15 @@ pub enum BodyChoice {
         /// The measurements [m], [rad].
         measurements: Arc<Measurements>,
     },
+    /// A body of its own primitives: a mannequin file's, or one that was edited.
+    Shaped {
+        /// All it is made from.
+        description: Arc<Description>,
+        /// The file it comes from; none once it was edited.
+        path: Option<PathBuf>,
+        /// What a tape finds on it [m], [rad].
+        measurements: Arc<Measurements>,
+    },
 }
 
 impl BodyChoice {
@@ -35,6 +44,10 @@ impl BodyChoice {
             Self::Measured { figure, path, .. } => {
                 format!("{} of {}", figure_name(*figure), path.display())
             }
+            Self::Shaped { path, .. } => match path {
+                Some(path) => format!("the mannequin of {}", path.display()),
+                None => "an edited mannequin".into(),
+            },
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::{Quality, StampedInput};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use toile_body::Figure;
+use toile_body::{Figure, PrimitiveEdit};
 use toile_pattern::Edit;
 
 /// One thing to do. The journal is a list of these.
@@ -39,8 +39,24 @@ pub enum Command {
     SetBody {
         /// The figure; nothing means the mean one for a file.
         figure: Option<Figure>,
-        /// A file of measurements.
+        /// A file of measurements, or a mannequin file, which says its figure itself.
         measurements: Option<PathBuf>,
+    },
+    /// Edits the primitives of the body, which from then on stands by itself. All edits are made
+    /// or none.
+    EditBody {
+        /// What changes.
+        edits: Vec<PrimitiveEdit>,
+        /// The step's name in the history, as in "Move primitive".
+        label: String,
+        /// Edits of the same drag, one after another, are one step of the history.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        drag: Option<u64>,
+    },
+    /// Writes the body as a mannequin file.
+    SaveBody {
+        /// The file.
+        path: PathBuf,
     },
     /// Chooses a named size of the pattern, or its base size.
     SetSize {
@@ -96,6 +112,7 @@ impl Command {
                 | Self::Undo
                 | Self::Redo
                 | Self::SetBody { .. }
+                | Self::EditBody { .. }
                 | Self::SetSize { .. }
                 | Self::SetFabric { .. }
                 | Self::SetWidth { .. }

@@ -9,17 +9,41 @@ use crate::setup::{self, GarmentJob};
 use crate::{Project, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
 use toile_assembly::{AssemblyOptions, Garment, assemble};
-use toile_body::{Figure, Mannequin};
+use toile_body::{BodyError, Description, Figure, Mannequin};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
 use toile_measure::Measurements;
 use toile_pattern::{Diagnostic, Draft};
 
+/// What a mannequin is made from.
+#[derive(Clone, PartialEq)]
+enum Source {
+    /// Grown to measurements.
+    Grown(Figure, Measurements),
+    /// Standing as its description says.
+    Shaped(Arc<Description>),
+}
+
+impl Source {
+    fn of(project: &Project) -> Self {
+        match &project.body {
+            BodyChoice::Shaped { description, .. } => Self::Shaped(description.clone()),
+            _ => Self::Grown(project.figure(), project.wearer()),
+        }
+    }
+
+    fn make(&self) -> Result<Mannequin, BodyError> {
+        match self {
+            Self::Grown(figure, measurements) => Mannequin::new(measurements, *figure),
+            Self::Shaped(description) => Mannequin::from_description(description),
+        }
+    }
+}
+
 /// A mannequin and what it was made from.
 #[derive(Clone)]
 struct KeptMannequin {
-    figure: Figure,
-    measurements: Measurements,
+    source: Source,
     mannequin: Arc<Mannequin>,
     skin: Arc<SurfaceTree>,
 }
@@ -108,15 +132,13 @@ impl Derived {
     }
 
     fn kept_mannequin(&mut self, project: &Project) -> Result<&KeptMannequin, SessionError> {
-        let (figure, measurements) = (project.figure(), project.wearer());
+        let source = Source::of(project);
         let kept = match self.mannequin.take() {
-            Some(kept) if kept.figure == figure && kept.measurements == measurements => kept,
+            Some(kept) if kept.source == source => kept,
             _ => {
-                let mannequin = Mannequin::new(&measurements, figure)
-                    .map_err(|error| body_error(project, error))?;
+                let mannequin = source.make().map_err(|error| body_error(project, error))?;
                 KeptMannequin {
-                    figure,
-                    measurements,
+                    source,
                     skin: Arc::new(SurfaceTree::new(mannequin.skin().clone())),
                     mannequin: Arc::new(mannequin),
                 }
@@ -201,7 +223,7 @@ impl Derived {
 }
 
 /// A body's error, with the file its measurements came from.
-fn body_error(project: &Project, error: toile_body::BodyError) -> SessionError {
+fn body_error(project: &Project, error: BodyError) -> SessionError {
     match &project.body {
         BodyChoice::Measured { path, .. } => SessionError::Format {
             path: path.clone(),

@@ -151,6 +151,9 @@ pub(crate) fn portable(commands: &[Command]) -> Vec<Command> {
             Command::SavePattern { path } => Command::SavePattern {
                 path: path.file_name().map_or_else(|| path.clone(), Into::into),
             },
+            Command::SaveBody { path } => Command::SaveBody {
+                path: path.file_name().map_or_else(|| path.clone(), Into::into),
+            },
             other => other.clone(),
         })
         .collect()
@@ -165,6 +168,9 @@ pub(crate) fn redirected(commands: &[Command], folder: &Path) -> Vec<Command> {
                 dir: folder.to_owned(),
             },
             Command::SavePattern { path } => Command::SavePattern {
+                path: folder.join(path),
+            },
+            Command::SaveBody { path } => Command::SaveBody {
                 path: folder.join(path),
             },
             other => other,

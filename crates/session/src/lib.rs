@@ -5,6 +5,7 @@
 //! from it, kept while it does not change, and may be thrown away.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod bodies;
 mod choice;
 mod command;
 mod cut;
@@ -42,6 +43,7 @@ mod timing;
 mod tools;
 mod watcher;
 
+pub use bodies::{edit_body, open_body_edits, proportions_named, proportions_of_heads};
 pub use choice::{BodyChoice, Quality, figure_named};
 pub use command::Command;
 pub use drape::DrapeResult;
@@ -65,7 +67,7 @@ pub use setup::{GarmentJob, JobPanel};
 pub use study::{RuleCost, rule_table, study_rules};
 pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
-pub use toile_body::{Figure, Fit, Scaling};
+pub use toile_body::{Description, Figure, Fit, PrimitiveEdit, ProportionBox, Scaling};
 pub use toile_drape::Stage;
 pub use toile_interchange::{MarkerSettings, Spread};
 pub use toile_nesting::{Budget, Nap};

@@ -1,6 +1,7 @@
 //! What each command does.
 
-use crate::export::{files, portable};
+use crate::bodies::{described, description_of, shaped};
+use crate::export::{cannot, files, portable};
 use crate::fabrics::{fabric_named, fabric_names};
 use crate::history::History;
 use crate::open::{open_measurements, open_pattern};
@@ -12,8 +13,8 @@ use crate::{
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
-use toile_body::Figure;
-use toile_interchange::{write_all_atomically, write_atomically, write_pattern};
+use toile_body::{Figure, PrimitiveEdit};
+use toile_interchange::{write_all_atomically, write_atomically, write_mannequin, write_pattern};
 use toile_pattern::{Edit, Severity};
 
 type Outcome = Result<Vec<Event>, SessionError>;
@@ -34,6 +35,8 @@ impl Session {
                 figure,
                 measurements,
             } => self.set_body(*figure, measurements.as_deref()),
+            Command::EditBody { edits, label, drag } => self.edit_body(edits, label, *drag),
+            Command::SaveBody { path } => self.save_body(path, watcher),
             Command::SetSize { size } => self.set_size(size.clone()),
             Command::SetFabric { fabric } => self.set_fabric(fabric.clone()),
             Command::SetWidth { width } => self.set_width(*width),
@@ -149,10 +152,13 @@ impl Session {
         let body = match (figure, measurements) {
             (None, None) => BodyChoice::OfPattern,
             (Some(figure), None) => BodyChoice::Sample(figure),
-            (figure, Some(path)) => BodyChoice::Measured {
-                figure: figure.unwrap_or(Figure::Mean),
-                path: path.to_owned(),
-                measurements: Arc::new(open_measurements(path)?),
+            (figure, Some(path)) => match described(path)? {
+                Some(description) => shaped(description, Some(path.to_owned()))?,
+                None => BodyChoice::Measured {
+                    figure: figure.unwrap_or(Figure::Mean),
+                    path: path.to_owned(),
+                    measurements: Arc::new(open_measurements(path)?),
+                },
             },
         };
         let next = Project {
@@ -160,6 +166,25 @@ impl Session {
             ..self.project.clone()
         };
         Ok(self.change(next, "Choose body", None))
+    }
+
+    fn edit_body(&mut self, edits: &[PrimitiveEdit], label: &str, drag: Option<u64>) -> Outcome {
+        let edited = description_of(&self.project).edited(edits)?;
+        let next = Project {
+            body: shaped(edited, None)?,
+            ..self.project.clone()
+        };
+        Ok(self.change(next, label, drag))
+    }
+
+    fn save_body(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
+        tell(watcher, "writing", 0.0, &path.display().to_string())?;
+        let text =
+            write_mannequin(&description_of(&self.project)).map_err(cannot("the mannequin"))?;
+        write_atomically(path, text.as_bytes())?;
+        Ok(vec![Event::FilesWritten {
+            paths: vec![path.to_owned()],
+        }])
     }
 
     fn set_size(&mut self, size: Option<String>) -> Outcome {

@@ -34,6 +34,7 @@ impl Project {
             BodyChoice::OfPattern if self.pattern.sizes.is_empty() => Figure::Mean,
             BodyChoice::OfPattern => Figure::Woman,
             BodyChoice::Sample(figure) | BodyChoice::Measured { figure, .. } => *figure,
+            BodyChoice::Shaped { description, .. } => description.figure,
         }
     }
 
@@ -97,7 +98,9 @@ impl Project {
     /// What they leave out is predicted from them.
     pub fn wearer(&self) -> Measurements {
         let size = match &self.body {
-            BodyChoice::Measured { measurements, .. } => Some(&**measurements),
+            BodyChoice::Measured { measurements, .. } | BodyChoice::Shaped { measurements, .. } => {
+                Some(&**measurements)
+            }
             BodyChoice::Sample(_) => self.named_size(),
             BodyChoice::OfPattern => self
                 .named_size()

@@ -8,8 +8,8 @@ use std::path::Path;
 use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_body::{
-    BodyError, Conflict, Description, Figure, Fit, Gap, Mannequin, Motion, Scaling, Scan,
-    ScanLandmarks,
+    BodyError, Conflict, Description, Figure, Fit, Gap, Mannequin, Motion, ProportionBox, Scaling,
+    Scan, ScanLandmarks,
 };
 use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{
@@ -116,6 +116,8 @@ pub struct BodyReport {
     pub conflicts: Vec<Conflict>,
     /// What of the motion's file was left out.
     pub notes: Vec<String>,
+    /// Stature in head lengths from crown to chin [1].
+    pub heads: f64,
 }
 
 /// A moment of a motion: `walk`, `run`, a BVH file or a VRML or X3D one, and the time [s].
@@ -239,9 +241,11 @@ pub fn open_mannequin(path: &Path) -> Result<Description, SessionError> {
     })
 }
 
-/// The five scaling parameters as they are asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Proportions and the five scaling parameters as they are asked for.
+#[derive(Clone, Debug, PartialEq)]
 pub struct BodyStretch {
+    /// Proportions to bring the body to first, at the stature it has.
+    pub proportions: Option<ProportionBox>,
     /// Stature to bring the body to [m].
     pub stature: Option<f64>,
     /// The ratios; the global one counts besides the stature.
@@ -260,6 +264,10 @@ pub fn stretch_body(
     let body = match described {
         Some(body) => body,
         None => Mannequin::framed(figure)?,
+    };
+    let body = match &stretch.proportions {
+        Some(proportions) => proportions.apply(&body)?,
+        None => body,
     };
     let mut ratios = stretch.ratios;
     if let (Some(stature), Some(frame)) = (stretch.stature, &body.frame) {
@@ -326,5 +334,6 @@ pub fn make_body(
         untaken: mannequin.untaken(),
         conflicts: mannequin.conflicts(),
         notes,
+        heads: ProportionBox::of_body(&mannequin).heads,
     })
 }

@@ -1,0 +1,258 @@
+//! What can be done to the primitives of a body, as data (the primitive editor of Volino,
+//! Magnenat-Thalmann, Shen, Thalmann 1996). Values are absolute; whoever keeps the description from
+//! before can have it back.
+
+use crate::deform::Deformation;
+use crate::describe::check;
+use crate::template::Template;
+use crate::{Blend, BodyError, Description, Joint, Part, Primitive};
+use nalgebra::Rotation3;
+use serde::{Deserialize, Serialize};
+use toile_geometry::Vec3;
+
+/// One change of a body's primitives, which are counted from 0 in the order of
+/// [`Description::primitives`]: those of the left side and the middle; one off the middle stands
+/// for a pair.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "edit", deny_unknown_fields)]
+pub enum PrimitiveEdit {
+    /// Adds a primitive after the others.
+    Create {
+        /// What is added.
+        new: Primitive,
+    },
+    /// Takes a primitive away; later ones move up.
+    Delete {
+        /// Which.
+        primitive: usize,
+    },
+    /// Brings a centre to a place; what is joined goes along.
+    Move {
+        /// Which.
+        primitive: usize,
+        /// The centre [m].
+        centre: [f64; 3],
+    },
+    /// Turns a primitive; what is joined goes round its centre.
+    Turn {
+        /// Which.
+        primitive: usize,
+        /// The rotation as axis times angle [rad].
+        rotation: [f64; 3],
+    },
+    /// Gives a primitive other semi-axes.
+    Scale {
+        /// Which.
+        primitive: usize,
+        /// The effective semi-axes [m].
+        radii: [f64; 3],
+    },
+    /// Gives a primitive another weight.
+    Weigh {
+        /// Which.
+        primitive: usize,
+        /// What its density is multiplied by [1].
+        weight: f64,
+    },
+    /// Puts a primitive into a group, or into two.
+    Group {
+        /// Which.
+        primitive: usize,
+        /// Its own part: trunk, head, left arm or left leg.
+        part: Part,
+        /// A second one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        also: Option<Part>,
+    },
+    /// Makes a primitive blendable or unblendable.
+    Blend {
+        /// Which.
+        primitive: usize,
+        /// How it goes with the others.
+        blend: Blend,
+    },
+    /// Makes a primitive change with a reference joint, or makes it rigid.
+    Deform {
+        /// Which.
+        primitive: usize,
+        /// How; none makes it rigid.
+        deformation: Option<Deformation>,
+    },
+    /// Fixes a primitive to a joint.
+    Attach {
+        /// Which.
+        primitive: usize,
+        /// The joint.
+        joint: Joint,
+    },
+    /// Fixes a primitive to the bone it lies round again.
+    Detach {
+        /// Which.
+        primitive: usize,
+    },
+    /// Joins primitives: they are moved and turned together from then on.
+    Join {
+        /// Which, two at least.
+        primitives: Vec<usize>,
+    },
+    /// Takes primitives out of what they are joined in.
+    Part {
+        /// Which.
+        primitives: Vec<usize>,
+    },
+}
+
+/// Most primitives of the left side and the middle: five times those of a fitted body.
+const MOST: usize = 400;
+
+impl Description {
+    /// The description with its primitives written out: the figure's own where it has none.
+    pub fn with_primitives(&self) -> Self {
+        let mut next = self.clone();
+        if next.primitives.is_empty() {
+            next.primitives = Template::of(self.figure)
+                .primitives
+                .into_iter()
+                .filter(|p| !p.is_right())
+                .collect();
+        }
+        next
+    }
+
+    /// This body with its primitives changed: by all edits, in order, or by none. Whether a skin
+    /// can still be cast on them is seen when a [`crate::Mannequin`] is made.
+    ///
+    /// # Errors
+    /// A primitive that is not there, or values no primitive has: which, and the remedy.
+    pub fn edited(&self, edits: &[PrimitiveEdit]) -> Result<Self, BodyError> {
+        let mut next = self.with_primitives();
+        for edit in edits {
+            next.edit(edit)?;
+        }
+        Ok(next)
+    }
+
+    fn edit(&mut self, edit: &PrimitiveEdit) -> Result<(), BodyError> {
+        match edit {
+            PrimitiveEdit::Create { new } => {
+                if self.primitives.len() >= MOST {
+                    return refused("there are 400 primitives: delete some first");
+                }
+                self.primitives.push(*new);
+            }
+            PrimitiveEdit::Delete { primitive } => {
+                let part = self.own(*primitive)?.part;
+                let left = self.primitives.iter().filter(|p| p.part == part).count();
+                if left == 1 {
+                    return refused("the last primitive of a part cannot be deleted: move it");
+                }
+                self.primitives.remove(*primitive);
+                self.rigging.forget(*primitive);
+            }
+            PrimitiveEdit::Move { primitive, centre } => {
+                let by = Vec3::from(*centre) - Vec3::from(self.own(*primitive)?.centre);
+                for other in self.rigging.together(*primitive) {
+                    let own = self.own(other)?;
+                    own.centre = (Vec3::from(own.centre) + by).into();
+                }
+                // The very numbers asked for, without rounding.
+                self.own(*primitive)?.centre = *centre;
+            }
+            PrimitiveEdit::Turn {
+                primitive,
+                rotation,
+            } => self.turn(*primitive, *rotation)?,
+            PrimitiveEdit::Scale { primitive, radii } => self.own(*primitive)?.radii = *radii,
+            PrimitiveEdit::Weigh { primitive, weight } => self.own(*primitive)?.weight = *weight,
+            PrimitiveEdit::Group {
+                primitive,
+                part,
+                also,
+            } => {
+                let own = self.own(*primitive)?;
+                own.part = *part;
+                own.also = also.filter(|other| other != part);
+            }
+            PrimitiveEdit::Blend { primitive, blend } => self.own(*primitive)?.blend = *blend,
+            PrimitiveEdit::Deform { .. }
+            | PrimitiveEdit::Attach { .. }
+            | PrimitiveEdit::Detach { .. }
+            | PrimitiveEdit::Join { .. }
+            | PrimitiveEdit::Part { .. } => self.rig(edit)?,
+        }
+        for (index, primitive) in self.primitives.iter().enumerate() {
+            check(index, primitive)?;
+        }
+        Ok(())
+    }
+
+    fn rig(&mut self, edit: &PrimitiveEdit) -> Result<(), BodyError> {
+        match edit {
+            PrimitiveEdit::Deform {
+                primitive,
+                deformation,
+            } => {
+                self.own(*primitive)?;
+                if let Some(deformation) = deformation {
+                    deformation.check()?;
+                }
+                let to = deformation.clone();
+                self.rigging.change(*primitive, |own| own.deformation = to);
+            }
+            PrimitiveEdit::Attach { primitive, joint } => {
+                self.own(*primitive)?;
+                let to = Some(*joint);
+                self.rigging.change(*primitive, |own| own.joint = to);
+            }
+            PrimitiveEdit::Detach { primitive } => {
+                self.own(*primitive)?;
+                self.rigging.change(*primitive, |own| own.joint = None);
+            }
+            PrimitiveEdit::Join { primitives } | PrimitiveEdit::Part { primitives } => {
+                for &primitive in primitives {
+                    self.own(primitive)?;
+                }
+                let mut named = primitives.clone();
+                named.sort_unstable();
+                named.dedup();
+                match edit {
+                    PrimitiveEdit::Join { .. } if named.len() < 2 => {
+                        return refused("two primitives at least are joined: name them");
+                    }
+                    PrimitiveEdit::Join { .. } => self.rigging.join(&named),
+                    _ => self.rigging.part(&named),
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn own(&mut self, primitive: usize) -> Result<&mut Primitive, BodyError> {
+        let count = self.primitives.len();
+        self.primitives.get_mut(primitive).ok_or_else(|| {
+            BodyError::Description(format!(
+                "there is no primitive {primitive}: they are counted from 0 to {}",
+                count.saturating_sub(1)
+            ))
+        })
+    }
+
+    fn turn(&mut self, primitive: usize, rotation: [f64; 3]) -> Result<(), BodyError> {
+        let own = *self.own(primitive)?;
+        let by = Rotation3::new(Vec3::from(rotation)) * own.rotation().inverse();
+        let about = Vec3::from(own.centre);
+        for other in self.rigging.together(primitive) {
+            let own = self.own(other)?;
+            own.centre = (about + by * (Vec3::from(own.centre) - about)).into();
+            own.rotation = (by * own.rotation()).scaled_axis().into();
+        }
+        let own = self.own(primitive)?;
+        (own.centre, own.rotation) = (about.into(), rotation);
+        Ok(())
+    }
+}
+
+fn refused(why: &str) -> Result<(), BodyError> {
+    Err(BodyError::Description(why.to_owned()))
+}

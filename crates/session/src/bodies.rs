@@ -1,0 +1,125 @@
+//! Bodies of one's own: mannequin files as the wearer's body, their primitives edited, and figures
+//! brought to proportions.
+
+use crate::tools::open_mannequin;
+use crate::{BodyChoice, Project, SessionError};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use toile_body::{BodyError, Description, Mannequin, PrimitiveEdit, ProportionBox};
+use toile_interchange::{FormatError, proportion_boxes, read_proportions, read_text};
+use toile_measure::{Measurements, Origin};
+
+/// The body of a description as a choice, with what a tape finds on it. A body whose primitives
+/// leave a hole is refused.
+pub(crate) fn shaped(
+    description: Description,
+    path: Option<PathBuf>,
+) -> Result<BodyChoice, BodyError> {
+    let mannequin = Mannequin::from_description(&description)?;
+    let mut measurements = Measurements::new();
+    for row in mannequin.measure() {
+        // What no catalogue allows is left to be predicted.
+        let _ = measurements.set(row.name, row.got, Origin::Asked);
+    }
+    Ok(BodyChoice::Shaped {
+        description: Arc::new(description),
+        path,
+        measurements: Arc::new(measurements),
+    })
+}
+
+/// The description in a file that is a mannequin's; none where it is something else.
+pub(crate) fn described(path: &Path) -> Result<Option<Description>, SessionError> {
+    let text = read_text(path)?;
+    let kind = serde_json::from_str::<serde_json::Value>(&text)
+        .ok()
+        .and_then(|value| Some(value.get("kind")?.as_str()? == "mannequin"));
+    match kind {
+        Some(true) => open_mannequin(path).map(Some),
+        _ => Ok(None),
+    }
+}
+
+/// The description of a project's body, whatever it was chosen by.
+pub(crate) fn description_of(project: &Project) -> Description {
+    match &project.body {
+        BodyChoice::Shaped { description, .. } => (**description).clone(),
+        _ => Description {
+            figure: project.figure(),
+            measurements: project.wearer(),
+            primitives: Vec::new(),
+            frame: None,
+            rigging: Default::default(),
+        }
+        .with_primitives(),
+    }
+}
+
+/// The edits of primitives in a file: a JSON list.
+///
+/// # Errors
+/// The file cannot be read, or is no such list.
+pub fn open_body_edits(path: &Path) -> Result<Vec<PrimitiveEdit>, SessionError> {
+    serde_json::from_str(&read_text(path)?).map_err(|error| SessionError::Format {
+        path: path.to_owned(),
+        error: FormatError::new(
+            format!("line {}, column {}", error.line(), error.column()),
+            error.to_string(),
+            "write [{\"edit\": \"weigh\", \"primitive\": 3, \"weight\": 1.2}]: create, delete, move, turn, scale, weigh, group, blend, deform, attach, detach, join, part",
+        ),
+    })
+}
+
+/// A body with its primitives edited: the one described, or a project's.
+///
+/// # Errors
+/// An edit that cannot be made, with the remedy.
+pub fn edit_body(
+    described: Option<Description>,
+    project: &Project,
+    edits: &[PrimitiveEdit],
+) -> Result<Description, SessionError> {
+    let body = described.unwrap_or_else(|| description_of(project));
+    Ok(body.edited(edits)?)
+}
+
+/// The proportion box of a name of the table that ships, or of a file: `FILE.json` for its first
+/// box, `FILE.json:NAME` for another.
+///
+/// # Errors
+/// A name that is not there, with those that are, or a file that cannot be read.
+pub fn proportions_named(text: &str) -> Result<ProportionBox, SessionError> {
+    let (file, name) = match text.split_once(".json") {
+        Some((stem, rest)) => (
+            Some(PathBuf::from(format!("{stem}.json"))),
+            rest.trim_start_matches(':'),
+        ),
+        None => (None, text),
+    };
+    let table = match &file {
+        None => proportion_boxes(),
+        Some(path) => {
+            read_proportions(&read_text(path)?).map_err(|error| SessionError::Format {
+                path: path.clone(),
+                error,
+            })?
+        }
+    };
+    let chosen = match (&file, name) {
+        (Some(_), "") => table.first(),
+        _ => table.iter().find(|row| row.name == name),
+    };
+    chosen.cloned().ok_or_else(|| SessionError::Unknown {
+        kind: "proportion box",
+        name: name.to_owned(),
+        hint: {
+            let names: Vec<&str> = table.iter().map(|row| &*row.name).collect();
+            format!("choose one of {}", names.join(", "))
+        },
+    })
+}
+
+/// The proportion box of a head count: what lies between the boxes that ship.
+pub fn proportions_of_heads(heads: f64) -> ProportionBox {
+    ProportionBox::of_heads(heads, &proportion_boxes())
+}
