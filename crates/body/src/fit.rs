@@ -113,7 +113,7 @@ fn fitted(scan: &Scan, found: &mut Found) -> Result<(Vec<Primitive>, FitMisfit),
                 fit_field::fit(own, &goal);
             });
         let primitives = both_sides(groups.concat());
-        let (skin, checked) = cast_clear(scan, found, &primitives)?;
+        let (skin, checked) = cast_best(scan, found, &primitives)?;
         let misfit = misfit(scan, &checked, &found.frame.joints, [0.0, found.chin]);
         for (part, samples) in PARTS.iter().zip(&mut wanted) {
             drawn(samples, *part, &skin, height);
@@ -130,49 +130,77 @@ fn fitted(scan: &Scan, found: &mut Found) -> Result<(Vec<Primitive>, FitMisfit),
     Ok((primitives, misfit))
 }
 
-/// Casts the skin with the armpits' rings where it misses the mesh least round there: between a
-/// thick arm and a full trunk few places are free.
-fn cast_clear(
+/// A level of the frame that is looked for.
+#[derive(Clone, Copy, PartialEq)]
+enum Sought {
+    Armpit,
+    Crotch,
+}
+
+impl Sought {
+    fn level(self, frame: &mut BodyFrame) -> &mut f64 {
+        match self {
+            Self::Armpit => &mut frame.armpit,
+            Self::Crotch => &mut frame.crotch,
+        }
+    }
+}
+
+/// A skin cast on a frame of its own.
+struct Cast {
+    skin: TemplateSkin,
+    checked: Scan,
+    frame: BodyFrame,
+}
+
+impl Cast {
+    fn new(scan: &Scan, frame: BodyFrame, primitives: &[Primitive]) -> Result<Self, BodyError> {
+        let mut template = Template::framed(&frame, primitives.to_vec());
+        let skin = rings::cast_framed(&mut template)?;
+        Ok(Self {
+            checked: Scan::new(skin.mesh.clone(), scan.landmarks().clone())?,
+            frame: BodyFrame {
+                hand: template.hand,
+                ..frame
+            },
+            skin,
+        })
+    }
+}
+
+/// Casts the skin with the levels of armpits and crotch, one after the other, where it misses the
+/// mesh least round there: between a thick arm and a full trunk, and between thighs that touch,
+/// few places are free.
+fn cast_best(
     scan: &Scan,
     found: &mut Found,
     primitives: &[Primitive],
 ) -> Result<(TemplateSkin, Scan), BodyError> {
-    /// Places tried, nearest first, and how far round them the mesh is compared, over stature.
-    const ELSEWHERE: [f64; 7] = [0.0, -0.003, 0.003, -0.006, 0.006, -0.01, 0.01];
+    /// Places tried for a level, nearest first, and how far round it the mesh is compared, over
+    /// stature.
+    const ELSEWHERE: [f64; 6] = [-0.003, 0.003, -0.006, 0.006, -0.01, 0.01];
     const ROUND: f64 = 0.035;
     let height = found.frame.height;
-    let mut best: Option<(f64, TemplateSkin, Scan, BodyFrame)> = None;
-    let mut why = None;
-    for step in ELSEWHERE {
-        let armpit = found.frame.armpit + step * height;
-        let mut tried = BodyFrame {
-            armpit,
-            ..found.frame
-        };
-        let mut template = Template::framed(&tried, primitives.to_vec());
-        let skin = match rings::cast_framed(&mut template) {
-            Ok(skin) => skin,
-            Err(error) => {
-                why = why.or(Some(error));
-                continue;
+    let mut best = Cast::new(scan, found.frame, primitives);
+    for sought in [Sought::Armpit, Sought::Crotch] {
+        let from = *sought.level(&mut found.frame);
+        let range = [-ROUND, ROUND].map(|d| from + d * height);
+        let bad =
+            |cast: &Cast| misfit(scan, &cast.checked, &cast.frame.joints, range).badness(height);
+        let mut least = best.as_ref().map_or(f64::INFINITY, bad);
+        for step in ELSEWHERE {
+            let mut frame = best.as_ref().map_or(found.frame, |cast| cast.frame);
+            *sought.level(&mut frame) = from + step * height;
+            let tried = Cast::new(scan, frame, primitives);
+            let own = tried.as_ref().map_or(f64::INFINITY, bad);
+            if own < least {
+                (least, best) = (own, tried);
             }
-        };
-        tried.hand = template.hand;
-        let checked = Scan::new(skin.mesh.clone(), scan.landmarks().clone())?;
-        let range = [-ROUND, ROUND].map(|d| found.frame.armpit + d * height);
-        let bad = misfit(scan, &checked, &tried.joints, range).badness(height);
-        if best.as_ref().is_none_or(|known| bad < known.0) {
-            best = Some((bad, skin, checked, tried));
         }
     }
-    match (best, why) {
-        (Some((_, skin, checked, chosen)), _) => {
-            found.frame = chosen;
-            Ok((skin, checked))
-        }
-        (None, Some(error)) => Err(error),
-        (None, None) => Err(BodyError::Mesh("leaves no armpit".into())),
-    }
+    let best = best?;
+    found.frame = best.frame;
+    Ok((best.skin, best.checked))
 }
 
 /// How often the skin is cast and what it misses by is added to what is wanted; the best of all

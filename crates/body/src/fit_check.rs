@@ -129,22 +129,30 @@ pub(crate) fn pairs(
     joints: &Joints,
     y: f64,
 ) -> Vec<(LevelPart, [Vec<Loop>; 2])> {
-    let both = |take: &dyn Fn(&Scan) -> Option<Loop>| Some([vec![take(mesh)?], vec![take(skin)?]]);
+    let loops = [mesh.level(y), skin.level(y)];
+    let both = |take: for<'a> fn(&Scan, &'a [Loop]) -> Option<&'a Loop>| {
+        let own = take(mesh, &loops[0])?.clone();
+        let other = take(skin, &loops[1])?.clone();
+        Some([vec![own], vec![other]])
+    };
     let mut all = Vec::new();
     let crotch = mesh.landmarks().crotch.unwrap_or_default();
     if y < crotch {
-        all.extend(both(&|s| s.leg(y)).map(|pair| (LevelPart::Leg, pair)));
+        all.extend(both(Scan::leg_of).map(|pair| (LevelPart::Leg, pair)));
         return all;
     }
-    let apart = [mesh, skin].map(|s| s.arm(y).is_some());
+    let apart = [
+        mesh.arm_of(&loops[0]).is_some(),
+        skin.arm_of(&loops[1]).is_some(),
+    ];
     let armpit = mesh.landmarks().armpit.unwrap_or_default();
     if apart[0] != apart[1] && y > armpit - 0.03 * mesh.height() {
-        return vec![(LevelPart::Trunk, [mesh.level(y), skin.level(y)])];
+        return vec![(LevelPart::Trunk, loops)];
     }
-    all.extend(both(&|s| s.trunk(y)).map(|pair| (LevelPart::Trunk, pair)));
+    all.extend(both(Scan::trunk_of).map(|pair| (LevelPart::Trunk, pair)));
     // Level sections of a slanting forearm reach over the wrist.
     if y > joints.wrist[1] + 0.02 * mesh.height() {
-        all.extend(both(&|s| s.arm(y)).map(|pair| (LevelPart::Arm, pair)));
+        all.extend(both(Scan::arm_of).map(|pair| (LevelPart::Arm, pair)));
     }
     all
 }

@@ -52,6 +52,9 @@ pub(crate) const SECTIONS: usize = 9;
 /// Distance of the end of the shoulder beyond the shoulder joint, over stature.
 const TIP: f64 = 0.003;
 
+/// Share of the way from the neck's base to the skull's that lies below any chin.
+const BELOW_CHIN: f64 = 0.4;
+
 /// Distance of the underbust below the bust, over stature.
 pub(crate) const UNDERBUST: f64 = 0.042;
 /// Between which heights the calf is looked for, over the knee's.
@@ -70,7 +73,12 @@ impl Marks {
         let [x, y, z] = j.shoulder;
         let part = "shoulder";
         let open = BodyError::Open { part, x, y, z };
-        let window = [bust, j.head[1] - 0.02 * h];
+        // A head may be large against the shoulders: on a frame of its own it begins lower.
+        let top = match template.armpit {
+            Some(_) => j.neck[1] + BELOW_CHIN * (j.head[1] - j.neck[1]),
+            None => j.head[1] - 0.02 * h,
+        };
+        let window = [bust, top];
         let tip_on = ridge(&skin.mesh, x + TIP * h, window).ok_or(open.clone())?;
         let tip = tip_on.at(&skin.mesh.positions);
         let neck_side_on = neck_side(&skin.mesh, tip, window).ok_or(open)?;

@@ -54,8 +54,10 @@ const CROTCH: [f64; 2] = [0.25, 0.6];
 const BREADTH: [f64; 2] = [0.5, 4.0];
 /// How near the measured box comes to the one asked for [1].
 const NEAR: f64 = 5e-4;
+/// How far off the best may stay [1].
+const MISS: f64 = 0.01;
 /// Rounds of measuring at the most: each leaves under a tenth of what was missed.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 12;
 
 /// One map of a body's places: heights by a broken line, breadths by two ratios, the head alike
 /// in all directions.
@@ -140,16 +142,18 @@ impl ProportionBox {
         let mut head = has.heads / self.heads;
         let mut low = self.wanted_crotch(&has, frame.height);
         let mut across = [1.0, 1.0];
-        let mut done = body.clone();
-        for _ in 0..ROUNDS {
-            done = Map::new(&frame, (chin, head), low, across)?.description(body);
+        let mut best: Option<(f64, Description)> = None;
+        for round in 0..ROUNDS {
+            let done = Map::new(&frame, (chin, head), low, across)?.description(body);
             let got = Self::of_body(&Mannequin::from_description(&done)?);
             let mut furthest = 0.0_f64;
+            // Rings move by steps with a chin: smaller corrections find a place between two.
+            let share = if round < ROUNDS / 2 { 1.0 } else { 0.5 };
             let mut miss = |asked: Option<f64>, got: Option<f64>| -> f64 {
                 match (asked, got) {
                     (Some(asked), Some(got)) if got > 0.0 => {
                         furthest = furthest.max((asked / got - 1.0).abs());
-                        asked / got
+                        (asked / got).powf(share)
                     }
                     _ => 1.0,
                 }
@@ -158,11 +162,17 @@ impl ProportionBox {
             low *= miss(self.crotch, got.crotch);
             across[0] *= miss(self.hips, got.hips);
             across[1] *= miss(self.shoulders, got.shoulders);
+            if best.as_ref().is_none_or(|known| furthest < known.0) {
+                best = Some((furthest, done));
+            }
             if furthest < NEAR {
                 break;
             }
         }
-        Ok(done)
+        match best {
+            Some((miss, done)) if miss < MISS => Ok(done),
+            _ => bad("cannot be met on this body: ask for less at a time"),
+        }
     }
 
     /// Height of the frame's crotch to begin with [m].
@@ -259,11 +269,19 @@ impl Map {
         self.across[0] + (self.across[1] - self.across[0]) * share
     }
 
-    /// Ratio of the neck's and head's breadth and depth at a height: the trunk's at the neck's
-    /// base, the head's from the chin on [1].
+    /// Ratio of the neck's and head's breadth and depth at a height: the trunk's up to half the
+    /// neck, the head's from the chin on [1].
     fn round(&self, y: f64) -> f64 {
-        let [base, chin] = [self.frame.joints.neck[1], self.heights[2][0]];
-        1.0 + (self.head - 1.0) * smooth_step((y - base) / (chin - base).max(1e-6))
+        let chin = self.heights[2][0];
+        let half = 0.5 * (self.frame.joints.neck[1] + chin);
+        1.0 + (self.head - 1.0) * smooth_step((y - half) / (chin - half).max(1e-6))
+    }
+
+    /// Depth of the axis of neck and head at a height [m]: it stays where it is.
+    fn axis(&self, y: f64) -> f64 {
+        let [neck, head] = [self.frame.joints.neck, self.frame.joints.head];
+        let share = ((y - neck[1]) / (head[1] - neck[1])).clamp(0.0, 1.0);
+        neck[2] + (head[2] - neck[2]) * share
     }
 
     /// A place of the trunk or a leg.
@@ -273,7 +291,7 @@ impl Map {
 
     /// A place of neck or head.
     fn head(&self, p: [f64; 3]) -> [f64; 3] {
-        let (ratio, axis) = (self.round(p[1]), self.frame.joints.neck[2]);
+        let (ratio, axis) = (self.round(p[1]), self.axis(p[1]));
         [
             p[0] * ratio,
             self.height(p[1]),

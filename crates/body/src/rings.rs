@@ -316,6 +316,9 @@ impl Half<'_> {
         let rows = self.rows();
         let hole = self.hole(&rows)?;
         let grid = self.cast_rows(&rows, hole)?;
+        if self.template.armpit.is_some() {
+            self.below_the_chin(&rows, &grid)?;
+        }
         for (t, (lower, upper)) in grid.iter().zip(&grid[1..]).enumerate() {
             for i in 0..HALF {
                 if !hole.covers(t, i) {
@@ -383,6 +386,40 @@ impl Half<'_> {
             }
         }
         Ok(grid)
+    }
+
+    /// Where a tilted ray of the neck went on into a large chin, a level one from the neck's axis
+    /// takes its place, evenly between the rows below and the first level row.
+    fn below_the_chin(&mut self, rows: &[Row], grid: &[[u32; HALF + 1]]) -> Result<(), BodyError> {
+        /// How far over the first level row a ray may end, over stature.
+        const OVER: f64 = 0.006;
+        let is_head = |t: &usize| rows[*t].part == Part::Head;
+        let Some(neck) = (1..rows.len()).find(is_head) else {
+            return Ok(());
+        };
+        let is_level = |t: &usize| rows[*t].elevation <= 0.0;
+        let Some(level) = (neck..rows.len()).find(is_level) else {
+            return Ok(());
+        };
+        let top = rows[level].origin;
+        for i in 0..=HALF {
+            let height = |half: &Self, t: usize| half.positions[grid[t][i] as usize].y;
+            let most = top.y + OVER * self.template.height;
+            let Some(first) = (neck..level).find(|&t| height(self, t) > most) else {
+                continue;
+            };
+            let from = height(self, first - 1).min(top.y);
+            let angle = std::f64::consts::PI * i as f64 / HALF as f64;
+            let middle = i == 0 || i == HALF;
+            let across = Vec3::new(if middle { 0.0 } else { angle.sin() }, 0.0, angle.cos());
+            for (t, row) in grid.iter().enumerate().take(level).skip(first) {
+                let share = (t + 1 - first) as f64 / (level + 1 - first) as f64;
+                let origin = Vec3::new(0.0, from + (top.y - from) * share, top.z);
+                self.positions[row[i] as usize] =
+                    self.hit(reachable(Part::Head), origin, across.normalize())?;
+            }
+        }
+        Ok(())
     }
 
     /// Two triangles, split along the shorter diagonal.

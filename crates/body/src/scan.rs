@@ -233,34 +233,46 @@ impl Scan {
 
     /// The trunk's loop at a height: the one that holds the middle, the largest if several do.
     pub fn trunk(&self, height: f64) -> Option<Loop> {
-        self.level(height)
-            .into_iter()
-            .filter(|l| {
-                let low = l.points.iter().map(|p| p.x).fold(f64::INFINITY, f64::min);
-                let high = l
-                    .points
-                    .iter()
-                    .map(|p| p.x)
-                    .fold(f64::NEG_INFINITY, f64::max);
-                low < self.middle && high > self.middle
-            })
-            .max_by(|a, b| a.length().total_cmp(&b.length()))
+        self.trunk_of(&self.level(height)).cloned()
     }
 
     /// The left leg's loop at a height: of those on the left below the crotch, the innermost.
     pub fn leg(&self, height: f64) -> Option<Loop> {
-        self.level(height)
-            .into_iter()
-            .filter(|l| l.centre().x > self.middle && l.length() > LIMB * self.height)
-            .min_by(|a, b| a.centre().x.total_cmp(&b.centre().x))
+        self.leg_of(&self.level(height)).cloned()
     }
 
     /// The left arm's loop beside the trunk at a height: the outermost on the left.
     pub(crate) fn arm(&self, height: f64) -> Option<Loop> {
-        let trunk = self.trunk(height)?;
-        self.level(height)
-            .into_iter()
-            .filter(|l| l.centre().x > trunk.centre().x + 0.5 * trunk.extent()[0])
+        self.arm_of(&self.level(height)).cloned()
+    }
+
+    /// The trunk's of the loops of a level.
+    pub(crate) fn trunk_of<'a>(&self, loops: &'a [Loop]) -> Option<&'a Loop> {
+        let holds = |l: &&Loop| {
+            let left = l.points.iter().any(|p| p.x < self.middle);
+            left && l.points.iter().any(|p| p.x > self.middle)
+        };
+        loops
+            .iter()
+            .filter(holds)
+            .max_by(|a, b| a.length().total_cmp(&b.length()))
+    }
+
+    /// The left leg's of the loops of a level.
+    pub(crate) fn leg_of<'a>(&self, loops: &'a [Loop]) -> Option<&'a Loop> {
+        loops
+            .iter()
+            .filter(|l| l.centre().x > self.middle && l.length() > LIMB * self.height)
+            .min_by(|a, b| a.centre().x.total_cmp(&b.centre().x))
+    }
+
+    /// The left arm's of the loops of a level.
+    pub(crate) fn arm_of<'a>(&self, loops: &'a [Loop]) -> Option<&'a Loop> {
+        let trunk = self.trunk_of(loops)?;
+        let side = trunk.centre().x + 0.5 * trunk.extent()[0];
+        loops
+            .iter()
+            .filter(|l| l.centre().x > side)
             .max_by(|a, b| a.centre().x.total_cmp(&b.centre().x))
     }
 

@@ -19,7 +19,7 @@ fn independent_tape(mesh: &Scan, body: &Mannequin) -> f64 {
     let height = mesh.height();
     let marks = mesh.landmarks();
     let (crotch, armpit) = (marks.crotch.unwrap(), marks.armpit.unwrap());
-    // A loop's hull by walking round its outermost points (Jarvis 1973).
+    // The hull's lower and upper chain (Andrew 1979).
     let girth = |mesh: &TriangleMesh, y: f64, is_leg: bool| -> f64 {
         let mut points: Vec<[f64; 2]> = Vec::new();
         let reach = if is_leg { 0.0 } else { -1.0 };
@@ -35,25 +35,23 @@ fn independent_tape(mesh: &Scan, body: &Mannequin) -> f64 {
         }
         let wide = if is_leg { 0.13 } else { 0.15 };
         points.retain(|p| p[0] > reach * height && p[0].abs() < wide * height);
-        let Some(&start) = points.iter().min_by(|a, b| a[0].total_cmp(&b[0])) else {
-            return f64::NAN;
-        };
-        let (mut at, mut length) = (start, 0.0);
-        loop {
-            let mut next = start;
-            for &p in &points {
-                let cross = (next[0] - at[0]) * (p[1] - at[1]) - (next[1] - at[1]) * (p[0] - at[0]);
-                let far = |q: [f64; 2]| (q[0] - at[0]).hypot(q[1] - at[1]);
-                if next == at || cross > 0.0 || (cross == 0.0 && far(p) > far(next)) {
-                    next = p;
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        let chain = |points: &mut dyn Iterator<Item = &[f64; 2]>| -> f64 {
+            let mut hull: Vec<[f64; 2]> = Vec::new();
+            for &p in points {
+                while let [.., a, b] = hull[..] {
+                    let turn = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+                    if turn > 0.0 {
+                        break;
+                    }
+                    hull.pop();
                 }
+                hull.push(p);
             }
-            length += (next[0] - at[0]).hypot(next[1] - at[1]);
-            at = next;
-            if at == start || length > 20.0 * height {
-                return length;
-            }
-        }
+            let step = |w: &[[f64; 2]]| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]);
+            hull.windows(2).map(step).sum()
+        };
+        chain(&mut points.iter()) + chain(&mut points.iter().rev())
     };
     let (mut sum, mut count) = (0.0, 0.0);
     let mut add = |y: f64, is_leg: bool| {

@@ -159,7 +159,7 @@ fn walk_and_run_are_clean_away_from_creases() {
 }
 
 #[test]
-fn slerp_turns_evenly_and_linear_blending_does_not() {
+fn slerp_turns_evenly_the_short_way_and_linear_blending_does_not() {
     let joint = Joint::LShoulder;
     let pose = |axis: Vec3, angle: f64| {
         let turn = UnitQuaternion::new(axis.normalize() * angle);
@@ -185,7 +185,7 @@ fn slerp_turns_evenly_and_linear_blending_does_not() {
         uneven.to_degrees(),
         astray.to_degrees()
     );
-    assert!(uneven > 0.1 && astray > 0.1, "{uneven} {astray}");
+    assert!(uneven > 0.01 && astray > 0.2, "{uneven} {astray}");
     // The ends are the same.
     for (share, end) in [(0.0, &a), (1.0, &b)] {
         let got = a.blended_linearly(&b, share).rotation(joint);
