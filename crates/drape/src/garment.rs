@@ -2,7 +2,7 @@
 //! the finest. One `advance` is one step, so that a command line, a window and a test drive it
 //! alike.
 
-use crate::collision::Tally;
+use crate::collision::{ClothMemory, Tally};
 use crate::measure::{Measures, measure};
 use crate::swing::SwingRun;
 use crate::{
@@ -84,6 +84,8 @@ pub struct GarmentRun {
     swing: Option<SwingRun>,
     /// Whether crossings of cloth ended the swing before the cloth was calm.
     cut_short: bool,
+    /// Swings of this level that are over.
+    swings: usize,
     rest: RestRun,
     stage: Stage,
     gap_before_merging: f64,
@@ -102,6 +104,9 @@ const COARSE_RESIDUAL: f64 = 2e-2;
 
 /// Rounds of finer contact testing before crossings of the body are left and reported.
 const MOST_REFINEMENTS: usize = 12;
+
+/// Swings of a level at the most: each begins anew where crossings that had ended one are undone.
+const MOST_SWINGS: usize = 3;
 
 /// Residual below which crossings of the body are first looked for, and what the next such residual
 /// is of the last: what is found early is cured on the way.
@@ -129,6 +134,7 @@ impl GarmentRun {
             state: State::default(),
             swing: None,
             cut_short: false,
+            swings: 0,
             rest: RestRun::new(setup.rest),
             sew: SewRun::new(&mut model, Vec::new(), setup.sew),
             workspace: Workspace::default(),
@@ -166,10 +172,12 @@ impl GarmentRun {
         self.sew.look(&self.state);
         self.level = level;
         self.model = model;
+        self.tally = self.cloth_tally();
         self.workspace = Workspace::default();
         self.stage = Stage::Sewing;
         self.rest = RestRun::new(self.rest_settings());
         self.refinements = 0;
+        self.swings = 0;
         self.look_below = FIRST_LOOK;
         if self.sew.closed() {
             self.merge()?;
@@ -228,9 +236,9 @@ impl GarmentRun {
         ]
     }
 
-    /// What contact of cloth with cloth found and did in the swings that are over.
+    /// What contact of cloth with cloth found and did in the swings that are over and in settling.
     pub fn cloth_tally(&self) -> Tally {
-        self.tally
+        self.tally.then(self.workspace.contacts.cloth.tally)
     }
 
     /// What went less than well, in plain words.
@@ -270,6 +278,7 @@ impl GarmentRun {
             self.cut_short = swing.stuck();
             self.tally = self.tally.then(swing.cloth_tally());
             self.swing = None;
+            self.swings += 1;
             self.stage = Stage::Settling;
         }
         Ok(())
@@ -280,8 +289,15 @@ impl GarmentRun {
             .advance(&self.model, &mut self.state, &mut self.workspace)?;
         if self.cut_short && self.workspace.contacts.cloth.piercings == 0 {
             self.cut_short = false;
-            self.stage = Stage::Swinging;
-            return Ok(());
+            if self.swings < MOST_SWINGS {
+                self.steps[1] += self.rest.steps();
+                self.rest = RestRun::near(self.rest_settings());
+                let cloth = &mut self.workspace.contacts.cloth;
+                self.tally = self.tally.then(std::mem::take(&mut cloth.tally));
+                self.state.cloth = ClothMemory::default();
+                self.stage = Stage::Swinging;
+                return Ok(());
+            }
         }
         let decades = (1.0 / self.rest.residual().max(1e-9)).log10() / 3.0;
         self.share = self

@@ -182,6 +182,9 @@ impl Default for ContactSettings {
 /// usual offset.
 const EXTRA_OFFSET: f64 = 1e-3;
 
+/// The most of that [m]: what is still found then is not cured by distance.
+const MOST_EXTRA: f64 = 8e-3;
+
 /// A point of the cloth that is tested against surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSample {
@@ -405,12 +408,32 @@ impl Model {
     /// for the curve it lies on; when it is tested so already, keeps it and its corners farther
     /// from the surface.
     pub fn refine_contact(&mut self, triangle: u32) {
+        for triangle in self.under(triangle) {
+            self.refine_triangle(triangle);
+        }
+    }
+
+    /// Triangles of the model that cover one of the surface: itself, or the two that were exchanged
+    /// for it and its neighbour.
+    fn under(&self, triangle: u32) -> Vec<u32> {
+        let given = self.surface_triangles()[triangle as usize];
+        let own = self.triangles[triangle as usize];
+        if given == own {
+            return vec![triangle];
+        }
+        let quad = |v: &u32| given.contains(v) || own.contains(v);
+        let all = 0..self.triangles.len() as u32;
+        all.filter(|&t| self.triangles[t as usize].iter().all(quad))
+            .collect()
+    }
+
+    fn refine_triangle(&mut self, triangle: u32) {
         if self.samples.iter().any(|s| s.triangle == Some(triangle)) {
             let corners = self.triangles[triangle as usize];
             for sample in &mut self.samples {
                 let corner = sample.triangle.is_none() && corners.contains(&sample.vertices[0]);
                 if corner || sample.triangle == Some(triangle) {
-                    sample.extra_offset += EXTRA_OFFSET;
+                    sample.extra_offset = (sample.extra_offset + EXTRA_OFFSET).min(MOST_EXTRA);
                 }
             }
             return;

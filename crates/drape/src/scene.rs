@@ -255,6 +255,7 @@ impl Scene {
                 moved.push((format!("motion of \"{}\"", object.name), motion));
             }
         }
+        let mut held = std::collections::BTreeSet::new();
         for (index, grip) in self.grips.iter().enumerate() {
             let place = format!("grip {index}");
             let Some(object) = self.objects.get(grip.object) else {
@@ -272,6 +273,11 @@ impl Scene {
             if let Some(vertex) = grip.vertices.iter().find(|&&v| v as usize >= count) {
                 let what = format!("\"{}\" has no vertex {vertex}", object.name);
                 return refuse(place, what, "name a vertex below the object's vertex count");
+            }
+            let taken = |v: &&u32| !held.insert((grip.object, **v));
+            if let Some(vertex) = grip.vertices.iter().find(taken) {
+                let what = format!("vertex {vertex} of \"{}\" is gripped already", object.name);
+                return refuse(place, what, "name each vertex in one grip, once");
             }
             moved.push((place, &grip.motion));
         }

@@ -316,6 +316,7 @@ impl SceneRun {
             *velocity = momentum / *mass;
         }
         self.cloth = merged;
+        self.refinements = 0;
         for target in &mut self.target {
             *target = map[*target as usize];
         }

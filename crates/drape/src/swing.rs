@@ -84,7 +84,17 @@ impl SwingRun {
             count: ROUND,
             drag: DRAG,
         };
-        let report = (self.xpbd).advance_touching(model, state, &mut self.cloth, &span)?;
+        let before = state.clone();
+        let report = match self
+            .xpbd
+            .advance_touching(model, state, &mut self.cloth, &span)
+        {
+            Ok(report) => report,
+            Err(error) => {
+                *state = before;
+                return Err(error);
+            }
+        };
         self.time += self.substep * f64::from(ROUND);
         if report.kinetic_energy < self.energy {
             let mass: f64 = model.mass.iter().sum();

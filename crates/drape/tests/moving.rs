@@ -150,15 +150,16 @@ fn motions_that_cannot_be_followed_are_refused() {
         });
     });
     assert!(said.contains("moves by itself"), "{said}");
-    for (object, vertex, word) in [
-        (1, 0, "not deformable"),
-        (0, 999, "no vertex 999"),
-        (7, 0, "no object 7"),
+    for (object, vertices, word) in [
+        (1, vec![0], "not deformable"),
+        (0, vec![999], "no vertex 999"),
+        (7, vec![0], "no object 7"),
+        (0, vec![1, 2, 1], "vertex 1 of"),
     ] {
         let said = refused(&|scene| {
             scene.grips.push(SceneGrip {
                 object,
-                vertices: vec![vertex],
+                vertices: vertices.clone(),
                 motion: Motion {
                     pivot: Vec3::zeros(),
                     keys: vec![key(0.0, Vec3::zeros())],

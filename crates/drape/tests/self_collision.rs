@@ -125,6 +125,52 @@ fn pairs_are_those_of_brute_force_in_200_crumpled_states() {
 }
 
 #[test]
+fn what_came_nearer_since_it_was_looked_at_is_still_kept_apart() {
+    let lower = sheet(3, |u, v| Vec3::new(0.09 * u, 0.0, 0.09 * v));
+    let upper = sheet(3, |u, v| {
+        Vec3::new(0.09 * u + 0.01, 1.9e-3, 0.09 * v + 0.007)
+    });
+    let (mut mesh, half) = (lower, upper.positions.len());
+    mesh.positions.extend(upper.positions);
+    let shifted = upper.triangles.iter().map(|t| t.map(|v| v + half as u32));
+    mesh.triangles.extend(shifted);
+    let cloth = Cloth::from_mesh("two", &mesh, Material::default()).unwrap();
+    let mut model = Model::new("two", &cloth).unwrap();
+    model.contact.cloth_offset = 2e-3;
+    let lightness: Vec<f64> = model.mass.iter().map(|m| 1.0 / m).collect();
+    let state = State::at_rest(&model, mesh.positions.clone());
+    let mut contacts = ClothContacts::default();
+    contacts.refresh(&model, &state, &state.positions);
+    let towards = |way: f64| -> Vec<Vec3> {
+        let sign = |v: usize| if v < half { 1.0 } else { -1.0 };
+        (0..2 * half).map(|v| Vec3::y() * (sign(v) * way)).collect()
+    };
+    // What the last look found still serves: nothing has strayed by a millimetre.
+    let drift = towards(0.8e-3);
+    let x: Vec<Vec3> = mesh
+        .positions
+        .iter()
+        .zip(&drift)
+        .map(|(x, d)| x + d)
+        .collect();
+    let mut moves = towards(0.19e-3);
+    let mut velocities = moves.clone();
+    let mut motion = Motions {
+        x: &x,
+        moves: &mut moves,
+        velocities: &mut velocities,
+        lightness: &lightness,
+        span: 1.0,
+    };
+    let kept = contacts.keep_apart(&model, &mut motion);
+    assert!(kept.impulses > 0, "{kept:?}");
+    let gap = |v: usize| x[v].y + moves[v].y;
+    let low = (0..half).map(gap).fold(f64::NEG_INFINITY, f64::max);
+    let high = (half..2 * half).map(gap).fold(f64::INFINITY, f64::min);
+    assert!(low < high, "{low} {high}");
+}
+
+#[test]
 fn bounded_moves_never_cross() {
     let mut held = 0;
     for seed in 0..60 {

@@ -1,7 +1,10 @@
 //! A box tree over the triangles of a mesh: which triangles are near, which point is closest,
 //! which side of a closed surface a point is on.
 
-use crate::{Feature, TriangleMesh, Vec3, closest_point_on_triangle, triangles_intersect};
+use crate::{
+    Feature, TriangleMesh, Vec3, closest_point_on_triangle, segment_intersects_triangle,
+    triangles_intersect,
+};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
@@ -186,25 +189,36 @@ impl SurfaceTree {
         pairs
     }
 
-    /// Pairs of this mesh's own triangles that intersect and share no vertex, exactly, sorted.
+    /// Pairs of this mesh's own triangles that intersect, exactly, sorted. Two that share a vertex do
+    /// where the side opposite to it of one meets the other; two that share a side do not.
     pub fn self_intersections(&self) -> Vec<[u32; 2]> {
         let mut pairs = Vec::new();
         for t in 0..self.mesh.triangles.len() {
-            let corners = self.mesh.corners(t);
-            for near in self.boxes.intersect_aabb(&triangle_box(corners, 0.0)) {
-                let shares = self.mesh.triangles[t]
-                    .iter()
-                    .any(|v| self.mesh.triangles[near as usize].contains(v));
-                if near as usize > t
-                    && !shares
-                    && triangles_intersect(corners, self.mesh.corners(near as usize))
-                {
+            for near in (self.boxes).intersect_aabb(&triangle_box(self.mesh.corners(t), 0.0)) {
+                if near as usize > t && self.own_meet([t, near as usize]) {
                     pairs.push([t as u32, near]);
                 }
             }
         }
         pairs.sort_unstable();
         pairs
+    }
+
+    fn own_meet(&self, pair: [usize; 2]) -> bool {
+        let [first, second] = pair.map(|t| self.mesh.triangles[t]);
+        let [corners, others] = pair.map(|t| self.mesh.corners(t));
+        let shared = |k: &usize| second.contains(&first[*k]);
+        let mut common = (0..3).filter(shared);
+        match (common.next(), common.next()) {
+            (None, _) => triangles_intersect(corners, others),
+            (Some(k), None) => {
+                let opposite = |c: [Vec3; 3], k: usize| [c[(k + 1) % 3], c[(k + 2) % 3]];
+                let other = (0..3).find(|&j| second[j] == first[k]).unwrap_or(0);
+                segment_intersects_triangle(opposite(corners, k), others)
+                    || segment_intersects_triangle(opposite(others, other), corners)
+            }
+            _ => false,
+        }
     }
 }
 
@@ -262,5 +276,30 @@ mod tests {
         assert!(!expected.is_empty());
         assert_eq!(tree.intersections_with(&moved), expected);
         assert_eq!(tree.self_intersections(), Vec::<[u32; 2]>::new());
+    }
+
+    #[test]
+    fn a_free_corner_folded_through_its_neighbour_is_counted() {
+        // Two triangles with one vertex in common; the free side of one goes through the other.
+        let mesh = TriangleMesh {
+            positions: [
+                [0.0, 0.0, 0.0],
+                [1.0, 0.0, -0.5],
+                [1.0, 0.0, 0.5],
+                [-1.5, -0.3, 0.0],
+                [-1.5, 0.3, 0.0],
+            ]
+            .map(Vec3::from)
+            .to_vec(),
+            triangles: vec![[0, 1, 2], [0, 3, 4]],
+        };
+        let open = SurfaceTree::new(mesh.clone());
+        assert!(open.self_intersections().is_empty());
+        for far in [-1.0, -2.0] {
+            let mut folded = mesh.clone();
+            folded.positions[1] *= far;
+            folded.positions[2] *= far;
+            assert_eq!(SurfaceTree::new(folded).self_intersections(), [[0, 1]]);
+        }
     }
 }

@@ -45,6 +45,10 @@ enum Work {
     Nest,
     /// Queries of pairs of their pieces, as the search makes them, one thread.
     NestQueries,
+    /// Contacts of a smooth sheet with itself, so many cells along a side.
+    DetectSheet(usize),
+    /// Contacts of the worn shirt with itself, its mesh divided so many times.
+    DetectShirt(usize),
 }
 
 /// Frames of a benchmark of motion.
@@ -76,6 +80,12 @@ fn all() -> Vec<(String, Work)> {
     }
     list.push(("nest".to_owned(), Work::Nest));
     list.push(("nest-queries".to_owned(), Work::NestQueries));
+    for (name, cells) in [("1k", 22), ("30k", 122), ("1m", 707)] {
+        list.push((format!("detect-sheet-{name}"), Work::DetectSheet(cells)));
+    }
+    for (cuts, name) in ["1k", "6k", "22k"].iter().enumerate() {
+        list.push((format!("detect-shirt-{name}"), Work::DetectShirt(cuts)));
+    }
     list.push(("rest-shirt-1k".to_owned(), Work::Rest(0, 1e-2)));
     list.push(("rest-shirt-6k".to_owned(), Work::Rest(1, 1e-3)));
     list.push(("rest-shirt-22k".to_owned(), Work::Rest(2, 1e-3)));
@@ -93,6 +103,7 @@ pub fn bench_names() -> Vec<String> {
 fn is_long(name: &str, work: Work) -> bool {
     match work {
         Work::Square(_, side, kind) => side > SIDES[1] || kind != MethodKind::PatchVerlet,
+        Work::DetectSheet(cells) => cells > 700,
         _ => matches!(name, "rest-shirt-22k" | "rest-shirt-90k"),
     }
 }
@@ -173,6 +184,8 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
             frames(&model, state, (kind, SQUARE_FRAMES), &mut result);
         }
         Work::Rest(cuts, residual) => rest(cuts, residual, &mut result)?,
+        Work::DetectSheet(cells) => crate::detect::sheet(cells, &mut result),
+        Work::DetectShirt(cuts) => crate::detect::shirt(cuts, &mut result)?,
         Work::Nest => crate::nest::nest(threads, &mut result)?,
         Work::NestQueries => crate::nest::queries(threads, &mut result)?,
     }

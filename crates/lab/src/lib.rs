@@ -7,6 +7,7 @@ mod chart;
 mod chart_report;
 mod check;
 mod clock;
+mod detect;
 mod elastica;
 mod error;
 mod flat;

@@ -36,11 +36,19 @@ pub fn hard(arguments: &[String]) -> Result<(), String> {
         match argument.as_str() {
             "--out" => out = Some(PathBuf::from(rest.next().ok_or("--out needs a folder")?)),
             "--short" => size = Size::Short,
+            option if option.starts_with("--") => return Err(format!("{option} is not known")),
             name => names.push(name.to_owned()),
         }
     }
+    let known: Vec<&str> = hard_scenes(size).iter().map(|scene| scene.name).collect();
+    if let Some(name) = names.iter().find(|name| !known.contains(&name.as_str())) {
+        return Err(format!(
+            "{name} is no scene; there are: {}",
+            known.join(", ")
+        ));
+    }
     println!(
-        "scene,triangles,steps,crossings_most,crossings_end,body_crossings,energy_rise_J,energy_scale_J,momentum,angular_momentum,impulses,cut,wall_s"
+        "scene,triangles,steps,crossings_most,crossings_end,body_crossings,penetration_m,energy_rise_J,energy_scale_J,momentum,angular_momentum,impulses,cut,wall_s"
     );
     let mut left = Vec::new();
     for scene in hard_scenes(size) {
@@ -50,12 +58,13 @@ pub fn hard(arguments: &[String]) -> Result<(), String> {
         let (name, start) = (scene.name, Instant::now());
         let (end, found) = run(scene);
         println!(
-            "{name},{},{},{},{},{},{:.2e},{:.2e},{:.1e},{:.1e},{},{},{:.1}",
+            "{name},{},{},{},{},{},{:.1e},{:.2e},{:.2e},{:.1e},{:.1e},{},{},{:.1}",
             end.model.triangles.len(),
             found.steps,
             found.crossings[0],
             found.crossings[1],
             found.body_crossings,
+            found.penetration,
             found.energy_rise,
             found.energy_scale,
             found.momentum[0],
@@ -70,13 +79,14 @@ pub fn hard(arguments: &[String]) -> Result<(), String> {
                 &out.join(format!("{}.png", name.replace([' ', '/'], "-"))),
             )?;
         }
-        if found.crossings[1] + found.body_crossings > 0 {
-            left.push(name);
+        let faults = found.faults();
+        if !faults.is_empty() {
+            left.push(format!("{name}: {}", faults.join(", ")));
         }
     }
     match left.is_empty() {
         true => Ok(()),
-        false => Err(format!("crossings are left: {}", left.join(", "))),
+        false => Err(left.join("\n")),
     }
 }
 

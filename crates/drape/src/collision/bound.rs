@@ -3,14 +3,17 @@
 //! and Anderson 2002). What still meets after some rounds of that is cut, vertex by vertex, until
 //! nothing meets any more.
 
+use super::curvature::{Clearance, longest};
 use super::impact::{edge_edge_impact, vertex_face_impact};
 use super::proximity::{Nearness, closest, is_far};
 use super::surface::{ClothSurface, FeaturePair};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
-/// Share of their distance that two features keep at the least in one move.
+/// Share of their distance that two features keep at the least in one move, and the most that this
+/// comes to [m]: what is farther apart need not be kept so.
 const KEPT: f64 = 0.2;
+const MOST_KEPT: f64 = 5e-4;
 
 /// Features nearer than this touch already: recovery, not the bound, sees to them [m].
 const TOUCHING: f64 = 1e-12;
@@ -21,6 +24,15 @@ const FLOOR: f64 = 1e-4;
 
 /// The share they keep there.
 const KEPT_AT_FLOOR: f64 = 0.9;
+
+/// The same below a distance that more than two hundred looks under pressure lead to [m]: what is
+/// pressed for a minute without end still does not touch.
+const LEAST: f64 = 1e-7;
+const KEPT_AT_LEAST: f64 = 0.999;
+
+/// A move is cut to slightly less than the share that ends at the distance to be kept, so that
+/// rounding does not find it short the next time.
+const SHORT: f64 = 1.0 - 1e-6;
 
 /// Rounds of impulses, and what they aim at beyond the distance to be kept, as a share of it.
 const IMPULSE_ROUNDS: usize = 10;
@@ -72,16 +84,18 @@ pub struct Kept {
 }
 
 /// Corrects a motion so that no two features of the cloth meet on the way; pairs with a tangled
-/// vertex on either side are let through. `near` gives all features that may meet in some moves.
+/// vertex on either side are let through. `near` sees to it that all features that may meet in some
+/// moves are among those in hand.
 pub fn keep_apart(
     surface: &mut ClothSurface,
     tangled: &[bool],
     motion: &mut Motions,
-    mut near: impl FnMut(&mut ClothSurface, &[Vec3]) -> Vec<FeaturePair>,
+    mut near: impl FnMut(&mut ClothSurface, &[Vec3], &mut Vec<FeaturePair>),
 ) -> Kept {
     let mut kept = Kept::default();
+    let mut pairs = Vec::new();
     for _ in 0..IMPULSE_ROUNDS {
-        let pairs = near(surface, motion.moves);
+        near(surface, motion.moves, &mut pairs);
         let met = met(&pairs, tangled, motion);
         if met.is_empty() {
             return kept;
@@ -152,6 +166,12 @@ fn push(meeting: &Meeting, time: f64, motion: &mut Motions) -> bool {
     let Some(n) = sum(&then).try_normalize(0.0) else {
         return false;
     };
+    // Impulses given since the time was found may have brought them past each other then.
+    let n = if n.dot(&sum(&place(0.0))) < 0.0 {
+        -n
+    } else {
+        n
+    };
     let lightness = vertices.map(|v| motion.lightness[v]);
     let yielding: f64 = lightness.iter().zip(w).map(|(l, w)| l * w * w).sum();
     let lacking = (1.0 + BEYOND) * meeting.gap - n.dot(&sum(&place(1.0)));
@@ -183,7 +203,9 @@ pub fn bound_moves(
     moves: &mut [Vec3],
 ) -> usize {
     let target: Vec<Vec3> = x.iter().zip(&*moves).map(|(x, d)| x + d).collect();
-    let near = surface.near_triangles(x, &target, 0.0);
+    let stray = longest(moves.iter().map(|d| d.norm()));
+    let clearance = Clearance { stray, kept: 0.0 };
+    let near = surface.near_unless_clear(x, &target, REACH_OF_WAYS, clearance);
     bound_pairs(surface, &near, tangled, x, moves)
 }
 
@@ -215,7 +237,7 @@ fn bound_pairs(
         for (meeting, time) in meetings.iter().zip(&times) {
             let Some(time) = *time else { continue };
             met = true;
-            let share_of = if round < ROUNDS { time } else { 0.0 };
+            let share_of = if round < ROUNDS { SHORT * time } else { 0.0 };
             for v in meeting.pair.vertices() {
                 share[v as usize] = share[v as usize].min(share_of);
             }
@@ -304,12 +326,18 @@ pub fn features_within(
 pub fn reach_of(stray: f64) -> f64 {
     // Each strays from the mean of its four by twice that, and comes nearer by twice as much again.
     let way = 4.0 * stray;
-    (way / (1.0 - KEPT)).max(FLOOR + way)
+    (way / (1.0 - KEPT)).min(MOST_KEPT + way).max(FLOOR + way)
 }
+
+/// How near the ways of two features must come [m] to be looked at: all that is ever kept.
+pub const REACH_OF_WAYS: f64 = MOST_KEPT;
 
 /// A pair that may meet when its features come nearer by up to `way` [m]: its distance is less.
 fn meeting(pair: FeaturePair, x: &[Vec3], way: f64) -> Option<Meeting> {
-    let reach = (way / (1.0 - KEPT)).max((FLOOR + way).min(way / (1.0 - KEPT_AT_FLOOR)));
+    let reach = (way / (1.0 - KEPT))
+        .min(MOST_KEPT + way)
+        .max((FLOOR + way).min(way / (1.0 - KEPT_AT_FLOOR)))
+        .max((LEAST + way).min(way / (1.0 - KEPT_AT_LEAST)));
     if is_far(pair, &pair.vertices().map(|v| x[v as usize]), reach) {
         return None;
     }
@@ -317,8 +345,11 @@ fn meeting(pair: FeaturePair, x: &[Vec3], way: f64) -> Option<Meeting> {
     if distance > reach || distance < TOUCHING {
         return None;
     }
+    let gap = (KEPT * distance)
+        .min(MOST_KEPT)
+        .max(KEPT_AT_FLOOR * distance.min(FLOOR));
     Some(Meeting {
         pair,
-        gap: (KEPT * distance).max(KEPT_AT_FLOOR * distance.min(FLOOR)),
+        gap: gap.max(KEPT_AT_LEAST * distance.min(LEAST)),
     })
 }

@@ -61,20 +61,20 @@ pub struct Node {
 }
 
 impl Node {
-    fn children(self) -> [Self; 2] {
+    /// The two below it; none below a leaf.
+    pub fn children(self) -> Option<[Self; 2]> {
         let left = self.count / 2;
-        [
-            Self {
-                at: self.at + 1,
-                first: self.first,
-                count: left,
-            },
-            Self {
-                at: self.at + 2 * left,
-                first: self.first + left,
-                count: self.count - left,
-            },
-        ]
+        let first = Self {
+            at: self.at + 1,
+            first: self.first,
+            count: left,
+        };
+        let second = Self {
+            at: self.at + 2 * left,
+            first: self.first + left,
+            count: self.count - left,
+        };
+        (self.count > 1).then_some([first, second])
     }
 }
 
@@ -99,9 +99,9 @@ pub struct BoxTree {
 const PARTS: usize = 96;
 
 impl BoxTree {
-    /// Builds the tree over items at some centres [m], halving the longest axis; boxes are empty
-    /// until it is fitted.
-    pub fn new(centres: &[Vec3]) -> Self {
+    /// Builds the tree over items at some centres [m], halving the longest axis, items of one piece
+    /// together whatever lies between them; boxes are empty until it is fitted.
+    pub fn new(centres: &[Vec3], pieces: &[u32]) -> Self {
         let mut tree = Self {
             leaves: (0..centres.len() as u32).collect(),
             counts: Vec::with_capacity(2 * centres.len()),
@@ -109,14 +109,14 @@ impl BoxTree {
         };
         let mut leaves = std::mem::take(&mut tree.leaves);
         if !leaves.is_empty() {
-            tree.split(centres, &mut leaves);
+            tree.split((centres, pieces), &mut leaves);
         }
         tree.leaves = leaves;
         tree.boxes = vec![Bounds::EMPTY; tree.counts.len()];
         tree
     }
 
-    fn split(&mut self, centres: &[Vec3], leaves: &mut [u32]) {
+    fn split(&mut self, (centres, pieces): (&[Vec3], &[u32]), leaves: &mut [u32]) {
         self.counts.push(leaves.len() as u32);
         if leaves.len() == 1 {
             return;
@@ -130,11 +130,14 @@ impl BoxTree {
         let half = leaves.len() / 2;
         leaves.select_nth_unstable_by(half, |&a, &b| {
             let (p, q) = (centres[a as usize][axis], centres[b as usize][axis]);
-            p.total_cmp(&q).then(a.cmp(&b))
+            let piece = |leaf: u32| pieces[leaf as usize];
+            (piece(a).cmp(&piece(b)))
+                .then(p.total_cmp(&q))
+                .then(a.cmp(&b))
         });
         let (left, right) = leaves.split_at_mut(half);
-        self.split(centres, left);
-        self.split(centres, right);
+        self.split((centres, pieces), left);
+        self.split((centres, pieces), right);
     }
 
     /// The node over everything; none when there is nothing.
@@ -158,8 +161,7 @@ impl BoxTree {
         let mut stack: Vec<Node> = self.root().into_iter().collect();
         while let Some(node) = stack.pop() {
             nodes.push(node);
-            if node.count > 1 {
-                let [left, right] = node.children();
+            if let Some([left, right]) = node.children() {
                 stack.extend([right, left]);
             }
         }
@@ -183,10 +185,11 @@ impl BoxTree {
     }
 
     /// Pairs of items whose boxes meet, each pair once, in an order that does not depend on the
-    /// number of threads. Regions that `skip` names are not looked into.
-    pub fn pairs(&self, skip: impl Fn(&Region) -> bool + Sync) -> Vec<[u32; 2]> {
-        let mut work: Vec<Region> = self.root().map(Region::Own).into_iter().collect();
-        let mut grown = true;
+    /// number of threads, and how many regions were looked into. Those that `skip` names are not.
+    pub fn pairs(&self, skip: impl Fn(&Region) -> bool + Sync) -> (Vec<[u32; 2]>, usize) {
+        let root = self.root().map(Region::Own).into_iter();
+        let mut work: Vec<Region> = root.filter(|root| !skip(root)).collect();
+        let (mut grown, mut opened) = (true, 0);
         while grown && work.len() < PARTS {
             let mut next = Vec::with_capacity(3 * work.len());
             grown = false;
@@ -196,6 +199,7 @@ impl BoxTree {
                     Region::Two(a, b) if a.count == 1 && b.count == 1 => next.push(*region),
                     _ => {
                         self.open(*region, &skip, &mut next);
+                        opened += 1;
                         grown = true;
                     }
                 }
@@ -203,22 +207,30 @@ impl BoxTree {
             }
             work = next;
         }
-        let found: Vec<Vec<[u32; 2]>> = work
+        let found: Vec<(Vec<[u32; 2]>, usize)> = work
             .par_iter()
             .map(|&region| {
-                let (mut stack, mut pairs) = (vec![region], Vec::new());
+                let (mut stack, mut pairs, mut opened) = (vec![region], Vec::new(), 0);
                 while let Some(region) = stack.pop() {
                     match region {
                         Region::Two(a, b) if a.count == 1 && b.count == 1 => {
                             pairs.push([self.item(a.first), self.item(b.first)]);
                         }
-                        _ => self.open(region, &skip, &mut stack),
+                        _ => {
+                            self.open(region, &skip, &mut stack);
+                            opened += 1;
+                        }
                     }
                 }
-                pairs
+                (pairs, opened)
             })
             .collect();
-        found.concat()
+        let mut pairs = Vec::with_capacity(found.iter().map(|(pairs, _)| pairs.len()).sum());
+        for (some, count) in found {
+            pairs.extend(some);
+            opened += count;
+        }
+        (pairs, opened)
     }
 
     fn open(&self, region: Region, skip: &impl Fn(&Region) -> bool, out: &mut Vec<Region>) {
@@ -229,18 +241,19 @@ impl BoxTree {
             }
         };
         match region {
-            Region::Own(node) if node.count > 1 => {
-                let [left, right] = node.children();
+            Region::Own(node) => {
+                let Some([left, right]) = node.children() else {
+                    return;
+                };
                 add(Region::Own(left));
                 add(Region::Own(right));
                 if meet(left, right) {
                     add(Region::Two(left, right));
                 }
             }
-            Region::Own(_) => {}
             Region::Two(a, b) => {
                 let (large, small) = if a.count >= b.count { (a, b) } else { (b, a) };
-                for child in large.children() {
+                for child in large.children().into_iter().flatten() {
                     if meet(child, small) {
                         add(Region::Two(child, small));
                     }

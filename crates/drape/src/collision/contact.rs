@@ -1,7 +1,8 @@
 //! Contact of cloth with cloth: the laws of contact with a surface, on the vector between two
 //! features in place of the point.
 
-use super::bound::{Kept, Motions, features_within, reach_of};
+use super::bound::{Kept, Motions, REACH_OF_WAYS, features_within, reach_of};
+use super::curvature::{Clearance, longest};
 use super::proximity::{Nearness, nearnesses};
 use super::surface::{ClothSurface, FeaturePair};
 use super::tangle::{Piercing, crossings, piercings};
@@ -117,17 +118,29 @@ pub struct ClothContacts {
 /// Contacts are kept from this many offsets away, so that a step is stopped before it lands.
 const REACH_IN_OFFSETS: f64 = 2.0;
 
-/// Share of the shortest edge nearby above which no distance is kept: neighbours are not contacts.
-const ROOM: f64 = 0.5;
-
 /// How much farther pairs of triangles are looked for, so that they serve for some time [m].
 const SLACK: f64 = 2e-3;
+
+/// How far vertices may go meanwhile [m].
+const STRAY: f64 = 0.5 * SLACK;
+
+/// How far impulses may change a motion before what may meet in it is looked for anew, as a share of
+/// how far it strays from its mean.
+const OFF: f64 = 0.25;
 
 /// How far an edge that pierces a face is pulled at a time, in offsets: by less, a fold caught in a seam
 /// stays there.
 const PULL: f64 = 2.0;
 
 impl ClothContacts {
+    /// What regions that are left out must keep, for cloth that is kept `offset` [m] apart.
+    pub fn clearance(offset: f64) -> Clearance {
+        Clearance {
+            stray: STRAY,
+            kept: offset,
+        }
+    }
+
     /// The surface in hand, made anew for another model.
     pub fn surface(&mut self, model: &Model) -> &mut ClothSurface {
         let stale = {
@@ -145,12 +158,13 @@ impl ClothContacts {
     /// moved too far for the last ones.
     fn look(&mut self, model: &Model, x: &[Vec3], reach: f64) {
         self.surface(model);
-        let moved = |(a, b): (&Vec3, &Vec3)| (a - b).norm_squared();
+        let moved = |(a, b): (&Vec3, &Vec3)| (a - b).norm();
         let fresh = self.near_at.len() == x.len()
             && self.near_reach >= reach
-            && self.near_at.iter().zip(x).map(moved).fold(0.0, f64::max) < 0.25 * SLACK * SLACK;
+            && longest(self.near_at.iter().zip(x).map(moved)) < STRAY;
         if !fresh {
-            self.near = self.surface.near_triangles(x, x, reach + SLACK);
+            let clearance = Self::clearance(model.contact.cloth_offset);
+            self.near = (self.surface).near_unless_clear(x, x, reach + SLACK, clearance);
             self.features = None;
             self.near_at.clear();
             self.near_at.extend_from_slice(x);
@@ -192,6 +206,11 @@ impl ClothContacts {
         }
     }
 
+    /// Looks anew at the next search, so that it does not depend on what was found before.
+    pub fn forget(&mut self) {
+        self.near_at.clear();
+    }
+
     /// Contacts within the usual reach.
     pub fn refresh(&mut self, model: &Model, state: &State, x: &[Vec3]) {
         self.find(
@@ -210,11 +229,8 @@ impl ClothContacts {
                 .map(|(&v, w)| values[v as usize] * w.abs())
                 .sum::<f64>()
         };
-        let room = vertices.iter().map(|&v| self.surface.room[v as usize]);
-        let kept = model
-            .contact
-            .cloth_offset
-            .min(ROOM * room.fold(f64::INFINITY, f64::min));
+        let kept = vertices.iter().map(|&v| self.surface.most_kept(v));
+        let kept = kept.fold(model.contact.cloth_offset, f64::min);
         // Each side's vertices see the other's faces: half the area each.
         let normal = 0.5 * model.contact.stiffness * of(&self.surface.area);
         let between = near.normal * near.distance;
@@ -347,10 +363,8 @@ impl ClothContacts {
         self.surface(model);
         self.tangled.resize(motion.x.len(), false);
         let x = motion.x;
-        let farthest = |a: f64, b: f64| a.max(b);
-        let since = (self.near_at.iter().zip(x)).map(|(a, b)| (a - b).norm());
         let since = if self.near_at.len() == x.len() {
-            since.fold(0.0, farthest)
+            longest((self.near_at.iter().zip(x)).map(|(a, b)| (a - b).norm()))
         } else {
             f64::INFINITY
         };
@@ -363,24 +377,41 @@ impl ClothContacts {
             tangled,
             ..
         } = self;
-        let kept = super::bound::keep_apart(surface, tangled, motion, |surface, moves| {
+        // The moves that the pairs in hand were looked for along, and how far off they still serve.
+        let mut looked: Option<(Vec<Vec3>, f64)> = None;
+        let find = |surface: &mut ClothSurface, moves: &[Vec3], pairs: &mut Vec<FeaturePair>| {
             let mean = moves.iter().sum::<Vec3>() / moves.len().max(1) as f64;
-            let way = moves.iter().map(|d| (d - mean).norm());
-            let reach = 2.0 * since + reach_of(way.fold(0.0, farthest));
-            if reach <= *near_reach + SLACK {
+            let stray = longest(moves.iter().map(|d| (d - mean).norm()));
+            let reach = 2.0 * since + reach_of(stray);
+            if reach <= *near_reach + SLACK && since + stray <= STRAY {
                 let all = features.get_or_insert_with(|| {
                     features_within(surface, near, near_at, *near_reach + SLACK)
                 });
                 let near = all.iter().filter(|(_, distance)| *distance <= reach);
-                return near.map(|(pair, _)| *pair).collect();
+                pairs.clear();
+                pairs.extend(near.map(|(pair, _)| *pair));
+                looked = None;
+                return;
             }
+            if let Some((before, off)) = &looked
+                && longest(moves.iter().zip(before).map(|(d, b)| (d - b).norm())) <= *off
+            {
+                return;
+            }
+            let off = OFF * stray;
+            let clearance = Clearance {
+                stray: stray + off,
+                kept: 0.0,
+            };
+            let reach = REACH_OF_WAYS + 2.0 * off;
             let target: Vec<Vec3> = x.iter().zip(moves).map(|(x, d)| x + d).collect();
-            let mut all = Vec::new();
-            for pair in surface.near_triangles(x, &target, 0.0) {
-                surface.features(pair, |pair| all.push(pair));
+            pairs.clear();
+            for pair in surface.near_unless_clear(x, &target, reach, clearance) {
+                surface.features(pair, |pair| pairs.push(pair));
             }
-            all
-        });
+            looked = Some((moves.to_vec(), off));
+        };
+        let kept = super::bound::keep_apart(surface, tangled, motion, find);
         self.tally.impulses += kept.impulses;
         self.tally.cut += kept.cut;
         kept

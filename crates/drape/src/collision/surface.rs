@@ -2,7 +2,8 @@
 //! one triangle, so that a pair of features is looked at once (Curtis, Tamstorf and Manocha 2008).
 
 use super::boxes::{Bounds, BoxTree};
-use crate::Model;
+use super::curvature::{Clearance, Curvature};
+use crate::{Model, merge_map};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// Two features that might touch.
@@ -50,7 +51,12 @@ pub struct ClothSurface {
     /// Vertices that each triangle cares for.
     own_vertices: Vec<[u32; 3]>,
     tree: BoxTree,
+    curvature: Curvature,
+    opened: usize,
 }
+
+/// Share of the shortest edge nearby above which no distance is kept: neighbours are not contacts.
+const ROOM: f64 = 0.5;
 
 /// No feature.
 const NONE: u32 = u32::MAX;
@@ -105,8 +111,24 @@ impl ClothSurface {
         }
         surface.edges = topology.edges;
         surface.edge_triangles = topology.edge_triangles;
-        surface.tree = BoxTree::new(&centres);
+        let sides = surface.edges.iter().copied();
+        let (piece, _) = merge_map(count, sides);
+        let pieces: Vec<u32> = (surface.triangles.iter())
+            .map(|t| piece[t[0] as usize])
+            .collect();
+        surface.tree = BoxTree::new(&centres, &pieces);
+        surface.curvature = Curvature::new(
+            &surface.tree,
+            &surface.triangles,
+            &surface.edges,
+            &surface.edge_triangles,
+        );
         surface
+    }
+
+    /// The most that is kept between features at a vertex [m]: neighbours are not contacts.
+    pub fn most_kept(&self, v: u32) -> f64 {
+        ROOM * self.room[v as usize]
     }
 
     /// The tree over the triangles, as last fitted.
@@ -117,6 +139,43 @@ impl ClothSurface {
     /// Pairs of triangles that come within `reach` [m] of each other as the cloth moves straight
     /// from some positions to others; more than those, but never fewer.
     pub fn near_triangles(&mut self, from: &[Vec3], to: &[Vec3], reach: f64) -> Vec<[u32; 2]> {
+        self.refit(from, to, reach);
+        let (pairs, opened) = self.tree.pairs(|_| false);
+        self.opened = opened;
+        pairs
+    }
+
+    /// How many regions of the tree the last search looked into.
+    pub fn opened(&self) -> usize {
+        self.opened
+    }
+
+    /// [`Self::near_triangles`] without those of a region that keeps clear of itself: no two of their
+    /// features without a common vertex come nearer than the clearance says.
+    pub fn near_unless_clear(
+        &mut self,
+        from: &[Vec3],
+        to: &[Vec3],
+        reach: f64,
+        clearance: Clearance,
+    ) -> Vec<[u32; 2]> {
+        self.refit(from, to, reach);
+        let Self {
+            curvature,
+            tree,
+            triangles,
+            edges,
+            room,
+            opened,
+            ..
+        } = self;
+        curvature.refit(tree, triangles, (from, |v| ROOM * room[v]), clearance);
+        let pairs;
+        (pairs, *opened) = tree.pairs(|region| curvature.is_clear(edges, from, region));
+        pairs
+    }
+
+    fn refit(&mut self, from: &[Vec3], to: &[Vec3], reach: f64) {
         let triangles = &self.triangles;
         let still = std::ptr::eq(from, to);
         self.tree.refit(|t| {
@@ -131,7 +190,6 @@ impl ClothSurface {
                 0.5 * reach,
             ))
         });
-        self.tree.pairs(|_| false)
     }
 
     /// Pairs of features of two triangles, those that share a vertex left out.

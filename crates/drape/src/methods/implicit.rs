@@ -241,6 +241,8 @@ impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
         step: f64,
     ) -> Result<StepReport, DrapeError> {
         state.follow_samples(model);
+        // A step must not depend on what was found before it.
+        self.workspace.forget_pairs();
         let mut total = StepReport::default();
         let end = state.time + step;
         let automatic = || R::substeps(model, step);

@@ -109,6 +109,14 @@ const DECREASE: f64 = 1e-4;
 const HALVINGS: usize = 12;
 
 impl Workspace {
+    /// Forgets which pairs of cloth were near, and the places they took in the matrix.
+    pub(crate) fn forget_pairs(&mut self) {
+        self.contacts.cloth.forget();
+        if !self.contacts.cloth.active.is_empty() {
+            self.direct = None;
+        }
+    }
+
     pub(crate) fn fit(&mut self, model: &Model) {
         let n = model.vertex_count();
         self.gradient.resize(n, Vec3::zeros());

@@ -50,6 +50,7 @@ impl ClothWatch {
     /// Looks anew at the next step, whatever was found before.
     pub fn forget(&mut self) {
         self.travelled = None;
+        self.contacts.forget();
     }
 
     /// Corrects the way of the last substeps, `span` [s] long, where cloth would have passed through cloth.

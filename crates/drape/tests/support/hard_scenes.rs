@@ -19,6 +19,34 @@ pub struct HardScene {
     pub driven_until: f64,
     /// Velocity of each object at the start [m/s]; empty for rest.
     pub velocities: Vec<Vec3>,
+    /// How far the energy may rise, as a share of what energies are compared with.
+    pub most_rise: f64,
+    /// Whether the end shows what the scene is about; without that a scene in which nothing met
+    /// would do.
+    pub shown: fn(&End) -> bool,
+}
+
+/// Where everything lies at the end.
+pub struct End<'a> {
+    /// The run.
+    pub run: &'a SceneRun,
+    /// The surface of every object, in the order of the scene.
+    pub meshes: Vec<TriangleMesh>,
+    /// The farthest that any vertex of cloth was from its start [m].
+    pub farthest: f64,
+}
+
+impl End<'_> {
+    /// Places of all cloth [m].
+    fn cloth(&self) -> &[Vec3] {
+        &self.run.state.positions
+    }
+
+    /// Mean place of an object [m].
+    fn middle(&self, object: usize) -> Vec3 {
+        let places = &self.meshes[object].positions;
+        places.iter().sum::<Vec3>() / places.len() as f64
+    }
 }
 
 /// What a run showed.
@@ -28,8 +56,14 @@ pub struct Outcome {
     pub crossings: [usize; 2],
     /// Pairs of a cloth triangle and a body's at the end.
     pub body_crossings: usize,
+    /// How deep a vertex is in a body at the end [m].
+    pub penetration: f64,
+    /// Whether the end shows what the scene is about.
+    pub shown: bool,
     /// How far the energy rose above that when nothing drove any more [J].
     pub energy_rise: f64,
+    /// How far it may, as a share of the next.
+    pub rise_allowed: f64,
     /// What energies are compared with [J]: the weight at 0.1 m, the motion at the start, or motion
     /// and strain when nothing drives any more.
     pub energy_scale: f64,
@@ -39,6 +73,47 @@ pub struct Outcome {
     pub steps: usize,
     /// What contact of cloth with cloth counted.
     pub tally: toile_drape::collision::Tally,
+}
+
+/// How far the energy may rise where nothing is said: what contact in substeps leaves.
+const MOST_RISE: f64 = 0.02;
+
+impl Outcome {
+    /// What does not hold, in words.
+    pub fn faults(&self) -> Vec<String> {
+        let rise = self.energy_rise / self.energy_scale;
+        let faults = [
+            (
+                self.crossings[0] > 0,
+                format!(
+                    "{} crossings of cloth on the way, {} at the end",
+                    self.crossings[0], self.crossings[1]
+                ),
+            ),
+            (
+                self.body_crossings > 0,
+                format!("{} crossings of a body", self.body_crossings),
+            ),
+            (
+                self.penetration > 0.0,
+                format!("{:.1e} m within a body", self.penetration),
+            ),
+            (
+                rise > self.rise_allowed,
+                format!("energy rises by {rise:.1e}"),
+            ),
+            (
+                self.tally.looks <= 10,
+                "contact was hardly looked for".to_owned(),
+            ),
+            (
+                !self.shown,
+                "the end does not show what the scene is about".to_owned(),
+            ),
+        ];
+        let faults = faults.into_iter().filter(|(wrong, _)| *wrong);
+        faults.map(|(_, what)| what).collect()
+    }
 }
 
 /// What grips that cloth held back may be late by [s].
@@ -139,12 +214,14 @@ fn base(duration: f64, objects: Vec<SceneObject>) -> Scene {
     }
 }
 
-fn of(name: &'static str, scene: Scene, driven_until: f64) -> HardScene {
+fn of(name: &'static str, scene: Scene, driven_until: f64, shown: fn(&End) -> bool) -> HardScene {
     HardScene {
         name,
         scene,
         driven_until,
         velocities: Vec::new(),
+        most_rise: MOST_RISE,
+        shown,
     }
 }
 
@@ -182,7 +259,10 @@ fn crumpled_in_a_box(size: Size) -> HardScene {
     let lid = block(Vec3::new(-0.3, 0.16, -0.3), Vec3::new(0.3, 0.26, 0.3));
     let way = Vec3::new(0.0, -0.1, 0.0);
     objects.push(solid("lid", lid, shifted(0.1, 0.9, way)));
-    of("crumpled in a box", base(1.2, objects), 0.9)
+    // The lid comes down to 60 mm.
+    of("crumpled in a box", base(1.2, objects), 0.9, |end| {
+        (end.cloth().iter()).all(|p| p.y > 0.0 && p.y < 0.06 && p.x.abs() < 0.1 && p.z.abs() < 0.1)
+    })
 }
 
 fn layers_on_a_cylinder(size: Size) -> HardScene {
@@ -194,11 +274,17 @@ fn layers_on_a_cylinder(size: Size) -> HardScene {
         })
         .collect();
     objects.push(solid("cylinder", cylinder(0.08, 0.3, 48), vec![]));
-    of(
-        "layers on a cylinder",
-        base(size.pick(0.8, 1.0), objects),
-        0.0,
-    )
+    let scene = base(size.pick(0.8, 1.0), objects);
+    of("layers on a cylinder", scene, 0.0, |end| {
+        // The middle of each lies on top, one over the other.
+        let layers = end.meshes.len() - 1;
+        let tops = end.meshes[..layers].iter().map(|mesh| {
+            let over = mesh.positions.iter().filter(|p| p.x.abs() < 0.02);
+            over.map(|p| p.y).fold(f64::INFINITY, f64::min)
+        });
+        let tops: Vec<f64> = tops.collect();
+        tops.windows(2).all(|pair| pair[0] < pair[1]) && tops[0] > 0.07
+    })
 }
 
 /// A strip held at both ends, one of which turns.
@@ -217,7 +303,16 @@ fn twisted(size: Size) -> HardScene {
             keys: vec![key(0.0, Vec3::zeros(), Vec3::zeros()), key(time, way, turn)],
         },
     });
-    of("twisted", scene, time)
+    HardScene {
+        // Moves are cut where it jams, which strains it a little.
+        most_rise: 0.1,
+        ..of("twisted", scene, time, |end| {
+            // Its middle is wound up to less than half its width.
+            let middle = end.cloth().iter().filter(|p| (p.z - 0.12).abs() < 0.03);
+            let (count, sum) = middle.fold((0.0, 0.0), |(n, s), p| (n + 1.0, s + p.x.hypot(p.y)));
+            count > 0.0 && sum / count < 0.03
+        })
+    }
 }
 
 /// A scarf pulled by a corner through a ring of a third of its diagonal.
@@ -250,7 +345,10 @@ fn through_a_ring(size: Size) -> HardScene {
             keys: shifted(0.1, 1.1, Vec3::new(0.0, -0.4, 0.0)),
         },
     });
-    of("through a ring", scene, 1.1)
+    of("through a ring", scene, 1.1, |end| {
+        let below = end.cloth().iter().filter(|p| p.y < -0.012).count();
+        10 * below > 9 * end.cloth().len()
+    })
 }
 
 fn stacked(size: Size) -> HardScene {
@@ -268,7 +366,10 @@ fn stacked(size: Size) -> HardScene {
         .collect();
     objects.push(floor());
     objects.push(solid("ball", sphere(0.04, Vec3::zeros()), vec![]));
-    of("five stacked", base(0.8, objects), 0.0)
+    of("five stacked", base(0.8, objects), 0.0, |end| {
+        let heights = [0, 1, 2, 3, 4].map(|k| end.middle(k).y);
+        end.cloth().iter().all(|p| p.y > 0.0) && heights.windows(2).all(|pair| pair[0] < pair[1])
+    })
 }
 
 /// A ribbon along an overhand knot, its ends drawn apart.
@@ -324,7 +425,31 @@ fn knotted(size: Size) -> HardScene {
             },
         });
     }
-    of("knot", scene, 1.6)
+    of("knot", scene, 1.6, |end| {
+        // Still knotted: a straight ribbon has a writhe near 0.
+        let across = if end.cloth().len() == 303 { 3 } else { 5 };
+        let line: Vec<Vec3> = end
+            .cloth()
+            .chunks(across)
+            .map(|row| row[across / 2])
+            .collect();
+        writhe(&line).abs() > 2.0
+    })
+}
+
+/// How often a line crosses itself, signed, seen from all sides (Fuller 1971).
+fn writhe(line: &[Vec3]) -> f64 {
+    let parts: Vec<(Vec3, Vec3)> = (line.windows(2))
+        .map(|pair| ((pair[0] + pair[1]) * 0.5, pair[1] - pair[0]))
+        .collect();
+    let mut sum = 0.0;
+    for (k, (p, along)) in parts.iter().enumerate() {
+        for (q, other) in &parts[k + 1..] {
+            let between = p - q;
+            sum += along.cross(other).dot(&between) / between.norm().powi(3);
+        }
+    }
+    sum / std::f64::consts::TAU
 }
 
 /// Two cloths hang beside a trunk; an arm closes on them and rubs.
@@ -362,7 +487,10 @@ fn pinched(size: Size) -> HardScene {
         solid("trunk", upright(0.12, 0.6, 0.0), vec![]),
         solid("arm", arm_shape, keys),
     ];
-    of("pinched by an arm", base(1.2, objects), 1.0)
+    of("pinched by an arm", base(1.2, objects), 1.0, |end| {
+        // Both lie between the arm and the trunk, one outside the other.
+        end.farthest > 0.02 && end.middle(0).x < end.middle(1).x
+    })
 }
 
 /// Two halves of a curtain that overlap, and a sphere at 10 m/s.
@@ -381,7 +509,10 @@ fn curtain_and_sphere(size: Size) -> HardScene {
         object("right", half(-0.02, 0.012), top),
         solid("sphere", ball, keys),
     ];
-    of("sphere at 10 m/s", base(0.7, objects), 0.15)
+    // The sphere takes the curtain with it.
+    of("sphere at 10 m/s", base(0.7, objects), 0.15, |end| {
+        end.farthest > 0.2
+    })
 }
 
 /// A strip folded in four like an accordion falls on a floor.
@@ -420,7 +551,12 @@ fn folded_and_dropped(size: Size) -> HardScene {
         ..rest
     });
     let scene = base(0.8, vec![object, floor()]);
-    of("folded and dropped", scene, 0.0)
+    HardScene {
+        most_rise: 0.03,
+        ..of("folded and dropped", scene, 0.0, |end| {
+            end.cloth().iter().all(|p| p.y > 0.0 && p.y < 0.06)
+        })
+    }
 }
 
 /// Two sheets meet in flight: nothing else acts.
@@ -436,7 +572,14 @@ fn two_in_free_flight(size: Size) -> HardScene {
     scene.damping = Damping::default();
     HardScene {
         velocities: vec![Vec3::new(0.0, 2.0, 0.0), Vec3::new(0.5, -2.0, 0.3)],
-        ..of("two in free flight", scene, 0.0)
+        most_rise: 1e-3,
+        ..of("two in free flight", scene, 0.0, |end| {
+            // They have met: at the start they close at 4 m/s.
+            let first = end.meshes[0].positions.len();
+            let mean = |all: &[Vec3]| all.iter().map(|v| v.y).sum::<f64>() / all.len() as f64;
+            let (low, high) = end.run.state.velocities.split_at(first);
+            mean(low) - mean(high) < 2.0
+        })
     }
 }
 
@@ -476,6 +619,8 @@ pub fn run(hard: HardScene) -> (SceneRun, Outcome) {
         ..Outcome::default()
     };
     let start = momenta(&run);
+    let places = run.state.positions.clone();
+    let mut farthest = 0.0;
     let driven = hard.driven_until > 0.0;
     let mut level = if driven { f64::INFINITY } else { run.energy() };
     while !run.finished() {
@@ -492,9 +637,11 @@ pub fn run(hard: HardScene) -> (SceneRun, Outcome) {
             }
             outcome.energy_rise = outcome.energy_rise.max(energy - level);
         }
-        if outcome.steps.is_multiple_of(8) {
+        if motion > 0.0 || outcome.steps.is_multiple_of(8) {
             outcome.crossings[0] = outcome.crossings[0].max(run.crossings());
         }
+        let ways = run.state.positions.iter().zip(&places);
+        farthest = ways.map(|(x, p)| (x - p).norm()).fold(farthest, f64::max);
     }
     let end = momenta(&run);
     let speed = (2.0 * motion / mass).sqrt();
@@ -509,5 +656,12 @@ pub fn run(hard: HardScene) -> (SceneRun, Outcome) {
     outcome.crossings[1] = measures.self_intersections;
     outcome.crossings[0] = outcome.crossings[0].max(outcome.crossings[1]);
     outcome.body_crossings = measures.body_intersections;
+    outcome.penetration = measures.penetration_max;
+    outcome.shown = (hard.shown)(&End {
+        run: &run,
+        meshes: run.meshes(),
+        farthest,
+    });
+    outcome.rise_allowed = hard.most_rise;
     (run, outcome)
 }

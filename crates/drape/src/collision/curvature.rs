@@ -1,0 +1,402 @@
+//! Regions of cloth that cannot touch themselves: they face one way, and their contour seen that way
+//! keeps clear of itself (Volino and Magnenat-Thalmann 1994). Such a region lies over the plane it
+//! faces like a map, every point over another one.
+//!
+//! Seen along v, all triangles turn the same way, so a point of the plane lies under as many of them as
+//! the contour winds round it. Where the contour is one connected line that does not cross itself, it
+//! winds round no point twice.
+
+use super::boxes::{BoxTree, Node, Region};
+use crate::merge_map;
+use rayon::prelude::*;
+use toile_geometry::Vec3;
+
+/// What a region must keep to be left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearance {
+    /// How far any vertex may go before regions are looked at again, a motion of all left out [m].
+    pub stray: f64,
+    /// Distance that two features without a common vertex keep in all that time, as far as there is
+    /// room at them [m].
+    pub kept: f64,
+}
+
+/// The longest of some ways [m]; without end where one is not known.
+pub fn longest(ways: impl Iterator<Item = f64>) -> f64 {
+    ways.fold(0.0, |longest, way| {
+        if way.is_nan() {
+            f64::INFINITY
+        } else {
+            way.max(longest)
+        }
+    })
+}
+
+/// Directions a region may face: the bits of a mask.
+const DIRECTIONS: usize = 64;
+
+/// Cosine of the largest angle between a triangle's normal and the direction of its region, 75 degrees:
+/// what is seen at a sharper one is narrower than what is to be kept.
+const WIDEST: f64 = 0.258_819_045_102_520_76;
+
+/// Regions of fewer triangles are looked into: that costs less than this.
+const LEAST: u32 = 16;
+
+/// Distances are known no better than this [m].
+const ROUNDING: f64 = 1e-9;
+
+/// One triangle's side of an edge: twice the edge, and one more where the triangle goes from its
+/// larger end to its smaller.
+type Half = u32;
+
+/// What the mesh says of regions, and what they face now.
+#[derive(Clone, Debug, Default)]
+pub struct Curvature {
+    directions: Vec<Vec3>,
+    nodes: Vec<Node>,
+    /// Triangles at an edge that is no plain border between two that turn alike.
+    barred: Vec<bool>,
+    /// Contours of the nodes, sorted, one after the other; where each begins.
+    contours: Vec<Half>,
+    starts: Vec<u32>,
+    /// Directions that all triangles of a node face.
+    facing: Vec<u64>,
+    clearance: Option<Clearance>,
+    /// Distance that is to be kept at each vertex, motion and all [m].
+    keeps: Vec<f64>,
+}
+
+/// Even places on the sphere along a spiral (Saff and Kuijlaars 1997).
+fn directions() -> Vec<Vec3> {
+    let golden = std::f64::consts::PI * (3.0 - 5.0f64.sqrt());
+    let place = |k: usize| {
+        let y = 1.0 - (2 * k + 1) as f64 / DIRECTIONS as f64;
+        let (radius, angle) = ((1.0 - y * y).sqrt(), golden * k as f64);
+        Vec3::new(radius * angle.cos(), y, radius * angle.sin())
+    };
+    (0..DIRECTIONS).map(place).collect()
+}
+
+impl Curvature {
+    /// Contours of the nodes of a tree over triangles; `edges` have their smaller end first.
+    pub fn new(
+        tree: &BoxTree,
+        triangles: &[[u32; 3]],
+        edges: &[[u32; 2]],
+        edge_triangles: &[Vec<u32>],
+    ) -> Self {
+        let mut barred = vec![false; triangles.len()];
+        let mut halves = vec![Vec::with_capacity(3); triangles.len()];
+        for (e, (&[a, b], at)) in edges.iter().zip(edge_triangles).enumerate() {
+            let backward = |t: u32| {
+                let [p, q, r] = triangles[t as usize];
+                ![(p, q), (q, r), (r, p)].contains(&(a, b))
+            };
+            let odd = at.len() > 2 || at.len() == 2 && backward(at[0]) == backward(at[1]);
+            for &t in at {
+                barred[t as usize] |= odd;
+                halves[t as usize].push(2 * e as Half + Half::from(backward(t)));
+            }
+        }
+        let nodes = tree.nodes();
+        let mut of_node: Vec<Vec<Half>> = vec![Vec::new(); nodes.len()];
+        for node in nodes.iter().rev() {
+            let at = node.at as usize;
+            of_node[at] = match node.children() {
+                None => {
+                    let mut own = halves[tree.item(node.first) as usize].clone();
+                    own.sort_unstable();
+                    own
+                }
+                Some([left, right]) => {
+                    joined(&of_node[left.at as usize], &of_node[right.at as usize])
+                }
+            };
+        }
+        let mut starts = vec![0];
+        for contour in &of_node {
+            starts.push(starts[starts.len() - 1] + contour.len() as u32);
+        }
+        Self {
+            directions: directions(),
+            barred,
+            contours: of_node.concat(),
+            starts,
+            facing: vec![0; nodes.len()],
+            nodes,
+            clearance: None,
+            keeps: Vec::new(),
+        }
+    }
+
+    /// Finds what every node faces at some positions [m]. `room` tells the most that is kept at a
+    /// vertex [m].
+    pub fn refit(
+        &mut self,
+        tree: &BoxTree,
+        triangles: &[[u32; 3]],
+        (x, room): (&[Vec3], impl Fn(usize) -> f64),
+        clearance: Clearance,
+    ) {
+        self.keeps.clear();
+        self.keeps
+            .extend((0..x.len()).map(|v| room(v).min(clearance.kept)));
+        self.clearance = Some(clearance);
+        let (barred, keeps, directions) = (&self.barred, &self.keeps, &self.directions);
+        let facing = |leaf: u32| {
+            let t = tree.item(leaf) as usize;
+            let corners = triangles[t].map(|v| x[v as usize]);
+            let keeps = triangles[t].map(|v| keeps[v as usize]);
+            match barred[t] {
+                true => 0,
+                false => faced(directions, &corners, &keeps, clearance.stray),
+            }
+        };
+        let leaves = 0..triangles.len() as u32;
+        let leaves: Vec<u64> = leaves
+            .into_par_iter()
+            .with_min_len(256)
+            .map(facing)
+            .collect();
+        for node in self.nodes.iter().rev() {
+            self.facing[node.at as usize] = match node.children() {
+                None => leaves[node.first as usize],
+                Some([left, right]) => {
+                    self.facing[left.at as usize] & self.facing[right.at as usize]
+                }
+            };
+        }
+    }
+
+    fn contour(&self, node: Node) -> &[Half] {
+        let at = node.at as usize;
+        &self.contours[self.starts[at] as usize..self.starts[at + 1] as usize]
+    }
+
+    /// Whether no two features of a region without a common vertex can come nearer than is to be
+    /// kept; where they might, or it cannot be told, the answer is no.
+    pub fn is_clear(&self, edges: &[[u32; 2]], x: &[Vec3], region: &Region) -> bool {
+        let (facing, count) = match *region {
+            Region::Own(a) => (self.facing[a.at as usize], a.count),
+            Region::Two(a, b) => (
+                self.facing[a.at as usize] & self.facing[b.at as usize],
+                a.count + b.count,
+            ),
+        };
+        let Some(clearance) = self.clearance else {
+            return false;
+        };
+        if facing == 0 || count < LEAST {
+            return false;
+        }
+        let bits = (0..DIRECTIONS).filter(|k| facing >> k & 1 == 1);
+        // What all of these have in sight, their mean has too.
+        let mean: Vec3 = bits.map(|k| self.directions[k]).sum();
+        let Some(view) = mean.try_normalize(0.0) else {
+            return false;
+        };
+        let halves = match *region {
+            Region::Own(a) => self.contour(a).to_vec(),
+            Region::Two(a, b) => joined(self.contour(a), self.contour(b)),
+        };
+        let contour = Contour::new(&halves, edges, &self.keeps, (x, view));
+        contour.is_connected() && contour.alternates() && contour.is_clear(clearance)
+    }
+}
+
+/// The contour of two regions together: what is on both is inside.
+fn joined(a: &[Half], b: &[Half]) -> Vec<Half> {
+    let mut joined = Vec::with_capacity(a.len() + b.len());
+    let (mut i, mut j) = (0, 0);
+    while i < a.len() && j < b.len() {
+        match (a[i] / 2).cmp(&(b[j] / 2)) {
+            std::cmp::Ordering::Less => {
+                joined.push(a[i]);
+                i += 1;
+            }
+            std::cmp::Ordering::Greater => {
+                joined.push(b[j]);
+                j += 1;
+            }
+            std::cmp::Ordering::Equal => {
+                i += 1;
+                j += 1;
+            }
+        }
+    }
+    joined.extend_from_slice(&a[i..]);
+    joined.extend_from_slice(&b[j..]);
+    joined
+}
+
+/// The directions that a triangle faces and will face while its corners stray.
+///
+/// With every corner h or more from the opposite side, the plane turns by sin(turn) <= 2 stray / h: each
+/// direction in it runs along a chord at least as long as the smallest height.
+fn faced(directions: &[Vec3], [a, b, c]: &[Vec3; 3], keeps: &[f64; 3], stray: f64) -> u64 {
+    let normal = (b - a).cross(&(c - a));
+    let double_area = normal.norm();
+    let heights = [b - c, c - a, a - b].map(|side| double_area / side.norm());
+    let least = heights[0].min(heights[1]).min(heights[2]);
+    let sine = 2.0 * stray / least;
+    // Seen at an angle a height is shorter by its cosine; so much must be left of it.
+    let left = heights.iter().zip(keeps);
+    let left = left.map(|(height, kept)| (kept + ROUNDING) / (height - 2.0 * stray));
+    let cosine = left.fold(
+        WIDEST,
+        |most, share| if share >= 0.0 { most.max(share) } else { 1.0 },
+    );
+    let (across, turned) = ((1.0 - cosine * cosine).sqrt(), (1.0 - sine * sine).sqrt());
+    // That the angle is larger than the turn: NaN is neither.
+    if !(cosine < 1.0 && sine < across) {
+        return 0;
+    }
+    // cos(angle - turn)
+    let cosine = (cosine * turned + across * sine) * double_area;
+    let mut bits = 0;
+    for (k, direction) in directions.iter().enumerate() {
+        bits |= u64::from(normal.dot(direction) > cosine) << k;
+    }
+    bits
+}
+
+/// A contour as it is seen.
+struct Contour {
+    /// Places of the vertices [m].
+    places: Vec<[f64; 2]>,
+    /// What is kept at each [m].
+    keeps: Vec<f64>,
+    /// From which vertex to which, the region on the left.
+    sides: Vec<[u32; 2]>,
+}
+
+impl Contour {
+    fn new(halves: &[Half], edges: &[[u32; 2]], keeps: &[f64], (x, view): (&[Vec3], Vec3)) -> Self {
+        let given: Vec<[u32; 2]> = halves
+            .iter()
+            .map(|&half| {
+                let [a, b] = edges[half as usize / 2];
+                if half % 2 == 0 { [a, b] } else { [b, a] }
+            })
+            .collect();
+        let mut vertices: Vec<u32> = given.iter().map(|side| side[0]).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let [right, up] = across(view);
+        // Every vertex of a contour begins one of its sides, and ends one.
+        let local = |v: u32| vertices.partition_point(|&other| other < v) as u32;
+        Self {
+            sides: given.iter().map(|side| side.map(local)).collect(),
+            places: vertices
+                .iter()
+                .map(|&v| [right.dot(&x[v as usize]), up.dot(&x[v as usize])])
+                .collect(),
+            keeps: vertices.iter().map(|&v| keeps[v as usize]).collect(),
+        }
+    }
+
+    /// Whether one can walk along it from everywhere to everywhere.
+    fn is_connected(&self) -> bool {
+        merge_map(self.places.len(), self.sides.iter().copied()).1 == 1
+    }
+
+    /// Whether, round every vertex where parts of the region touch, they lie side by side.
+    fn alternates(&self) -> bool {
+        if self.sides.len() == self.places.len() {
+            return true;
+        }
+        let mut leaving = vec![0; self.places.len()];
+        for side in &self.sides {
+            leaving[side[0] as usize] += 1;
+        }
+        let several = (0..self.places.len() as u32).filter(|&v| leaving[v as usize] > 1);
+        let mut rays: Vec<(u32, f64, bool)> = Vec::new();
+        for v in several {
+            for &[a, b] in self.sides.iter().filter(|side| side.contains(&v)) {
+                let other = self.places[if a == v { b } else { a } as usize];
+                let own = self.places[v as usize];
+                rays.push((v, (other[1] - own[1]).atan2(other[0] - own[0]), a == v));
+            }
+        }
+        rays.sort_by(|p, q| p.0.cmp(&q.0).then(p.1.total_cmp(&q.1)));
+        rays.chunk_by(|p, q| p.0 == q.0)
+            .all(|round| (0..round.len()).all(|k| round[k].2 != round[(k + 1) % round.len()].2))
+    }
+
+    /// Whether no vertex can come nearer than is kept to a side that it does not end, and no two
+    /// sides cross.
+    fn is_clear(&self, clearance: Clearance) -> bool {
+        let widest = clearance.kept + 2.0 * clearance.stray + ROUNDING;
+        let range = |k: usize, axis: usize| {
+            let [a, b] = self.sides[k].map(|v| self.places[v as usize][axis]);
+            [a.min(b), a.max(b)]
+        };
+        let axis = usize::from(self.extent(1) > self.extent(0));
+        let mut order: Vec<(f64, usize)> = (0..self.sides.len())
+            .map(|k| (range(k, axis)[0], k))
+            .collect();
+        order.sort_unstable_by(|p, q| p.0.total_cmp(&q.0));
+        for (n, &(_, k)) in order.iter().enumerate() {
+            let (high, [low_across, high_across]) = (range(k, axis)[1], range(k, 1 - axis));
+            for &(low, other) in &order[n + 1..] {
+                if low > high + widest {
+                    break;
+                }
+                let [low, high] = range(other, 1 - axis);
+                let apart = low > high_across + widest || low_across > high + widest;
+                if !apart && !self.keep_clear([k, other], clearance.stray) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    fn extent(&self, axis: usize) -> f64 {
+        let along = || self.places.iter().map(|place| place[axis]);
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+    }
+
+    fn keep_clear(&self, pair: [usize; 2], stray: f64) -> bool {
+        let [first, second] = pair.map(|k| self.sides[k]);
+        for (side, others) in [(first, second), (second, first)] {
+            let [a, b] = side.map(|v| self.places[v as usize]);
+            for v in others.into_iter().filter(|v| !side.contains(v)) {
+                let least = self.keeps[v as usize] + 2.0 * stray + ROUNDING;
+                let far = squared_distance(self.places[v as usize], [a, b]) > least * least;
+                if !far {
+                    return false;
+                }
+            }
+        }
+        let [a, b, c, d] =
+            [first[0], first[1], second[0], second[1]].map(|v| self.places[v as usize]);
+        let together = first.iter().any(|v| second.contains(v));
+        together || !(splits(a, b, c, d) && splits(c, d, a, b))
+    }
+}
+
+/// Two unit vectors across a third; the three are right-handed in this order.
+fn across(view: Vec3) -> [Vec3; 2] {
+    let smallest = view.iamin();
+    let mut axis = Vec3::zeros();
+    axis[smallest] = 1.0;
+    let right = (axis - view * view[smallest]).normalize();
+    [right, view.cross(&right)]
+}
+
+/// Whether the line through a and b has c on one side and d on the other.
+fn splits(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
+    let side = |p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+    (side(c) > 0.0) != (side(d) > 0.0)
+}
+
+/// Square of the distance of a point from a segment [m2].
+fn squared_distance(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let to = [p[0] - a[0], p[1] - a[1]];
+    let length = along[0] * along[0] + along[1] * along[1];
+    let share = ((to[0] * along[0] + to[1] * along[1]) / length).clamp(0.0, 1.0);
+    let rest = [to[0] - along[0] * share, to[1] - along[1] * share];
+    rest[0] * rest[0] + rest[1] * rest[1]
+}

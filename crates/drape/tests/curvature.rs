@@ -1,0 +1,247 @@
+//! Regions left out because they cannot touch themselves: nothing that meets is missed, whatever the
+//! cloth does meanwhile, and smooth cloth costs next to nothing.
+
+#![allow(clippy::unwrap_used)]
+
+#[path = "support/numbers.rs"]
+mod numbers;
+
+use numbers::Numbers;
+use std::collections::BTreeSet;
+use toile_drape::collision::{Clearance, ClothSurface, FeaturePair, Nearness, crossings};
+use toile_geometry::{TriangleMesh, Vec3};
+
+/// A square sheet of `n` by `n` cells, cut alternately or all one way.
+fn sheet(n: usize, alternate: bool, place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
+    let mut mesh = TriangleMesh::default();
+    let at = |i: usize, j: usize| (j * (n + 1) + i) as u32;
+    let share = |k: usize| k as f64 / n as f64;
+    for j in 0..=n {
+        let row = (0..=n).map(|i| place(share(i), share(j)));
+        mesh.positions.extend(row);
+    }
+    for (i, j) in (0..n * n).map(|k| (k % n, k / n)) {
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        let halves = match alternate && (i + j) % 2 == 1 {
+            false => [[a, b, c], [a, c, d]],
+            true => [[a, b, d], [b, c, d]],
+        };
+        mesh.triangles.extend(halves);
+    }
+    mesh
+}
+
+/// Cloth of 20 mm cells in waves, from nearly flat to crumpled; a ring now and then.
+fn waved(seed: u64) -> (TriangleMesh, Vec<Vec3>) {
+    const CELLS: usize = 16;
+    let flat = sheet(CELLS, seed.is_multiple_of(2), |u, v| {
+        Vec3::new(0.32 * u, 0.0, 0.32 * v)
+    });
+    let mut numbers = Numbers(seed + 1);
+    let size = 0.06 * numbers.next();
+    let waves: Vec<(Vec3, [f64; 3])> = (0..4)
+        .map(|_| {
+            let wave = [0, 1, 2].map(|_| numbers.next());
+            (
+                numbers.vector(size),
+                [9.0 * wave[0], 9.0 * wave[1], 6.3 * wave[2]],
+            )
+        })
+        .collect();
+    let turns = if seed.is_multiple_of(3) { 1.2 } else { 0.0 };
+    let places = flat.positions.iter().map(|p| {
+        let (u, v) = (p.x / 0.32, p.z / 0.32);
+        let base = match turns > 0.0 {
+            true => {
+                // Rolled up, the ends over each other.
+                let (angle, radius) = (turns * std::f64::consts::TAU * u, 0.05 + 0.006 * u);
+                Vec3::new(radius * angle.cos(), radius * angle.sin(), p.z)
+            }
+            false => *p,
+        };
+        let way = |(way, [a, b, c]): &(Vec3, [f64; 3])| way * (a * u + b * v + c).sin();
+        base + waves.iter().map(way).sum::<Vec3>()
+    });
+    let places = places.collect();
+    (flat, places)
+}
+
+fn features(surface: &ClothSurface, near: &[[u32; 2]]) -> BTreeSet<FeaturePair> {
+    let mut all = BTreeSet::new();
+    for &pair in near {
+        surface.features(pair, |pair| {
+            all.insert(pair);
+        });
+    }
+    all
+}
+
+#[test]
+fn what_is_left_out_keeps_its_distance_wherever_vertices_stray() {
+    let clearance = Clearance {
+        stray: 1e-3,
+        kept: 2e-3,
+    };
+    let (mut left_out, mut crossed) = (0, 0);
+    for seed in 0..200 {
+        let (flat, mut x) = waved(seed);
+        let mut surface = ClothSurface::of_mesh(&flat);
+        // Far enough that every pair that could come near in the time is among these.
+        let all = surface.near_triangles(&x, &x, 0.02);
+        let found = surface.near_unless_clear(&x, &x, 0.02, clearance);
+        assert_eq!(
+            crossings(&surface, &all, &x),
+            crossings(&surface, &found, &x),
+            "state {seed}"
+        );
+        crossed += crossings(&surface, &all, &x).len();
+        let rest: Vec<FeaturePair> = features(&surface, &all)
+            .difference(&features(&surface, &found))
+            .copied()
+            .collect();
+        left_out += rest.len();
+        let mut numbers = Numbers(seed + 1000);
+        let drift = numbers.vector(0.1);
+        for round in 0..4 {
+            for &pair in &rest {
+                let distance = Nearness::distance(pair, &x);
+                let kept = pair.vertices().map(|v| surface.most_kept(v));
+                let kept = kept.into_iter().fold(clearance.kept, f64::min);
+                assert!(
+                    distance >= kept,
+                    "state {seed}, round {round}: {pair:?} at {distance}"
+                );
+            }
+            assert_eq!(
+                crossings(&surface, &all, &x),
+                crossings(&surface, &found, &x),
+                "state {seed}, round {round}"
+            );
+            let strays = waved(seed).1;
+            x = strays
+                .iter()
+                .map(|p| {
+                    let way = numbers.vector(1.0);
+                    p + drift + way * (0.999e-3 / way.norm())
+                })
+                .collect();
+        }
+    }
+    assert!(
+        left_out > 1_000_000 && crossed > 1_000,
+        "{left_out} {crossed}"
+    );
+}
+
+#[test]
+fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
+    let clearance = Clearance {
+        stray: 1e-4,
+        kept: 1e-3,
+    };
+    // Two plies that face the same way, 1 mm apart: every pair of the two must stay.
+    let mut plies = sheet(12, true, |u, v| Vec3::new(0.2 * u, 0.0, 0.2 * v));
+    let upper = sheet(12, true, |u, v| Vec3::new(0.2 * u, 1e-3, 0.2 * v));
+    let count = plies.positions.len() as u32;
+    plies.positions.extend(upper.positions);
+    plies
+        .triangles
+        .extend(upper.triangles.iter().map(|t| t.map(|v| v + count)));
+    let mut surface = ClothSurface::of_mesh(&plies);
+    let x = plies.positions.clone();
+    let across = |near: &[[u32; 2]]| {
+        let first = plies.triangles.len() as u32 / 2;
+        near.iter()
+            .filter(|[t, u]| (*t < first) != (*u < first))
+            .count()
+    };
+    let all = surface.near_triangles(&x, &x, 2e-3);
+    let found = surface.near_unless_clear(&x, &x, 2e-3, clearance);
+    assert!(across(&all) > 288 && across(&found) == across(&all));
+    let own = found.len() - across(&found);
+    assert!(
+        10 * own < all.len() - across(&all),
+        "{own} of {}",
+        all.len()
+    );
+
+    // A spiral ramp faces upwards everywhere and lies over itself.
+    let ramp = sheet(24, true, |u, v| {
+        let angle = 9.0 * u;
+        let radius = 0.05 + 0.1 * v;
+        Vec3::new(radius * angle.cos(), 0.0005 * angle, -radius * angle.sin())
+    });
+    let mut surface = ClothSurface::of_mesh(&ramp);
+    let x = ramp.positions.clone();
+    let close = |near: &[[u32; 2]], surface: &ClothSurface| {
+        let all = features(surface, near).into_iter();
+        all.filter(|pair| Nearness::distance(*pair, &x) < 5e-4 * 6.3)
+            .collect::<Vec<_>>()
+    };
+    let all = surface.near_triangles(&x, &x, 5e-3);
+    let found = surface.near_unless_clear(&x, &x, 5e-3, clearance);
+    assert!(close(&all, &surface).len() > 100);
+    assert_eq!(close(&all, &surface), close(&found, &surface));
+}
+
+#[test]
+fn numbers_that_are_none_leave_nothing_out() {
+    let mesh = sheet(8, true, |u, v| Vec3::new(u, 0.0, v));
+    for clearance in [
+        Clearance {
+            stray: f64::NAN,
+            kept: 0.0,
+        },
+        Clearance {
+            stray: f64::INFINITY,
+            kept: 0.0,
+        },
+        Clearance {
+            stray: 0.0,
+            kept: f64::INFINITY,
+        },
+    ] {
+        let mut surface = ClothSurface::of_mesh(&mesh);
+        let x = &mesh.positions;
+        let all = surface.near_triangles(x, x, 0.01);
+        let found = surface.near_unless_clear(x, x, 0.01, clearance);
+        match clearance.kept.is_finite() {
+            true => assert_eq!(all, found),
+            // The room at a vertex is less than without end: here there is room for it.
+            false => assert!(found.len() <= all.len()),
+        }
+    }
+    let mut x = mesh.positions.clone();
+    x[40] = Vec3::repeat(f64::NAN);
+    let mut surface = ClothSurface::of_mesh(&mesh);
+    let clearance = Clearance {
+        stray: 0.0,
+        kept: 0.0,
+    };
+    let found = surface.near_unless_clear(&x, &x, 0.01, clearance);
+    let all = surface.near_triangles(&x, &x, 0.01);
+    assert!(found.len() <= all.len());
+}
+
+#[test]
+fn a_smooth_sheet_costs_the_same_few_regions_however_fine() {
+    let looked = [22, 71, 224, 708].map(|n| {
+        let dome = sheet(n, true, |u, v| {
+            Vec3::new(u, 0.1 * (3.0 * u).sin() * (3.0 * v).sin(), v)
+        });
+        let mut surface = ClothSurface::of_mesh(&dome);
+        let clearance = Clearance {
+            stray: 1e-5,
+            kept: 1e-4,
+        };
+        let x = &dome.positions;
+        let found = surface.near_unless_clear(x, x, 2e-4, clearance);
+        assert!(
+            found.is_empty(),
+            "{} pairs of a sheet of {n} cells",
+            found.len()
+        );
+        surface.opened()
+    });
+    assert!(looked.iter().all(|&count| count == looked[0]), "{looked:?}");
+}
