@@ -5,7 +5,9 @@ use crate::values::{flaw, repeat, roll, size_count};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::Length;
-use toile_session::{Command, GivenFlaw, MarkerFormat, PatternFormat, Quality, Spread};
+use toile_session::{
+    Command, GivenFlaw, MarkerFormat, OtherGarment, PatternFormat, Quality, Spread,
+};
 
 /// Sewing patterns checked, laid out on fabric, sewn round a mannequin, draped and exported.
 ///
@@ -27,12 +29,13 @@ pub struct Arguments {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Task {
-    /// Check, lay out, sew, drape and export a garment.
+    /// Check, lay out, sew, drape and export a garment, or several worn over one another.
     ///
     /// Writes marker.svg (true size, mm), marker.json, garment.glb, garment.obj (m), drape.png,
-    /// fit.png (stretch in %), report.json (SI units), timing.json (s) and journal.jsonl.
+    /// fit.png (stretch in %), report.json (SI units), timing.json (s) and journal.jsonl; of several
+    /// garments also layer-1-NAME.obj, layer-2-NAME.obj, ..., innermost first (m).
     Make(Make),
-    /// Sew, drape and export a garment without laying it out on fabric.
+    /// Sew, drape and export a garment, or several in layers, without laying it out on fabric.
     Drape(Make),
     /// List faults of a pattern, each with its place and remedy.
     ///
@@ -167,7 +170,13 @@ impl From<QualityName> for Quality {
 #[derive(Debug, Args)]
 pub struct Make {
     /// The pattern: native (*.toile.json) or a GarmentCode specification, seen from its content.
-    pub pattern: PathBuf,
+    /// Several are worn over one another, innermost first, and drafted to the wearer of the first.
+    #[arg(required = true, value_name = "PATTERN")]
+    pub patterns: Vec<PathBuf>,
+    /// Layers of several patterns, 0 to 999, one each, as in 2,1: larger numbers are worn farther
+    /// out, garments of one number lie as they come. Default: 1,2,3 and so on.
+    #[arg(long, value_name = "NUMBER", value_delimiter = ',', value_parser = clap::value_parser!(u16).range(0..=999))]
+    pub layer: Vec<u16>,
     /// Folder to write into; it is made if need be.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
@@ -196,7 +205,8 @@ impl Make {
     /// A pattern with every default.
     pub fn of(pattern: PathBuf, out: &str) -> Self {
         Self {
-            pattern,
+            patterns: vec![pattern],
+            layer: Vec::new(),
             out: out.into(),
             body: None,
             size: None,
@@ -208,9 +218,22 @@ impl Make {
 
     /// The commands that open the pattern and make every choice.
     pub fn choices(&self) -> Vec<Command> {
-        let mut commands = vec![Command::OpenPattern {
-            path: self.pattern.clone(),
-        }];
+        let paths = self.patterns.iter().cloned();
+        let mut garments = paths.enumerate().map(|(k, path)| {
+            let layer = self.layer.get(k).copied();
+            OtherGarment {
+                path,
+                layer: layer.unwrap_or(k as u16 + 1),
+            }
+        });
+        let mut commands = Vec::new();
+        if let Some(OtherGarment { path, layer }) = garments.next() {
+            commands.push(Command::OpenPattern { path });
+            let others: Vec<OtherGarment> = garments.collect();
+            if !others.is_empty() {
+                commands.push(Command::SetLayers { layer, others });
+            }
+        }
         if let Some(body) = &self.body {
             commands.push(body_command(body));
         }

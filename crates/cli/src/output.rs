@@ -216,6 +216,7 @@ fn meaning(path: &Path) -> &'static str {
     match &*name {
         "garment.glb" => "the garment for 3D programs, UVs in metres",
         "garment.obj" => "the garment as OBJ, a group for each panel",
+        name if name.starts_with("layer-") => "a garment of several by itself",
         "drape.png" => "the garment worn",
         "fit.png" => "how much the cloth is stretched",
         "report.json" => "what was made, in numbers",

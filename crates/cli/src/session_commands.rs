@@ -2,7 +2,7 @@
 
 use crate::arguments::{Check, Make, Replay};
 use crate::bar::Bar;
-use crate::output::{Failure, Output};
+use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use toile_session::{Command, Event, Session, read_journal, read_text_file};
@@ -25,6 +25,7 @@ pub fn drape(make: &Make, output: &Output) -> Result<Value, Failure> {
 }
 
 fn run(make: &Make, work: &[Command], output: &Output) -> Result<Value, Failure> {
+    refuse_layers(make)?;
     let mut commands = make.choices();
     refuse_nobody(&commands)?;
     commands.extend_from_slice(work);
@@ -34,16 +35,38 @@ fn run(make: &Make, work: &[Command], output: &Output) -> Result<Value, Failure>
     let mut session = Session::new();
     let events = session
         .execute_all(&commands, &mut Bar::new())
-        .map_err(|error| Failure::from(error).about(&make.pattern))?;
+        .map_err(|error| match make.patterns.first() {
+            Some(first) => Failure::from(error).about(first),
+            None => Failure::from(error),
+        })?;
     let project = session.project();
+    let others = project.others.iter().map(|other| &*other.pattern.name);
+    let names: Vec<&str> = [&*project.pattern.name].into_iter().chain(others).collect();
     output.say(format!(
         "{}, size {}, {:.0} cm tall",
-        project.pattern.name,
+        names.join(" + "),
         project.size_name().unwrap_or("as drawn"),
         project.wearer().get("height").unwrap_or_default() * 100.0,
     ));
     output.tell(&events);
     Ok(outcome(&events, &make.out))
+}
+
+/// Refuses layers that are not one for each pattern.
+fn refuse_layers(make: &Make) -> Result<(), Failure> {
+    let (layers, patterns) = (make.layer.len(), make.patterns.len());
+    if layers > 0 && layers != patterns {
+        return Err(Failure::bad_input(format!(
+            "--layer: {} for {}; give one number for each, as in --layer {}",
+            count(layers, "number"),
+            count(patterns, "pattern"),
+            (1..=patterns)
+                .map(|k| k.to_string())
+                .collect::<Vec<_>>()
+                .join(",")
+        )));
+    }
+    Ok(())
 }
 
 /// Refuses a body that is neither a figure nor a file.

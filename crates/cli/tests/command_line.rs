@@ -38,7 +38,9 @@ fn bad_input_exits_with_2_and_says_what_to_do() {
         "{\"toile\": 1, \"panels\"",
     )
     .unwrap();
-    let cases: [(&[&str], &[&str]); 7] = [
+    let skirt = patterns().join("gathered-skirt.toile.json");
+    let skirt = skirt.to_str().unwrap();
+    let cases: [(&[&str], &[&str]); 10] = [
         (&["make", "gone.json"], &["gone.json", "spelling"]),
         (&["make", "broken.json"], &["broken.json", "line 1"]),
         (&["make", shirt, "--size", "XXL"], &["XXL", "S, M, L, XL"]),
@@ -54,6 +56,15 @@ fn bad_input_exits_with_2_and_says_what_to_do() {
             &["make", shirt, "--width", "12"],
             &["\"12\" has no unit", "mm, cm, m, in"],
         ),
+        (
+            &["make", skirt, shirt, "--layer", "1,2,3"],
+            &["--layer", "3 numbers for 2 patterns", "--layer 1,2"],
+        ),
+        (
+            &["drape", skirt, shirt, "--layer", "1,1000"],
+            &["1000", "0..=999"],
+        ),
+        (&["drape", skirt, "gone.json"], &["gone.json", "spelling"]),
         (
             &["mesh", shirt, "--edge", "9m", "--out", "m.obj"],
             &["edge length"],

@@ -4,6 +4,7 @@
 
 use crate::collision::{ClothMemory, Tally};
 use crate::measure::{Measures, measure};
+use crate::merge::merged_layers;
 use crate::swing::SwingRun;
 use crate::{
     Carry, Cloth, Collider, ContactSettings, DrapeError, Model, RestRun, RestSettings, SewRun,
@@ -19,6 +20,8 @@ pub struct GarmentLevel {
     pub cloth: Cloth,
     /// Vertex pairs the seams join.
     pub stitches: Vec<[u32; 2]>,
+    /// Layer of each vertex where several garments are worn, larger numbers farther out; empty for one.
+    pub layer: Vec<u16>,
 }
 
 /// What a garment's drape is made from.
@@ -157,7 +160,11 @@ impl GarmentRun {
     /// Starts on a level with its panels at some positions; seams that are closed there already
     /// are merged at once.
     fn begin(&mut self, level: usize, positions: Vec<Vec3>) -> Result<(), DrapeError> {
-        let GarmentLevel { cloth, stitches } = &self.setup.levels[level];
+        let GarmentLevel {
+            cloth,
+            stitches,
+            layer,
+        } = &self.setup.levels[level];
         let mut model = Model::new("garment", cloth)?;
         model.colliders = std::mem::take(&mut self.model.colliders);
         model.contact = ContactSettings {
@@ -166,6 +173,7 @@ impl GarmentRun {
             ..self.setup.contact
         };
         model.gravity = Vec3::zeros();
+        part_layers(&mut model, layer, self.setup.contact.cloth_offset);
         self.target = (0..positions.len() as u32).collect();
         self.state = State::at_rest(&model, positions);
         self.sew = SewRun::new(&mut model, stitches.clone(), self.setup.sew);
@@ -287,7 +295,7 @@ impl GarmentRun {
     fn settle(&mut self) -> Result<(), DrapeError> {
         self.rest
             .advance(&self.model, &mut self.state, &mut self.workspace)?;
-        if self.cut_short && self.workspace.contacts.cloth.piercings == 0 {
+        if self.cut_short && self.workspace.contacts.cloth.is_in_order() {
             self.cut_short = false;
             if self.swings < MOST_SWINGS {
                 self.steps[1] += self.rest.steps();
@@ -376,7 +384,11 @@ impl GarmentRun {
 
     /// Joins the stitched vertices; gravity and friction act from here on.
     fn merge(&mut self) -> Result<(), DrapeError> {
-        let GarmentLevel { cloth, stitches } = &self.setup.levels[self.level];
+        let GarmentLevel {
+            cloth,
+            stitches,
+            layer,
+        } = &self.setup.levels[self.level];
         let placed = Cloth {
             positions: self.state.positions.clone(),
             ..cloth.clone()
@@ -388,6 +400,7 @@ impl GarmentRun {
         model.colliders = std::mem::take(&mut self.model.colliders);
         model.contact = self.setup.contact;
         model.gravity = self.setup.gravity;
+        model.layer = merged_layers(layer, &target, count);
         self.state = State::at_rest(&model, merged.positions);
         self.model = model;
         self.target = target;
@@ -421,5 +434,18 @@ impl GarmentRun {
             Vec::new()
         };
         measure(&self.model, &self.state, &mut self.workspace, &counted)
+    }
+}
+
+/// Keeps outer layers farther from the body, each by the distance between two cloths: while a garment is
+/// sewn its layers pass through each other, and so most of each comes to lie where it belongs.
+fn part_layers(model: &mut Model, layer: &[u16], cloth_offset: f64) {
+    let mut layers = layer.to_vec();
+    layers.sort_unstable();
+    layers.dedup();
+    for sample in &mut model.samples {
+        let own = layer.get(sample.vertices[0] as usize);
+        let below = own.map_or(0, |own| layers.partition_point(|other| other < own));
+        sample.extra_offset = below as f64 * cloth_offset;
     }
 }

@@ -47,7 +47,7 @@ pub use kes::KesValues;
 pub use laws::air::Air;
 pub use laws::stretch::Compression;
 pub use material::Material;
-pub use measure::{Measures, measure, residual, stretch_per_triangle};
+pub use measure::{LayerMeasures, Measures, measure, residual, stretch_per_triangle};
 pub use merge::merge_map;
 pub use methods::{
     Method, MethodKind, MethodSettings, RelaxationRun, StepReport, largest_frequency,
@@ -57,7 +57,9 @@ pub use motion::{Motion, MotionKey, Pose};
 pub use newton::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 pub use pcg::PcgLimits;
 pub use rest::{RestRun, RestSettings};
-pub use scene::{Damping, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject};
+pub use scene::{
+    Damping, MOST_LAYER, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject,
+};
 pub use scene_run::SceneRun;
 pub use sew::{SewRun, SewSettings};
 pub use state::{Memory, State};

@@ -1,8 +1,9 @@
 //! What is measured on a drape: residual, strain, seam gaps, penetration, crossings.
 
+use crate::collision::{ClothSurface, layers_of, strays_from};
 use crate::{Model, State, Workspace};
 use rayon::prelude::*;
-use toile_geometry::{SurfaceTree, Vec3};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 /// Measures of one state.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,7 +27,27 @@ pub struct Measures {
     pub body_intersections: usize,
     /// Pairs of cloth triangles that intersect and share no vertex, exactly.
     pub self_intersections: usize,
+    /// The same by layer, innermost first; empty where all cloth is of one.
+    pub layers: Vec<LayerMeasures>,
 }
+
+/// Measures of one layer of cloth among several.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LayerMeasures {
+    /// Its number.
+    pub layer: u16,
+    /// Pairs of a triangle of it and a solid triangle that intersect, exactly.
+    pub body_intersections: usize,
+    /// Pairs of triangles of it that intersect and share no vertex, exactly.
+    pub self_intersections: usize,
+    /// Pairs of a triangle of it and one of a layer farther out that intersect, exactly.
+    pub outer_intersections: usize,
+    /// Vertices of layers farther out that lie on its inside, within 5 cm of it.
+    pub astray: usize,
+}
+
+/// How near a layer the order of those farther out is measured [m].
+const ORDER_REACH: f64 = 0.05;
 
 /// Net force over weight, both as norms over all free vertices.
 pub fn residual(model: &Model, state: &State, workspace: &mut Workspace) -> f64 {
@@ -90,8 +111,9 @@ pub fn measure(
         ) = top_of(&mut stretch);
     }
     let mesh = model.mesh(x);
+    let mut on_body = Vec::new();
     for collider in &model.colliders {
-        measures.body_intersections += collider.crossings(state.time, &mesh).len();
+        on_body.extend(collider.crossings(state.time, &mesh));
         let pose = collider.pose(state.time);
         let depths: Vec<f64> = x
             .par_iter()
@@ -102,8 +124,48 @@ pub fn measure(
             .copied()
             .fold(measures.penetration_max, f64::max);
     }
-    measures.self_intersections = SurfaceTree::new(mesh).self_intersections().len();
+    measures.body_intersections = on_body.len();
+    let tree = SurfaceTree::new(mesh);
+    let own = tree.self_intersections();
+    measures.self_intersections = own.len();
+    measures.layers = by_layer(model, tree.mesh(), &on_body, &own);
     measures
+}
+
+/// What was found, by layer; a triangle between layers counts with the innermost of its corners.
+fn by_layer(
+    model: &Model,
+    mesh: &TriangleMesh,
+    on_body: &[[u32; 2]],
+    own: &[[u32; 2]],
+) -> Vec<LayerMeasures> {
+    if model.layer.is_empty() {
+        return Vec::new();
+    }
+    let surface = ClothSurface::new(model);
+    let layer_of = |t: u32| {
+        let corners = mesh.triangles[t as usize];
+        corners.into_iter().map(|v| model.layer[v as usize]).min()
+    };
+    let layers = layers_of(&surface).into_iter().map(|layer| {
+        let mut astray = Vec::new();
+        strays_from(&surface, layer, &mesh.positions, ORDER_REACH, &mut astray);
+        let count = |found: &mut dyn Iterator<Item = bool>| found.filter(|&x| x).count();
+        let of_both = |&[t, u]: &[u32; 2]| [layer_of(t), layer_of(u)];
+        LayerMeasures {
+            layer,
+            body_intersections: count(
+                &mut on_body.iter().map(|pair| layer_of(pair[0]) == Some(layer)),
+            ),
+            self_intersections: count(&mut own.iter().map(|p| of_both(p) == [Some(layer); 2])),
+            outer_intersections: count(&mut own.iter().map(|pair| {
+                let [t, u] = of_both(pair);
+                t != u && t.min(u) == Some(layer)
+            })),
+            astray: astray.len(),
+        }
+    });
+    layers.collect()
 }
 
 /// The largest value, and the value that 99 % of the weight stays under.

@@ -1,5 +1,7 @@
 //! Merging: vertices that seams have drawn together become one.
 
+use crate::collision::BETWEEN_LAYERS;
+
 /// Union-find over `count` vertices joined by pairs. Gives each vertex its new index and the
 /// number of new vertices; new indices follow the order of the smallest old vertex.
 pub fn merge_map(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> (Vec<u32>, usize) {
@@ -30,9 +32,31 @@ pub fn merge_map(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> (Ve
     (target, next as usize)
 }
 
+/// Layer of each merged vertex from those that became it; [`BETWEEN_LAYERS`] where they differ, and
+/// empty where none has any.
+pub(crate) fn merged_layers(layer: &[u16], target: &[u32], count: usize) -> Vec<u16> {
+    let mut merged: Vec<Option<u16>> = vec![None; if layer.is_empty() { 0 } else { count }];
+    for (&layer, &to) in layer.iter().zip(target) {
+        let kept = &mut merged[to as usize];
+        *kept = Some(match *kept {
+            Some(other) if other != layer => BETWEEN_LAYERS,
+            _ => layer,
+        });
+    }
+    let each = merged.into_iter();
+    each.map(|layer| layer.unwrap_or(BETWEEN_LAYERS)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn layers_are_kept_where_they_agree() {
+        let merged = merged_layers(&[4, 4, 7, 7, 4], &[0, 0, 1, 2, 2], 3);
+        assert_eq!(merged, [4, 7, BETWEEN_LAYERS]);
+        assert!(merged_layers(&[], &[0, 0], 1).is_empty());
+    }
 
     #[test]
     fn chains_and_rings_of_pairs_become_one_vertex_each() {

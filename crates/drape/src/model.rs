@@ -237,6 +237,9 @@ pub struct Model {
     pub contact: ContactSettings,
     /// Where the cloth is tested against them.
     pub samples: Vec<ContactSample>,
+    /// Layer of each vertex, larger numbers farther out, or
+    /// [`BETWEEN_LAYERS`](crate::collision::BETWEEN_LAYERS); empty where all are of one.
+    pub layer: Vec<u16>,
     /// Acceleration of gravity [m/s2].
     pub gravity: Vec3,
     /// Drag per mass, of the air and of Rayleigh damping together [1/s]: a free velocity falls by
@@ -303,6 +306,7 @@ impl Model {
             colliders: Vec::new(),
             contact: ContactSettings::default(),
             samples: Vec::new(),
+            layer: Vec::new(),
             gravity: Vec3::new(0.0, -9.81, 0.0),
             air_drag: 0.0,
             air: Air::default(),

@@ -89,7 +89,13 @@ pub struct SceneObject {
     pub mesh: TriangleMesh,
     /// Rest shape of a garment's panels; nothing when the mesh itself is the rest shape.
     pub cloth: Option<Cloth>,
+    /// Place of a cloth among those worn over one another: larger numbers lie farther out, on the
+    /// side that the triangles of the inner ones face; cloths of one number are in no order.
+    pub layer: u16,
 }
+
+/// Largest number of a layer.
+pub const MOST_LAYER: u16 = 999;
 
 /// Vertices of one cloth that are led along a motion. Only `xpbd` leads them.
 #[derive(Clone, Debug, PartialEq)]
@@ -201,6 +207,7 @@ impl Scene {
             );
         }
         self.check_objects()?;
+        self.check_layers()?;
         self.check_motions()?;
         for (index, elastic) in self.elastics.iter().enumerate() {
             let place = format!("elastics[{index}]");
@@ -237,6 +244,48 @@ impl Scene {
                     }
                 }
             }
+        }
+        Ok(())
+    }
+
+    fn check_layers(&self) -> Result<(), DrapeError> {
+        let refuse = |object: &SceneObject, what: String, remedy: &str| {
+            Err(DrapeError::Scene {
+                place: format!("layer of \"{}\"", object.name),
+                what,
+                remedy: remedy.to_owned(),
+            })
+        };
+        for object in self.objects.iter().filter(|object| object.layer > 0) {
+            if !matches!(object.kind, ObjectKind::Deformable { .. }) {
+                let what = "only cloth is worn in layers".to_owned();
+                return refuse(object, what, "leave it out: bodies lie under every layer");
+            }
+            if object.layer > MOST_LAYER {
+                let what = format!("{} is out of range", object.layer);
+                return refuse(object, what, "give a number from 0 to 999");
+            }
+        }
+        let cloths = || {
+            let cloth = |o: &&SceneObject| matches!(o.kind, ObjectKind::Deformable { .. });
+            self.objects.iter().filter(cloth)
+        };
+        let first = cloths().next().map(|object| object.layer);
+        let Some(other) = cloths().find(|object| Some(object.layer) != first) else {
+            return Ok(());
+        };
+        if self.contact.cloth_offset <= 0.0 {
+            let what = "cloth passes through cloth, so layers have no order".to_owned();
+            let remedy = "give collision.cloth_offset a distance, as in 0.002";
+            return refuse(other, what, remedy);
+        }
+        if !self.method.kind.touches_cloth() {
+            let what = format!(
+                "method \"{}\" knows no contact of cloth with cloth",
+                self.method.kind.name()
+            );
+            let remedy = "use xpbd, implicit-euler, bdf2, implicit-midpoint or rest";
+            return refuse(other, what, remedy);
         }
         Ok(())
     }

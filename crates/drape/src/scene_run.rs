@@ -3,6 +3,7 @@
 use crate::collision::Tally;
 use crate::laws::elastic::ElasticLaw;
 use crate::measure::{Measures, measure};
+use crate::merge::merged_layers;
 use crate::methods::{Method, whole_energy};
 use crate::scene::{ObjectKind, Scene, SceneEnd};
 use crate::{
@@ -115,6 +116,7 @@ impl SceneRun {
             self.model.colliders = solids.collect();
         }
         self.model.contact = self.scene.contact;
+        self.model.layer = self.layers();
         self.model.gravity = self.scene.gravity;
         self.model.air_drag = self.scene.air.drag + self.scene.damping.mass;
         self.model.air = self.scene.air;
@@ -131,6 +133,20 @@ impl SceneRun {
             .filter_map(|&e| self.elastic(e))
             .collect();
         self.model.set_elastics(elastics);
+    }
+
+    /// Layer of each present vertex; empty where all are of one.
+    fn layers(&self) -> Vec<u16> {
+        let mut layers = Vec::with_capacity(self.target.len());
+        for (object, first) in self.scene.objects.iter().zip(&self.first) {
+            if first.is_some() {
+                layers.resize(layers.len() + object.mesh.positions.len(), object.layer);
+            }
+        }
+        if layers.windows(2).all(|pair| pair[0] == pair[1]) {
+            return Vec::new();
+        }
+        merged_layers(&layers, &self.target, self.model.vertex_count())
     }
 
     fn grips(&self) -> Vec<Grip> {

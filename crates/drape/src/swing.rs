@@ -113,9 +113,10 @@ impl SwingRun {
 }
 
 impl SwingRun {
-    /// Counts the peaks of kinetic energy without a new low while cloth crosses cloth.
+    /// Counts the peaks of kinetic energy without a new low while cloth crosses cloth or layers lie
+    /// in the wrong order.
     fn watch_crossings(&mut self) {
-        if self.energy < LOWER * self.lowest || self.cloth.contacts.piercings == 0 {
+        if self.energy < LOWER * self.lowest || self.cloth.contacts.is_in_order() {
             self.lowest = self.energy;
             self.waited = 0;
         }

@@ -27,6 +27,7 @@ fn object(name: &str, kind: ObjectKind, mesh: toile_geometry::TriangleMesh) -> S
         kind,
         mesh,
         cloth: None,
+        layer: 0,
     }
 }
 

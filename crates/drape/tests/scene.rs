@@ -24,6 +24,7 @@ fn cloth_object(mesh: TriangleMesh, pins: Vec<u32>) -> SceneObject {
         },
         mesh,
         cloth: None,
+        layer: 0,
     }
 }
 

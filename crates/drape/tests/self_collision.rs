@@ -8,7 +8,8 @@ mod numbers;
 
 use numbers::Numbers;
 use toile_drape::collision::{
-    ClothContacts, ClothSurface, FeaturePair, Motions, Nearness, bound_moves, crossings, nearnesses,
+    ClothContacts, ClothSurface, FeaturePair, Knots, Motions, Nearness, bound_moves, crossings,
+    nearnesses,
 };
 use toile_drape::{
     Cloth, ContactSettings, Material, Measures, MethodKind, Model, ObjectKind, Scene, SceneObject,
@@ -190,14 +191,13 @@ fn bounded_moves_never_cross() {
                 .extend(part.triangles.iter().map(|t| t.map(|v| v + first)));
         }
         let mut surface = ClothSurface::of_mesh(&mesh);
-        let untangled = vec![false; mesh.positions.len()];
         for _ in 0..5 {
             let mut moves: Vec<Vec3> = mesh
                 .positions
                 .iter()
                 .map(|_| numbers.vector(0.02))
                 .collect();
-            held += bound_moves(&mut surface, &untangled, &mesh.positions, &mut moves);
+            held += bound_moves(&mut surface, Knots::default(), &mesh.positions, &mut moves);
             for (x, d) in mesh.positions.iter_mut().zip(&moves) {
                 *x += d;
             }
@@ -286,6 +286,7 @@ fn object(name: &str, mesh: TriangleMesh, pins: Vec<u32>) -> SceneObject {
         kind,
         mesh,
         cloth: None,
+        layer: 0,
     }
 }
 

@@ -104,7 +104,11 @@ fn setup(n: usize) -> GarmentSetup {
     }
     let body = SurfaceTree::new(ball(0.16, Vec3::new(0.0, 1.1, 0.0), 32));
     GarmentSetup {
-        levels: vec![GarmentLevel { cloth, stitches }],
+        levels: vec![GarmentLevel {
+            cloth,
+            stitches,
+            layer: Vec::new(),
+        }],
         counted: Vec::new(),
         colliders: vec![Arc::new(body)],
         contact: ContactSettings::default(),

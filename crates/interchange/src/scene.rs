@@ -193,6 +193,9 @@ pub struct ObjectFile {
     /// Vertices of a deformable object that are led.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub grips: Vec<GripFile>,
+    /// Place of a deformable object among cloths worn over one another: larger lies farther out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layer: Option<u16>,
     #[serde(flatten)]
     unknown: Unknown,
 }

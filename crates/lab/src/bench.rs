@@ -240,6 +240,7 @@ fn rest(cuts: usize, residual: f64, result: &mut Timed) -> Result<(), LabError> 
         levels.push(GarmentLevel {
             cloth: cloth.clone(),
             stitches: Vec::new(),
+            layer: Vec::new(),
         });
     }
     result.vertices = cloth.positions.len();

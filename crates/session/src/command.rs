@@ -78,6 +78,14 @@ pub enum Command {
         /// The quality.
         quality: Quality,
     },
+    /// Wears garments of other patterns with the project's, in layers; those worn before are taken
+    /// off. A layer of a larger number lies farther out; garments of one number are in no order.
+    SetLayers {
+        /// Layer of the project's own garment, 0 to 999.
+        layer: u16,
+        /// The others.
+        others: Vec<OtherGarment>,
+    },
     /// Looks for faults of the pattern.
     Check,
     /// Lays the pieces on fabric.
@@ -95,6 +103,15 @@ pub enum Command {
         /// The folder; it is made if need be.
         dir: PathBuf,
     },
+}
+
+/// A garment to wear with the project's.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct OtherGarment {
+    /// The file of its pattern.
+    pub path: PathBuf,
+    /// Its layer, 0 to 999.
+    pub layer: u16,
 }
 
 impl Command {
@@ -117,6 +134,7 @@ impl Command {
                 | Self::SetFabric { .. }
                 | Self::SetWidth { .. }
                 | Self::SetQuality { .. }
+                | Self::SetLayers { .. }
         )
     }
 

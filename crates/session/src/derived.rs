@@ -3,12 +3,13 @@
 use crate::NestOptions;
 use crate::choice::BodyChoice;
 use crate::drape::{Drape, drape};
+use crate::dressed::{DraftedPart, Dressed, tell_apart};
 use crate::fabrics::fabric_named;
 use crate::laying::{Garments, Laying, lay};
 use crate::setup::{self, GarmentJob};
 use crate::{Project, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
-use toile_assembly::{AssemblyOptions, Garment, assemble};
+use toile_assembly::{AssemblyOptions, assemble};
 use toile_body::{BodyError, Description, Figure, Mannequin};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
@@ -55,7 +56,9 @@ pub(crate) struct Derived {
     mannequin: Option<KeptMannequin>,
     /// The markers, if they were made.
     pub layings: Option<Arc<Vec<Laying>>>,
-    garment: Option<Arc<Garment>>,
+    /// The garments worn, drafted.
+    parts: Option<Arc<Vec<DraftedPart>>>,
+    dressed: Option<Arc<Dressed>>,
     /// What is worth telling about the garment's mesh and placement.
     pub assembly_notes: Vec<String>,
     /// The drape, if it was made.
@@ -70,14 +73,18 @@ impl Derived {
             && before.body == after.body
             && before.size == after.size
             && before.fabric == after.fabric;
+        let same_parts = same_draft && before.layer == after.layer && before.others == after.others;
         if !same_draft {
             self.drafted = None;
         }
-        if !same_draft || before.width != after.width {
+        if !same_parts {
+            self.parts = None;
+        }
+        if !same_parts || before.width != after.width {
             self.layings = None;
         }
-        if !same_draft || before.quality != after.quality {
-            self.garment = None;
+        if !same_parts || before.quality != after.quality {
+            self.dressed = None;
             self.assembly_notes.clear();
             self.drape = None;
         }
@@ -89,8 +96,9 @@ impl Derived {
         self.drafted = self.drafted.take().or(other.drafted);
         self.mannequin = other.mannequin.or(self.mannequin.take());
         self.layings = self.layings.take().or(other.layings);
-        if self.garment.is_none() {
-            self.garment = other.garment;
+        self.parts = self.parts.take().or(other.parts);
+        if self.dressed.is_none() {
+            self.dressed = other.dressed;
             self.assembly_notes = other.assembly_notes;
         }
         self.drape = self.drape.take().or(other.drape);
@@ -119,11 +127,26 @@ impl Derived {
         (draft.clone(), diagnostics.clone())
     }
 
-    /// The draft, if nothing keeps the garment from being made.
-    fn sound_draft(&mut self, project: &Project) -> Result<Arc<Draft>, SessionError> {
+    /// Every garment that is worn, the project's own first, drafted, with what is wrong with it.
+    pub fn parts(&mut self, project: &Project) -> Arc<Vec<DraftedPart>> {
+        if let Some(parts) = &self.parts {
+            return parts.clone();
+        }
         let (draft, diagnostics) = self.drafted(project);
-        project.refuse_faults(&diagnostics)?;
-        Ok(draft)
+        let mut parts = vec![DraftedPart::own(project, draft, diagnostics)];
+        let others = project.others.iter();
+        parts.extend(others.map(|worn| DraftedPart::other(project, worn)));
+        tell_apart(&mut parts);
+        self.parts.insert(Arc::new(parts)).clone()
+    }
+
+    /// The same, if nothing keeps any of them from being made.
+    fn sound_parts(&mut self, project: &Project) -> Result<Arc<Vec<DraftedPart>>, SessionError> {
+        let parts = self.parts(project);
+        for part in parts.iter() {
+            part.refuse_faults()?;
+        }
+        Ok(parts)
     }
 
     /// The mannequin of the project's wearer.
@@ -156,54 +179,61 @@ impl Derived {
         if let Some(layings) = &self.layings {
             return Ok(layings.clone());
         }
-        let draft = self.sound_draft(project)?;
+        let parts = self.sound_parts(project)?;
         let options = NestOptions {
             width: project.width,
             ..NestOptions::default()
         };
-        let garments = [Garments {
-            pattern: &project.pattern,
-            draft: &draft,
+        let several = parts.len() > 1;
+        let each = parts.iter().map(|part| Garments {
+            pattern: &part.pattern,
+            draft: &part.draft,
             count: 1,
-            label: None,
-        }];
+            label: several.then_some(&*part.name),
+        });
+        let garments: Vec<Garments<'_>> = each.collect();
         let layings = Arc::new(lay(&garments, &options, watcher)?);
         self.layings = Some(layings.clone());
         Ok(layings)
     }
 
-    /// The meshed and placed pieces.
-    pub fn garment(&mut self, project: &Project) -> Result<Arc<Garment>, SessionError> {
-        if let Some(garment) = &self.garment {
-            return Ok(garment.clone());
+    /// The meshed and placed pieces of every garment worn.
+    pub fn dressed(&mut self, project: &Project) -> Result<Arc<Dressed>, SessionError> {
+        if let Some(dressed) = &self.dressed {
+            return Ok(dressed.clone());
         }
-        let draft = self.sound_draft(project)?;
+        let parts = self.sound_parts(project)?;
         let mannequin = self.mannequin(project)?;
         let options = AssemblyOptions {
             edge_length: project.quality.edge_length(),
         };
-        let assembled = assemble(&draft, &setup::wearer(&mannequin), &options)?;
-        self.assembly_notes = assembled
-            .diagnostics
-            .iter()
-            .map(ToString::to_string)
-            .collect();
-        let garment = Arc::new(assembled.garment);
-        self.garment = Some(garment.clone());
-        Ok(garment)
+        let wearer = setup::wearer(&mannequin);
+        let mut meshed = Vec::new();
+        let mut notes = Vec::new();
+        for part in parts.iter() {
+            let assembled = assemble(&part.draft, &wearer, &options)?;
+            let prefix = match parts.len() {
+                1 => String::new(),
+                _ => format!("{}: ", part.name),
+            };
+            let found = assembled.diagnostics.iter();
+            notes.extend(found.map(|note| format!("{prefix}{note}")));
+            meshed.push((part.clone(), assembled.garment));
+        }
+        self.assembly_notes = notes;
+        Ok(self.dressed.insert(Arc::new(Dressed::new(meshed))).clone())
     }
 
     /// Whether the pieces are meshed and placed already.
-    pub fn has_garment(&self) -> bool {
-        self.garment.is_some()
+    pub fn is_dressed(&self) -> bool {
+        self.dressed.is_some()
     }
 
     /// The garment ready to be sewn and draped.
     pub fn job(&mut self, project: &Project) -> Result<GarmentJob, SessionError> {
-        let garment = self.garment(project)?;
-        let (draft, _) = self.drafted(project);
+        let dressed = self.dressed(project)?;
         let skin = self.kept_mannequin(project)?.skin.clone();
-        Ok(setup::job(&draft, garment, skin, project.quality))
+        Ok(setup::job(&dressed, skin, project.quality))
     }
 
     /// The drape.

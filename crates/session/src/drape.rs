@@ -2,7 +2,7 @@
 
 use crate::hands::HandledRun;
 use crate::watcher::tell;
-use crate::{Draped, Event, GarmentJob, SessionError, StampedInput, Watcher};
+use crate::{Draped, Event, GarmentJob, GarmentPart, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
 use toile_drape::collision::Tally;
 use toile_drape::{Measures, Stage, stretch_per_triangle};
@@ -46,7 +46,7 @@ impl Drape {
             })
             .collect();
         let mut warnings = run.warnings().to_vec();
-        warnings.extend(shortcomings(&mesh, &measures));
+        warnings.extend(shortcomings(&mesh, &measures, &job.parts));
         if held {
             warnings.push("the cloth is still held; let go of it to see how it hangs".to_owned());
         }
@@ -174,10 +174,10 @@ pub(crate) fn drape(
 }
 
 /// What a finished garment ought not to have, in plain words.
-fn shortcomings(mesh: &TriangleMesh, measures: &Measures) -> Vec<String> {
+fn shortcomings(mesh: &TriangleMesh, measures: &Measures, parts: &[GarmentPart]) -> Vec<String> {
     let mut warnings = Vec::new();
     let components = mesh.component_count();
-    if components > 1 {
+    if components > parts.len() {
         warnings.push(format!(
             "the garment is in {components} parts that no seam joins; sew them together or make them apart"
         ));
@@ -193,6 +193,18 @@ fn shortcomings(mesh: &TriangleMesh, measures: &Measures) -> Vec<String> {
             "{} pairs of cloth triangles cross each other: folds of the cloth lie in one another",
             measures.self_intersections
         ));
+    }
+    for layer in &measures.layers {
+        if layer.outer_intersections + layer.astray > 0 {
+            let of_layer = |part: &&GarmentPart| part.layer == layer.layer;
+            let names: Vec<&str> = parts.iter().filter(of_layer).map(|p| &*p.name).collect();
+            warnings.push(format!(
+                "{} pairs of triangles of {} and of what is worn over it cross, and {} vertices of that lie under it: give it more ease",
+                layer.outer_intersections,
+                names.join(" and "),
+                layer.astray
+            ));
+        }
     }
     for (name, strain) in ["warp", "weft"].iter().zip(measures.strain_max) {
         if strain > 0.15 {

@@ -2,6 +2,7 @@
 
 use crate::derived::Derived;
 use crate::drape::Drape;
+use crate::dressed::DraftedPart;
 use crate::laying::Laying;
 use crate::product::{garment_glb, garment_obj};
 use crate::report::Report;
@@ -28,21 +29,22 @@ pub(crate) fn files(
             hint: "lay the pieces out or drape the garment first",
         });
     }
-    let (draft, diagnostics) = derived.drafted(project);
-    let mut report = Report::new(project, &draft);
-    report.add_warnings(diagnostics.iter().map(ToString::to_string));
+    let parts = derived.parts(project);
+    let mut report = Report::new(project, &parts);
+    let found = parts.iter().flat_map(|part| part.diagnostics.iter());
+    report.add_warnings(found.map(ToString::to_string));
     let mut files = Vec::new();
     if let Some(layings) = &derived.layings {
         tell(watcher, "writing", 0.0, "marker")?;
         let formats = [MarkerFormat::Svg, MarkerFormat::Json];
-        marker_files((&project.pattern.name, &formats), layings, &mut files)?;
+        marker_files((&worn_name(&parts), &formats), layings, &mut files)?;
         report.add_markers(layings);
     }
     if let Some(drape) = derived.drape.clone() {
-        garment_files(project, &drape, &mut files)?;
+        garment_files(&drape, &mut files)?;
         tell(watcher, "writing", 0.2, "pictures")?;
         let mannequin = derived.mannequin(project)?;
-        let title = picture_title(project);
+        let title = picture_title(project, &worn_name(&parts));
         let picture = pictures::drape_png(&drape, mannequin.skin(), &title)?;
         files.push(("drape.png".into(), picture));
         tell(watcher, "writing", 0.6, "pictures")?;
@@ -57,11 +59,17 @@ pub(crate) fn files(
     Ok(files)
 }
 
-fn picture_title(project: &Project) -> String {
+fn picture_title(project: &Project, name: &str) -> String {
     match project.size_name() {
-        Some(size) => format!("{}, size {size}", project.pattern.name),
-        None => project.pattern.name.clone(),
+        Some(size) => format!("{name}, size {size}"),
+        None => name.to_owned(),
     }
+}
+
+/// The names of all garments worn.
+fn worn_name(parts: &[DraftedPart]) -> String {
+    let names: Vec<&str> = parts.iter().map(|part| &*part.name).collect();
+    names.join(" + ")
 }
 
 /// The files of markers: `marker.svg`, `marker.json` and others asked for, numbered from the second
@@ -124,16 +132,15 @@ pub(crate) fn file_name(name: &str) -> String {
     name.chars().enumerate().map(plain).collect()
 }
 
-fn garment_files(
-    project: &Project,
-    drape: &Drape,
-    files: &mut Vec<File>,
-) -> Result<(), SessionError> {
-    let name = &project.pattern.name;
-    let glb = write_glb(&garment_glb(drape, name)).map_err(cannot("garment.glb"))?;
+fn garment_files(drape: &Drape, files: &mut Vec<File>) -> Result<(), SessionError> {
+    let glb = write_glb(&garment_glb(drape)).map_err(cannot("garment.glb"))?;
     let obj = write_obj(&garment_obj(drape)).map_err(cannot("garment.obj"))?;
     files.push(("garment.glb".into(), glb));
     files.push(("garment.obj".into(), obj.into_bytes()));
+    for (name, obj) in drape.part_files() {
+        let text = write_obj(&obj).map_err(cannot("a layer"))?;
+        files.push((name, text.into_bytes()));
+    }
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use crate::Project;
 use toile_drape::{LIBRARY, LibraryFabric};
-use toile_pattern::{Fabric, FabricId};
+use toile_pattern::{Fabric, FabricId, Pattern};
 
 /// Width of a roll of library fabric [m].
 const WIDTH: f64 = 1.5;
@@ -10,7 +10,12 @@ const WIDTH: f64 = 1.5;
 /// A fabric by name: one of the pattern's, else `jersey` or `poplin` as patterns begin with, else
 /// one of the library.
 pub(crate) fn fabric_named(project: &Project, name: &str) -> Option<Fabric> {
-    let own = project.pattern.fabrics.iter().find(|f| f.name == name);
+    fabric_of(&project.pattern, name)
+}
+
+/// [`fabric_named`] for any pattern.
+pub(crate) fn fabric_of(pattern: &Pattern, name: &str) -> Option<Fabric> {
+    let own = pattern.fabrics.iter().find(|f| f.name == name);
     match (own, name) {
         (Some(own), _) => Some((**own).clone()),
         (None, "jersey") => Some(Fabric::jersey(FabricId(0))),

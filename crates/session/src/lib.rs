@@ -11,6 +11,7 @@ mod command;
 mod cut;
 mod derived;
 mod drape;
+mod dressed;
 mod error;
 mod event;
 mod export;
@@ -45,8 +46,9 @@ mod watcher;
 
 pub use bodies::{edit_body, open_body_edits, proportions_named, proportions_of_heads};
 pub use choice::{BodyChoice, Quality, figure_named};
-pub use command::Command;
+pub use command::{Command, OtherGarment};
 pub use drape::DrapeResult;
+pub use dressed::GarmentPart;
 pub use error::SessionError;
 pub use event::{Assembled, Draped, Event, Nested};
 pub use flaws::GivenFlaw;
@@ -60,7 +62,7 @@ pub use open::{
     Opened, PatternFormat, SAMPLE, open_measurements, open_pattern, read_pattern_text,
     read_text_file,
 };
-pub use project::Project;
+pub use project::{Project, WornGarment};
 pub use scene::{SceneOutcome, run_scene};
 pub use session::Session;
 pub use setup::{GarmentJob, JobPanel};

@@ -7,13 +7,14 @@ use crate::history::History;
 use crate::open::{open_measurements, open_pattern};
 use crate::watcher::{Part, tell};
 use crate::{
-    Assembled, BodyChoice, Command, Event, Project, Session, SessionError, StampedInput, Watcher,
-    journal_lines,
+    Assembled, BodyChoice, Command, Event, OtherGarment, Project, Session, SessionError,
+    StampedInput, Watcher, WornGarment, journal_lines,
 };
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 use toile_body::{Figure, PrimitiveEdit};
+use toile_drape::MOST_LAYER;
 use toile_interchange::{write_all_atomically, write_atomically, write_mannequin, write_pattern};
 use toile_pattern::{Edit, Severity};
 
@@ -47,6 +48,7 @@ impl Session {
                 };
                 Ok(self.change(next, "Choose quality", None))
             }
+            Command::SetLayers { layer, others } => self.set_layers(*layer, others),
             Command::Check => self.check(watcher),
             Command::Nest => self.nest(watcher),
             Command::Assemble => self.assemble(watcher),
@@ -231,23 +233,59 @@ impl Session {
         Ok(self.change(next, "Choose fabric width", None))
     }
 
+    fn set_layers(&mut self, layer: u16, others: &[OtherGarment]) -> Outcome {
+        let mut worn = Vec::new();
+        let mut notes = Vec::new();
+        for other in others {
+            let opened = open_pattern(&other.path)?;
+            let note = |note: &String| format!("{}: {note}", other.path.display());
+            notes.extend(opened.notes.iter().map(note));
+            worn.push(WornGarment {
+                pattern: Arc::new(opened.pattern),
+                source: other.path.clone(),
+                layer: other.layer,
+            });
+        }
+        let layers = worn.iter().map(|garment| garment.layer);
+        if let Some(wrong) = layers.chain([layer]).find(|&layer| layer > MOST_LAYER) {
+            return Err(SessionError::Number {
+                what: "the layer of a garment",
+                value: f64::from(wrong),
+                hint: "give a number from 0 to 999",
+            });
+        }
+        let next = Project {
+            layer,
+            others: worn,
+            ..self.project.clone()
+        };
+        next.check_size()?;
+        let mut events = self.change(next, "Choose layers", None);
+        events.extend(Event::warnings(&notes));
+        Ok(events)
+    }
+
     fn check(&mut self, watcher: &mut dyn Watcher) -> Outcome {
         tell(watcher, "checking", 0.0, "")?;
-        let diagnostics = self.diagnostics();
-        let count = |severity| {
-            diagnostics
-                .iter()
-                .filter(|d| d.severity == severity)
-                .count()
-        };
+        let parts = self.derived.parts(&self.project);
+        let mut found = [0; 2];
+        let mut notes = Vec::new();
+        for part in parts.iter() {
+            let name = match &part.source {
+                Some(path) => path.display().to_string(),
+                None => part.name.clone(),
+            };
+            for diagnostic in part.diagnostics.iter() {
+                found[0] += usize::from(diagnostic.severity == Severity::Error);
+                found[1] += usize::from(diagnostic.severity == Severity::Warning);
+                notes.push(format!("{name}: {diagnostic}"));
+            }
+        }
         let mut events = vec![Event::Checked {
-            errors: count(Severity::Error),
-            warnings: count(Severity::Warning),
+            errors: found[0],
+            warnings: found[1],
         }];
-        let name = self.project.source_name();
-        events.extend(diagnostics.iter().map(|diagnostic| Event::Warned {
-            message: format!("{name}: {diagnostic}"),
-        }));
+        events.extend(Event::warnings(&notes));
         Ok(events)
     }
 
@@ -270,7 +308,7 @@ impl Session {
         tell(watcher, "making the mannequin", 0.0, "")?;
         self.derived.mannequin(&self.project)?;
         tell(watcher, "meshing", 0.5, "")?;
-        let garment = self.derived.garment(&self.project)?;
+        let garment = self.derived.dressed(&self.project)?.garment.clone();
         tell(watcher, "meshing", 1.0, "")?;
         let mut events = vec![Event::Assembled(Assembled {
             panels: garment.panels.len(),
@@ -285,7 +323,7 @@ impl Session {
     fn drape(&mut self, inputs: &[StampedInput], watcher: &mut dyn Watcher) -> Outcome {
         let mut events = Vec::new();
         let mut from = 0.0;
-        if !self.derived.has_garment() {
+        if !self.derived.is_dressed() {
             from = 0.05;
             events = self.assemble(&mut Part::new(watcher, 0.0, from))?;
         }

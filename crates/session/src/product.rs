@@ -2,7 +2,7 @@
 
 use crate::drape::Drape;
 use std::ops::Range;
-use toile_geometry::TriangleMesh;
+use toile_geometry::{TriangleMesh, Vec3};
 use toile_interchange::{GlbMesh, GlbPrimitive, GlbScene, ObjGroup, ObjMesh};
 
 /// The runs of merged triangles that belong to each panel.
@@ -24,45 +24,49 @@ fn panel_triangles(drape: &Drape) -> Vec<Range<usize>> {
         .collect()
 }
 
-/// The garment as one mesh with a primitive for each panel. UVs are the piece's plane [m].
-pub(crate) fn garment_glb(drape: &Drape, name: &str) -> GlbScene {
-    let garment = &drape.job.garment;
+/// One mesh for each garment worn, with a primitive for each panel. UVs are the piece's plane [m].
+pub(crate) fn garment_glb(drape: &Drape) -> GlbScene {
+    let runs = panel_triangles(drape);
     let normals = drape.normals();
-    let primitives = garment
-        .panels
-        .iter()
-        .zip(panel_triangles(drape))
-        .zip(drape.job.panels.iter())
-        .map(|((panel, triangles), look)| {
-            let merged = |v: usize| drape.target[v] as usize;
-            let first = panel.vertices.start as u32;
-            GlbPrimitive {
-                name: panel.name.clone(),
-                positions: panel
-                    .vertices
-                    .clone()
-                    .map(|v| drape.mesh.positions[merged(v)])
-                    .collect(),
-                normals: panel.vertices.clone().map(|v| normals[merged(v)]).collect(),
-                uvs: Some(
-                    garment.flat[panel.vertices.clone()]
-                        .iter()
-                        .map(|p| [p.x, p.y])
-                        .collect(),
-                ),
-                triangles: drape.origin[triangles]
-                    .iter()
-                    .map(|&t| garment.triangles[t as usize].map(|v| v - first))
-                    .collect(),
-                colour: look.colour,
-            }
-        })
-        .collect();
+    let meshes = drape.job.parts.iter().map(|part| GlbMesh {
+        name: part.name.clone(),
+        primitives: part
+            .panels
+            .clone()
+            .map(|panel| primitive(drape, panel, runs[panel].clone(), &normals))
+            .collect(),
+    });
     GlbScene {
-        meshes: vec![GlbMesh {
-            name: name.to_owned(),
-            primitives,
-        }],
+        meshes: meshes.collect(),
+    }
+}
+
+/// A panel with its own vertices.
+fn primitive(drape: &Drape, panel: usize, run: Range<usize>, normals: &[Vec3]) -> GlbPrimitive {
+    let garment = &drape.job.garment;
+    let look = &drape.job.panels[panel];
+    let panel = &garment.panels[panel];
+    let merged = |v: usize| drape.target[v] as usize;
+    let first = panel.vertices.start as u32;
+    GlbPrimitive {
+        name: panel.name.clone(),
+        positions: panel
+            .vertices
+            .clone()
+            .map(|v| drape.mesh.positions[merged(v)])
+            .collect(),
+        normals: panel.vertices.clone().map(|v| normals[merged(v)]).collect(),
+        uvs: Some(
+            garment.flat[panel.vertices.clone()]
+                .iter()
+                .map(|p| [p.x, p.y])
+                .collect(),
+        ),
+        triangles: drape.origin[run]
+            .iter()
+            .map(|&t| garment.triangles[t as usize].map(|v| v - first))
+            .collect(),
+        colour: look.colour,
     }
 }
 

@@ -25,6 +25,21 @@ pub struct Project {
     pub width: Option<f64>,
     /// How finely it is meshed and draped.
     pub quality: Quality,
+    /// Layer it is worn in among `others`: larger numbers lie farther out.
+    pub layer: u16,
+    /// Garments worn with it.
+    pub others: Vec<WornGarment>,
+}
+
+/// A garment worn with that of the project's pattern, made in the same size, fabric and quality.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WornGarment {
+    /// Its pattern.
+    pub pattern: Arc<Pattern>,
+    /// The file it was read from.
+    pub source: PathBuf,
+    /// Its layer.
+    pub layer: u16,
 }
 
 impl Project {
@@ -50,21 +65,34 @@ impl Project {
         }
     }
 
-    /// Refuses a size the pattern does not have.
+    /// Refuses a size the pattern does not have, or one worn with it that has a table of sizes.
     pub(crate) fn check_size(&self) -> Result<(), SessionError> {
-        match &self.size {
-            Some(name) if self.pattern.size(name).is_none() => {
-                let names: Vec<&str> = self.pattern.sizes.iter().map(|s| &*s.name).collect();
-                Err(SessionError::Unknown {
-                    kind: "size",
-                    name: name.clone(),
-                    hint: match names.is_empty() {
-                        true => "the pattern has no table of sizes: leave the size out".into(),
-                        false => format!("choose one of {}", names.join(", ")),
-                    },
-                })
-            }
-            _ => Ok(()),
+        let Some(name) = &self.size else {
+            return Ok(());
+        };
+        let refuse = |pattern: &Pattern, whose: &str| {
+            let names: Vec<&str> = pattern.sizes.iter().map(|s| &*s.name).collect();
+            Err(SessionError::Unknown {
+                kind: "size",
+                name: name.clone(),
+                hint: match names.is_empty() {
+                    true => "the pattern has no table of sizes: leave the size out".into(),
+                    false => format!("choose one of {}{whose}", names.join(", ")),
+                },
+            })
+        };
+        if self.pattern.size(name).is_none() {
+            return refuse(&self.pattern, "");
+        }
+        let lacks = |worn: &&WornGarment| {
+            !worn.pattern.sizes.is_empty() && worn.pattern.size(name).is_none()
+        };
+        match self.others.iter().find(lacks) {
+            Some(worn) => refuse(
+                &worn.pattern,
+                &format!(", those of {}", worn.source.display()),
+            ),
+            None => Ok(()),
         }
     }
 
@@ -108,6 +136,13 @@ impl Project {
         };
         let figure = self.figure();
         size.map_or_else(|| sample_of(figure), |size| size.completed(figure.build()))
+    }
+
+    /// The measurements that a pattern worn with the project's is drafted to [m], [rad]: its own table's
+    /// for the named size, else those of the wearer.
+    pub(crate) fn drafted_for(&self, pattern: &Pattern) -> Measurements {
+        let named = self.size.as_deref().and_then(|name| pattern.size(name));
+        named.cloned().unwrap_or_else(|| self.wearer())
     }
 
     /// The measurements the pattern is drafted to [m], [rad]: the named size; else those of the

@@ -4,6 +4,7 @@ use crate::Project;
 use crate::choice::figure_name;
 use crate::cut::sewn_outline;
 use crate::drape::Drape;
+use crate::dressed::DraftedPart;
 use crate::laying::Laying;
 use crate::scene::Tangles;
 use serde::Serialize;
@@ -96,7 +97,58 @@ struct DrapeReport {
     body_penetration_max_m: f64,
     body_intersections: usize,
     self_intersections: usize,
+    /// Garments worn over one another, innermost first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    layers: Vec<LayerReport>,
     tangles: Tangles,
+}
+
+#[derive(Serialize)]
+struct LayerReport {
+    layer: u16,
+    garments: Vec<GarmentReport>,
+    body_intersections: usize,
+    self_intersections: usize,
+    /// With layers farther out.
+    outer_intersections: usize,
+    /// Vertices of layers farther out on its inside.
+    astray: usize,
+}
+
+#[derive(Serialize)]
+struct GarmentReport {
+    name: String,
+    source: Option<String>,
+    vertices: usize,
+    triangles: usize,
+}
+
+fn layer_reports(drape: &Drape) -> Vec<LayerReport> {
+    let each = drape.measures.layers.iter();
+    each.map(|measured| LayerReport {
+        layer: measured.layer,
+        garments: drape
+            .job
+            .parts
+            .iter()
+            .filter(|part| part.layer == measured.layer)
+            .map(|part| {
+                let mesh = drape.part_mesh(part);
+                let file = part.source.as_deref().and_then(|path| path.file_name());
+                GarmentReport {
+                    name: part.name.clone(),
+                    source: file.map(|name| name.to_string_lossy().into_owned()),
+                    vertices: mesh.positions.len(),
+                    triangles: mesh.triangles.len(),
+                }
+            })
+            .collect(),
+        body_intersections: measured.body_intersections,
+        self_intersections: measured.self_intersections,
+        outer_intersections: measured.outer_intersections,
+        astray: measured.astray,
+    })
+    .collect()
 }
 
 fn by_direction([warp, weft]: [f64; 2]) -> ByDirection {
@@ -105,18 +157,41 @@ fn by_direction([warp, weft]: [f64; 2]) -> ByDirection {
 
 impl Report {
     /// The report on everything made of a project.
-    pub fn new(project: &Project, draft: &Draft) -> Self {
-        let pieces: Vec<PieceReport> = draft
-            .pieces
+    pub fn new(project: &Project, parts: &[DraftedPart]) -> Self {
+        let several = parts.len() > 1;
+        let prefix = |part: &DraftedPart| match several {
+            true => format!("{}: ", part.name),
+            false => String::new(),
+        };
+        let pieces: Vec<PieceReport> = parts
             .iter()
-            .map(|piece| PieceReport {
-                name: piece.name.clone(),
-                fabric: draft
-                    .fabrics
-                    .get(piece.fabric)
-                    .map_or_else(String::new, |f| f.name.clone()),
-                area_cm2: 1e4 * piece_area(piece),
-                sewn: piece.sewn,
+            .flat_map(|part| {
+                let (prefix, draft) = (prefix(part), &part.draft);
+                draft.pieces.iter().map(move |piece| PieceReport {
+                    name: format!("{prefix}{}", piece.name),
+                    fabric: draft
+                        .fabrics
+                        .get(piece.fabric)
+                        .map_or_else(String::new, |f| f.name.clone()),
+                    area_cm2: 1e4 * piece_area(piece),
+                    sewn: piece.sewn,
+                })
+            })
+            .collect();
+        let seams = parts
+            .iter()
+            .flat_map(|part| {
+                let (prefix, draft) = (prefix(part), &part.draft);
+                draft.seams.iter().map(move |seam| SeamReport {
+                    name: format!("{prefix}{}", seam.name),
+                    lengths_m: [0, 1].map(|side| {
+                        seam.sides[side]
+                            .iter()
+                            .map(|span| span_length(draft, span))
+                            .sum()
+                    }),
+                    gathered: seam.gathered,
+                })
             })
             .collect();
         let source = project.source.as_deref().and_then(|path| path.file_name());
@@ -131,20 +206,7 @@ impl Report {
             body_height_m: project.wearer().get("height"),
             area_m2: 1e-4 * pieces.iter().map(|p| p.area_cm2).sum::<f64>(),
             pieces,
-            seams: draft
-                .seams
-                .iter()
-                .map(|seam| SeamReport {
-                    name: seam.name.clone(),
-                    lengths_m: [0, 1].map(|side| {
-                        seam.sides[side]
-                            .iter()
-                            .map(|span| span_length(draft, span))
-                            .sum()
-                    }),
-                    gathered: seam.gathered,
-                })
-                .collect(),
+            seams,
             markers: Vec::new(),
             drape: None,
             warnings: Vec::new(),
@@ -195,6 +257,7 @@ impl Report {
             body_penetration_max_m: measures.penetration_max.max(0.0),
             body_intersections: measures.body_intersections,
             self_intersections: measures.self_intersections,
+            layers: layer_reports(drape),
             tangles: Tangles::of(&drape.tally),
         });
     }

@@ -172,6 +172,21 @@ fn report(run: &mut SceneRun, unknown: &[String]) -> serde_json::Value {
             run.split_steps()
         ));
     }
+    let layers = measures.layers.iter().map(|layer| {
+        let of_layer = |o: &&SceneObject| {
+            o.layer == layer.layer && matches!(o.kind, ObjectKind::Deformable { .. })
+        };
+        let names = run.scene().objects.iter().filter(of_layer).map(|o| &o.name);
+        serde_json::json!({
+            "layer": layer.layer,
+            "objects": names.collect::<Vec<_>>(),
+            "body_intersections": layer.body_intersections,
+            "self_intersections": layer.self_intersections,
+            "outer_intersections": layer.outer_intersections,
+            "astray": layer.astray,
+        })
+    });
+    let layers: Vec<_> = layers.collect();
     serde_json::json!({
         "method": run.scene().method.kind.name(),
         "vertices": run.state.positions.len(),
@@ -186,6 +201,7 @@ fn report(run: &mut SceneRun, unknown: &[String]) -> serde_json::Value {
         "body_penetration_max_m": measures.penetration_max,
         "body_intersections": measures.body_intersections,
         "self_intersections": measures.self_intersections,
+        "layers": layers,
         "tangles": run.cloth_tally().map(|tally| Tangles::of(&tally)),
         "warnings": warnings,
     })
@@ -200,12 +216,19 @@ pub(crate) struct Tangles {
     most: usize,
     /// At the last look.
     left: usize,
+    /// Vertices of outer layers on the inside of inner ones: at the first look, most, at the last.
+    astray: [usize; 3],
 }
 
 impl Tangles {
     pub(crate) fn of(tally: &Tally) -> Self {
         let [found, most, left] = tally.crossings;
-        Self { found, most, left }
+        Self {
+            found,
+            most,
+            left,
+            astray: tally.astray,
+        }
     }
 }
 
@@ -368,6 +391,7 @@ impl Builder<'_> {
             kind,
             mesh,
             cloth,
+            layer: object.layer.unwrap_or_default(),
         })
     }
 

@@ -1,6 +1,7 @@
 //! The one function that turns draft, fabrics and mannequin into a drape.
 
 use crate::Quality;
+use crate::dressed::{Dressed, GarmentPart};
 use std::sync::Arc;
 use toile_assembly::{Garment, Levels, Limb, Wearer};
 use toile_body::{Mannequin, Part};
@@ -25,6 +26,8 @@ pub struct GarmentJob {
     pub garment: Arc<Garment>,
     /// Names and colours of the pieces, in the order of the garment's panels.
     pub panels: Arc<Vec<JobPanel>>,
+    /// The garments it is made of, the project's own first.
+    pub parts: Arc<Vec<GarmentPart>>,
 }
 
 /// What a picture or a file needs to know of a piece of a garment.
@@ -39,12 +42,8 @@ pub struct JobPanel {
 }
 
 /// Builds the drape of a garment that was meshed and placed.
-pub(crate) fn job(
-    draft: &Draft,
-    garment: Arc<Garment>,
-    skin: Arc<SurfaceTree>,
-    quality: Quality,
-) -> GarmentJob {
+pub(crate) fn job(dressed: &Dressed, skin: Arc<SurfaceTree>, quality: Quality) -> GarmentJob {
+    let (draft, garment) = (&*dressed.draft, dressed.garment.clone());
     let panels = garment
         .panels
         .iter()
@@ -58,7 +57,7 @@ pub(crate) fn job(
         })
         .collect();
     let setup = GarmentSetup {
-        levels: vec![level(draft, &garment)],
+        levels: vec![level(dressed)],
         counted: counted(draft, &garment, 2.0 * quality.edge_length()),
         colliders: vec![skin],
         contact: ContactSettings {
@@ -78,6 +77,7 @@ pub(crate) fn job(
         setup,
         garment,
         panels: Arc::new(panels),
+        parts: dressed.parts.clone(),
     }
 }
 
@@ -85,10 +85,19 @@ pub(crate) fn job(
 /// layers fit between body and air.
 const CLOTH_OFFSET: f64 = 2e-3;
 
-fn level(draft: &Draft, garment: &Garment) -> GarmentLevel {
+fn level(dressed: &Dressed) -> GarmentLevel {
+    let garment = &dressed.garment;
+    let first = dressed.parts.first().map(|part| part.layer);
+    let mut layer = Vec::new();
+    if dressed.parts.iter().any(|part| Some(part.layer) != first) {
+        for part in dressed.parts.iter() {
+            layer.resize(part.vertices.end, part.layer);
+        }
+    }
     GarmentLevel {
-        cloth: cloth(draft, garment),
+        cloth: cloth(&dressed.draft, garment),
         stitches: garment.stitches.iter().map(|s| s.vertices).collect(),
+        layer,
     }
 }
 

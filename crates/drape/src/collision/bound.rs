@@ -5,6 +5,7 @@
 
 use super::curvature::{Clearance, longest};
 use super::impact::{edge_edge_impact, vertex_face_impact};
+use super::layers::Knots;
 use super::proximity::{Nearness, closest, is_far};
 use super::surface::{ClothSurface, FeaturePair};
 use rayon::prelude::*;
@@ -83,12 +84,12 @@ pub struct Kept {
     pub cut: usize,
 }
 
-/// Corrects a motion so that no two features of the cloth meet on the way; pairs with a tangled
-/// vertex on either side are let through. `near` sees to it that all features that may meet in some
-/// moves are among those in hand.
+/// Corrects a motion so that no two features of the cloth meet on the way; pairs that `knots` lets
+/// through are left alone. `near` sees to it that all features that may meet in some moves are among
+/// those in hand.
 pub fn keep_apart(
     surface: &mut ClothSurface,
-    tangled: &[bool],
+    knots: Knots,
     motion: &mut Motions,
     mut near: impl FnMut(&mut ClothSurface, &[Vec3], &mut Vec<FeaturePair>),
 ) -> Kept {
@@ -96,7 +97,7 @@ pub fn keep_apart(
     let mut pairs = Vec::new();
     for _ in 0..IMPULSE_ROUNDS {
         near(surface, motion.moves, &mut pairs);
-        let met = met(&pairs, tangled, motion);
+        let met = met(&pairs, knots, motion);
         if met.is_empty() {
             return kept;
         }
@@ -113,7 +114,7 @@ pub fn keep_apart(
         *d -= drift;
     }
     let before = motion.moves.to_vec();
-    kept.cut = bound_moves(surface, tangled, motion.x, motion.moves);
+    kept.cut = bound_moves(surface, knots, motion.x, motion.moves);
     let moved = motion.moves.iter_mut().zip(motion.velocities.iter_mut());
     for ((d, v), before) in moved.zip(&before) {
         if d != before {
@@ -126,7 +127,7 @@ pub fn keep_apart(
 }
 
 /// Features that meet in a motion, with the times.
-fn met(near: &[FeaturePair], tangled: &[bool], motion: &Motions) -> Vec<(Meeting, f64)> {
+fn met(near: &[FeaturePair], knots: Knots, motion: &Motions) -> Vec<(Meeting, f64)> {
     let (x, moves) = (motion.x, &*motion.moves);
     let mean = |pair: FeaturePair| {
         pair.vertices()
@@ -140,7 +141,7 @@ fn met(near: &[FeaturePair], tangled: &[bool], motion: &Motions) -> Vec<(Meeting
         let ways = pair.vertices().map(|v| (moves[v as usize] - mean).norm());
         2.0 * ways.into_iter().fold(0.0, f64::max)
     };
-    let meets = |pair: &FeaturePair| match is_tangled(*pair, tangled) {
+    let meets = |pair: &FeaturePair| match knots.lets_through(*pair) {
         true => None,
         false => meeting(*pair, x, way(*pair)),
     };
@@ -194,11 +195,11 @@ fn push(meeting: &Meeting, time: f64, motion: &mut Motions) -> bool {
     true
 }
 
-/// Shortens `moves` so that no two features of the cloth meet on the way; pairs with a tangled
-/// vertex on either side are let through. Returns the number of vertices held back.
+/// Shortens `moves` so that no two features of the cloth meet on the way; pairs that
+/// `knots` lets through are left alone. Returns the number of vertices held back.
 pub fn bound_moves(
     surface: &mut ClothSurface,
-    tangled: &[bool],
+    knots: Knots,
     x: &[Vec3],
     moves: &mut [Vec3],
 ) -> usize {
@@ -206,14 +207,14 @@ pub fn bound_moves(
     let stray = longest(moves.iter().map(|d| d.norm()));
     let clearance = Clearance { stray, kept: 0.0 };
     let near = surface.near_unless_clear(x, &target, REACH_OF_WAYS, clearance);
-    bound_pairs(surface, &near, tangled, x, moves)
+    bound_pairs(surface, &near, knots, x, moves)
 }
 
 /// [`bound_moves`] for pairs of triangles that hold all that may meet.
 fn bound_pairs(
     surface: &ClothSurface,
     near: &[[u32; 2]],
-    tangled: &[bool],
+    knots: Knots,
     x: &[Vec3],
     moves: &mut [Vec3],
 ) -> usize {
@@ -227,7 +228,7 @@ fn bound_pairs(
         let first = pair.first();
         long(0..first) + long(first..4)
     };
-    let mut meetings = meetings(surface, near, tangled, |pair| meeting(pair, x, way(pair)));
+    let mut meetings = meetings(surface, near, knots, |pair| meeting(pair, x, way(pair)));
     let mut held = vec![false; x.len()];
     let mut round = 0;
     while !meetings.is_empty() {
@@ -265,7 +266,7 @@ fn bound_pairs(
 fn meetings(
     surface: &ClothSurface,
     near: &[[u32; 2]],
-    tangled: &[bool],
+    knots: Knots,
     meeting: impl Fn(FeaturePair) -> Option<Meeting> + Sync,
 ) -> Vec<Meeting> {
     let found: Vec<Vec<Meeting>> = near
@@ -274,7 +275,7 @@ fn meetings(
             let mut found = Vec::new();
             for &pair in pairs {
                 surface.features(pair, |pair| {
-                    if !is_tangled(pair, tangled) {
+                    if !knots.lets_through(pair) {
                         found.extend(meeting(pair));
                     }
                 });
@@ -283,14 +284,6 @@ fn meetings(
         })
         .collect();
     found.concat()
-}
-
-/// Whether both features have a tangled vertex.
-fn is_tangled(pair: FeaturePair, tangled: &[bool]) -> bool {
-    let vertices = pair.vertices();
-    let (first, second) = vertices.split_at(pair.first());
-    let knot = |feature: &[u32]| feature.iter().any(|&v| tangled[v as usize]);
-    knot(first) && knot(second)
 }
 
 /// Features of pairs of triangles that are no farther apart than `reach` [m], with their distances.

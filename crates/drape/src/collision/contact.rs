@@ -3,12 +3,14 @@
 
 use super::bound::{Kept, Motions, REACH_OF_WAYS, features_within, reach_of};
 use super::curvature::{Clearance, longest};
+use super::layers::{Knots, Stray, layer_order, layers_of, strays, ways_out};
 use super::proximity::{Nearness, nearnesses};
 use super::surface::{ClothSurface, FeaturePair};
 use super::tangle::{Piercing, crossings, piercings};
 use crate::laws::contact::{ContactLaw, ContactPlane};
 use crate::{Model, State};
 use nalgebra::Matrix3;
+use std::cmp::Ordering;
 use toile_geometry::Vec3;
 
 /// A contact of two features.
@@ -61,6 +63,8 @@ pub struct Tally {
     pub looks: usize,
     /// Edges that crossed a face: at the first look, most at one look, at the last look.
     pub crossings: [usize; 3],
+    /// Vertices of outer layers on the wrong side of inner ones, likewise.
+    pub astray: [usize; 3],
     /// Impulses that kept features from passing through each other between looks.
     pub impulses: usize,
     /// Moves of vertices that were cut because impulses were not enough.
@@ -68,13 +72,15 @@ pub struct Tally {
 }
 
 impl Tally {
-    fn look(&mut self, crossings: usize) {
-        if self.looks == 0 {
-            self.crossings[0] = crossings;
+    fn look(&mut self, crossings: usize, astray: usize) {
+        for (counts, now) in [(&mut self.crossings, crossings), (&mut self.astray, astray)] {
+            if self.looks == 0 {
+                counts[0] = now;
+            }
+            counts[1] = counts[1].max(now);
+            counts[2] = now;
         }
         self.looks += 1;
-        self.crossings[1] = self.crossings[1].max(crossings);
-        self.crossings[2] = crossings;
     }
 
     /// With another's counts after these.
@@ -83,16 +89,57 @@ impl Tally {
         if self.looks == 0 || next.looks == 0 {
             return if self.looks == 0 { next } else { self };
         }
+        let both = |[first, most, _]: [usize; 3], [_, next, last]: [usize; 3]| {
+            [first, most.max(next), last]
+        };
         Self {
             looks: self.looks + next.looks,
-            crossings: [
-                self.crossings[0],
-                self.crossings[1].max(next.crossings[1]),
-                next.crossings[2],
-            ],
+            crossings: both(self.crossings, next.crossings),
+            astray: both(self.astray, next.astray),
             impulses: self.impulses + next.impulses,
             cut: self.cut + next.cut,
         }
+    }
+}
+
+/// What is drawn where it belongs.
+struct Pull<'a> {
+    vertices: [u32; 4],
+    weights: [f64; 4],
+    /// Unit direction that the first feature goes against the second.
+    way: Vec3,
+    /// How far [m].
+    depth: f64,
+    /// Force per depth [N/m].
+    stiffness: f64,
+    x: &'a [Vec3],
+}
+
+/// The contact that pulls, without friction.
+fn pull(pull: &Pull) -> ClothContact {
+    let four = pull.vertices.into_iter().zip(pull.weights);
+    let point = four.map(|(v, w)| pull.x[v as usize] * w).sum();
+    ClothContact {
+        vertices: pull.vertices,
+        weights: pull.weights,
+        plane: ContactPlane {
+            point,
+            depth: pull.depth,
+            gradient: pull.way,
+            normal: pull.way,
+            hollow: Matrix3::zeros(),
+            bulge: Matrix3::zeros(),
+            anchor: point,
+            lagged_normal_force: 0.0,
+            returning: false,
+            landing: false,
+        },
+        law: ContactLaw {
+            normal: pull.stiffness,
+            tangential: pull.stiffness,
+            friction: 0.0,
+        },
+        pair: None,
     }
 }
 
@@ -103,8 +150,12 @@ pub struct ClothContacts {
     pub active: Vec<ClothContact>,
     /// Pairs of an edge and a face that cross.
     pub piercings: usize,
-    /// Vertices at a crossing.
+    /// Vertices of outer layers on the wrong side of inner ones.
+    pub strays: usize,
+    /// Vertices at a crossing within a layer.
     pub tangled: Vec<bool>,
+    /// Vertices at a crossing of two layers, or on the wrong side of one.
+    pub astray: Vec<bool>,
     /// What was found and done so far.
     pub tally: Tally,
     surface: ClothSurface,
@@ -113,6 +164,9 @@ pub struct ClothContacts {
     features: Option<Vec<(FeaturePair, f64)>>,
     near_at: Vec<Vec3>,
     near_reach: f64,
+    /// How far off vertices on the wrong side of a layer are looked for at the next look [m]; nothing
+    /// where none can be: layers that do not cross do not change sides.
+    stray_reach: Option<f64>,
 }
 
 /// Contacts are kept from this many offsets away, so that a step is stopped before it lands.
@@ -132,6 +186,11 @@ const OFF: f64 = 0.25;
 /// stays there.
 const PULL: f64 = 2.0;
 
+/// How far within an inner layer an outer one may start [m]: the ease of a wide garment. What is found
+/// deeper by `STRAY_SLACK` [m] at the next look is found too.
+const STRAY_REACH: f64 = 0.15;
+const STRAY_SLACK: f64 = 0.02;
+
 impl ClothContacts {
     /// What regions that are left out must keep, for cloth that is kept `offset` [m] apart.
     pub fn clearance(offset: f64) -> Clearance {
@@ -145,11 +204,15 @@ impl ClothContacts {
     pub fn surface(&mut self, model: &Model) -> &mut ClothSurface {
         let stale = {
             let given = model.surface_triangles();
-            self.surface.triangles != given || self.surface.room.len() != model.vertex_count()
+            self.surface.triangles != given
+                || self.surface.room.len() != model.vertex_count()
+                || self.surface.layer != model.layer
         };
         if stale {
             self.surface = ClothSurface::new(model);
             self.near_at.clear();
+            let ordered = layers_of(&self.surface).len() > 1;
+            self.stray_reach = ordered.then_some(STRAY_REACH);
         }
         &mut self.surface
     }
@@ -176,34 +239,79 @@ impl ClothContacts {
     pub fn find(&mut self, model: &Model, state: &State, x: &[Vec3], reach: f64) {
         self.active.clear();
         self.piercings = 0;
-        self.tangled.clear();
-        self.tangled.resize(x.len(), false);
+        self.strays = 0;
+        for flags in [&mut self.tangled, &mut self.astray] {
+            flags.clear();
+            flags.resize(x.len(), false);
+        }
         if model.contact.cloth_offset <= 0.0 {
             return;
         }
         self.look(model, x, reach);
         let crossings = crossings(&self.surface, &self.near, x);
         self.piercings = crossings.len();
-        self.tally.look(self.piercings);
-        for &[e, t] in &crossings {
-            let face = self.surface.triangles[t as usize];
-            for v in self.surface.edges[e as usize].into_iter().chain(face) {
-                self.tangled[v as usize] = true;
-            }
-        }
+        let (own, across) = self.mark(&crossings);
+        let strays = self.find_strays(x, !across.is_empty());
+        self.tally.look(self.piercings, self.strays);
+        let knots = Knots {
+            tangled: &self.tangled,
+            astray: &self.astray,
+            layer: &model.layer,
+        };
+        let mut active = std::mem::take(&mut self.active);
         for near in nearnesses(&self.surface, &self.near, x, reach) {
             let vertices = near.pair.vertices();
             let fixed = vertices.iter().all(|&v| model.pinned[v as usize]);
-            if fixed || vertices.iter().any(|&v| self.tangled[v as usize]) {
-                continue;
+            if !fixed && !knots.lets_go(near.pair) {
+                active.push(self.contact(model, state, x, &near));
             }
-            let contact = self.contact(model, state, x, &near);
-            self.active.push(contact);
         }
-        for piercing in &piercings(&self.surface, &crossings, x) {
-            let contact = self.way_out(model, x, piercing);
-            self.active.extend(contact);
+        let mut ways = piercings(&self.surface, &own, x);
+        ways.extend(ways_out(&self.surface, &across, x));
+        active.extend(ways.iter().filter_map(|way| self.way_out(model, x, way)));
+        active.extend(strays.iter().filter_map(|s| self.way_back(model, x, s)));
+        self.active = active;
+    }
+
+    /// Marks the vertices at crossings; gives those within a layer and those of two.
+    fn mark(&mut self, crossings: &[[u32; 2]]) -> (Vec<[u32; 2]>, Vec<[u32; 2]>) {
+        let surface = &self.surface;
+        let within = |&[e, t]: &[u32; 2]| {
+            let (edge, face) = (surface.edges[e as usize], surface.triangles[t as usize]);
+            layer_order(&surface.layer, edge[0], face[0]) == Ordering::Equal
+        };
+        let (own, across): (Vec<_>, Vec<_>) = crossings.iter().copied().partition(within);
+        for (crossings, flags) in [(&own, &mut self.tangled), (&across, &mut self.astray)] {
+            for &[e, t] in crossings {
+                let face = surface.triangles[t as usize];
+                for v in surface.edges[e as usize].into_iter().chain(face) {
+                    flags[v as usize] = true;
+                }
+            }
         }
+        (own, across)
+    }
+
+    /// Vertices on the wrong side of a layer, where there may be any.
+    fn find_strays(&mut self, x: &[Vec3], crossed: bool) -> Vec<Stray> {
+        let reach = match (self.stray_reach, crossed) {
+            (None, false) => return Vec::new(),
+            (reach, _) => reach.unwrap_or(STRAY_SLACK),
+        };
+        let found = strays(&self.surface, x, reach);
+        for stray in &found {
+            self.astray[stray.vertex as usize] = true;
+        }
+        self.strays = found.len();
+        let deepest = found.iter().map(|s| s.depth).fold(0.0, f64::max);
+        let some = crossed || !found.is_empty();
+        self.stray_reach = some.then_some((deepest + STRAY_SLACK).min(STRAY_REACH));
+        found
+    }
+
+    /// Whether nothing crosses and nothing is on the wrong side of a layer.
+    pub fn is_in_order(&self) -> bool {
+        self.piercings == 0 && self.strays == 0
     }
 
     /// Looks anew at the next search, so that it does not depend on what was found before.
@@ -293,31 +401,37 @@ impl ClothContacts {
             .iter()
             .map(|&v| self.surface.area[v as usize])
             .sum();
-        let four = vertices.into_iter().zip(weights);
-        let normal = 0.25 * model.contact.stiffness * area;
-        let point = four.map(|(v, w)| x[v as usize] * w).sum();
-        Some(ClothContact {
+        Some(pull(&Pull {
             vertices,
             weights,
-            plane: ContactPlane {
-                point,
-                depth: PULL * model.contact.cloth_offset,
-                gradient: piercing.way,
-                normal: piercing.way,
-                hollow: Matrix3::zeros(),
-                bulge: Matrix3::zeros(),
-                anchor: point,
-                lagged_normal_force: 0.0,
-                returning: false,
-                landing: false,
-            },
-            law: ContactLaw {
-                normal,
-                tangential: normal,
-                friction: 0.0,
-            },
-            pair: None,
-        })
+            way: piercing.way,
+            depth: PULL * model.contact.cloth_offset,
+            stiffness: 0.25 * model.contact.stiffness * area,
+            x,
+        }))
+    }
+
+    /// A pull on a vertex that is on the wrong side of a layer, and on the face it belongs beyond.
+    fn way_back(&self, model: &Model, x: &[Vec3], stray: &Stray) -> Option<ClothContact> {
+        let ([a, b, c], w) = (stray.face, stray.weights);
+        let vertices = [stray.vertex, a, b, c];
+        if vertices.iter().all(|&v| model.pinned[v as usize]) {
+            return None;
+        }
+        let weights = [1.0, -w[0], -w[1], -w[2]];
+        let areas = vertices.iter().zip(weights);
+        let area: f64 = areas
+            .map(|(&v, w)| self.surface.area[v as usize] * w.abs())
+            .sum();
+        let offset = model.contact.cloth_offset;
+        Some(pull(&Pull {
+            vertices,
+            weights,
+            way: stray.way,
+            depth: (offset + stray.depth).min(PULL * offset),
+            stiffness: 0.25 * model.contact.stiffness * area,
+            x,
+        }))
     }
 
     /// Pairs of vertices that the contacts in reach couple.
@@ -361,7 +475,6 @@ impl ClothContacts {
             return Kept::default();
         }
         self.surface(model);
-        self.tangled.resize(motion.x.len(), false);
         let x = motion.x;
         let since = if self.near_at.len() == x.len() {
             longest((self.near_at.iter().zip(x)).map(|(a, b)| (a - b).norm()))
@@ -375,8 +488,14 @@ impl ClothContacts {
             features,
             near_reach,
             tangled,
+            astray,
             ..
         } = self;
+        let knots = Knots {
+            tangled,
+            astray,
+            layer: &model.layer,
+        };
         // The moves that the pairs in hand were looked for along, and how far off they still serve.
         let mut looked: Option<(Vec<Vec3>, f64)> = None;
         let find = |surface: &mut ClothSurface, moves: &[Vec3], pairs: &mut Vec<FeaturePair>| {
@@ -411,7 +530,7 @@ impl ClothContacts {
             }
             looked = Some((moves.to_vec(), off));
         };
-        let kept = super::bound::keep_apart(surface, tangled, motion, find);
+        let kept = super::bound::keep_apart(surface, knots, motion, find);
         self.tally.impulses += kept.impulses;
         self.tally.cut += kept.cut;
         kept
@@ -424,7 +543,11 @@ impl ClothContacts {
             return 0;
         }
         self.surface(model);
-        self.tangled.resize(x.len(), false);
-        super::bound::bound_moves(&mut self.surface, &self.tangled, x, moves)
+        let knots = Knots {
+            tangled: &self.tangled,
+            astray: &self.astray,
+            layer: &model.layer,
+        };
+        super::bound::bound_moves(&mut self.surface, knots, x, moves)
     }
 }

@@ -46,6 +46,10 @@ pub struct ClothSurface {
     pub area: Vec<f64>,
     /// Friction coefficient at each vertex.
     pub friction: Vec<f64>,
+    /// Layer of each vertex; empty where all are of one.
+    pub layer: Vec<u16>,
+    /// Vertices at an edge with cloth on one side only.
+    pub border: Vec<bool>,
     /// Edges that each triangle cares for.
     own_edges: Vec<[u32; 3]>,
     /// Vertices that each triangle cares for.
@@ -66,6 +70,7 @@ impl ClothSurface {
     pub fn new(model: &Model) -> Self {
         let mesh = model.mesh(&model.layout);
         let mut surface = Self::of_mesh(&mesh);
+        surface.layer.clone_from(&model.layer);
         for sample in model.samples.iter().filter(|s| s.triangle.is_none()) {
             let v = sample.vertices[0] as usize;
             surface.area[v] = sample.area;
@@ -92,11 +97,17 @@ impl ClothSurface {
             room,
             area: vec![0.0; count],
             friction: vec![0.0; count],
+            border: vec![false; count],
             ..Self::default()
         };
         for (e, triangles) in topology.edge_triangles.iter().enumerate() {
             if let Some(&t) = triangles.first() {
                 put(&mut surface.own_edges[t as usize], e as u32);
+            }
+            if triangles.len() < 2 {
+                for v in topology.edges[e] {
+                    surface.border[v as usize] = true;
+                }
             }
         }
         let mut cared = vec![false; count];

@@ -149,6 +149,14 @@ impl MethodKind {
             .map_or("", |(name, _)| name)
     }
 
+    /// Whether it keeps cloth from passing through cloth.
+    pub fn touches_cloth(self) -> bool {
+        matches!(
+            self,
+            Self::Xpbd | Self::ImplicitEuler | Self::Bdf2 | Self::ImplicitMidpoint | Self::Rest
+        )
+    }
+
     /// Largest stable product of angular frequency and substep of an undamped vibration; nothing
     /// for implicit methods, which have no limit, and for forward Euler 0.
     pub fn stability_limit(self) -> Option<f64> {

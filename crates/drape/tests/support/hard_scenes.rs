@@ -175,6 +175,7 @@ fn solid(name: &str, mesh: TriangleMesh, keys: Vec<MotionKey>) -> SceneObject {
         },
         mesh,
         cloth: None,
+        layer: 0,
     }
 }
 

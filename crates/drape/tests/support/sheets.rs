@@ -48,5 +48,6 @@ pub fn object(name: &str, mesh: TriangleMesh, pins: Vec<u32>) -> SceneObject {
         },
         mesh,
         cloth: None,
+        layer: 0,
     }
 }

@@ -161,6 +161,7 @@ fn half_inside(numbers: &mut Numbers) -> Vec<SceneObject> {
         kind: ObjectKind::Static,
         mesh: sphere(radius, Vec3::zeros()),
         cloth: None,
+        layer: 0,
     };
     vec![object("panel", panel, vec![]), ball]
 }

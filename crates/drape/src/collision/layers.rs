@@ -1,0 +1,284 @@
+//! Cloths worn one over another: which lies outside, what has come to the wrong side, and its way
+//! out. The outside of a cloth is the side that its triangles face; of two cloths in order the outer
+//! one lies on the outside of the inner one.
+
+use super::surface::{ClothSurface, FeaturePair};
+use super::tangle::Piercing;
+use rayon::prelude::*;
+use std::cmp::Ordering;
+use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3, closest_on_face};
+
+/// Layer of a vertex that hangs in cloths of several layers: it is in order with none.
+pub const BETWEEN_LAYERS: u16 = u16::MAX;
+
+/// Which of two vertices' cloths lies farther inside; equal where they are in no order.
+pub fn layer_order(layer: &[u16], a: u32, b: u32) -> Ordering {
+    match (layer.get(a as usize), layer.get(b as usize)) {
+        (Some(&a), Some(&b)) if a != BETWEEN_LAYERS && b != BETWEEN_LAYERS => a.cmp(&b),
+        _ => Ordering::Equal,
+    }
+}
+
+/// Vertices that pairs of features are let through at, because they are led to where they belong.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Knots<'a> {
+    /// At a crossing of cloth that is in no order.
+    pub tangled: &'a [bool],
+    /// At a crossing of two layers, or on the wrong side of one.
+    pub astray: &'a [bool],
+    /// Layer of each vertex; empty where all are of one.
+    pub layer: &'a [u16],
+}
+
+impl Knots<'_> {
+    /// Whether two features are let through each other: in one layer where both have a tangled
+    /// vertex, between layers where either has one that is astray.
+    pub fn lets_through(&self, pair: FeaturePair) -> bool {
+        let vertices = pair.vertices();
+        let (first, second) = vertices.split_at(pair.first());
+        let any = |flags: &[bool], feature: &[u32]| {
+            (feature.iter()).any(|&v| flags.get(v as usize).is_some_and(|&flag| flag))
+        };
+        if layer_order(self.layer, first[0], second[0]) == Ordering::Equal {
+            any(self.tangled, first) && any(self.tangled, second)
+        } else {
+            any(self.astray, &vertices)
+        }
+    }
+
+    /// Whether two features take no contact with each other.
+    pub fn lets_go(&self, pair: FeaturePair) -> bool {
+        let vertices = pair.vertices();
+        let ordered = layer_order(self.layer, vertices[0], vertices[pair.first()]);
+        let flags = match ordered {
+            Ordering::Equal => self.tangled,
+            _ => self.astray,
+        };
+        (vertices.iter()).any(|&v| flags.get(v as usize).is_some_and(|&flag| flag))
+    }
+}
+
+/// A vertex of an outer cloth on the inside of an inner one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stray {
+    /// The vertex.
+    pub vertex: u32,
+    /// The face of the inner cloth nearest to it.
+    pub face: [u32; 3],
+    /// Weights of the nearest point on it.
+    pub weights: [f64; 3],
+    /// Unit direction from the vertex to that point: out.
+    pub way: Vec3,
+    /// Distance to it [m].
+    pub depth: f64,
+}
+
+/// Layers in order, innermost first.
+pub fn layers_of(surface: &ClothSurface) -> Vec<u16> {
+    let mut layers = surface.layer.clone();
+    layers.retain(|&layer| layer != BETWEEN_LAYERS);
+    layers.sort_unstable();
+    layers.dedup();
+    layers
+}
+
+/// Every vertex on the inside of a layer that it belongs outside of, no farther from it than `reach`
+/// [m], in order of layers and vertices. A vertex nearest to the border of a cloth is on no side of it.
+pub fn strays(surface: &ClothSurface, x: &[Vec3], reach: f64) -> Vec<Stray> {
+    let layers = layers_of(surface);
+    let mut found = Vec::new();
+    for &inner in layers.iter().rev().skip(1).rev() {
+        strays_from(surface, inner, x, reach, &mut found);
+    }
+    found
+}
+
+/// [`strays`] from one layer.
+pub fn strays_from(
+    surface: &ClothSurface,
+    inner: u16,
+    x: &[Vec3],
+    reach: f64,
+    found: &mut Vec<Stray>,
+) {
+    let of_inner = |t: &&[u32; 3]| t.iter().all(|&v| surface.layer[v as usize] == inner);
+    let triangles: Vec<[u32; 3]> = surface.triangles.iter().filter(of_inner).copied().collect();
+    if triangles.is_empty() {
+        return;
+    }
+    let tree = SurfaceTree::new(TriangleMesh {
+        positions: x.to_vec(),
+        triangles,
+    });
+    let outside = |v: usize| {
+        let layer = surface.layer[v];
+        layer > inner && layer != BETWEEN_LAYERS
+    };
+    let each = (0..x.len()).into_par_iter().with_min_len(64);
+    let astray: Vec<Option<Stray>> = each
+        .map(|v| {
+            let closest = outside(v).then(|| tree.closest_point(x[v], reach))??;
+            let face = tree.mesh().triangles[closest.triangle as usize];
+            if closest.signed_distance >= 0.0 || on_border(surface, face, &closest) {
+                return None;
+            }
+            Some(Stray {
+                vertex: v as u32,
+                face,
+                weights: closest.weights,
+                way: closest.normal,
+                depth: -closest.signed_distance,
+            })
+        })
+        .collect();
+    found.extend(astray.into_iter().flatten());
+}
+
+/// Whether the closest point lies on an edge that has cloth on one side only.
+fn on_border(surface: &ClothSurface, face: [u32; 3], closest: &ClosestPoint) -> bool {
+    let corners: Vec<u32> = (0..3)
+        .filter(|&k| closest.weights[k] > 0.0)
+        .map(|k| face[k])
+        .collect();
+    match corners[..] {
+        [v] => surface.border[v as usize],
+        [a, b] => surface
+            .edges
+            .binary_search(&[a.min(b), a.max(b)])
+            .is_ok_and(|e| surface.edge_triangles[e].len() < 2),
+        _ => false,
+    }
+}
+
+/// The ways out of crossings of two layers, by their order: an edge of the outer one is moved out
+/// along the normal of the face it pierces, and a face of the outer one out along that of the edge.
+pub fn ways_out(surface: &ClothSurface, crossings: &[[u32; 2]], x: &[Vec3]) -> Vec<Piercing> {
+    let each = crossings.iter();
+    each.filter_map(|&[e, t]| way_out(surface, e as usize, t as usize, x))
+        .collect()
+}
+
+fn way_out(surface: &ClothSurface, e: usize, t: usize, x: &[Vec3]) -> Option<Piercing> {
+    let [a, b] = surface.edges[e];
+    let face = surface.triangles[t];
+    let (start, end) = (x[a as usize], x[b as usize]);
+    let corners = face.map(|v| x[v as usize]);
+    let normal = normal_of(corners).try_normalize(0.0)?;
+    let [above, below] = [start, end].map(|p| (p - corners[0]).dot(&normal));
+    let s = match above == below {
+        true => 0.5,
+        false => (above / (above - below)).clamp(0.0, 1.0),
+    };
+    let way = match layer_order(&surface.layer, a, face[0]) {
+        Ordering::Equal => return None,
+        Ordering::Greater => normal,
+        Ordering::Less => {
+            let faces = surface.edge_triangles[e].iter();
+            let sum: Vec3 = faces
+                .map(|&t| normal_of(surface.triangles[t as usize].map(|v| x[v as usize])))
+                .sum();
+            -sum.try_normalize(0.0)?
+        }
+    };
+    let w = closest_on_face(start + (end - start) * s, corners);
+    Some(Piercing {
+        vertices: [a, b, face[0], face[1], face[2]],
+        weights: [1.0 - s, s, -w[0], -w[1], -w[2]],
+        way,
+    })
+}
+
+fn normal_of([a, b, c]: [Vec3; 3]) -> Vec3 {
+    (b - a).cross(&(c - a))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two squares of two triangles, the second `height` [m] above the first; normals point up.
+    fn squares(height: f64) -> (ClothSurface, Vec<Vec3>) {
+        let mut mesh = TriangleMesh::default();
+        for (k, y) in [0.0, height].into_iter().enumerate() {
+            let inset = 0.2 * k as f64;
+            let (low, high) = (inset, 1.0 - inset);
+            let flat = [[low, low], [low, high], [high, high], [high, low]];
+            (mesh.positions).extend(flat.map(|[x, z]| Vec3::new(x, y, z)));
+            let first = 4 * k as u32;
+            (mesh.triangles).extend([[0, 1, 2], [0, 2, 3]].map(|t| t.map(|v: u32| v + first)));
+        }
+        let mut surface = ClothSurface::of_mesh(&mesh);
+        surface.layer = vec![1, 1, 1, 1, 2, 2, 2, 2];
+        (surface, mesh.positions)
+    }
+
+    #[test]
+    fn what_lies_beneath_the_inner_layer_is_astray() {
+        let (surface, x) = squares(0.1);
+        assert!(strays(&surface, &x, 0.5).is_empty());
+        let (mut surface, x) = squares(-0.1);
+        let found = strays(&surface, &x, 0.5);
+        assert_eq!(found.len(), 4);
+        for stray in &found {
+            assert!(stray.vertex >= 4 && stray.face.iter().all(|&v| v < 4));
+            assert!((stray.way - Vec3::y()).norm() < 1e-12 && (stray.depth - 0.1).abs() < 1e-12);
+        }
+        assert!(strays(&surface, &x, 0.05).is_empty(), "out of reach");
+        // The other order, and none.
+        surface.layer = vec![3, 3, 3, 3, 2, 2, 2, 2];
+        assert!(strays(&surface, &x, 0.5).is_empty());
+        surface.layer = vec![2; 8];
+        assert!(strays(&surface, &x, 0.5).is_empty());
+    }
+
+    #[test]
+    fn beyond_a_border_there_is_no_side() {
+        let (surface, mut x) = squares(-0.1);
+        for p in &mut x[4..] {
+            p.x += 2.0;
+        }
+        assert!(strays(&surface, &x, 5.0).is_empty());
+    }
+
+    #[test]
+    fn crossings_of_layers_lead_the_outer_one_out() {
+        let (surface, mut x) = squares(0.1);
+        x[4].y = -0.1;
+        let near = [[0, 2], [0, 3], [1, 2], [1, 3]];
+        let crossed = super::super::tangle::crossings(&surface, &near, &x);
+        let found = ways_out(&surface, &crossed, &x);
+        assert!(!found.is_empty() && found.len() == crossed.len());
+        for piercing in &found {
+            let upwards = if piercing.vertices[0] >= 4 { 1.0 } else { -1.0 };
+            assert!(piercing.way.y * upwards > 0.5, "{piercing:?}");
+            assert!(piercing.weights.iter().sum::<f64>().abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn vertices_between_layers_are_in_no_order() {
+        let layer = [0, 1, BETWEEN_LAYERS];
+        assert_eq!(layer_order(&layer, 0, 1), Ordering::Less);
+        assert_eq!(layer_order(&layer, 1, 0), Ordering::Greater);
+        assert_eq!(layer_order(&layer, 1, 2), Ordering::Equal);
+        assert_eq!(layer_order(&[], 0, 1), Ordering::Equal);
+        let pair = FeaturePair::EdgeEdge([0, 0, 1, 1]);
+        let (tangled, astray) = ([true, true, true], [false, true, false]);
+        let knots = Knots {
+            tangled: &tangled,
+            astray: &astray,
+            layer: &layer,
+        };
+        assert!(knots.lets_through(pair) && knots.lets_go(pair));
+        let alone = Knots {
+            astray: &[false; 3],
+            ..knots
+        };
+        assert!(!alone.lets_through(pair) && !alone.lets_go(pair));
+        let same = Knots {
+            layer: &[],
+            ..alone
+        };
+        assert!(same.lets_through(pair));
+    }
+}

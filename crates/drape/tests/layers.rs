@@ -1,0 +1,262 @@
+//! Cloths worn one over another: the order is kept, what starts in the wrong order is led out, and
+//! what cannot be in order is refused by name.
+
+#![allow(clippy::unwrap_used)]
+
+#[path = "support/sheets.rs"]
+mod sheets;
+#[path = "support/solids.rs"]
+mod solids;
+
+use sheets::{object, sheet};
+use solids::sphere;
+use toile_drape::{
+    ContactSettings, Damping, DrapeError, Measures, MethodKind, ObjectKind, Scene, SceneElastic,
+    SceneEnd, SceneObject, SceneRun,
+};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
+
+/// Size of the sheets and radius of the sphere [m].
+const WIDTH: f64 = 0.3;
+const RADIUS: f64 = 0.07;
+
+/// A level sheet over the sphere, facing up.
+fn level(cells: usize, height: impl Fn(f64, f64) -> f64) -> TriangleMesh {
+    sheet([cells, cells], [WIDTH; 2], |u, v| {
+        let (x, z) = (u - 0.5 * WIDTH, 0.5 * WIDTH - v);
+        Vec3::new(x, height(x, z), z)
+    })
+}
+
+fn ball() -> SceneObject {
+    SceneObject {
+        kind: ObjectKind::Static,
+        ..object("ball", sphere(RADIUS, Vec3::zeros()), vec![])
+    }
+}
+
+fn worn(name: &str, mesh: TriangleMesh, layer: u16) -> SceneObject {
+    SceneObject {
+        layer,
+        ..object(name, mesh, vec![])
+    }
+}
+
+fn scene(cloths: Vec<SceneObject>) -> Scene {
+    let mut objects = cloths;
+    objects.push(ball());
+    Scene {
+        duration: 0.8,
+        method: MethodKind::Xpbd.into(),
+        damping: Damping {
+            mass: 3.0,
+            stiffness: 0.0,
+        },
+        contact: ContactSettings {
+            cloth_offset: 2e-3,
+            ..ContactSettings::default()
+        },
+        objects,
+        ..Scene::default()
+    }
+}
+
+fn finish(scene: Scene) -> (SceneRun, Measures) {
+    let mut run = SceneRun::new(scene).unwrap();
+    while !run.finished() {
+        run.advance().unwrap();
+    }
+    let measures = run.measure();
+    (run, measures)
+}
+
+/// Least signed distance [m] of the vertices of `outer` from `inner`, those near the border of `inner`
+/// left out; and how many count. By the nearest point, not as the simulation decides it.
+fn least_distance(outer: &TriangleMesh, inner: &TriangleMesh) -> (f64, usize) {
+    let border: Vec<Vec3> = {
+        let topology = inner.topology();
+        let ends = topology.boundary().flat_map(|e| topology.edges[e]);
+        ends.map(|v| inner.positions[v as usize]).collect()
+    };
+    let tree = SurfaceTree::new(inner.clone());
+    let (mut least, mut count) = (f64::INFINITY, 0);
+    for &p in &outer.positions {
+        let closest = tree.closest_point(p, 0.05);
+        let Some(closest) = closest else { continue };
+        if border.iter().all(|b| (b - closest.point).norm() > 0.03) {
+            least = least.min(closest.signed_distance);
+            count += 1;
+        }
+    }
+    (least, count)
+}
+
+fn assert_in_order(run: &SceneRun, measures: &Measures, inner: usize, outer: usize) {
+    assert_eq!(measures.body_intersections, 0);
+    assert_eq!(measures.self_intersections, 0);
+    for layer in &measures.layers {
+        assert_eq!(
+            [layer.astray, layer.outer_intersections],
+            [0; 2],
+            "{layer:?}"
+        );
+    }
+    let meshes = run.meshes();
+    let (least, count) = least_distance(&meshes[outer], &meshes[inner]);
+    assert!(least > 0.0 && count > 50, "{least} {count}");
+}
+
+#[test]
+fn two_sheets_over_a_sphere_keep_their_order() {
+    let low = worn("shirt", level(14, |_, _| RADIUS + 0.01), 1);
+    let high = worn("coat", level(13, |_, _| RADIUS + 0.02), 2);
+    let (run, measures) = finish(scene(vec![low, high]));
+    assert_eq!(run.cloth_tally().unwrap().astray, [0; 3]);
+    assert_eq!(measures.layers.len(), 2);
+    assert_in_order(&run, &measures, 0, 1);
+}
+
+#[test]
+fn a_coat_that_starts_under_the_shirt_is_led_out_over_it() {
+    let low = worn("coat", level(13, |_, _| RADIUS + 0.01), 2);
+    let high = worn("shirt", level(14, |_, _| RADIUS + 0.02), 1);
+    let (run, measures) = finish(scene(vec![low, high]));
+    let tally = run.cloth_tally().unwrap();
+    assert!(tally.astray[0] > 100 && tally.astray[2] == 0, "{tally:?}");
+    assert_in_order(&run, &measures, 1, 0);
+}
+
+#[test]
+fn layers_that_start_in_each_other_are_parted_by_their_order() {
+    // The borders cross in waves: about half of either lies on the wrong side.
+    let wave = |x: f64, z: f64| 0.008 * (40.0 * x).sin() * (30.0 * z).cos();
+    let cloths = vec![
+        worn("shirt", level(14, |_, _| RADIUS + 0.02), 0),
+        worn("coat", level(13, |x, z| RADIUS + 0.02 + wave(x, z)), 7),
+    ];
+    let (run, measures) = finish(scene(cloths));
+    let tally = run.cloth_tally().unwrap();
+    assert!(tally.crossings[0] > 20 && tally.astray[0] > 20, "{tally:?}");
+    assert_eq!([tally.crossings[2], tally.astray[2]], [0; 2]);
+    assert_in_order(&run, &measures, 0, 1);
+}
+
+#[test]
+fn three_layers_come_to_rest_by_newtons_method_too() {
+    let mut cloths = Vec::new();
+    for (k, name) in ["skin", "shirt", "coat"].into_iter().enumerate() {
+        let height = RADIUS + 0.008 + 0.004 * k as f64;
+        cloths.push(worn(name, level(9 + k, |_, _| height), k as u16 + 1));
+    }
+    let start = scene(cloths);
+    let (run, _) = finish(start.clone());
+    // From where the motion ended: the shapes at rest are those of the start.
+    let mut rest = Scene {
+        method: MethodKind::Rest.into(),
+        ..start
+    };
+    for (object, mesh) in rest.objects.iter_mut().zip(run.meshes()) {
+        if let ObjectKind::Deformable { material, .. } = &object.kind {
+            let cloth = toile_drape::Cloth::from_mesh(&object.name, &object.mesh, material.clone())
+                .unwrap();
+            object.cloth = Some(toile_drape::Cloth {
+                positions: mesh.positions.clone(),
+                ..cloth
+            });
+            object.mesh = mesh;
+        }
+    }
+    rest.method.iterations = Some(60);
+    let (run, measures) = finish(rest);
+    assert_in_order(&run, &measures, 0, 1);
+    assert_in_order(&run, &measures, 1, 2);
+}
+
+#[test]
+fn the_pull_between_layers_keeps_momentum() {
+    // Without body and gravity the middle of both stays where it is.
+    let low = worn("coat", level(8, |_, _| 0.0), 2);
+    let high = worn("shirt", level(8, |_, _| 0.01), 1);
+    let mut free = scene(vec![low, high]);
+    free.objects.pop();
+    free.gravity = Vec3::zeros();
+    free.duration = 0.2;
+    let middle = |run: &SceneRun| {
+        let masses = run.model.mass.iter().zip(&run.state.positions);
+        masses.map(|(m, p)| p * *m).sum::<Vec3>() / run.model.mass.iter().sum::<f64>()
+    };
+    let start = middle(&SceneRun::new(free.clone()).unwrap());
+    let (run, measures) = finish(free);
+    let off = (middle(&run) - start).norm();
+    let tally = run.cloth_tally().unwrap();
+    assert!(off < 1e-6, "{off} {tally:?}");
+    assert_in_order(&run, &measures, 1, 0);
+}
+
+#[test]
+fn layers_that_cannot_be_in_order_are_refused_by_name() {
+    let two = || {
+        scene(vec![
+            worn("shirt", level(4, |_, _| 0.1), 1),
+            worn("coat", level(4, |_, _| 0.11), 2),
+        ])
+    };
+    let refused = |scene: Scene| match SceneRun::new(scene) {
+        Err(error @ DrapeError::Scene { .. }) => error.to_string(),
+        _ => panic!("not refused"),
+    };
+    let mut through = two();
+    through.contact.cloth_offset = 0.0;
+    let said = refused(through);
+    assert!(
+        said.contains("\"coat\"") && said.contains("cloth_offset"),
+        "{said}"
+    );
+    let mut blind = two();
+    blind.method = MethodKind::VelocityVerlet.into();
+    let said = refused(blind);
+    assert!(
+        said.contains("velocity-verlet") && said.contains("use xpbd"),
+        "{said}"
+    );
+    let mut body = two();
+    body.objects[2].layer = 3;
+    let said = refused(body);
+    assert!(
+        said.contains("\"ball\"") && said.contains("only cloth"),
+        "{said}"
+    );
+    let mut far = two();
+    far.objects[1].layer = 1000;
+    assert!(refused(far).contains("from 0 to 999"));
+    // One layer alone, whatever its number, is none.
+    let mut one = two();
+    one.objects[1].layer = 1;
+    one.contact.cloth_offset = 0.0;
+    assert!(SceneRun::new(one).is_ok());
+}
+
+#[test]
+fn cloths_sewn_together_are_in_no_order_there() {
+    let mut joined = scene(vec![
+        worn("shirt", level(6, |_, _| RADIUS + 0.01), 1),
+        worn("coat", level(6, |_, _| RADIUS + 0.012), 2),
+    ]);
+    joined.elastics = vec![SceneElastic {
+        from: SceneEnd::Vertex {
+            object: 0,
+            vertex: 24,
+        },
+        to: SceneEnd::Vertex {
+            object: 1,
+            vertex: 24,
+        },
+        stiffness: 10.0,
+        merge_within: Some(0.01),
+    }];
+    let (run, measures) = finish(joined);
+    assert_eq!(run.model.vertex_count(), 2 * 49 - 1);
+    assert_eq!(run.model.layer[24], toile_drape::collision::BETWEEN_LAYERS);
+    assert_eq!(measures.self_intersections, 0);
+    assert!(measures.layers.iter().all(|layer| layer.astray == 0));
+}
