@@ -481,4 +481,25 @@ fn a_scene_is_simulated_and_a_bad_one_refused() {
     let bad = run("bad.json");
     assert_eq!(bad.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&bad.stderr).contains("no vertex 99"));
+    let body =
+        "v 0 0 0.2\nv 0.1 0 0.2\nv 0 0.1 0.2\nv 0 0 0.3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    std::fs::write(place("body.obj"), body).unwrap();
+    let moving = r#"{ "duration": 0.1, "method": { "name": "xpbd" }, "collision": { "cloth_offset": 0.002 },
+        "objects": [
+        { "name": "flag", "kind": "deformable", "mesh": "flag.obj",
+          "grips": [ { "vertices": [0, 4], "motion": { "keys": [ { "time": 0, "translation": [0, 0.5, 0] } ] } } ] },
+        { "name": "body", "kind": "animated", "mesh": "body.obj", "motion": { "keys": [
+          { "time": 0 }, { "time": 0.05, "translation": [0, 0, 1] } ] } } ] }"#;
+    std::fs::write(place("moving.json"), moving).unwrap();
+    let good = run("moving.json");
+    let said = String::from_utf8_lossy(&good.stderr);
+    assert!(good.status.success(), "{said}");
+    let moved = std::fs::read_to_string(place("out/body.obj")).unwrap();
+    assert!(moved.contains("v 0 0 1.2"), "{moved}");
+    let report = std::fs::read_to_string(place("out/report.json")).unwrap();
+    assert!(report.contains("\"tangles\""), "{report}");
+    std::fs::write(place("bad.json"), moving.replace("xpbd", "bdf2")).unwrap();
+    let bad = run("bad.json");
+    assert_eq!(bad.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&bad.stderr).contains("use the method \"xpbd\""));
 }

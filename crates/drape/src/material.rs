@@ -41,6 +41,8 @@ pub struct Material {
     pub relaxation_time: f64,
     /// Coulomb friction coefficient against solid surfaces.
     pub friction: f64,
+    /// Share of the normal speed of an impact that comes back, 0 to 1. Only `xpbd` knows it.
+    pub restitution: f64,
 }
 
 impl Default for Material {
@@ -66,6 +68,7 @@ impl Default for Material {
             kept: [0.0; 2],
             relaxation_time: 10.0,
             friction: 0.4,
+            restitution: 0.0,
         }
     }
 }
@@ -199,6 +202,12 @@ impl Material {
             ratio("kept share of folds", self.kept[1]),
             positive("relaxation time [s]", self.relaxation_time),
             not_negative("friction", self.friction),
+            (
+                "restitution",
+                self.restitution,
+                (0.0..=1.0).contains(&self.restitution),
+                "give a share from 0 to 1",
+            ),
         ];
         for (field, value, good, remedy) in fields {
             if !good {

@@ -198,6 +198,8 @@ pub struct ContactSample {
     pub area: f64,
     /// Friction coefficient there.
     pub friction: f64,
+    /// Share of the normal speed of an impact that comes back there.
+    pub restitution: f64,
     /// Distance kept beyond the usual offset [m]: raised where a triangle went on crossing.
     pub extra_offset: f64,
 }
@@ -328,6 +330,7 @@ impl Model {
     fn lump(&mut self, count: usize) {
         let mut area = vec![0.0; count];
         let mut friction = vec![0.0; count];
+        let mut restitution = vec![0.0; count];
         for (t, corners) in self.triangles.iter().enumerate() {
             let share = self.elements[t].area / 3.0;
             let material = &self.materials[self.material[t] as usize];
@@ -335,6 +338,7 @@ impl Model {
                 area[v as usize] += share;
                 self.mass[v as usize] += share * material.density;
                 friction[v as usize] += share * material.friction;
+                restitution[v as usize] += share * material.restitution;
             }
         }
         self.samples = (0..count)
@@ -345,6 +349,7 @@ impl Model {
                 weights: [1.0, 0.0, 0.0],
                 area: area[v],
                 friction: friction[v] / area[v],
+                restitution: restitution[v] / area[v],
                 extra_offset: 0.0,
             })
             .collect();
@@ -355,6 +360,11 @@ impl Model {
                 self.mass[v] = 1.0;
             }
         }
+    }
+
+    /// Whether any cloth bounces.
+    pub(crate) fn bounces(&self) -> bool {
+        self.materials.iter().any(|m| m.restitution > 0.0)
     }
 
     /// Whether stretch of any cloth is viscous.
@@ -457,6 +467,7 @@ impl Model {
                 weights,
                 area: self.elements[triangle as usize].area / 3.0,
                 friction: material.friction,
+                restitution: material.restitution,
                 extra_offset: 0.0,
             });
         }

@@ -365,6 +365,20 @@ impl Scene {
                 continue;
             };
             material.check(&object.name)?;
+            let bounces = |m: &Material| m.restitution > 0.0;
+            let own = object.cloth.iter().flat_map(|cloth| &cloth.materials);
+            if [material].into_iter().chain(own).any(bounces)
+                && self.method.kind != MethodKind::Xpbd
+            {
+                return Err(DrapeError::Scene {
+                    place: format!("restitution of \"{}\"", object.name),
+                    what: format!(
+                        "method \"{}\" knows no impacts that bounce",
+                        self.method.kind.name()
+                    ),
+                    remedy: "use the method \"xpbd\", or leave restitution at 0".to_owned(),
+                });
+            }
             if let Some(pin) = pins
                 .iter()
                 .find(|&&pin| pin as usize >= object.mesh.positions.len())

@@ -283,6 +283,9 @@ pub struct MaterialFile {
     pub relaxation_time: Option<f64>,
     /// Friction coefficient.
     pub friction: Option<f64>,
+    /// Share of the speed of an impact that comes back.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<f64>,
     #[serde(flatten)]
     unknown: Unknown,
 }
@@ -342,6 +345,7 @@ impl MaterialFile {
             kept: self.kept.unwrap_or(usual.kept),
             relaxation_time: self.relaxation_time.unwrap_or(usual.relaxation_time),
             friction: self.friction.unwrap_or(usual.friction),
+            restitution: self.restitution.unwrap_or(usual.restitution),
         })
     }
 }

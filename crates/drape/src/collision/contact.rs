@@ -24,6 +24,8 @@ pub struct ClothContact {
     pub plane: ContactPlane,
     /// The laws.
     pub law: ContactLaw,
+    /// Share of the speed of an impact that comes back.
+    pub restitution: f64,
     /// The features; none for a crossing that is being undone.
     pub pair: Option<FeaturePair>,
 }
@@ -139,6 +141,7 @@ fn pull(pull: &Pull) -> ClothContact {
             tangential: pull.stiffness,
             friction: 0.0,
         },
+        restitution: 0.0,
         pair: None,
     }
 }
@@ -381,6 +384,7 @@ impl ClothContacts {
                 tangential: 0.5 * normal,
                 friction,
             },
+            restitution: of(&self.surface.restitution),
             pair: Some(near.pair),
         }
     }

@@ -46,6 +46,8 @@ pub struct ClothSurface {
     pub area: Vec<f64>,
     /// Friction coefficient at each vertex.
     pub friction: Vec<f64>,
+    /// Share of the speed of an impact that comes back at each vertex.
+    pub restitution: Vec<f64>,
     /// Layer of each vertex; empty where all are of one.
     pub layer: Vec<u16>,
     /// Vertices at an edge with cloth on one side only.
@@ -75,6 +77,7 @@ impl ClothSurface {
             let v = sample.vertices[0] as usize;
             surface.area[v] = sample.area;
             surface.friction[v] = sample.friction;
+            surface.restitution[v] = sample.restitution;
         }
         surface
     }
@@ -97,6 +100,7 @@ impl ClothSurface {
             room,
             area: vec![0.0; count],
             friction: vec![0.0; count],
+            restitution: vec![0.0; count],
             border: vec![false; count],
             ..Self::default()
         };

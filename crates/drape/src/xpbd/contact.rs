@@ -280,6 +280,11 @@ impl TouchBlock {
         }
     }
 
+    /// Lanes that were pressed.
+    pub fn pressed(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..LANES).filter(|&lane| self.push.0[lane] > 0.0)
+    }
+
     /// Sets the touch of a lane.
     pub fn set(&mut self, lane: usize, touch: &Touch) {
         for k in 0..3 {
@@ -451,6 +456,8 @@ pub struct ContactStencil {
     pub weights: [f32; 4],
     /// The plane.
     pub touch: Touch,
+    /// Share of the speed of an impact that comes back, where no sample of the model says it.
+    pub restitution: f32,
 }
 
 impl ContactStencil {

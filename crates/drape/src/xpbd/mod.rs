@@ -16,12 +16,13 @@
 //!
 //! Inner loops run in single precision on positions relative to the middle of the cloth, with what
 //! rounding leaves out of them carried along; the state outside is in double precision. Viscosity,
-//! kept strain and the air's forces on triangles do not act here; drag per mass does.
+//! kept strain and the air's forces on triangles do not act here; drag per mass does, and restitution.
 
 // Lanes and axes are gone through by index, so that loops unroll into vectors.
 #![allow(clippy::needless_range_loop)]
 
 mod bending;
+mod bounce;
 mod cloth;
 mod contact;
 mod domains;
@@ -36,6 +37,7 @@ use crate::collision::Tally;
 use crate::methods::{Method, MethodSettings, StepReport};
 use crate::{DrapeError, Model, State};
 use bending::{BendingForce, Filter};
+use bounce::BounceStep;
 pub(crate) use cloth::{ClothWatch, Span};
 use contact::{ContactStep, Solid, Touch};
 use lanes::LANES;
@@ -407,6 +409,10 @@ impl Xpbd {
                 bends: self.filter.is_none(),
             },
             motion,
+            bounces: model.bounces().then_some(BounceStep {
+                step: h as f32,
+                gravity: g.norm() as f32,
+            }),
             bending: &self.bending,
             filter: self.filter.as_ref(),
             time,

@@ -1,6 +1,7 @@
 //! Substeps: free motion, constraints, contact, velocities, each shared between cores.
 
 use super::bending::{BendingForce, Filter};
+use super::bounce::{BounceStep, bounce};
 use super::contact::Solid;
 use super::domains::{Of, Swept, for_domains};
 use super::particles::{
@@ -15,6 +16,8 @@ pub struct Run<'a> {
     pub sweep: SweepStep<'a>,
     /// For free motion.
     pub motion: MotionStep,
+    /// Restitution, where any cloth bounces.
+    pub bounces: Option<BounceStep>,
     /// K.
     pub bending: &'a BendingForce,
     /// How its force is filtered; none where bending is constraints.
@@ -65,6 +68,15 @@ impl Run<'_> {
                 let Particles { start, now, .. } = &mut *particles;
                 regions.rest.sweep(&sweep, now, start);
                 self.settle(particles, &sweep, iteration + 1 == self.iterations);
+            }
+            if let Some(step) = self.bounces {
+                let domains = self.domain_starts.iter().zip(&regions.domains);
+                let cuts = self.cut_starts.iter().zip(&regions.cuts);
+                let runs = domains
+                    .chain(cuts)
+                    .chain(std::iter::once((&0, &regions.rest)))
+                    .map(|(&first, region)| (first, &region.contacts[..]));
+                bounce(sweep.solid.model, runs, particles, step);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! The laws: small scenes with a known outcome.
 
+mod bounce;
 mod buckling;
 mod cantilever;
 mod capstan;
@@ -29,7 +30,7 @@ pub struct Law {
 }
 
 /// Every law.
-pub const LAWS: [Law; 22] = [
+pub const LAWS: [Law; 23] = [
     Law {
         name: "cantilever",
         title: "a strip clamped horizontally bends by its weight: drop over reach against the heavy elastica, four kinds of mesh",
@@ -134,6 +135,11 @@ pub const LAWS: [Law; 22] = [
         name: "stick-slip",
         title: "a strip pushed down on a table sticks while friction bears what the propped elastica asks",
         run: stick_slip::stick_slip,
+    },
+    Law {
+        name: "bounce",
+        title: "a cloth dropped flat from h comes back to e^2 h",
+        run: bounce::bounce,
     },
     Law {
         name: "cusick",
