@@ -19,12 +19,17 @@
 //! `soak sizes [--quality preview|fit|final] [--out DIR] [NAME...]` drapes every pattern that ships, or those named, on
 //! five women, five men and two children, or those named, prints a line each with the crossings
 //! of cloth with body and with cloth, and fails where there are any.
+//!
+//! `soak layers [--fit] [FIGURE...]` wears the shipped patterns in three layers on every mannequin, and fails
+//! where layers cross the body, themselves or each other, or are out of order.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[path = "soak/cloth.rs"]
 mod cloth;
 #[path = "soak/sizes.rs"]
 mod sizes;
+#[path = "soak/layers.rs"]
+mod layers;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -503,8 +508,9 @@ fn main() -> ExitCode {
         Some((first, rest)) if first == "hard" => cloth::hard(rest),
         Some((first, rest)) if first == "tangles" => cloth::tangles(rest),
         Some((first, rest)) if first == "sizes" => sizes::sizes(rest),
+        Some((first, rest)) if first == "layers" => layers::layers(rest),
         _ => Err(
-            "say what: soak nest [OPTIONS] INSTANCE.json..., soak hard, soak tangles, soak sizes"
+            "say what: soak nest [OPTIONS] INSTANCE.json..., soak hard, soak tangles, soak sizes, soak layers"
                 .to_owned(),
         ),
     };

@@ -1,9 +1,10 @@
 //! Whole garments: every shipped pattern, and foreign ones where they are present, from file to
 //! worn.
+#![allow(clippy::unwrap_used)]
 
 use std::path::PathBuf;
 use toile_drape::{GarmentRun, Stage};
-use toile_session::{Command, Quality, Session, Silent};
+use toile_session::{Command, Figure, OtherGarment, Quality, Session, Silent};
 use toile_tests::{files_below, root, shared_data};
 
 /// Sews and drapes a pattern at preview quality and holds it to what every garment must meet.
@@ -78,4 +79,47 @@ fn foreign_patterns_are_worn() {
     let patterns = files_below(&data.join("garmentcode"), "_specification.json");
     assert!(!patterns.is_empty());
     patterns.into_iter().for_each(check);
+}
+
+#[test]
+fn shipped_patterns_are_worn_over_one_another() {
+    let path = |name: &str| root().join(format!("patterns/{name}.toile.json"));
+    let over = |name: &str, layer| OtherGarment {
+        path: path(name),
+        layer,
+    };
+    let mut session = Session::new();
+    for command in [
+        Command::OpenPattern {
+            path: path("gathered-skirt"),
+        },
+        Command::SetLayers {
+            layer: 1,
+            others: vec![over("poncho", 3), over("t-shirt", 2)],
+        },
+        Command::SetBody {
+            figure: Some(Figure::Child8),
+            measurements: None,
+        },
+        Command::SetQuality {
+            quality: Quality::Preview,
+        },
+    ] {
+        session.execute(command, &mut Silent).unwrap();
+    }
+    let job = session.garment_setup().unwrap();
+    let mut run = GarmentRun::new(job.setup).unwrap();
+    while run.progress().stage != Stage::Finished {
+        run.advance().unwrap();
+    }
+    let measures = run.measure();
+    assert_eq!(measures.body_intersections, 0);
+    assert_eq!(measures.self_intersections, 0);
+    assert_eq!(measures.layers.len(), 3);
+    for layer in &measures.layers {
+        assert_eq!([layer.outer_intersections, layer.astray], [0; 2]);
+    }
+    let mesh = run.model.mesh(&run.state.positions);
+    assert_eq!(mesh.component_count(), 3);
+    assert!(run.warnings().is_empty(), "{:?}", run.warnings());
 }

@@ -502,4 +502,33 @@ fn a_scene_is_simulated_and_a_bad_one_refused() {
     let bad = run("bad.json");
     assert_eq!(bad.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&bad.stderr).contains("use the method \"xpbd\""));
+    // The coat starts behind the shirt, whose triangles face the other way.
+    let layered = r#"{ "duration": 0.3, "method": { "name": "xpbd" }, "collision": { "cloth_offset": 0.002 },
+        "objects": [
+        { "name": "coat", "kind": "deformable", "mesh": "flag.obj", "layer": 2,
+          "transform": { "translation": [0, 0, -0.01] }, "material": { "restitution": 0.2 } },
+        { "name": "shirt", "kind": "deformable", "mesh": "flag.obj", "layer": 1 } ] }"#;
+    std::fs::write(place("layered.json"), layered).unwrap();
+    let good = run("layered.json");
+    let said = String::from_utf8_lossy(&good.stderr);
+    assert!(good.status.success(), "{said}");
+    let report = std::fs::read_to_string(place("out/report.json")).unwrap();
+    let report: Value = serde_json::from_str(&report).unwrap();
+    assert_eq!(report["layers"][0]["objects"][0], "shirt");
+    assert_eq!(report["layers"][0]["astray"], 0);
+    assert_eq!(report["layers"][0]["outer_intersections"], 0);
+    assert!(
+        report["tangles"]["astray"][0].as_u64() > Some(0),
+        "{report}"
+    );
+    let refused = |from: &str, to: &str, word: &str| {
+        std::fs::write(place("bad.json"), layered.replace(from, to)).unwrap();
+        let bad = run("bad.json");
+        let said = String::from_utf8_lossy(&bad.stderr).into_owned();
+        assert_eq!(bad.status.code(), Some(2), "{said}");
+        assert!(said.contains(word), "{said}");
+    };
+    refused("0.002", "0", "layer of \"shirt\"");
+    refused("\"layer\": 2", "\"layer\": -2", "layer");
+    refused("0.2 }", "2 }", "restitution");
 }

@@ -41,8 +41,9 @@ pub struct Material {
     pub relaxation_time: f64,
     /// Coulomb friction coefficient against solid surfaces.
     pub friction: f64,
-    /// Share of the normal speed of an impact that comes back, 0 to 1. Only `xpbd` knows it.
-    pub restitution: f64,
+    /// Share of the normal speed of an impact that comes back, 0 to 1; none leaves it to the spring of
+    /// the contact. Only `xpbd` knows it.
+    pub restitution: Option<f64>,
 }
 
 impl Default for Material {
@@ -68,7 +69,7 @@ impl Default for Material {
             kept: [0.0; 2],
             relaxation_time: 10.0,
             friction: 0.4,
-            restitution: 0.0,
+            restitution: None,
         }
     }
 }
@@ -204,8 +205,8 @@ impl Material {
             not_negative("friction", self.friction),
             (
                 "restitution",
-                self.restitution,
-                (0.0..=1.0).contains(&self.restitution),
+                self.restitution.unwrap_or_default(),
+                (0.0..=1.0).contains(&self.restitution.unwrap_or_default()),
                 "give a share from 0 to 1",
             ),
         ];

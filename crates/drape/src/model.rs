@@ -198,8 +198,8 @@ pub struct ContactSample {
     pub area: f64,
     /// Friction coefficient there.
     pub friction: f64,
-    /// Share of the normal speed of an impact that comes back there.
-    pub restitution: f64,
+    /// Share of the normal speed of an impact that comes back there, where any cloth says it.
+    pub restitution: Option<f64>,
     /// Distance kept beyond the usual offset [m]: raised where a triangle went on crossing.
     pub extra_offset: f64,
 }
@@ -330,7 +330,7 @@ impl Model {
     fn lump(&mut self, count: usize) {
         let mut area = vec![0.0; count];
         let mut friction = vec![0.0; count];
-        let mut restitution = vec![0.0; count];
+        let mut restitution = vec![[0.0; 2]; count];
         for (t, corners) in self.triangles.iter().enumerate() {
             let share = self.elements[t].area / 3.0;
             let material = &self.materials[self.material[t] as usize];
@@ -338,7 +338,10 @@ impl Model {
                 area[v as usize] += share;
                 self.mass[v as usize] += share * material.density;
                 friction[v as usize] += share * material.friction;
-                restitution[v as usize] += share * material.restitution;
+                if let Some(e) = material.restitution {
+                    restitution[v as usize][0] += share * e;
+                    restitution[v as usize][1] += share;
+                }
             }
         }
         self.samples = (0..count)
@@ -349,7 +352,8 @@ impl Model {
                 weights: [1.0, 0.0, 0.0],
                 area: area[v],
                 friction: friction[v] / area[v],
-                restitution: restitution[v] / area[v],
+                restitution: (restitution[v][1] > 0.0)
+                    .then(|| restitution[v][0] / restitution[v][1]),
                 extra_offset: 0.0,
             })
             .collect();
@@ -362,9 +366,9 @@ impl Model {
         }
     }
 
-    /// Whether any cloth bounces.
+    /// Whether any cloth says how it bounces.
     pub(crate) fn bounces(&self) -> bool {
-        self.materials.iter().any(|m| m.restitution > 0.0)
+        self.materials.iter().any(|m| m.restitution.is_some())
     }
 
     /// Whether stretch of any cloth is viscous.

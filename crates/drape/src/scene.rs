@@ -365,7 +365,7 @@ impl Scene {
                 continue;
             };
             material.check(&object.name)?;
-            let bounces = |m: &Material| m.restitution > 0.0;
+            let bounces = |m: &Material| m.restitution.is_some();
             let own = object.cloth.iter().flat_map(|cloth| &cloth.materials);
             if [material].into_iter().chain(own).any(bounces)
                 && self.method.kind != MethodKind::Xpbd
@@ -376,7 +376,7 @@ impl Scene {
                         "method \"{}\" knows no impacts that bounce",
                         self.method.kind.name()
                     ),
-                    remedy: "use the method \"xpbd\", or leave restitution at 0".to_owned(),
+                    remedy: "use the method \"xpbd\", or leave restitution out".to_owned(),
                 });
             }
             if let Some(pin) = pins

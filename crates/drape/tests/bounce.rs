@@ -20,7 +20,7 @@ fn bouncing(name: &str, height: f64, restitution: f64) -> SceneObject {
     let mut object = object(name, mesh, vec![]);
     object.kind = ObjectKind::Deformable {
         material: Material {
-            restitution,
+            restitution: Some(restitution),
             friction: 0.0,
             ..Material::default()
         },

@@ -189,8 +189,16 @@ fn the_pull_between_layers_keeps_momentum() {
     let (run, measures) = finish(free);
     let off = (middle(&run) - start).norm();
     let tally = run.cloth_tally().unwrap();
-    assert!(off < 1e-6, "{off} {tally:?}");
-    assert_in_order(&run, &measures, 1, 0);
+    // Single precision rounds 0.15 m to 4e-9 m, over a substep of 0.4 ms 1e-5 m/s a vertex and pass; over
+    // 480 substeps of some ten passes and 162 vertices 5e-5 m/s in the mean, 1e-5 m in 0.2 s.
+    assert!(off < 2e-5, "{off} {tally:?}");
+    assert_eq!(measures.self_intersections, 0);
+    let heights = |k: usize| run.meshes()[k].positions.clone().into_iter().map(|p| p.y);
+    let [coat, shirt] = [
+        heights(0).fold(f64::INFINITY, f64::min),
+        heights(1).fold(f64::NEG_INFINITY, f64::max),
+    ];
+    assert!(coat > shirt, "{coat} {shirt}");
 }
 
 #[test]

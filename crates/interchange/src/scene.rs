@@ -345,7 +345,7 @@ impl MaterialFile {
             kept: self.kept.unwrap_or(usual.kept),
             relaxation_time: self.relaxation_time.unwrap_or(usual.relaxation_time),
             friction: self.friction.unwrap_or(usual.friction),
-            restitution: self.restitution.unwrap_or(usual.restitution),
+            restitution: self.restitution.or(usual.restitution),
         })
     }
 }

@@ -1,13 +1,14 @@
 //! How far a motion may go. Where features would meet on the way, impulses along their normal take
 //! back what brings them together, pair by pair, each keeping momentum (Provot 1997; Bridson, Fedkiw
-//! and Anderson 2002). What still meets after some rounds of that is cut, vertex by vertex, until
-//! nothing meets any more.
+//! and Anderson 2002). What still meets after some rounds of that moves as one; what meets
+//! even then is cut, vertex by vertex, until nothing meets any more.
 
 use super::curvature::{Clearance, longest};
 use super::impact::{edge_edge_impact, vertex_face_impact};
 use super::layers::Knots;
 use super::proximity::{Nearness, closest, is_far};
 use super::surface::{ClothSurface, FeaturePair};
+use super::zones::Zones;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
@@ -38,6 +39,9 @@ const SHORT: f64 = 1.0 - 1e-6;
 /// Rounds of impulses, and what they aim at beyond the distance to be kept, as a share of it.
 const IMPULSE_ROUNDS: usize = 10;
 const BEYOND: f64 = 0.05;
+
+/// Rounds in which zones grow by what they meet.
+const ZONE_ROUNDS: usize = 12;
 
 /// Rounds in which moves are shortened; those that meet even then are stopped.
 const ROUNDS: usize = 6;
@@ -80,6 +84,8 @@ pub struct Motions<'a> {
 pub struct Kept {
     /// Impulses given.
     pub impulses: usize,
+    /// Vertices that moved in rigid zones because impulses did not settle.
+    pub zoned: usize,
     /// Vertices whose moves were cut.
     pub cut: usize,
 }
@@ -105,6 +111,20 @@ pub fn keep_apart(
             kept.impulses += usize::from(push(&meeting, time, motion));
         }
     }
+    let mut zones = Zones::new(motion.x.len());
+    for _ in 0..ZONE_ROUNDS {
+        near(surface, motion.moves, &mut pairs);
+        let met = met(&pairs, knots, motion);
+        if met.is_empty() {
+            kept.zoned = zones.count();
+            return kept;
+        }
+        for (meeting, _) in &met {
+            zones.join(meeting.pair.vertices(), motion.lightness);
+        }
+        zones.stiffen(motion);
+    }
+    kept.zoned = zones.count();
     // Cut about the mean motion, which nothing can meet by.
     let held = motion.lightness.contains(&0.0);
     let count = motion.moves.len().max(1) as f64;

@@ -24,8 +24,8 @@ pub struct ClothContact {
     pub plane: ContactPlane,
     /// The laws.
     pub law: ContactLaw,
-    /// Share of the speed of an impact that comes back.
-    pub restitution: f64,
+    /// Share of the speed of an impact that comes back, where any of the vertices says it.
+    pub restitution: Option<f64>,
     /// The features; none for a crossing that is being undone.
     pub pair: Option<FeaturePair>,
 }
@@ -69,7 +69,9 @@ pub struct Tally {
     pub astray: [usize; 3],
     /// Impulses that kept features from passing through each other between looks.
     pub impulses: usize,
-    /// Moves of vertices that were cut because impulses were not enough.
+    /// Moves of vertices in rigid zones, where impulses did not settle.
+    pub zoned: usize,
+    /// Moves of vertices that were cut because zones were not enough.
     pub cut: usize,
 }
 
@@ -99,6 +101,7 @@ impl Tally {
             crossings: both(self.crossings, next.crossings),
             astray: both(self.astray, next.astray),
             impulses: self.impulses + next.impulses,
+            zoned: self.zoned + next.zoned,
             cut: self.cut + next.cut,
         }
     }
@@ -141,7 +144,7 @@ fn pull(pull: &Pull) -> ClothContact {
             tangential: pull.stiffness,
             friction: 0.0,
         },
-        restitution: 0.0,
+        restitution: None,
         pair: None,
     }
 }
@@ -384,9 +387,21 @@ impl ClothContacts {
                 tangential: 0.5 * normal,
                 friction,
             },
-            restitution: of(&self.surface.restitution),
+            restitution: self.restitution(vertices, near.weights),
             pair: Some(near.pair),
         }
+    }
+
+    /// The mean by weight of the vertices that say it.
+    fn restitution(&self, vertices: [u32; 4], weights: [f64; 4]) -> Option<f64> {
+        let (mut sum, mut all) = (0.0, 0.0);
+        for (v, w) in vertices.into_iter().zip(weights) {
+            if let Some(e) = self.surface.restitution[v as usize] {
+                sum += e * w.abs();
+                all += w.abs();
+            }
+        }
+        (all > 0.0).then(|| sum / all)
     }
 
     /// A pull on the ends of a piercing edge and the two nearest corners of the face.
@@ -536,6 +551,7 @@ impl ClothContacts {
         };
         let kept = super::bound::keep_apart(surface, knots, motion, find);
         self.tally.impulses += kept.impulses;
+        self.tally.zoned += kept.zoned;
         self.tally.cut += kept.cut;
         kept
     }

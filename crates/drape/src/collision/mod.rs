@@ -11,6 +11,7 @@ mod layers;
 mod proximity;
 mod surface;
 mod tangle;
+mod zones;
 
 pub use bound::{Kept, Motions, bound_moves};
 pub use boxes::{Bounds, BoxTree, Node, Region};

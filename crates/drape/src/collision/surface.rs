@@ -46,8 +46,8 @@ pub struct ClothSurface {
     pub area: Vec<f64>,
     /// Friction coefficient at each vertex.
     pub friction: Vec<f64>,
-    /// Share of the speed of an impact that comes back at each vertex.
-    pub restitution: Vec<f64>,
+    /// Share of the speed of an impact that comes back at each vertex, where any cloth says it.
+    pub restitution: Vec<Option<f64>>,
     /// Layer of each vertex; empty where all are of one.
     pub layer: Vec<u16>,
     /// Vertices at an edge with cloth on one side only.
@@ -100,7 +100,7 @@ impl ClothSurface {
             room,
             area: vec![0.0; count],
             friction: vec![0.0; count],
-            restitution: vec![0.0; count],
+            restitution: vec![None; count],
             border: vec![false; count],
             ..Self::default()
         };

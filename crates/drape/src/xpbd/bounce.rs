@@ -6,7 +6,7 @@
 //! together, each by impulses along its normal that never pull.
 
 use super::contact::{ContactStencil, NO_SAMPLE, Touch};
-use super::lanes::LANES;
+use super::lanes::{LANES, Point};
 use super::particles::Particles;
 use crate::Model;
 
@@ -27,18 +27,53 @@ struct Hit {
     drift: f32,
     /// Impulse so far [N s].
     impulse: f32,
+    /// Share of the speed that comes back, where it is said.
+    share: Option<f32>,
     /// Speed along the normal that it leaves with [m/s].
     leaving: f32,
 }
 
 impl Hit {
-    fn speed(&self, velocity: &[[f32; 4]]) -> f32 {
+    /// From what a contact did, drift and impulse still times the substep.
+    fn new(
+        particles: &Particles,
+        (slots, weights): ([u32; 4], [f32; 4]),
+        touch: &Touch,
+        share: Option<f32>,
+    ) -> Option<Self> {
+        let each = slots.iter().zip(weights);
+        let yielding: f32 = each
+            .map(|(&slot, a)| a * a * particles.start[slot as usize][3])
+            .sum();
+        (touch.push > 0.0 && yielding > 0.0).then(|| Self {
+            slots,
+            weights,
+            normal: touch.normal,
+            yielding,
+            drift: (0..3).map(|k| touch.normal[k] * touch.drift[k]).sum(),
+            impulse: touch.push,
+            share,
+            leaving: 0.0,
+        })
+    }
+
+    fn speed(&self, velocity: &[Point]) -> f32 {
         let mut speed = -self.drift;
         for (&slot, a) in self.slots.iter().zip(self.weights) {
             let v = velocity[slot as usize];
             speed += a * (0..3).map(|k| self.normal[k] * v[k]).sum::<f32>();
         }
         speed
+    }
+
+    /// Adds an impulse [N s] along the normal; `points` hold inverse masses.
+    fn push(&self, impulse: f32, points: &[Point], velocity: &mut [Point]) {
+        for (&slot, a) in self.slots.iter().zip(self.weights) {
+            let share = impulse * a * points[slot as usize][3];
+            for k in 0..3 {
+                velocity[slot as usize][k] += self.normal[k] * share;
+            }
+        }
     }
 }
 
@@ -64,9 +99,8 @@ pub fn bounce<'a>(
         for lane in touches.pressed() {
             let touch = touches.get(lane);
             let slot = (block * LANES + lane) as u32;
-            let share = restitution(model, &touch);
             let one = ([slot; 4], [1.0, 0.0, 0.0, 0.0]);
-            hits.extend(hit(particles, one, &touch, (share, step)));
+            hits.extend(Hit::new(particles, one, &touch, restitution(model, &touch)));
         }
     }
     let each = stencils.flat_map(|(first, run)| run.iter().map(move |stencil| (first, stencil)));
@@ -77,64 +111,44 @@ pub fn bounce<'a>(
         };
         let slots = stencil.vertices.map(|v| v + first as u32);
         let four = (slots, stencil.weights);
-        hits.extend(hit(particles, four, &stencil.touch, (share, step)));
+        hits.extend(Hit::new(particles, four, &stencil.touch, share));
     }
+    let Particles {
+        start,
+        velocity,
+        without,
+        ..
+    } = particles;
+    without.clone_from(velocity);
+    for hit in &mut hits {
+        hit.drift /= step.step;
+        hit.impulse /= step.step;
+        hit.push(-hit.impulse, start, without);
+    }
+    let quiet = QUIET_SUBSTEPS * step.gravity * step.step;
+    hits.retain_mut(|hit| {
+        let before = hit.speed(without);
+        let Some(share) = hit.share else {
+            return false;
+        };
+        hit.leaving = if before < -quiet {
+            -share * before
+        } else {
+            before.max(0.0)
+        };
+        true
+    });
     for _ in 0..ROUNDS {
         for hit in &mut hits {
-            let wanted = (hit.leaving - hit.speed(&particles.velocity)) / hit.yielding;
+            let wanted = (hit.leaving - hit.speed(velocity)) / hit.yielding;
             let change = wanted.max(-hit.impulse);
             hit.impulse += change;
-            for (&slot, a) in hit.slots.iter().zip(hit.weights) {
-                let share = change * a * particles.start[slot as usize][3];
-                let v = &mut particles.velocity[slot as usize];
-                for k in 0..3 {
-                    v[k] += hit.normal[k] * share;
-                }
-            }
+            hit.push(change, start, velocity);
         }
     }
 }
 
-fn restitution(model: &Model, touch: &Touch) -> f32 {
-    match model.samples.get(touch.sample as usize) {
-        Some(sample) => sample.restitution as f32,
-        None => 0.0,
-    }
-}
-
-/// A contact of some restitution, from what it did to the points it hangs on.
-fn hit(
-    particles: &Particles,
-    (slots, weights): ([u32; 4], [f32; 4]),
-    touch: &Touch,
-    (share, step): (f32, BounceStep),
-) -> Option<Hit> {
-    let each = slots.iter().zip(weights);
-    let yielding: f32 = each
-        .map(|(&slot, a)| a * a * particles.start[slot as usize][3])
-        .sum();
-    if share <= 0.0 || touch.push <= 0.0 || yielding <= 0.0 {
-        return None;
-    }
-    let drift = (0..3)
-        .map(|k| touch.normal[k] * touch.drift[k])
-        .sum::<f32>()
-        / step.step;
-    let mut hit = Hit {
-        slots,
-        weights,
-        normal: touch.normal,
-        yielding,
-        drift,
-        impulse: touch.push / step.step,
-        leaving: 0.0,
-    };
-    let before = hit.speed(&particles.velocity) - yielding * hit.impulse;
-    let quiet = QUIET_SUBSTEPS * step.gravity * step.step;
-    hit.leaving = if before < -quiet {
-        -share * before
-    } else {
-        before.max(0.0)
-    };
-    Some(hit)
+fn restitution(model: &Model, touch: &Touch) -> Option<f32> {
+    let sample = model.samples.get(touch.sample as usize)?;
+    sample.restitution.map(|e| e as f32)
 }

@@ -147,7 +147,7 @@ impl Xpbd {
                     friction: contact.law.friction as f32,
                     ..Touch::none()
                 },
-                restitution: contact.restitution as f32,
+                restitution: contact.restitution.map(|e| e as f32),
             }
         });
         let held = &mut self.regions.rest.contacts;

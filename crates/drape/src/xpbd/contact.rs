@@ -457,7 +457,7 @@ pub struct ContactStencil {
     /// The plane.
     pub touch: Touch,
     /// Share of the speed of an impact that comes back, where no sample of the model says it.
-    pub restitution: f32,
+    pub restitution: Option<f32>,
 }
 
 impl ContactStencil {

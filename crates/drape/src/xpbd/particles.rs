@@ -23,6 +23,8 @@ pub struct Particles {
     pub low: Vec<Point>,
     /// Velocities [m/s].
     pub velocity: Vec<Point>,
+    /// Velocities without what contacts did in the substep [m/s]; only where cloth bounces.
+    pub without: Vec<Point>,
     /// Contact of each vertex with the surfaces, sixteen a block.
     pub touch: Vec<TouchBlock>,
     /// h^2 W K x [m].
@@ -44,6 +46,7 @@ impl Particles {
             pull: points.clone(),
             bend: [points.clone(), points.clone()],
             velocity: points,
+            without: Vec::new(),
             touch: vec![TouchBlock::none(); count / LANES],
         }
     }

@@ -149,7 +149,7 @@ impl Regions {
                 vertices: [a, b, c, 0],
                 weights: [p, q, r, 0.0],
                 touch: Touch::of_sample(model, index),
-                restitution: 0.0,
+                restitution: None,
             });
         }
     }

@@ -22,7 +22,7 @@ fn back(restitution: f64) -> Result<f64, LabError> {
         [4, 4],
     )?;
     let material = Material {
-        restitution,
+        restitution: Some(restitution),
         ..Material::default()
     };
     let ground = ContactSettings::default().offset;

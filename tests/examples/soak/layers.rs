@@ -1,0 +1,109 @@
+//! Long runs of garments worn over one another: the shipped patterns, three layers on every mannequin.
+
+use std::path::PathBuf;
+use std::time::Instant;
+use toile_drape::{GarmentRun, Measures, Stage};
+use toile_session::{Command, Figure, OtherGarment, Quality, Session, Silent};
+use toile_tests::root;
+
+/// What is worn, innermost first: every pattern that ships is worn over and under another.
+const OUTFITS: [[&str; 3]; 3] = [
+    ["trousers", "t-shirt", "poncho"],
+    ["gathered-skirt", "t-shirt", "poncho"],
+    ["t-shirt", "trousers", "poncho"],
+];
+
+/// Wears the outfits on every mannequin, or on those named.
+pub fn layers(arguments: &[String]) -> Result<(), String> {
+    let mut quality = Quality::Preview;
+    let mut names = Vec::new();
+    for argument in arguments {
+        match argument.as_str() {
+            "--fit" => quality = Quality::Fit,
+            name => names.push(name.to_owned()),
+        }
+    }
+    println!(
+        "body,inner,middle,outer,vertices,found,astray,body_crossings,cloth_crossings,layer_crossings,astray_end,residual,wall_s"
+    );
+    let mut left = Vec::new();
+    for figure in Figure::ALL {
+        if !names.is_empty() && !names.iter().any(|name| name == figure.name()) {
+            continue;
+        }
+        for outfit in OUTFITS {
+            let worn = format!("{},{}", figure.name(), outfit.join(","));
+            let start = Instant::now();
+            match wear(figure, outfit, quality) {
+                Ok((run, measures)) => {
+                    let sum = |count: fn(&toile_drape::LayerMeasures) -> usize| {
+                        measures.layers.iter().map(count).sum::<usize>()
+                    };
+                    let astray = sum(|layer| layer.astray);
+                    let tally = run.cloth_tally();
+                    println!(
+                        "{worn},{},{},{},{},{},{},{astray},{:.1e},{:.1}",
+                        run.state.positions.len(),
+                        tally.crossings[0],
+                        tally.astray[0],
+                        measures.body_intersections,
+                        measures.self_intersections,
+                        sum(|layer| layer.outer_intersections),
+                        measures.residual,
+                        start.elapsed().as_secs_f64()
+                    );
+                    if measures.body_intersections + measures.self_intersections + astray > 0 {
+                        left.push(worn);
+                    }
+                }
+                Err(error) => {
+                    println!("{worn},,,,,,,,,{error}");
+                    left.push(worn);
+                }
+            }
+        }
+    }
+    match left.is_empty() {
+        true => Ok(()),
+        false => Err(format!("not in order: {}", left.join("; "))),
+    }
+}
+
+/// Drapes an outfit to rest.
+fn wear(
+    figure: Figure,
+    outfit: [&str; 3],
+    quality: Quality,
+) -> Result<(GarmentRun, Measures), String> {
+    let path = |name: &str| -> PathBuf { root().join(format!("patterns/{name}.toile.json")) };
+    let other = |k: usize| OtherGarment {
+        path: path(outfit[k]),
+        layer: k as u16 + 1,
+    };
+    let mut session = Session::new();
+    for command in [
+        Command::OpenPattern {
+            path: path(outfit[0]),
+        },
+        Command::SetLayers {
+            layer: 1,
+            others: vec![other(1), other(2)],
+        },
+        Command::SetBody {
+            figure: Some(figure),
+            measurements: None,
+        },
+        Command::SetQuality { quality },
+    ] {
+        session
+            .execute(command, &mut Silent)
+            .map_err(|error| error.to_string())?;
+    }
+    let job = session.garment_setup().map_err(|error| error.to_string())?;
+    let mut run = GarmentRun::new(job.setup).map_err(|error| error.to_string())?;
+    while run.progress().stage != Stage::Finished {
+        run.advance().map_err(|error| error.to_string())?;
+    }
+    let measures = run.measure();
+    Ok((run, measures))
+}
