@@ -495,7 +495,10 @@ fn a_scene_is_simulated_and_a_bad_one_refused() {
     let said = String::from_utf8_lossy(&good.stderr);
     assert!(good.status.success(), "{said}");
     let moved = std::fs::read_to_string(place("out/body.obj")).unwrap();
-    assert!(moved.contains("v 0 0 1.2"), "{moved}");
+    assert!(
+        moved.contains("v 0.000000000 0.000000000 1.200000000"),
+        "{moved}"
+    );
     let report = std::fs::read_to_string(place("out/report.json")).unwrap();
     assert!(report.contains("\"tangles\""), "{report}");
     std::fs::write(place("bad.json"), moving.replace("xpbd", "bdf2")).unwrap();
