@@ -91,14 +91,14 @@ fn shipped_patterns_are_worn_over_one_another() {
     let mut session = Session::new();
     for command in [
         Command::OpenPattern {
-            path: path("gathered-skirt"),
+            path: path("trousers"),
         },
         Command::SetLayers {
             layer: 1,
-            others: vec![over("poncho", 3), over("t-shirt", 2)],
+            others: vec![over("t-shirt", 2), over("poncho", 3)],
         },
         Command::SetBody {
-            figure: Some(Figure::Child8),
+            figure: Some(Figure::Woman),
             measurements: None,
         },
         Command::SetQuality {

@@ -532,6 +532,6 @@ fn a_scene_is_simulated_and_a_bad_one_refused() {
         assert!(said.contains(word), "{said}");
     };
     refused("0.002", "0", "layer of \"shirt\"");
-    refused("\"layer\": 2", "\"layer\": -2", "layer");
+    refused("\"layer\": 2", "\"layer\": -2", "integer `-2`");
     refused("0.2 }", "2 }", "restitution");
 }
