@@ -26,10 +26,10 @@
 
 #[path = "soak/cloth.rs"]
 mod cloth;
-#[path = "soak/sizes.rs"]
-mod sizes;
 #[path = "soak/layers.rs"]
 mod layers;
+#[path = "soak/sizes.rs"]
+mod sizes;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

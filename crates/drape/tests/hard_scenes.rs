@@ -1,6 +1,8 @@
 //! Hard scenes: each ends without a crossing, counted exactly, keeps what momentum it must keep and
 //! gains no energy that nothing put in. Long ones run in `soak hard`.
 
+#[path = "support/hard_run.rs"]
+mod hard_run;
 #[path = "support/hard_scenes.rs"]
 mod hard_scenes;
 #[path = "support/sheets.rs"]
@@ -8,7 +10,8 @@ mod sheets;
 #[path = "support/solids.rs"]
 mod solids;
 
-use hard_scenes::{Outcome, Size, hard_scene, run};
+use hard_run::{Outcome, run};
+use hard_scenes::{Size, hard_scene};
 
 /// Runs a scene and holds it to what all of them must meet: no crossing on the way nor at the end,
 /// no more energy than was there, to a share that contact in substeps leaves, and an end that shows

@@ -1,5 +1,7 @@
 //! Long runs of cloth on cloth: hard scenes at full size, and planted tangles.
 
+#[path = "../../../crates/drape/tests/support/hard_run.rs"]
+mod hard_run;
 #[path = "../../../crates/drape/tests/support/hard_scenes.rs"]
 mod hard_scenes;
 #[path = "../../../crates/drape/tests/support/numbers.rs"]
@@ -11,7 +13,8 @@ mod sheets;
 #[path = "../../../crates/drape/tests/support/solids.rs"]
 mod solids;
 
-use hard_scenes::{Size, hard_scenes, run};
+use hard_run::run;
+use hard_scenes::{Size, hard_scenes};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use toile_drape::{ObjectKind, SceneRun};
