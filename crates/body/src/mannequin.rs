@@ -19,7 +19,7 @@ use crate::{AttachedPrimitive, BodyError, Field, Figure, Joint, Part, Pose, Prim
 use nalgebra::Rotation3;
 use std::sync::{Arc, OnceLock};
 use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3};
-use toile_measure::Measurements;
+use toile_measure::{Measurements, Origin};
 
 /// A body of given measurements: skeleton, ellipsoid primitives and skin. Facing +Z, standing on
 /// y = 0, arms straight and held off at the angle asked for, legs apart.
@@ -105,7 +105,23 @@ impl Mannequin {
         template: Template,
     ) -> Result<Self, BodyError> {
         let cast = Cast::of(template)?;
-        let request = Request::read(measurements, figure)?;
+        // What is not said of the body is that of people of its own frame.
+        let mut known = measurements.clone();
+        let template = &cast.template;
+        for (name, value) in [
+            ("height", Some(template.height)),
+            ("inside_leg", Some(template.crotch)),
+            ("armpit_height", template.armpit),
+        ] {
+            let asked = known
+                .iter()
+                .any(|(k, m)| k == name && m.origin == Origin::Asked);
+            if let (Some(value), false) = (value, asked) {
+                (known.set(name, value, Origin::Asked))
+                    .map_err(|error| BodyError::Description(error.to_string()))?;
+            }
+        }
+        let request = Request::read(&known, figure)?;
         let warp = Warp::still(&cast.template, &cast.marks);
         let levels = levels::solve(&request.table, &cast.marks, &Excess::default());
         let mesh = cast.skin.mesh.clone();

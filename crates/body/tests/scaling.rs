@@ -126,3 +126,35 @@ proptest! {
         prop_assert!(far(&body, &back) < 1e-9, "{}", far(&body, &back));
     }
 }
+
+#[test]
+fn the_tape_of_a_scaled_body_is_laid_on_that_body() {
+    let body = Mannequin::framed(Figure::Woman).unwrap();
+    let taped = |ratio: f64| {
+        let scaling = Scaling {
+            global: ratio,
+            ..Scaling::default()
+        };
+        let scaled = scaling.apply(&body).unwrap();
+        Mannequin::from_description(&scaled).unwrap().measure()
+    };
+    let own = taped(1.0);
+    for ratio in [0.8, 1.15] {
+        let scaled = taped(ratio);
+        let got = |name: &str, table: &[toile_body::Gap]| {
+            let row = table.iter().find(|row| row.name == name);
+            row.unwrap_or_else(|| panic!("no {name}")).got
+        };
+        let height = body.frame.unwrap().height;
+        assert!((got("height", &scaled) - ratio * height).abs() < 3e-3);
+        // Levels between what the frame says are those of people of that height, to a few per cent.
+        for name in ["hip_height", "nape_height", "knee_height", "armpit_height"] {
+            let share = got(name, &scaled) / (ratio * got(name, &own));
+            assert!((share - 1.0).abs() < 0.05, "{name} at {ratio}: {share}");
+        }
+        for name in ["bust", "hips", "waist", "neck"] {
+            let share = got(name, &scaled) / (ratio * got(name, &own));
+            assert!((share - 1.0).abs() < 0.08, "{name} at {ratio}: {share}");
+        }
+    }
+}
