@@ -197,7 +197,15 @@ impl Curvature {
         };
         let halves = match *region {
             Region::Own(a) => self.contour(a).to_vec(),
-            Region::Two(a, b) => joined(self.contour(a), self.contour(b)),
+            Region::Two(a, b) => {
+                let (a, b) = (self.contour(a), self.contour(b));
+                let joined = joined(a, b);
+                if joined.len() == a.len() + b.len() {
+                    // No border in common: two plies, most often.
+                    return false;
+                }
+                joined
+            }
         };
         let contour = Contour::new(&halves, edges, &self.keeps, (x, view));
         contour.is_connected() && contour.alternates() && contour.is_clear(clearance)
