@@ -28,6 +28,8 @@ pub struct Fit {
     pub misfit: FitMisfit,
     /// How the mesh was moved to stand on y = 0 with its middle at x = 0 [m].
     pub shift: Vec3,
+    /// Measurements that the tape found as no body has them: they are not in the description.
+    pub dropped: Vec<&'static str>,
 }
 
 impl Scan {
@@ -54,9 +56,10 @@ impl Scan {
         let mut found = fit_frame::find(self)?;
         let (primitives, mut misfit) = fitted(self, &mut found)?;
         misfit.primitives = primitives.len();
+        let (measurements, dropped) = sound(self.measurements(), figure)?;
         let description = Description {
             figure,
-            measurements: sound(self.measurements(), figure)?,
+            measurements,
             primitives: primitives.into_iter().filter(|p| !p.is_right()).collect(),
             frame: Some(found.frame),
             rigging: Rigging::default(),
@@ -65,15 +68,20 @@ impl Scan {
             description,
             misfit,
             shift: Vec3::zeros(),
+            dropped,
         })
     }
 }
 
-/// The table without what no body has: a tape at a place that was found wrongly.
-fn sound(mut table: Measurements, figure: Figure) -> Result<Measurements, BodyError> {
+/// The table without what no body has, a tape at a place that was found wrongly, and the names of that.
+fn sound(
+    mut table: Measurements,
+    figure: Figure,
+) -> Result<(Measurements, Vec<&'static str>), BodyError> {
+    let mut dropped = Vec::new();
     loop {
         match Request::read(&table, figure) {
-            Ok(_) => return Ok(table),
+            Ok(_) => return Ok((table, dropped)),
             Err(BodyError::OutOfRange { name, .. }) if name != "height" => {
                 let mut rest = Measurements::new();
                 for (other, measured) in table.iter().filter(|row| row.0 != name) {
@@ -81,6 +89,7 @@ fn sound(mut table: Measurements, figure: Figure) -> Result<Measurements, BodyEr
                         .map_err(|error| BodyError::Description(error.to_string()))?;
                 }
                 table = rest;
+                dropped.push(name);
             }
             Err(error) => return Err(error),
         }

@@ -18,6 +18,10 @@ pub(crate) struct Found {
 /// A section of the left arm: its middle [m] and girth [m].
 type Ring = (Vec3, f64);
 
+/// The least from crotch to armpits, over stature, and the fewest sections from wrist to shoulder.
+const LEAST_TRUNK: f64 = 0.1;
+const LEAST_ARM: usize = 4;
+
 /// Height of the shoulder joint over the armpit, over stature.
 const JOINT_RISE: f64 = 0.037;
 
@@ -35,6 +39,11 @@ pub(crate) fn find(scan: &Scan) -> Result<Found, BodyError> {
     let armpit = marks.armpit.ok_or_else(|| {
         missing("armpit with arms beside the trunk: give its height as landmark armpit")
     })?;
+    if armpit - crotch < LEAST_TRUNK * height {
+        return Err(BodyError::Mesh(format!(
+            "has the crotch at {crotch:.3} m and the armpits at {armpit:.3} m, which leaves no trunk: give better landmarks crotch and armpit"
+        )));
+    }
     let tip = finger_tip(scan);
     let rings = arm_rings(scan, tip, armpit);
     if rings.len() < 12 {
@@ -47,6 +56,11 @@ pub(crate) fn find(scan: &Scan) -> Result<Found, BodyError> {
         Some(p) => nearest(&rings, p),
         None => wrist_ring(&rings, height),
     };
+    if wrist_at + LEAST_ARM >= rings.len() {
+        return Err(missing(
+            "arm between wrist and shoulder: give another landmark wrist",
+        ));
+    }
     let wrist = rings[wrist_at].0;
     let elbow_at = elbow_ring(&rings, wrist_at);
     let elbow = rings[elbow_at].0;

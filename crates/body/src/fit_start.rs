@@ -34,7 +34,7 @@ impl Side<'_> {
     fn trunk(&self, y: f64) -> [f64; 3] {
         let f = self.frame;
         let armpit = f.joints.shoulder[1] - 0.05 * f.height;
-        let y = y.clamp(f.crotch + 0.02 * f.height, armpit);
+        let y = y.max(f.crotch + 0.02 * f.height).min(armpit);
         let section = self.scan.trunk(y);
         section.map_or([0.09 * f.height, 0.06 * f.height, 0.0], |l| {
             let [breadth, depth] = l.extent();

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{obj, shared};
-use toile_body::{Description, Figure, Fit, Mannequin, Scan, ScanLandmarks};
+use toile_body::{Description, Figure, Fit, Joint, Mannequin, Scan, ScanLandmarks};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 /// A published body as a scan.
@@ -189,7 +189,25 @@ fn what_cannot_be_fitted_is_refused_with_a_remedy() {
         ..ScanLandmarks::default()
     };
     let post = Scan::new(post.mesh().clone(), marked).unwrap();
-    assert!(post.fit(Figure::Mean).is_err());
+    let error = post.fit(Figure::Mean).unwrap_err().to_string();
+    assert!(error.contains("hold the arms off"), "{error}");
+    // Landmarks that leave no trunk, or no arm.
+    let own = Mannequin::new(&Figure::Woman.average(), Figure::Woman).unwrap();
+    let with = |marks: ScanLandmarks| {
+        let scan = Scan::new(own.skin().clone(), marks).unwrap();
+        scan.fit(Figure::Woman).unwrap_err().to_string()
+    };
+    let error = with(ScanLandmarks {
+        crotch: Some(1.25),
+        ..ScanLandmarks::default()
+    });
+    assert!(error.contains("no trunk"), "{error}");
+    let shoulder = own.skeleton().centre(Joint::LShoulder);
+    let error = with(ScanLandmarks {
+        wrist: Some(shoulder.into()),
+        ..ScanLandmarks::default()
+    });
+    assert!(error.contains("landmark wrist"), "{error}");
 }
 
 #[test]

@@ -534,7 +534,7 @@ pub struct Body {
     /// [{"edit": "weigh", "primitive": 3, "weight": 1.2}]; also create, delete, move, turn, scale,
     /// group, blend, deform, attach, detach, join, part. Ellipsoids are counted from 0: those of
     /// trunk, head, left arm and left leg as in a mannequin file.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with = "mesh")]
     pub edits: Option<PathBuf>,
     /// Motion to pose it by: walk, run, a BVH file, or a VRML 97 or X3D file (.wrl, .x3d, .x3dv)
     /// with OrientationInterpolators routed to H-Anim joints. Default: at rest.

@@ -13,25 +13,25 @@ pub struct Stretch {
     /// ideal-woman, ideal-man, loomis-1, loomis-3, loomis-5, loomis-10, loomis-15, draftsman-1,
     /// draftsman-8, draftsman-12, by age), or of a file of boxes (JSON, head lengths), as in
     /// boxes.json:tall.
-    #[arg(long, value_name = "BOX", conflicts_with = "heads")]
+    #[arg(long, value_name = "BOX", conflicts_with_all = ["heads", "mesh"])]
     pub proportions: Option<String>,
     /// Or so many head lengths from crown to chin, legs as in the boxes of the table next to it.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", conflicts_with = "mesh")]
     pub heads: Option<f64>,
     /// Stature to bring it to, all in proportion, as in 1700mm.
-    #[arg(long, value_name = "LENGTH")]
+    #[arg(long, value_name = "LENGTH", conflicts_with = "mesh")]
     pub stature: Option<Length>,
     /// Then depth times this.
-    #[arg(long, value_name = "RATIO")]
+    #[arg(long, value_name = "RATIO", conflicts_with = "mesh")]
     pub frontal: Option<f64>,
     /// Then breadth above the spine's origin, arms too, times this.
-    #[arg(long, value_name = "RATIO")]
+    #[arg(long, value_name = "RATIO", conflicts_with = "mesh")]
     pub high_lateral: Option<f64>,
     /// Then the height of the spine's origin times this, trunk and legs against each other.
-    #[arg(long, value_name = "RATIO")]
+    #[arg(long, value_name = "RATIO", conflicts_with = "mesh")]
     pub spine_origin: Option<f64>,
     /// Then breadth below the spine's origin times this.
-    #[arg(long, value_name = "RATIO")]
+    #[arg(long, value_name = "RATIO", conflicts_with = "mesh")]
     pub low_lateral: Option<f64>,
 }
 

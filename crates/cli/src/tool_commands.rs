@@ -173,6 +173,7 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
             "self_crossings": m.self_crossings,
             "levels": m.levels,
             "moved_by_m": [fit.shift.x, fit.shift.y, fit.shift.z],
+            "left_out": fit.dropped,
         });
     }
     Ok(made)
@@ -205,6 +206,12 @@ fn fitted_mesh(mesh: &Path, figure: Figure, body: &Body, output: &Output) -> Res
         output.say(format!(
             "its skin crosses itself in {} of triangles",
             count(m.self_crossings, "pair")
+        ));
+    }
+    if !fit.dropped.is_empty() {
+        output.warn(format!(
+            "note: left out, since no body has what the tape found: {}; give better --landmarks",
+            fit.dropped.join(", ")
         ));
     }
     if fit.shift.norm() > 0.0 {
