@@ -3,7 +3,7 @@
 #[path = "support/sheets.rs"]
 mod sheets;
 
-use sheets::sheet;
+use sheets::{object, sheet};
 use toile_drape::{
     Cloth, DrapeError, Material, MethodKind, ObjectKind, Scene, SceneElastic, SceneEnd,
     SceneObject, SceneRun,
@@ -16,16 +16,7 @@ fn square(n: usize, size: f64, place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh
 }
 
 fn cloth_object(mesh: TriangleMesh, pins: Vec<u32>) -> SceneObject {
-    SceneObject {
-        name: "cloth".to_owned(),
-        kind: ObjectKind::Deformable {
-            material: Material::default(),
-            pins,
-        },
-        mesh,
-        cloth: None,
-        layer: 0,
-    }
+    object("cloth", mesh, pins)
 }
 
 fn finish(mut run: SceneRun) -> SceneRun {
