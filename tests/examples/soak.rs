@@ -30,6 +30,8 @@ mod cloth;
 mod layers;
 #[path = "soak/sizes.rs"]
 mod sizes;
+#[path = "soak/worn.rs"]
+mod worn;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 use std::time::Instant;
-use toile_drape::{GarmentRun, Measures, Stage};
-use toile_session::{Command, Figure, OtherGarment, Quality, Session, Silent};
+use toile_drape::{GarmentRun, Measures};
+use toile_session::{Command, Figure, OtherGarment, Quality};
 use toile_tests::root;
 
 /// What is worn, innermost first: every pattern that ships is worn over and under another.
@@ -80,8 +80,7 @@ fn wear(
         path: path(outfit[k]),
         layer: k as u16 + 1,
     };
-    let mut session = Session::new();
-    for command in [
+    super::worn::worn([
         Command::OpenPattern {
             path: path(outfit[0]),
         },
@@ -94,16 +93,5 @@ fn wear(
             measurements: None,
         },
         Command::SetQuality { quality },
-    ] {
-        session
-            .execute(command, &mut Silent)
-            .map_err(|error| error.to_string())?;
-    }
-    let job = session.garment_setup().map_err(|error| error.to_string())?;
-    let mut run = GarmentRun::new(job.setup).map_err(|error| error.to_string())?;
-    while run.progress().stage != Stage::Finished {
-        run.advance().map_err(|error| error.to_string())?;
-    }
-    let measures = run.measure();
-    Ok((run, measures))
+    ])
 }

@@ -4,10 +4,9 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use toile_drape::{GarmentRun, Stage};
 use toile_interchange::{write_atomically, write_measurements};
 use toile_measure::{Measurements, Origin};
-use toile_session::{Command, Figure, Quality, Session, Silent, figure_named};
+use toile_session::{Command, Figure, Quality, figure_named};
 use toile_tests::{files_below, root};
 
 /// A wearer: name, figure, and what is asked of the body [cm]; the rest is predicted.
@@ -147,8 +146,7 @@ fn dressed((name, figure, lengths): &Wearer, out: &Path) -> Result<Command, Stri
 /// One garment on one body: its row, and whether nothing crosses.
 fn worn(pattern: &Path, wearer: &Wearer, task: &Task) -> Result<(String, bool), String> {
     let start = Instant::now();
-    let mut session = Session::new();
-    for command in [
+    let (run, measures) = super::worn::worn([
         Command::OpenPattern {
             path: pattern.to_owned(),
         },
@@ -156,17 +154,7 @@ fn worn(pattern: &Path, wearer: &Wearer, task: &Task) -> Result<(String, bool), 
         Command::SetQuality {
             quality: task.quality,
         },
-    ] {
-        session
-            .execute(command, &mut Silent)
-            .map_err(|error| error.to_string())?;
-    }
-    let job = session.garment_setup().map_err(|error| error.to_string())?;
-    let mut run = GarmentRun::new(job.setup).map_err(|error| error.to_string())?;
-    while run.progress().stage != Stage::Finished {
-        run.advance().map_err(|error| error.to_string())?;
-    }
-    let measures = run.measure();
+    ])?;
     let row = format!(
         "{},{},{:.2e},{:.4},{:.4},{:.3},{:.1}",
         measures.body_intersections,
