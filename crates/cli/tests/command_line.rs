@@ -43,7 +43,10 @@ fn bad_input_exits_with_2_and_says_what_to_do() {
     let cases: [(&[&str], &[&str]); 10] = [
         (&["make", "gone.json"], &["gone.json", "spelling"]),
         (&["make", "broken.json"], &["broken.json", "line 1"]),
-        (&["make", shirt, "--size", "XXL"], &["XXL", "S, M, L, XL"]),
+        (
+            &["make", shirt, "--size", "XXXL"],
+            &["XXXL", "XS, S, M, L, XL, XXL"],
+        ),
         (
             &["make", shirt, "--fabric", "tweed"],
             &["tweed", "jersey, leather"],

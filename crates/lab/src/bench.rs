@@ -49,6 +49,8 @@ enum Work {
     DetectSheet(usize),
     /// Contacts of the worn shirt with itself, its mesh divided so many times.
     DetectShirt(usize),
+    /// Contact of a fallen sheet of so many cells along a side, beside a step of deformation.
+    Contact(usize),
 }
 
 /// Frames of a benchmark of motion.
@@ -86,6 +88,7 @@ fn all() -> Vec<(String, Work)> {
     for (cuts, name) in ["1k", "6k", "22k"].iter().enumerate() {
         list.push((format!("detect-shirt-{name}"), Work::DetectShirt(cuts)));
     }
+    list.push(("contact-10k".to_owned(), Work::Contact(100)));
     list.push(("rest-shirt-1k".to_owned(), Work::Rest(0, 1e-2)));
     list.push(("rest-shirt-6k".to_owned(), Work::Rest(1, 1e-3)));
     list.push(("rest-shirt-22k".to_owned(), Work::Rest(2, 1e-3)));
@@ -186,6 +189,7 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
         Work::Rest(cuts, residual) => rest(cuts, residual, &mut result)?,
         Work::DetectSheet(cells) => crate::detect::sheet(cells, &mut result),
         Work::DetectShirt(cuts) => crate::detect::shirt(cuts, &mut result)?,
+        Work::Contact(cells) => crate::detect::cost(cells, &mut result)?,
         Work::Nest => crate::nest::nest(threads, &mut result)?,
         Work::NestQueries => crate::nest::queries(threads, &mut result)?,
     }

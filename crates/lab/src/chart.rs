@@ -1,5 +1,6 @@
 //! Speed against accuracy: every method at several steps on the standard scenes.
 
+use crate::chart_contact::{Touched, contact_chart};
 use crate::clock::Clock;
 use crate::scenes::{Card, Reference, SCENES, apart, card};
 use crate::{LabError, settle::TIGHT};
@@ -47,6 +48,8 @@ impl Point {
 pub struct ChartPlan {
     /// Steps [s] of methods in time.
     pub steps: &'static [f64],
+    /// Steps [s] of the runs with contact of cloth with cloth.
+    pub contact_steps: &'static [f64],
     /// Net forces over weight asked of methods of rest.
     pub residuals: &'static [f64],
     /// Resolutions of each scene at the most.
@@ -68,6 +71,7 @@ impl ChartPlan {
             1.0 / 480.0,
             1.0 / 960.0,
         ],
+        contact_steps: &[1.0 / 60.0, 1.0 / 120.0, 1.0 / 240.0],
         residuals: &[1e-1, 1e-2, 1e-3, 1e-4],
         resolutions: 2,
         budget: 3.0,
@@ -76,6 +80,7 @@ impl ChartPlan {
     /// Two steps on the coarse meshes: under a minute on two cores.
     pub const QUICK: Self = Self {
         steps: &[1.0 / 60.0, 1.0 / 240.0],
+        contact_steps: &[1.0 / 60.0],
         residuals: &[1e-2],
         resolutions: 1,
         budget: 0.4,
@@ -90,6 +95,8 @@ pub struct ChartData {
     pub motion: Vec<Point>,
     /// Rest: methods that look for it.
     pub rest: Vec<Point>,
+    /// Contact of cloth with cloth, where no scenes were asked for by name.
+    pub contact: Vec<Touched>,
     /// For each mesh: how far two unlike methods end apart [mm], and what they were.
     pub agreement: Vec<Agreement>,
 }
@@ -243,6 +250,9 @@ pub fn chart(
     }
     mark_best(&mut data.motion);
     mark_best(&mut data.rest);
+    if names.is_empty() {
+        data.contact = contact_chart(plan, watcher)?;
+    }
     Ok(data)
 }
 

@@ -1,6 +1,7 @@
 //! The chart as files: CSV, SVG, and the table of which method to use when.
 
 use crate::chart::{ChartData, Point};
+use crate::chart_contact::{contact_files, contact_table};
 use crate::check::significant;
 use crate::{LabError, Resolved};
 use std::fmt::Write;
@@ -158,6 +159,9 @@ pub fn chart_files(data: &ChartData) -> Result<Vec<(String, String)>, LabError> 
             }
         }
     }
+    if !data.contact.is_empty() {
+        files.extend(contact_files(&data.contact)?);
+    }
     Ok(files)
 }
 
@@ -276,6 +280,9 @@ pub fn when_to_use(data: &ChartData) -> String {
                 own[0].scene, own[0].vertices
             ),
         };
+    }
+    if !data.contact.is_empty() {
+        text.push_str(&contact_table(&data.contact));
     }
     text
 }

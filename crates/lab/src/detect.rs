@@ -1,12 +1,14 @@
 //! What finding contacts of cloth with itself costs: on a smooth sheet however fine, and on a worn
-//! shirt, with regions left out by their curvature and with all looked into.
+//! shirt, with regions left out by their curvature and with all looked into; and what contact adds to
+//! a frame of cloth that lies in folds.
 
 use crate::bench::Timed;
+use crate::chart_contact::fall;
 use crate::clock::Clock;
 use crate::scenes::card;
 use crate::{LabError, subdivided};
-use toile_drape::collision::{ClothContacts, ClothSurface, crossings, nearnesses};
-use toile_drape::{Cloth, MethodKind, MethodSettings};
+use toile_drape::collision::{ClothContacts, ClothSurface, Ways, crossings, nearnesses};
+use toile_drape::{Cloth, MethodKind, MethodSettings, Model, State};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// Distance that cloth keeps from cloth [m], and how far it is looked.
@@ -15,6 +17,9 @@ const REACH: f64 = 2.0 * OFFSET;
 /// Looks timed, and frames of 1/60 s.
 const LOOKS: usize = 20;
 const FRAMES: usize = 12;
+const STEP: f64 = 1.0 / 60.0;
+/// Substeps of a frame, as XPBD takes them when it is not told.
+const SUBSTEPS: f64 = 20.0;
 
 /// A gently waved sheet of a metre, `cells` by `cells`.
 fn waved(cells: usize) -> TriangleMesh {
@@ -42,6 +47,7 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) {
     let edge = 1.0 / cells as f64;
     let mut clearance = ClothContacts::clearance(0.1 * edge);
     clearance.stray = 0.1 * edge;
+    clearance.beyond = 0.0;
     let x = &mesh.positions;
     let mut counted = |name: &str, find: &mut dyn FnMut(&mut ClothSurface) -> usize| {
         let clock = Clock::start();
@@ -53,39 +59,73 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) {
         result.wall_s += each * LOOKS as f64;
         for (what, value) in [
             ("ms", 1e3 * each),
-            ("regions", surface.opened() as f64),
+            ("regions", surface.opened()[0] as f64),
             ("pairs", pairs as f64),
         ] {
             result.counted.insert(format!("{name}_{what}"), value);
         }
     };
     counted("all", &mut |surface| {
-        surface.near_triangles(x, x, edge).len()
+        surface.near_triangles(Ways::still(x), edge).len()
     });
     counted("curved", &mut |surface| {
-        surface.near_unless_clear(x, x, edge, clearance).len()
+        surface.forget();
+        surface
+            .near_unless_clear(Ways::still(x), edge, clearance)
+            .len()
     });
 }
 
-/// Finds the contacts of the worn shirt with itself, its mesh divided so many times, and makes frames of
-/// XPBD with them and without.
-pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
+/// Frames that the shirt settles in before its mesh is divided, and after; drag of the air then [1/s].
+const SETTLED: [usize; 2] = [60, 12];
+const SETTLING_DRAG: f64 = 10.0;
+/// Turn of the worn shirt about the upright when it is set in motion [rad/s].
+const TURN: f64 = 2.0;
+
+/// Takes some frames of XPBD; what one takes [s], and the looks for contacts in it.
+fn frames(model: &Model, state: &mut State, count: usize) -> Result<[f64; 2], LabError> {
+    let mut method = MethodSettings::from(MethodKind::Xpbd).build();
+    let clock = Clock::start();
+    for _ in 0..count {
+        method.advance(model, state, STEP)?;
+    }
+    let looks = method.cloth_tally().unwrap_or_default().looks;
+    Ok([clock.wall(), looks as f64].map(|sum| sum / count as f64))
+}
+
+/// The worn shirt, its mesh divided so many times.
+fn worn(cuts: usize) -> Result<(Model, State), LabError> {
     let card = card("shirt")?;
     let mut cloth: Cloth = card.cloth(0)?;
-    if let Some(worn) = card.reference(0)? {
-        cloth.positions = worn
-            .positions
-            .iter()
-            .map(|p| Vec3::from(p.map(f64::from)))
-            .collect();
+    let settled = |cloth: &Cloth, count: usize| -> Result<(Model, State), LabError> {
+        let (mut model, mut state) = card.model(cloth, &[])?;
+        model.contact.cloth_offset = OFFSET;
+        model.air_drag = SETTLING_DRAG;
+        frames(&model, &mut state, count)?;
+        model.air_drag = 0.0;
+        Ok((model, state))
+    };
+    let [coarse, fine] = SETTLED;
+    let (model, state) = settled(&cloth, coarse)?;
+    if cuts == 0 {
+        return Ok((model, state));
     }
+    cloth.positions = state.positions;
     for _ in 0..cuts {
         cloth = subdivided(&cloth);
     }
-    let (mut model, state) = card.model(&cloth, &[])?;
+    settled(&cloth, fine)
+}
+
+/// Finds the contacts of the worn shirt with itself, its mesh divided so many times, and makes frames of
+/// XPBD with them and without while the shirt turns about its wearer.
+pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
+    let (mut model, state) = worn(cuts)?;
     result.vertices = model.vertex_count();
     let mut surface = ClothSurface::new(&model);
     let (x, clearance) = (&state.positions, ClothContacts::clearance(OFFSET));
+    let reach = REACH + 2.0 * clearance.stray;
+    let counted = &mut result.counted;
     let mut look = |name: &str, near: &mut dyn FnMut(&mut ClothSurface) -> Vec<[u32; 2]>| {
         let (clock, mut found) = (Clock::start(), [0; 3]);
         for _ in 0..LOOKS {
@@ -93,53 +133,113 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
             let touching = nearnesses(&surface, &near, x, REACH).len();
             found = [near.len(), touching, crossings(&surface, &near, x).len()];
         }
-        let each = 1e3 * clock.wall() / LOOKS as f64;
         for (what, value) in [
-            ("ms", each),
-            ("regions", surface.opened() as f64),
+            ("ms", 1e3 * clock.wall() / LOOKS as f64),
+            ("regions", surface.opened()[0] as f64),
             ("pairs", found[0] as f64),
             ("contacts", found[1] as f64),
             ("crossings", found[2] as f64),
         ] {
+            counted.insert(format!("{name}_{what}"), value);
+        }
+    };
+    look("all", &mut |surface| {
+        surface.near_triangles(Ways::still(x), reach)
+    });
+    look("curved", &mut |surface| {
+        surface.forget();
+        surface.near_unless_clear(Ways::still(x), reach, clearance)
+    });
+    for (name, turn) in [("worn", 0.0), ("turning", TURN)] {
+        let mut start = state.clone();
+        let upright = Vec3::new(0.0, turn, 0.0);
+        for (v, x) in start.velocities.iter_mut().zip(&start.positions) {
+            *v += upright.cross(x);
+        }
+        let clock = Clock::start();
+        let (mut with, mut without) = (start.clone(), start.clone());
+        model.contact.cloth_offset = 0.0;
+        let [plain, _] = frames(&model, &mut without, FRAMES)?;
+        model.contact.cloth_offset = OFFSET;
+        let [frame, looks] = frames(&model, &mut with, FRAMES)?;
+        // The same motion again, for what looking alone takes.
+        let mut path = vec![start.positions.clone()];
+        let mut method = MethodSettings {
+            substeps: Some((SUBSTEPS / looks).round().max(1.0) as u32),
+            ..MethodKind::Xpbd.into()
+        }
+        .build();
+        for _ in 0..LOOKS {
+            method.advance(&model, &mut start, STEP / looks)?;
+            path.push(start.positions.clone());
+        }
+        let each = follow(&mut surface, &path, looks.ceil() as usize);
+        result.wall_s += clock.wall();
+        for (what, value) in [
+            ("frame_without_ms", 1e3 * plain),
+            ("frame_ms", 1e3 * frame),
+            ("looks_a_frame", looks),
+            ("look_ms", 1e3 * each[0]),
+            ("look_regions", each[1]),
+            ("look_contours", each[2]),
+            ("detection_percent", 100.0 * each[0] * looks / frame),
+        ] {
             result.counted.insert(format!("{name}_{what}"), value);
         }
-        each
-    };
-    let reach = REACH + 2.0 * clearance.stray;
-    look("all", &mut |surface| surface.near_triangles(x, x, reach));
-    let each = look("curved", &mut |surface| {
-        surface.near_unless_clear(x, x, reach, clearance)
-    });
-    for (name, offset) in [("frame_without", 0.0), ("frame_with", OFFSET)] {
-        model.contact.cloth_offset = offset;
-        let mut method = MethodSettings::from(MethodKind::Xpbd).build();
-        let mut state = state.clone();
-        let step = 1.0 / 60.0;
-        if let Err(error) = method.advance(&model, &mut state, step) {
-            result.failure = Some(error.to_string());
-            return Ok(());
+    }
+    Ok(())
+}
+
+/// Finds contacts and crossings at places along a path, so many of them in a frame; what a look takes
+/// [s], and how many regions it opens and looks at closely.
+fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>], frame: usize) -> [f64; 3] {
+    let clearance = ClothContacts::clearance(OFFSET);
+    let clock = Clock::start();
+    let mut opened = [0; 2];
+    for (k, ends) in path.windows(2).enumerate() {
+        if k % frame.max(1) == 0 {
+            surface.forget();
         }
-        let (clock, first) = (
-            Clock::start(),
-            method.cloth_tally().unwrap_or_default().looks,
-        );
-        for _ in 0..FRAMES {
-            if let Err(error) = method.advance(&model, &mut state, step) {
-                result.failure = Some(error.to_string());
-                return Ok(());
-            }
-        }
-        let frame = 1e3 * clock.wall() / FRAMES as f64;
-        result.wall_s = clock.wall();
-        result.cpu_s = clock.cpu();
-        result.counted.insert(format!("{name}_ms"), frame);
-        if offset > 0.0 {
-            let looks = method.cloth_tally().unwrap_or_default().looks - first;
-            let looks = looks as f64 / FRAMES as f64;
-            result.counted.insert("looks_a_frame".to_owned(), looks);
-            let share = 100.0 * each * looks / frame;
-            result.counted.insert("detection_percent".to_owned(), share);
-        }
+        let ways = Ways::together(&ends[0], &ends[1]);
+        let near = surface.near_unless_clear(ways, REACH + 2.0 * clearance.stray, clearance);
+        let near = surface.meeting(&near, Ways::still(&ends[1]), REACH);
+        std::hint::black_box(nearnesses(surface, &near, &ends[1], REACH));
+        std::hint::black_box(crossings(surface, &near, &ends[1]));
+        let [regions, contours] = surface.opened();
+        opened = [opened[0] + regions, opened[1] + contours];
+    }
+    let count = (path.len() - 1) as f64;
+    [
+        clock.wall() / count,
+        opened[0] as f64 / count,
+        opened[1] as f64 / count,
+    ]
+}
+
+/// What contact adds to a frame of a fallen sheet of so many cells along its metre, beside one step of
+/// deformation by implicit Euler.
+pub(crate) fn cost(cells: usize, result: &mut Timed) -> Result<(), LabError> {
+    let (mut model, mut state) = fall(1.0, cells)?;
+    result.vertices = model.vertex_count();
+    let clock = Clock::start();
+    model.contact.cloth_offset = OFFSET;
+    // Until much of it lies in folds.
+    frames(&model, &mut state, 30)?;
+    let with = 1e3 * frames(&model, &mut state.clone(), FRAMES)?[0];
+    model.contact.cloth_offset = 0.0;
+    let without = 1e3 * frames(&model, &mut state.clone(), FRAMES)?[0];
+    let mut method = MethodSettings::from(MethodKind::ImplicitEuler).build();
+    let step = Clock::start();
+    method.advance(&model, &mut state, STEP)?;
+    let implicit = 1e3 * step.wall();
+    result.wall_s = clock.wall();
+    for (name, value) in [
+        ("frame_with_ms", with),
+        ("frame_without_ms", without),
+        ("contact_adds_ms", with - without),
+        ("implicit_step_ms", implicit),
+    ] {
+        result.counted.insert(name.to_owned(), value);
     }
     Ok(())
 }

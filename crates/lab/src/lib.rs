@@ -4,6 +4,7 @@
 
 mod bench;
 mod chart;
+mod chart_contact;
 mod chart_report;
 mod check;
 mod clock;
@@ -26,6 +27,7 @@ mod stability_report;
 
 pub use bench::{Timed, bench, bench_names, bench_table};
 pub use chart::{Agreement, ChartData, ChartPlan, Point, chart};
+pub use chart_contact::{Touched, contact_chart, contact_files, contact_table};
 pub use chart_report::{
     chart_files, locking_files, when_to_use, with_section, write_files, write_section,
 };

@@ -7,6 +7,7 @@ use super::curvature::{Clearance, longest};
 use super::impact::{edge_edge_impact, vertex_face_impact};
 use super::layers::Knots;
 use super::proximity::{Nearness, closest, is_far};
+use super::regions::Ways;
 use super::surface::{ClothSurface, FeaturePair};
 use super::zones::Zones;
 use rayon::prelude::*;
@@ -224,9 +225,12 @@ pub fn bound_moves(
     moves: &mut [Vec3],
 ) -> usize {
     let target: Vec<Vec3> = x.iter().zip(&*moves).map(|(x, d)| x + d).collect();
-    let stray = longest(moves.iter().map(|d| d.norm()));
-    let clearance = Clearance { stray, kept: 0.0 };
-    let near = surface.near_unless_clear(x, &target, REACH_OF_WAYS, clearance);
+    let clearance = Clearance {
+        stray: 0.0,
+        kept: 0.0,
+        beyond: longest(moves.iter().map(|d| d.norm())),
+    };
+    let near = surface.near_unless_clear(Ways::each(x, &target), REACH_OF_WAYS, clearance);
     bound_pairs(surface, &near, knots, x, moves)
 }
 
@@ -304,42 +308,6 @@ fn meetings(
         })
         .collect();
     found.concat()
-}
-
-/// Features of pairs of triangles that are no farther apart than `reach` [m], with their distances.
-pub fn features_within(
-    surface: &ClothSurface,
-    near: &[[u32; 2]],
-    x: &[Vec3],
-    reach: f64,
-) -> Vec<(FeaturePair, f64)> {
-    let found: Vec<Vec<(FeaturePair, f64)>> = near
-        .par_chunks(512)
-        .map(|pairs| {
-            let mut found = Vec::new();
-            for &pair in pairs {
-                surface.features(pair, |pair| {
-                    if is_far(pair, &pair.vertices().map(|v| x[v as usize]), reach) {
-                        return;
-                    }
-                    let distance = Nearness::distance(pair, x);
-                    if distance <= reach {
-                        found.push((pair, distance));
-                    }
-                });
-            }
-            found
-        })
-        .collect();
-    found.concat()
-}
-
-/// How near two features must be [m] to be looked at in moves that stray by no more than `stray` [m]
-/// from their mean: farther ones keep their share of the distance whatever they do.
-pub fn reach_of(stray: f64) -> f64 {
-    // Each strays from the mean of its four by twice that, and comes nearer by twice as much again.
-    let way = 4.0 * stray;
-    (way / (1.0 - KEPT)).min(MOST_KEPT + way).max(FLOOR + way)
 }
 
 /// How near the ways of two features must come [m] to be looked at: all that is ever kept.

@@ -41,6 +41,12 @@ impl Bounds {
         bounds
     }
 
+    /// Half its diagonal [m].
+    pub fn radius(&self) -> f64 {
+        let side = |k: usize| self.high[k] - self.low[k];
+        0.5 * (side(0) * side(0) + side(1) * side(1) + side(2) * side(2)).sqrt()
+    }
+
     /// Whether two boxes share a point.
     #[inline(always)]
     pub fn meets(&self, other: &Self) -> bool {
@@ -85,6 +91,33 @@ pub enum Region {
     Own(Node),
     /// Two.
     Two(Node, Node),
+}
+
+impl Region {
+    /// The one or two nodes.
+    pub fn nodes(&self) -> impl Iterator<Item = Node> + use<> {
+        let (first, second) = match *self {
+            Self::Own(a) => (a, None),
+            Self::Two(a, b) => (a, Some(b)),
+        };
+        std::iter::once(first).chain(second)
+    }
+
+    /// How many leaves are below it.
+    pub fn count(&self) -> u32 {
+        self.nodes().map(|node| node.count).sum()
+    }
+}
+
+/// What a search of the tree found.
+#[derive(Clone, Debug, Default)]
+pub struct Pairs<N> {
+    /// Pairs of items whose boxes meet, each once.
+    pub pairs: Vec<[u32; 2]>,
+    /// How many regions were looked into.
+    pub opened: usize,
+    /// What was noted on the way, in parts.
+    pub notes: Vec<N>,
 }
 
 /// The tree.
@@ -170,73 +203,98 @@ impl BoxTree {
 
     /// Fits every box anew; `bounds` gives that of an item.
     pub fn refit(&mut self, bounds: impl Fn(u32) -> Bounds + Sync) {
-        let fresh: Vec<Bounds> = self.leaves.par_iter().map(|&leaf| bounds(leaf)).collect();
-        let mut leaf = fresh.len();
-        for at in (0..self.counts.len()).rev() {
-            let count = self.counts[at];
-            self.boxes[at] = if count == 1 {
-                leaf -= 1;
-                fresh[leaf]
-            } else {
-                let second = at + 2 * (count as usize / 2);
-                self.boxes[at + 1].join(&self.boxes[second])
-            };
-        }
+        self.boxes = self.fitted(bounds);
     }
 
-    /// Pairs of items whose boxes meet, each pair once, in an order that does not depend on the
-    /// number of threads, and how many regions were looked into. Those that `skip` names are not.
-    pub fn pairs(&self, skip: impl Fn(&Region) -> bool + Sync) -> (Vec<[u32; 2]>, usize) {
-        let root = self.root().map(Region::Own).into_iter();
-        let mut work: Vec<Region> = root.filter(|root| !skip(root)).collect();
-        let (mut grown, mut opened) = (true, 0);
+    /// Boxes round those of the items below every node, in the order of the nodes' boxes.
+    pub fn fitted(&self, bounds: impl Fn(u32) -> Bounds + Sync) -> Vec<Bounds> {
+        let leaves = self.leaves.par_iter().with_min_len(256);
+        let leaves: Vec<Bounds> = leaves.map(|&item| bounds(item)).collect();
+        let mut boxes = vec![Bounds::EMPTY; self.counts.len()];
+        let mut leaf = leaves.len();
+        for at in (0..self.counts.len()).rev() {
+            let count = self.counts[at];
+            boxes[at] = if count == 1 {
+                leaf -= 1;
+                leaves[leaf]
+            } else {
+                let second = at + 2 * (count as usize / 2);
+                boxes[at + 1].join(&boxes[second])
+            };
+        }
+        boxes
+    }
+
+    /// Pairs of items whose boxes meet in some regions, in an order that does not depend on the
+    /// number of threads. Regions that `skip` names are not looked into; it may note what it likes.
+    pub fn pairs<N: Default + Send>(
+        &self,
+        regions: &[Region],
+        skip: impl Fn(&mut N, &Region) -> bool + Sync,
+    ) -> Pairs<N> {
+        let given: Vec<(bool, N)> = regions
+            .par_iter()
+            .map(|region| {
+                let mut note = N::default();
+                (!skip(&mut note, region), note)
+            })
+            .collect();
+        let kept = regions.iter().zip(&given).filter(|(_, (kept, _))| *kept);
+        let mut work: Vec<Region> = kept.map(|(region, _)| *region).collect();
+        let mut notes: Vec<N> = given.into_iter().map(|(_, note)| note).collect();
+        let (mut note, mut opened, mut grown) = (N::default(), 0, true);
         while grown && work.len() < PARTS {
             let mut next = Vec::with_capacity(3 * work.len());
             grown = false;
             for region in &work {
-                let before = next.len();
                 match *region {
                     Region::Two(a, b) if a.count == 1 && b.count == 1 => next.push(*region),
                     _ => {
-                        self.open(*region, &skip, &mut next);
+                        self.open(*region, |region| !skip(&mut note, region), &mut next);
                         opened += 1;
                         grown = true;
                     }
                 }
-                debug_assert!(next.len() <= before + 3);
             }
             work = next;
         }
-        let found: Vec<(Vec<[u32; 2]>, usize)> = work
+        let found: Vec<(Vec<[u32; 2]>, usize, N)> = work
             .par_iter()
             .map(|&region| {
                 let (mut stack, mut pairs, mut opened) = (vec![region], Vec::new(), 0);
+                let mut note = N::default();
                 while let Some(region) = stack.pop() {
                     match region {
                         Region::Two(a, b) if a.count == 1 && b.count == 1 => {
                             pairs.push([self.item(a.first), self.item(b.first)]);
                         }
                         _ => {
-                            self.open(region, &skip, &mut stack);
+                            self.open(region, |region| !skip(&mut note, region), &mut stack);
                             opened += 1;
                         }
                     }
                 }
-                (pairs, opened)
+                (pairs, opened, note)
             })
             .collect();
-        let mut pairs = Vec::with_capacity(found.iter().map(|(pairs, _)| pairs.len()).sum());
-        for (some, count) in found {
-            pairs.extend(some);
-            opened += count;
+        notes.push(note);
+        let mut all = Pairs {
+            pairs: Vec::with_capacity(found.iter().map(|found| found.0.len()).sum()),
+            opened,
+            notes,
+        };
+        for (pairs, opened, note) in found {
+            all.pairs.extend(pairs);
+            all.opened += opened;
+            all.notes.push(note);
         }
-        (pairs, opened)
+        all
     }
 
-    fn open(&self, region: Region, skip: &impl Fn(&Region) -> bool, out: &mut Vec<Region>) {
+    fn open(&self, region: Region, mut keep: impl FnMut(&Region) -> bool, out: &mut Vec<Region>) {
         let meet = |a: Node, b: Node| self.boxes[a.at as usize].meets(&self.boxes[b.at as usize]);
         let mut add = |region: Region| {
-            if !skip(&region) {
+            if keep(&region) {
                 out.push(region);
             }
         };

@@ -1,10 +1,12 @@
 //! Contact of cloth with cloth: the laws of contact with a surface, on the vector between two
 //! features in place of the point.
 
-use super::bound::{Kept, Motions, REACH_OF_WAYS, features_within, reach_of};
-use super::curvature::{Clearance, longest};
+use super::bound::{Kept, Motions, REACH_OF_WAYS};
+use super::curvature::Clearance;
 use super::layers::{Knots, Stray, layer_order, layers_of, strays, ways_out};
+use super::near::Near;
 use super::proximity::{Nearness, nearnesses};
+use super::regions::Ways;
 use super::surface::{ClothSurface, FeaturePair};
 use super::tangle::{Piercing, crossings, piercings};
 use crate::laws::contact::{ContactLaw, ContactPlane};
@@ -165,11 +167,9 @@ pub struct ClothContacts {
     /// What was found and done so far.
     pub tally: Tally,
     surface: ClothSurface,
-    near: Vec<[u32; 2]>,
-    /// Features of those as near, with their distances then [m]; found when asked for.
-    features: Option<Vec<(FeaturePair, f64)>>,
-    near_at: Vec<Vec3>,
-    near_reach: f64,
+    near: Near,
+    /// How far off contacts were last looked for [m].
+    reach: f64,
     /// How far off vertices on the wrong side of a layer are looked for at the next look [m]; nothing
     /// where none can be: layers that do not cross do not change sides.
     stray_reach: Option<f64>,
@@ -178,15 +178,12 @@ pub struct ClothContacts {
 /// Contacts are kept from this many offsets away, so that a step is stopped before it lands.
 const REACH_IN_OFFSETS: f64 = 2.0;
 
-/// How much farther pairs of triangles are looked for, so that they serve for some time [m].
-const SLACK: f64 = 2e-3;
+/// How far vertices may go off the way that near triangles were looked for on [m].
+const STRAY: f64 = 2.5e-4;
 
-/// How far vertices may go meanwhile [m].
-const STRAY: f64 = 0.5 * SLACK;
-
-/// How far impulses may change a motion before what may meet in it is looked for anew, as a share of
-/// how far it strays from its mean.
-const OFF: f64 = 0.25;
+/// How far the vertices of a region that is left out may stray from one another on their ways before
+/// it is looked at again [m].
+const BEYOND: f64 = 7.5e-4;
 
 /// How far an edge that pierces a face is pulled at a time, in offsets: by less, a fold caught in a seam
 /// stays there.
@@ -203,6 +200,7 @@ impl ClothContacts {
         Clearance {
             stray: STRAY,
             kept: offset,
+            beyond: BEYOND,
         }
     }
 
@@ -216,29 +214,11 @@ impl ClothContacts {
         };
         if stale {
             self.surface = ClothSurface::new(model);
-            self.near_at.clear();
+            self.near.forget();
             let ordered = layers_of(&self.surface).len() > 1;
             self.stray_reach = ordered.then_some(STRAY_REACH);
         }
         &mut self.surface
-    }
-
-    /// Pairs of triangles near each other at some positions, found anew only when the cloth has
-    /// moved too far for the last ones.
-    fn look(&mut self, model: &Model, x: &[Vec3], reach: f64) {
-        self.surface(model);
-        let moved = |(a, b): (&Vec3, &Vec3)| (a - b).norm();
-        let fresh = self.near_at.len() == x.len()
-            && self.near_reach >= reach
-            && longest(self.near_at.iter().zip(x).map(moved)) < STRAY;
-        if !fresh {
-            let clearance = Self::clearance(model.contact.cloth_offset);
-            self.near = (self.surface).near_unless_clear(x, x, reach + SLACK, clearance);
-            self.features = None;
-            self.near_at.clear();
-            self.near_at.extend_from_slice(x);
-            self.near_reach = reach;
-        }
     }
 
     /// Finds contacts within `reach` [m] and crossings; what the state remembers of friction goes into them.
@@ -253,8 +233,13 @@ impl ClothContacts {
         if model.contact.cloth_offset <= 0.0 {
             return;
         }
-        self.look(model, x, reach);
-        let crossings = crossings(&self.surface, &self.near, x);
+        self.surface(model);
+        self.reach = reach;
+        let clearance = Self::clearance(model.contact.cloth_offset);
+        let still = Ways::still(x);
+        let near = (self.near).along(&mut self.surface, still, reach, clearance);
+        let near = self.surface.meeting(near, still, reach);
+        let crossings = crossings(&self.surface, &near, x);
         self.piercings = crossings.len();
         let (own, across) = self.mark(&crossings);
         let strays = self.find_strays(x, !across.is_empty());
@@ -265,7 +250,7 @@ impl ClothContacts {
             layer: &model.layer,
         };
         let mut active = std::mem::take(&mut self.active);
-        for near in nearnesses(&self.surface, &self.near, x, reach) {
+        for near in nearnesses(&self.surface, &near, x, reach) {
             let vertices = near.pair.vertices();
             let fixed = vertices.iter().all(|&v| model.pinned[v as usize]);
             if !fixed && !knots.lets_go(near.pair) {
@@ -322,7 +307,8 @@ impl ClothContacts {
 
     /// Looks anew at the next search, so that it does not depend on what was found before.
     pub fn forget(&mut self) {
-        self.near_at.clear();
+        self.near.forget();
+        self.surface.forget();
     }
 
     /// Contacts within the usual reach.
@@ -494,18 +480,12 @@ impl ClothContacts {
             return Kept::default();
         }
         self.surface(model);
-        let x = motion.x;
-        let since = if self.near_at.len() == x.len() {
-            longest((self.near_at.iter().zip(x)).map(|(a, b)| (a - b).norm()))
-        } else {
-            f64::INFINITY
-        };
+        let clearance = Self::clearance(model.contact.cloth_offset);
+        // What is found now serves the next look for contacts too.
+        let reach = self.reach.max(REACH_OF_WAYS);
         let Self {
             surface,
             near,
-            near_at,
-            features,
-            near_reach,
             tangled,
             astray,
             ..
@@ -515,39 +495,15 @@ impl ClothContacts {
             astray,
             layer: &model.layer,
         };
-        // The moves that the pairs in hand were looked for along, and how far off they still serve.
-        let mut looked: Option<(Vec<Vec3>, f64)> = None;
+        let x = motion.x;
         let find = |surface: &mut ClothSurface, moves: &[Vec3], pairs: &mut Vec<FeaturePair>| {
-            let mean = moves.iter().sum::<Vec3>() / moves.len().max(1) as f64;
-            let stray = longest(moves.iter().map(|d| (d - mean).norm()));
-            let reach = 2.0 * since + reach_of(stray);
-            if reach <= *near_reach + SLACK && since + stray <= STRAY {
-                let all = features.get_or_insert_with(|| {
-                    features_within(surface, near, near_at, *near_reach + SLACK)
-                });
-                let near = all.iter().filter(|(_, distance)| *distance <= reach);
-                pairs.clear();
-                pairs.extend(near.map(|(pair, _)| *pair));
-                looked = None;
-                return;
-            }
-            if let Some((before, off)) = &looked
-                && longest(moves.iter().zip(before).map(|(d, b)| (d - b).norm())) <= *off
-            {
-                return;
-            }
-            let off = OFF * stray;
-            let clearance = Clearance {
-                stray: stray + off,
-                kept: 0.0,
-            };
-            let reach = REACH_OF_WAYS + 2.0 * off;
             let target: Vec<Vec3> = x.iter().zip(moves).map(|(x, d)| x + d).collect();
+            let ways = Ways::together(x, &target);
+            let near = near.along(surface, ways, reach, clearance);
             pairs.clear();
-            for pair in surface.near_unless_clear(x, &target, reach, clearance) {
+            for pair in surface.meeting(near, ways, REACH_OF_WAYS) {
                 surface.features(pair, |pair| pairs.push(pair));
             }
-            looked = Some((moves.to_vec(), off));
         };
         let kept = super::bound::keep_apart(surface, knots, motion, find);
         self.tally.impulses += kept.impulses;

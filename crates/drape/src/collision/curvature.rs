@@ -14,11 +14,32 @@ use toile_geometry::Vec3;
 /// What a region must keep to be left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
-    /// How far any vertex may go before regions are looked at again, a motion of all left out [m].
+    /// How far any vertex may go off its way, a motion of all left out [m].
     pub stray: f64,
-    /// Distance that two features without a common vertex keep in all that time, as far as there is
+    /// Distance that two features without a common vertex keep all that time, as far as there is
     /// room at them [m].
     pub kept: f64,
+    /// How much farther the vertices of a region may stray from one another, on their way and on later
+    /// ones, before it is looked at again [m].
+    pub beyond: f64,
+}
+
+impl Clearance {
+    /// How far vertices may stray from one another after a region was found clear [m].
+    fn margin(&self) -> f64 {
+        self.stray + self.beyond
+    }
+}
+
+/// What a region is found to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// No two of its features without a common vertex can come nearer than is to be kept.
+    Clear,
+    /// They might, or it cannot be told.
+    Open,
+    /// It cannot be told, wherever its vertices are.
+    Apart,
 }
 
 /// The longest of some ways [m]; without end where one is not known.
@@ -40,7 +61,7 @@ const DIRECTIONS: usize = 64;
 const WIDEST: f64 = 0.258_819_045_102_520_76;
 
 /// Regions of fewer triangles are looked into: that costs less than this.
-const LEAST: u32 = 16;
+pub const LEAST: u32 = 16;
 
 /// Distances are known no better than this [m].
 const ROUNDING: f64 = 1e-9;
@@ -129,31 +150,37 @@ impl Curvature {
         }
     }
 
-    /// Finds what every node faces at some positions [m]. `room` tells the most that is kept at a
-    /// vertex [m].
-    pub fn refit(
-        &mut self,
-        tree: &BoxTree,
-        triangles: &[[u32; 3]],
-        (x, room): (&[Vec3], impl Fn(usize) -> f64),
-        clearance: Clearance,
-    ) {
+    /// Sets what is to be kept of the `room` [m] at each vertex.
+    pub fn keep(&mut self, room: impl Iterator<Item = f64>, clearance: Clearance) {
         self.keeps.clear();
-        self.keeps
-            .extend((0..x.len()).map(|v| room(v).min(clearance.kept)));
+        self.keeps.extend(room.map(|room| room.min(clearance.kept)));
         self.clearance = Some(clearance);
+    }
+
+    /// Finds what the nodes of some regions face at some positions [m], and all nodes below them.
+    pub fn face(&mut self, tree: &BoxTree, triangles: &[[u32; 3]], x: &[Vec3], regions: &[Region]) {
+        let Some(clearance) = self.clearance else {
+            return;
+        };
+        let mut wanted = vec![0i32; triangles.len() + 1];
+        for node in regions.iter().flat_map(|region| region.nodes()) {
+            wanted[node.first as usize] += 1;
+            wanted[(node.first + node.count) as usize] -= 1;
+        }
+        for leaf in 0..triangles.len() {
+            wanted[leaf + 1] += wanted[leaf];
+        }
         let (barred, keeps, directions) = (&self.barred, &self.keeps, &self.directions);
-        let facing = |leaf: u32| {
-            let t = tree.item(leaf) as usize;
+        let facing = |leaf: usize| {
+            let t = tree.item(leaf as u32) as usize;
             let corners = triangles[t].map(|v| x[v as usize]);
             let keeps = triangles[t].map(|v| keeps[v as usize]);
-            match barred[t] {
+            match wanted[leaf] == 0 || barred[t] {
                 true => 0,
-                false => faced(directions, &corners, &keeps, clearance.stray),
+                false => faced(directions, &corners, &keeps, clearance.margin()),
             }
         };
-        let leaves = 0..triangles.len() as u32;
-        let leaves: Vec<u64> = leaves
+        let leaves: Vec<u64> = (0..triangles.len())
             .into_par_iter()
             .with_min_len(256)
             .map(facing)
@@ -173,27 +200,22 @@ impl Curvature {
         &self.contours[self.starts[at] as usize..self.starts[at + 1] as usize]
     }
 
-    /// Whether no two features of a region without a common vertex can come nearer than is to be
-    /// kept; where they might, or it cannot be told, the answer is no.
-    pub fn is_clear(&self, edges: &[[u32; 2]], x: &[Vec3], region: &Region) -> bool {
-        let (facing, count) = match *region {
-            Region::Own(a) => (self.facing[a.at as usize], a.count),
-            Region::Two(a, b) => (
-                self.facing[a.at as usize] & self.facing[b.at as usize],
-                a.count + b.count,
-            ),
-        };
+    /// What a region is, that [`Curvature::face`] was asked for.
+    pub fn find(&self, edges: &[[u32; 2]], x: &[Vec3], region: &Region) -> Found {
+        let facing = region.nodes().fold(u64::MAX, |facing, node| {
+            facing & self.facing[node.at as usize]
+        });
         let Some(clearance) = self.clearance else {
-            return false;
+            return Found::Open;
         };
-        if facing == 0 || count < LEAST {
-            return false;
+        if facing == 0 || region.count() < LEAST {
+            return Found::Open;
         }
         let bits = (0..DIRECTIONS).filter(|k| facing >> k & 1 == 1);
         // What all of these have in sight, their mean has too.
         let mean: Vec3 = bits.map(|k| self.directions[k]).sum();
         let Some(view) = mean.try_normalize(0.0) else {
-            return false;
+            return Found::Open;
         };
         let halves = match *region {
             Region::Own(a) => self.contour(a).to_vec(),
@@ -202,13 +224,16 @@ impl Curvature {
                 let joined = joined(a, b);
                 if joined.len() == a.len() + b.len() {
                     // No border in common: two plies, most often.
-                    return false;
+                    return Found::Apart;
                 }
                 joined
             }
         };
         let contour = Contour::new(&halves, edges, &self.keeps, (x, view));
-        contour.is_connected() && contour.alternates() && contour.is_clear(clearance)
+        match contour.is_connected() && contour.alternates() && contour.is_clear(clearance) {
+            true => Found::Clear,
+            false => Found::Open,
+        }
     }
 }
 
@@ -334,7 +359,7 @@ impl Contour {
     /// Whether no vertex can come nearer than is kept to a side that it does not end, and no two
     /// sides cross.
     fn is_clear(&self, clearance: Clearance) -> bool {
-        let widest = clearance.kept + 2.0 * clearance.stray + ROUNDING;
+        let widest = clearance.kept + 2.0 * clearance.margin() + ROUNDING;
         let range = |k: usize, axis: usize| {
             let [a, b] = self.sides[k].map(|v| self.places[v as usize][axis]);
             [a.min(b), a.max(b)]
@@ -352,7 +377,7 @@ impl Contour {
                 }
                 let [low, high] = range(other, 1 - axis);
                 let apart = low > high_across + widest || low_across > high + widest;
-                if !apart && !self.keep_clear([k, other], clearance.stray) {
+                if !apart && !self.keep_clear([k, other], clearance.margin()) {
                     return false;
                 }
             }

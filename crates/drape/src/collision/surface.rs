@@ -1,8 +1,9 @@
 //! The cloth as collision sees it: its triangles, edges and vertices, each feature in the care of
 //! one triangle, so that a pair of features is looked at once (Curtis, Tamstorf and Manocha 2008).
 
-use super::boxes::{Bounds, BoxTree};
-use super::curvature::{Clearance, Curvature};
+use super::boxes::{BoxTree, Region};
+use super::curvature::Clearance;
+use super::regions::{Cloth, Regions, Ways};
 use crate::{Model, merge_map};
 use toile_geometry::{TriangleMesh, Vec3};
 
@@ -57,12 +58,12 @@ pub struct ClothSurface {
     /// Vertices that each triangle cares for.
     own_vertices: Vec<[u32; 3]>,
     tree: BoxTree,
-    curvature: Curvature,
+    regions: Regions,
     opened: usize,
 }
 
 /// Share of the shortest edge nearby above which no distance is kept: neighbours are not contacts.
-const ROOM: f64 = 0.5;
+pub(super) const ROOM: f64 = 0.5;
 
 /// No feature.
 const NONE: u32 = u32::MAX;
@@ -132,12 +133,13 @@ impl ClothSurface {
             .map(|t| piece[t[0] as usize])
             .collect();
         surface.tree = BoxTree::new(&centres, &pieces);
-        surface.curvature = Curvature::new(
-            &surface.tree,
-            &surface.triangles,
-            &surface.edges,
-            &surface.edge_triangles,
-        );
+        let cloth = Cloth {
+            tree: &surface.tree,
+            triangles: &surface.triangles,
+            edges: &surface.edges,
+            room: &[],
+        };
+        surface.regions = Regions::new(&cloth, &surface.edge_triangles);
         surface
     }
 
@@ -151,60 +153,58 @@ impl ClothSurface {
         &self.tree
     }
 
-    /// Pairs of triangles that come within `reach` [m] of each other as the cloth moves straight
-    /// from some positions to others; more than those, but never fewer.
-    pub fn near_triangles(&mut self, from: &[Vec3], to: &[Vec3], reach: f64) -> Vec<[u32; 2]> {
-        self.refit(from, to, reach);
-        let (pairs, opened) = self.tree.pairs(|_| false);
-        self.opened = opened;
-        pairs
+    /// Pairs of triangles that come within `reach` [m] of each other on the way of the cloth; more
+    /// than those, but never fewer.
+    pub fn near_triangles(&mut self, ways: Ways, reach: f64) -> Vec<[u32; 2]> {
+        self.refit(ways, reach);
+        let root: Vec<Region> = self.tree.root().map(Region::Own).into_iter().collect();
+        let all = self.tree.pairs(&root, |_: &mut (), _| false);
+        self.opened = all.opened;
+        all.pairs
     }
 
-    /// How many regions of the tree the last search looked into.
-    pub fn opened(&self) -> usize {
-        self.opened
+    /// How many regions of the tree the last search looked into, and how many of them it looked at
+    /// closely to leave them out.
+    pub fn opened(&self) -> [usize; 2] {
+        [self.opened, self.regions.told()]
     }
 
     /// [`Self::near_triangles`] without those of a region that keeps clear of itself: no two of their
-    /// features without a common vertex come nearer than the clearance says.
+    /// features without a common vertex come nearer than the clearance says. What was found of
+    /// regions serves the next search with the same clearance too.
     pub fn near_unless_clear(
         &mut self,
-        from: &[Vec3],
-        to: &[Vec3],
+        ways: Ways,
         reach: f64,
         clearance: Clearance,
     ) -> Vec<[u32; 2]> {
-        self.refit(from, to, reach);
-        let Self {
-            curvature,
-            tree,
-            triangles,
-            edges,
-            room,
-            opened,
-            ..
-        } = self;
-        curvature.refit(tree, triangles, (from, |v| ROOM * room[v]), clearance);
+        self.refit(ways, reach);
+        let cloth = Cloth {
+            tree: &self.tree,
+            triangles: &self.triangles,
+            edges: &self.edges,
+            room: &self.room,
+        };
         let pairs;
-        (pairs, *opened) = tree.pairs(|region| curvature.is_clear(edges, from, region));
+        (pairs, self.opened) = self.regions.near(&cloth, &ways, clearance);
         pairs
     }
 
-    fn refit(&mut self, from: &[Vec3], to: &[Vec3], reach: f64) {
+    /// Forgets what earlier searches found of regions.
+    pub fn forget(&mut self) {
+        self.regions.forget();
+    }
+
+    /// Those of some pairs of triangles whose boxes come within `reach` [m] of each other on the way.
+    pub fn meeting(&self, pairs: &[[u32; 2]], ways: Ways, reach: f64) -> Vec<[u32; 2]> {
+        let bounds = |t: u32| ways.bounds(self.triangles[t as usize], 0.5 * reach);
+        let meet = |&&[t, u]: &&[u32; 2]| bounds(t).meets(&bounds(u));
+        pairs.iter().filter(meet).copied().collect()
+    }
+
+    fn refit(&mut self, ways: Ways, reach: f64) {
         let triangles = &self.triangles;
-        let still = std::ptr::eq(from, to);
-        self.tree.refit(|t| {
-            let corners = triangles[t as usize];
-            let start = corners.map(|v| from[v as usize]);
-            let bounds = Bounds::round(&start, 0.5 * reach);
-            if still {
-                return bounds;
-            }
-            bounds.join(&Bounds::round(
-                &corners.map(|v| to[v as usize]),
-                0.5 * reach,
-            ))
-        });
+        (self.tree).refit(|t| ways.bounds(triangles[t as usize], 0.5 * reach));
     }
 
     /// Pairs of features of two triangles, those that share a vertex left out.

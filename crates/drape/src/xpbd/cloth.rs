@@ -1,7 +1,7 @@
 //! Contact of cloth with cloth in substeps: found once in a few of them, kept as planes meanwhile.
 
 use super::contact::{ContactStencil, Touch};
-use super::{Xpbd, XpbdReport};
+use super::{Xpbd, XpbdReport, middle};
 use crate::collision::{ClothContact, ClothContacts, Kept, Motions};
 use crate::{DrapeError, Model, State};
 use toile_geometry::Vec3;
@@ -100,6 +100,8 @@ impl Xpbd {
             return self.advance(model, state, span.substep, span.count, span.drag);
         }
         self.take_up(model);
+        let origin = middle(&state.positions);
+        self.forget_surfaces();
         let mut left = span.count;
         let mut report = XpbdReport::default();
         let mut pieces = 1;
@@ -120,7 +122,7 @@ impl Xpbd {
             let time = ((watch.allowed - travelled) / speed).min(LONGEST - watch.time);
             let count = ((time / span.substep) as u32).max(FEWEST).min(left);
             watch.before.clone_from(&state.positions);
-            report = self.advance(model, state, span.substep, count, span.drag)?;
+            report = self.advance_about(model, state, origin, &Span { count, ..*span })?;
             watch.keep_apart(model, state, span.substep * f64::from(count));
             pieces = pieces.max(report.pieces);
             let time = span.substep * f64::from(count);

@@ -234,15 +234,40 @@ impl Xpbd {
         drag: f64,
     ) -> Result<XpbdReport, DrapeError> {
         self.take_up(model);
+        let span = Span {
+            substep,
+            count,
+            drag,
+        };
+        let origin = middle(&state.positions);
+        self.forget_surfaces();
+        self.advance_about(model, state, origin, &span)
+    }
+
+    /// [`Xpbd::advance`] with numbers relative to `origin` [m], which what was looked up of surfaces is
+    /// too.
+    fn advance_about(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        origin: Vec3,
+        &Span {
+            substep,
+            count,
+            drag,
+        }: &Span,
+    ) -> Result<XpbdReport, DrapeError> {
         if let Some(vertex) = state.first_not_finite() {
             let stage = "XPBD, before the step";
             return Err(DrapeError::NotFinite { stage, vertex });
         }
         state.follow_samples(model);
-        let origin = middle(&state.positions);
         let mut failed = 0;
         for halvings in 0..=STEP_HALVINGS {
             let pieces = 1u32 << halvings;
+            if halvings > 0 {
+                self.forget_surfaces();
+            }
             self.load(model, state, origin);
             self.lead(model, state, substep * f64::from(count));
             let h = substep / f64::from(pieces);
@@ -275,6 +300,16 @@ impl Xpbd {
         }
     }
 
+    /// Looks up surfaces anew.
+    fn forget_surfaces(&mut self) {
+        for touch in &mut self.particles.touch {
+            touch.forget();
+        }
+        for region in self.regions.all_mut() {
+            region.forget_surfaces();
+        }
+    }
+
     /// Reads a state.
     fn load(&mut self, model: &Model, state: &State, origin: Vec3) {
         let particles = &mut self.particles;
@@ -297,9 +332,6 @@ impl Xpbd {
             }
             particles.start[slot] = start;
             particles.now[slot] = start;
-        }
-        for touch in &mut particles.touch {
-            touch.forget();
         }
         for moves in &mut particles.bend {
             moves.fill([0.0; 4]);

@@ -235,7 +235,7 @@ impl Region {
         }
     }
 
-    /// Gets ready for an advance: places of elastics, and contacts to be looked up.
+    /// Gets ready for an advance: places of elastics.
     pub fn begin(&mut self, model: &Model, origin: Vec3, iterated: bool) {
         for tie in &mut self.ties {
             if let ElasticEnd::Point(point) = model.elastics[tie.elastic as usize].to {
@@ -243,14 +243,18 @@ impl Region {
                 tie.place = [place.x as f32, place.y as f32, place.z as f32];
             }
         }
-        for contact in &mut self.contacts {
-            contact.touch.forget();
-        }
         if iterated {
             self.membrane_sums
                 .resize(self.membrane.len(), [Row::splat(0.0); 3]);
             self.bending_sums
                 .resize(self.bending.len(), [[Row::splat(0.0); 3]; 3]);
+        }
+    }
+
+    /// Looks up surfaces anew.
+    pub fn forget_surfaces(&mut self) {
+        for contact in &mut self.contacts {
+            contact.touch.forget();
         }
     }
 

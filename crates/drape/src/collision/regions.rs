@@ -1,0 +1,283 @@
+//! Which regions of the cloth are left out of a search, remembered from one search to the next: a
+//! region that was found clear stays so while its own vertices stray little from one another,
+//! however far they go together, and one that was not is not asked again at once.
+
+use super::boxes::{Bounds, BoxTree, Pairs, Region};
+use super::curvature::{Clearance, Curvature, Found, LEAST};
+use super::surface::ROOM;
+use toile_geometry::Vec3;
+
+/// Straight ways of all vertices.
+#[derive(Clone, Copy, Debug)]
+pub struct Ways<'a> {
+    /// Where they begin [m].
+    pub from: &'a [Vec3],
+    /// Where they end [m].
+    pub to: &'a [Vec3],
+    /// Whether all go at one pace; else each may end anywhere on its way.
+    pub together: bool,
+}
+
+impl<'a> Ways<'a> {
+    /// Ways that all go at one pace.
+    pub fn together(from: &'a [Vec3], to: &'a [Vec3]) -> Self {
+        Self {
+            from,
+            to,
+            together: true,
+        }
+    }
+
+    /// Ways on which each vertex may stop where it likes.
+    pub fn each(from: &'a [Vec3], to: &'a [Vec3]) -> Self {
+        Self {
+            from,
+            to,
+            together: false,
+        }
+    }
+
+    /// No ways.
+    pub fn still(x: &'a [Vec3]) -> Self {
+        Self::together(x, x)
+    }
+
+    fn are_still(&self) -> bool {
+        std::ptr::eq(self.from, self.to)
+    }
+
+    /// Box round what a triangle's corners touch.
+    pub fn bounds(&self, corners: [u32; 3], margin: f64) -> Bounds {
+        let start = Bounds::round(&corners.map(|v| self.from[v as usize]), margin);
+        if self.are_still() {
+            return start;
+        }
+        let end = Bounds::round(&corners.map(|v| self.to[v as usize]), margin);
+        start.join(&end)
+    }
+}
+
+/// The cloth that is searched.
+#[derive(Clone, Copy)]
+pub struct Cloth<'a> {
+    /// The tree over its triangles, fitted.
+    pub tree: &'a BoxTree,
+    /// Corners of the triangles.
+    pub triangles: &'a [[u32; 3]],
+    /// Ends of the edges.
+    pub edges: &'a [[u32; 2]],
+    /// Length of the shortest edge at each vertex [m].
+    pub room: &'a [f64],
+}
+
+/// The boxes of a region's nodes; the second is no box of the tree where there is one node.
+type Key = [u32; 2];
+
+/// What was found of a region.
+#[derive(Clone, Copy, Debug)]
+struct Verdict {
+    key: Key,
+    clear: bool,
+    /// How far its vertices may have strayed from one another since [m].
+    strayed: f64,
+}
+
+/// What one part of a search notes.
+#[derive(Debug, Default)]
+struct Notes {
+    verdicts: Vec<Verdict>,
+    /// Regions to be looked at more closely.
+    asked: Vec<Region>,
+    /// How many were.
+    told: usize,
+}
+
+/// What is known of the regions of a cloth.
+#[derive(Clone, Debug, Default)]
+pub struct Regions {
+    curvature: Curvature,
+    clearance: Option<Clearance>,
+    /// Places at the last search [m].
+    at: Vec<Vec3>,
+    /// What it found, in order of the keys.
+    verdicts: Vec<Verdict>,
+    told: usize,
+}
+
+/// How the vertices below every node move.
+struct Motion<'a> {
+    /// Since the last search; nothing where there is none.
+    since: Option<Vec<Bounds>>,
+    /// On their ways; nothing where they rest.
+    ways: Option<Vec<Bounds>>,
+    before: &'a [Verdict],
+    beyond: f64,
+}
+
+/// How far the vertices of a region stray from one another [m].
+fn stray(bounds: Option<&Vec<Bounds>>, region: &Region) -> f64 {
+    bounds.map_or(0.0, |bounds| {
+        let boxes = region.nodes().map(|node| bounds[node.at as usize]);
+        boxes
+            .fold(Bounds::EMPTY, |all, of_node| all.join(&of_node))
+            .radius()
+    })
+}
+
+fn key(region: &Region) -> Key {
+    match *region {
+        Region::Own(a) => [a.at, u32::MAX],
+        Region::Two(a, b) => [a.at, b.at],
+    }
+}
+
+impl Motion<'_> {
+    /// What is still known of a region; nothing where it has to be looked at again.
+    fn verdict(&self, region: &Region, on_the_way: f64) -> Option<Verdict> {
+        let key = key(region);
+        let at = self
+            .before
+            .binary_search_by(|verdict| verdict.key.cmp(&key));
+        let mut verdict = self.before[at.ok()?];
+        verdict.strayed += stray(self.since.as_ref(), region);
+        let all = match verdict.clear {
+            true => verdict.strayed + on_the_way,
+            false => verdict.strayed,
+        };
+        (all <= self.beyond).then_some(verdict)
+    }
+
+    /// Whether a region is left out; what is not known is told by `tell`.
+    fn leaves_out(
+        &self,
+        notes: &mut Notes,
+        region: &Region,
+        tell: impl FnOnce(&mut Notes) -> Option<Found>,
+    ) -> bool {
+        if region.count() < LEAST {
+            return false;
+        }
+        let on_the_way = stray(self.ways.as_ref(), region);
+        let known = self.verdict(region, on_the_way);
+        // Also where it is no number.
+        if known.is_none() && (on_the_way > self.beyond || on_the_way.is_nan()) {
+            return false;
+        }
+        let told = known.or_else(|| {
+            let found = tell(notes)?;
+            let strayed = if found == Found::Apart {
+                f64::NEG_INFINITY
+            } else {
+                0.0
+            };
+            Some(Verdict {
+                key: key(region),
+                clear: found == Found::Clear,
+                strayed,
+            })
+        });
+        notes.verdicts.extend(told);
+        told.is_none_or(|verdict| verdict.clear)
+    }
+}
+
+/// Boxes round vectors of the three corners of every triangle, and of all below each node.
+fn spreads(cloth: &Cloth, vector: impl Fn(usize) -> Vec3 + Sync) -> Vec<Bounds> {
+    let everywhere = Bounds {
+        low: [f64::NEG_INFINITY; 3],
+        high: [f64::INFINITY; 3],
+    };
+    cloth.tree.fitted(|t| {
+        let three = cloth.triangles[t as usize].map(|v| vector(v as usize));
+        match three.iter().all(|d| d.iter().all(|c| c.is_finite())) {
+            true => Bounds::round(&three, 0.0),
+            false => everywhere,
+        }
+    })
+}
+
+impl Regions {
+    /// Regions of a cloth.
+    pub fn new(cloth: &Cloth, edge_triangles: &[Vec<u32>]) -> Self {
+        Self {
+            curvature: Curvature::new(cloth.tree, cloth.triangles, cloth.edges, edge_triangles),
+            ..Self::default()
+        }
+    }
+
+    /// Forgets what was found.
+    pub fn forget(&mut self) {
+        self.clearance = None;
+    }
+
+    /// How many regions the last search looked at closely.
+    pub fn told(&self) -> usize {
+        self.told
+    }
+
+    /// Pairs of triangles whose boxes meet, without those of regions that keep clear of themselves,
+    /// and how many regions were looked into.
+    pub fn near(
+        &mut self,
+        cloth: &Cloth,
+        ways: &Ways,
+        clearance: Clearance,
+    ) -> (Vec<[u32; 2]>, usize) {
+        let x = ways.from;
+        if self.clearance != Some(clearance) || self.at.len() != x.len() {
+            self.clearance = Some(clearance);
+            let most_kept = cloth.room.iter().map(|room| ROOM * room);
+            self.curvature.keep(most_kept, clearance);
+            self.verdicts.clear();
+        }
+        let before = std::mem::take(&mut self.verdicts);
+        let at = &self.at;
+        let motion = Motion {
+            since: (!before.is_empty()).then(|| spreads(cloth, |v| x[v] - at[v])),
+            ways: (!ways.are_still()).then(|| {
+                let together = ways.together;
+                let mut spreads = spreads(cloth, |v| ways.to[v] - x[v]);
+                if !together {
+                    let rest = Bounds::round(&[Vec3::zeros()], 0.0);
+                    spreads.iter_mut().for_each(|b| *b = b.join(&rest));
+                }
+                spreads
+            }),
+            before: &before,
+            beyond: clearance.beyond,
+        };
+        let known = |notes: &mut Notes, region: &Region| {
+            motion.leaves_out(notes, region, |notes| {
+                notes.asked.push(*region);
+                None
+            })
+        };
+        let root: Vec<Region> = cloth.tree.root().map(Region::Own).into_iter().collect();
+        let mut all: Pairs<Notes> = cloth.tree.pairs(&root, known);
+        let asked: Vec<Region> = all
+            .notes
+            .iter()
+            .flat_map(|n| n.asked.iter().copied())
+            .collect();
+        if !asked.is_empty() {
+            self.curvature.face(cloth.tree, cloth.triangles, x, &asked);
+            let curvature = &self.curvature;
+            let more = cloth.tree.pairs(&asked, |notes: &mut Notes, region| {
+                motion.leaves_out(notes, region, |notes| {
+                    notes.told += 1;
+                    Some(curvature.find(cloth.edges, x, region))
+                })
+            });
+            all.pairs.extend(more.pairs);
+            all.opened += more.opened;
+            all.notes.extend(more.notes);
+        }
+        self.told = all.notes.iter().map(|notes| notes.told).sum();
+        let verdicts = all.notes.into_iter().flat_map(|notes| notes.verdicts);
+        self.verdicts.extend(verdicts);
+        self.verdicts.sort_unstable_by_key(|verdict| verdict.key);
+        self.at.clear();
+        self.at.extend_from_slice(x);
+        (all.pairs, all.opened)
+    }
+}

@@ -1,0 +1,293 @@
+//! Contact of cloth with cloth in the chart: scenes and steps with it and without, what it costs, and
+//! what passes through what where it is left out.
+
+use crate::chart::ChartPlan;
+use crate::chart_report::field;
+use crate::check::significant;
+use crate::clock::Clock;
+use crate::scenes::card;
+use crate::{LabError, MeshKind, rectangle};
+use serde::Serialize;
+use std::fmt::Write;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use toile_drape::collision::{ClothSurface, Ways, crossings};
+use toile_drape::{Collider, Material, MethodKind, MethodSettings, Model, State};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
+use toile_picture::{Axis, Chart, Series};
+use toile_session::Watcher;
+
+/// One run, with contact of cloth with cloth or without.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Touched {
+    /// The scene.
+    pub scene: &'static str,
+    /// Vertices of the cloth.
+    pub vertices: usize,
+    /// The method.
+    pub method: &'static str,
+    /// Step [s].
+    pub step: f64,
+    /// Distance that cloth keeps from cloth [m]; zero without contact.
+    pub offset: f64,
+    /// Wall time [ms] a simulated second.
+    pub wall_ms: f64,
+    /// Processor time [ms] a simulated second.
+    pub cpu_ms: Option<f64>,
+    /// Edges of cloth through faces of it at the end, exactly.
+    pub crossings: Option<usize>,
+    /// Looks for contacts a simulated second.
+    pub looks: f64,
+    /// Impulses that kept cloth from passing through cloth.
+    pub impulses: usize,
+    /// Moves of vertices that were cut for that.
+    pub cut: usize,
+    /// Pieces that a step was cut into, at the most; 1 where all were taken whole.
+    pub pieces: u32,
+    /// Why there is no end.
+    pub failure: Option<String>,
+}
+
+impl Touched {
+    fn cost(&self) -> f64 {
+        self.cpu_ms.unwrap_or(self.wall_ms)
+    }
+}
+
+/// Scenes by their names, and how long each goes on [s].
+const SCENES: [(&str, f64); 3] = [("sphere", 0.5), ("shirt", 0.1), ("fall", 0.4)];
+
+/// Distances that cloth keeps from cloth in the runs [m].
+const OFFSETS: [f64; 3] = [0.0, 1e-3, 2e-3];
+
+/// A square sheet of so many metres and cells along a side that falls on its edge, and folds up over a
+/// floor.
+pub(crate) fn fall(side: f64, cells: usize) -> Result<(Model, State), LabError> {
+    let corner = Vec2::repeat(side);
+    let flat = rectangle(MeshKind::Delaunay, Vec2::zeros(), corner, [cells; 2])?;
+    // Not quite upright nor flat, so that it has a way to fold.
+    let cloth = flat.cloth(Material::default(), |p| {
+        Vec3::new(p.x, p.y + 0.02, 0.004 * (20.0 * p.y).sin())
+    });
+    let mut model = Model::new("fall", &cloth)?;
+    model.colliders.push(Collider::new(Arc::new(floor())));
+    let state = State::at_rest(&model, cloth.positions);
+    Ok((model, state))
+}
+
+/// The upper side of a slab at height 0.
+fn floor() -> SurfaceTree {
+    let corner = |k: usize| {
+        let side = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
+        Vec3::new(side(0, -1.0, 1.0), side(1, -0.5, 0.0), side(2, -1.0, 1.0))
+    };
+    let quads = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    SurfaceTree::new(TriangleMesh {
+        positions: (0..8).map(corner).collect(),
+        triangles: quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect(),
+    })
+}
+
+fn scene(name: &str) -> Result<(Model, State), LabError> {
+    if name == "fall" {
+        return fall(0.3, 20);
+    }
+    let card = card(name)?;
+    let finest = card.cloths.len() - 1;
+    card.model(&card.cloth(finest)?, &card.cloths[finest].pins)
+}
+
+/// Edges of a model's cloth through faces of it, exactly.
+fn crossed(model: &Model, x: &[Vec3]) -> usize {
+    let mut surface = ClothSurface::new(model);
+    let near = surface.near_triangles(Ways::still(x), 0.0);
+    crossings(&surface, &near, x).len()
+}
+
+fn run(
+    (scene, duration): (&'static str, f64),
+    (model, start): (&Model, &State),
+    (kind, step): (MethodKind, f64),
+    budget: f64,
+) -> Touched {
+    let mut method = MethodSettings::from(kind).build();
+    let mut state = start.clone();
+    let steps = (duration / step).round().max(1.0) as usize;
+    let clock = Clock::start();
+    let (mut done, mut pieces, mut failure) = (0, 1, None);
+    while done < steps && failure.is_none() {
+        match method.advance(model, &mut state, step) {
+            Ok(report) => pieces = pieces.max(report.pieces),
+            Err(error) => failure = Some(error.to_string()),
+        }
+        done += 1;
+        if clock.spent() > budget && done < steps {
+            failure = Some(format!("not done in {budget} s: {done} of {steps} steps"));
+        }
+    }
+    let simulated = done.max(1) as f64 * step;
+    let tally = method.cloth_tally().unwrap_or_default();
+    Touched {
+        scene,
+        vertices: model.vertex_count(),
+        method: kind.name(),
+        step,
+        offset: model.contact.cloth_offset,
+        wall_ms: 1e3 * clock.wall() / simulated,
+        cpu_ms: clock.cpu().map(|cpu| 1e3 * cpu / simulated),
+        crossings: failure.is_none().then(|| crossed(model, &state.positions)),
+        looks: tally.looks as f64 / simulated,
+        impulses: tally.impulses,
+        cut: tally.cut,
+        pieces,
+        failure,
+    }
+}
+
+/// Runs every method that knows contact of cloth with cloth, with it and without.
+///
+/// # Errors
+/// The watcher asked to stop. Methods that fail are points with a reason.
+pub fn contact_chart(plan: ChartPlan, watcher: &mut dyn Watcher) -> Result<Vec<Touched>, LabError> {
+    let methods = MethodKind::ALL.into_iter();
+    let methods = methods.filter(|(_, kind)| kind.touches_cloth() && !kind.is_equilibrium());
+    let mut found = Vec::new();
+    for (number, (name, duration)) in SCENES.into_iter().enumerate() {
+        let (mut model, start) = scene(name)?;
+        for &step in plan.contact_steps {
+            for (method, kind) in methods.clone() {
+                for offset in OFFSETS {
+                    let detail = format!("{name}, {method}, step {:.2} ms", 1e3 * step);
+                    let share = number as f64 / SCENES.len() as f64;
+                    if let ControlFlow::Break(()) = watcher.progress("contact", share, &detail) {
+                        return Err(LabError::Cancelled);
+                    }
+                    model.contact.cloth_offset = offset;
+                    let ready = (&model, &start);
+                    found.push(run((name, duration), ready, (kind, step), plan.budget));
+                }
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// The runs as files: CSV, and a chart of each scene.
+///
+/// # Errors
+/// A chart cannot be drawn.
+pub fn contact_files(found: &[Touched]) -> Result<Vec<(String, String)>, LabError> {
+    let mut text = "scene,vertices,method,step_s,offset_m,wall_ms_per_simulated_s,cpu_ms,\
+                    crossings,looks_per_simulated_s,impulses,cut,pieces,failure\n"
+        .to_owned();
+    for p in found {
+        let _ = writeln!(
+            text,
+            "{},{},{},{:.4e},{},{},{},{},{},{},{},{},{}",
+            p.scene,
+            p.vertices,
+            p.method,
+            p.step,
+            p.offset,
+            significant(p.wall_ms, 5),
+            p.cpu_ms.map_or(String::new(), |x| significant(x, 5)),
+            p.crossings.map_or(String::new(), |n| n.to_string()),
+            significant(p.looks, 3),
+            p.impulses,
+            p.cut,
+            p.pieces,
+            field(p.failure.as_deref().unwrap_or("")),
+        );
+    }
+    let mut files = vec![("contact.csv".to_owned(), text)];
+    for (scene, _) in SCENES {
+        let mut series = Vec::new();
+        for (method, _) in MethodKind::ALL {
+            for (offset, words) in OFFSETS.into_iter().zip(["none", "1 mm", "2 mm"]) {
+                let own = found
+                    .iter()
+                    .filter(|p| p.scene == scene && p.method == method && p.offset == offset);
+                let places: Vec<[f64; 2]> = own
+                    .filter_map(|p| Some([p.cost(), p.crossings? as f64 + 1.0]))
+                    .collect();
+                if !places.is_empty() {
+                    let name = format!("{method}, {words}");
+                    series.push(Series::numbered(series.len(), name, places));
+                }
+            }
+        }
+        let chart = Chart {
+            title: format!("{scene}: contact of cloth with cloth, by the distance kept"),
+            x: Axis::logarithmic("processor time per simulated second [ms]"),
+            y: Axis::logarithmic("edges of cloth through cloth at the end, plus 1"),
+            series,
+            notes: vec!["points of a line: steps".to_owned()],
+            size: [860.0, 420.0],
+        };
+        // A scene in which everything failed has no axes to show it on.
+        if let Ok(drawing) = chart.draw() {
+            files.push((format!("contact-{scene}.svg"), drawing.to_svg()));
+        }
+    }
+    Ok(files)
+}
+
+/// What contact costs and saves, as Markdown.
+pub fn contact_table(found: &[Touched]) -> String {
+    let mut text = String::from(
+        "\nContact of cloth with cloth, the same steps with it and without (processor ms per simulated second; edges through faces at the end, \
+         exactly; pieces a step was cut into):\n\n| scene | vertices | method, step | without | 1 mm | 2 mm |\n|---|---|---|---|---|---|\n",
+    );
+    let cell = |p: &Touched| match (&p.failure, p.crossings) {
+        (None, Some(crossings)) => {
+            format!("{}: {crossings}, {}", significant(p.cost(), 3), p.pieces)
+        }
+        _ => "failed".to_owned(),
+    };
+    for three in found.chunks(OFFSETS.len()) {
+        let p = &three[0];
+        let cells: Vec<String> = three.iter().map(cell).collect();
+        let _ = writeln!(
+            text,
+            "| {} | {} | {}, {} ms | {} |",
+            p.scene,
+            p.vertices,
+            p.method,
+            significant(1e3 * p.step, 2),
+            cells.join(" | ")
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_passes_without_contact_does_not_with_it() {
+        let (mut model, start) = fall(0.3, 20).unwrap();
+        let fell = |model: &Model| {
+            let how = (MethodKind::Xpbd, 1.0 / 60.0);
+            run(("fall", 0.4), (model, &start), how, f64::INFINITY)
+        };
+        model.contact.cloth_offset = 0.0;
+        let without = fell(&model);
+        model.contact.cloth_offset = 2e-3;
+        let with = fell(&model);
+        assert!(without.crossings > Some(10), "{without:?}");
+        assert_eq!((with.crossings, with.pieces), (Some(0), 1), "{with:?}");
+        let text = contact_table(&[without.clone(), with.clone(), with]);
+        assert!(text.contains("| fall | "), "{text}");
+    }
+}
