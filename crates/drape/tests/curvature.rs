@@ -5,37 +5,21 @@
 
 #[path = "support/numbers.rs"]
 mod numbers;
+#[path = "support/sheets.rs"]
+mod sheets;
 
 use numbers::Numbers;
+use sheets::{grid, sheet};
 use std::collections::BTreeSet;
 use toile_drape::collision::{Clearance, ClothSurface, FeaturePair, Nearness, Ways, crossings};
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// A square sheet of `n` by `n` cells, cut alternately or all one way.
-fn sheet(n: usize, alternate: bool, place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
-    let mut mesh = TriangleMesh::default();
-    let at = |i: usize, j: usize| (j * (n + 1) + i) as u32;
-    let share = |k: usize| k as f64 / n as f64;
-    for j in 0..=n {
-        let row = (0..=n).map(|i| place(share(i), share(j)));
-        mesh.positions.extend(row);
-    }
-    for (i, j) in (0..n * n).map(|k| (k % n, k / n)) {
-        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-        let halves = match alternate && (i + j) % 2 == 1 {
-            false => [[a, b, c], [a, c, d]],
-            true => [[a, b, d], [b, c, d]],
-        };
-        mesh.triangles.extend(halves);
-    }
-    mesh
-}
-
 /// Cloth of 20 mm cells in waves, from nearly flat to crumpled; a ring now and then.
 fn waved(seed: u64) -> (TriangleMesh, Vec<Vec3>) {
     const CELLS: usize = 16;
-    let flat = sheet(CELLS, seed.is_multiple_of(2), |u, v| {
-        Vec3::new(0.32 * u, 0.0, 0.32 * v)
+    let alternate = seed.is_multiple_of(2);
+    let flat = grid([CELLS; 2], [0.32; 2], alternate, |u, v| {
+        Vec3::new(u, 0.0, v)
     });
     let mut numbers = Numbers(seed + 1);
     let size = 0.06 * numbers.next();
@@ -142,8 +126,8 @@ fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
         beyond: 0.0,
     };
     // Two plies that face the same way, 1 mm apart: every pair of the two must stay.
-    let mut plies = sheet(12, true, |u, v| Vec3::new(0.2 * u, 0.0, 0.2 * v));
-    let upper = sheet(12, true, |u, v| Vec3::new(0.2 * u, 1e-3, 0.2 * v));
+    let mut plies = sheet([12; 2], [1.0; 2], |u, v| Vec3::new(0.2 * u, 0.0, 0.2 * v));
+    let upper = sheet([12; 2], [1.0; 2], |u, v| Vec3::new(0.2 * u, 1e-3, 0.2 * v));
     let count = plies.positions.len() as u32;
     plies.positions.extend(upper.positions);
     plies
@@ -168,7 +152,7 @@ fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
     );
 
     // A spiral ramp faces upwards everywhere and lies over itself.
-    let ramp = sheet(24, true, |u, v| {
+    let ramp = sheet([24; 2], [1.0; 2], |u, v| {
         let angle = 9.0 * u;
         let radius = 0.05 + 0.1 * v;
         Vec3::new(radius * angle.cos(), 0.0005 * angle, -radius * angle.sin())
@@ -188,7 +172,7 @@ fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
 
 #[test]
 fn numbers_that_are_none_leave_nothing_out() {
-    let mesh = sheet(8, true, |u, v| Vec3::new(u, 0.0, v));
+    let mesh = sheet([8; 2], [1.0; 2], |u, v| Vec3::new(u, 0.0, v));
     for clearance in [
         Clearance {
             stray: f64::NAN,
@@ -232,7 +216,7 @@ fn numbers_that_are_none_leave_nothing_out() {
 #[test]
 fn a_smooth_sheet_costs_the_same_few_regions_however_fine() {
     let looked = [22, 71, 224, 708].map(|n| {
-        let dome = sheet(n, true, |u, v| {
+        let dome = sheet([n; 2], [1.0; 2], |u, v| {
             Vec3::new(u, 0.1 * (3.0 * u).sin() * (3.0 * v).sin(), v)
         });
         let mut surface = ClothSurface::of_mesh(&dome);
@@ -324,7 +308,7 @@ fn what_was_found_of_regions_serves_while_they_move() {
 
 #[test]
 fn a_vertex_lost_on_the_way_leaves_no_region_out() {
-    let mesh = sheet(16, true, |u, v| Vec3::new(0.3 * u, 0.0, 0.3 * v));
+    let mesh = sheet([16; 2], [1.0; 2], |u, v| Vec3::new(0.3 * u, 0.0, 0.3 * v));
     let clearance = Clearance {
         stray: 1e-4,
         kept: 1e-3,

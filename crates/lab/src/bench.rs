@@ -1,5 +1,6 @@
 //! Timed benchmarks on frozen scenes.
 
+use crate::chart_contact::crossed;
 use crate::clock::Clock;
 use crate::scenes::card;
 use crate::square::{SIDES, Square};
@@ -51,6 +52,8 @@ enum Work {
     DetectShirt(usize),
     /// Contact of a fallen sheet of so many cells along a side, beside a step of deformation.
     Contact(usize),
+    /// The square of so many vertices a side that falls on the ball, kept from passing through itself.
+    Touching(u32),
 }
 
 /// Frames of a benchmark of motion.
@@ -89,6 +92,9 @@ fn all() -> Vec<(String, Work)> {
         list.push((format!("detect-shirt-{name}"), Work::DetectShirt(cuts)));
     }
     list.push(("contact-10k".to_owned(), Work::Contact(100)));
+    for side in [SIDES[1], SIDES[2]] {
+        list.push((format!("sphere-{side}-touching"), Work::Touching(side)));
+    }
     list.push(("rest-shirt-1k".to_owned(), Work::Rest(0, 1e-2)));
     list.push(("rest-shirt-6k".to_owned(), Work::Rest(1, 1e-3)));
     list.push(("rest-shirt-22k".to_owned(), Work::Rest(2, 1e-3)));
@@ -179,15 +185,16 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
             }
             let (model, state) = card.model(&cloth, &card.cloths[1].pins)?;
             result.vertices = model.vertex_count();
-            frames(&model, state, (kind, FRAMES), &mut result);
+            frames(&model, state, (kind.into(), FRAMES), &mut result);
         }
         Work::Square(square, side, kind) => {
             let (model, state) = square.build(side)?;
             result.vertices = model.vertex_count();
-            frames(&model, state, (kind, SQUARE_FRAMES), &mut result);
+            frames(&model, state, (kind.into(), SQUARE_FRAMES), &mut result);
         }
+        Work::Touching(side) => touching(side, &mut result)?,
         Work::Rest(cuts, residual) => rest(cuts, residual, &mut result)?,
-        Work::DetectSheet(cells) => crate::detect::sheet(cells, &mut result),
+        Work::DetectSheet(cells) => crate::detect::sheet(cells, &mut result)?,
         Work::DetectShirt(cuts) => crate::detect::shirt(cuts, &mut result)?,
         Work::Contact(cells) => crate::detect::cost(cells, &mut result)?,
         Work::Nest => crate::nest::nest(threads, &mut result)?,
@@ -196,8 +203,35 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
     Ok(result)
 }
 
-fn frames(model: &Model, mut state: State, (kind, count): (MethodKind, usize), result: &mut Timed) {
-    let mut method = MethodSettings::from(kind).build();
+/// Distance that the square keeps from itself [m], and substeps of a frame.
+const TOUCHING_OFFSET: f64 = 2e-3;
+const TOUCHING_SUBSTEPS: u32 = 10;
+
+/// The square falls on the ball without passing through itself; what passed all the same is counted.
+fn touching(side: u32, result: &mut Timed) -> Result<(), LabError> {
+    let (mut model, state) = Square::Sphere.build(side)?;
+    model.contact.cloth_offset = TOUCHING_OFFSET;
+    result.vertices = model.vertex_count();
+    let settings = MethodSettings {
+        substeps: Some(TOUCHING_SUBSTEPS),
+        ..MethodKind::Xpbd.into()
+    };
+    let end = frames(&model, state, (settings, SQUARE_FRAMES), result);
+    let crossed = crossed(&model, &end.positions);
+    result
+        .counted
+        .insert("crossings".to_owned(), crossed as f64);
+    Ok(())
+}
+
+/// Takes frames of 1/60 s and times them; where they end.
+fn frames(
+    model: &Model,
+    mut state: State,
+    (settings, count): (MethodSettings, usize),
+    result: &mut Timed,
+) -> State {
+    let mut method = settings.build();
     let step = 1.0 / 60.0;
     // The first frame sizes the workspace.
     let mut substeps = 0;
@@ -229,6 +263,16 @@ fn frames(model: &Model, mut state: State, (kind, count): (MethodKind, usize), r
     }
     let per_frame = 1e3 * result.wall_s / count as f64;
     result.counted.insert("ms_per_frame".to_owned(), per_frame);
+    if let Some(tally) = method.cloth_tally().filter(|tally| tally.looks > 0) {
+        for (name, value) in [
+            ("looks_a_frame", tally.looks as f64 / (count + 1) as f64),
+            ("crossings_most", tally.crossings[1] as f64),
+            ("impulses", tally.impulses as f64),
+        ] {
+            result.counted.insert(name.to_owned(), value);
+        }
+    }
+    state
 }
 
 /// The sewn shirt to rest, from its coarsest mesh to the finest; times of each mesh apart.

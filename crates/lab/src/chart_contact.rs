@@ -108,7 +108,7 @@ fn scene(name: &str) -> Result<(Model, State), LabError> {
 }
 
 /// Edges of a model's cloth through faces of it, exactly.
-fn crossed(model: &Model, x: &[Vec3]) -> usize {
+pub(crate) fn crossed(model: &Model, x: &[Vec3]) -> usize {
     let mut surface = ClothSurface::new(model);
     let near = surface.near_triangles(Ways::still(x), 0.0);
     crossings(&surface, &near, x).len()

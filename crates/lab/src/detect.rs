@@ -6,10 +6,10 @@ use crate::bench::Timed;
 use crate::chart_contact::fall;
 use crate::clock::Clock;
 use crate::scenes::card;
-use crate::{LabError, subdivided};
+use crate::{LabError, MeshKind, rectangle, subdivided};
 use toile_drape::collision::{ClothContacts, ClothSurface, Ways, crossings, nearnesses};
 use toile_drape::{Cloth, MethodKind, MethodSettings, Model, State};
-use toile_geometry::{TriangleMesh, Vec3};
+use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
 /// Distance that cloth keeps from cloth [m], and how far it is looked.
 const OFFSET: f64 = 2e-3;
@@ -22,26 +22,20 @@ const STEP: f64 = 1.0 / 60.0;
 const SUBSTEPS: f64 = 20.0;
 
 /// A gently waved sheet of a metre, `cells` by `cells`.
-fn waved(cells: usize) -> TriangleMesh {
-    let mut mesh = TriangleMesh::default();
-    let share = |k: usize| k as f64 / cells as f64;
-    for (i, j) in (0..(cells + 1) * (cells + 1)).map(|k| (k % (cells + 1), k / (cells + 1))) {
-        let (u, v) = (share(i), share(j));
-        let up = 0.1 * (3.0 * u).sin() * (3.0 * v).sin();
-        mesh.positions.push(Vec3::new(u, up, v));
-    }
-    let at = |i: usize, j: usize| (j * (cells + 1) + i) as u32;
-    for (i, j) in (0..cells * cells).map(|k| (k % cells, k / cells)) {
-        let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
-        mesh.triangles.extend([[a, b, c], [a, c, d]]);
-    }
-    mesh
+fn waved(cells: usize) -> Result<TriangleMesh, LabError> {
+    let kind = MeshKind::Right;
+    let flat = rectangle(kind, Vec2::zeros(), Vec2::repeat(1.0), [cells; 2])?;
+    let place = |p: &Vec2| Vec3::new(p.x, 0.1 * (3.0 * p.x).sin() * (3.0 * p.y).sin(), p.y);
+    Ok(TriangleMesh {
+        positions: flat.points.iter().map(place).collect(),
+        triangles: flat.triangles,
+    })
 }
 
 /// Finds the near triangles of a smooth sheet again and again, vertices free to stray by a tenth of an
 /// edge meanwhile.
-pub(crate) fn sheet(cells: usize, result: &mut Timed) {
-    let mesh = waved(cells);
+pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
+    let mesh = waved(cells)?;
     result.vertices = mesh.positions.len();
     let mut surface = ClothSurface::of_mesh(&mesh);
     let edge = 1.0 / cells as f64;
@@ -74,6 +68,7 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) {
             .near_unless_clear(Ways::still(x), edge, clearance)
             .len()
     });
+    Ok(())
 }
 
 /// Frames that the shirt settles in before its mesh is divided, and after; drag of the air then [1/s].

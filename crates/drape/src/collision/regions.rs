@@ -78,6 +78,8 @@ type Key = [u32; 2];
 struct Verdict {
     key: Key,
     clear: bool,
+    /// The level it was looked at with.
+    level: usize,
     /// How far its vertices may have strayed from one another since [m].
     strayed: f64,
 }
@@ -86,8 +88,8 @@ struct Verdict {
 #[derive(Debug, Default)]
 struct Notes {
     verdicts: Vec<Verdict>,
-    /// Regions to be looked at more closely.
-    asked: Vec<Region>,
+    /// Regions to be looked at more closely, and at which level.
+    asked: Vec<(Region, usize)>,
     /// How many were.
     told: usize,
 }
@@ -104,24 +106,30 @@ pub struct Regions {
     told: usize,
 }
 
-/// How the vertices below every node move.
-struct Motion<'a> {
-    /// Since the last search; nothing where there is none.
-    since: Option<Vec<Bounds>>,
-    /// On their ways; nothing where they rest.
-    ways: Option<Vec<Bounds>>,
-    before: &'a [Verdict],
-    beyond: f64,
+/// Boxes round the moves of some vertices [m].
+#[derive(Clone, Copy, Debug)]
+struct Moves {
+    /// Since the last search.
+    since: Bounds,
+    /// On their ways.
+    ways: Bounds,
 }
 
-/// How far the vertices of a region stray from one another [m].
-fn stray(bounds: Option<&Vec<Bounds>>, region: &Region) -> f64 {
-    bounds.map_or(0.0, |bounds| {
-        let boxes = region.nodes().map(|node| bounds[node.at as usize]);
-        boxes
-            .fold(Bounds::EMPTY, |all, of_node| all.join(&of_node))
-            .radius()
-    })
+impl Moves {
+    fn join(&self, other: &Self) -> Self {
+        Self {
+            since: self.since.join(&other.since),
+            ways: self.ways.join(&other.ways),
+        }
+    }
+}
+
+/// How the vertices below every node move.
+struct Motion<'a> {
+    /// For every node; nothing where nothing moved since the last search and nothing does.
+    moves: Option<Vec<Moves>>,
+    before: &'a [Verdict],
+    clearance: Clearance,
 }
 
 fn key(region: &Region) -> Key {
@@ -132,68 +140,97 @@ fn key(region: &Region) -> Key {
 }
 
 impl Motion<'_> {
+    /// How far the vertices of a region stray from one another [m], since the last search and on their
+    /// ways.
+    fn stray(&self, region: &Region) -> [f64; 2] {
+        let Some(moves) = &self.moves else {
+            return [0.0; 2];
+        };
+        let all = match *region {
+            Region::Own(a) => moves[a.at as usize],
+            Region::Two(a, b) => moves[a.at as usize].join(&moves[b.at as usize]),
+        };
+        [all.since.radius(), all.ways.radius()]
+    }
+
     /// What is still known of a region; nothing where it has to be looked at again.
-    fn verdict(&self, region: &Region, on_the_way: f64) -> Option<Verdict> {
+    fn verdict(&self, region: &Region, [since, on_the_way]: [f64; 2]) -> Option<Verdict> {
         let key = key(region);
         let at = self
             .before
             .binary_search_by(|verdict| verdict.key.cmp(&key));
         let mut verdict = self.before[at.ok()?];
-        verdict.strayed += stray(self.since.as_ref(), region);
+        verdict.strayed += since;
         let all = match verdict.clear {
             true => verdict.strayed + on_the_way,
             false => verdict.strayed,
         };
-        (all <= self.beyond).then_some(verdict)
+        (all <= self.clearance.budget(verdict.level)).then_some(verdict)
     }
 
-    /// Whether a region is left out; what is not known is told by `tell`.
+    /// Whether a region is left out; what is not known is told by `tell` for a level.
     fn leaves_out(
         &self,
         notes: &mut Notes,
         region: &Region,
-        tell: impl FnOnce(&mut Notes) -> Option<Found>,
+        tell: impl FnOnce(&mut Notes, usize) -> Option<Found>,
     ) -> bool {
         if region.count() < LEAST {
             return false;
         }
-        let on_the_way = stray(self.ways.as_ref(), region);
-        let known = self.verdict(region, on_the_way);
-        // Also where it is no number.
-        if known.is_none() && (on_the_way > self.beyond || on_the_way.is_nan()) {
-            return false;
+        let stray = self.stray(region);
+        if let Some(known) = self.verdict(region, stray) {
+            notes.verdicts.push(known);
+            return known.clear;
         }
-        let told = known.or_else(|| {
-            let found = tell(notes)?;
-            let strayed = if found == Found::Apart {
-                f64::NEG_INFINITY
-            } else {
-                0.0
-            };
-            Some(Verdict {
-                key: key(region),
-                clear: found == Found::Clear,
-                strayed,
-            })
+        let Some(level) = self.clearance.level(stray[1]) else {
+            return false;
+        };
+        let Some(found) = tell(notes, level) else {
+            return true;
+        };
+        let clear = found == Found::Clear;
+        notes.verdicts.push(Verdict {
+            key: key(region),
+            clear,
+            level,
+            strayed: match found {
+                Found::Apart => f64::NEG_INFINITY,
+                _ => 0.0,
+            },
         });
-        notes.verdicts.extend(told);
-        told.is_none_or(|verdict| verdict.clear)
+        clear
     }
 }
 
-/// Boxes round vectors of the three corners of every triangle, and of all below each node.
-fn spreads(cloth: &Cloth, vector: impl Fn(usize) -> Vec3 + Sync) -> Vec<Bounds> {
+/// Boxes round the moves of the corners of every triangle, and of all below each node.
+fn moves(cloth: &Cloth, ways: &Ways, at: &[Vec3]) -> Vec<Moves> {
     let everywhere = Bounds {
         low: [f64::NEG_INFINITY; 3],
         high: [f64::INFINITY; 3],
     };
-    cloth.tree.fitted(|t| {
-        let three = cloth.triangles[t as usize].map(|v| vector(v as usize));
-        match three.iter().all(|d| d.iter().all(|c| c.is_finite())) {
-            true => Bounds::round(&three, 0.0),
-            false => everywhere,
+    let round = |vectors: [Vec3; 3]| {
+        let known = vectors.iter().all(|d| d.iter().all(|c| c.is_finite()));
+        if known {
+            Bounds::round(&vectors, 0.0)
+        } else {
+            everywhere
         }
-    })
+    };
+    let rest = Bounds::round(&[Vec3::zeros()], 0.0);
+    let of_triangle = |t: u32| {
+        let corners = cloth.triangles[t as usize].map(|v| v as usize);
+        let moving = round(corners.map(|v| ways.to[v] - ways.from[v]));
+        Moves {
+            since: round(corners.map(|v| ways.from[v] - at[v])),
+            ways: if ways.together {
+                moving
+            } else {
+                moving.join(&rest)
+            },
+        }
+    };
+    cloth.tree.folded(of_triangle, Moves::join)
 }
 
 impl Regions {
@@ -231,41 +268,31 @@ impl Regions {
             self.verdicts.clear();
         }
         let before = std::mem::take(&mut self.verdicts);
-        let at = &self.at;
+        let at = if before.is_empty() { x } else { &self.at };
+        let rests = before.is_empty() && ways.are_still();
         let motion = Motion {
-            since: (!before.is_empty()).then(|| spreads(cloth, |v| x[v] - at[v])),
-            ways: (!ways.are_still()).then(|| {
-                let together = ways.together;
-                let mut spreads = spreads(cloth, |v| ways.to[v] - x[v]);
-                if !together {
-                    let rest = Bounds::round(&[Vec3::zeros()], 0.0);
-                    spreads.iter_mut().for_each(|b| *b = b.join(&rest));
-                }
-                spreads
-            }),
+            moves: (!rests).then(|| moves(cloth, ways, at)),
             before: &before,
-            beyond: clearance.beyond,
+            clearance,
         };
         let known = |notes: &mut Notes, region: &Region| {
-            motion.leaves_out(notes, region, |notes| {
-                notes.asked.push(*region);
+            motion.leaves_out(notes, region, |notes, level| {
+                notes.asked.push((*region, level));
                 None
             })
         };
         let root: Vec<Region> = cloth.tree.root().map(Region::Own).into_iter().collect();
         let mut all: Pairs<Notes> = cloth.tree.pairs(&root, known);
-        let asked: Vec<Region> = all
-            .notes
-            .iter()
-            .flat_map(|n| n.asked.iter().copied())
-            .collect();
+        let asked = all.notes.iter().flat_map(|n| n.asked.iter().copied());
+        let asked: Vec<(Region, usize)> = asked.collect();
         if !asked.is_empty() {
             self.curvature.face(cloth.tree, cloth.triangles, x, &asked);
             let curvature = &self.curvature;
-            let more = cloth.tree.pairs(&asked, |notes: &mut Notes, region| {
-                motion.leaves_out(notes, region, |notes| {
+            let regions: Vec<Region> = asked.iter().map(|(region, _)| *region).collect();
+            let more = cloth.tree.pairs(&regions, |notes: &mut Notes, region| {
+                motion.leaves_out(notes, region, |notes, level| {
                     notes.told += 1;
-                    Some(curvature.find(cloth.edges, x, region))
+                    Some(curvature.find(cloth.edges, x, region, level))
                 })
             });
             all.pairs.extend(more.pairs);

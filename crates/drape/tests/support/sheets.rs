@@ -5,6 +5,16 @@ use toile_geometry::{TriangleMesh, Vec3};
 
 /// A grid of `cells` over `size` [m] in a plane, alternating diagonals.
 pub fn sheet(cells: [usize; 2], size: [f64; 2], place: impl Fn(f64, f64) -> Vec3) -> TriangleMesh {
+    grid(cells, size, true, place)
+}
+
+/// [`sheet`], or all diagonals one way.
+pub fn grid(
+    cells: [usize; 2],
+    size: [f64; 2],
+    alternate: bool,
+    place: impl Fn(f64, f64) -> Vec3,
+) -> TriangleMesh {
     let mut mesh = TriangleMesh::default();
     for j in 0..=cells[1] {
         for i in 0..=cells[0] {
@@ -18,7 +28,7 @@ pub fn sheet(cells: [usize; 2], size: [f64; 2], place: impl Fn(f64, f64) -> Vec3
     for j in 0..cells[1] {
         for i in 0..cells[0] {
             let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            if (i + j) % 2 == 0 {
+            if !alternate || (i + j) % 2 == 0 {
                 mesh.triangles.extend([[a, b, c], [a, c, d]]);
             } else {
                 mesh.triangles.extend([[a, b, d], [b, c, d]]);
