@@ -60,6 +60,30 @@ fn features(surface: &ClothSurface, near: &[[u32; 2]]) -> BTreeSet<FeaturePair> 
     all
 }
 
+/// Pairs of features among all that are not among those found.
+fn left_out_of(surface: &ClothSurface, [all, found]: [&[[u32; 2]]; 2]) -> Vec<FeaturePair> {
+    let found = features(surface, found);
+    features(surface, all).difference(&found).copied().collect()
+}
+
+/// Holds what was left out to its clearance at some places, and what was found to all crossings.
+fn assert_keeps_apart(
+    surface: &ClothSurface,
+    [all, found]: [&[[u32; 2]]; 2],
+    rest: &[FeaturePair],
+    (x, clearance): (&[Vec3], Clearance),
+    told: &str,
+) {
+    for &pair in rest {
+        let distance = Nearness::distance(pair, x);
+        let kept = pair.vertices().map(|v| surface.most_kept(v));
+        let kept = kept.into_iter().fold(clearance.kept, f64::min);
+        assert!(distance >= kept, "{told}: {pair:?} at {distance}");
+    }
+    let [all, found] = [all, found].map(|near| crossings(surface, near, x));
+    assert_eq!(all, found, "{told}");
+}
+
 #[test]
 fn what_is_left_out_keeps_its_distance_wherever_vertices_stray() {
     let clearance = Clearance {
@@ -80,28 +104,13 @@ fn what_is_left_out_keeps_its_distance_wherever_vertices_stray() {
             "state {seed}"
         );
         crossed += crossings(&surface, &all, &x).len();
-        let rest: Vec<FeaturePair> = features(&surface, &all)
-            .difference(&features(&surface, &found))
-            .copied()
-            .collect();
+        let rest = left_out_of(&surface, [&all, &found]);
         left_out += rest.len();
         let mut numbers = Numbers(seed + 1000);
         let drift = numbers.vector(0.1);
         for round in 0..4 {
-            for &pair in &rest {
-                let distance = Nearness::distance(pair, &x);
-                let kept = pair.vertices().map(|v| surface.most_kept(v));
-                let kept = kept.into_iter().fold(clearance.kept, f64::min);
-                assert!(
-                    distance >= kept,
-                    "state {seed}, round {round}: {pair:?} at {distance}"
-                );
-            }
-            assert_eq!(
-                crossings(&surface, &all, &x),
-                crossings(&surface, &found, &x),
-                "state {seed}, round {round}"
-            );
+            let told = format!("state {seed}, round {round}");
+            assert_keeps_apart(&surface, [&all, &found], &rest, (&x, clearance), &told);
             let strays = waved(seed).1;
             x = strays
                 .iter()
@@ -270,10 +279,7 @@ fn what_was_found_of_regions_serves_while_they_move() {
             fresh.forget();
             fresh.near_unless_clear(ways, 0.01, clearance);
             told_anew += fresh.opened()[1];
-            let rest: Vec<FeaturePair> = features(&surface, &all)
-                .difference(&features(&surface, &found))
-                .copied()
-                .collect();
+            let rest = left_out_of(&surface, [&all, &found]);
             left_out += rest.len();
             for part in [0.0, 0.37, 1.0] {
                 let both = from.iter().zip(&to);
@@ -283,20 +289,8 @@ fn what_was_found_of_regions_serves_while_they_move() {
                         a + (b - a) * part + way * (0.249e-3 / way.norm())
                     })
                     .collect();
-                for &pair in &rest {
-                    let distance = Nearness::distance(pair, &x);
-                    let kept = pair.vertices().map(|v| surface.most_kept(v));
-                    let kept = kept.into_iter().fold(clearance.kept, f64::min);
-                    assert!(
-                        distance >= kept,
-                        "state {seed}, step {step}: {pair:?} at {distance}"
-                    );
-                }
-                assert_eq!(
-                    crossings(&surface, &all, &x),
-                    crossings(&surface, &found, &x),
-                    "state {seed}, step {step}"
-                );
+                let told = format!("state {seed}, step {step}");
+                assert_keeps_apart(&surface, [&all, &found], &rest, (&x, clearance), &told);
             }
             // Impulses leave the cloth a little off the way it was looked for on.
             from = to.iter().map(|x| x + numbers.vector(1e-4)).collect();

@@ -60,6 +60,28 @@ impl Topology {
 }
 
 impl TriangleMesh {
+    /// A closed box along the axes between two corners [m], faces outward.
+    pub fn cuboid(low: Vec3, high: Vec3) -> Self {
+        let side = |k: usize, axis: usize| [low, high][k >> axis & 1][axis];
+        let quads = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        Self {
+            positions: (0..8)
+                .map(|k| Vec3::new(side(k, 0), side(k, 1), side(k, 2)))
+                .collect(),
+            triangles: quads
+                .iter()
+                .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+                .collect(),
+        }
+    }
+
     /// Positions of a triangle's corners \[m\].
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|v| self.positions[v as usize])
@@ -232,25 +254,7 @@ pub(crate) mod tests {
 
     /// A unit cube with corners at 0 and 1.
     pub(crate) fn cube() -> TriangleMesh {
-        let positions = (0..8u8)
-            .map(|k| Vec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2)))
-            .collect();
-        let quads = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        let triangles = quads
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .collect();
-        TriangleMesh {
-            positions,
-            triangles,
-        }
+        TriangleMesh::cuboid(Vec3::zeros(), Vec3::repeat(1.0))
     }
 
     #[test]

@@ -70,32 +70,11 @@ pub(crate) fn fall(side: f64, cells: usize) -> Result<(Model, State), LabError> 
         Vec3::new(p.x, p.y + 0.02, 0.004 * (20.0 * p.y).sin())
     });
     let mut model = Model::new("fall", &cloth)?;
-    model.colliders.push(Collider::new(Arc::new(floor())));
+    let floor = TriangleMesh::cuboid(Vec3::new(-1.0, -0.5, -1.0), Vec3::new(1.0, 0.0, 1.0));
+    let floor = SurfaceTree::new(floor);
+    model.colliders.push(Collider::new(Arc::new(floor)));
     let state = State::at_rest(&model, cloth.positions);
     Ok((model, state))
-}
-
-/// The upper side of a slab at height 0.
-fn floor() -> SurfaceTree {
-    let corner = |k: usize| {
-        let side = |bit: usize, low: f64, high: f64| if k >> bit & 1 == 0 { low } else { high };
-        Vec3::new(side(0, -1.0, 1.0), side(1, -0.5, 0.0), side(2, -1.0, 1.0))
-    };
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    SurfaceTree::new(TriangleMesh {
-        positions: (0..8).map(corner).collect(),
-        triangles: quads
-            .iter()
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .collect(),
-    })
 }
 
 fn scene(name: &str) -> Result<(Model, State), LabError> {

@@ -7,7 +7,7 @@ use crate::chart_contact::fall;
 use crate::clock::Clock;
 use crate::scenes::card;
 use crate::{LabError, MeshKind, rectangle, subdivided};
-use toile_drape::collision::{ClothContacts, ClothSurface, Ways, crossings, nearnesses};
+use toile_drape::collision::{Clearance, ClothContacts, ClothSurface, Ways, crossings, nearnesses};
 use toile_drape::{Cloth, MethodKind, MethodSettings, Model, State};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
@@ -39,9 +39,11 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
     result.vertices = mesh.positions.len();
     let mut surface = ClothSurface::of_mesh(&mesh);
     let edge = 1.0 / cells as f64;
-    let mut clearance = ClothContacts::clearance(0.1 * edge);
-    clearance.stray = 0.1 * edge;
-    clearance.beyond = 0.0;
+    let clearance = Clearance {
+        stray: 0.1 * edge,
+        kept: 0.1 * edge,
+        beyond: 0.0,
+    };
     let x = &mesh.positions;
     let mut counted = |name: &str, find: &mut dyn FnMut(&mut ClothSurface) -> usize| {
         let clock = Clock::start();

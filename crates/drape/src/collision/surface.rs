@@ -148,11 +148,6 @@ impl ClothSurface {
         ROOM * self.room[v as usize]
     }
 
-    /// The tree over the triangles, as last fitted.
-    pub fn tree(&self) -> &BoxTree {
-        &self.tree
-    }
-
     /// Pairs of triangles that come within `reach` [m] of each other on the way of the cloth; more
     /// than those, but never fewer.
     pub fn near_triangles(&mut self, ways: Ways, reach: f64) -> Vec<[u32; 2]> {
