@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The other program is called with INSTANCE SECONDS SEED THREADS OUT and writes a solution in the
-//! instance's own format. `--seconds 1:5` gives it five seconds for our one. `--referee COMMAND`
+//! instance's own format. `--seconds 1:5` gives it five seconds for our one, `--seeds 8-10` makes these seeds alone. `--referee COMMAND`
 //! is run on every solution, and what it prints is kept. Rows are added to `runs.csv` as they are
 //! made, with the commit; what is there already of the same commit is not run again; `table.csv` sums up, with the 95 %
 //! interval of the difference.
@@ -35,6 +35,7 @@ mod worn;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -60,7 +61,7 @@ struct Task {
     referee: Option<String>,
     /// Wall limits of ours and of the other program [s].
     limits: Vec<(f64, f64)>,
-    seeds: u64,
+    seeds: RangeInclusive<u64>,
     threads: usize,
     out: PathBuf,
     instances: Vec<PathBuf>,
@@ -72,7 +73,7 @@ fn parse(arguments: &[String]) -> Result<Task, String> {
         peer: None,
         referee: None,
         limits: vec![(10.0, 10.0)],
-        seeds: 10,
+        seeds: 1..=10,
         threads: 2,
         out: PathBuf::from("out/soak"),
         instances: Vec::new(),
@@ -86,7 +87,7 @@ fn parse(arguments: &[String]) -> Result<Task, String> {
             "--peer" => task.peer = Some(value()?.clone()),
             "--referee" => task.referee = Some(value()?.clone()),
             "--seconds" => task.limits = limits(value()?)?,
-            "--seeds" => task.seeds = number(value()?)?,
+            "--seeds" => task.seeds = seeds(value()?)?,
             "--threads" => task.threads = number(value()?)? as usize,
             "--out" => task.out = PathBuf::from(value()?),
             option if option.starts_with("--") => return Err(format!("{option} is not known")),
@@ -110,6 +111,13 @@ fn limits(text: &str) -> Result<Vec<(f64, f64)>, String> {
         None => number(text).map(|both| (both, both)),
     };
     text.split(',').map(pair).collect()
+}
+
+/// Seeds as in `10`, the first ten, or `8-10`.
+fn seeds(text: &str) -> Result<RangeInclusive<u64>, String> {
+    let (first, last) = text.split_once('-').unwrap_or(("1", text));
+    let number = |text: &str| text.parse::<u64>().map_err(|_| format!("{text}: no seed"));
+    Ok(number(first)?..=number(last)?)
 }
 
 /// One run of one program.
@@ -308,7 +316,7 @@ fn measure(task: &Task, run: &Run, file: &Path, limit: f64) -> Result<String, St
 /// the one, then the other program first.
 fn plan(task: &Task) -> Vec<(Run, PathBuf, f64)> {
     let mut plan = Vec::new();
-    for seed in 1..=task.seeds {
+    for seed in task.seeds.clone() {
         for (k, file) in task.instances.iter().enumerate() {
             let name = file
                 .file_stem()
