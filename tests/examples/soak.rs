@@ -81,14 +81,16 @@ fn parse(arguments: &[String]) -> Result<Task, String> {
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         let mut value = || rest.next().ok_or(format!("{argument} needs a value"));
-        let number = |text: &String| text.parse().map_err(|_| format!("{text}: no number"));
         match argument.as_str() {
             "--toile" => task.toile = PathBuf::from(value()?),
             "--peer" => task.peer = Some(value()?.clone()),
             "--referee" => task.referee = Some(value()?.clone()),
             "--seconds" => task.limits = limits(value()?)?,
             "--seeds" => task.seeds = seeds(value()?)?,
-            "--threads" => task.threads = number(value()?)? as usize,
+            "--threads" => {
+                let text = value()?;
+                task.threads = text.parse().map_err(|_| format!("{text}: no number"))?;
+            }
             "--out" => task.out = PathBuf::from(value()?),
             option if option.starts_with("--") => return Err(format!("{option} is not known")),
             file => task.instances.push(PathBuf::from(file)),
