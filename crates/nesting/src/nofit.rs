@@ -11,15 +11,16 @@ const LEAST_CELLS: usize = 16;
 /// polygon operations leaves such pairs.
 const REPEATED: f64 = 8e-9;
 
-/// An edge with the region at its left.
+/// An edge with the region at its left, in one line of the processor's cache.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 struct Edge {
     start: Vec2,
     /// Unit direction.
     along: Vec2,
     length: f64,
-    /// Directions of the edges before and after it.
-    beside: [Vec2; 2],
+    /// Numbers of the edges before and after it.
+    beside: [u32; 2],
 }
 
 /// Where a move lies with respect to a no-fit polygon.
@@ -35,10 +36,11 @@ pub(crate) struct Probe {
 #[derive(Clone, Debug)]
 pub(crate) struct NoFit {
     edges: Vec<Edge>,
-    /// For every cell where its list starts and ends.
-    cells: Vec<[u32; 2]>,
+    /// For every cell where its list stands in `lists`.
+    cells: Vec<u32>,
     /// Cells along either side.
     count: usize,
+    /// Each list is the number of its edges, then these. The first one is empty.
     lists: Vec<u32>,
     corner: Vec2,
     per_metre: Vec2,
@@ -53,7 +55,7 @@ impl NoFit {
             let region = region.oriented();
             let least = REPEATED * region.bounds().size().norm();
             for ring in region.rings() {
-                edges.extend(ring_edges(ring, least));
+                push_ring(&mut edges, ring, least);
             }
         }
         let bounds = Bounds2::of(regions.iter().flat_map(|r| r.outer.iter().copied()));
@@ -63,9 +65,9 @@ impl NoFit {
         let count = count.clamp(LEAST_CELLS, most_cells);
         let mut no_fit = Self {
             edges,
-            cells: vec![[0, 0]; count * count],
+            cells: vec![0; count * count],
             count,
-            lists: Vec::new(),
+            lists: vec![0],
             corner: bounds.min,
             per_metre: Vec2::new(count as f64 / size.x, count as f64 / size.y),
         };
@@ -101,12 +103,15 @@ impl NoFit {
             }
             return;
         }
-        let start = self.lists.len() as u32;
+        if kept.is_empty() {
+            return;
+        }
+        let list = self.lists.len() as u32;
+        self.lists.push(kept.len() as u32);
         self.lists.extend(&kept);
-        let range = [start, self.lists.len() as u32];
         for y in row..row + count {
             let start = y * self.count + column;
-            self.cells[start..start + count].fill(range);
+            self.cells[start..start + count].fill(list);
         }
     }
 
@@ -126,10 +131,11 @@ impl NoFit {
         let (squared, e, t) = best;
         let edge = &self.edges[e as usize];
         let away = at - edge.start - edge.along * t;
+        let beside = |which: usize| self.edges[edge.beside[which] as usize].along;
         let inside = if t <= 0.0 {
-            in_corner([edge.beside[0], edge.along], away)
+            in_corner([beside(0), edge.along], away)
         } else if t >= edge.length {
-            in_corner([edge.along, edge.beside[1]], away)
+            in_corner([edge.along, beside(1)], away)
         } else {
             edge.along.perp(&away) > 0.0
         };
@@ -155,8 +161,9 @@ impl NoFit {
         if !inside {
             return None;
         }
-        let [start, end] = self.cells[cell.y as usize * self.count + cell.x as usize];
-        (start < end).then(|| self.side(&self.lists[start as usize..end as usize], at))
+        let list = self.cells[cell.y as usize * self.count + cell.x as usize] as usize;
+        let (number, list) = self.lists[list..].split_first()?;
+        (*number > 0).then(|| self.side(&list[..*number as usize], at))
     }
 }
 
@@ -206,21 +213,24 @@ fn cleaned(ring: &[Vec2], least: f64) -> Vec<Vec2> {
     points
 }
 
-/// The edges of a ring whose points are right to about `least` \[m\].
-fn ring_edges(ring: &[Vec2], least: f64) -> Vec<Edge> {
+/// Adds the edges of a ring whose points are right to about `least` \[m\].
+fn push_ring(edges: &mut Vec<Edge>, ring: &[Vec2], least: f64) {
     let points = cleaned(ring, least);
     let n = points.len();
     if n < 3 {
-        return Vec::new();
+        return;
     }
-    let along = |k: usize| (points[(k + 1) % n] - points[k % n]).normalize();
-    let edge = |k: usize| Edge {
-        start: points[k],
-        along: along(k),
-        length: (points[(k + 1) % n] - points[k]).norm(),
-        beside: [along(k + n - 1), along(k + 1)],
-    };
-    (0..n).map(edge).collect()
+    let first = edges.len();
+    let number = |k: usize| (first + k % n) as u32;
+    edges.extend((0..n).map(|k| {
+        let way = points[(k + 1) % n] - points[k];
+        Edge {
+            start: points[k],
+            along: way.normalize(),
+            length: way.norm(),
+            beside: [number(k + n - 1), number(k + 1)],
+        }
+    }));
 }
 
 #[cfg(test)]
