@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 use std::sync::{Arc, OnceLock};
 
 /// Nodes of a block along each axis, a power of two.
-const SIDE: usize = 8;
+const SIDE: usize = 4;
 
 /// Blocks a field may be divided into; the cells grow until it has no more (a floor of a hundred
 /// metres needs no fine grid).

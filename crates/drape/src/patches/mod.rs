@@ -86,7 +86,7 @@ impl PatchVerlet {
         };
         state.follow_samples(model);
         sheet.start(model, state);
-        let before = sheet.measure().energy;
+        let before = sheet.energy();
         let taken = match self.substeps {
             Some(given) => {
                 let count = given.max(1) as usize;
@@ -98,7 +98,7 @@ impl PatchVerlet {
         let bound = energy_bound(model, before, step);
         let result = taken.and_then(|taken| {
             let (vertex, speed) = sheet.fastest();
-            let energy = sheet.measure().energy;
+            let energy = sheet.energy();
             if is_possible_speed(speed) && energy <= bound {
                 sheet.finish(state);
                 state.time += step;
@@ -146,7 +146,7 @@ fn take_automatic(sheet: &mut Sheet, model: &Model, step: f64) -> Result<usize, 
     let parts = (step / LOOK_STEP).ceil().max(1.0);
     let length = step / parts;
     let mut taken = 0;
-    let mut stretch = sheet.measure().stretch[0];
+    let mut stretch = sheet.stretch()[0];
     for _ in 0..parts as usize {
         sheet.save();
         for attempt in 1..=TRIES {
@@ -159,7 +159,7 @@ fn take_automatic(sheet: &mut Sheet, model: &Model, step: f64) -> Result<usize, 
             let h = length / count;
             sheet.advance(model, h, count as usize);
             taken += count as usize;
-            let reached = sheet.measure().stretch[0];
+            let reached = sheet.stretch()[0];
             let sound = h * stiffening(reached) <= MOST_SHARE * longest;
             // What broke away tells how far it went, not how far it would have gone.
             stretch = match sound {

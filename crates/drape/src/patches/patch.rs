@@ -198,32 +198,15 @@ impl Patch {
         });
     }
 
-    /// Measures stretch and energy.
-    pub fn measure(&mut self) {
-        pulp::Arch::new().dispatch(Measure { patch: self });
+    /// Measures the stretch of the triangles at what it owns.
+    pub fn measure_stretch(&mut self) {
+        pulp::Arch::new().dispatch(Stretch { patch: self });
     }
 
-    /// Of what it owns: its vertices, and the triangles whose first corner is one of them.
-    #[inline(always)]
-    fn measure_here(&mut self) {
-        let owned = self.owned();
-        (self.stretch, self.energy) = ([1.0; 2], 0.0);
-        for triangle in &self.triangles[..self.triangle_end[0]] {
-            let edges = triangle.edges(&self.positions);
-            let membrane = &self.membranes[triangle.membrane as usize];
-            let [high, low] = membrane.squared_stretch(edges);
-            self.stretch = wider(self.stretch, [high, low]);
-            if (triangle.corners[0] as usize) < owned {
-                self.energy += membrane.energy(edges);
-            }
-        }
-        for (at, v) in self.velocities[..owned].iter().enumerate() {
-            if self.inertia[at].falls > 0.0 {
-                self.energy += 0.5 * v.dot(*v) / self.inertia[at].inverse_mass;
-            }
-            let bending = self.rows.gradient(at, &self.positions);
-            self.energy += 0.5 * bending.dot(self.positions[at]);
-        }
+    /// Measures the energy of what it owns: its vertices, and the triangles whose first corner is
+    /// one of them.
+    pub fn measure_energy(&mut self) {
+        pulp::Arch::new().dispatch(Energy { patch: self });
     }
 
     #[inline(always)]
@@ -378,15 +361,49 @@ impl pulp::WithSimd for Run<'_> {
     }
 }
 
-struct Measure<'a> {
+struct Stretch<'a> {
     patch: &'a mut Patch,
 }
 
-impl pulp::WithSimd for Measure<'_> {
+impl pulp::WithSimd for Stretch<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.patch.measure_here();
+        let patch = self.patch;
+        patch.stretch = [1.0; 2];
+        for triangle in &patch.triangles[..patch.triangle_end[0]] {
+            let edges = triangle.edges(&patch.positions);
+            let membrane = &patch.membranes[triangle.membrane as usize];
+            patch.stretch = wider(patch.stretch, membrane.squared_stretch(edges));
+        }
+    }
+}
+
+struct Energy<'a> {
+    patch: &'a mut Patch,
+}
+
+impl pulp::WithSimd for Energy<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let patch = self.patch;
+        let owned = patch.owned();
+        patch.energy = 0.0;
+        for triangle in &patch.triangles[..patch.triangle_end[0]] {
+            if (triangle.corners[0] as usize) < owned {
+                let membrane = &patch.membranes[triangle.membrane as usize];
+                patch.energy += membrane.energy(triangle.edges(&patch.positions));
+            }
+        }
+        for (at, v) in patch.velocities[..owned].iter().enumerate() {
+            if patch.inertia[at].falls > 0.0 {
+                patch.energy += 0.5 * v.dot(*v) / patch.inertia[at].inverse_mass;
+            }
+            let bending = patch.rows.gradient(at, &patch.positions);
+            patch.energy += 0.5 * bending.dot(patch.positions[at]);
+        }
     }
 }

@@ -44,16 +44,6 @@ pub struct Sheet {
     saved: Saved,
 }
 
-/// What is measured on a sheet.
-#[derive(Clone, Copy, Debug)]
-pub struct Measured {
-    /// Largest and smallest principal squared stretch; the largest is 1 or more, the smallest 1
-    /// or less.
-    pub stretch: [f64; 2],
-    /// Energy of motion, strain, elastics and contact [J].
-    pub energy: f64,
-}
-
 /// What a sheet depends on.
 struct Key {
     mass: Vec<f64>,
@@ -116,7 +106,7 @@ impl Sheet {
             saved: Saved::default(),
         };
         sheet.start(model, &State::at_rest(model, model.layout.clone()));
-        let inner = limits::frequency_at_rest(model, sheet.measure().stretch);
+        let inner = limits::frequency_at_rest(model, sheet.stretch());
         sheet.frequency = inner.hypot(sheet.key.contact);
         sheet
     }
@@ -231,23 +221,24 @@ impl Sheet {
         }
     }
 
-    /// Measures stretch and energy.
-    pub fn measure(&mut self) -> Measured {
-        self.on_patches(Patch::measure);
-        let mut found = Measured {
-            stretch: [1.0; 2],
-            energy: self.touch.energy(&self.positions),
-        };
-        for patch in &self.patches {
-            found.stretch = wider(found.stretch, patch.stretch);
-            found.energy += patch.energy;
-        }
-        for elastic in &self.key.elastics {
+    /// Largest and smallest principal squared stretch; the largest is 1 or more, the smallest 1 or
+    /// less, and both are no numbers where a place is none.
+    pub fn stretch(&mut self) -> [f64; 2] {
+        self.on_patches(Patch::measure_stretch);
+        let patches = self.patches.iter();
+        patches.fold([1.0; 2], |most, patch| wider(most, patch.stretch))
+    }
+
+    /// Energy of motion, strain, elastics and contact [J].
+    pub fn energy(&mut self) -> f64 {
+        self.on_patches(Patch::measure_energy);
+        let own: f64 = self.patches.iter().map(|patch| patch.energy).sum();
+        let elastics = self.key.elastics.iter().map(|elastic| {
             let from = self.positions[elastic.from as usize];
             let gap = from.minus(end_of(elastic, &self.positions));
-            found.energy += elastic.law.energy(gap.into());
-        }
-        found
+            elastic.law.energy(gap.into())
+        });
+        own + self.touch.energy(&self.positions) + elastics.sum::<f64>()
     }
 
     /// The fastest vertex and its speed [m/s]; one whose speed is no number before all.
@@ -416,11 +407,8 @@ mod tests {
         for at in [0, 300, 624] {
             let kept = std::mem::replace(&mut state.positions[at].y, f64::NAN);
             sheet.start(&model, &state);
-            let found = sheet.measure();
-            assert!(
-                found.stretch[0].is_nan() && found.stretch[1].is_nan(),
-                "{at}"
-            );
+            let found = sheet.stretch();
+            assert!(found.iter().all(|stretch| stretch.is_nan()), "{at}");
             state.positions[at].y = kept;
         }
     }
@@ -434,12 +422,12 @@ mod tests {
         state.velocities[24] = Vec3::new(0.5, 1.0, 0.2);
         let mut sheet = Sheet::cut_into(&model, 2);
         sheet.start(&model, &state);
-        let before = sheet.measure().energy;
+        let before = sheet.energy();
         let h = 0.5 * 2.0 / sheet.frequency;
         let mut worst = 0.0f64;
         for _ in 0..40 {
             sheet.advance(&model, h, 500);
-            let now = sheet.measure().energy;
+            let now = sheet.energy();
             worst = worst.max((now / before - 1.0).abs());
         }
         assert!(worst < 0.02, "{worst}");
