@@ -30,6 +30,7 @@ mod limbs;
 mod mannequin;
 mod marks;
 mod motion;
+mod posture;
 mod proportions;
 mod refit;
 mod request;
