@@ -10,24 +10,13 @@
 #[path = "../tests/common/survey.rs"]
 mod survey;
 
-use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 use std::time::Instant;
-use survey::{ASKED, Person, is_closed, people};
+use survey::{ASKED, HELD_OUT, Person, held_out, is_closed, people};
 use toile_body::{Figure, Mannequin};
 use toile_measure::Origin;
-
-/// What is not asked: the survey's name and the catalogue's.
-const HELD_OUT: [(&str, &str); 6] = [
-    ("chestbreadth", "chest_breadth"),
-    ("chestdepth", "chest_depth"),
-    ("waistbreadth", "waist_breadth"),
-    ("waistdepth", "waist_depth"),
-    ("hipbreadth", "hip_breadth"),
-    ("buttockdepth", "hip_depth"),
-];
 
 /// What became of one person.
 struct Outcome {
@@ -41,14 +30,7 @@ struct Outcome {
 }
 
 fn run(person: &Person) -> Outcome {
-    let mut table = person.asked();
-    // The survey's waist lies at the navel: what is predicted stands on that.
-    for (from, name) in [
-        ("waistcircumference", "navel_girth"),
-        ("waistheightomphalion", "navel_height"),
-    ] {
-        let _ = table.set(name, person.get(from), Origin::Asked);
-    }
+    let table = person.asked_with_navel();
     let start = Instant::now();
     let body = match Mannequin::new(&table, person.figure) {
         Ok(body) => body,
@@ -103,46 +85,6 @@ fn limits(people: &[Person]) -> BTreeMap<(bool, &'static str), [f64; 2]> {
     limits
 }
 
-/// Root mean square of a linear regression on the asked values, fitted on people with an odd row
-/// and held against the even ones, and of the bodies against the same [m].
-fn held_out(
-    everyone: &[Person],
-    (people, bodies): (&[Person], &[Outcome]),
-    woman: bool,
-    which: usize,
-) -> [f64; 2] {
-    let own = |p: &&Person| (p.figure == Figure::Woman) == woman;
-    let inputs = |p: &Person| -> Vec<f64> {
-        let values = ASKED.iter().map(|(name, _)| p.get(name));
-        std::iter::once(1.0).chain(values).collect()
-    };
-    let half: Vec<&Person> = everyone
-        .iter()
-        .filter(own)
-        .filter(|p| p.row % 2 == 1)
-        .collect();
-    let rows: Vec<f64> = half.iter().flat_map(|p| inputs(p)).collect();
-    let rows = DMatrix::from_row_slice(half.len(), ASKED.len() + 1, &rows);
-    let actual = half.iter().map(|p| p.get(HELD_OUT[which].0));
-    let right = rows.tr_mul(&DVector::from_iterator(half.len(), actual));
-    let Some(line) = rows.tr_mul(&rows).cholesky().map(|n| n.solve(&right)) else {
-        return [f64::NAN; 2];
-    };
-    let (mut sums, mut count) = ([0.0; 2], 0.0);
-    for (person, body) in people.iter().zip(bodies) {
-        let got = body.held_out[which];
-        if !own(&person) || person.row % 2 == 1 || !got.is_finite() {
-            continue;
-        }
-        let actual = person.get(HELD_OUT[which].0);
-        let fitted: f64 = inputs(person).iter().zip(&line).map(|(x, b)| x * b).sum();
-        sums[0] += (fitted - actual).powi(2);
-        sums[1] += (got - actual).powi(2);
-        count += 1.0;
-    }
-    sums.map(|sum: f64| (sum / f64::max(count, 1.0)).sqrt())
-}
-
 fn report(everyone: &[Person], people: Vec<Person>) {
     let limits = limits(everyone);
     let start = Instant::now();
@@ -185,11 +127,15 @@ fn report(everyone: &[Person], people: Vec<Person>) {
         }
     }
     if people.len() > 50 {
-        for woman in [true, false] {
+        let (people, bodies): (Vec<&Person>, Vec<_>) = people
+            .iter()
+            .zip(&outcomes)
+            .map(|(person, outcome)| (person, outcome.held_out))
+            .unzip();
+        for (figure, sex) in [(Figure::Woman, "women"), (Figure::Man, "men")] {
             for (which, (name, _)) in HELD_OUT.iter().enumerate() {
                 let [line, body] =
-                    held_out(everyone, (&people, &outcomes), woman, which).map(|x| 1e3 * x);
-                let sex = if woman { "women" } else { "men" };
+                    held_out(everyone, (&people, &bodies), figure, which).map(|x| 1e3 * x);
                 println!("not asked, {sex} {name}: regression {line:.2} mm, body {body:.2} mm");
             }
         }

@@ -27,6 +27,8 @@ pub(crate) struct Marks {
     pub(crate) tip: Vec3,
     /// The same on the skin.
     pub(crate) tip_on: OnEdge,
+    /// Vertex of the skin at the front fold of the left armpit.
+    pub(crate) fold: u32,
     /// Depth of the middle of the trunk [m].
     pub(crate) depth: f64,
     /// Sections of the trunk from crotch to bust: height, half the breadth, depth before and behind
@@ -104,6 +106,7 @@ impl Marks {
             neck_side_on,
             tip,
             tip_on,
+            fold: skin.fold,
             depth,
             sections: sections(skin, [crotch + 0.03 * h, bust], depth),
             neck,

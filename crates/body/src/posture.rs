@@ -119,7 +119,7 @@ impl Grown<'_> {
                 // Then by deeper hips.
                 let form = &mut scales.aspect[Girth::Hips as usize];
                 let deeper = 2.0 * around / q.get("hip_depth");
-                *form = (*form * (-deeper).exp()).clamp(DEEPEST[1], ASPECT[1]);
+                *form = (*form * (-deeper).exp()).clamp(DEEPEST, ASPECT[1]);
             }
             if let Some(before) = gap("crotch_length_front") {
                 step(

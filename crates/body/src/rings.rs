@@ -38,6 +38,8 @@ pub(crate) struct TemplateSkin {
     pub(crate) mirror: Vec<u32>,
     /// The vertex in the left armpit.
     pub(crate) armpit: u32,
+    /// The vertex at the front fold of the left armpit: where the arm's border turns up.
+    pub(crate) fold: u32,
     /// The left half's triangles by their place.
     pub(crate) bands: Bands,
     /// The arm's first rings from below.
@@ -109,7 +111,7 @@ pub(crate) fn cast(template: &Template, field: &Field) -> Result<TemplateSkin, B
     let border = half.trunk()?;
     half.arm(&border.arm)?;
     half.leg(&border.bottom)?;
-    Ok(half.mirrored(border.armpit, border.side))
+    Ok(half.mirrored(&border))
 }
 
 /// Casts the skin of a template of its own frame; a hand whose tip the primitives leave bare is
@@ -158,8 +160,9 @@ pub(crate) fn crossings(mesh: &TriangleMesh) -> usize {
 /// Rings where limbs begin, in the limbs' own order of walking.
 struct Borders {
     armpit: u32,
-    /// Up the side of the trunk to the armpit.
-    side: Vec<u32>,
+    fold: u32,
+    /// Columns of the trunk's side under the arm, front to back, each from below up to the hole.
+    side: Vec<Vec<u32>>,
     arm: Vec<u32>,
     bottom: Vec<u32>,
 }
@@ -341,8 +344,11 @@ impl Half<'_> {
         let bottom = grid[0].iter().rev().copied().collect();
         let armpit = grid[r0][(c0 + c1) / 2];
         Ok(Borders {
-            side: (0..=r0).map(|t| grid[t][(c0 + c1) / 2]).collect(),
+            side: (c0..=c1)
+                .map(|i| (0..=r0).map(|t| grid[t][i]).collect())
+                .collect(),
             armpit,
+            fold: grid[r0][c0],
             arm,
             bottom,
         })
@@ -443,7 +449,7 @@ impl Half<'_> {
         }
     }
 
-    fn mirrored(self, armpit: u32, side: Vec<u32>) -> TemplateSkin {
+    fn mirrored(self, border: &Borders) -> TemplateSkin {
         let count = self.positions.len();
         let mut mirror: Vec<u32> = vec![0; count];
         let mut mesh = TriangleMesh {
@@ -490,13 +496,14 @@ impl Half<'_> {
         let along = (Vec3::from(j.wrist) - shoulder).normalize();
         TemplateSkin {
             bands: Bands::new(&mesh, &parts, [shoulder, along]),
-            underarm: Underarm::of(&mesh, &arm, side, shoulder.y),
+            underarm: Underarm::of(&mesh, &arm, &border.side, shoulder.y),
             mesh,
             parts,
             arm,
             leg,
             mirror,
-            armpit,
+            armpit: border.armpit,
+            fold: border.fold,
         }
     }
 }

@@ -17,6 +17,8 @@ pub(crate) struct Scales {
     pub(crate) aspect: [f64; Girth::COUNT],
     /// How much fuller the corners of a section are, of girths round the trunk.
     pub(crate) corners: [f64; Girth::COUNT],
+    /// How much fuller the front corners of the chest are, and the back ones emptier.
+    pub(crate) folds: f64,
     /// Front over back: the front's share of the scale beyond one half.
     pub(crate) split: [f64; Girth::COUNT],
     /// Lateral, at the ends of the shoulders.
@@ -53,6 +55,7 @@ impl Scales {
             girth: [global; Girth::COUNT],
             aspect: [1.0; Girth::COUNT],
             corners: [0.0; Girth::COUNT],
+            folds: 0.0,
             split: [0.0; Girth::COUNT],
             shoulder: global,
             neck: global,
@@ -145,6 +148,7 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
         front: column(2),
         back: column(3),
         corners: corners(grown, s, levels, &on_template),
+        folds: folds(s, m, levels, &on_template),
         leg: leg(grown, s, levels, &on_template),
         arm: arm(grown, s, global),
         arm_length: vec![
@@ -156,6 +160,12 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
         arm_angle: q.get("arm_pose_angle"),
         global,
         stance: s.of(Girth::Hips) * aspect,
+        // An asked crotch length says how deep the seat is.
+        leg_form: if q.is_asked("crotch_length") {
+            1.0
+        } else {
+            aspect
+        },
         depth: m.depth,
         middle: (0..6).map(row).collect(),
         middle_to: (0..6).map(row_to).collect(),
@@ -286,6 +296,24 @@ fn corners(
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
     rows.dedup_by(|b, a| b[0] - a[0] < apart);
     rows
+}
+
+/// How much fuller the front corners of the sections are than the back ones, over template height:
+/// nothing at the waist and at the shoulders.
+fn folds(
+    s: &Scales,
+    m: &Marks,
+    levels: &Levels,
+    on_template: &dyn Fn(f64) -> f64,
+) -> Vec<[f64; 2]> {
+    let waist = on_template(levels.at(Level::Waist));
+    vec![
+        [0.0, 0.0],
+        [waist, 0.0],
+        [m.bust, s.folds],
+        [m.tip.y, 0.0],
+        [m.crown, 0.0],
+    ]
 }
 
 /// At the armpits the trunk is as broad in proportion as at its highest section below, so that a

@@ -202,19 +202,24 @@ impl Grown<'_> {
             let corners = &mut scales.corners[girth as usize];
             *corners = (*corners + 2.0 * ratio(wanted, found).ln()).clamp(CORNERS[0], CORNERS[1]);
         }
-        // A survey's chest breadth is taken between the folds of the armpits, not of the whole.
-        let [x, z] = extent(&taken.hull(Girth::Bust));
+        // The chest's breadth is taken between the front folds of the armpits: at its girth and
+        // depth the front corners against the back ones decide it.
+        let [_, z] = extent(&taken.hull(Girth::Bust));
         let form = &mut scales.aspect[Girth::Bust as usize];
-        *form *= match q.is_asked("chest_breadth") {
-            true => ratio(q.get("chest_breadth") * z, q.get("chest_depth") * x),
-            // Bust points that stand out do so beyond it.
-            false => ratio(z - scales.bulge, q.get("chest_depth")),
-        };
-        let least = match q.is_asked("bust_line") && q.is_asked("bust_to_underbust") {
-            true => DEEPEST[0],
-            false => ASPECT[0],
-        };
-        *form = form.clamp(least, ASPECT[1]);
+        // Bust points that stand out do so beyond the depth.
+        *form *= ratio(z - scales.bulge, q.get("chest_depth"));
+        *form = form.clamp(ASPECT[0], ASPECT[1]);
+        // Asked widths of front or back have said that already.
+        let is_said = ["front_width", "back_width"]
+            .iter()
+            .any(|name| q.is_asked(name));
+        if let (true, Some(found)) = (
+            q.is_asked("chest_breadth") || !is_said,
+            taken.between_folds(),
+        ) {
+            let fuller = ratio(q.get("chest_breadth"), found).ln();
+            scales.folds = (scales.folds + fuller).clamp(FOLDS[0], FOLDS[1]);
+        }
         for (girth, name, side) in PARTS {
             if !q.is_asked(name) {
                 continue;
@@ -275,10 +280,13 @@ pub(crate) const PARTS: [(Girth, &str, f64); 5] = [
 ];
 
 /// Square of lateral over frontal scale, and how full corners may be: people differ by less.
-pub(crate) const ASPECT: [f64; 2] = [0.8, 1.3];
-/// The first of these for a chest, and for hips whose crotch length asks for depth.
-pub(crate) const DEEPEST: [f64; 2] = [0.7, 0.6];
+pub(crate) const ASPECT: [f64; 2] = [0.7, 1.3];
+/// The first of these for hips whose crotch length asks for depth.
+pub(crate) const DEEPEST: f64 = 0.6;
 const CORNERS: [f64; 2] = [-0.3, 0.3];
+
+/// How much fuller a chest's front corners may be than the mean of front and back.
+const FOLDS: [f64; 2] = [-0.2, 0.2];
 
 /// How far the front may be scaled apart from the back; what is left of a part of a girth is met
 /// by where its section stands.

@@ -5,7 +5,7 @@ use crate::bands::Near;
 use crate::girths::Girth;
 use crate::levels::{Level, Levels, upright};
 use crate::marks::Marks;
-use crate::tape::{Skinned, along, extent, fall, half_length, outermost, stretched};
+use crate::tape::{Skinned, along, breadth_at, extent, fall, half_length, outermost, stretched};
 use crate::warp::Warp;
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
@@ -274,7 +274,7 @@ impl<'a> Taken<'a> {
             "high_bust_front" => part(Girth::HighBust, 1.0),
             "waist_back_width" => part(Girth::Waist, -1.0),
             "hip_back_width" => part(Girth::Hips, -1.0),
-            "chest_breadth" => wide(Girth::Bust, 0),
+            "chest_breadth" => self.between_folds()?,
             "chest_depth" => wide(Girth::Bust, 1),
             "waist_breadth" => wide(Girth::Waist, 0),
             "waist_depth" => wide(Girth::Waist, 1),
@@ -305,6 +305,13 @@ impl<'a> Taken<'a> {
             "crotch_length_front" => self.crotch_lengths()?[1],
             _ => return None,
         })
+    }
+
+    /// Breadth of the taped section of the bust as deep as the front folds of the armpits lie [m]:
+    /// before the muscles that run on into arm and back.
+    pub(crate) fn between_folds(&self) -> Option<f64> {
+        let fold = self.skinned.at(self.marks.fold);
+        breadth_at(&self.hull(Girth::Bust), fold.z)
     }
 
     /// The hindmost point of the left buttock [m].

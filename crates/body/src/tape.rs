@@ -158,6 +158,20 @@ pub(crate) fn extent(hull: &[Vec2]) -> [f64; 2] {
     })
 }
 
+/// Breadth of a hull along its first axis at a place of the second [m]; none beyond its ends.
+pub(crate) fn breadth_at(hull: &[Vec2], place: f64) -> Option<f64> {
+    let mut ends: Option<[f64; 2]> = None;
+    for (k, a) in hull.iter().enumerate() {
+        let b = hull[(k + 1) % hull.len()];
+        if (a.y >= place) != (b.y >= place) {
+            let x = a.x + (b.x - a.x) * ((place - a.y) / (b.y - a.y));
+            let [low, high] = ends.unwrap_or([x; 2]);
+            ends = Some([low.min(x), high.max(x)]);
+        }
+    }
+    ends.map(|[low, high]| high - low)
+}
+
 /// Length of a tight tape from a point over segments of an upright section down to a level, on
 /// the side of the unit vector `outward` [m]: the hull of what lies between.
 pub(crate) fn fall(segments: &[[Vec3; 2]], from: Vec3, level: f64, outward: Vec3) -> Option<f64> {
@@ -303,5 +317,9 @@ mod tests {
         assert!((half_length(&square, -1.0) - 4.0).abs() < 1e-12);
         assert_eq!(extent(&square), [2.0, 4.0]);
         assert_eq!(extent(&[]), [0.0, 0.0]);
+        let triangle = [Vec2::zeros(), Vec2::new(2.0, 0.0), Vec2::new(1.0, 4.0)];
+        let breadth = breadth_at(&triangle, 1.0).unwrap();
+        assert!((breadth - 1.5).abs() < 1e-12, "{breadth}");
+        assert_eq!(breadth_at(&triangle, 4.5), None);
     }
 }

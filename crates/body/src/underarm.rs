@@ -4,23 +4,23 @@
 use std::collections::BTreeMap;
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// Passes of drawing every vertex to the middle of its neighbours.
+/// Passes of drawing every vertex to the middle of its neighbours; so many where the arm presses
+/// against the trunk, whose rings lie close there.
 const PASSES: usize = 10;
+const PRESSED: usize = 80;
 
 /// Least distance of the arm from the side of the trunk: so much [1/m of stature] and so much for
 /// each metre below the armpit [1].
 const CLEAR: [f64; 2] = [0.0016, 0.1];
-
-/// Half the depth of the trunk at the armpits, over stature: less than any body's.
-const DEPTH: f64 = 0.05;
 
 /// Vertices under the left arm.
 pub(crate) struct Underarm {
     rows: Vec<Row>,
     /// Those of the arm that may come near the trunk.
     near: Vec<u32>,
-    /// Up the side of the trunk to the armpit.
-    side: Vec<u32>,
+    /// Columns of the trunk's side under the arm, from its front to its back, each from below up
+    /// to the arm's border.
+    side: Vec<Vec<u32>>,
 }
 
 /// A vertex with how far it is drawn and its neighbours.
@@ -33,12 +33,13 @@ struct Row {
 impl Underarm {
     /// Finds them on a template: of the arm's first rings, which follow the arm in part, what lies
     /// lower than the shoulder, less and less towards it [m].
-    pub(crate) fn of(mesh: &TriangleMesh, arm: &[f64], side: Vec<u32>, shoulder: f64) -> Self {
+    pub(crate) fn of(mesh: &TriangleMesh, arm: &[f64], side: &[Vec<u32>], shoulder: f64) -> Self {
         /// Shares of following of the rings meant: the border and the trunk follow less.
         const FOLLOW: [f64; 2] = [0.5, 0.999];
         /// How far below the armpit an arm may lie against the trunk [m].
         const BELOW: f64 = 0.12;
-        let armpit = side.last().map_or(0.0, |&v| mesh.positions[v as usize].y);
+        let top_of = |column: &Vec<u32>| column.last().map(|&v| mesh.positions[v as usize].y);
+        let armpit = side.iter().filter_map(top_of).fold(0.0, f64::max);
         let top = armpit + 0.6 * (shoulder - armpit);
         let (mut rows, mut near) = (Vec::new(), Vec::new());
         for (v, p) in mesh.positions.iter().enumerate() {
@@ -69,13 +70,21 @@ impl Underarm {
                 }
             }
         }
-        Self { rows, near, side }
+        Self {
+            rows,
+            near,
+            side: side.to_vec(),
+        }
     }
 
     /// Draws them even on a body of a stature [m], clear of the trunk.
     pub(crate) fn draw(&self, positions: &mut [Vec3], stature: f64) {
         let mut moved = vec![Vec3::zeros(); self.rows.len()];
-        for _ in 0..PASSES {
+        let mut presses = true;
+        for pass in 0..PRESSED {
+            if pass >= PASSES && !presses {
+                break;
+            }
             for (row, to) in self.rows.iter().zip(&mut moved) {
                 let sum: Vec3 = row.neighbours.iter().map(|&v| positions[v as usize]).sum();
                 let middle = sum / row.neighbours.len().max(1) as f64;
@@ -85,31 +94,55 @@ impl Underarm {
             for (row, &to) in self.rows.iter().zip(&moved) {
                 positions[row.vertex as usize] = to;
             }
-            self.clear(positions, stature);
+            presses = self.clear(positions, stature);
         }
     }
 
-    /// Moves what lies below the armpit out of the trunk's side.
-    fn clear(&self, positions: &mut [Vec3], stature: f64) {
-        let side: Vec<Vec3> = self.side.iter().map(|&v| positions[v as usize]).collect();
-        let Some(armpit) = side.last() else { return };
+    /// Moves what lies below the armpit out of the trunk's side; whether anything lay there.
+    fn clear(&self, positions: &mut [Vec3], stature: f64) -> bool {
+        let side: Vec<Vec<Vec3>> = self
+            .side
+            .iter()
+            .map(|column| column.iter().map(|&v| positions[v as usize]).collect())
+            .collect();
+        let tops = side.iter().filter_map(|column| column.last());
+        let armpit = tops.map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+        let mut presses = false;
         for &v in &self.near {
             let p = positions[v as usize];
-            let below = armpit.y - p.y;
+            let below = armpit - p.y;
             if below <= 0.0 {
                 continue;
             }
-            let trunk = side
-                .windows(2)
-                .find(|w| w[0].y <= p.y && p.y < w[1].y)
-                .map(|w| w[0] + (w[1] - w[0]) * ((p.y - w[0].y) / (w[1].y - w[0].y)));
-            if let Some(trunk) = trunk {
-                // Round before and behind the side.
-                let beside = (p.z - trunk.z) / (DEPTH * stature);
-                let surface = trunk.x * (1.0 - 0.5 * beside * beside);
-                let least = surface + CLEAR[0] * stature + CLEAR[1] * below;
-                positions[v as usize].x = p.x.max(least);
+            let mut outline = side.iter().filter_map(|column| at_height(column, p.y));
+            let Some(mut before) = outline.next() else {
+                continue;
+            };
+            for behind in outline {
+                if behind.z <= p.z && p.z <= before.z {
+                    let share = (before.z - p.z) / (before.z - behind.z).max(1e-9);
+                    let surface = before.x + (behind.x - before.x) * share;
+                    let least = surface + CLEAR[0] * stature + CLEAR[1] * below;
+                    presses |= p.x < least;
+                    positions[v as usize].x = p.x.max(least);
+                    break;
+                }
+                before = behind;
             }
+        }
+        presses
+    }
+}
+
+/// Where a column is at a height, at its top where it ends lower; nowhere below its foot.
+fn at_height(column: &[Vec3], y: f64) -> Option<Vec3> {
+    let next = column.partition_point(|p| p.y <= y);
+    match (next.checked_sub(1), column.get(next)) {
+        (None, _) => None,
+        (Some(k), None) => Some(column[k]),
+        (Some(k), Some(b)) => {
+            let a = column[k];
+            Some(a + (b - a) * ((y - a.y) / (b.y - a.y)))
         }
     }
 }

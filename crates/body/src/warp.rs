@@ -27,6 +27,8 @@ pub(crate) struct Shape {
     /// How much farther out the corners of a section lie at equal breadth and depth [1], over
     /// template height.
     pub(crate) corners: Vec<[f64; 2]>,
+    /// The same beyond it before the middle, and short of it behind.
+    pub(crate) folds: Vec<[f64; 2]>,
     /// Scale of the leg about its axis over template height.
     pub(crate) leg: Vec<[f64; 2]>,
     /// Scale of the arm about its axis over template distance from the shoulder joint.
@@ -39,6 +41,8 @@ pub(crate) struct Shape {
     pub(crate) global: f64,
     /// Sideways scale of the legs' axes.
     pub(crate) stance: f64,
+    /// How much broader the tops of the legs are, and how much less deep [1].
+    pub(crate) leg_form: f64,
     /// Template depth that becomes z = 0 [m].
     pub(crate) depth: f64,
     /// Depth about which sections of trunk, neck and head are scaled, over template height.
@@ -62,6 +66,9 @@ pub(crate) struct Shape {
 /// Reach of a bust point that stands forward, sideways, up and down, over stature.
 const BULGE: [f64; 3] = [0.04, 0.085, 0.052];
 
+/// Way down the thigh on which the form of the leg's top goes out, over stature.
+const LEG_TOP: f64 = 0.09;
+
 /// How far a point follows a limb instead of the trunk.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Follow {
@@ -77,6 +84,7 @@ pub(crate) struct Warp {
     front: Monotone,
     back: Monotone,
     corners: Monotone,
+    folds: Monotone,
     sections: [Monotone; 3],
     leg: Monotone,
     arm: Monotone,
@@ -107,6 +115,7 @@ impl Warp {
             front: Monotone::new(shape.front.clone()),
             back: Monotone::new(shape.back.clone()),
             corners: Monotone::new(shape.corners.clone()),
+            folds: Monotone::new(shape.folds.clone()),
             sections: [1, 2, 3]
                 .map(|k| Monotone::new(marks.sections.map(|row| [row[0], row[k]]).into())),
             leg: Monotone::new(shape.leg.clone()),
@@ -140,12 +149,14 @@ impl Warp {
             front: one.clone(),
             back: one.clone(),
             corners: none.clone(),
+            folds: none.clone(),
             leg: one.clone(),
             arm: one,
             arm_length: [0.0, along.norm()].map(level).into(),
             arm_angle: (-along.y).atan2(along.x),
             global: 1.0,
             stance: 1.0,
+            leg_form: 1.0,
             depth: 0.0,
             middle: none.clone(),
             middle_to: none.clone(),
@@ -205,14 +216,15 @@ impl Warp {
     /// direction t in a section brought to breadth and depth one, `1 + c sin^2(2 t)`, so that
     /// breadth and depth stay and the corners between them fill.
     fn fuller(&self, p: Vec3) -> f64 {
-        let corners = self.corners.at(p.y);
+        let depth = p.z - self.marks.depth;
+        let [corners, folds] = [&self.corners, &self.folds].map(|curve| curve.at(p.y));
+        let corners = corners + folds.copysign(depth * folds);
         if corners == 0.0 {
             return 1.0;
         }
         // Below and above the sections that are known, those at the ends.
         let [first, last] = [self.marks.sections[0][0], self.marks.bust];
         let y = p.y.clamp(first, last);
-        let depth = p.z - self.marks.depth;
         let [breadth, front, back] = [0, 1, 2].map(|k| self.sections[k].at(y));
         let u = (p.x / breadth).powi(2);
         let v = (depth / if depth > 0.0 { front } else { back }).powi(2);
@@ -271,12 +283,15 @@ impl Warp {
     fn leg(&self, p: Vec3) -> Vec3 {
         let axis = self.leg_axis_at(p.y);
         let scale = self.leg.at(p.y);
+        // From the hips' form at the crotch to none.
+        let top = smooth_step(1.0 - (self.marks.crotch - p.y) / (LEG_TOP * self.marks.crown));
+        let form = 1.0 + (self.shape.leg_form - 1.0) * top;
         Vec3::new(
-            axis.x * self.shape.stance + (p.x - axis.x) * scale,
+            axis.x * self.shape.stance + (p.x - axis.x) * scale * form,
             self.level.at(p.y),
             (axis.z - self.shape.depth) * self.shape.global
                 + self.forward(self.marks.crotch) * smooth_step(p.y / self.marks.crotch)
-                + (p.z - axis.z) * scale,
+                + (p.z - axis.z) * scale / form,
         )
     }
 

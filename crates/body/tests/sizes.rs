@@ -173,7 +173,5 @@ fn people_of_the_survey_have_what_was_measured() {
     }
     println!("not sound: {crossed:?}");
     assert!(failed.is_empty());
-    // Two of the broadest chests cross under the arms.
-    let known = [55, 4214];
-    assert!(crossed.iter().all(|row| known.contains(row)));
+    assert!(crossed.is_empty());
 }

@@ -193,7 +193,7 @@ pub const FURTHER: &[Definition] = &[
     length(
         "chest_breadth",
         "Chest breadth",
-        "Straight horizontal breadth of the trunk at the fullest part of the chest.",
+        "Straight horizontal breadth of the trunk at the fullest part of the chest, between the front folds of the armpits.",
         &[],
     ),
     length(

@@ -1,5 +1,6 @@
 //! The people of a survey table (ANSUR II, as CSV with head units: millimetres).
 
+use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 use toile_body::Figure;
 use toile_geometry::TriangleMesh;
@@ -31,6 +32,16 @@ pub const ASKED: [(&str, &str); 22] = [
     ("biacromialbreadth", "shoulder_w"),
 ];
 
+/// What is not asked: the survey's name and the catalogue's.
+pub const HELD_OUT: [(&str, &str); 6] = [
+    ("chestbreadth", "chest_breadth"),
+    ("chestdepth", "chest_depth"),
+    ("waistbreadth", "waist_breadth"),
+    ("waistdepth", "waist_depth"),
+    ("hipbreadth", "hip_breadth"),
+    ("buttockdepth", "hip_depth"),
+];
+
 /// A person of the survey.
 #[derive(Clone)]
 pub struct Person {
@@ -56,6 +67,58 @@ impl Person {
         }
         table
     }
+
+    /// The same with girth and height at the navel, where the survey's waist lies: what is
+    /// predicted stands on that.
+    pub fn asked_with_navel(&self) -> Measurements {
+        let mut table = self.asked();
+        for (from, name) in [
+            ("waistcircumference", "navel_girth"),
+            ("waistheightomphalion", "navel_height"),
+        ] {
+            let known = table.set(name, self.get(from), Origin::Asked);
+            assert!(known.is_ok(), "{name} of person {}", self.row);
+        }
+        table
+    }
+}
+
+/// Root mean square of a linear regression on the asked values, fitted on people with an odd row
+/// and held against those of a figure with an even one, and of the bodies against the same [m].
+pub fn held_out(
+    everyone: &[Person],
+    (people, bodies): (&[&Person], &[[f64; HELD_OUT.len()]]),
+    figure: Figure,
+    which: usize,
+) -> [f64; 2] {
+    let inputs = |p: &Person| -> Vec<f64> {
+        let values = ASKED.iter().map(|(name, _)| p.get(name));
+        std::iter::once(1.0).chain(values).collect()
+    };
+    let half: Vec<&Person> = everyone
+        .iter()
+        .filter(|p| p.figure == figure && p.row % 2 == 1)
+        .collect();
+    let rows: Vec<f64> = half.iter().flat_map(|p| inputs(p)).collect();
+    let rows = DMatrix::from_row_slice(half.len(), ASKED.len() + 1, &rows);
+    let actual = half.iter().map(|p| p.get(HELD_OUT[which].0));
+    let right = rows.tr_mul(&DVector::from_iterator(half.len(), actual));
+    let Some(line) = rows.tr_mul(&rows).cholesky().map(|n| n.solve(&right)) else {
+        return [f64::NAN; 2];
+    };
+    let (mut sums, mut count) = ([0.0; 2], 0.0);
+    for (person, body) in people.iter().zip(bodies) {
+        let got = body[which];
+        if person.figure != figure || person.row % 2 == 1 || !got.is_finite() {
+            continue;
+        }
+        let actual = person.get(HELD_OUT[which].0);
+        let fitted: f64 = inputs(person).iter().zip(&line).map(|(x, b)| x * b).sum();
+        sums[0] += (fitted - actual).powi(2);
+        sums[1] += (got - actual).powi(2);
+        count += 1.0;
+    }
+    sums.map(|sum: f64| (sum / f64::max(count, 1.0)).sqrt())
 }
 
 /// The people of a table.
