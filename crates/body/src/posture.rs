@@ -134,7 +134,12 @@ impl Grown<'_> {
             note(wider);
             // Another one where this one had to be drawn too far.
             let far = !(-0.35..=0.9).contains(&scales.spread) && round < 5 * SNAP;
-            if round == SNAP || (far && round > 0 && round.is_multiple_of(SNAP)) {
+            // An asked form of the chest says itself which place is foremost.
+            let is_said = ["chest_breadth", "chest_depth"]
+                .iter()
+                .any(|name| q.is_asked(name));
+            let again = far && round > 0 && round.is_multiple_of(SNAP);
+            if !is_said && (round == SNAP || again) {
                 let asked = 0.5 * q.get("bust_points");
                 scales.column = self.column_at(taken, scales.spread, asked);
             }

@@ -64,7 +64,9 @@ impl Grown<'_> {
             let taken = self.taken(&skinned, (&levels, &warp), &crotch);
             let mut moved = self.correct(&mut scales, &mut excess, &taken);
             if round <= forming {
-                if round < SHAPING {
+                // An asked form of the chest is followed to the end.
+                let asked = |name| self.request.is_asked(name);
+                if round < SHAPING || asked("chest_breadth") || asked("chest_depth") {
                     self.form(&mut scales, &taken);
                 }
                 let [step, open] = self.posture(&mut scales, &taken, round);
@@ -206,8 +208,12 @@ impl Grown<'_> {
         // depth the front corners against the back ones decide it.
         let [_, z] = extent(&taken.hull(Girth::Bust));
         let form = &mut scales.aspect[Girth::Bust as usize];
-        // Bust points that stand out do so beyond the depth.
-        *form *= ratio(z - scales.bulge, q.get("chest_depth"));
+        // Bust points that stand out do so beyond a depth that was not asked for.
+        let beyond = match q.is_asked("chest_depth") {
+            true => 0.0,
+            false => scales.bulge,
+        };
+        *form *= ratio(z - beyond, q.get("chest_depth"));
         *form = form.clamp(ASPECT[0], ASPECT[1]);
         // Asked widths of front or back have said that already.
         let is_said = ["front_width", "back_width"]
