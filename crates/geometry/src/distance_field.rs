@@ -32,12 +32,34 @@ pub struct DistanceField {
     samples: Vec<OnceLock<Option<Box<[f64]>>>>,
 }
 
-/// A triangle that may hold the closest point, in a ball round its centre.
+/// A triangle that may hold the closest point, in a disc round its centre.
 #[derive(Clone, Copy)]
 struct Candidate {
     triangle: u32,
     centre: Vec3,
+    /// Unit normal; zero for a needle, of which it is not well known.
+    normal: Vec3,
     radius: f64,
+}
+
+/// Twice the area of a needle, as a share of its radius squared.
+const NEEDLE: f64 = 1e-4;
+
+impl Candidate {
+    /// Whether it may come within some distance \[m\] of a point.
+    fn may_reach(&self, point: Vec3, distance: f64) -> bool {
+        let to = point - self.centre;
+        let far = to.norm_squared();
+        let most = distance + self.radius;
+        if far > most * most {
+            return false;
+        }
+        // From the disc: what lies beside it counts only as far as it is out of it.
+        let above = self.normal.dot(&to).powi(2);
+        let beside = (far - above).max(0.0).sqrt() - self.radius;
+        let beside = beside.max(0.0);
+        above + beside * beside <= distance * distance + 1e-9 * far
+    }
 }
 
 impl DistanceField {
@@ -98,10 +120,15 @@ impl DistanceField {
         let corners = self.surface.mesh().corners(triangle as usize);
         let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
         let radius = corners.map(|p| (p - centre).norm());
+        let radius = radius.into_iter().fold(0.0, f64::max);
+        let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
         Candidate {
             triangle,
             centre,
-            radius: radius.into_iter().fold(0.0, f64::max),
+            normal: normal
+                .try_normalize(NEEDLE * radius * radius)
+                .unwrap_or_default(),
+            radius,
         }
     }
 
@@ -135,7 +162,7 @@ impl DistanceField {
         let most = least + 2.0 * reach * 3f64.sqrt() + 1e-9 * (least + self.cell);
         let kept: Vec<Candidate> = candidates
             .iter()
-            .filter(|c| (c.centre - middle).norm_squared() <= (most + c.radius).powi(2))
+            .filter(|c| c.may_reach(middle, most))
             .copied()
             .collect();
         let half = side / 2;
@@ -155,10 +182,7 @@ impl DistanceField {
             guess.triangle,
         );
         for candidate in candidates {
-            let most = least.0 + candidate.radius;
-            if candidate.triangle != guess.triangle
-                && (candidate.centre - point).norm_squared() < most * most
-            {
+            if candidate.triangle != guess.triangle && candidate.may_reach(point, least.0) {
                 let distance = self.surface.distance_to(candidate.triangle, point);
                 if distance < least.0 {
                     least = (distance, candidate.triangle);
