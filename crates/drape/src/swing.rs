@@ -92,6 +92,7 @@ impl SwingRun {
             Ok(report) => report,
             Err(error) => {
                 *state = before;
+                self.cloth.forget();
                 return Err(error);
             }
         };

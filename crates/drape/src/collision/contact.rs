@@ -3,7 +3,7 @@
 
 use super::bound::{Kept, Motions, REACH_OF_WAYS};
 use super::curvature::Clearance;
-use super::layers::{Knots, Stray, layer_order, layers_of, strays, ways_out};
+use super::layers::{Knots, Stray, layer_order, strays, ways_out};
 use super::near::Near;
 use super::proximity::{Nearness, nearnesses};
 use super::regions::Ways;
@@ -58,6 +58,9 @@ pub struct ClothMemory {
     pub places: Vec<Vec3>,
     /// Contacts that pressed, in order of their features.
     pub held: Vec<Held>,
+    /// How far off vertices on the wrong side of a layer are looked for at the next look [m]: zero where
+    /// none can be, since layers that do not cross do not change sides; none before the first look.
+    pub stray_reach: Option<f64>,
 }
 
 /// What was found and done so far.
@@ -170,8 +173,7 @@ pub struct ClothContacts {
     near: Near,
     /// How far off contacts were last looked for [m].
     reach: f64,
-    /// How far off vertices on the wrong side of a layer are looked for at the next look [m]; nothing
-    /// where none can be: layers that do not cross do not change sides.
+    /// What a state is to remember of vertices on the wrong side of a layer, as in [`ClothMemory`].
     stray_reach: Option<f64>,
 }
 
@@ -215,8 +217,6 @@ impl ClothContacts {
         if stale {
             self.surface = ClothSurface::new(model);
             self.near.forget();
-            let ordered = layers_of(&self.surface).len() > 1;
-            self.stray_reach = ordered.then_some(STRAY_REACH);
         }
         &mut self.surface
     }
@@ -242,7 +242,7 @@ impl ClothContacts {
         let crossings = crossings(&self.surface, &near, x);
         self.piercings = crossings.len();
         let (own, across) = self.mark(&crossings);
-        let strays = self.find_strays(x, !across.is_empty());
+        let strays = self.find_strays(x, !across.is_empty(), state.cloth.stray_reach);
         self.tally.look(self.piercings, self.strays);
         let knots = Knots {
             tangled: &self.tangled,
@@ -283,21 +283,29 @@ impl ClothContacts {
         (own, across)
     }
 
-    /// Vertices on the wrong side of a layer, where there may be any.
-    fn find_strays(&mut self, x: &[Vec3], crossed: bool) -> Vec<Stray> {
-        let reach = match (self.stray_reach, crossed) {
-            (None, false) => return Vec::new(),
-            (reach, _) => reach.unwrap_or(STRAY_SLACK),
-        };
-        let found = strays(&self.surface, x, reach);
+    /// Vertices on the wrong side of a layer no farther off than the last look says, where there may be
+    /// any.
+    fn find_strays(&mut self, x: &[Vec3], crossed: bool, reach: Option<f64>) -> Vec<Stray> {
+        let reach = reach.unwrap_or(STRAY_REACH);
+        self.stray_reach = Some(0.0);
+        if reach == 0.0 && !crossed {
+            return Vec::new();
+        }
+        let found = strays(&self.surface, x, reach.max(STRAY_SLACK));
         for stray in &found {
             self.astray[stray.vertex as usize] = true;
         }
         self.strays = found.len();
-        let deepest = found.iter().map(|s| s.depth).fold(0.0, f64::max);
-        let some = crossed || !found.is_empty();
-        self.stray_reach = some.then_some((deepest + STRAY_SLACK).min(STRAY_REACH));
+        if crossed || !found.is_empty() {
+            let deepest = found.iter().map(|s| s.depth).fold(0.0, f64::max);
+            self.stray_reach = Some((deepest + STRAY_SLACK).min(STRAY_REACH));
+        }
         found
+    }
+
+    /// Has a state remember what the last look found of layers.
+    pub fn remember_layers(&self, state: &mut State) {
+        state.cloth.stray_reach = self.stray_reach.or(state.cloth.stray_reach);
     }
 
     /// Whether nothing crosses and nothing is on the wrong side of a layer.
@@ -469,6 +477,7 @@ impl ClothContacts {
         }
         held.sort_unstable_by_key(|held| held.pair);
         state.cloth.held = held;
+        self.remember_layers(state);
         if model.contact.cloth_offset > 0.0 {
             state.cloth.places.clone_from(&state.positions);
         }
