@@ -1,8 +1,6 @@
 //! Heights of the landmarks, from whatever lengths are asked for.
 
-use crate::conflict::is_short;
 use crate::marks::{Marks, UNDERBUST};
-use crate::request::Request;
 use nalgebra::{SMatrix, SVector};
 use toile_measure::{Measurements, Origin};
 
@@ -128,7 +126,7 @@ impl System {
 /// Deviations over stature: of an asked upright length, of an asked way over the body, of what
 /// was predicted, of the template's proportions, of a definition.
 const ASKED: f64 = 3e-5;
-const ASKED_OVER: f64 = 3e-4;
+const ASKED_OVER: f64 = 1e-3;
 const PREDICTED: f64 = 0.02;
 const PROPORTION: f64 = 0.008;
 const DEFINED: f64 = 3e-4;
@@ -137,8 +135,7 @@ const NECK_SIDE_DROP: f64 = 0.020;
 
 /// Heights that meet the lengths of a completed table in the sense of least squares: what is
 /// asked for weighs most, then what goes with the definitions, then predictions.
-pub(crate) fn solve(request: &Request, marks: &Marks, excess: &Excess) -> Levels {
-    let table = &request.table;
+pub(crate) fn solve(table: &Measurements, marks: &Marks, excess: &Excess) -> Levels {
     let height = table.get("height").unwrap_or(1.7);
     let mut system = System {
         normal: SMatrix::zeros(),
@@ -174,11 +171,7 @@ pub(crate) fn solve(request: &Request, marks: &Marks, excess: &Excess) -> Levels
         let mut terms = vec![(upper, 1.0)];
         terms.extend(lower.map(|lower| (lower, -1.0)));
         let value = table.get(name).unwrap_or_default() - excess.over[k];
-        let deviation = match is_short(name, &request.conflicts) {
-            true => PREDICTED,
-            false => ASKED_OVER,
-        };
-        system.add(&terms, value, deviation * height);
+        system.add(&terms, value, ASKED_OVER * height);
     }
     proportions(&mut system, table, marks, height, excess);
     let solved = system
@@ -272,7 +265,7 @@ fn in_order(mut heights: [f64; COUNT], height: f64) -> Levels {
     let [bust, tip] = [heights[Bust as usize], heights[Tip as usize]];
     // The bust is taken under the arms.
     let armpit = &mut heights[Armpit as usize];
-    *armpit = armpit.clamp(bust + 0.005 * height, tip - 0.02 * height);
+    *armpit = armpit.clamp(bust + 0.008 * height, tip - 0.02 * height);
     let bust = heights[Bust as usize];
     let high = &mut heights[HighBust as usize];
     *high = high.clamp(bust + 0.008 * height, tip - 0.008 * height);

@@ -30,7 +30,6 @@ mod limbs;
 mod mannequin;
 mod marks;
 mod motion;
-mod posture;
 mod proportions;
 mod refit;
 mod request;

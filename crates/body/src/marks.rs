@@ -17,8 +17,6 @@ pub(crate) struct Marks {
     pub(crate) armpit: f64,
     pub(crate) crotch: f64,
     pub(crate) bust: f64,
-    /// Distance of the foremost point of the bust from the middle [m].
-    pub(crate) bust_point: f64,
     /// Where the neck meets the shoulder, left.
     pub(crate) neck_side: Vec3,
     /// The same on the skin.
@@ -101,7 +99,6 @@ impl Marks {
             armpit: skin.mesh.positions[skin.armpit as usize].y,
             crotch,
             bust,
-            bust_point: bust_point(skin, bust, tip.x),
             neck_side: neck_side_on.at(&skin.mesh.positions),
             neck_side_on,
             tip,
@@ -137,21 +134,6 @@ fn depth(skin: &TemplateSkin, [low, high]: [f64; 2]) -> f64 {
     (0..=4)
         .map(|k| 0.2 * middle(low + (high - low) * 0.25 * f64::from(k)))
         .sum()
-}
-
-/// Distance from the middle of the foremost point of the chest at a height [m]; on a flat chest
-/// halfway to the end of the shoulder.
-fn bust_point(skin: &TemplateSkin, y: f64, shoulder: f64) -> f64 {
-    let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
-    let foremost = horizontal_section(&skin.mesh, trunk, y)
-        .into_iter()
-        .max_by(|a, b| a.y.total_cmp(&b.y));
-    let x = foremost.map_or(0.0, |p| p.x.abs());
-    if x > 0.2 * shoulder {
-        x
-    } else {
-        0.5 * shoulder
-    }
 }
 
 /// Extents of the trunk at even heights about a depth [m].

@@ -25,8 +25,6 @@ pub(crate) struct Scales {
     pub(crate) shoulder: f64,
     /// Lateral, at the sides of the neck.
     pub(crate) neck: f64,
-    /// Width of the neck over what was predicted.
-    pub(crate) wide: f64,
     /// Distances along the arm from the shoulder joint [m].
     pub(crate) elbow: f64,
     pub(crate) wrist: f64,
@@ -36,16 +34,6 @@ pub(crate) struct Scales {
     pub(crate) spread: f64,
     /// Rise of the armpits over what the levels give them [m].
     pub(crate) armpit: f64,
-    /// How far forward the sections of girths round the trunk stand [m].
-    pub(crate) shift: [f64; Girth::COUNT],
-    /// How far the bust points stand forward of what the sections give them [m].
-    pub(crate) bulge: f64,
-    /// The vertex that becomes a bust point, once it is known.
-    pub(crate) column: Option<u32>,
-    /// How much farther up the template lies what comes to the hips [m]: the seat is fuller below.
-    pub(crate) seat: f64,
-    /// How far forward the crotch lies under the hips [m].
-    pub(crate) fork: f64,
 }
 
 impl Scales {
@@ -59,17 +47,11 @@ impl Scales {
             split: [0.0; Girth::COUNT],
             shoulder: global,
             neck: global,
-            wide: 1.0,
             elbow: global * marks.elbow,
             wrist: global * marks.wrist,
             lean: 0.0,
             spread: 0.0,
             armpit: 0.0,
-            shift: [0.0; Girth::COUNT],
-            bulge: 0.0,
-            column: None,
-            seat: 0.0,
-            fork: 0.0,
         }
     }
 
@@ -84,9 +66,6 @@ type Section = [f64; 4];
 /// Least distance between sections that are scaled apart, over stature.
 const APART: f64 = 0.006;
 
-/// Least distance of the hips over the crotch for a seat to be filled there, over stature.
-const SEAT_ROOM: f64 = 0.005;
-
 /// The shape of given scales and levels.
 pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape, BodyError> {
     let (m, q, t) = (&grown.marks, &grown.request, grown.template);
@@ -94,7 +73,7 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
     let global = q.get("height") / t.height;
     let knee = levels.at(Level::Knee);
     let ankle = (t.joints.ankle[1] * global).min(0.4 * knee);
-    let mut heights = vec![
+    let heights = vec![
         [0.0, 0.0],
         [t.joints.ankle[1], ankle],
         [m.knee, knee],
@@ -113,17 +92,7 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
             remedy: "they leave no room between the landmarks: lessen the longest of them",
         });
     }
-    let mut curve = Monotone::new(heights.clone());
-    if s.seat > 0.0 {
-        let hips = levels.at(Level::Hips);
-        let from = curve.inverse(hips);
-        // Between the crotch and the bust, with some room to both.
-        let to = (from + s.seat).min(m.crotch + 0.6 * (m.bust - m.crotch));
-        if hips > levels.at(Level::Crotch) + SEAT_ROOM * height && to > from {
-            heights.insert(4, [to, hips]);
-            curve = Monotone::new(heights.clone());
-        }
-    }
+    let curve = Monotone::new(heights.clone());
     let shoulder_rise = levels.at(Level::Tip) - curve.at(m.tip.y);
     let [neck, head] = [t.joints.neck[2], t.joints.head[2]];
     let places = [
@@ -135,9 +104,9 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
         m.crown,
     ];
     let middle = [m.depth, m.depth, 0.5 * (m.depth + neck), neck, head, head];
-    let stand = [0.0, 0.0, 0.5 * s.lean, s.lean, s.lean, s.lean];
+    let forward = [0.0, 0.0, 0.5 * s.lean, s.lean, s.lean, s.lean];
     let row = |k: usize| [places[k], middle[k]];
-    let row_to = |k: usize| [places[k], (middle[k] - m.depth) * global + stand[k]];
+    let row_to = |k: usize| [places[k], (middle[k] - m.depth) * global + forward[k]];
     let on_template = |level: f64| curve.inverse(level);
     let sections = trunk(grown, s, levels, &on_template);
     let column = |k: usize| sections.iter().map(|row| [row[0], row[k]]).collect();
@@ -169,57 +138,10 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
         depth: m.depth,
         middle: (0..6).map(row).collect(),
         middle_to: (0..6).map(row_to).collect(),
-        forward: forward(m, s, levels, &on_template),
         shoulder_rise,
         bust_spread: s.spread,
-        bust_bulge: s.bulge,
-        bust_at: bust_at(grown, s),
         armpit_rise: s.armpit,
     })
-}
-
-/// Distance from the middle of the template of the place that becomes a bust point [m].
-fn bust_at(grown: &Grown, s: &Scales) -> f64 {
-    let (m, q) = (&grown.marks, &grown.request);
-    if !q.is_asked("bust_points") {
-        return m.bust_point;
-    }
-    if let Some(v) = s.column {
-        return grown.skin.mesh.positions[v as usize].x;
-    }
-    let lateral = s.of(Girth::Bust) * s.aspect[Girth::Bust as usize].sqrt();
-    (0.5 * q.get("bust_points") / lateral).clamp(0.2 * m.tip.x, 0.7 * m.tip.x)
-}
-
-/// How far forward the sections of the trunk stand over template height [m]: nothing at the neck.
-fn forward(
-    m: &Marks,
-    s: &Scales,
-    levels: &Levels,
-    on_template: &dyn Fn(f64) -> f64,
-) -> Vec<[f64; 2]> {
-    let of = |girth: Girth| s.shift[girth as usize];
-    let crotch = of(Girth::Hips) + s.fork;
-    let mut rows = vec![[m.bust, of(Girth::Bust)]];
-    for (girth, level) in [
-        (Girth::Hips, Level::Hips),
-        (Girth::Waist, Level::Waist),
-        (Girth::HighBust, Level::HighBust),
-    ] {
-        let y = on_template(levels.at(level));
-        if rows.iter().all(|row| (row[0] - y).abs() > 1e-3) && y > m.crotch && y < m.tip.y {
-            rows.push([y, of(girth)]);
-        }
-    }
-    // As low as any part of the trunk reaches.
-    rows.extend([[0.8 * m.crotch, crotch], [m.crotch, crotch]]);
-    rows.extend([
-        [m.tip.y, of(Girth::HighBust)],
-        [m.neck_side.y, 0.0],
-        [m.crown, 0.0],
-    ]);
-    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    rows
 }
 
 /// Sections of trunk, neck and head from below. Of two that lie too close, the more important

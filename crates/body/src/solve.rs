@@ -29,14 +29,9 @@ pub(crate) struct Solved {
 }
 
 /// Rounds allowed; most bodies need 8 to 15.
-const ROUNDS: usize = 68;
-/// Rounds in which posture and form are still corrected, and as many at the most where a length
-/// of the posture is not met yet; the girths have the last word.
-const FORMING: [usize; 2] = [24, 52];
-/// Rounds after that.
-const LAST: usize = 16;
-/// What a length of the posture may miss over stature before more rounds are spent on it.
-const MET: f64 = 1e-4;
+const ROUNDS: usize = 40;
+/// Rounds in which posture and form are still corrected; the girths have the last word.
+const FORMING: usize = 24;
 const SHAPING: usize = 12;
 /// Largest change of a girth or a level over stature at which the rounds end: 0.002 mm.
 const STILL: f64 = 1e-6;
@@ -50,9 +45,8 @@ impl Grown<'_> {
         let mut scales = Scales::new(global, &self.marks);
         let mut excess = Excess::default();
         let crotch = self.crotch_vertices();
-        let mut forming = 0;
         for round in 0..ROUNDS {
-            let levels = levels::solve(&self.request, &self.marks, &excess);
+            let levels = levels::solve(&self.request.table, &self.marks, &excess);
             let shape = shape(self, &scales, &levels)?;
             let warp = Warp::new(self.template, &self.marks, shape);
             let place = |v: usize| self.place(&warp, v);
@@ -63,24 +57,17 @@ impl Grown<'_> {
             );
             let taken = self.taken(&skinned, (&levels, &warp), &crotch);
             let mut moved = self.correct(&mut scales, &mut excess, &taken);
-            if round <= forming {
-                // An asked form of the chest is followed to the end.
-                let asked = |name| self.request.is_asked(name);
-                if round < SHAPING || asked("chest_breadth") || asked("chest_depth") {
+            if round < FORMING {
+                if round < SHAPING {
                     self.form(&mut scales, &taken);
                 }
-                let [step, open] = self.posture(&mut scales, &taken, round);
-                let longer = round < FORMING[1] && open > MET * self.request.get("height");
-                forming += usize::from(round + 1 < FORMING[0] || longer);
-                moved = moved.max(step);
-            } else if round > forming + LAST {
-                break;
+                moved = moved.max(self.posture(&mut scales, &taken));
             }
             if moved < STILL * self.request.get("height") {
                 break;
             }
         }
-        let levels = levels::solve(&self.request, &self.marks, &excess);
+        let levels = levels::solve(&self.request.table, &self.marks, &excess);
         let shape = shape(self, &scales, &levels)?;
         let mesh = self.skin_of(&Warp::new(self.template, &self.marks, shape.clone()));
         Ok(Solved {
@@ -127,14 +114,17 @@ impl Grown<'_> {
             .into_iter()
             .find(|name| q.is_asked(name))
             .unwrap_or("shoulder_w");
-        let wide = taken.value(name).unwrap_or(2.0 * tip.x);
-        let across = q.get("neck_w") * scales.wide;
-        for (scale, wanted, got) in [
-            (&mut scales.shoulder, q.get(name), wide),
-            (&mut scales.neck, across, 2.0 * neck.x),
-        ] {
-            miss = miss.max((wanted - got).abs());
-            *scale *= ratio(wanted, got);
+        let widths = [
+            (
+                &mut scales.shoulder,
+                name,
+                taken.value(name).unwrap_or(2.0 * tip.x),
+            ),
+            (&mut scales.neck, "neck_w", 2.0 * neck.x),
+        ];
+        for (scale, name, got) in widths {
+            miss = miss.max((q.get(name) - got).abs());
+            *scale *= ratio(q.get(name), got);
         }
         let mut along = |name: &str, scale: &mut f64| {
             if let Some(got) = taken.value(name) {
@@ -208,12 +198,7 @@ impl Grown<'_> {
         // depth the front corners against the back ones decide it.
         let [_, z] = extent(&taken.hull(Girth::Bust));
         let form = &mut scales.aspect[Girth::Bust as usize];
-        // Bust points that stand out do so beyond a depth that was not asked for.
-        let beyond = match q.is_asked("chest_depth") {
-            true => 0.0,
-            false => scales.bulge,
-        };
-        *form *= ratio(z - beyond, q.get("chest_depth"));
+        *form *= ratio(z, q.get("chest_depth"));
         *form = form.clamp(ASPECT[0], ASPECT[1]);
         // Asked widths of front or back have said that already.
         let is_said = ["front_width", "back_width"]
@@ -234,9 +219,40 @@ impl Grown<'_> {
             let [own, other] = [side, -side].map(|side| half_length(&hull, side));
             let asked = (q.get(name) / (own + other)).clamp(0.3, 0.7);
             let split = &mut scales.split[girth as usize];
-            *split += 0.5 * side * (asked - own / (own + other));
-            *split = split.clamp(-SPLIT, SPLIT);
+            *split += side * (asked - own / (own + other));
+            *split = split.clamp(-0.3, 0.3);
         }
+    }
+
+    /// Corrects where the neck stands between front and back lengths, and how far the bust points
+    /// are apart. Returns the largest miss that can still be corrected [m].
+    fn posture(&self, scales: &mut Scales, taken: &Taken) -> f64 {
+        let q = &self.request;
+        let height = q.get("height");
+        let mut miss: f64 = 0.0;
+        let gap = |name: &str| {
+            q.is_asked(name)
+                .then(|| Some(q.get(name) - taken.value(name)?))
+        };
+        let ways = ["hps_to_waist_front", "hps_to_waist_back"].map(|name| gap(name).flatten());
+        if let [Some(front), Some(back)] = ways {
+            let before = scales.lean;
+            let limit = LEAN * height;
+            scales.lean = (before + 0.5 * (back - front)).clamp(-limit, limit);
+            miss = miss.max((scales.lean - before).abs());
+        }
+        let found = taken.levels.at(Level::Armpit) - taken.height(Level::Armpit);
+        let (before, limit) = (scales.armpit, ARMPIT * height);
+        scales.armpit = (before + found).clamp(-limit, limit);
+        miss = miss.max((scales.armpit - before).abs());
+        if let Some(Some(wider)) = gap("bust_points") {
+            let got = q.get("bust_points") - wider;
+            let before = scales.spread;
+            let more = 0.6 * (ratio(q.get("bust_points"), got) - 1.0);
+            scales.spread = (before + more).clamp(-0.4, 0.8);
+            miss = miss.max((scales.spread - before).abs() * got);
+        }
+        miss
     }
 
     /// Where a vertex of the template is on the body [m]; the left half and the middle only.
@@ -277,7 +293,7 @@ impl Grown<'_> {
 }
 
 /// Parts of girths that lie on one side of z: +1 before, -1 behind.
-pub(crate) const PARTS: [(Girth, &str, f64); 5] = [
+const PARTS: [(Girth, &str, f64); 5] = [
     (Girth::Bust, "front_width", 1.0),
     (Girth::Bust, "back_width", -1.0),
     (Girth::HighBust, "high_bust_front", 1.0),
@@ -286,17 +302,17 @@ pub(crate) const PARTS: [(Girth, &str, f64); 5] = [
 ];
 
 /// Square of lateral over frontal scale, and how full corners may be: people differ by less.
-pub(crate) const ASPECT: [f64; 2] = [0.7, 1.3];
-/// The first of these for hips whose crotch length asks for depth.
-pub(crate) const DEEPEST: f64 = 0.6;
+const ASPECT: [f64; 2] = [0.7, 1.3];
 const CORNERS: [f64; 2] = [-0.3, 0.3];
 
 /// How much fuller a chest's front corners may be than the mean of front and back.
 const FOLDS: [f64; 2] = [-0.2, 0.2];
 
-/// How far the front may be scaled apart from the back; what is left of a part of a girth is met
-/// by where its section stands.
-const SPLIT: f64 = 0.12;
+/// How far a neck may stand from the template's place, over stature.
+const LEAN: f64 = 0.02;
+
+/// How far an armpit may lie from the template's place, over stature.
+const ARMPIT: f64 = 0.035;
 
 /// Half the least gap between the legs, over stature: cloth must pass.
 const LEG_GAP: f64 = 0.0018;
@@ -304,7 +320,7 @@ const LEG_GAP: f64 = 0.0018;
 /// Least distance of what is not in the middle from it, over stature.
 const SIDE_GAP: f64 = 0.0006;
 
-pub(crate) fn ratio(asked: f64, got: f64) -> f64 {
+fn ratio(asked: f64, got: f64) -> f64 {
     if got > 0.0 && asked > 0.0 {
         (asked / got).clamp(0.25, 4.0)
     } else {

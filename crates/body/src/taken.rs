@@ -5,10 +5,9 @@ use crate::bands::Near;
 use crate::girths::Girth;
 use crate::levels::{Level, Levels, upright};
 use crate::marks::Marks;
-use crate::tape::{Skinned, along, breadth_at, extent, fall, half_length, outermost, stretched};
+use crate::tape::{Skinned, breadth_at, extent, fall, half_length, outermost, stretched};
 use crate::warp::Warp;
-use std::cell::{OnceCell, RefCell};
-use std::collections::BTreeMap;
+use std::cell::RefCell;
 use std::f64::consts::FRAC_PI_2;
 use std::rc::Rc;
 use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
@@ -23,10 +22,6 @@ pub(crate) struct Taken<'a> {
     pub(crate) crotch: &'a [u32],
     /// Hulls that were taken before.
     pub(crate) hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
-    /// What was taken before.
-    pub(crate) known: RefCell<BTreeMap<String, Option<f64>>>,
-    pub(crate) around_crotch: OnceCell<Option<[f64; 2]>>,
-    pub(crate) bust: OnceCell<Option<Vec3>>,
     /// Vertex in the left armpit.
     pub(crate) armpit: u32,
 }
@@ -48,9 +43,6 @@ impl<'a> Taken<'a> {
             warp,
             crotch,
             hulls: Default::default(),
-            known: Default::default(),
-            around_crotch: OnceCell::new(),
-            bust: OnceCell::new(),
             armpit,
         }
     }
@@ -102,10 +94,6 @@ impl<'a> Taken<'a> {
 
     /// The foremost point of the bust on the left [m].
     pub(crate) fn bust_point(&self) -> Option<Vec3> {
-        *self.bust.get_or_init(|| self.foremost())
-    }
-
-    fn foremost(&self) -> Option<Vec3> {
         let y = self.levels.at(Level::Bust);
         let level = [Vec3::y() * y, Vec3::y()];
         self.skinned
@@ -157,14 +145,6 @@ impl<'a> Taken<'a> {
         fall(&section, bust, self.levels.at(to), Vec3::z())
     }
 
-    /// The way along the skin from the bust point straight down to the level under the bust [m].
-    fn under_bust(&self) -> Option<f64> {
-        let bust = self.bust_point()?;
-        let floor = self.levels.at(Level::Underbust);
-        let section = self.upright(&[Part::Trunk], bust, Vec3::y());
-        Some(along(&section, [floor, bust.y]))
-    }
-
     fn outside_leg(&self) -> Option<f64> {
         let waist = self.levels.at(Level::Waist);
         let hips = self.levels.at(Level::Hips);
@@ -200,10 +180,6 @@ impl<'a> Taken<'a> {
 
     /// Crotch length, and the part before its middle [m].
     fn crotch_lengths(&self) -> Option<[f64; 2]> {
-        *self.around_crotch.get_or_init(|| self.taken_crotch())
-    }
-
-    fn taken_crotch(&self) -> Option<[f64; 2]> {
         let waist = self.levels.at(Level::Waist);
         let parts = &[Part::Trunk, Part::LeftLeg];
         // Just beside the middle, where the plane meets whole triangles.
@@ -237,15 +213,6 @@ impl<'a> Taken<'a> {
 
     /// A measurement by its name in the catalogue [m] or [rad]; none if the tape does not know it.
     pub(crate) fn value(&self, name: &str) -> Option<f64> {
-        if let Some(known) = self.known.borrow().get(name) {
-            return *known;
-        }
-        let found = self.taken_value(name);
-        self.known.borrow_mut().insert(name.to_owned(), found);
-        found
-    }
-
-    fn taken_value(&self, name: &str) -> Option<f64> {
         if let Some(girth) = Girth::ALL.into_iter().find(|girth| girth.name() == name) {
             return Some(self.girth(girth));
         }
@@ -285,7 +252,7 @@ impl<'a> Taken<'a> {
             "bust_points" => 2.0 * self.bust_point()?.x,
             "bum_points" => 2.0 * self.hindmost()?.x,
             "bust_line" => self.bust_line()?,
-            "bust_to_underbust" => self.under_bust()?,
+            "bust_to_underbust" => self.below_bust(Level::Underbust)?,
             "waist_over_bust_line" => self.bust_line()? + self.below_bust(Level::Waist)?,
             "hps_to_waist_front" => {
                 let section = self.upright(TORSO, neck, Vec3::y());

@@ -49,22 +49,13 @@ pub(crate) struct Shape {
     pub(crate) middle: Vec<[f64; 2]>,
     /// The same on the body.
     pub(crate) middle_to: Vec<[f64; 2]>,
-    /// How far forward sections of the trunk stand besides, over template height [m].
-    pub(crate) forward: Vec<[f64; 2]>,
     /// Rise of the ends of the shoulders over what the levels give them [m].
     pub(crate) shoulder_rise: f64,
     /// Rise of the armpits over what the levels give them [m].
     pub(crate) armpit_rise: f64,
     /// How far the bust points are apart over what the sections give them, less one.
     pub(crate) bust_spread: f64,
-    /// How far the bust points stand forward of what the sections give them [m].
-    pub(crate) bust_bulge: f64,
-    /// Distance of a bust point from the middle of the template [m].
-    pub(crate) bust_at: f64,
 }
-
-/// Reach of a bust point that stands forward, sideways, up and down, over stature.
-const BULGE: [f64; 3] = [0.04, 0.085, 0.052];
 
 /// Way down the thigh on which the form of the leg's top goes out, over stature.
 const LEG_TOP: f64 = 0.09;
@@ -91,8 +82,6 @@ pub(crate) struct Warp {
     arm_length: Monotone,
     middle: Monotone,
     middle_to: Monotone,
-    /// None where no section stands forward.
-    forward: Option<Monotone>,
     marks: Marks,
     shape: Shape,
     leg_axis: [Vec3; 3],
@@ -123,8 +112,6 @@ impl Warp {
             arm_length: Monotone::new(shape.arm_length.clone()),
             middle: Monotone::new(shape.middle.clone()),
             middle_to: Monotone::new(shape.middle_to.clone()),
-            forward: (shape.forward.iter().any(|row| row[1] != 0.0))
-                .then(|| Monotone::new(shape.forward.clone())),
             marks: *marks,
             leg_axis: [j.hip, j.knee, j.ankle].map(Vec3::from),
             shoulder,
@@ -159,13 +146,10 @@ impl Warp {
             leg_form: 1.0,
             depth: 0.0,
             middle: none.clone(),
-            middle_to: none.clone(),
-            forward: none,
+            middle_to: none,
             shoulder_rise: 0.0,
             armpit_rise: 0.0,
             bust_spread: 0.0,
-            bust_bulge: 0.0,
-            bust_at: marks.bust_point,
         };
         Self {
             still: Some([shoulder, elbow, wrist]),
@@ -188,28 +172,8 @@ impl Warp {
         Vec3::new(
             p.x * fuller * self.lateral.at(p.y) * (1.0 + self.spread(p, depth)),
             self.level.at(p.y) + self.rise(p),
-            self.middle_to.at(p.y) + self.forward(p.y) + depth * frontal + self.bulge(p, depth),
+            self.middle_to.at(p.y) + depth * frontal,
         )
-    }
-
-    /// How far forward a section of the trunk stands besides [m].
-    fn forward(&self, y: f64) -> f64 {
-        self.forward.as_ref().map_or(0.0, |curve| curve.at(y))
-    }
-
-    /// How far a place stands forward with its bust point [m]: all of it there, nothing at the
-    /// middle, the sides, above and below.
-    fn bulge(&self, p: Vec3, depth: f64) -> f64 {
-        let m = &self.marks;
-        let [across, up, down] = BULGE.map(|reach| reach * m.crown);
-        let high = p.y - m.bust;
-        let u = ((p.x - self.shape.bust_at) / across).powi(2);
-        let v = (high / if high > 0.0 { up } else { down }).powi(2);
-        if self.shape.bust_bulge == 0.0 || u >= 1.0 || v >= 1.0 || depth <= 0.0 {
-            return 0.0;
-        }
-        let before = smooth_step(depth / (0.04 * m.crown));
-        self.shape.bust_bulge * ((1.0 - u) * (1.0 - v)).powi(2) * before
     }
 
     /// By how much a place of the trunk lies farther out from the middle of its section: with its
@@ -234,22 +198,15 @@ impl Warp {
     /// Share by which a place in front of the chest goes sideways with the bust points: all of it
     /// there, nothing at the sides, above and below.
     fn spread(&self, p: Vec3, depth: f64) -> f64 {
-        if depth <= 0.0 {
-            return 0.0;
-        }
-        let before = smooth_step(depth / (0.04 * self.marks.crown));
-        self.shape.bust_spread * Self::apart(&self.marks, p) * before
-    }
-
-    /// How far a place of the front goes with the bust points.
-    pub(crate) fn apart(m: &Marks, p: Vec3) -> f64 {
+        let m = &self.marks;
         let half = 1.02 * m.tip.x;
         let u = (p.x / half).powi(2);
         let v = ((p.y - m.bust) / (0.055 * m.crown)).powi(2);
-        if u >= 1.0 || v >= 1.0 {
+        if u >= 1.0 || v >= 1.0 || depth <= 0.0 {
             return 0.0;
         }
-        ((1.0 - u) * (1.0 - v)).powi(2)
+        let before = smooth_step(depth / (0.04 * m.crown));
+        self.shape.bust_spread * ((1.0 - u) * (1.0 - v)).powi(2) * before
     }
 
     /// Rise of a place with the end of the shoulder [m]: all of it there, nothing at the neck and
@@ -289,9 +246,7 @@ impl Warp {
         Vec3::new(
             axis.x * self.shape.stance + (p.x - axis.x) * scale * form,
             self.level.at(p.y),
-            (axis.z - self.shape.depth) * self.shape.global
-                + self.forward(self.marks.crotch) * smooth_step(p.y / self.marks.crotch)
-                + (p.z - axis.z) * scale / form,
+            (axis.z - self.shape.depth) * self.shape.global + (p.z - axis.z) * scale / form,
         )
     }
 
