@@ -17,11 +17,10 @@ fn found(person: &Person) -> [f64; HELD_OUT.len()] {
 
 #[test]
 fn breadths_and_depths_nobody_asked_for_are_as_near_as_a_regression() {
-    // All people of even rows with TOILE_ALL set; every 40th row else.
-    let step = if std::env::var("TOILE_ALL").is_ok() {
-        2
-    } else {
-        40
+    // All people of even rows with TOILE_ALL set; every 40th row else, a small sample.
+    let (step, allowed) = match std::env::var("TOILE_ALL").is_ok() {
+        true => (2, 1.0),
+        false => (40, 1.02),
     };
     let Some(path) = shared("body/measurements/ansur2_subjects_garment.csv") else {
         return;
@@ -37,7 +36,7 @@ fn breadths_and_depths_nobody_asked_for_are_as_near_as_a_regression() {
                 1e3 * line,
                 1e3 * body
             );
-            assert!(body <= 1.02 * line, "{figure:?} {name}: {body} {line}");
+            assert!(body <= allowed * line, "{figure:?} {name}: {body} {line}");
         }
     }
 }
