@@ -1,5 +1,6 @@
 //! Measurements that no single body has together.
 
+use std::f64::consts::SQRT_2;
 use toile_measure::{Measurements, Origin};
 
 /// Measurements that contradict one another. The body meets them in the sense of least squares.
@@ -11,45 +12,68 @@ pub struct Conflict {
     pub gap: f64,
     /// What does not fit, and what to change.
     pub why: &'static str,
+    /// Whether what was asked says so by itself: no body has all of it. Else the body found does
+    /// not have it, and another one might.
+    pub proven: bool,
 }
 
-/// A sum of measurements [m] that is at least zero on any body: names with their signs, part of
-/// the stature taken off.
-type Rule = (&'static [(&'static str, f64)], f64, &'static str);
+/// A sum of measurements [m] that is at least a part of the stature on any body: names with their
+/// factors, the part, what is wrong otherwise, and whether this holds by what the measurements
+/// mean and not by what people are like.
+type Rule = (&'static [(&'static str, f64)], f64, &'static str, bool);
 
-/// Rules of one body. Those with equal sums stand in pairs.
+/// Rules of one body. No way over the front is longer than one over a further point; below the
+/// underbust the front is taken to fall no flatter than 45 degrees, a bust on its underside no
+/// flatter than 30.
 const RULES: &[Rule] = &[
     (
         &[("bust", 1.0), ("high_bust", -1.0)],
         0.0,
         "the high bust is larger than the bust, which is the largest girth of the chest: measure \
          both anew",
+        true,
     ),
     (
         &[("bust", 1.0), ("underbust", -1.0)],
         0.0,
         "the girth under the bust is larger than the bust: measure both anew",
+        true,
     ),
     (
         &[("hips", 1.0), ("high_hips", -1.0)],
         0.0,
         "the high hips are larger than the hips, which are the largest girth there: measure both \
          anew",
+        true,
     ),
     (
         &[("high_hips", 1.0), ("waist", -1.0), ("hips", -0.15)],
         -0.12,
         "the high hips are far under the waist: measure both anew",
+        false,
+    ),
+    (
+        &[
+            ("hps_to_waist_front", 1.0),
+            ("bust_line", -1.0),
+            ("waist_to_underbust", -1.0),
+            ("bust_to_underbust", -0.5),
+        ],
+        0.0,
+        "what the straight way leaves under the bust has no room for the way along the skin to the \
+         level under it, even if that falls by no more than 30 degrees: measure them anew",
+        true,
     ),
     (
         &[
             ("bust_line", 1.0),
             ("bust_to_underbust", 1.0),
-            ("waist_to_underbust", 1.0),
+            ("waist_to_underbust", SQRT_2),
             ("hps_to_waist_front", -1.0),
         ],
         0.0,
         "the way over the bust to the waist is shorter than the straight one: measure them anew",
+        true,
     ),
     (
         &[
@@ -62,32 +86,38 @@ const RULES: &[Rule] = &[
         0.36,
         "height less head_l, waist_line, hips_line and crotch_hip_diff leaves legs shorter than \
          0.36 of the height: lessen one of them",
+        false,
     ),
     (
         &[("waist_line", 1.0), ("vert_bust_line", -1.0)],
         0.05,
         "the bust level must lie above the waist by 0.05 of the height or more: lessen \
          vert_bust_line",
+        false,
     ),
     (
         &[("hips", 0.8), ("leg_circ", -1.0)],
         0.0,
         "a thigh cannot have over 0.8 of the hip girth: lessen leg_circ",
+        false,
     ),
     (
         &[("leg_circ", 1.0), ("calf", -1.0)],
         0.0,
         "the calf is larger than the thigh: measure both anew",
+        false,
     ),
     (
         &[("upper_arm", 1.0), ("wrist", -1.0)],
         0.0,
         "the wrist is larger than the upper arm: measure both anew",
+        false,
     ),
     (
         &[("heel", 1.0), ("ankle", -1.0)],
         0.0,
         "the ankle is larger than heel and instep: measure both anew",
+        false,
     ),
 ];
 
@@ -150,19 +180,20 @@ const LOOPS: &[Loop] = &[
         ],
         "the bust's height is not that of the nape less its depth: change one of them",
     ),
-    (
-        &[
-            ("vert_bust_line", 1.0),
-            ("bust_to_underbust", 1.0),
-            ("waist_to_underbust", 1.0),
-            ("waist_line", -1.0),
-        ],
-        "the ways from nape over bust to waist do not add up to the back length: change one",
-    ),
 ];
 
 /// Slack of an equality over stature: the tape's.
 const SLACK: f64 = 5e-4;
+
+/// Whether a way over the bust contradicts the others: then it gives way to them and does not say
+/// where the bust lies.
+pub(crate) fn gives_way(name: &str, conflicts: &[Conflict]) -> bool {
+    let among = |c: &Conflict| c.proven && c.names.contains(&UNDER_BUST);
+    name == UNDER_BUST && conflicts.iter().any(among)
+}
+
+/// What gives way.
+const UNDER_BUST: &str = "bust_to_underbust";
 
 /// Every rule broken by what was asked for.
 pub(crate) fn conflicts(table: &Measurements) -> Vec<Conflict> {
@@ -176,7 +207,7 @@ pub(crate) fn conflicts(table: &Measurements) -> Vec<Conflict> {
     };
     let names = |terms: &[(&'static str, f64)]| terms.iter().map(|term| term.0).collect();
     let mut found = Vec::new();
-    for &(terms, share, why) in RULES {
+    for &(terms, share, why, proven) in RULES {
         if let Some(sum) = sum(terms)
             && sum < share * height - SLACK * height
         {
@@ -184,6 +215,7 @@ pub(crate) fn conflicts(table: &Measurements) -> Vec<Conflict> {
                 names: names(terms),
                 gap: share * height - sum,
                 why,
+                proven,
             });
         }
     }
@@ -195,6 +227,7 @@ pub(crate) fn conflicts(table: &Measurements) -> Vec<Conflict> {
                 names: names(terms),
                 gap: sum.abs(),
                 why,
+                proven: true,
             });
         }
     }

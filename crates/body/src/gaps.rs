@@ -112,6 +112,7 @@ impl Mannequin {
                     gap: row.gap().abs(),
                     why: "the body that meets the others best does not have it: measure it anew, \
                           or those beside it",
+                    proven: false,
                 });
             }
         }

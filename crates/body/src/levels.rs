@@ -1,6 +1,8 @@
 //! Heights of the landmarks, from whatever lengths are asked for.
 
+use crate::conflict::gives_way;
 use crate::marks::{Marks, UNDERBUST};
+use crate::request::Request;
 use nalgebra::{SMatrix, SVector};
 use toile_measure::{Measurements, Origin};
 
@@ -126,7 +128,7 @@ impl System {
 /// Deviations over stature: of an asked upright length, of an asked way over the body, of what
 /// was predicted, of the template's proportions, of a definition.
 const ASKED: f64 = 3e-5;
-const ASKED_OVER: f64 = 1e-3;
+const ASKED_OVER: f64 = 3e-4;
 const PREDICTED: f64 = 0.02;
 const PROPORTION: f64 = 0.008;
 const DEFINED: f64 = 3e-4;
@@ -135,7 +137,8 @@ const NECK_SIDE_DROP: f64 = 0.020;
 
 /// Heights that meet the lengths of a completed table in the sense of least squares: what is
 /// asked for weighs most, then what goes with the definitions, then predictions.
-pub(crate) fn solve(table: &Measurements, marks: &Marks, excess: &Excess) -> Levels {
+pub(crate) fn solve(request: &Request, marks: &Marks, excess: &Excess) -> Levels {
+    let table = &request.table;
     let height = table.get("height").unwrap_or(1.7);
     let mut system = System {
         normal: SMatrix::zeros(),
@@ -171,7 +174,11 @@ pub(crate) fn solve(table: &Measurements, marks: &Marks, excess: &Excess) -> Lev
         let mut terms = vec![(upper, 1.0)];
         terms.extend(lower.map(|lower| (lower, -1.0)));
         let value = table.get(name).unwrap_or_default() - excess.over[k];
-        system.add(&terms, value, ASKED_OVER * height);
+        let deviation = match gives_way(name, &request.conflicts) {
+            true => PREDICTED,
+            false => ASKED_OVER,
+        };
+        system.add(&terms, value, deviation * height);
     }
     proportions(&mut system, table, marks, height, excess);
     let solved = system

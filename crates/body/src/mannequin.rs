@@ -123,7 +123,7 @@ impl Mannequin {
         }
         let request = Request::read(&known, figure)?;
         let warp = Warp::still(&cast.template, &cast.marks);
-        let levels = levels::solve(&request.table, &cast.marks, &Excess::default());
+        let levels = levels::solve(&request, &cast.marks, &Excess::default());
         let mesh = cast.skin.mesh.clone();
         Ok(Self::with(
             (measurements, figure, request),

@@ -4,7 +4,7 @@ use crate::rings::TemplateSkin;
 use crate::tape::{OnEdge, Skinned, extent, girth, ridge};
 use crate::template::Template;
 use crate::{BodyError, Part};
-use toile_geometry::{TriangleMesh, Vec3, horizontal_section};
+use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
 
 /// Three points of a plane of a template [m].
 pub(crate) type Plane = [Vec3; 3];
@@ -17,6 +17,13 @@ pub(crate) struct Marks {
     pub(crate) armpit: f64,
     pub(crate) crotch: f64,
     pub(crate) bust: f64,
+    /// The point of the bust, left.
+    pub(crate) bust_point: Vec3,
+    /// Rise of the body's middle over the crotch, before and behind it, at even depths from
+    /// [`Marks::fork_at`] on [m].
+    pub(crate) fork: [f64; FORK],
+    /// Depth of the first of them [m].
+    pub(crate) fork_at: f64,
     /// Where the neck meets the shoulder, left.
     pub(crate) neck_side: Vec3,
     /// The same on the skin.
@@ -47,6 +54,13 @@ pub(crate) struct Marks {
     pub(crate) forearm: f64,
     pub(crate) wrist: f64,
 }
+
+/// Places of the crotch's line that are kept.
+pub(crate) const FORK: usize = 21;
+
+/// Distance of these places, and the largest rise that is kept, over stature.
+pub(crate) const FORK_STEP: f64 = 0.01;
+const FORK_RISE: f64 = 0.045;
 
 /// Sections of the trunk that are kept.
 pub(crate) const SECTIONS: usize = 9;
@@ -93,12 +107,16 @@ impl Marks {
         let neck = neck_plane(template);
         let brow = extreme([h - 0.075 * h, h - 0.03 * h], |y| level(Part::Head, y));
         let depth = depth(skin, [crotch + 0.05 * h, bust]);
+        let (fork_at, fork) = fork(skin, crotch, h);
         let crown = skin.mesh.bounds().map_or(h, |[_, high]| high.y);
         Ok(Self {
             crown,
             armpit: skin.mesh.positions[skin.armpit as usize].y,
             crotch,
             bust,
+            bust_point: bust_point(skin, bust, tip.x),
+            fork,
+            fork_at,
             neck_side: neck_side_on.at(&skin.mesh.positions),
             neck_side_on,
             tip,
@@ -136,15 +154,59 @@ fn depth(skin: &TemplateSkin, [low, high]: [f64; 2]) -> f64 {
         .sum()
 }
 
+/// How far out a point of the bust lies, over the end of the shoulder's distance.
+const BUST_POINT: [f64; 2] = [0.45, 0.6];
+
+/// The point of the bust at a height on the left [m]: the foremost one, but on a flat chest no
+/// nearer to the middle than the points of others.
+fn bust_point(skin: &TemplateSkin, y: f64, shoulder: f64) -> Vec3 {
+    let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
+    let section = horizontal_section(&skin.mesh, trunk, y);
+    let foremost = section.iter().max_by(|a, b| a.y.total_cmp(&b.y));
+    let [least, most] = BUST_POINT.map(|share| share * shoulder);
+    let x = foremost.map_or(least, |p| p.x.abs()).clamp(least, most);
+    let near = section
+        .iter()
+        .filter(|p| p.y > 0.0)
+        .min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()));
+    Vec3::new(x, y, near.map_or(0.0, |p| p.y))
+}
+
+/// How much higher than the crotch the body's middle is before and behind it [m], and the depth
+/// of the first place [m].
+fn fork(skin: &TemplateSkin, crotch: f64, height: f64) -> (f64, [f64; FORK]) {
+    let most = FORK_RISE * height;
+    let is_middle = |v: u32| skin.mirror[v as usize] == v;
+    let mut line: Vec<[Vec3; 2]> = Vec::new();
+    for t in &skin.mesh.triangles {
+        for k in 0..3 {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            if is_middle(a) && is_middle(b) && a < b {
+                line.push([a, b].map(|v| skin.mesh.positions[v as usize]));
+            }
+        }
+    }
+    let lowest = line.iter().flatten().min_by(|a, b| a.y.total_cmp(&b.y));
+    let step = FORK_STEP * height;
+    let first = lowest.map_or(0.0, |p| p.z) - 0.5 * (FORK - 1) as f64 * step;
+    let rise = |z: f64| {
+        line.iter()
+            .filter(|[a, b]| (a.z - z) * (b.z - z) <= 0.0 && a.z != b.z)
+            .map(|[a, b]| a.y + (b.y - a.y) * (z - a.z) / (b.z - a.z) - crotch)
+            .fold(most, f64::min)
+            .max(0.0)
+    };
+    let rises = std::array::from_fn(|k| rise(first + k as f64 * step));
+    (first, rises)
+}
+
 /// Extents of the trunk at even heights about a depth [m].
 fn sections(skin: &TemplateSkin, [low, high]: [f64; 2], depth: f64) -> [[f64; 4]; SECTIONS] {
     std::array::from_fn(|k| {
         let y = low + (high - low) * k as f64 / (SECTIONS - 1) as f64;
         let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
         let points = horizontal_section(&skin.mesh, trunk, y);
-        let largest = |value: &dyn Fn(&toile_geometry::Vec2) -> f64| {
-            points.iter().map(value).fold(0.02, f64::max)
-        };
+        let largest = |value: &dyn Fn(&Vec2) -> f64| points.iter().map(value).fold(0.02, f64::max);
         let half = largest(&|p| p.x.abs());
         let [front, back] = [largest(&|p| p.y - depth), largest(&|p| depth - p.y)];
         [y, half, front, back]
@@ -186,7 +248,7 @@ fn crotch(skin: &TemplateSkin) -> f64 {
 }
 
 /// Middle between the foremost and the hindmost point of a section [m].
-pub(crate) fn middle_depth(section: &[toile_geometry::Vec2]) -> f64 {
+pub(crate) fn middle_depth(section: &[Vec2]) -> f64 {
     let low = section.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
     let high = section
         .iter()

@@ -34,6 +34,12 @@ pub(crate) struct Scales {
     pub(crate) spread: f64,
     /// Rise of the armpits over what the levels give them [m].
     pub(crate) armpit: f64,
+    /// How flat the crotch lies from front to back.
+    pub(crate) flat: f64,
+    /// Depth of the sides of bust, high bust, waist and hips [m].
+    pub(crate) sides: [f64; 4],
+    /// Depth of the middle of the crotch over the lowest place's [m].
+    pub(crate) fork: f64,
 }
 
 impl Scales {
@@ -52,6 +58,9 @@ impl Scales {
             lean: 0.0,
             spread: 0.0,
             armpit: 0.0,
+            flat: 0.0,
+            sides: [0.0; 4],
+            fork: 0.0,
         }
     }
 
@@ -140,6 +149,9 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
         middle_to: (0..6).map(row_to).collect(),
         shoulder_rise,
         bust_spread: s.spread,
+        flat: s.flat,
+        sides: s.sides,
+        fork: s.fork,
         armpit_rise: s.armpit,
     })
 }

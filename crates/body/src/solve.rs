@@ -10,7 +10,7 @@ use crate::shape::{Scales, shape};
 use crate::taken::Taken;
 use crate::tape::{Skinned, extent, half_length};
 use crate::template::Template;
-use crate::warp::{Follow, Shape, Warp};
+use crate::warp::{Follow, Shape, Warp, sided};
 use toile_geometry::{TriangleMesh, Vec3, closed_length};
 
 /// A template with its skin and marks.
@@ -46,7 +46,7 @@ impl Grown<'_> {
         let mut excess = Excess::default();
         let crotch = self.crotch_vertices();
         for round in 0..ROUNDS {
-            let levels = levels::solve(&self.request.table, &self.marks, &excess);
+            let levels = levels::solve(&self.request, &self.marks, &excess);
             let shape = shape(self, &scales, &levels)?;
             let warp = Warp::new(self.template, &self.marks, shape);
             let place = |v: usize| self.place(&warp, v);
@@ -61,13 +61,13 @@ impl Grown<'_> {
                 if round < SHAPING {
                     self.form(&mut scales, &taken);
                 }
-                moved = moved.max(self.posture(&mut scales, &taken));
+                moved = moved.max(self.posture(&mut scales, &taken, round));
             }
             if moved < STILL * self.request.get("height") {
                 break;
             }
         }
-        let levels = levels::solve(&self.request.table, &self.marks, &excess);
+        let levels = levels::solve(&self.request, &self.marks, &excess);
         let shape = shape(self, &scales, &levels)?;
         let mesh = self.skin_of(&Warp::new(self.template, &self.marks, shape.clone()));
         Ok(Solved {
@@ -220,13 +220,13 @@ impl Grown<'_> {
             let asked = (q.get(name) / (own + other)).clamp(0.3, 0.7);
             let split = &mut scales.split[girth as usize];
             *split += side * (asked - own / (own + other));
-            *split = split.clamp(-0.3, 0.3);
+            *split = split.clamp(-SPLIT, SPLIT);
         }
     }
 
     /// Corrects where the neck stands between front and back lengths, and how far the bust points
     /// are apart. Returns the largest miss that can still be corrected [m].
-    fn posture(&self, scales: &mut Scales, taken: &Taken) -> f64 {
+    fn posture(&self, scales: &mut Scales, taken: &Taken, round: usize) -> f64 {
         let q = &self.request;
         let height = q.get("height");
         let mut miss: f64 = 0.0;
@@ -234,6 +234,32 @@ impl Grown<'_> {
             q.is_asked(name)
                 .then(|| Some(q.get(name) - taken.value(name)?))
         };
+        for (girth, name, side) in PARTS {
+            if let (true, Some(k)) = (q.is_asked(name), sided(girth)) {
+                scales.sides[k] = taken.sides_of(girth, side, q.get(name), SIDES * height);
+            }
+        }
+        if let Some(Some(longer)) = gap("crotch_length") {
+            let before = scales.flat;
+            let more = longer / (LEVELLED * height);
+            scales.flat = (before + 0.6 * more).clamp(FLAT[0], FLAT[1]);
+            miss = miss.max((scales.flat - before).abs() * LEVELLED * height);
+            // Where a level one is not enough hips nobody gave a depth are deeper.
+            let form = &mut scales.aspect[Girth::Hips as usize];
+            let deeper = scales.flat == FLAT[1];
+            if deeper && round >= SHAPING && !q.is_asked("hip_depth") {
+                let by = (-1.4 * longer / q.get("hip_depth")).exp();
+                *form = (*form * by).clamp(ASPECT[0], ASPECT[1]);
+                miss = miss.max(longer.abs());
+            }
+        }
+        if q.is_asked("crotch_length_front") {
+            let now = taken.warp.fork_depth();
+            let range = [-1.0, 1.0].map(|end| now - scales.fork + end * SIDES * height);
+            if let Some(at) = taken.fork_of(q.get("crotch_length_front"), range) {
+                scales.fork += at - now;
+            }
+        }
         let ways = ["hps_to_waist_front", "hps_to_waist_back"].map(|name| gap(name).flatten());
         if let [Some(front), Some(back)] = ways {
             let before = scales.lean;
@@ -309,10 +335,22 @@ const CORNERS: [f64; 2] = [-0.3, 0.3];
 const FOLDS: [f64; 2] = [-0.2, 0.2];
 
 /// How far a neck may stand from the template's place, over stature.
-const LEAN: f64 = 0.02;
+const LEAN: f64 = 0.035;
 
 /// How far an armpit may lie from the template's place, over stature.
 const ARMPIT: f64 = 0.035;
+
+/// How far the front may be scaled apart from the back; the rest of a part of a girth is where its
+/// sides are taken to lie.
+const SPLIT: f64 = 0.05;
+
+/// How far from the middle the sides of a girth may lie, and the middle of the crotch from its
+/// lowest place, over stature.
+const SIDES: f64 = 0.03;
+
+/// How flat a crotch may lie, and how much longer a level one makes the way round it, over stature.
+const FLAT: [f64; 2] = [-0.3, 0.97];
+const LEVELLED: f64 = 0.05;
 
 /// Half the least gap between the legs, over stature: cloth must pass.
 const LEG_GAP: f64 = 0.0018;

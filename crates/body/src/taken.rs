@@ -5,8 +5,8 @@ use crate::bands::Near;
 use crate::girths::Girth;
 use crate::levels::{Level, Levels, upright};
 use crate::marks::Marks;
-use crate::tape::{Skinned, breadth_at, extent, fall, half_length, outermost, stretched};
-use crate::warp::Warp;
+use crate::tape::{Skinned, along, breadth_at, extent, fall, half_length, outermost, stretched};
+use crate::warp::{Follow, Warp};
 use std::cell::RefCell;
 use std::f64::consts::FRAC_PI_2;
 use std::rc::Rc;
@@ -24,6 +24,32 @@ pub(crate) struct Taken<'a> {
     pub(crate) hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
     /// Vertex in the left armpit.
     pub(crate) armpit: u32,
+}
+
+/// The tight way in the middle from the waist in front round the crotch to the waist behind.
+struct Around {
+    /// Its length [m].
+    length: f64,
+    /// Hull of the section under the waist: height, depth [m].
+    hull: Vec<Vec2>,
+    /// Depth of its front end [m].
+    front: f64,
+}
+
+impl Around {
+    /// The part before a depth [m].
+    fn before(&self, depth: f64) -> f64 {
+        part_of(&self.hull, 1.0, depth) - (self.front - depth)
+    }
+}
+
+/// Halvings of a range: to a millionth of it.
+const HALVINGS: usize = 30;
+
+/// The part of a hull on one side of a place of its second axis, without the chord [m].
+fn part_of(hull: &[Vec2], side: f64, place: f64) -> f64 {
+    let moved: Vec<Vec2> = hull.iter().map(|p| Vec2::new(p.x, p.y - place)).collect();
+    half_length(&moved, side)
 }
 
 const TORSO: &[Part] = &[Part::Trunk, Part::Head];
@@ -92,15 +118,19 @@ impl<'a> Taken<'a> {
         closed_length(&self.hull(girth))
     }
 
-    /// The foremost point of the bust on the left [m].
+    /// The point of the bust on the left [m].
     pub(crate) fn bust_point(&self) -> Option<Vec3> {
         let y = self.levels.at(Level::Bust);
         let level = [Vec3::y() * y, Vec3::y()];
-        self.skinned
+        let x = self.warp.apply(self.marks.bust_point, Follow::default()).x;
+        let section = self
+            .skinned
             .section(&[Part::Trunk], level, self.around(y))
             .into_iter()
-            .flatten()
-            .max_by(|a, b| a.z.total_cmp(&b.z).then(a.x.total_cmp(&b.x)))
+            .map(|s| s.map(|p| Vec2::new(p.x, p.z)))
+            .collect::<Vec<_>>();
+        let on = outermost(&section, x)?;
+        Some(Vec3::new(on.x, y, on.y))
     }
 
     /// Where triangles that cross a height [m] lie.
@@ -145,6 +175,14 @@ impl<'a> Taken<'a> {
         fall(&section, bust, self.levels.at(to), Vec3::z())
     }
 
+    /// The way along the skin from the bust point straight down to the level under the bust [m].
+    fn under_bust(&self) -> Option<f64> {
+        let bust = self.bust_point()?;
+        let floor = self.levels.at(Level::Underbust);
+        let section = self.upright(&[Part::Trunk], bust, Vec3::y());
+        Some(along(&section, [floor, bust.y]))
+    }
+
     fn outside_leg(&self) -> Option<f64> {
         let waist = self.levels.at(Level::Waist);
         let hips = self.levels.at(Level::Hips);
@@ -178,8 +216,8 @@ impl<'a> Taken<'a> {
         stretched(&flat, end(-tip.x), end(tip.x))
     }
 
-    /// Crotch length, and the part before its middle [m].
-    fn crotch_lengths(&self) -> Option<[f64; 2]> {
+    /// The way round the crotch from waist to waist.
+    fn crotch_lengths(&self) -> Option<Around> {
         let waist = self.levels.at(Level::Waist);
         let parts = &[Part::Trunk, Part::LeftLeg];
         // Just beside the middle, where the plane meets whole triangles.
@@ -200,15 +238,48 @@ impl<'a> Taken<'a> {
             .collect();
         points.push(Vec2::new(front.y, waist));
         points.push(Vec2::new(-back.y, waist));
-        let low = points
-            .iter()
-            .min_by(|a, b| a.y.total_cmp(&b.y))
-            .map_or(0.0, |p| p.x);
         let hull = convex_hull(&points);
-        let around = closed_length(&hull) - (front.y + back.y);
-        let turned: Vec<Vec2> = hull.iter().map(|p| Vec2::new(p.y, p.x - low)).collect();
-        let before = half_length(&turned, 1.0) - (front.y - low);
-        Some([around, before])
+        // The way without the edge at the waist, along the depth before which it lies.
+        let turned: Vec<Vec2> = hull.iter().map(|p| Vec2::new(p.y, p.x)).collect();
+        Some(Around {
+            length: closed_length(&hull) - (front.y + back.y),
+            hull: turned,
+            front: front.y,
+        })
+    }
+
+    /// Depth of the middle of the crotch at which the part before it has a length [m].
+    pub(crate) fn fork_of(&self, before: f64, [low, high]: [f64; 2]) -> Option<f64> {
+        let around = self.crotch_lengths()?;
+        let (mut low, mut high) = (low, high);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            match around.before(middle) > before {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        Some(0.5 * (low + high))
+    }
+
+    /// The part of a girth before its sides or behind them [m].
+    fn part(&self, girth: Girth, side: f64) -> f64 {
+        part_of(&self.hull(girth), side, self.warp.side_of(girth))
+    }
+
+    /// Depth of the sides of a girth at which its part on one side has a length [m].
+    pub(crate) fn sides_of(&self, girth: Girth, side: f64, length: f64, limit: f64) -> f64 {
+        let hull = self.hull(girth);
+        let (mut low, mut high) = (-limit, limit);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let longer = part_of(&hull, side, middle) > length;
+            match longer == (side > 0.0) {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        0.5 * (low + high)
     }
 
     /// A measurement by its name in the catalogue [m] or [rad]; none if the tape does not know it.
@@ -220,7 +291,7 @@ impl<'a> Taken<'a> {
             let lower = lower.map_or(0.0, |level| self.height(level));
             return Some(self.height(upper) - lower);
         }
-        let part = |girth: Girth, side: f64| half_length(&self.hull(girth), side);
+        let part = |girth: Girth, side: f64| self.part(girth, side);
         let wide = |girth: Girth, axis: usize| extent(&self.hull(girth))[axis];
         let (tip, neck) = (self.tip(), self.neck_side());
         let [arm, along] = self.warp.arm_plane(0.0);
@@ -252,7 +323,7 @@ impl<'a> Taken<'a> {
             "bust_points" => 2.0 * self.bust_point()?.x,
             "bum_points" => 2.0 * self.hindmost()?.x,
             "bust_line" => self.bust_line()?,
-            "bust_to_underbust" => self.below_bust(Level::Underbust)?,
+            "bust_to_underbust" => self.under_bust()?,
             "waist_over_bust_line" => self.bust_line()? + self.below_bust(Level::Waist)?,
             "hps_to_waist_front" => {
                 let section = self.upright(TORSO, neck, Vec3::y());
@@ -268,8 +339,8 @@ impl<'a> Taken<'a> {
                 let fall = self.levels.at(Level::Waist) - self.levels.at(Level::Hips);
                 FRAC_PI_2 - fall.atan2(wider)
             }
-            "crotch_length" => self.crotch_lengths()?[0],
-            "crotch_length_front" => self.crotch_lengths()?[1],
+            "crotch_length" => self.crotch_lengths()?.length,
+            "crotch_length_front" => self.crotch_lengths()?.before(self.warp.fork_depth()),
             _ => return None,
         })
     }

@@ -181,6 +181,28 @@ pub(crate) fn fall(segments: &[[Vec3; 2]], from: Vec3, level: f64, outward: Vec3
     Some(stretched(&flat, end, Vec2::new(from.y, from.dot(&outward))))
 }
 
+/// Length of the front of an upright section between two heights, along the skin [m].
+pub(crate) fn along(segments: &[[Vec3; 2]], [low, high]: [f64; 2]) -> f64 {
+    let front = |s: &&[Vec3; 2]| s[0].z + s[1].z > 0.0;
+    let length = |[a, b]: &[Vec3; 2]| {
+        let [bottom, top] = [a.y.min(b.y), a.y.max(b.y)];
+        let within = (top.min(high) - bottom.max(low)).max(0.0);
+        // A level piece lies within or not.
+        let level = if bottom >= low && top <= high {
+            1.0
+        } else {
+            0.0
+        };
+        let share = if top > bottom {
+            within / (top - bottom)
+        } else {
+            level
+        };
+        (b - a).norm() * share
+    };
+    segments.iter().filter(front).map(length).sum()
+}
+
 /// The outermost point (place along, outward) of a section at a place along.
 pub(crate) fn outermost(segments: &[[Vec2; 2]], along: f64) -> Option<Vec2> {
     segments
@@ -271,6 +293,16 @@ mod tests {
         assert!((over - 2f64.sqrt()).abs() < 1e-12, "{over}");
         assert!(fall(&bulge, at(1.0, 0.1), -1.0, Vec3::z()).is_none());
         assert!(fall(&bulge, at(1.0, 0.1), 0.0, -Vec3::z()).unwrap() < 1.0 + 1e-12);
+    }
+
+    #[test]
+    fn a_way_along_the_skin_goes_into_hollows() {
+        let at = |y: f64, z: f64| Vec3::new(0.0, y, z);
+        let front = [[at(1.0, 0.4), at(0.5, 0.1)], [at(0.5, 0.1), at(-0.5, 0.1)]];
+        let back = [[at(1.0, -0.4), at(-1.0, -0.4)]];
+        let whole: Vec<[Vec3; 2]> = front.into_iter().chain(back).collect();
+        let way = along(&whole, [0.0, 1.0]);
+        assert!((way - 0.5 - 0.34f64.sqrt()).abs() < 1e-12, "{way}");
     }
 
     #[test]

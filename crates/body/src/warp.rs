@@ -6,7 +6,8 @@
 
 use crate::bands::Near;
 use crate::curve::{Monotone, smooth_step};
-use crate::marks::Marks;
+use crate::girths::Girth;
+use crate::marks::{FORK, FORK_STEP, Marks};
 use crate::rings::at_length;
 use crate::template::Template;
 use nalgebra::Matrix3;
@@ -55,16 +56,38 @@ pub(crate) struct Shape {
     pub(crate) armpit_rise: f64,
     /// How far the bust points are apart over what the sections give them, less one.
     pub(crate) bust_spread: f64,
+    /// How flat the crotch lies from front to back: none is as on the template, one is level.
+    pub(crate) flat: f64,
+    /// Depth of the sides before which a part of a girth lies: of bust, high bust, waist, hips [m].
+    pub(crate) sides: [f64; 4],
+    /// Depth of the middle of the crotch over the lowest place's [m].
+    pub(crate) fork: f64,
 }
+
+/// How far sideways, up and down a crotch that lies flat is felt, over stature.
+const FLAT: [f64; 3] = [0.06, 0.15, 0.10];
 
 /// Way down the thigh on which the form of the leg's top goes out, over stature.
 const LEG_TOP: f64 = 0.09;
+
+/// Place of a girth among the sides, if it has any.
+pub(crate) fn sided(girth: Girth) -> Option<usize> {
+    [Girth::Bust, Girth::HighBust, Girth::Waist, Girth::Hips]
+        .iter()
+        .position(|&own| own == girth)
+}
 
 /// How far a point follows a limb instead of the trunk.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Follow {
     pub(crate) arm: f64,
     pub(crate) leg: f64,
+}
+
+/// Rises of the body's middle over the crotch by their depth [m].
+fn fork(marks: &Marks) -> Vec<[f64; 2]> {
+    let at = |k: usize| marks.fork_at + k as f64 * FORK_STEP * marks.crown;
+    (0..FORK).map(|k| [at(k), marks.fork[k]]).collect()
 }
 
 /// The map, for points of the left half, x >= 0.
@@ -82,6 +105,7 @@ pub(crate) struct Warp {
     arm_length: Monotone,
     middle: Monotone,
     middle_to: Monotone,
+    fork: Monotone,
     marks: Marks,
     shape: Shape,
     leg_axis: [Vec3; 3],
@@ -112,6 +136,7 @@ impl Warp {
             arm_length: Monotone::new(shape.arm_length.clone()),
             middle: Monotone::new(shape.middle.clone()),
             middle_to: Monotone::new(shape.middle_to.clone()),
+            fork: Monotone::new(fork(marks)),
             marks: *marks,
             leg_axis: [j.hip, j.knee, j.ankle].map(Vec3::from),
             shoulder,
@@ -150,6 +175,9 @@ impl Warp {
             shoulder_rise: 0.0,
             armpit_rise: 0.0,
             bust_spread: 0.0,
+            flat: 0.0,
+            sides: [0.0; 4],
+            fork: 0.0,
         };
         Self {
             still: Some([shoulder, elbow, wrist]),
@@ -163,16 +191,19 @@ impl Warp {
     }
 
     fn trunk(&self, p: Vec3) -> Vec3 {
-        let fuller = self.fuller(p);
-        let depth = (p.z - self.middle.at(p.y)) * fuller;
+        let [shoulder, armpit] = self.rise(p);
+        // What rises with the armpit has the scale of where it comes to.
+        let y = p.y + armpit / self.shape.global;
+        let fuller = self.fuller(Vec3::new(p.x, y, p.z));
+        let depth = (p.z - self.middle.at(y)) * fuller;
         // From the back's scale to the front's over the middle of the body.
         let before = smooth_step(0.5 + depth / (0.09 * self.marks.crown));
-        let [front, back] = [self.front.at(p.y), self.back.at(p.y)];
+        let [front, back] = [self.front.at(y), self.back.at(y)];
         let frontal = back + (front - back) * before;
         Vec3::new(
-            p.x * fuller * self.lateral.at(p.y) * (1.0 + self.spread(p, depth)),
-            self.level.at(p.y) + self.rise(p),
-            self.middle_to.at(p.y) + depth * frontal,
+            p.x * fuller * self.lateral.at(y) * (1.0 + self.spread(p, depth)),
+            self.level.at(p.y - self.sunk(p)) + shoulder + armpit,
+            self.middle_to.at(y) + depth * frontal,
         )
     }
 
@@ -209,9 +240,9 @@ impl Warp {
         self.shape.bust_spread * ((1.0 - u) * (1.0 - v)).powi(2) * before
     }
 
-    /// Rise of a place with the end of the shoulder [m]: all of it there, nothing at the neck and
-    /// at the bust.
-    fn rise(&self, p: Vec3) -> f64 {
+    /// Rise of a place with the end of the shoulder and with the armpit [m]: all of it there, nothing
+    /// at the neck and at the bust.
+    fn rise(&self, p: Vec3) -> [f64; 2] {
         let m = &self.marks;
         let inner = 0.92 * m.neck_side.x;
         // Almost straight from the neck, level at the end.
@@ -221,7 +252,30 @@ impl Warp {
         let to_armpit = smooth_step(1.0 - (m.armpit - p.y) / (0.06 * m.crown));
         let from_armpit = smooth_step(1.0 - (p.y - m.armpit) / (m.tip.y - m.armpit));
         let armpit = self.shape.armpit_rise * to_armpit.min(from_armpit);
-        (self.shape.shoulder_rise * up + armpit) * out
+        [self.shape.shoulder_rise * up * out, armpit * out]
+    }
+
+    /// How much lower on the template a place comes from where the crotch lies flatter [m]: the
+    /// body's middle sinks by a share of its rise over the crotch, what is beside it less.
+    fn sunk(&self, p: Vec3) -> f64 {
+        let m = &self.marks;
+        let [side, up, down] = FLAT.map(|reach| reach * m.crown);
+        let high = p.y - m.crotch;
+        if self.shape.flat == 0.0 || p.x >= side || high >= up || high <= -down {
+            return 0.0;
+        }
+        let beside = smooth_step(1.0 - p.x / side);
+        // What sinks deepest goes on from there.
+        let top = 0.3 * up;
+        let far = match high > 0.0 {
+            true => smooth_step((up - high) / (up - top)),
+            false => smooth_step((down + high) / down),
+        };
+        let ends = [
+            m.fork_at,
+            m.fork_at + (FORK - 1) as f64 * FORK_STEP * m.crown,
+        ];
+        self.shape.flat * self.fork.at(p.z.clamp(ends[0], ends[1])) * beside * far
     }
 
     /// The axis of the leg at a height.
@@ -245,7 +299,7 @@ impl Warp {
         let form = 1.0 + (self.shape.leg_form - 1.0) * top;
         Vec3::new(
             axis.x * self.shape.stance + (p.x - axis.x) * scale * form,
-            self.level.at(p.y),
+            self.level.at(p.y - self.sunk(p)),
             (axis.z - self.shape.depth) * self.shape.global + (p.z - axis.z) * scale / form,
         )
     }
@@ -275,6 +329,19 @@ impl Warp {
         mapped
     }
 
+    /// Depth of the sides of a girth, before which its front part lies [m].
+    pub(crate) fn side_of(&self, girth: Girth) -> f64 {
+        sided(girth).map_or(0.0, |k| self.shape.sides[k])
+    }
+
+    /// Depth of the middle of the crotch on the body [m].
+    pub(crate) fn fork_depth(&self) -> f64 {
+        let m = &self.marks;
+        let half = 0.5 * (FORK - 1) as f64 * FORK_STEP * m.crown;
+        let lowest = Vec3::new(0.0, m.crotch, m.fork_at + half);
+        self.apply(lowest, Follow::default()).z + self.shape.fork
+    }
+
     /// Ratio of statures, body to template [1].
     pub(crate) fn global(&self) -> f64 {
         self.shape.global
@@ -296,8 +363,12 @@ impl Warp {
         let moved = [self.shape.shoulder_rise, self.shape.armpit_rise]
             .map(|rise| 1.6 * rise / self.shape.global);
         let up: f64 = moved.iter().map(|r| r.max(0.0)).sum();
-        let down: f64 = moved.iter().map(|r| (-r).max(0.0)).sum();
+        let mut down: f64 = moved.iter().map(|r| (-r).max(0.0)).sum();
         let at = self.template_level(height);
+        if at < self.marks.crotch + FLAT[1] * self.marks.crown {
+            let most = self.marks.fork.iter().fold(0.0, |a: f64, &b| a.max(b));
+            down += self.shape.flat.max(0.0) * most;
+        }
         Near::Level([at - reach - up, at + reach + down])
     }
 

@@ -145,7 +145,7 @@ pub const FURTHER: &[Definition] = &[
     length(
         "bust_to_underbust",
         "Bust to under-bust",
-        "Vertical distance from the bust points down to the level under the bust.",
+        "Distance along the body from the bust point straight down to the level under the bust.",
         &[],
     ),
     length(

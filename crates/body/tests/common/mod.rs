@@ -1,6 +1,7 @@
 //! What several tests need.
 #![allow(dead_code, clippy::print_stdout)]
 
+pub mod freesewing;
 pub mod survey;
 
 use std::path::{Path, PathBuf};
