@@ -3,6 +3,10 @@
 //! `cargo bench -p toile-body --bench speed`
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use common::freesewing::freesewing;
 use std::hint::black_box;
 use std::time::Instant;
 use toile_body::{EllipsoidTree, Figure, Mannequin, Motion, template_skin};
@@ -61,6 +65,13 @@ fn measure() {
         }
         black_box(Mannequin::new(&table, Figure::Woman).unwrap());
     });
+    let sets = freesewing();
+    if !sets.is_empty() {
+        timed("size solve, the sets of FreeSewing", 2 * sets.len(), |k| {
+            let (_, figure, table) = &sets[k % sets.len()];
+            black_box(Mannequin::new(table, *figure).unwrap());
+        });
+    }
     let body = Mannequin::new(&sized(0), Figure::Woman).unwrap();
     let walk = Motion::walk(body.skeleton());
     timed("skinning made", 1, |_| {

@@ -10,8 +10,8 @@ pub(crate) enum Near {
     Level([f64; 2]),
     /// Distances from the shoulder joint along the arm [m].
     Arm([f64; 2]),
-    /// Distances from the middle [m].
-    Side([f64; 2]),
+    /// Distances from the middle, and heights above the floor [m].
+    Side([f64; 2], [f64; 2]),
 }
 
 impl Near {
@@ -20,11 +20,11 @@ impl Near {
         Self::Level([height - reach, height + reach])
     }
 
-    /// Round places of a body at some distance from the middle, `global` times the template's
-    /// size: no section is scaled by less than 0.4 or more than 2.5 beyond that.
-    pub(crate) fn side(places: [f64; 2], global: f64) -> Self {
+    /// Round places of a body at some distance from the middle, between a least and a largest
+    /// sideways scale, and between heights of the template.
+    pub(crate) fn side(places: [f64; 2], [least, most]: [f64; 2], heights: [f64; 2]) -> Self {
         let [low, high] = [places[0].min(places[1]), places[0].max(places[1])];
-        Self::Side([0.4 * low / global - 0.025, 2.5 * high / global + 0.025])
+        Self::Side([low / most - 0.025, high / least + 0.025], heights)
     }
 }
 
@@ -33,6 +33,8 @@ pub(crate) struct Bands {
     level: Vec<(f64, u32)>,
     arm: Vec<(f64, u32)>,
     side: Vec<(f64, u32)>,
+    /// Heights of the first corners of triangles, in the order of `side`.
+    side_level: Vec<f64>,
 }
 
 impl Bands {
@@ -47,9 +49,10 @@ impl Bands {
         let level = (0..half).map(|t| (first(t).y, t as u32)).collect();
         let on_arm = |t: &usize| matches!(parts[*t], Part::LeftArm | Part::Trunk);
         let place = |t: usize| ((first(t) - shoulder).dot(&along), t as u32);
-        let side = (0..half).map(|t| (first(t).x, t as u32)).collect();
+        let side = sorted((0..half).map(|t| (first(t).x, t as u32)).collect());
         Self {
-            side: sorted(side),
+            side_level: side.iter().map(|row| first(row.1 as usize).y).collect(),
+            side,
             level: sorted(level),
             arm: sorted((0..half).filter(on_arm).map(place).collect()),
         }
@@ -57,13 +60,16 @@ impl Bands {
 
     /// The triangles that begin near a place.
     pub(crate) fn of(&self, near: Near) -> impl Iterator<Item = usize> + '_ {
-        let (rows, [from, to]) = match near {
-            Near::Level(range) => (&self.level, range),
-            Near::Arm(range) => (&self.arm, range),
-            Near::Side(range) => (&self.side, range),
+        let (rows, [from, to], heights) = match near {
+            Near::Level(range) => (&self.level, range, None),
+            Near::Arm(range) => (&self.arm, range, None),
+            Near::Side(range, heights) => (&self.side, range, Some(heights)),
         };
         let low = rows.partition_point(|row| row.0 < from);
         let high = rows.partition_point(|row| row.0 <= to).max(low);
-        rows[low..high].iter().map(|row| row.1 as usize)
+        let within = move |k: &usize| {
+            heights.is_none_or(|[least, most]| (least..=most).contains(&self.side_level[*k]))
+        };
+        (low..high).filter(within).map(|k| rows[k].1 as usize)
     }
 }

@@ -46,6 +46,10 @@ pub(crate) enum Site {
 /// Depth below the crotch at which the thigh is measured, over stature.
 pub(crate) const THIGH_DROP: f64 = 0.012;
 
+/// How far from its middle a girth of neck or head may lie, and how far up and down its triangles
+/// are looked for besides [m].
+const HEAD_REACH: [f64; 2] = [0.13, 0.05];
+
 impl Girth {
     pub(crate) const COUNT: usize = 18;
     pub(crate) const ALL: [Girth; Self::COUNT] = {
@@ -138,6 +142,12 @@ impl Girth {
             Site::Leg(y) if self == Girth::Ankle => Near::level(y, 0.05),
             Site::Leg(y) => Near::level(y, 0.03),
             Site::Arm(distance) => Near::Arm([distance - 0.05, distance + 0.05]),
+            Site::Plane(Part::Head, [a, b, c]) => {
+                // No farther from its middle than any neck or head is wide.
+                let normal = (b - a).cross(&(c - a));
+                let slope = normal.z.hypot(normal.x) / normal.y.abs().max(1e-9);
+                Near::level(a.y, HEAD_REACH[0] * slope + HEAD_REACH[1])
+            }
             Site::Plane(_, points) => {
                 let heights = points.map(|p| p.y);
                 let low = heights.iter().copied().fold(f64::INFINITY, f64::min);

@@ -3,6 +3,7 @@
 use crate::levels::{Level, Levels};
 use crate::marks::middle_depth;
 use crate::solve::Grown;
+use crate::tape::outermost;
 use crate::warp::{Follow, Warp};
 use crate::{Joint, Mannequin, Part};
 use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
@@ -91,11 +92,10 @@ impl Landmarks {
         let tip = grown.marks.tip_on.at(&mesh.positions);
         let neck = grown.marks.neck_side_on.at(&mesh.positions);
         let bust_level = level(Level::Bust);
-        let bust = trunk_section(bust_level)
-            .into_iter()
-            .filter(|p| p.x >= 0.0)
-            .max_by(|a, b| a.y.total_cmp(&b.y))
-            .map_or(tip, |p| Vec3::new(p.x, bust_level, p.y));
+        let ends = trunk_section(bust_level);
+        let section: Vec<[Vec2; 2]> = ends.chunks_exact(2).map(|s| [s[0], s[1]]).collect();
+        let point = warp.apply(grown.marks.bust_point, Follow::default());
+        let bust = outermost(&section, point.x).map_or(tip, |on| Vec3::new(on.x, bust_level, on.y));
         let middle = |v: &usize| grown.skin.mirror[*v] as usize == *v;
         let lowest = (0..mesh.positions.len())
             .filter(middle)

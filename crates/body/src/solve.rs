@@ -41,7 +41,8 @@ impl Grown<'_> {
     /// level moved by what its landmark misses. Only the rings the tape meets are placed until
     /// the last round is over.
     pub(crate) fn solve(&self) -> Result<Solved, BodyError> {
-        let global = self.request.get("height") / self.template.height;
+        let height = self.request.get("height");
+        let global = height / self.template.height;
         let mut scales = Scales::new(global, &self.marks);
         let mut excess = Excess::default();
         let crotch = self.crotch_vertices();
@@ -49,7 +50,7 @@ impl Grown<'_> {
             let levels = levels::solve(&self.request, &self.marks, &excess);
             let shape = shape(self, &scales, &levels)?;
             let warp = Warp::new(self.template, &self.marks, shape);
-            let place = |v: usize| self.place(&warp, v);
+            let place = |v: usize| self.place(&warp, height, v);
             let skinned = Skinned::lazy(
                 (&self.skin.mesh, &self.skin.bands),
                 &self.skin.parts,
@@ -63,7 +64,7 @@ impl Grown<'_> {
                 }
                 moved = moved.max(self.posture(&mut scales, &taken, round));
             }
-            if moved < STILL * self.request.get("height") {
+            if moved < STILL * height {
                 break;
             }
         }
@@ -281,8 +282,8 @@ impl Grown<'_> {
         miss
     }
 
-    /// Where a vertex of the template is on the body [m]; the left half and the middle only.
-    fn place(&self, warp: &Warp, v: usize) -> Vec3 {
+    /// Where a vertex of the template is on a body of a height [m]; the left half and the middle only.
+    fn place(&self, warp: &Warp, height: f64, v: usize) -> Vec3 {
         let follow = Follow {
             arm: self.skin.arm[v],
             leg: self.skin.leg[v],
@@ -292,21 +293,20 @@ impl Grown<'_> {
             p.x = 0.0;
         } else {
             let least = if follow.leg > 0.5 { LEG_GAP } else { SIDE_GAP };
-            p.x = p.x.max(least * self.request.get("height"));
+            p.x = p.x.max(least * height);
         }
         p
     }
 
     /// The template's skin carried to a shape, exactly symmetric.
     fn skin_of(&self, warp: &Warp) -> TriangleMesh {
-        let skin = self.skin;
+        let (skin, height) = (self.skin, self.request.get("height"));
         let mut mesh = skin.mesh.clone();
         let left = |v: &usize| skin.mirror[*v] as usize >= *v;
         for v in (0..skin.mirror.len()).filter(left) {
-            mesh.positions[v] = self.place(warp, v);
+            mesh.positions[v] = self.place(warp, height, v);
         }
-        skin.underarm
-            .draw(&mut mesh.positions, self.request.get("height"));
+        skin.underarm.draw(&mut mesh.positions, height);
         for v in (0..skin.mirror.len()).filter(left) {
             let mirror = skin.mirror[v] as usize;
             if mirror != v {

@@ -7,7 +7,7 @@ use crate::levels::{Level, Levels, upright};
 use crate::marks::Marks;
 use crate::tape::{Skinned, along, breadth_at, extent, fall, half_length, outermost, stretched};
 use crate::warp::{Follow, Warp};
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::f64::consts::FRAC_PI_2;
 use std::rc::Rc;
 use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
@@ -22,6 +22,11 @@ pub(crate) struct Taken<'a> {
     pub(crate) crotch: &'a [u32],
     /// Hulls that were taken before.
     pub(crate) hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
+    /// Lengths that were taken before.
+    known: RefCell<Vec<(String, Option<f64>)>>,
+    around: OnceCell<Option<Around>>,
+    bust: OnceCell<Option<Vec3>>,
+    through_neck: OnceCell<Vec<[Vec3; 2]>>,
     /// Vertex in the left armpit.
     pub(crate) armpit: u32,
 }
@@ -69,6 +74,10 @@ impl<'a> Taken<'a> {
             warp,
             crotch,
             hulls: Default::default(),
+            known: Default::default(),
+            around: OnceCell::new(),
+            bust: OnceCell::new(),
+            through_neck: OnceCell::new(),
             armpit,
         }
     }
@@ -120,6 +129,10 @@ impl<'a> Taken<'a> {
 
     /// The point of the bust on the left [m].
     pub(crate) fn bust_point(&self) -> Option<Vec3> {
+        *self.bust.get_or_init(|| self.taken_bust_point())
+    }
+
+    fn taken_bust_point(&self) -> Option<Vec3> {
         let y = self.levels.at(Level::Bust);
         let level = [Vec3::y() * y, Vec3::y()];
         let x = self.warp.apply(self.marks.bust_point, Follow::default()).x;
@@ -138,20 +151,28 @@ impl<'a> Taken<'a> {
         Some(self.warp.near(height, 0.08))
     }
 
-    /// Where triangles between two heights [m] lie.
-    fn between(&self, low: f64, high: f64) -> Option<Near> {
+    /// Heights of the template where triangles between two heights [m] lie.
+    fn between(&self, low: f64, high: f64) -> Option<[f64; 2]> {
         match (self.around(low)?, self.around(high)?) {
-            (Near::Level([from, _]), Near::Level([_, to])) => Some(Near::Level([from, to])),
+            (Near::Level([from, _]), Near::Level([_, to])) => Some([from, to]),
             _ => None,
         }
     }
 
-    /// The upright section through a point, parallel to z and a direction.
-    fn upright(&self, parts: &[Part], through: Vec3, sideways: Vec3) -> Vec<[Vec3; 2]> {
+    /// The upright section through a point, parallel to z and a direction, between two heights.
+    fn upright(
+        &self,
+        parts: &[Part],
+        [through, sideways]: [Vec3; 2],
+        [low, high]: [f64; 2],
+    ) -> Vec<[Vec3; 2]> {
         let normal = Vec3::z().cross(&sideways).normalize();
         let end = through.x + if sideways.y == 1.0 { 0.0 } else { sideways.x };
-        let near = Near::side([through.x, end], self.warp.global());
-        self.skinned.section(parts, [through, normal], Some(near))
+        let places = [through.x, end];
+        let near = self
+            .between(low, high)
+            .map(|heights| Near::side(places, self.warp.sideways(), heights));
+        self.skinned.section(parts, [through, normal], near)
     }
 
     fn bust_line(&self) -> Option<f64> {
@@ -159,7 +180,7 @@ impl<'a> Taken<'a> {
         let way = bust - neck;
         let down = Vec3::new(way.x, way.y, 0.0);
         let stretch = down.norm() / down.y.abs().max(1e-9);
-        let section = self.upright(&[Part::Trunk, Part::Head], neck, down);
+        let section = self.upright(TORSO, [neck, down], [bust.y, neck.y]);
         // Along the plane's own falling line, not along the upright.
         let scaled: Vec<[Vec2; 2]> = section
             .iter()
@@ -171,15 +192,16 @@ impl<'a> Taken<'a> {
 
     fn below_bust(&self, to: Level) -> Option<f64> {
         let bust = self.bust_point()?;
-        let section = self.upright(&[Part::Trunk], bust, Vec3::y());
-        fall(&section, bust, self.levels.at(to), Vec3::z())
+        let floor = self.levels.at(to);
+        let section = self.upright(&[Part::Trunk], [bust, Vec3::y()], [floor, bust.y]);
+        fall(&section, bust, floor, Vec3::z())
     }
 
     /// The way along the skin from the bust point straight down to the level under the bust [m].
     fn under_bust(&self) -> Option<f64> {
         let bust = self.bust_point()?;
         let floor = self.levels.at(Level::Underbust);
-        let section = self.upright(&[Part::Trunk], bust, Vec3::y());
+        let section = self.upright(&[Part::Trunk], [bust, Vec3::y()], [floor, bust.y]);
         Some(along(&section, [floor, bust.y]))
     }
 
@@ -196,7 +218,7 @@ impl<'a> Taken<'a> {
         let section = self.skinned.section(
             &[Part::Trunk, Part::LeftLeg],
             [side, Vec3::z()],
-            self.between(hips, waist),
+            self.between(hips, waist).map(Near::Level),
         );
         Some(fall(&section, side, hips, Vec3::x())? + hips)
     }
@@ -217,11 +239,19 @@ impl<'a> Taken<'a> {
     }
 
     /// The way round the crotch from waist to waist.
-    fn crotch_lengths(&self) -> Option<Around> {
+    fn crotch_lengths(&self) -> Option<&Around> {
+        self.around.get_or_init(|| self.taken_crotch()).as_ref()
+    }
+
+    fn taken_crotch(&self) -> Option<Around> {
         let waist = self.levels.at(Level::Waist);
         let parts = &[Part::Trunk, Part::LeftLeg];
         // Just beside the middle, where the plane meets whole triangles.
-        let section = self.upright(parts, Vec3::x() * 1e-6, Vec3::y());
+        let section = self.upright(
+            parts,
+            [Vec3::x() * 1e-6, Vec3::y()],
+            [self.levels.at(Level::Crotch), waist],
+        );
         let flat = |side: f64| -> Vec<[Vec2; 2]> {
             let turned = |p: Vec3| Vec2::new(p.y, side * p.z);
             section.iter().map(|s| s.map(turned)).collect()
@@ -282,8 +312,27 @@ impl<'a> Taken<'a> {
         0.5 * (low + high)
     }
 
+    /// The tight way from the side of the neck straight down to the waist, in front or behind [m].
+    fn to_waist(&self, outward: Vec3) -> Option<f64> {
+        let (neck, waist) = (self.neck_side(), self.levels.at(Level::Waist));
+        let section = self
+            .through_neck
+            .get_or_init(|| self.upright(TORSO, [neck, Vec3::y()], [waist, neck.y]));
+        fall(section, neck, waist, outward)
+    }
+
     /// A measurement by its name in the catalogue [m] or [rad]; none if the tape does not know it.
     pub(crate) fn value(&self, name: &str) -> Option<f64> {
+        let known = |row: &&(String, Option<f64>)| row.0 == name;
+        if let Some(row) = self.known.borrow().iter().find(known) {
+            return row.1;
+        }
+        let found = self.taken_value(name);
+        self.known.borrow_mut().push((name.to_owned(), found));
+        found
+    }
+
+    fn taken_value(&self, name: &str) -> Option<f64> {
         if let Some(girth) = Girth::ALL.into_iter().find(|girth| girth.name() == name) {
             return Some(self.girth(girth));
         }
@@ -325,14 +374,8 @@ impl<'a> Taken<'a> {
             "bust_line" => self.bust_line()?,
             "bust_to_underbust" => self.under_bust()?,
             "waist_over_bust_line" => self.bust_line()? + self.below_bust(Level::Waist)?,
-            "hps_to_waist_front" => {
-                let section = self.upright(TORSO, neck, Vec3::y());
-                fall(&section, neck, self.levels.at(Level::Waist), Vec3::z())?
-            }
-            "hps_to_waist_back" => {
-                let section = self.upright(TORSO, neck, Vec3::y());
-                fall(&section, neck, self.levels.at(Level::Waist), -Vec3::z())?
-            }
+            "hps_to_waist_front" => self.to_waist(Vec3::z())?,
+            "hps_to_waist_back" => self.to_waist(-Vec3::z())?,
             "outside_leg" => self.outside_leg()?,
             "hip_inclination" => {
                 let wider = 0.5 * (wide(Girth::Hips, 0) - wide(Girth::Waist, 0));

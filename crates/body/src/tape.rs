@@ -3,7 +3,7 @@
 
 use crate::Part;
 use crate::bands::{Bands, Near};
-use std::cell::RefCell;
+use std::cell::Cell;
 use toile_geometry::{TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
 
 /// A skin whose vertices are placed when first needed. Its first half of triangles is the left
@@ -11,7 +11,7 @@ use toile_geometry::{TriangleMesh, Vec2, Vec3, closed_length, convex_hull};
 pub(crate) struct Skinned<'a> {
     triangles: &'a [[u32; 3]],
     parts: &'a [Part],
-    placed: RefCell<Vec<Vec3>>,
+    placed: Vec<Cell<Vec3>>,
     place: Option<&'a dyn Fn(usize) -> Vec3>,
     /// Triangles by their place on the template, to leave out early what lies far away.
     bands: Option<&'a Bands>,
@@ -23,7 +23,7 @@ impl<'a> Skinned<'a> {
         Self {
             triangles: &mesh.triangles,
             parts,
-            placed: RefCell::new(mesh.positions.clone()),
+            placed: mesh.positions.iter().copied().map(Cell::new).collect(),
             place: None,
             bands: None,
         }
@@ -38,24 +38,27 @@ impl<'a> Skinned<'a> {
         Self {
             triangles: &template.triangles,
             parts,
-            placed: RefCell::new(vec![Vec3::repeat(f64::NAN); template.positions.len()]),
+            placed: vec![Cell::new(Vec3::repeat(f64::NAN)); template.positions.len()],
             place: Some(place),
             bands: Some(bands),
         }
     }
 
     /// Where a vertex is [m].
+    #[inline]
     pub(crate) fn at(&self, vertex: u32) -> Vec3 {
-        let v = vertex as usize;
-        let known = self.placed.borrow()[v];
+        let known = self.placed[vertex as usize].get();
         match self.place {
-            Some(place) if known.x.is_nan() => {
-                let p = place(v);
-                self.placed.borrow_mut()[v] = p;
-                p
-            }
+            Some(place) if known.x.is_nan() => self.placed_at(place, vertex as usize),
             _ => known,
         }
+    }
+
+    #[cold]
+    fn placed_at(&self, place: &dyn Fn(usize) -> Vec3, vertex: usize) -> Vec3 {
+        let p = place(vertex);
+        self.placed[vertex].set(p);
+        p
     }
 
     /// Segments in which the left half of some parts crosses the plane through a point with a

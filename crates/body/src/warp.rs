@@ -342,9 +342,22 @@ impl Warp {
         self.apply(lowest, Follow::default()).z + self.shape.fork
     }
 
-    /// Ratio of statures, body to template [1].
-    pub(crate) fn global(&self) -> f64 {
-        self.shape.global
+    /// Least and largest sideways scale of any place of trunk and head [1].
+    pub(crate) fn sideways(&self) -> [f64; 2] {
+        if self.is_still() {
+            return [1.0; 2];
+        }
+        let s = &self.shape;
+        let most = |rows: &[[f64; 2]]| rows.iter().map(|row| row[1].abs()).fold(0.0, f64::max);
+        let fuller = most(&s.corners) + most(&s.folds);
+        let scales = s.lateral.iter().map(|row| row[1]);
+        let low = scales.clone().fold(f64::INFINITY, f64::min);
+        let high = scales.fold(0.0, f64::max);
+        let spread = |end: f64| (s.bust_spread * end).max(0.0);
+        [
+            low * (1.0 - fuller).max(0.1) * (1.0 - spread(-1.0)).max(0.1),
+            high * (1.0 + fuller) * (1.0 + spread(1.0)),
+        ]
     }
 
     /// The body's height of a height of the template [m].
