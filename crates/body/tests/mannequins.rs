@@ -102,6 +102,14 @@ fn check(figure: Figure, table: &Measurements) {
 }
 
 #[test]
+fn the_sample_tables_do_not_contradict_themselves() {
+    for (figure, table) in built_in() {
+        let body = Mannequin::new(&table, figure).unwrap();
+        assert_eq!(body.conflicts(), [], "{figure:?}");
+    }
+}
+
+#[test]
 fn built_in_bodies_are_closed_and_have_their_measurements() {
     for (figure, table) in built_in() {
         check(figure, &table);
