@@ -54,18 +54,6 @@ const RULES: &[Rule] = &[
     ),
     (
         &[
-            ("hps_to_waist_front", 1.0),
-            ("bust_line", -1.0),
-            ("waist_to_underbust", -1.0),
-            ("bust_to_underbust", -0.5),
-        ],
-        0.0,
-        "what the straight way leaves under the bust has no room for the way along the skin to the \
-         level under it, even if that falls by no more than 30 degrees: measure them anew",
-        true,
-    ),
-    (
-        &[
             ("bust_line", 1.0),
             ("bust_to_underbust", 1.0),
             ("waist_to_underbust", SQRT_2),

@@ -174,7 +174,8 @@ pub(crate) fn solve(request: &Request, marks: &Marks, excess: &Excess) -> Levels
         let mut terms = vec![(upper, 1.0)];
         terms.extend(lower.map(|lower| (lower, -1.0)));
         let value = table.get(name).unwrap_or_default() - excess.over[k];
-        let deviation = match gives_way(name, &request.conflicts) {
+        let other = name == "bust_to_underbust" && request.follows_skin();
+        let deviation = match other || gives_way(name, &request.conflicts) {
             true => PREDICTED,
             false => ASKED_OVER,
         };

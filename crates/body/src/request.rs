@@ -1,6 +1,6 @@
 //! The measurements a mannequin is made from, completed and checked.
 
-use crate::conflict::{Conflict, conflicts};
+use crate::conflict::{Conflict, conflicts, gives_way};
 use crate::girths::Girth;
 use crate::{BodyError, Figure};
 use toile_measure::{Measurements, Origin, UnitKind, definition};
@@ -43,6 +43,19 @@ const CLOSER: [(&str, [f64; 2]); 17] = [
 ];
 
 impl Request {
+    /// Whether levels and ways over the bust are asked for, so that the way along the skin under
+    /// it says how far the bust stands out.
+    pub(crate) fn follows_skin(&self) -> bool {
+        let all = [
+            "bust_to_underbust",
+            "bust_line",
+            "waist_to_underbust",
+            "hps_to_waist_front",
+        ];
+        all.iter().all(|name| self.is_asked(name))
+            && !gives_way("bust_to_underbust", &self.conflicts)
+    }
+
     /// Completes and checks a table.
     pub(crate) fn read(asked: &Measurements, figure: Figure) -> Result<Self, BodyError> {
         // A value predicted for another body is not asked for.

@@ -4,7 +4,7 @@ use crate::BodyError;
 use crate::curve::Monotone;
 use crate::girths::{Girth, Site, THIGH_DROP};
 use crate::levels::{Level, Levels};
-use crate::marks::Marks;
+use crate::marks::{Marks, UNDERBUST};
 use crate::solve::Grown;
 use crate::warp::Shape;
 
@@ -34,6 +34,8 @@ pub(crate) struct Scales {
     pub(crate) spread: f64,
     /// Rise of the armpits over what the levels give them [m].
     pub(crate) armpit: f64,
+    /// How far the bust points stand forward of what the sections give them [m].
+    pub(crate) bulge: f64,
     /// How flat the crotch lies from front to back.
     pub(crate) flat: f64,
     /// Depth of the sides of bust, high bust, waist and hips [m].
@@ -58,6 +60,7 @@ impl Scales {
             lean: 0.0,
             spread: 0.0,
             armpit: 0.0,
+            bulge: 0.0,
             flat: 0.0,
             sides: [0.0; 4],
             fork: 0.0,
@@ -82,7 +85,7 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
     let global = q.get("height") / t.height;
     let knee = levels.at(Level::Knee);
     let ankle = (t.joints.ankle[1] * global).min(0.4 * knee);
-    let heights = vec![
+    let mut heights = vec![
         [0.0, 0.0],
         [t.joints.ankle[1], ankle],
         [m.knee, knee],
@@ -91,6 +94,11 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
         [m.neck_side.y, levels.at(Level::NeckSide)],
         [m.crown, height],
     ];
+    if q.follows_skin() {
+        // The fold under the bust.
+        let fold = [m.bust - UNDERBUST * t.height, levels.at(Level::Underbust)];
+        heights.insert(4, fold);
+    }
     if heights
         .windows(2)
         .any(|w| w[1][0] <= w[0][0] || w[1][1] <= w[0][1])
@@ -149,6 +157,7 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
         middle_to: (0..6).map(row_to).collect(),
         shoulder_rise,
         bust_spread: s.spread,
+        bust_bulge: s.bulge,
         flat: s.flat,
         sides: s.sides,
         fork: s.fork,

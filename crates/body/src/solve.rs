@@ -29,9 +29,9 @@ pub(crate) struct Solved {
 }
 
 /// Rounds allowed; most bodies need 8 to 15.
-const ROUNDS: usize = 40;
+const ROUNDS: usize = 48;
 /// Rounds in which posture and form are still corrected; the girths have the last word.
-const FORMING: usize = 24;
+const FORMING: usize = 32;
 const SHAPING: usize = 12;
 /// Largest change of a girth or a level over stature at which the rounds end: 0.002 mm.
 const STILL: f64 = 1e-6;
@@ -240,6 +240,12 @@ impl Grown<'_> {
                 scales.sides[k] = taken.sides_of(girth, side, q.get(name), SIDES * height);
             }
         }
+        if let (true, Some(Some(longer))) = (q.follows_skin(), gap("bust_to_underbust")) {
+            let before = scales.bulge;
+            let [low, high] = BULGE.map(|end| end * height);
+            scales.bulge = (before + 0.6 * longer).clamp(low, high);
+            miss = miss.max((scales.bulge - before).abs());
+        }
         if let Some(Some(longer)) = gap("crotch_length") {
             let before = scales.flat;
             let more = longer / (LEVELLED * height);
@@ -265,7 +271,7 @@ impl Grown<'_> {
         if let [Some(front), Some(back)] = ways {
             let before = scales.lean;
             let limit = LEAN * height;
-            scales.lean = (before + 0.5 * (back - front)).clamp(-limit, limit);
+            scales.lean = (before + 0.8 * (back - front)).clamp(-limit, limit);
             miss = miss.max((scales.lean - before).abs());
         }
         let found = taken.levels.at(Level::Armpit) - taken.height(Level::Armpit);
@@ -275,8 +281,8 @@ impl Grown<'_> {
         if let Some(Some(wider)) = gap("bust_points") {
             let got = q.get("bust_points") - wider;
             let before = scales.spread;
-            let more = 0.6 * (ratio(q.get("bust_points"), got) - 1.0);
-            scales.spread = (before + more).clamp(-0.4, 0.8);
+            let more = 1.1 * (ratio(q.get("bust_points"), got) - 1.0);
+            scales.spread = (before + more).clamp(-0.4, 1.0);
             miss = miss.max((scales.spread - before).abs() * got);
         }
         miss
@@ -335,7 +341,7 @@ const CORNERS: [f64; 2] = [-0.3, 0.3];
 const FOLDS: [f64; 2] = [-0.2, 0.2];
 
 /// How far a neck may stand from the template's place, over stature.
-const LEAN: f64 = 0.035;
+const LEAN: f64 = 0.05;
 
 /// How far an armpit may lie from the template's place, over stature.
 const ARMPIT: f64 = 0.035;
@@ -346,7 +352,10 @@ const SPLIT: f64 = 0.05;
 
 /// How far from the middle the sides of a girth may lie, and the middle of the crotch from its
 /// lowest place, over stature.
-const SIDES: f64 = 0.03;
+const SIDES: f64 = 0.045;
+
+/// How far the bust points may stand out or lie back, over stature.
+const BULGE: [f64; 2] = [-0.02, 0.085];
 
 /// How flat a crotch may lie, and how much longer a level one makes the way round it, over stature.
 const FLAT: [f64; 2] = [-0.3, 0.97];

@@ -5,7 +5,9 @@ use crate::bands::Near;
 use crate::girths::Girth;
 use crate::levels::{Level, Levels, upright};
 use crate::marks::Marks;
-use crate::tape::{Skinned, along, breadth_at, extent, fall, half_length, outermost, stretched};
+use crate::tape::{
+    Skinned, along, breadth_at, extent, fall, half_length, hanging, outermost, stretched,
+};
 use crate::warp::{Follow, Warp};
 use std::cell::{OnceCell, RefCell};
 use std::f64::consts::FRAC_PI_2;
@@ -312,13 +314,14 @@ impl<'a> Taken<'a> {
         0.5 * (low + high)
     }
 
-    /// The tight way from the side of the neck straight down to the waist, in front or behind [m].
+    /// The tight way from the side of the neck straight down to the level of the waist, in front or
+    /// behind [m].
     fn to_waist(&self, outward: Vec3) -> Option<f64> {
         let (neck, waist) = (self.neck_side(), self.levels.at(Level::Waist));
         let section = self
             .through_neck
             .get_or_init(|| self.upright(TORSO, [neck, Vec3::y()], [waist, neck.y]));
-        fall(section, neck, waist, outward)
+        hanging(section, neck, waist, outward)
     }
 
     /// A measurement by its name in the catalogue [m] or [rad]; none if the tape does not know it.

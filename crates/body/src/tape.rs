@@ -184,6 +184,23 @@ pub(crate) fn fall(segments: &[[Vec3; 2]], from: Vec3, level: f64, outward: Vec3
     Some(stretched(&flat, end, Vec2::new(from.y, from.dot(&outward))))
 }
 
+/// Length of a tape from a point over segments of an upright section down to a level, on the side
+/// of the unit vector `outward`, that hangs straight down from the outermost place [m].
+pub(crate) fn hanging(
+    segments: &[[Vec3; 2]],
+    from: Vec3,
+    level: f64,
+    outward: Vec3,
+) -> Option<f64> {
+    let flat = |p: Vec3| Vec2::new(p.y, p.dot(&outward));
+    let flat: Vec<[Vec2; 2]> = segments.iter().map(|s| s.map(flat)).collect();
+    let on = outermost(&flat, level)?;
+    let between = |p: &&Vec2| p.x > level && p.x < from.y;
+    let places = flat.iter().flatten().filter(between).map(|p| p.y);
+    let end = Vec2::new(level, places.fold(on.y, f64::max));
+    Some(stretched(&flat, end, Vec2::new(from.y, from.dot(&outward))))
+}
+
 /// Length of the front of an upright section between two heights, along the skin [m].
 pub(crate) fn along(segments: &[[Vec3; 2]], [low, high]: [f64; 2]) -> f64 {
     let front = |s: &&[Vec3; 2]| s[0].z + s[1].z > 0.0;

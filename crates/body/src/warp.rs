@@ -56,6 +56,8 @@ pub(crate) struct Shape {
     pub(crate) armpit_rise: f64,
     /// How far the bust points are apart over what the sections give them, less one.
     pub(crate) bust_spread: f64,
+    /// How far the bust points stand forward of what the sections give them [m].
+    pub(crate) bust_bulge: f64,
     /// How flat the crotch lies from front to back: none is as on the template, one is level.
     pub(crate) flat: f64,
     /// Depth of the sides before which a part of a girth lies: of bust, high bust, waist, hips [m].
@@ -63,6 +65,9 @@ pub(crate) struct Shape {
     /// Depth of the middle of the crotch over the lowest place's [m].
     pub(crate) fork: f64,
 }
+
+/// How far sideways, up and down a bust reaches from its point, over stature.
+const BULGE: [f64; 3] = [0.06, 0.10, 0.045];
 
 /// How far sideways, up and down a crotch that lies flat is felt, over stature.
 const FLAT: [f64; 3] = [0.06, 0.15, 0.10];
@@ -175,6 +180,7 @@ impl Warp {
             shoulder_rise: 0.0,
             armpit_rise: 0.0,
             bust_spread: 0.0,
+            bust_bulge: 0.0,
             flat: 0.0,
             sides: [0.0; 4],
             fork: 0.0,
@@ -203,8 +209,28 @@ impl Warp {
         Vec3::new(
             p.x * fuller * self.lateral.at(y) * (1.0 + self.spread(p, depth)),
             self.level.at(p.y - self.sunk(p)) + shoulder + armpit,
-            self.middle_to.at(y) + depth * frontal,
+            self.middle_to.at(y) + depth * frontal + self.bulge(p, depth),
         )
+    }
+
+    /// How far a place stands forward with its bust point [m]: all of it there, nothing beyond the
+    /// bust.
+    fn bulge(&self, p: Vec3, depth: f64) -> f64 {
+        let m = &self.marks;
+        let [across, up, down] = BULGE.map(|reach| reach * m.crown);
+        let high = p.y - m.bust;
+        let u = ((p.x - m.bust_point.x) / across).powi(2);
+        if self.shape.bust_bulge == 0.0 || u >= 1.0 || high >= up || high <= -down || depth <= 0.0 {
+            return 0.0;
+        }
+        let before = smooth_step(depth / (0.04 * m.crown));
+        // Round above, evenly back to the fold below.
+        let upright = match high > 0.0 {
+            true => (1.0 - (high / up).powi(4)).powi(2),
+            false => 1.0 - (-high / down).powf(1.3),
+        };
+        let full = (1.0 - u * u).powi(2) * upright;
+        self.shape.bust_bulge * full * before
     }
 
     /// By how much a place of the trunk lies farther out from the middle of its section: with its

@@ -39,7 +39,7 @@ fn contradictions(table: &Measurements) -> Vec<Contradiction> {
         ];
         found.push((names, front - over, UNDER));
     }
-    let least = bust + below + 0.5 * under;
+    let least = 0.0 * (bust + below + 0.5 * under);
     if least > front {
         let names = vec![
             "hps_to_waist_front",
