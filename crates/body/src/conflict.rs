@@ -12,45 +12,37 @@ pub struct Conflict {
     pub gap: f64,
     /// What does not fit, and what to change.
     pub why: &'static str,
-    /// Whether what was asked says so by itself: no body has all of it. Else the body found does
-    /// not have it, and another one might.
-    pub proven: bool,
 }
 
 /// A sum of measurements [m] that is at least a part of the stature on any body: names with their
-/// factors, the part, what is wrong otherwise, and whether this holds by what the measurements
-/// mean and not by what people are like.
-type Rule = (&'static [(&'static str, f64)], f64, &'static str, bool);
+/// factors, the part, and what is wrong otherwise.
+type Rule = (&'static [(&'static str, f64)], f64, &'static str);
 
-/// Rules of one body. No way over the front is longer than one over a further point; below the
-/// underbust the front is taken to fall no flatter than 45 degrees, a bust on its underside no
-/// flatter than 30.
+/// Rules of one body, by what the measurements mean and what people are like. The straight way over
+/// the front is no longer than the one over the bust where no belly stands farther out and the
+/// front falls no flatter than 45 degrees below the bust; a way along the skin is at least its fall.
 const RULES: &[Rule] = &[
     (
         &[("bust", 1.0), ("high_bust", -1.0)],
         0.0,
         "the high bust is larger than the bust, which is the largest girth of the chest: measure \
          both anew",
-        true,
     ),
     (
         &[("bust", 1.0), ("underbust", -1.0)],
         0.0,
         "the girth under the bust is larger than the bust: measure both anew",
-        true,
     ),
     (
         &[("hips", 1.0), ("high_hips", -1.0)],
         0.0,
         "the high hips are larger than the hips, which are the largest girth there: measure both \
          anew",
-        true,
     ),
     (
         &[("high_hips", 1.0), ("waist", -1.0), ("hips", -0.15)],
         -0.12,
         "the high hips are far under the waist: measure both anew",
-        false,
     ),
     (
         &[
@@ -61,7 +53,17 @@ const RULES: &[Rule] = &[
         ],
         0.0,
         "the way over the bust to the waist is shorter than the straight one: measure them anew",
-        true,
+    ),
+    (
+        &[
+            ("vert_bust_line", 1.0),
+            ("bust_to_underbust", 1.0),
+            ("waist_to_underbust", 1.0),
+            ("waist_line", -1.0),
+        ],
+        0.0,
+        "the way from the bust to the level under it is shorter than its fall: measure it anew, or \
+         the lengths from nape to bust and waist",
     ),
     (
         &[
@@ -74,38 +76,32 @@ const RULES: &[Rule] = &[
         0.36,
         "height less head_l, waist_line, hips_line and crotch_hip_diff leaves legs shorter than \
          0.36 of the height: lessen one of them",
-        false,
     ),
     (
         &[("waist_line", 1.0), ("vert_bust_line", -1.0)],
         0.05,
         "the bust level must lie above the waist by 0.05 of the height or more: lessen \
          vert_bust_line",
-        false,
     ),
     (
         &[("hips", 0.8), ("leg_circ", -1.0)],
         0.0,
         "a thigh cannot have over 0.8 of the hip girth: lessen leg_circ",
-        false,
     ),
     (
         &[("leg_circ", 1.0), ("calf", -1.0)],
         0.0,
         "the calf is larger than the thigh: measure both anew",
-        false,
     ),
     (
         &[("upper_arm", 1.0), ("wrist", -1.0)],
         0.0,
         "the wrist is larger than the upper arm: measure both anew",
-        false,
     ),
     (
         &[("heel", 1.0), ("ankle", -1.0)],
         0.0,
         "the ankle is larger than heel and instep: measure both anew",
-        false,
     ),
 ];
 
@@ -113,6 +109,11 @@ const RULES: &[Rule] = &[
 type Loop = (&'static [(&'static str, f64)], &'static str);
 
 const LOOPS: &[Loop] = &[
+    (
+        &[("bust", 1.0), ("front_width", -1.0), ("back_width", -1.0)],
+        "the parts of the bust girth before and behind the side lines do not add up to it: change \
+         one of them",
+    ),
     (
         &[
             ("height", 1.0),
@@ -176,9 +177,12 @@ const SLACK: f64 = 5e-4;
 /// Whether a way over the bust contradicts the others: then it gives way to them and does not say
 /// where the bust lies.
 pub(crate) fn gives_way(name: &str, conflicts: &[Conflict]) -> bool {
-    let among = |c: &Conflict| c.proven && c.names.contains(&UNDER_BUST);
+    let among = |c: &Conflict| c.names.contains(&UNDER_BUST);
     name == UNDER_BUST && conflicts.iter().any(among)
 }
+
+/// What goes over a belly.
+const OVER_BELLY: &str = "hps_to_waist_front";
 
 /// What gives way.
 const UNDER_BUST: &str = "bust_to_underbust";
@@ -195,15 +199,18 @@ pub(crate) fn conflicts(table: &Measurements) -> Vec<Conflict> {
     };
     let names = |terms: &[(&'static str, f64)]| terms.iter().map(|term| term.0).collect();
     let mut found = Vec::new();
-    for &(terms, share, why, proven) in RULES {
+    // The straight way goes over a belly besides.
+    let belly = table.get("waist") > table.get("underbust");
+    let over_belly = |terms: &[(&str, f64)]| belly && terms.iter().any(|t| t.0 == OVER_BELLY);
+    for &(terms, share, why) in RULES {
         if let Some(sum) = sum(terms)
+            && !over_belly(terms)
             && sum < share * height - SLACK * height
         {
             found.push(Conflict {
                 names: names(terms),
                 gap: share * height - sum,
                 why,
-                proven,
             });
         }
     }
@@ -215,7 +222,6 @@ pub(crate) fn conflicts(table: &Measurements) -> Vec<Conflict> {
                 names: names(terms),
                 gap: sum.abs(),
                 why,
-                proven: true,
             });
         }
     }

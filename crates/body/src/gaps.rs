@@ -105,14 +105,19 @@ impl Mannequin {
                 true => row.gap().abs() > 0.02,
                 false => row.gap().abs() > NAMED * height,
             };
-            let named = found.iter().any(|c: &Conflict| c.names.contains(&row.name));
+            let mut named = false;
+            for conflict in &mut found {
+                if row.origin == Origin::Asked && conflict.names.contains(&row.name) {
+                    conflict.gap = conflict.gap.max(row.gap().abs());
+                    named = true;
+                }
+            }
             if row.origin == Origin::Asked && beyond && !named {
                 found.push(Conflict {
                     names: vec![row.name],
                     gap: row.gap().abs(),
                     why: "the body that meets the others best does not have it: measure it anew, \
                           or those beside it",
-                    proven: false,
                 });
             }
         }

@@ -22,7 +22,7 @@ pub struct Landmarks {
     pub neck_sides: [Vec3; 2],
     /// Outer ends of the shoulders.
     pub shoulder_tips: [Vec3; 2],
-    /// Foremost points of the bust.
+    /// Points of the bust.
     pub bust_points: [Vec3; 2],
     /// Front middle at the waist.
     pub waist: Vec3,
@@ -95,7 +95,8 @@ impl Landmarks {
         let ends = trunk_section(bust_level);
         let section: Vec<[Vec2; 2]> = ends.chunks_exact(2).map(|s| [s[0], s[1]]).collect();
         let point = warp.apply(grown.marks.bust_point, Follow::default());
-        let bust = outermost(&section, point.x).map_or(tip, |on| Vec3::new(on.x, bust_level, on.y));
+        let bust =
+            outermost(&section, point.x).map_or(point, |on| Vec3::new(on.x, bust_level, on.y));
         let middle = |v: &usize| grown.skin.mirror[*v] as usize == *v;
         let lowest = (0..mesh.positions.len())
             .filter(middle)

@@ -67,6 +67,20 @@ impl Scales {
         }
     }
 
+    /// What goes to its place together, slowest where one pulls at another.
+    pub(crate) fn coupled(&mut self) -> impl Iterator<Item = &mut f64> {
+        let single = [
+            &mut self.shoulder,
+            &mut self.neck,
+            &mut self.lean,
+            &mut self.spread,
+            &mut self.armpit,
+            &mut self.bulge,
+            &mut self.flat,
+        ];
+        self.girth.iter_mut().chain(single)
+    }
+
     fn of(&self, girth: Girth) -> f64 {
         self.girth[girth as usize]
     }

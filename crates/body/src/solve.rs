@@ -28,6 +28,8 @@ pub(crate) struct Solved {
     pub(crate) mesh: TriangleMesh,
 }
 
+/// Rounds from one leap to where unknowns tend to the next.
+const LEAP: usize = 8;
 /// Rounds allowed; most bodies need 8 to 15.
 const ROUNDS: usize = 48;
 /// Rounds in which posture and form are still corrected; the girths have the last word.
@@ -46,6 +48,7 @@ impl Grown<'_> {
         let mut scales = Scales::new(global, &self.marks);
         let mut excess = Excess::default();
         let crotch = self.crotch_vertices();
+        let mut before: Option<[Scales; 2]> = None;
         for round in 0..ROUNDS {
             let levels = levels::solve(&self.request, &self.marks, &excess);
             let shape = shape(self, &scales, &levels)?;
@@ -67,6 +70,14 @@ impl Grown<'_> {
             if moved < STILL * height {
                 break;
             }
+            before = Some(match before {
+                Some([older, old]) if round % LEAP == LEAP - 1 && round + LEAP < FORMING => {
+                    leap(&mut scales, [older, old]);
+                    [scales.clone(), scales.clone()]
+                }
+                Some([_, old]) => [old, scales.clone()],
+                None => [scales.clone(), scales.clone()],
+            });
         }
         let levels = levels::solve(&self.request, &self.marks, &excess);
         let shape = shape(self, &scales, &levels)?;
@@ -243,7 +254,7 @@ impl Grown<'_> {
         if let (true, Some(Some(longer))) = (q.follows_skin(), gap("bust_to_underbust")) {
             let before = scales.bulge;
             let [low, high] = BULGE.map(|end| end * height);
-            scales.bulge = (before + 0.6 * longer).clamp(low, high);
+            scales.bulge = (before + longer).clamp(low, high);
             miss = miss.max((scales.bulge - before).abs());
         }
         if let Some(Some(longer)) = gap("crotch_length") {
@@ -254,10 +265,12 @@ impl Grown<'_> {
             // Where a level one is not enough hips nobody gave a depth are deeper.
             let form = &mut scales.aspect[Girth::Hips as usize];
             let deeper = scales.flat == FLAT[1];
-            if deeper && round >= SHAPING && !q.is_asked("hip_depth") {
+            let is_said = q.is_asked("hip_depth") || q.is_asked("hip_breadth");
+            if deeper && round >= SHAPING && !is_said {
                 let by = (-1.4 * longer / q.get("hip_depth")).exp();
-                *form = (*form * by).clamp(ASPECT[0], ASPECT[1]);
-                miss = miss.max(longer.abs());
+                let before = *form;
+                *form = (before * by).clamp(ASPECT[0], ASPECT[1]);
+                miss = miss.max((*form - before).abs() * q.get("hip_depth"));
             }
         }
         if q.is_asked("crotch_length_front") {
@@ -321,6 +334,19 @@ impl Grown<'_> {
             }
         }
         mesh
+    }
+}
+
+/// Goes where unknowns tend to whose steps shrink evenly: each by its own ratio of steps (Aitken
+/// 1926), none by more than four more steps.
+fn leap(scales: &mut Scales, [mut older, mut old]: [Scales; 2]) {
+    let history = older.coupled().zip(old.coupled());
+    for (now, (older, old)) in scales.coupled().zip(history) {
+        let [first, second] = [*old - *older, *now - *old];
+        let ratio = second / first;
+        if (0.3..0.95).contains(&ratio) {
+            *now += second * (ratio / (1.0 - ratio)).min(4.0);
+        }
     }
 }
 

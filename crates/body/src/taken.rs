@@ -50,7 +50,7 @@ impl Around {
     }
 }
 
-/// Halvings of a range: to a millionth of it.
+/// Halvings of a range: to a billionth of it.
 const HALVINGS: usize = 30;
 
 /// The part of a hull on one side of a place of its second axis, without the chord [m].
@@ -169,8 +169,7 @@ impl<'a> Taken<'a> {
         [low, high]: [f64; 2],
     ) -> Vec<[Vec3; 2]> {
         let normal = Vec3::z().cross(&sideways).normalize();
-        let end = through.x + if sideways.y == 1.0 { 0.0 } else { sideways.x };
-        let places = [through.x, end];
+        let places = [through.x, through.x + sideways.x];
         let near = self
             .between(low, high)
             .map(|heights| Near::side(places, self.warp.sideways(), heights));

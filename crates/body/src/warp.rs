@@ -401,12 +401,13 @@ impl Warp {
     pub(crate) fn near(&self, height: f64, reach: f64) -> Near {
         let moved = [self.shape.shoulder_rise, self.shape.armpit_rise]
             .map(|rise| 1.6 * rise / self.shape.global);
-        let up: f64 = moved.iter().map(|r| r.max(0.0)).sum();
+        let mut up: f64 = moved.iter().map(|r| r.max(0.0)).sum();
         let mut down: f64 = moved.iter().map(|r| (-r).max(0.0)).sum();
         let at = self.template_level(height);
         if at < self.marks.crotch + FLAT[1] * self.marks.crown {
             let most = self.marks.fork.iter().fold(0.0, |a: f64, &b| a.max(b));
             down += self.shape.flat.max(0.0) * most;
+            up += (-self.shape.flat).max(0.0) * most;
         }
         Near::Level([at - reach - up, at + reach + down])
     }

@@ -102,6 +102,45 @@ fn check(figure: Figure, table: &Measurements) {
 }
 
 #[test]
+fn what_a_body_has_is_no_contradiction() {
+    for (figure, girths) in [
+        (Figure::Woman, [0.95, 0.78, 0.80]),
+        (Figure::Woman, [1.25, 0.85, 0.80]),
+        (Figure::Woman, [1.10, 0.95, 1.20]),
+        (Figure::Man, [1.00, 0.95, 0.85]),
+        (Figure::Man, [1.10, 1.00, 1.30]),
+    ] {
+        let mut table = Measurements::new();
+        let ways = [
+            ("height", 1.70),
+            ("bust_line", 0.27),
+            ("bust_to_underbust", 0.08),
+            ("waist_to_underbust", 0.10),
+            ("hps_to_waist_front", 0.43),
+            ("hps_to_waist_back", 0.43),
+            ("front_width", 0.52 * girths[0]),
+            ("crotch_length", 0.72),
+        ];
+        for (name, value) in ["bust", "underbust", "waist"]
+            .into_iter()
+            .zip(girths)
+            .chain(ways)
+        {
+            table.set(name, value, Origin::Asked).unwrap();
+        }
+        // What a body came out with, asked for again.
+        let mut again = Measurements::new();
+        for row in Mannequin::new(&table, figure).unwrap().measure() {
+            if row.origin == Origin::Asked {
+                again.set(row.name, row.got, Origin::Asked).unwrap();
+            }
+        }
+        let body = Mannequin::new(&again, figure).unwrap();
+        assert_eq!(body.conflicts(), [], "{figure:?} {girths:?}");
+    }
+}
+
+#[test]
 fn the_sample_tables_do_not_contradict_themselves() {
     for (figure, table) in built_in() {
         let body = Mannequin::new(&table, figure).unwrap();

@@ -82,6 +82,7 @@ fn largest(body: &Mannequin, template: &TriangleMesh, asked: &[[f64; 2]]) -> [f6
         [0, 1, 2].map(|k| (own[k] / before[k]).ln())
     };
     let mut most = [0.0; 3];
+    let mut compared = 0;
     let mut y = levels.crotch + step;
     // Where the arms begin a section ends at their border, on the body and on the template.
     let ends = |mesh: &TriangleMesh| {
@@ -95,6 +96,7 @@ fn largest(body: &Mannequin, template: &TriangleMesh, asked: &[[f64; 2]]) -> [f6
     };
     let [top, top_of_template] = [ends(skin), ends(template)];
     while y + step < top && line(&to_template, y + step) < top_of_template {
+        compared += 1;
         let demand = (line(&wanted, y + step) - line(&wanted, y)).abs();
         let (low, high) = (scales(y), scales(y + step));
         for k in 0..3 {
@@ -105,6 +107,7 @@ fn largest(body: &Mannequin, template: &TriangleMesh, asked: &[[f64; 2]]) -> [f6
         }
         y += 0.5 * step;
     }
+    assert!(compared > 40, "{compared} heights compared");
     most
 }
 
