@@ -30,7 +30,9 @@ pub struct HardScene {
 /// How far the energy may rise where nothing is said: what contact in substeps leaves.
 const MOST_RISE: f64 = 0.02;
 
-/// How fine and how many.
+/// How fine and how many. Where cloth is hit hard, substeps grow with the cells of a side: stretch then
+/// crosses as many cells in each at both sizes. What one sweep leaves of a strain counts as energy at
+/// its full stiffness, and 20 substeps at full size show a rise of 94 % (flight) and 18 % (sphere).
 #[allow(dead_code)] // Tests run short ones, long runs long ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
@@ -421,10 +423,10 @@ fn curtain_and_sphere(size: Size) -> HardScene {
         object("right", half(-0.02, 0.012), top),
         solid("sphere", ball, keys),
     ];
+    let mut scene = base(0.7, objects);
+    scene.method.substeps = Some(size.pick(20, 64));
     // The sphere takes the curtain with it.
-    of("sphere at 10 m/s", base(0.7, objects), 0.15, |end| {
-        end.farthest > 0.2
-    })
+    of("sphere at 10 m/s", scene, 0.15, |end| end.farthest > 0.2)
 }
 
 /// A strip folded in four like an accordion falls on a floor.
@@ -482,6 +484,7 @@ fn two_in_free_flight(size: Size) -> HardScene {
     let mut scene = base(0.3, objects);
     scene.gravity = Vec3::zeros();
     scene.damping = Damping::default();
+    scene.method.substeps = Some(size.pick(20, 72));
     HardScene {
         velocities: vec![Vec3::new(0.0, 2.0, 0.0), Vec3::new(0.5, -2.0, 0.3)],
         most_rise: 1e-3,
