@@ -30,10 +30,11 @@ pub(crate) struct Solved {
 
 /// Rounds from one leap to where unknowns tend to the next.
 const LEAP: usize = 8;
-/// Rounds allowed; most bodies need 8 to 15.
-const ROUNDS: usize = 48;
-/// Rounds in which posture and form are still corrected; the girths have the last word.
-const FORMING: usize = 32;
+/// Rounds in which posture and form are still corrected, where a bust's form pulls at everything
+/// else and where not; most bodies need 8 to 15.
+const FORMING: [usize; 2] = [32, 24];
+/// Rounds after that: the girths have the last word.
+const LAST: usize = 16;
 const SHAPING: usize = 12;
 /// Largest change of a girth or a level over stature at which the rounds end: 0.002 mm.
 const STILL: f64 = 1e-6;
@@ -49,7 +50,9 @@ impl Grown<'_> {
         let mut excess = Excess::default();
         let crotch = self.crotch_vertices();
         let mut before: Option<[Scales; 2]> = None;
-        for round in 0..ROUNDS {
+        let slow = self.request.follows_skin();
+        let forming = FORMING[usize::from(!slow)];
+        for round in 0..forming + LAST {
             let levels = levels::solve(&self.request, &self.marks, &excess);
             let shape = shape(self, &scales, &levels)?;
             let warp = Warp::new(self.template, &self.marks, shape);
@@ -61,7 +64,7 @@ impl Grown<'_> {
             );
             let taken = self.taken(&skinned, (&levels, &warp), &crotch);
             let mut moved = self.correct(&mut scales, &mut excess, &taken);
-            if round < FORMING {
+            if round < forming {
                 if round < SHAPING {
                     self.form(&mut scales, &taken);
                 }
@@ -71,7 +74,9 @@ impl Grown<'_> {
                 break;
             }
             before = Some(match before {
-                Some([older, old]) if round % LEAP == LEAP - 1 && round + LEAP < FORMING => {
+                Some([older, old])
+                    if slow && round % LEAP == LEAP - 1 && round + LEAP < forming =>
+                {
                     leap(&mut scales, [older, old]);
                     [scales.clone(), scales.clone()]
                 }
@@ -236,8 +241,9 @@ impl Grown<'_> {
         }
     }
 
-    /// Corrects where the neck stands between front and back lengths, and how far the bust points
-    /// are apart. Returns the largest miss that can still be corrected [m].
+    /// Corrects where the neck stands between front and back lengths, where side lines, armpits and
+    /// the middle of the crotch lie, how flat that is, and how far the bust points stand out and are
+    /// apart. Returns the largest miss that can still be corrected [m].
     fn posture(&self, scales: &mut Scales, taken: &Taken, round: usize) -> f64 {
         let q = &self.request;
         let height = q.get("height");
@@ -294,7 +300,8 @@ impl Grown<'_> {
         if let Some(Some(wider)) = gap("bust_points") {
             let got = q.get("bust_points") - wider;
             let before = scales.spread;
-            let more = 1.1 * (ratio(q.get("bust_points"), got) - 1.0);
+            let gain = if q.follows_skin() { 1.1 } else { 0.6 };
+            let more = gain * (ratio(q.get("bust_points"), got) - 1.0);
             scales.spread = (before + more).clamp(-0.4, 1.0);
             miss = miss.max((scales.spread - before).abs() * got);
         }
