@@ -38,8 +38,8 @@ pub(crate) struct Scales {
     pub(crate) bulge: f64,
     /// How flat the crotch lies from front to back.
     pub(crate) flat: f64,
-    /// Depth of the sides of bust, high bust, waist and hips [m].
-    pub(crate) sides: [f64; 4],
+    /// Depth of the sides of girths round the trunk [m].
+    pub(crate) sides: [f64; Girth::COUNT],
     /// Depth of the middle of the crotch over the lowest place's [m].
     pub(crate) fork: f64,
 }
@@ -62,7 +62,7 @@ impl Scales {
             armpit: 0.0,
             bulge: 0.0,
             flat: 0.0,
-            sides: [0.0; 4],
+            sides: [0.0; Girth::COUNT],
             fork: 0.0,
         }
     }

@@ -10,7 +10,7 @@ use crate::shape::{Scales, shape};
 use crate::taken::Taken;
 use crate::tape::{Skinned, extent, half_length};
 use crate::template::Template;
-use crate::warp::{Follow, Shape, Warp, sided};
+use crate::warp::{Follow, Shape, Warp};
 use toile_geometry::{TriangleMesh, Vec3, closed_length};
 
 /// A template with its skin and marks.
@@ -248,35 +248,36 @@ impl Grown<'_> {
         let q = &self.request;
         let height = q.get("height");
         let mut miss: f64 = 0.0;
-        let gap = |name: &str| {
-            q.is_asked(name)
-                .then(|| Some(q.get(name) - taken.value(name)?))
+        let gap = |name: &str| -> Option<f64> {
+            let asked = q.is_asked(name).then(|| q.get(name))?;
+            Some(asked - taken.value(name)?)
         };
+        // Moves an unknown by a step between limits, each worth so much [m].
+        let mut step = |unknown: &mut f64, by: f64, [low, high]: [f64; 2], worth: f64| {
+            let before = *unknown;
+            *unknown = (before + by).clamp(low, high);
+            miss = miss.max((*unknown - before).abs() * worth);
+        };
+        let of_height = |limits: [f64; 2]| limits.map(|limit| limit * height);
         for (girth, name, side) in PARTS {
-            if let (true, Some(k)) = (q.is_asked(name), sided(girth)) {
-                scales.sides[k] = taken.sides_of(girth, side, q.get(name), SIDES * height);
+            if q.is_asked(name) {
+                let at = taken.sides_of(girth, side, q.get(name), SIDES * height);
+                scales.sides[girth as usize] = at;
             }
         }
-        if let (true, Some(Some(longer))) = (q.follows_skin(), gap("bust_to_underbust")) {
-            let before = scales.bulge;
-            let [low, high] = BULGE.map(|end| end * height);
-            scales.bulge = (before + longer).clamp(low, high);
-            miss = miss.max((scales.bulge - before).abs());
+        if let (true, Some(longer)) = (q.follows_skin(), gap("bust_to_underbust")) {
+            step(&mut scales.bulge, longer, of_height(BULGE), 1.0);
         }
-        if let Some(Some(longer)) = gap("crotch_length") {
-            let before = scales.flat;
+        if let Some(longer) = gap("crotch_length") {
             let more = longer / (LEVELLED * height);
-            scales.flat = (before + 0.6 * more).clamp(FLAT[0], FLAT[1]);
-            miss = miss.max((scales.flat - before).abs() * LEVELLED * height);
-            // Where a level one is not enough hips nobody gave a depth are deeper.
-            let form = &mut scales.aspect[Girth::Hips as usize];
-            let deeper = scales.flat == FLAT[1];
+            step(&mut scales.flat, 0.6 * more, FLAT, LEVELLED * height);
+            // Where a level one is not enough hips nobody gave a form are deeper.
             let is_said = q.is_asked("hip_depth") || q.is_asked("hip_breadth");
-            if deeper && round >= SHAPING && !is_said {
-                let by = (-1.4 * longer / q.get("hip_depth")).exp();
-                let before = *form;
-                *form = (before * by).clamp(ASPECT[0], ASPECT[1]);
-                miss = miss.max((*form - before).abs() * q.get("hip_depth"));
+            if scales.flat == FLAT[1] && round >= SHAPING && !is_said {
+                let form = &mut scales.aspect[Girth::Hips as usize];
+                let depth = q.get("hip_depth");
+                let by = *form * (-1.4 * longer / depth).exp_m1();
+                step(form, by, ASPECT, depth);
             }
         }
         if q.is_asked("crotch_length_front") {
@@ -286,24 +287,23 @@ impl Grown<'_> {
                 scales.fork += at - now;
             }
         }
-        let ways = ["hps_to_waist_front", "hps_to_waist_back"].map(|name| gap(name).flatten());
+        let ways = ["hps_to_waist_front", "hps_to_waist_back"].map(gap);
         if let [Some(front), Some(back)] = ways {
-            let before = scales.lean;
-            let limit = LEAN * height;
-            scales.lean = (before + 0.8 * (back - front)).clamp(-limit, limit);
-            miss = miss.max((scales.lean - before).abs());
+            let by = 0.8 * (back - front);
+            step(&mut scales.lean, by, of_height([-LEAN, LEAN]), 1.0);
         }
-        let found = taken.levels.at(Level::Armpit) - taken.height(Level::Armpit);
-        let (before, limit) = (scales.armpit, ARMPIT * height);
-        scales.armpit = (before + found).clamp(-limit, limit);
-        miss = miss.max((scales.armpit - before).abs());
-        if let Some(Some(wider)) = gap("bust_points") {
+        let higher = taken.levels.at(Level::Armpit) - taken.height(Level::Armpit);
+        step(
+            &mut scales.armpit,
+            higher,
+            of_height([-ARMPIT, ARMPIT]),
+            1.0,
+        );
+        if let Some(wider) = gap("bust_points") {
             let got = q.get("bust_points") - wider;
-            let before = scales.spread;
             let gain = if q.follows_skin() { 1.1 } else { 0.6 };
             let more = gain * (ratio(q.get("bust_points"), got) - 1.0);
-            scales.spread = (before + more).clamp(-0.4, 1.0);
-            miss = miss.max((scales.spread - before).abs() * got);
+            step(&mut scales.spread, more, SPREAD, got);
         }
         miss
     }
@@ -386,6 +386,9 @@ const SPLIT: f64 = 0.05;
 /// How far from the middle the sides of a girth may lie, and the middle of the crotch from its
 /// lowest place, over stature.
 const SIDES: f64 = 0.045;
+
+/// How much farther apart the bust points may lie than the sections have them, less one.
+const SPREAD: [f64; 2] = [-0.4, 1.0];
 
 /// How far the bust points may stand out or lie back, over stature.
 const BULGE: [f64; 2] = [-0.02, 0.085];

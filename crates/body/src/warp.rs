@@ -60,8 +60,8 @@ pub(crate) struct Shape {
     pub(crate) bust_bulge: f64,
     /// How flat the crotch lies from front to back: none is as on the template, one is level.
     pub(crate) flat: f64,
-    /// Depth of the sides before which a part of a girth lies: of bust, high bust, waist, hips [m].
-    pub(crate) sides: [f64; 4],
+    /// Depth of the sides before which a part of a girth lies [m].
+    pub(crate) sides: [f64; Girth::COUNT],
     /// Depth of the middle of the crotch over the lowest place's [m].
     pub(crate) fork: f64,
 }
@@ -74,13 +74,6 @@ const FLAT: [f64; 3] = [0.06, 0.15, 0.10];
 
 /// Way down the thigh on which the form of the leg's top goes out, over stature.
 const LEG_TOP: f64 = 0.09;
-
-/// Place of a girth among the sides, if it has any.
-pub(crate) fn sided(girth: Girth) -> Option<usize> {
-    [Girth::Bust, Girth::HighBust, Girth::Waist, Girth::Hips]
-        .iter()
-        .position(|&own| own == girth)
-}
 
 /// How far a point follows a limb instead of the trunk.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -182,7 +175,7 @@ impl Warp {
             bust_spread: 0.0,
             bust_bulge: 0.0,
             flat: 0.0,
-            sides: [0.0; 4],
+            sides: [0.0; Girth::COUNT],
             fork: 0.0,
         };
         Self {
@@ -357,7 +350,7 @@ impl Warp {
 
     /// Depth of the sides of a girth, before which its front part lies [m].
     pub(crate) fn side_of(&self, girth: Girth) -> f64 {
-        sided(girth).map_or(0.0, |k| self.shape.sides[k])
+        self.shape.sides[girth as usize]
     }
 
     /// Depth of the middle of the crotch on the body [m].
