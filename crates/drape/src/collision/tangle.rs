@@ -29,8 +29,8 @@ pub struct Drawn {
     pub looks: u32,
 }
 
-/// Looks after which it is forgotten which way a vertex was drawn.
-const MEMORY: u32 = 60;
+/// Looks after which it is forgotten which way a vertex was drawn, unless it went so of its own since.
+const MEMORY: u32 = 8;
 
 /// Directions of this length and less, summed over a piercing's vertices, cancel.
 const CANCELLED: f64 = 0.1;
@@ -39,30 +39,41 @@ const CANCELLED: f64 = 0.1;
 /// vertices, where its own would turn back; what is to be remembered then. Else two edges at one corner,
 /// of which now one crosses and now the other, draw the cloth to and fro for ever.
 pub fn keep_on(piercings: &mut [Piercing], before: &[Drawn]) -> Vec<Drawn> {
-    let drawn = |v: u32| {
-        let at = before.binary_search_by_key(&v, |drawn| drawn.vertex);
-        at.map_or(Vec3::zeros(), |at| before[at].way)
+    let drawn = |v: &u32| {
+        let at = before.binary_search_by_key(v, |drawn| drawn.vertex);
+        at.ok().map(|at| before[at])
+    };
+    let older = |drawn: &Drawn| Drawn {
+        looks: drawn.looks + 1,
+        ..*drawn
     };
     let mut after: Vec<Drawn> = Vec::new();
     for piercing in piercings {
-        let (edge, face) = piercing.vertices.split_at(2);
-        let sum = |vertices: &[u32]| vertices.iter().map(|&v| drawn(v)).sum::<Vec3>();
-        let way = (sum(edge) - sum(face)).try_normalize(CANCELLED);
-        if let Some(way) = way.filter(|way| way.dot(&piercing.way) < 0.0) {
+        let signed = piercing
+            .vertices
+            .into_iter()
+            .zip([1.0, 1.0, -1.0, -1.0, -1.0]);
+        let known = || {
+            signed
+                .clone()
+                .filter_map(|(v, sign)| Some((drawn(&v)?, sign)))
+        };
+        let sum: Vec3 = known().map(|(drawn, sign)| drawn.way * sign).sum();
+        let before = sum.try_normalize(CANCELLED);
+        let kept = before.filter(|way| way.dot(&piercing.way) < 0.0);
+        let mut looks = 0;
+        if let Some(way) = kept {
             piercing.way = way;
+            looks = 1 + known().map(|(drawn, _)| drawn.looks).min().unwrap_or(0);
         }
-        let both = (edge.iter().map(|v| (*v, 1.0))).chain(face.iter().map(|v| (*v, -1.0)));
-        after.extend(both.map(|(vertex, sign)| Drawn {
+        after.extend(signed.map(|(vertex, sign)| Drawn {
             vertex,
             way: piercing.way * sign,
-            looks: 0,
+            looks,
         }));
     }
-    let older = before.iter().filter(|drawn| drawn.looks < MEMORY);
-    after.extend(older.map(|drawn| Drawn {
-        looks: drawn.looks + 1,
-        ..*drawn
-    }));
+    after.extend(before.iter().map(older));
+    after.retain(|drawn| drawn.looks <= MEMORY);
     // The latest of a vertex; of one look, that of its first piercing.
     after.sort_by_key(|drawn| (drawn.vertex, drawn.looks));
     after.dedup_by_key(|drawn| drawn.vertex);
