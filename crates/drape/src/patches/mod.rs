@@ -23,12 +23,16 @@
 //! Where a model has what this does not treat (stretch that hardens or has a limit, viscosity,
 //! kept folds, moving air, contact inside triangles), the step is velocity Verlet's.
 
+mod edges;
 mod lane;
 mod limits;
 mod membrane;
+mod octets;
 mod patch;
 mod rows;
 mod sheet;
+mod stretch;
+mod tensions;
 mod touch;
 
 use crate::methods::{Method, MethodSettings, StepReport, energy_bound, is_possible_speed};
