@@ -481,8 +481,8 @@ impl pulp::WithSimd for Energy<'_> {
                     .forces
                     .bending
                     .product_points(simd, group as usize, part, x);
-                for axis in 0..3 {
-                    store::<S>(patch.gradient.axes_mut()[axis], at, bending[axis]);
+                for (axis, bending) in patch.gradient.axes_mut().into_iter().zip(bending) {
+                    store::<S>(axis, at, bending);
                 }
             }
         }
