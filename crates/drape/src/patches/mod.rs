@@ -147,23 +147,22 @@ fn take_automatic(sheet: &mut Sheet, model: &Model, step: f64) -> Result<usize, 
     if least.is_nan() || least > MOST_SUBSTEPS {
         return Err(too_stiff(least));
     }
+    let parts = (step / LOOK_STEP).ceil().max(1.0);
+    let length = step / parts;
     let mut taken = 0;
-    let mut left = step;
     let mut stretch = sheet.stretch()[0];
-    while left > 0.0 {
+    for _ in 0..parts as usize {
         sheet.save();
         for attempt in 1..=TRIES {
-            let wanted = left * stiffening(stretch) / (SHARE * longest);
+            let wanted = length * stiffening(stretch) / (SHARE * longest);
             let count = wanted.ceil().max(1.0);
-            let h = left / count;
             if wanted.is_nan() || count > MOST_SUBSTEPS {
                 let (vertex, speed) = sheet.fastest();
-                return Err(blown_up(vertex, speed, h));
+                return Err(blown_up(vertex, speed, length / count));
             }
-            let count = count as usize;
-            let now = ((LOOK_STEP / h) as usize).clamp(1, count);
-            sheet.advance(model, h, now);
-            taken += now;
+            let h = length / count;
+            sheet.advance(model, h, count as usize);
+            taken += count as usize;
             let reached = sheet.stretch()[0];
             let sound = h * stiffening(reached) <= MOST_SHARE * longest;
             // What broke away tells how far it went, not how far it would have gone.
@@ -172,11 +171,6 @@ fn take_automatic(sheet: &mut Sheet, model: &Model, step: f64) -> Result<usize, 
                 false => reached.min(3.0 * stretch).max(1.5 * stretch),
             };
             if sound {
-                left = if now == count {
-                    0.0
-                } else {
-                    left - h * now as f64
-                };
                 break;
             }
             if attempt == TRIES {

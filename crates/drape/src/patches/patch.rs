@@ -169,6 +169,10 @@ impl Patch {
         for at in 0..self.vertices.len() {
             self.load_vertex(at, positions, velocities);
         }
+        for axis in self.gradient.axes_mut() {
+            axis.fill(0.0);
+        }
+        self.forces.membrane.clear();
     }
 
     /// Copies its halo.

@@ -196,6 +196,12 @@ impl Tensions {
         runs + 2 * WIDTH * self.scattered.len() + 4 * WIDTH * self.others.len()
     }
 
+    /// Forgets strains and tensions: what blew up must not be looked at again.
+    pub fn clear(&mut self) {
+        self.strain.fill(0.0);
+        self.tension.fill(0.0);
+    }
+
     /// Measures the strains that forces within a ring look at.
     #[inline(always)]
     pub fn measure<S: Simd>(&mut self, simd: S, ring: usize, x: &Points) {
