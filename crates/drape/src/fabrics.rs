@@ -78,7 +78,8 @@ const KES_RANGE: &str = "range: Kawabata 1980, The Standardization and Analysis 
 const SUITING: &str = "mean of 214 winter suitings: Kawabata 1980, The Standardization and Analysis of Hand \
      Evaluation, table of KN-101 means (log10 B -0.8673, log10 G -0.0143, LT 0.6082, log10 WT 0.9621, \
      log10 T -0.1272, log10 W 1.4208, MIU 0.2085)";
-const DENIM: &str = "mean of six denims: Journal of Textiles 2016, article 4614168, table 5 \
+const DENIM: &str = "mean of six denims of regenerated cellulose: Kumari and Khurana 2016, Journal of \
+                     Textiles, article 4614168, table 5 \
                      (B 0.144-0.227, G 1.50-3.40, EMT 4.70-5.74 %, LT 0.655-0.780, T 0.80-1.19 mm)";
 const QUANTILES: &str = "5 % quantiles of 618 fabrics: Feng, Huang, Xu, Wang 2022, Learning-based \
                          Bending Stiffness Parameter Estimation by a Drape Tester, data set";
@@ -275,8 +276,8 @@ pub static LIBRARY: [LibraryFabric; 10] = [
         bend: kes_bend(0.03, 0.03),
         friction: 0.25,
         sources: sources(
-            "MIL-C-7020 type II: 1.6 oz/yd2",
-            "MIL-C-7020 type II: 0.004 in",
+            "MIL-C-7020 type III, ripstop: 1.6 oz/yd2",
+            "MIL-C-7020 type II, a twill of the same weight: 0.004 in",
             KES_RANGE,
             KES_RANGE,
             KES_RANGE,

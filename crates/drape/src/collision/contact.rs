@@ -8,7 +8,7 @@ use super::near::Near;
 use super::proximity::{Nearness, nearnesses};
 use super::regions::Ways;
 use super::surface::{ClothSurface, FeaturePair};
-use super::tangle::{Piercing, crossings, piercings};
+use super::tangle::{Drawn, Piercing, crossings, keep_on, piercings};
 use crate::laws::contact::{ContactLaw, ContactPlane};
 use crate::{Model, State};
 use nalgebra::Matrix3;
@@ -61,6 +61,8 @@ pub struct ClothMemory {
     /// How far off vertices on the wrong side of a layer are looked for at the next look [m]: zero where
     /// none can be, since layers that do not cross do not change sides; none before the first look.
     pub stray_reach: Option<f64>,
+    /// Which way vertices at crossings were drawn, in order of the vertices.
+    pub drawn: Vec<Drawn>,
 }
 
 /// What was found and done so far.
@@ -171,6 +173,7 @@ pub struct ClothContacts {
     pub tally: Tally,
     surface: ClothSurface,
     near: Near,
+    drawn: Vec<Drawn>,
     /// How far off contacts were last looked for [m].
     reach: f64,
     /// What a state is to remember of vertices on the wrong side of a layer, as in [`ClothMemory`].
@@ -258,6 +261,7 @@ impl ClothContacts {
             }
         }
         let mut ways = piercings(&self.surface, &own, x);
+        self.drawn = keep_on(&mut ways, &state.cloth.drawn);
         ways.extend(ways_out(&self.surface, &across, x));
         active.extend(ways.iter().filter_map(|way| self.way_out(model, x, way)));
         active.extend(strays.iter().filter_map(|s| self.way_back(model, x, s)));
@@ -303,8 +307,9 @@ impl ClothContacts {
         found
     }
 
-    /// Has a state remember what the last look found of layers.
-    pub fn remember_layers(&self, state: &mut State) {
+    /// Has a state remember what the last look found of crossings and layers.
+    pub fn remember(&self, state: &mut State) {
+        state.cloth.drawn.clone_from(&self.drawn);
         state.cloth.stray_reach = self.stray_reach.or(state.cloth.stray_reach);
     }
 
@@ -477,7 +482,7 @@ impl ClothContacts {
         }
         held.sort_unstable_by_key(|held| held.pair);
         state.cloth.held = held;
-        self.remember_layers(state);
+        self.remember(state);
         if model.contact.cloth_offset > 0.0 {
             state.cloth.places.clone_from(&state.positions);
         }

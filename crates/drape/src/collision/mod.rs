@@ -25,4 +25,4 @@ pub use layers::{BETWEEN_LAYERS, Knots, Stray, layer_order, layers_of, strays, s
 pub use proximity::{Nearness, nearnesses};
 pub use regions::Ways;
 pub use surface::{ClothSurface, FeaturePair};
-pub use tangle::{Piercing, crossings, piercings};
+pub use tangle::{Drawn, Piercing, crossings, keep_on, piercings};

@@ -18,6 +18,57 @@ pub struct Piercing {
     pub way: Vec3,
 }
 
+/// Which way a vertex at a crossing was drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drawn {
+    /// The vertex.
+    pub vertex: u32,
+    /// Unit direction.
+    pub way: Vec3,
+    /// Looks since.
+    pub looks: u32,
+}
+
+/// Looks after which it is forgotten which way a vertex was drawn.
+const MEMORY: u32 = 60;
+
+/// Directions of this length and less, summed over a piercing's vertices, cancel.
+const CANCELLED: f64 = 0.1;
+
+/// Has each piercing edge go on the way that its vertices and the face's were drawn before, in order of
+/// vertices, where its own would turn back; what is to be remembered then. Else two edges at one corner,
+/// of which now one crosses and now the other, draw the cloth to and fro for ever.
+pub fn keep_on(piercings: &mut [Piercing], before: &[Drawn]) -> Vec<Drawn> {
+    let drawn = |v: u32| {
+        let at = before.binary_search_by_key(&v, |drawn| drawn.vertex);
+        at.map_or(Vec3::zeros(), |at| before[at].way)
+    };
+    let mut after: Vec<Drawn> = Vec::new();
+    for piercing in piercings {
+        let (edge, face) = piercing.vertices.split_at(2);
+        let sum = |vertices: &[u32]| vertices.iter().map(|&v| drawn(v)).sum::<Vec3>();
+        let way = (sum(edge) - sum(face)).try_normalize(CANCELLED);
+        if let Some(way) = way.filter(|way| way.dot(&piercing.way) < 0.0) {
+            piercing.way = way;
+        }
+        let both = (edge.iter().map(|v| (*v, 1.0))).chain(face.iter().map(|v| (*v, -1.0)));
+        after.extend(both.map(|(vertex, sign)| Drawn {
+            vertex,
+            way: piercing.way * sign,
+            looks: 0,
+        }));
+    }
+    let older = before.iter().filter(|drawn| drawn.looks < MEMORY);
+    after.extend(older.map(|drawn| Drawn {
+        looks: drawn.looks + 1,
+        ..*drawn
+    }));
+    // The latest of a vertex; of one look, that of its first piercing.
+    after.sort_by_key(|drawn| (drawn.vertex, drawn.looks));
+    after.dedup_by_key(|drawn| drawn.vertex);
+    after
+}
+
 /// The cosine between edge and face's normal is not taken smaller than this: a move along the face
 /// cannot help an edge that lies in it.
 const FLAT: f64 = 0.15;
@@ -121,4 +172,44 @@ fn way_out(surface: &ClothSurface, e: usize, t: usize, x: &[Vec3]) -> Option<Pie
         weights: [1.0 - s, s, -w[0], -w[1], -w[2]],
         way,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn piercing(vertices: [u32; 5], way: Vec3) -> Piercing {
+        Piercing {
+            vertices,
+            weights: [0.5, 0.5, -0.4, -0.3, -0.3],
+            way,
+        }
+    }
+
+    #[test]
+    fn two_edges_at_one_corner_are_drawn_one_way() {
+        let mut first = [piercing([7, 1, 2, 3, 4], Vec3::x())];
+        let drawn = keep_on(&mut first, &[]);
+        assert_eq!(first[0].way, Vec3::x());
+        assert_eq!(drawn.len(), 5);
+        // The other edge would turn back, its neighbour in another corner of the cloth goes its own way.
+        let back = Vec3::new(-0.8, 0.6, 0.0);
+        let mut second = [
+            piercing([7, 8, 2, 5, 6], back),
+            piercing([20, 21, 22, 23, 24], back),
+        ];
+        let drawn = keep_on(&mut second, &drawn);
+        assert_eq!(second[0].way, Vec3::x());
+        assert_eq!(second[1].way, back);
+        // What turns less is followed.
+        let turned = Vec3::new(0.6, 0.8, 0.0);
+        let mut third = [piercing([8, 7, 2, 5, 6], turned)];
+        let mut drawn = keep_on(&mut third, &drawn);
+        assert_eq!(third[0].way, turned);
+        assert!(drawn.windows(2).all(|pair| pair[0].vertex < pair[1].vertex));
+        for _ in 0..=MEMORY {
+            drawn = keep_on(&mut [], &drawn);
+        }
+        assert_eq!(drawn, []);
+    }
 }

@@ -114,7 +114,7 @@ impl Xpbd {
                 // Two vertices may come nearer by twice the way.
                 let reach = model.contact.cloth_offset + 2.0 * watch.allowed;
                 watch.contacts.find(model, state, &state.positions, reach);
-                watch.contacts.remember_layers(state);
+                watch.contacts.remember(state);
                 watch.travelled = Some(0.0);
                 watch.time = 0.0;
                 self.touch_cloth(&watch.contacts.active);
