@@ -166,13 +166,20 @@ impl Patch {
 
     /// Copies its vertices.
     pub fn load(&mut self, positions: &[Lane], velocities: &[Lane]) {
-        for at in 0..self.vertices.len() {
-            self.load_vertex(at, positions, velocities);
-        }
-        for axis in self.gradient.axes_mut() {
+        // Lanes without a vertex too: what blew up there would come back as zero times no number.
+        let all = [
+            &mut self.positions,
+            &mut self.moved,
+            &mut self.velocities,
+            &mut self.gradient,
+        ];
+        for axis in all.into_iter().flat_map(Points::axes_mut) {
             axis.fill(0.0);
         }
         self.forces.membrane.clear();
+        for at in 0..self.vertices.len() {
+            self.load_vertex(at, positions, velocities);
+        }
     }
 
     /// Copies its halo.

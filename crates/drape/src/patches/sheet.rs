@@ -434,6 +434,25 @@ mod tests {
     }
 
     #[test]
+    fn what_blew_up_leaves_nothing_behind_when_it_is_undone() {
+        let (model, state) = falling();
+        let run = |blow_up: bool| {
+            let mut sheet = Sheet::cut_into(&model, 3);
+            sheet.start(&model, &state);
+            sheet.save();
+            if blow_up {
+                sheet.advance(&model, 1.0, 400);
+                assert!(sheet.fastest().1.is_nan());
+                assert!(sheet.stretch().iter().all(|stretch| stretch.is_nan()));
+            }
+            sheet.restore();
+            sheet.advance(&model, 2e-4, 25);
+            sheet.positions
+        };
+        assert!(run(true) == run(false));
+    }
+
+    #[test]
     fn energy_is_kept_for_long() {
         let (mut model, mut state) = falling();
         model.colliders.clear();
