@@ -21,6 +21,19 @@ impl From<Lane> for Vec3 {
 }
 
 impl Lane {
+    /// From its coordinates.
+    #[inline(always)]
+    pub fn new(x: f64, y: f64, z: f64) -> Self {
+        Self([x, y, z, 0.0])
+    }
+
+    /// Its coordinates.
+    #[inline(always)]
+    pub fn coordinates(self) -> [f64; 3] {
+        let Self([x, y, z, _]) = self;
+        [x, y, z]
+    }
+
     /// This plus `s` times another.
     #[inline(always)]
     pub fn add_scaled(self, b: Self, s: f64) -> Self {

@@ -1,18 +1,20 @@
-//! The linear membrane in terms of a triangle's edges: the form that takes few operations.
+//! The linear membrane in terms of the squared lengths of a triangle's edges.
 
-use super::Lane;
 use crate::laws::membrane::MembraneElement;
 
-/// The membrane of one triangle in terms of its edges d1 = x1 - x0, d2 = x2 - x0: with
-/// q = (d1.d1, d2.d2, 2 d1.d2) less their values at rest, Green strain is linear in q, so the
-/// energy is q.Kq / 4 with a constant 3x3 K, and with s = Kq the gradients by x1 and x2 are
-/// s0 d1 + s2 d2 and s1 d2 + s2 d1.
+/// The membrane of one triangle by its edges x1 - x0, x2 - x0 and x2 - x1: with q their squared
+/// lengths less those at rest, Green strain is linear in q, so the energy is q.Kq / 4 with a
+/// constant 3x3 K, and t = Kq are tensions: an edge from a to b has gradients t (b - a) by b and
+/// the opposite by a.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeMembrane {
-    /// Rest values of d1.d1, d2.d2, 2 d1.d2 [m2].
-    rest: [f64; 3],
-    /// K: 00, 11, 22, 01, 02, 12 [N/m3].
-    stiffness: [f64; 6],
+    /// Squared lengths at rest [m2].
+    pub rest: [f64; 3],
+    /// K [N/m3].
+    pub stiffness: [[f64; 3]; 3],
+    /// What principal stretch follows from: three weights of q [1/m2] and the inverse of four
+    /// times the squared area [1/m4].
+    pub shape: [f64; 4],
 }
 
 impl EdgeMembrane {
@@ -21,86 +23,27 @@ impl EdgeMembrane {
         let [_, w1, w2] = element.warp;
         let [_, z1, z2] = element.weft;
         let [_, d1, d2] = element.rest();
-        // Rows: E_uu, E_vv, gamma by q.
-        let strain = [
-            [0.5 * w1 * w1, 0.5 * w2 * w2, 0.5 * w1 * w2],
-            [0.5 * z1 * z1, 0.5 * z2 * z2, 0.5 * z1 * z2],
-            [w1 * z1, w2 * z2, 0.5 * (w1 * z2 + w2 * z1)],
-        ];
+        // Rows: E_uu, E_vv, gamma by q; 2 d1.d2 is the sum of the first two less the third.
+        let mixed = 0.5 * (w1 * z2 + w2 * z1);
+        let u = [0.5 * w1 * (w1 + w2), 0.5 * w2 * (w1 + w2), -0.5 * w1 * w2];
+        let v = [0.5 * z1 * (z1 + z2), 0.5 * z2 * (z1 + z2), -0.5 * z1 * z2];
+        let s = [w1 * z1 + mixed, w2 * z2 + mixed, -mixed];
         let [c11, c22, c12, g] = law;
         let entry = |i: usize, j: usize| {
-            let [u, v, s] = strain;
             2.0 * element.area
                 * (c11 * u[i] * u[j]
                     + c22 * v[i] * v[j]
                     + c12 * (u[i] * v[j] + v[i] * u[j])
                     + g * s[i] * s[j])
         };
+        let (r11, r22, r12) = (d1.norm_squared(), d2.norm_squared(), d1.dot(&d2));
+        let inverse = 1.0 / (r11 * r22 - r12 * r12);
+        let half = 0.5 * inverse;
         Self {
-            rest: [d1.norm_squared(), d2.norm_squared(), 2.0 * d1.dot(&d2)],
-            stiffness: [
-                entry(0, 0),
-                entry(1, 1),
-                entry(2, 2),
-                entry(0, 1),
-                entry(0, 2),
-                entry(1, 2),
-            ],
+            rest: [r11, r22, (d2 - d1).norm_squared()],
+            stiffness: [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))),
+            shape: [half * (r22 - r12), half * (r11 - r12), half * r12, inverse],
         }
-    }
-
-    /// Its numbers, bit by bit.
-    pub fn bits(&self) -> [u64; 9] {
-        let ([a, b, c], [d, e, f, g, h, i]) = (self.rest, self.stiffness);
-        [a, b, c, d, e, f, g, h, i].map(f64::to_bits)
-    }
-
-    #[inline(always)]
-    fn strain_and_slope(&self, [d1, d2]: [Lane; 2]) -> [[f64; 3]; 2] {
-        let q = [
-            d1.dot(d1) - self.rest[0],
-            d2.dot(d2) - self.rest[1],
-            2.0f64.mul_add(d1.dot(d2), -self.rest[2]),
-        ];
-        let k = &self.stiffness;
-        let s = [
-            k[0].mul_add(q[0], k[3].mul_add(q[1], k[4] * q[2])),
-            k[3].mul_add(q[0], k[1].mul_add(q[1], k[5] * q[2])),
-            k[4].mul_add(q[0], k[5].mul_add(q[1], k[2] * q[2])),
-        ];
-        [q, s]
-    }
-
-    /// The gradient of its energy by the corners 1 and 2 [N], from the edges to them; that by
-    /// corner 0 is minus their sum.
-    #[inline(always)]
-    pub fn gradient(&self, [d1, d2]: [Lane; 2]) -> [Lane; 2] {
-        let [_, s] = self.strain_and_slope([d1, d2]);
-        [
-            d1.scaled(s[0]).add_scaled(d2, s[2]),
-            d2.scaled(s[1]).add_scaled(d1, s[2]),
-        ]
-    }
-
-    /// Its energy [J].
-    #[inline(always)]
-    pub fn energy(&self, edges: [Lane; 2]) -> f64 {
-        let [q, s] = self.strain_and_slope(edges);
-        0.25 * (q[0] * s[0] + q[1] * s[1] + q[2] * s[2])
-    }
-
-    /// Largest and smallest principal squared stretch: eigenvalues of the present metric by the
-    /// one at rest. A triangle folded onto a line counts too: warp and weft then pull the same
-    /// way, and the square is up to 2.
-    #[inline(always)]
-    pub fn squared_stretch(&self, [d1, d2]: [Lane; 2]) -> [f64; 2] {
-        let (c11, c22, c12) = (d1.dot(d1), d2.dot(d2), d1.dot(d2));
-        let [r11, r22, r12] = [self.rest[0], self.rest[1], 0.5 * self.rest[2]];
-        let rest = r11 * r22 - r12 * r12;
-        let half = 0.5 * (c11 * r22 + c22 * r11 - 2.0 * c12 * r12) / rest;
-        let product = (c11 * c22 - c12 * c12) / rest;
-        let root = (half * half - product).max(0.0).sqrt();
-        [half + root, half - root]
     }
 }
 
@@ -125,29 +68,20 @@ mod tests {
             Vec3::new(0.019, 0.004, -0.003),
             Vec3::new(0.005, 0.016, 0.006),
         ];
-        let edges = [1, 2].map(|k| Lane::from(x[k] - x[0]));
-        let got = membrane.gradient(edges);
-        let (energy, expected) = element.gradient(&MembraneLaw::linear(law), x);
-        for (got, expected) in got.iter().zip(&expected[1..]) {
-            assert!((Vec3::from(*got) - expected).norm() < 1e-12);
-        }
-        assert!((membrane.energy(edges) - energy).abs() < 1e-12 * energy);
-    }
-
-    #[test]
-    fn principal_stretch_is_that_of_the_deformation() {
-        let rest = [
-            Vec2::zeros(),
-            Vec2::new(0.02, 0.001),
-            Vec2::new(0.004, 0.017),
+        let edges = [x[1] - x[0], x[2] - x[0], x[2] - x[1]];
+        let q = [0, 1, 2].map(|k| edges[k].norm_squared() - membrane.rest[k]);
+        let k = membrane.stiffness;
+        let t = k.map(|row| row[0] * q[0] + row[1] * q[1] + row[2] * q[2]);
+        let got = [
+            edges[0] * -t[0] - edges[1] * t[1],
+            edges[0] * t[0] - edges[2] * t[2],
+            edges[1] * t[1] + edges[2] * t[2],
         ];
-        let element = MembraneElement::new(rest).expect("has area");
-        let membrane = EdgeMembrane::new(&element, [1.0, 1.0, 0.0, 1.0]);
-        let drawn = [1, 2].map(|k| Lane::from(Vec3::new(1.3 * rest[k].x, 0.0, 0.8 * rest[k].y)));
-        let [high, low] = membrane.squared_stretch(drawn);
-        assert!(
-            (high - 1.69).abs() < 1e-9 && (low - 0.64).abs() < 1e-9,
-            "{high} {low}"
-        );
+        let (energy, expected) = element.gradient(&MembraneLaw::linear(law), x);
+        for (got, expected) in got.iter().zip(&expected) {
+            assert!((got - expected).norm() < 1e-12);
+        }
+        let sum = 0.25 * (q[0] * t[0] + q[1] * t[1] + q[2] * t[2]);
+        assert!((sum - energy).abs() < 1e-12 * energy);
     }
 }

@@ -7,64 +7,49 @@
 //! meanwhile. Rings that are spoiled already are not moved any more.
 
 use super::Lane;
-use super::membrane::EdgeMembrane;
-use super::rows::Rows;
+use super::octets::{PAD, Points, load, padded, parts, place, store};
+use super::rows::{Rows, rounding};
+use super::tensions::{Ground, Tensions, within};
 use super::touch::Touching;
 use crate::{Elastic, ElasticEnd, Model};
-use std::collections::BTreeMap;
+use pulp::Simd;
 
 /// Vertices moved by one task.
 pub struct Patch {
-    /// Its vertices in the model: those it owns first, then the halo ring by ring.
+    /// Its vertices in the model, in its own order.
     pub vertices: Vec<u32>,
-    /// Positions [m] of its vertices.
-    pub positions: Vec<Lane>,
-    /// Velocities [m/s] of its vertices.
-    pub velocities: Vec<Lane>,
     /// Contacts of its vertices, by their places in it.
     pub touching: Vec<Touching>,
     /// Largest and smallest principal squared stretch when last measured.
     pub stretch: [f64; 2],
     /// Energy of motion, stretch and bending [J] when last measured, of what it owns.
     pub energy: f64,
+    positions: Points,
+    velocities: Points,
+    gradient: Points,
+    moved: Points,
     /// Where each vertex of the model lies in it; [`NOWHERE`] outside.
     local: Vec<u32>,
-    /// How many vertices lie within each ring; the first are those it owns.
-    vertex_end: Vec<usize>,
-    /// Triangles in the order of their innermost ring.
-    triangles: Vec<Triangle>,
-    /// How many triangles have a corner within each ring.
-    triangle_end: Vec<usize>,
-    /// Their membranes; those that are alike kept once.
-    membranes: Vec<EdgeMembrane>,
-    rows: Rows,
+    /// The ring of each vertex; zero are those it owns.
+    ring: Vec<usize>,
+    /// Owned vertices that others look at.
+    border: Vec<u32>,
+    /// Vertices it does not own.
+    halo: Vec<u32>,
+    /// Groups with a vertex within each ring.
+    groups: Vec<Vec<u32>>,
+    /// Inverse masses [1/kg], zero where pinned.
+    inverse_mass: Vec<f64>,
+    /// One where a vertex falls, zero where pinned.
+    falls: Vec<f64>,
+    forces: Forces,
     elastics: Vec<Elastic>,
-    inertia: Vec<Inertia>,
-    gradient: Vec<Lane>,
-    moved: Vec<Lane>,
 }
 
-#[derive(Clone, Copy)]
-struct Triangle {
-    corners: [u32; 3],
-    membrane: u32,
-}
-
-impl Triangle {
-    #[inline(always)]
-    fn edges(&self, x: &[Lane]) -> [Lane; 2] {
-        let [a, b, c] = self.corners.map(|c| x[c as usize]);
-        [b.minus(a), c.minus(a)]
-    }
-}
-
-/// How a vertex answers to force and to gravity.
-#[derive(Clone, Copy)]
-struct Inertia {
-    /// Its inverse mass [1/kg], zero where pinned.
-    inverse_mass: f64,
-    /// One where it falls, zero where pinned.
-    falls: f64,
+/// The stiffness of a patch.
+struct Forces {
+    bending: Rows,
+    membrane: Tensions,
 }
 
 /// What acts for some substeps.
@@ -82,98 +67,154 @@ pub struct Course {
 
 const NOWHERE: u32 = u32::MAX;
 
-/// Streams of triangles that are worked on in turn.
-const STREAMS: usize = 4;
-
 impl Patch {
     /// A patch that owns some vertices, with a halo of `rings` rings.
+    ///
+    /// Its vertices stand in the order of the model, or first all even and then all odd ones,
+    /// whichever lets more operands lie side by side: on a grid with alternating diagonals every
+    /// other vertex is alike.
     pub fn new(model: &Model, owned: Vec<u32>, rings: usize) -> Self {
-        let (vertices, vertex_end) = with_halo(model, owned, rings);
+        let inside = with_halo(model, owned, rings);
+        let in_turn: Vec<(u32, usize)> = inside;
+        let mut by_parity = in_turn.clone();
+        by_parity.sort_unstable_by_key(|&(v, _)| (v % 2, v));
+        let [first, second] = [in_turn, by_parity].map(|order| Self::in_order(model, &order));
+        if second.forces.cost() < first.forces.cost() {
+            second
+        } else {
+            first
+        }
+    }
+
+    /// A patch of some vertices with their rings.
+    fn in_order(model: &Model, order: &[(u32, usize)]) -> Self {
+        let (vertices, ring): (Vec<u32>, Vec<usize>) = order.iter().copied().unzip();
+        let count = vertices.len();
         let mut local = vec![NOWHERE; model.vertex_count()];
+        let (mut inverse_mass, mut falls) = (padded(count), padded(count));
         for (at, &v) in vertices.iter().enumerate() {
             local[v as usize] = at as u32;
+            if !model.pinned[v as usize] {
+                (inverse_mass[PAD + at], falls[PAD + at]) = (1.0 / model.mass[v as usize], 1.0);
+            }
         }
-        let within = |v: u32| Some(local[v as usize]).filter(|&at| at != NOWHERE);
-        let inertia = |&v: &u32| match model.pinned[v as usize] {
-            true => Inertia {
-                inverse_mass: 0.0,
-                falls: 0.0,
-            },
-            false => Inertia {
-                inverse_mass: 1.0 / model.mass[v as usize],
-                falls: 1.0,
-            },
-        };
+        let within_it = |v: u32| Some(local[v as usize]).filter(|&at| at != NOWHERE);
         let elastics = model.elastics.iter().filter_map(|elastic| {
             Some(Elastic {
-                from: within(elastic.from)?,
+                from: within_it(elastic.from)?,
                 to: match elastic.to {
-                    ElasticEnd::Vertex(v) => ElasticEnd::Vertex(within(v)?),
+                    ElasticEnd::Vertex(v) => ElasticEnd::Vertex(within_it(v)?),
                     point => point,
                 },
                 law: elastic.law,
             })
         });
-        let mut patch = Self {
+        let triangles: Vec<(usize, [u32; 3])> = (model.triangles.iter().enumerate())
+            .map(|(t, corners)| (t, corners.map(|v| local[v as usize])))
+            .filter(|(_, corners)| !corners.contains(&NOWHERE))
+            .collect();
+        let rings = ring.iter().max().map_or(1, |most| most + 1);
+        Self {
             elastics: elastics.collect(),
-            rows: Rows::new(model, &vertices, within),
-            inertia: vertices.iter().map(inertia).collect(),
-            positions: vec![Lane::default(); vertices.len()],
-            velocities: vec![Lane::default(); vertices.len()],
-            gradient: vec![Lane::default(); vertices.len()],
-            moved: vec![Lane::default(); vertices.len()],
+            forces: Forces {
+                bending: Rows::new(&bending_rows(model, &vertices, within_it)),
+                membrane: Tensions::new(&Ground {
+                    model,
+                    triangles: &triangles,
+                    ring: &ring,
+                    vertices: &vertices,
+                }),
+            },
+            groups: within(&ring, rings),
+            positions: Points::new(count),
+            velocities: Points::new(count),
+            gradient: Points::new(count),
+            moved: Points::new(count),
+            border: Vec::new(),
+            halo: (0u32..)
+                .zip(&ring)
+                .filter(|(_, ring)| **ring > 0)
+                .map(|(at, _)| at)
+                .collect(),
             touching: Vec::new(),
             stretch: [1.0; 2],
             energy: 0.0,
+            inverse_mass,
+            falls,
             local,
-            vertex_end,
-            triangles: Vec::new(),
-            triangle_end: Vec::new(),
-            membranes: Vec::new(),
+            ring,
             vertices,
-        };
-        patch.add_triangles(model);
-        patch
-    }
-
-    fn add_triangles(&mut self, model: &Model) {
-        let mut by_ring = vec![Vec::new(); self.vertex_end.len()];
-        let mut known: BTreeMap<[u64; 9], u32> = BTreeMap::new();
-        for (t, corners) in model.triangles.iter().enumerate() {
-            let corners = corners.map(|v| self.local[v as usize]);
-            let innermost = corners[0].min(corners[1]).min(corners[2]) as usize;
-            if corners.contains(&NOWHERE) {
-                continue;
-            }
-            let law = model.laws[model.material[t] as usize].stiffness;
-            let made = EdgeMembrane::new(&model.elements[t], law);
-            let membrane = *known.entry(made.bits()).or_insert_with(|| {
-                self.membranes.push(made);
-                self.membranes.len() as u32 - 1
-            });
-            // Vertices are in the order of their rings.
-            let ring = self.vertex_end.partition_point(|&end| end <= innermost);
-            by_ring[ring].push(Triangle { corners, membrane });
-        }
-        for of_ring in &by_ring {
-            self.triangles.extend(interleaved(of_ring));
-            self.triangle_end.push(self.triangles.len());
         }
     }
 
-    /// How many vertices it owns.
-    pub fn owned(&self) -> usize {
-        self.vertex_end[0]
+    /// Whether a vertex, by its place in the patch, is its own.
+    pub fn owns(&self, at: usize) -> bool {
+        self.ring[at] == 0
+    }
+
+    /// Names the vertices that others look at: it hands them over when patches meet.
+    pub fn share(&mut self, looked_at: impl Fn(u32) -> bool) {
+        let places = 0..self.vertices.len();
+        let shared = places.filter(|&at| self.owns(at) && looked_at(self.vertices[at]));
+        self.border = shared.map(|at| at as u32).collect();
+    }
+
+    /// The vertices of its halo, in the model.
+    pub fn halo(&self) -> impl Iterator<Item = u32> {
+        self.halo.iter().map(|&at| self.vertices[at as usize])
     }
 
     /// Copies its vertices.
     pub fn load(&mut self, positions: &[Lane], velocities: &[Lane]) {
-        let lanes = self.positions.iter_mut().zip(&mut self.velocities);
-        for ((x, v), &at) in lanes.zip(&self.vertices) {
-            *x = positions[at as usize];
-            *v = velocities[at as usize];
+        // Lanes without a vertex too: what blew up there would come back as zero times no number.
+        let all = [
+            &mut self.positions,
+            &mut self.moved,
+            &mut self.velocities,
+            &mut self.gradient,
+        ];
+        for axis in all.into_iter().flat_map(Points::axes_mut) {
+            axis.fill(0.0);
         }
-        self.gradient.fill(Lane::default());
+        self.forces.membrane.clear();
+        for at in 0..self.vertices.len() {
+            self.load_vertex(at, positions, velocities);
+        }
+    }
+
+    /// Copies its halo.
+    pub fn load_halo(&mut self, positions: &[Lane], velocities: &[Lane]) {
+        for k in 0..self.halo.len() {
+            self.load_vertex(self.halo[k] as usize, positions, velocities);
+        }
+    }
+
+    fn load_vertex(&mut self, at: usize, positions: &[Lane], velocities: &[Lane]) {
+        let v = self.vertices[at] as usize;
+        // Into both: what is spoiled is not moved any more, but it is looked at.
+        self.positions.set(at, positions[v]);
+        self.moved.set(at, positions[v]);
+        self.velocities.set(at, velocities[v]);
+    }
+
+    /// Hands over what it owns.
+    pub fn unload(&self, positions: &mut [Lane], velocities: &mut [Lane]) {
+        for at in (0..self.vertices.len()).filter(|&at| self.owns(at)) {
+            self.unload_vertex(at, positions, velocities);
+        }
+    }
+
+    /// Hands over what others look at.
+    pub fn unload_border(&self, positions: &mut [Lane], velocities: &mut [Lane]) {
+        for &at in &self.border {
+            self.unload_vertex(at as usize, positions, velocities);
+        }
+    }
+
+    fn unload_vertex(&self, at: usize, positions: &mut [Lane], velocities: &mut [Lane]) {
+        let v = self.vertices[at] as usize;
+        positions[v] = self.positions.get(at);
+        velocities[v] = self.velocities.get(at);
     }
 
     /// Takes over the contacts at its vertices.
@@ -210,25 +251,15 @@ impl Patch {
     }
 
     #[inline(always)]
-    fn drift(&mut self, h: f64) {
-        for (x, v) in self.positions.iter_mut().zip(&self.velocities) {
-            *x = x.add_scaled(*v, h);
-        }
-    }
-
-    #[inline(always)]
-    fn add_membrane(&mut self, ring: usize) {
-        // Of one length, so that an index is checked once.
-        let x = &self.positions[..];
-        let gradient = &mut self.gradient[..x.len()];
-        let membranes = &self.membranes[..];
-        for triangle in &self.triangles[..self.triangle_end[ring]] {
-            let edges = triangle.edges(x);
-            let [by_1, by_2] = membranes[triangle.membrane as usize].gradient(edges);
-            let [a, b, c] = triangle.corners.map(|c| c as usize);
-            gradient[a] = gradient[a].minus(by_1.plus(by_2));
-            gradient[b] = gradient[b].plus(by_1);
-            gradient[c] = gradient[c].plus(by_2);
+    fn drift<S: Simd>(&mut self, simd: S, h: f64) {
+        let h = simd.splat_f64s(h);
+        let (x, v) = (self.positions.axes_mut(), self.velocities.axes());
+        for (x, v) in x.into_iter().zip(v) {
+            // Padded arrays are whole groups.
+            let (x, v) = (S::as_mut_simd_f64s(x).0, S::as_simd_f64s(v).0);
+            for (x, v) in x.iter_mut().zip(v) {
+                *x = simd.mul_add_f64s(*v, h, *x);
+            }
         }
     }
 
@@ -236,10 +267,10 @@ impl Patch {
     fn add_contacts(&mut self, ring: usize, h: f64) {
         for contact in &mut self.touching {
             let at = contact.vertex as usize;
-            if at < self.vertex_end[ring] {
-                let (x, v) = (self.positions[at], self.velocities[at]);
-                let force = contact.press(x, v, 1.0 / self.inertia[at].inverse_mass, h);
-                self.gradient[at] = self.gradient[at].minus(force);
+            if self.ring[at] <= ring {
+                let (x, v) = (self.positions.get(at), self.velocities.get(at));
+                let force = contact.press(x, v, 1.0 / self.inverse_mass[PAD + at], h);
+                self.gradient.add(at, force.scaled(-1.0));
             }
         }
     }
@@ -248,41 +279,116 @@ impl Patch {
     fn add_elastics(&mut self) {
         for elastic in &self.elastics {
             let from = elastic.from as usize;
-            let gap = self.positions[from].minus(end_of(elastic, &self.positions));
-            let secant = elastic.law.secant(gap.into());
-            self.gradient[from] = self.gradient[from].add_scaled(gap, secant);
+            let end = match elastic.to {
+                ElasticEnd::Vertex(v) => self.positions.get(v as usize),
+                ElasticEnd::Point(p) => p.into(),
+            };
+            let gap = self.positions.get(from).minus(end);
+            let pull = gap.scaled(elastic.law.secant(gap.into()));
+            self.gradient.add(from, pull);
             if let ElasticEnd::Vertex(v) = elastic.to {
-                let to = &mut self.gradient[v as usize];
-                *to = to.add_scaled(gap, -secant);
+                self.gradient.add(v as usize, pull.scaled(-1.0));
             }
         }
     }
 
-    /// Adds bending, then v = ((1 - c h/2) v + h a) / (1 + c h/2) with drag c, x = x + `drift` v;
-    /// the gradient is cleared for the next.
+    /// Adds stretch and bending, then v = ((1 - c h/2) v + h a) / (1 + c h/2) with drag c,
+    /// x = x + `drift` v; the gradient is cleared for the next.
     #[inline(always)]
-    fn kick_and_drift(&mut self, ring: usize, course: Course, drift: f64) {
+    fn kick_and_drift<S: Simd>(&mut self, simd: S, ring: usize, course: Course, drift: f64) {
         let half = 0.5 * course.drag * course.h;
         let (keep, gain) = ((1.0 - half) / (1.0 + half), course.h / (1.0 + half));
-        let end = self.vertex_end[ring];
-        let (x, rows) = (&self.positions[..], &self.rows);
-        let moving = self.moved[..end].iter_mut().zip(&mut self.velocities);
-        let acting = self.gradient.iter_mut().zip(&self.inertia);
-        for (at, ((to, v), (g, m))) in moving.zip(acting).enumerate() {
-            let gradient = g.plus(rows.gradient(at, x));
-            *v = v
-                .scaled(keep)
-                .add_scaled(course.gravity, gain * m.falls)
-                .add_scaled(gradient, -gain * m.inverse_mass);
-            *to = x[at].add_scaled(*v, drift);
-            *g = Lane::default();
+        let fall = course.gravity.scaled(gain).coordinates();
+        let fall = [0, 1, 2].map(|axis| simd.splat_f64s(fall[axis]));
+        let [keep, gain, drift] = [keep, -gain, drift].map(|k| simd.splat_f64s(k));
+        let x = self.positions.axes();
+        let (v, g) = (self.velocities.axes_mut(), self.gradient.axes_mut());
+        let to = self.moved.axes_mut();
+        for &group in &self.groups[ring] {
+            for part in 0..parts::<S>() {
+                let at = place::<S>(group as usize, part);
+                let force = self.forces.gradient(simd, group as usize, part, x);
+                let inverse_mass = load::<S>(&self.inverse_mass, at);
+                let (falls, gain) = (
+                    load::<S>(&self.falls, at),
+                    simd.mul_f64s(gain, inverse_mass),
+                );
+                for axis in 0..3 {
+                    let force = simd.add_f64s(force[axis], load::<S>(g[axis], at));
+                    let v_new = simd.mul_f64s(load::<S>(v[axis], at), keep);
+                    let v_new = simd.mul_add_f64s(fall[axis], falls, v_new);
+                    let v_new = simd.mul_add_f64s(gain, force, v_new);
+                    store::<S>(v[axis], at, v_new);
+                    let x_new = simd.mul_add_f64s(v_new, drift, load::<S>(x[axis], at));
+                    store::<S>(to[axis], at, x_new);
+                    store::<S>(g[axis], at, simd.splat_f64s(0.0));
+                }
+            }
         }
         std::mem::swap(&mut self.positions, &mut self.moved);
     }
 }
 
+impl Forces {
+    /// Numbers of runs that the loads of a substep are worth.
+    fn cost(&self) -> usize {
+        4 * self.bending.cost() + self.membrane.cost()
+    }
+
+    /// The gradient of stretch and bending by a part of a group of vertices [N].
+    #[inline(always)]
+    fn gradient<S: Simd>(
+        &self,
+        simd: S,
+        group: usize,
+        part: usize,
+        x: [&[f64]; 3],
+    ) -> [S::f64s; 3] {
+        let bending = self.bending.product_points(simd, group, part, x);
+        let membrane = self.membrane.gradient(simd, group, part, x);
+        [
+            simd.add_f64s(bending[0], membrane[0]),
+            simd.add_f64s(bending[1], membrane[1]),
+            simd.add_f64s(bending[2], membrane[2]),
+        ]
+    }
+}
+
+/// The rows of the bending matrix for some vertices; `local` says where a vertex of the model lies
+/// in the patch, and a row that looks outside it is left empty.
+///
+/// The matrix stays symmetric, so momentum is kept, and the diagonal is minus the sum of the
+/// others, so that a shift of the cloth bends nothing.
+fn bending_rows(
+    model: &Model,
+    vertices: &[u32],
+    local: impl Fn(u32) -> Option<u32>,
+) -> Vec<Vec<(u32, f64)>> {
+    let diagonals = (0..model.vertex_count()).map(|v| model.bending.diagonal(v));
+    let round = rounding(diagonals.fold(f64::MIN_POSITIVE, f64::max));
+    let entry = |row: u32, column: u32| {
+        let (columns, values) = model.bending.row_entries(row as usize);
+        columns.binary_search(&column).map_or(0.0, |at| values[at])
+    };
+    let row = |&v: &u32| {
+        let (columns, _) = model.bending.row_entries(v as usize);
+        let mut row = Vec::new();
+        let mut diagonal = 0.0;
+        for &column in columns.iter().filter(|&&column| column != v) {
+            let Some(at) = local(column) else {
+                return Vec::new();
+            };
+            let value = round(entry(v.min(column), v.max(column)));
+            row.push((at, value));
+            diagonal -= value;
+        }
+        row.extend(local(v).map(|at| (at, diagonal)));
+        row
+    };
+    vertices.iter().map(row).collect()
+}
+
 /// Two pairs of largest and smallest as one; what is no number stays.
-#[inline(always)]
 pub fn wider([most, least]: [f64; 2], [high, low]: [f64; 2]) -> [f64; 2] {
     let lost = most.is_nan() || least.is_nan();
     [
@@ -299,42 +405,33 @@ pub fn end_of(elastic: &Elastic, positions: &[Lane]) -> Lane {
     }
 }
 
-/// Some vertices and those that forces at them look at, `rings` times, ring by ring, with how many
-/// lie within each ring.
-fn with_halo(model: &Model, mut vertices: Vec<u32>, rings: usize) -> (Vec<u32>, Vec<usize>) {
+/// Some vertices and those that forces at them look at, `rings` times, each with its ring, in the
+/// order of the model.
+fn with_halo(model: &Model, owned: Vec<u32>, rings: usize) -> Vec<(u32, usize)> {
     let mut inside = vec![false; model.vertex_count()];
-    for &v in &vertices {
+    for &v in &owned {
         inside[v as usize] = true;
     }
-    let mut ends = vec![vertices.len()];
+    let mut vertices: Vec<(u32, usize)> = owned.into_iter().map(|v| (v, 0)).collect();
     let mut front = 0;
-    for _ in 0..rings {
+    for ring in 1..=rings {
         let end = vertices.len();
         for at in front..end {
-            let v = vertices[at] as usize;
+            let v = vertices[at].0 as usize;
             let uses = model.corner_start[v] as usize..model.corner_start[v + 1] as usize;
             let corners = model.corners[uses].iter();
             let triangles = corners.flat_map(|&corner| model.triangles[corner as usize / 3]);
             let (columns, _) = model.bending.row_entries(v);
             for u in triangles.chain(columns.iter().copied()) {
                 if !std::mem::replace(&mut inside[u as usize], true) {
-                    vertices.push(u);
+                    vertices.push((u, ring));
                 }
             }
         }
-        ends.push(vertices.len());
         front = end;
     }
-    (vertices, ends)
-}
-
-/// Triangles in an order in which neighbours follow one another only after [`STREAMS`] others: a
-/// sum at a vertex need not wait then for the one just stored there.
-fn interleaved(triangles: &[Triangle]) -> impl Iterator<Item = Triangle> {
-    let length = triangles.len().div_ceil(STREAMS);
-    (0..length)
-        .flat_map(move |at| (0..STREAMS).map(move |stream| stream * length + at))
-        .filter_map(|at| triangles.get(at).copied())
+    vertices.sort_unstable();
+    vertices
 }
 
 struct Run<'a> {
@@ -346,17 +443,18 @@ impl pulp::WithSimd for Run<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let (patch, course) = (self.patch, self.course);
-        let outermost = patch.vertex_end.len() - 1;
-        patch.drift(0.5 * course.h);
+        let outermost = patch.groups.len() - 1;
+        patch.drift(simd, 0.5 * course.h);
         for left in (0..course.count).rev() {
             let ring = left.min(outermost);
             let drift = if left == 0 { 0.5 * course.h } else { course.h };
-            patch.add_membrane(ring);
+            patch.forces.membrane.measure(simd, ring, &patch.positions);
+            patch.forces.membrane.draw(simd, ring);
             patch.add_contacts(ring, course.h);
             patch.add_elastics();
-            patch.kick_and_drift(ring, course, drift);
+            patch.kick_and_drift(simd, ring, course, drift);
         }
     }
 }
@@ -369,14 +467,9 @@ impl pulp::WithSimd for Stretch<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let patch = self.patch;
-        patch.stretch = [1.0; 2];
-        for triangle in &patch.triangles[..patch.triangle_end[0]] {
-            let edges = triangle.edges(&patch.positions);
-            let membrane = &patch.membranes[triangle.membrane as usize];
-            patch.stretch = wider(patch.stretch, membrane.squared_stretch(edges));
-        }
+        patch.stretch = patch.forces.membrane.stretch(simd, &patch.positions);
     }
 }
 
@@ -388,22 +481,33 @@ impl pulp::WithSimd for Energy<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let patch = self.patch;
-        let owned = patch.owned();
-        patch.energy = 0.0;
-        for triangle in &patch.triangles[..patch.triangle_end[0]] {
-            if (triangle.corners[0] as usize) < owned {
-                let membrane = &patch.membranes[triangle.membrane as usize];
-                patch.energy += membrane.energy(triangle.edges(&patch.positions));
+        patch.energy = patch.forces.membrane.energy(simd, &patch.positions);
+        let x = patch.positions.axes();
+        for &group in &patch.groups[0] {
+            for part in 0..parts::<S>() {
+                let at = place::<S>(group as usize, part);
+                let bending = patch
+                    .forces
+                    .bending
+                    .product_points(simd, group as usize, part, x);
+                for (axis, bending) in patch.gradient.axes_mut().into_iter().zip(bending) {
+                    store::<S>(axis, at, bending);
+                }
             }
         }
-        for (at, v) in patch.velocities[..owned].iter().enumerate() {
-            if patch.inertia[at].falls > 0.0 {
-                patch.energy += 0.5 * v.dot(*v) / patch.inertia[at].inverse_mass;
+        for at in 0..patch.vertices.len() {
+            if patch.ring[at] == 0 {
+                let v = patch.velocities.get(at);
+                if patch.falls[PAD + at] > 0.0 {
+                    patch.energy += 0.5 * v.dot(v) / patch.inverse_mass[PAD + at];
+                }
+                patch.energy += 0.5 * patch.gradient.get(at).dot(patch.positions.get(at));
             }
-            let bending = patch.rows.gradient(at, &patch.positions);
-            patch.energy += 0.5 * bending.dot(patch.positions[at]);
+        }
+        for axis in patch.gradient.axes_mut() {
+            axis.fill(0.0);
         }
     }
 }

@@ -1,143 +1,262 @@
-//! Bending as rows of a constant matrix, the values of rows that are alike kept once.
+//! Sparse constant matrices for groups of rows, the values of groups that are alike kept once.
 
-use super::Lane;
-use crate::Model;
+use super::octets::{Octet, PAD, Places, WIDTH, gather, gather_points, load, load_points};
+use pulp::Simd;
 use std::collections::BTreeMap;
 
-/// Entries of a row summed side by side: one need not wait for the last. Rows are filled up to a
-/// multiple of it with zeros.
-const TOGETHER: usize = 4;
-
-/// Rows of the bending matrix for the vertices of a patch.
+/// A constant matrix. A group of eight rows has entries: a value for every row and where its
+/// eight operands lie.
 #[derive(Default)]
 pub struct Rows {
-    /// Where the columns of each vertex begin; one more than there are vertices.
-    start: Vec<u32>,
-    /// Neighbours, by their places in the patch.
-    columns: Vec<u32>,
-    /// Where the values of each vertex begin.
-    values_at: Vec<u32>,
-    /// Values of the rows [N/m].
-    values: Vec<f64>,
+    groups: Vec<Group>,
+    /// Where operands that lie side by side begin.
+    runs: Vec<u32>,
+    /// Where others lie.
+    scattered: Vec<Places>,
+    values: Vec<Octet>,
 }
+
+/// Where the entries of a group end, and where its values begin: of its runs, then of the others.
+#[derive(Clone, Copy, Default)]
+struct Group {
+    runs: u32,
+    scattered: u32,
+    values: u32,
+}
+
+/// What a load in no order costs in loads of runs.
+const SCATTERED_COST: usize = 6;
+
+/// Entries of a row, a run, or a lane: a place, or a lane, and a value.
+type Entries = Vec<(u32, f64)>;
 
 impl Rows {
-    /// The rows of some vertices; `local` says where a vertex of the model lies in the patch, and
-    /// a row that looks outside it is left empty.
-    ///
-    /// Values are rounded to 2^-44 of the largest, which makes the rows of a regular mesh alike to
-    /// the last bit. The matrix stays symmetric, so momentum is kept, and the diagonal is minus
-    /// the sum of the others, so that a shift of the cloth bends nothing.
-    pub fn new(model: &Model, vertices: &[u32], local: impl Fn(u32) -> Option<u32>) -> Self {
-        let mut rows = Self {
-            start: vec![0],
-            ..Self::default()
-        };
-        let diagonals = (0..model.vertex_count()).map(|v| model.bending.diagonal(v));
-        let largest = diagonals.fold(f64::MIN_POSITIVE, f64::max);
-        let quantum = (largest.log2().floor() - 44.0)
-            .exp2()
-            .max(f64::MIN_POSITIVE);
+    /// From the columns and values of each row.
+    pub fn new(rows: &[Entries]) -> Self {
+        let mut made = Self::default();
         let mut known: BTreeMap<Vec<u64>, u32> = BTreeMap::new();
-        let mut values = Vec::new();
-        for &v in vertices {
-            let (columns, _) = model.bending.row_entries(v as usize);
-            let first = rows.columns.len();
-            values.clear();
-            if columns.iter().all(|&column| local(column).is_some()) {
-                let mut diagonal = 0.0;
-                for &column in columns.iter().filter(|&&column| column != v) {
-                    let value = entry(model, v.min(column), v.max(column));
-                    let value = (value / quantum).round() * quantum;
-                    rows.columns.extend(local(column));
-                    values.push(value);
-                    diagonal -= value;
-                }
-                rows.columns.extend(local(v));
-                values.push(diagonal);
-                while !values.len().is_multiple_of(TOGETHER) {
-                    rows.columns.extend(local(v));
-                    values.push(0.0);
-                }
-            }
-            debug_assert_eq!(rows.columns.len() - first, values.len());
-            let bits = values.iter().map(|value| value.to_bits()).collect();
+        for group in rows.chunks(WIDTH) {
+            let values = made.add_entries(group);
+            let numbers = values.iter().flat_map(|octet: &Octet| octet.0);
+            let bits = numbers.map(f64::to_bits).collect();
             let at = *known.entry(bits).or_insert_with(|| {
-                rows.values.extend_from_slice(&values);
-                (rows.values.len() - values.len()) as u32
+                made.values.extend_from_slice(&values);
+                (made.values.len() - values.len()) as u32
             });
-            rows.values_at.push(at);
-            rows.start.push(rows.columns.len() as u32);
+            made.groups.push(Group {
+                runs: made.runs.len() as u32,
+                scattered: made.scattered.len() as u32,
+                values: at,
+            });
         }
-        rows
+        made
     }
 
-    /// A row times the places: the gradient of the bending energy at a vertex [N].
-    #[inline(always)]
-    pub fn gradient(&self, v: usize, x: &[Lane]) -> Lane {
-        let columns = &self.columns[self.start[v] as usize..self.start[v + 1] as usize];
-        let values = &self.values[self.values_at[v] as usize..][..columns.len()];
-        let mut sums = [Lane::default(); TOGETHER];
-        let groups = columns.chunks_exact(TOGETHER);
-        for (columns, values) in groups.zip(values.chunks_exact(TOGETHER)) {
-            for k in 0..TOGETHER {
-                sums[k] = sums[k].add_scaled(x[columns[k] as usize], values[k]);
+    /// Adds the entries of a group; their values.
+    fn add_entries(&mut self, group: &[Entries]) -> Vec<Octet> {
+        let mut runs: BTreeMap<u32, Entries> = BTreeMap::new();
+        for (lane, row) in (0u32..).zip(group) {
+            for &(column, value) in row {
+                let start = column + PAD as u32 - lane;
+                runs.entry(start).or_default().push((lane, value));
             }
         }
-        let [a, b, c, d] = sums;
-        a.plus(b).plus(c.plus(d))
+        let least = least_run(runs.values().map(|run| run.iter().map(|&(lane, _)| lane)));
+        let mut values = Vec::new();
+        let mut left: [Entries; WIDTH] = Default::default();
+        for (&start, run) in &runs {
+            if run.len() < least {
+                for &(lane, value) in run {
+                    left[lane as usize].push((start + lane, value));
+                }
+                continue;
+            }
+            let mut octet = Octet::default();
+            for &(lane, value) in run {
+                octet.0[lane as usize] = value;
+            }
+            self.runs.push(start);
+            values.push(octet);
+        }
+        for k in 0..left.iter().map(Vec::len).max().unwrap_or(0) {
+            let lanes = left
+                .each_ref()
+                .map(|row| row.get(k).copied().unwrap_or_default());
+            self.scattered.push(lanes.map(|(place, _)| place));
+            values.push(Octet(lanes.map(|(_, value)| value)));
+        }
+        values
+    }
+
+    /// Numbers of runs that a product's loads are worth.
+    pub fn cost(&self) -> usize {
+        self.runs.len() + SCATTERED_COST * self.scattered.len()
+    }
+
+    #[inline(always)]
+    fn entries(&self, group: usize) -> (&[u32], &[Places], &[Octet]) {
+        let before = match group {
+            0 => Group::default(),
+            _ => self.groups[group - 1],
+        };
+        let Group {
+            runs,
+            scattered,
+            values,
+        } = self.groups[group];
+        let runs = &self.runs[before.runs as usize..runs as usize];
+        let scattered = &self.scattered[before.scattered as usize..scattered as usize];
+        let values = &self.values[values as usize..][..runs.len() + scattered.len()];
+        (runs, scattered, values)
+    }
+
+    /// A part of a group of rows times numbers.
+    #[inline(always)]
+    pub fn product<S: Simd>(&self, simd: S, group: usize, part: usize, x: &[f64]) -> S::f64s {
+        let (runs, scattered, values) = self.entries(group);
+        let (run_values, values) = values.split_at(runs.len());
+        let first = part * S::F64_LANES;
+        let mut sum = simd.splat_f64s(0.0);
+        for (start, value) in runs.iter().zip(run_values) {
+            let x = load::<S>(x, *start as usize + first);
+            sum = simd.mul_add_f64s(value.part::<S>(part), x, sum);
+        }
+        for (places, value) in scattered.iter().zip(values) {
+            let x = gather::<S>(x, places, part);
+            sum = simd.mul_add_f64s(value.part::<S>(part), x, sum);
+        }
+        sum
+    }
+
+    /// A part of a group of rows times points.
+    #[inline(always)]
+    pub fn product_points<S: Simd>(
+        &self,
+        simd: S,
+        group: usize,
+        part: usize,
+        x: [&[f64]; 3],
+    ) -> [S::f64s; 3] {
+        let (runs, scattered, values) = self.entries(group);
+        let (run_values, values) = values.split_at(runs.len());
+        let first = part * S::F64_LANES;
+        let mut sum = [simd.splat_f64s(0.0); 3];
+        for (start, value) in runs.iter().zip(run_values) {
+            let x = load_points::<S>(x, *start as usize + first);
+            let value = value.part::<S>(part);
+            sum[0] = simd.mul_add_f64s(value, x[0], sum[0]);
+            sum[1] = simd.mul_add_f64s(value, x[1], sum[1]);
+            sum[2] = simd.mul_add_f64s(value, x[2], sum[2]);
+        }
+        for (places, value) in scattered.iter().zip(values) {
+            let x = gather_points::<S>(x, places, part);
+            let value = value.part::<S>(part);
+            sum[0] = simd.mul_add_f64s(value, x[0], sum[0]);
+            sum[1] = simd.mul_add_f64s(value, x[1], sum[1]);
+            sum[2] = simd.mul_add_f64s(value, x[2], sum[2]);
+        }
+        sum
     }
 }
 
-fn entry(model: &Model, row: u32, column: u32) -> f64 {
-    let (columns, values) = model.bending.row_entries(row as usize);
-    columns.binary_search(&column).map_or(0.0, |at| values[at])
+/// The length from which on runs are worth it, given the lanes of each that could be made: what
+/// shorter ones hold is taken in no order, one of each lane at a time.
+pub fn least_run<L: Iterator<Item = u32>>(runs: impl Iterator<Item = L>) -> usize {
+    let lanes: Vec<Vec<u32>> = runs.map(Iterator::collect).collect();
+    let cost = |least: usize| {
+        let mut left = [0; WIDTH];
+        let mut made = 0;
+        for run in &lanes {
+            if run.len() < least {
+                run.iter().for_each(|&lane| left[lane as usize] += 1);
+            } else {
+                made += 1;
+            }
+        }
+        made + SCATTERED_COST * left.into_iter().max().unwrap_or(0)
+    };
+    (1..=WIDTH).min_by_key(|&least| cost(least)).unwrap_or(1)
+}
+
+/// Rounds to 2^-44 of the largest, which makes the rows of a regular mesh alike to the last bit.
+pub fn rounding(largest: f64) -> impl Fn(f64) -> f64 {
+    let quantum = (largest.log2().floor() - 44.0).exp2();
+    let quantum = quantum.max(f64::MIN_POSITIVE);
+    move |value| (value / quantum).round() * quantum
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::octets::{groups, padded, parts, place};
     use super::*;
-    use crate::{Cloth, Material};
-    use toile_geometry::{TriangleMesh, Vec3};
+
+    struct Multiply<'a> {
+        rows: &'a Rows,
+        x: &'a [f64],
+        count: usize,
+    }
+
+    impl pulp::WithSimd for Multiply<'_> {
+        type Output = Vec<f64>;
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
+            let mut to = padded(self.count);
+            for group in 0..groups(self.count) {
+                for part in 0..parts::<S>() {
+                    let values = self.rows.product(simd, group, part, self.x);
+                    super::super::octets::store::<S>(&mut to, place::<S>(group, part), values);
+                }
+            }
+            to[PAD..PAD + self.count].to_vec()
+        }
+    }
 
     #[test]
-    fn rows_are_those_of_the_matrix_and_alike_ones_are_kept_once() {
-        let side = 16u32;
-        let mut mesh = TriangleMesh::default();
-        for j in 0..=side {
-            for i in 0..=side {
-                let [x, z] = [i, j].map(|k| f64::from(k) / 64.0);
-                mesh.positions.push(Vec3::new(x, 0.0, z));
-            }
+    fn products_are_those_of_the_matrix_however_rows_lie() {
+        let count = 61usize;
+        // Runs in the first half, no order in the second; values alike in the first.
+        let row = |k: usize| -> Vec<(u32, f64)> {
+            let near = [-9i64, -1, 0, 1, 9].iter().filter_map(|step| {
+                let column = k as i64 + step;
+                (0..count as i64)
+                    .contains(&column)
+                    .then_some((column as u32, 2.0 + *step as f64))
+            });
+            let far = (0..4).map(|j| ((k * k * 7 + 13 * j) % count, (k + j) as f64));
+            let mut row: Vec<(u32, f64)> = match k < 32 {
+                true => near.collect(),
+                false => far.map(|(column, value)| (column as u32, value)).collect(),
+            };
+            row.sort_by_key(|&(column, _)| column);
+            row.dedup_by_key(|&mut (column, _)| column);
+            row
+        };
+        let rows: Vec<Vec<(u32, f64)>> = (0..count).map(row).collect();
+        let made = Rows::new(&rows);
+        let mut x = padded(count);
+        for k in 0..count {
+            x[PAD + k] = (0.3 * k as f64).sin();
         }
-        for j in 0..side {
-            for i in 0..side {
-                let a = j * (side + 1) + i;
-                let (b, c, d) = (a + 1, a + side + 2, a + side + 1);
-                mesh.triangles.extend([[a, b, c], [a, c, d]]);
+        let multiply = || Multiply {
+            rows: &made,
+            x: &x,
+            count,
+        };
+        let wide = pulp::Arch::new().dispatch(multiply());
+        let scalar = pulp::WithSimd::with_simd(multiply(), pulp::Scalar);
+        for (k, row) in rows.iter().enumerate() {
+            let expected: f64 = row
+                .iter()
+                .map(|&(c, value)| value * x[PAD + c as usize])
+                .sum();
+            for got in [wide[k], scalar[k]] {
+                assert!((got - expected).abs() < 1e-10, "{k}: {got} {expected}");
             }
-        }
-        let cloth = Cloth::from_mesh("cloth", &mesh, Material::default()).unwrap();
-        let model = Model::new("cloth", &cloth).unwrap();
-        let all: Vec<u32> = (0..mesh.positions.len() as u32).collect();
-        let rows = Rows::new(&model, &all, Some);
-        let places: Vec<Vec3> = mesh
-            .positions
-            .iter()
-            .map(|p| Vec3::new(p.x, 0.02 * (30.0 * p.x).sin() + p.z * p.x, p.z))
-            .collect();
-        let lanes: Vec<Lane> = places.iter().map(|&p| p.into()).collect();
-        let largest = (0..all.len())
-            .map(|v| model.bending.row_force(v, &places).norm())
-            .fold(0.0, f64::max);
-        for v in 0..all.len() {
-            let off = Vec3::from(rows.gradient(v, &lanes)) - model.bending.row_force(v, &places);
-            assert!(off.norm() < 1e-9 * largest, "{v}: {off} {largest}");
         }
         assert!(
-            rows.values.len() < rows.columns.len() / 4,
-            "{}",
-            rows.values.len()
+            made.values.len() < made.runs.len() + made.scattered.len(),
+            "alike ones are kept once"
         );
     }
 }

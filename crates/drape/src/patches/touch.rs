@@ -128,8 +128,8 @@ const WATCHED: f64 = 1e-3;
 /// Nearer than this to a surface its smooth distance is asked, not the exact one [m].
 const SMOOTH_WITHIN: f64 = 0.012;
 
-/// Vertices looked at by one task.
-const CHUNK: usize = 1024;
+/// Vertices looked at by one task: few, for some must lay the distance field.
+const CHUNK: usize = 256;
 
 impl Touch {
     /// Takes over the vertices of a model and what a state remembers of their contacts.
