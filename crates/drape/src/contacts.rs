@@ -1,6 +1,6 @@
 //! Finding where the cloth touches solid surfaces: recomputed as it moves.
 
-use crate::collision::{ClothContact, ClothContacts, FeaturePair};
+use crate::collision::ClothContacts;
 use crate::laws::contact::{ContactLaw, ContactPlane, damped_push, gentle_push};
 use crate::model::FIELD_REACH;
 use crate::state::Memory as StateMemory;
@@ -50,11 +50,6 @@ impl Contacts {
     /// moved proves that it is out of reach.
     pub fn refresh(&mut self, model: &Model, state: &State, positions: &[Vec3]) {
         self.cloth.refresh(model, state, positions);
-        for contact in &mut self.cloth.active {
-            let fade = fade(contact, positions);
-            contact.law.normal *= fade;
-            contact.law.tangential *= fade;
-        }
         if model.colliders.is_empty() {
             self.active.clear();
             return;
@@ -147,30 +142,6 @@ impl Contacts {
             }
         }
     }
-}
-
-/// The sine of the angle between two edges from which on they push with all their stiffness, and
-/// how far from the ends of both, over their lengths.
-const CROSSWISE: f64 = 0.1;
-const INSIDE: f64 = 0.25;
-
-/// Share of the stiffness with which two edges push, 1 for other contacts. The closest points of
-/// edges that lie along each other run from end to end by less than a micrometre of motion, and
-/// past an end the faces there push instead: without fading the force would jump, and a way to
-/// rest that meets such a jump goes round for ever. Parallel edges fade as in Li et al. 2020,
-/// section 5.
-fn fade(contact: &ClothContact, x: &[Vec3]) -> f64 {
-    let Some(FeaturePair::EdgeEdge(ends)) = contact.pair else {
-        return 1.0;
-    };
-    let [a, b, c, d] = ends.map(|v| x[v as usize]);
-    let (first, second) = (b - a, d - c);
-    let lengths = first.norm_squared() * second.norm_squared();
-    let sine = first.cross(&second).norm_squared() / (lengths * CROSSWISE * CROSSWISE);
-    let across = if sine < 1.0 { sine * (2.0 - sine) } else { 1.0 };
-    let inside = |w: [f64; 2]| (w[0].abs().min(w[1].abs()) / INSIDE).min(1.0);
-    let [p, q, r, s] = contact.weights;
-    across * inside([p, q]) * inside([r, s])
 }
 
 /// Whether a sample lies deeper in a surface than the offset, where no motion brings it, or has
@@ -278,80 +249,4 @@ fn parts(matrix: Matrix3<f64>) -> [Matrix3<f64>; 2] {
         eigen.eigenvectors * Matrix3::from_diagonal(&kept) * eigen.eigenvectors.transpose()
     };
     [part(-1.0), part(1.0)]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Cloth, Material, Workspace};
-    use toile_geometry::TriangleMesh;
-
-    /// Two folds whose edges of 20 mm lie `gap` above each other, the upper one turned and moved along.
-    fn ridges(gap: f64, turned: f64, along: f64) -> TriangleMesh {
-        let mut mesh = TriangleMesh::default();
-        for side in [-1.0, 1.0] {
-            let first = mesh.positions.len() as u32;
-            let corners = [
-                [-0.01, 0.0, 0.0],
-                [0.01, 0.0, 0.0],
-                [0.0, 0.02, 0.01],
-                [0.0, 0.02, -0.01],
-            ];
-            for [x, y, z] in corners {
-                let (sine, cosine) = if side > 0.0 {
-                    turned.sin_cos()
-                } else {
-                    (0.0, 1.0)
-                };
-                let (x, z) = (cosine * x + sine * z, cosine * z - sine * x);
-                let shift = if side > 0.0 { along } else { 0.0 };
-                mesh.positions
-                    .push(Vec3::new(x + shift, side * (0.5 * gap + y), z));
-            }
-            mesh.triangles.push([first, first + 1, first + 2]);
-            mesh.triangles.push([first + 1, first, first + 3]);
-        }
-        mesh
-    }
-
-    /// Largest jump of the forces between steps of 0.2 um over a motion, and the largest force [N].
-    fn jump(place: impl Fn(f64) -> TriangleMesh) -> [f64; 2] {
-        let cloth = Cloth::from_mesh("ridges", &place(0.0), Material::default()).unwrap();
-        let mut model = Model::new("ridges", &cloth).unwrap();
-        model.contact.cloth_offset = 2e-3;
-        model.contact.friction = false;
-        let mut workspace = Workspace::default();
-        let mut push = |share: f64| -> Vec<Vec3> {
-            let state = State::at_rest(&model, place(share).positions);
-            workspace.contacts.refresh(&model, &state, &state.positions);
-            let mut force = vec![Vec3::zeros(); state.positions.len()];
-            for contact in &workspace.contacts.cloth.active {
-                let (_, gradient, _) = contact.law.evaluate(&contact.plane, contact.plane.point);
-                for (v, w) in contact.vertices.into_iter().zip(contact.weights) {
-                    force[v as usize] -= gradient * w;
-                }
-            }
-            force
-        };
-        let (mut jump, mut most) = (0.0f64, 0.0f64);
-        let mut last = push(0.0);
-        for k in 1..=2000 {
-            let now = push(f64::from(k) / 2000.0);
-            for (a, b) in now.iter().zip(&last) {
-                (jump, most) = (jump.max((a - b).norm()), most.max(a.norm()));
-            }
-            last = now;
-        }
-        [jump, most]
-    }
-
-    #[test]
-    fn the_push_of_edges_that_turn_along_each_other_or_slide_past_does_not_jump() {
-        // 0.04 rad over 10 mm and 0.4 mm along in 2000 steps.
-        let turning = jump(|t| ridges(1.9e-3, 0.02 - 0.04 * t, 1e-5));
-        let passing = jump(|t| ridges(1.9e-3, 0.5, 9.8e-3 + 4e-4 * t));
-        for [jump, most] in [turning, passing] {
-            assert!(most > 1e-4 && jump < 0.02 * most, "{jump:e} of {most:e}");
-        }
-    }
 }

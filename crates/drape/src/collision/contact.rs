@@ -3,6 +3,7 @@
 
 use super::bound::{Kept, Motions, REACH_OF_WAYS};
 use super::curvature::Clearance;
+use super::fade::fade;
 use super::layers::{Knots, Stray, layer_order, strays, ways_out};
 use super::near::Near;
 use super::proximity::{Nearness, nearnesses};
@@ -324,7 +325,7 @@ impl ClothContacts {
         self.surface.forget();
     }
 
-    /// Contacts within the usual reach.
+    /// Contacts within the usual reach; two edges fade where their contact would come and go at once.
     pub fn refresh(&mut self, model: &Model, state: &State, x: &[Vec3]) {
         self.find(
             model,
@@ -332,6 +333,11 @@ impl ClothContacts {
             x,
             REACH_IN_OFFSETS * model.contact.cloth_offset,
         );
+        for contact in &mut self.active {
+            let fade = fade(contact, x);
+            contact.law.normal *= fade;
+            contact.law.tangential *= fade;
+        }
     }
 
     fn contact(&self, model: &Model, state: &State, x: &[Vec3], near: &Nearness) -> ClothContact {

@@ -6,6 +6,7 @@ mod boxes;
 mod contact;
 mod coupling;
 mod curvature;
+mod fade;
 mod impact;
 mod layers;
 mod near;

@@ -90,6 +90,14 @@ pub fn gather_points<S: Simd>(from: [&[f64]; 3], places: &Places, part: usize) -
     ]
 }
 
+/// Adds so many times some points to a sum of them.
+#[inline(always)]
+pub fn add_scaled<S: Simd>(simd: S, sum: &mut [S::f64s; 3], by: S::f64s, points: [S::f64s; 3]) {
+    for (sum, x) in sum.iter_mut().zip(points) {
+        *sum = simd.mul_add_f64s(by, x, *sum);
+    }
+}
+
 /// Where the eight operands of a group lie in a padded array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Take {

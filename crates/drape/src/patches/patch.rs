@@ -74,8 +74,7 @@ impl Patch {
     /// whichever lets more operands lie side by side: on a grid with alternating diagonals every
     /// other vertex is alike.
     pub fn new(model: &Model, owned: Vec<u32>, rings: usize) -> Self {
-        let inside = with_halo(model, owned, rings);
-        let in_turn: Vec<(u32, usize)> = inside;
+        let in_turn = with_halo(model, owned, rings);
         let mut by_parity = in_turn.clone();
         by_parity.sort_unstable_by_key(|&(v, _)| (v % 2, v));
         let [first, second] = [in_turn, by_parity].map(|order| Self::in_order(model, &order));

@@ -1,6 +1,8 @@
 //! Sparse constant matrices for groups of rows, the values of groups that are alike kept once.
 
-use super::octets::{Octet, PAD, Places, WIDTH, gather, gather_points, load, load_points};
+use super::octets::{
+    Octet, PAD, Places, WIDTH, add_scaled, gather, gather_points, load, load_points,
+};
 use pulp::Simd;
 use std::collections::BTreeMap;
 
@@ -143,17 +145,11 @@ impl Rows {
         let mut sum = [simd.splat_f64s(0.0); 3];
         for (start, value) in runs.iter().zip(run_values) {
             let x = load_points::<S>(x, *start as usize + first);
-            let value = value.part::<S>(part);
-            sum[0] = simd.mul_add_f64s(value, x[0], sum[0]);
-            sum[1] = simd.mul_add_f64s(value, x[1], sum[1]);
-            sum[2] = simd.mul_add_f64s(value, x[2], sum[2]);
+            add_scaled(simd, &mut sum, value.part::<S>(part), x);
         }
         for (places, value) in scattered.iter().zip(values) {
             let x = gather_points::<S>(x, places, part);
-            let value = value.part::<S>(part);
-            sum[0] = simd.mul_add_f64s(value, x[0], sum[0]);
-            sum[1] = simd.mul_add_f64s(value, x[1], sum[1]);
-            sum[2] = simd.mul_add_f64s(value, x[2], sum[2]);
+            add_scaled(simd, &mut sum, value.part::<S>(part), x);
         }
         sum
     }

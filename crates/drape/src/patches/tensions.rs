@@ -6,8 +6,8 @@
 use super::edges::Edges;
 use super::membrane::EdgeMembrane;
 use super::octets::{
-    PAD, Places, Points, Take, WIDTH, gather, gather_points, load, load_points, padded, parts,
-    place, store,
+    PAD, Places, Points, Take, WIDTH, add_scaled, gather, gather_points, load, load_points, padded,
+    parts, place, store,
 };
 use super::rows::{Rows, least_run, rounding};
 use super::stretch::Stretches;
@@ -255,17 +255,13 @@ impl Tensions {
         for [other, edge] in &self.runs[runs as usize..end as usize] {
             let t = load::<S>(&self.tension, *edge as usize + first);
             let other = load_points::<S>(x, *other as usize + first);
-            sum[0] = simd.mul_add_f64s(t, other[0], sum[0]);
-            sum[1] = simd.mul_add_f64s(t, other[1], sum[1]);
-            sum[2] = simd.mul_add_f64s(t, other[2], sum[2]);
+            add_scaled(simd, &mut sum, t, other);
             total = simd.add_f64s(total, t);
         }
         for [other, edge] in &self.others[others as usize..others_end as usize] {
             let t = gather::<S>(&self.tension, edge, part);
             let other = gather_points::<S>(x, other, part);
-            sum[0] = simd.mul_add_f64s(t, other[0], sum[0]);
-            sum[1] = simd.mul_add_f64s(t, other[1], sum[1]);
-            sum[2] = simd.mul_add_f64s(t, other[2], sum[2]);
+            add_scaled(simd, &mut sum, t, other);
             total = simd.add_f64s(total, t);
         }
         let at = place::<S>(group, part);
