@@ -50,6 +50,11 @@ impl Contacts {
     /// moved proves that it is out of reach.
     pub fn refresh(&mut self, model: &Model, state: &State, positions: &[Vec3]) {
         self.cloth.refresh(model, state, positions);
+        self.refresh_surfaces(model, state, positions);
+    }
+
+    /// Finds those with solid surfaces alone.
+    pub(crate) fn refresh_surfaces(&mut self, model: &Model, state: &State, positions: &[Vec3]) {
         if model.colliders.is_empty() {
             self.active.clear();
             return;

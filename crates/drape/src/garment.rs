@@ -279,7 +279,11 @@ impl GarmentRun {
     }
 
     fn swing(&mut self) -> Result<(), DrapeError> {
-        let swing = (self.swing).get_or_insert_with(|| SwingRun::new(&self.model));
+        let model = &self.model;
+        let swing = (self.swing).get_or_insert_with(|| match self.level {
+            0 => SwingRun::new(model),
+            _ => SwingRun::carried(model),
+        });
         swing.advance(&self.model, &mut self.state)?;
         self.share = self.share.max(0.5 + 0.2 * swing.share());
         if swing.finished() {

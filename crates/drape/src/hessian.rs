@@ -6,7 +6,7 @@ use crate::collision::Couplings;
 use crate::factor::{Block, Factor, Graph};
 use crate::newton::elastics_of;
 use crate::sparse::ScalarMatrix;
-use crate::{ElasticEnd, Model};
+use crate::{Elastic, ElasticEnd, Model};
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 
@@ -36,13 +36,7 @@ fn graph(model: &Model, touching: &[[u32; 2]]) -> Graph {
 
 /// Vertices coupled by elastics.
 fn couples(model: &Model) -> impl Iterator<Item = [u32; 2]> + '_ {
-    model
-        .elastics
-        .iter()
-        .filter_map(|elastic| match elastic.to {
-            ElasticEnd::Vertex(to) => Some([elastic.from, to]),
-            ElasticEnd::Point(_) => None,
-        })
+    model.elastics.iter().filter_map(Elastic::ends)
 }
 
 impl Hessian<'_> {

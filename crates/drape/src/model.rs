@@ -129,6 +129,16 @@ pub struct Elastic {
     pub law: ElasticLaw,
 }
 
+impl Elastic {
+    /// The vertices it couples, where it couples two.
+    pub(crate) fn ends(&self) -> Option<[u32; 2]> {
+        match self.to {
+            ElasticEnd::Vertex(to) => Some([self.from, to]),
+            ElasticEnd::Point(_) => None,
+        }
+    }
+}
+
 fn box_corners(positions: &[Vec3]) -> [Vec3; 8] {
     let mut low = Vec3::repeat(f64::INFINITY);
     let mut high = Vec3::repeat(f64::NEG_INFINITY);
@@ -218,7 +228,7 @@ pub struct Model {
     /// have exchanged their long edge for the other diagonal of their pair.
     pub triangles: Vec<[u32; 3]>,
     /// Triangles of the surface as it was given, where caps were exchanged.
-    surface: Option<Vec<[u32; 3]>>,
+    pub(crate) surface: Option<Vec<[u32; 3]>>,
     /// Material of each triangle.
     pub material: Vec<u16>,
     /// The materials.
@@ -492,7 +502,7 @@ impl Model {
 }
 
 /// For each vertex the corners (3 t + k) that use it, in order.
-fn corner_lists(count: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<u32>) {
+pub(crate) fn corner_lists(count: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<u32>) {
     let mut start = vec![0u32; count + 1];
     for &v in triangles.iter().flatten() {
         start[v as usize + 1] += 1;

@@ -1,10 +1,12 @@
 //! The way to rest: pseudo-transient continuation (Kelley and Keyes 1998). Each step is one
 //! Newton iteration held back by inertia m/h^2 towards where the cloth is; h grows while all goes
 //! well and shrinks when the line search has to cut the step, so far from rest it creeps safely
-//! and near rest it is Newton's method. How much of the curvature that compression takes away is
+//! and near rest it is Newton's method. After each step regions that hold most of the net force are
+//! brought to rest apart (nonlinear elimination). How much of the curvature that compression takes away is
 //! kept in the Hessian is found in the same way: as much as leaves it positive definite.
 
 use crate::laws::membrane::Curvature;
+use crate::measure::{residual, weight_norm};
 use crate::{
     DrapeError, Inertia, LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State,
     Workspace,
@@ -49,6 +51,8 @@ pub struct RestRun {
 
 /// A direction of which the line search takes less than this is as bad as none.
 const CUT: f64 = 0.2;
+/// Share of the residual asked for at which regions need not be brought to rest apart.
+const ENOUGH: f64 = 0.5;
 /// Steps without a new low of the residual before a cycle is suspected.
 const PATIENCE: usize = 60;
 /// First pseudo time step [s]: a drop of 4 mm under gravity.
@@ -155,8 +159,13 @@ impl RestRun {
             if report.sound && state.first_not_finite().is_none() {
                 workspace.contacts.refresh(model, state, &state.positions);
                 workspace.contacts.settle(model, state);
+                let enough = ENOUGH * self.settings.residual * weight_norm(model);
+                if workspace.eliminate(model, state, enough) {
+                    workspace.contacts.refresh(model, state, &state.positions);
+                    workspace.contacts.settle(model, state);
+                }
                 let before = self.residual;
-                self.residual = crate::measure::residual(model, state, workspace);
+                self.residual = residual(model, state, workspace);
                 self.adapt(&report, before);
                 break;
             }

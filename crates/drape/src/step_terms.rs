@@ -208,6 +208,11 @@ impl StepTerms {
         }
     }
 
+    /// Whether all of them belong to the stretch of a triangle.
+    pub fn are_of_stretch(&self) -> bool {
+        self.fold.is_empty() && self.air.is_empty() && self.bending.is_none()
+    }
+
     /// The law of a triangle's membrane during the step.
     #[inline]
     pub fn law<'a>(&'a self, model: &'a Model, t: usize) -> HeldLaw<'a> {

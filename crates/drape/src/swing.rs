@@ -15,6 +15,7 @@ pub struct SwingRun {
     time: f64,
     energy: f64,
     calm: bool,
+    longest: f64,
     /// Lowest peak of kinetic energy [J], and the peaks since.
     lowest: f64,
     waited: u32,
@@ -29,8 +30,10 @@ const LONGEST_SUBSTEP: f64 = 5e-4;
 const ROUND: u32 = 20;
 /// Drag while swinging [1/s].
 const DRAG: f64 = 3.0;
-/// Simulated time at the most [s].
+/// Simulated time at the most [s], and the same where the shape of a coarser mesh at rest was carried
+/// over: all there is to do is to smooth it.
 const LONGEST: f64 = 3.0;
+const LONGEST_CARRIED: f64 = 0.3;
 /// The swing is over when its peaks of kinetic energy are those of this mean speed [m/s].
 const CALM: f64 = 0.0015;
 /// A peak is a new low below this share of the lowest before; with crossings left the swing is over
@@ -48,8 +51,17 @@ impl SwingRun {
             time: 0.0,
             energy: 0.0,
             calm: false,
+            longest: LONGEST,
             lowest: f64::INFINITY,
             waited: 0,
+        }
+    }
+
+    /// The same for the shape of a coarser mesh at rest.
+    pub fn carried(model: &Model) -> Self {
+        Self {
+            longest: LONGEST_CARRIED,
+            ..Self::new(model)
         }
     }
 
@@ -60,7 +72,7 @@ impl SwingRun {
 
     /// Whether the motion has died out, or has had its time.
     pub fn finished(&self) -> bool {
-        self.calm || self.stuck() || self.time >= LONGEST
+        self.calm || self.stuck() || self.time >= self.longest
     }
 
     /// Whether crossings of cloth that are pulled apart keep it moving: the peaks fall no more.
@@ -70,7 +82,7 @@ impl SwingRun {
 
     /// Rough share of the way to calm, 0..=1.
     pub fn share(&self) -> f64 {
-        self.time / LONGEST
+        self.time / self.longest
     }
 
     /// One round of substeps. When the kinetic energy has passed a peak the velocities are set to

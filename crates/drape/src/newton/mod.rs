@@ -7,6 +7,7 @@
 //! 2011, equation 3). With y = x_n and growing h it is pseudo-transient continuation to rest.
 
 mod direction;
+mod elimination;
 mod foresight;
 
 use crate::collision::Couplings;

@@ -1,0 +1,320 @@
+//! A part of a model whose rim stands still: what is solved apart from the rest.
+
+use crate::collision::ClothContact;
+use crate::model::corner_lists;
+use crate::sparse::{BlockPattern, ScalarMatrix};
+use crate::{ContactSample, Elastic, ElasticEnd, Model, State};
+use std::collections::BTreeMap;
+use toile_geometry::Vec3;
+
+/// Some vertices of a model, free to move, and those they are coupled with, pinned.
+pub struct Part {
+    /// The part as a model of its own: its potential is the whole's but for a constant.
+    pub model: Model,
+    /// Its state.
+    pub state: State,
+    /// Contacts of cloth with cloth at its own vertices, as found on the whole.
+    pub touching: Vec<ClothContact>,
+    /// Vertices of the whole, own ones first.
+    vertices: Vec<u32>,
+    own: usize,
+}
+
+/// Numbers of vertices in a part; those of the rim are given as they come up.
+struct Numbers {
+    numbers: BTreeMap<u32, u32>,
+    vertices: Vec<u32>,
+    own: usize,
+}
+
+impl Numbers {
+    fn new(own: &[u32]) -> Self {
+        Self {
+            numbers: own.iter().copied().zip(0..).collect(),
+            vertices: own.to_vec(),
+            own: own.len(),
+        }
+    }
+
+    fn of(&mut self, vertex: u32) -> u32 {
+        *self.numbers.entry(vertex).or_insert_with(|| {
+            self.vertices.push(vertex);
+            self.vertices.len() as u32 - 1
+        })
+    }
+
+    /// Whether any of some vertices with a weight is the part's own.
+    fn moves(&self, vertices: &[u32], weights: &[f64]) -> bool {
+        let own = |v: &u32| self.numbers.get(v).is_some_and(|&n| n < self.own as u32);
+        vertices
+            .iter()
+            .zip(weights)
+            .any(|(v, w)| *w != 0.0 && own(v))
+    }
+
+    /// The rows of bending that own vertices take part in. Energy counts a pair once in each
+    /// vertex's row, so the rim's rows hold what couples them with own vertices.
+    fn bending(&mut self, model: &Model) -> Vec<(u32, u32, f64)> {
+        let mut entries = Vec::new();
+        for i in 0..self.own {
+            let (columns, values) = model.bending.row_entries(self.vertices[i] as usize);
+            for (&column, &value) in columns.iter().zip(values) {
+                let j = self.of(column);
+                entries.push((i as u32, j, value));
+                if j as usize >= self.own {
+                    entries.push((j, i as u32, value));
+                }
+            }
+        }
+        entries
+    }
+
+    fn elastics(&mut self, model: &Model) -> Vec<Elastic> {
+        let uses = |&v: &u32| {
+            let v = v as usize;
+            let uses = model.elastic_start[v] as usize..model.elastic_start[v + 1] as usize;
+            model.elastic_uses[uses].to_vec()
+        };
+        let mut used: Vec<u32> = self.vertices[..self.own].iter().flat_map(uses).collect();
+        used.sort_unstable();
+        used.dedup();
+        let elastics = used.into_iter().map(|e| {
+            let elastic = model.elastics[e as usize];
+            Elastic {
+                from: self.of(elastic.from),
+                to: match elastic.to {
+                    ElasticEnd::Vertex(v) => ElasticEnd::Vertex(self.of(v)),
+                    point => point,
+                },
+                ..elastic
+            }
+        });
+        elastics.collect()
+    }
+
+    fn touching(&mut self, contacts: &[ClothContact]) -> Vec<ClothContact> {
+        let mut touching = Vec::new();
+        for contact in contacts {
+            if self.moves(&contact.vertices, &contact.weights) {
+                touching.push(ClothContact {
+                    vertices: contact.vertices.map(|v| self.of(v)),
+                    ..*contact
+                });
+            }
+        }
+        touching
+    }
+
+    /// Contact samples on own vertices, with their numbers in the whole; `triangles` are those of
+    /// the part, ascending.
+    fn samples(&mut self, model: &Model, triangles: &[u32]) -> Vec<(usize, ContactSample)> {
+        let mut samples = Vec::new();
+        for (at, sample) in model.samples.iter().enumerate() {
+            if self.moves(&sample.vertices, &sample.weights) {
+                let triangle = |t| triangles.binary_search(&t).ok().map(|t| t as u32);
+                let own = ContactSample {
+                    triangle: sample.triangle.and_then(triangle),
+                    vertices: sample.vertices.map(|v| self.of(v)),
+                    ..*sample
+                };
+                samples.push((at, own));
+            }
+        }
+        samples
+    }
+}
+
+impl Part {
+    /// The part of some free vertices; `contacts` are those of cloth with cloth. Folds that are
+    /// viscous or kept, and moving air, are left out.
+    pub fn new(model: &Model, state: &State, contacts: &[ClothContact], own: &[u32]) -> Self {
+        let corners = own.iter().flat_map(|&v| {
+            let corners = model.corner_start[v as usize]..model.corner_start[v as usize + 1];
+            &model.corners[corners.start as usize..corners.end as usize]
+        });
+        let mut used: Vec<u32> = corners.map(|corner| corner / 3).collect();
+        used.sort_unstable();
+        used.dedup();
+        let mut numbers = Numbers::new(own);
+        let triangles: Vec<[u32; 3]> = used
+            .iter()
+            .map(|&t| model.triangles[t as usize].map(|v| numbers.of(v)))
+            .collect();
+        let bending = numbers.bending(model);
+        let elastics = numbers.elastics(model);
+        let touching = numbers.touching(contacts);
+        let samples = numbers.samples(model, &used);
+        let vertices = numbers.vertices;
+        let (corner_start, corners) = corner_lists(vertices.len(), &triangles);
+        let mut pinned = vec![false; vertices.len()];
+        pinned[own.len()..].fill(true);
+        let state = State {
+            anchors: samples.iter().map(|&(at, _)| state.anchors[at]).collect(),
+            normal_forces: (samples.iter())
+                .map(|&(at, _)| state.normal_forces[at])
+                .collect(),
+            settled: match state.settled.is_empty() {
+                true => Vec::new(),
+                false => used.iter().map(|&t| state.settled[t as usize]).collect(),
+            },
+            time: state.time,
+            positions: taken(&vertices, &state.positions),
+            velocities: taken(&vertices, &state.velocities),
+            ..State::default()
+        };
+        let mut part = Model {
+            pattern: BlockPattern::new(vertices.len(), &triangles),
+            surface: None,
+            material: taken(&used, &model.material),
+            materials: model.materials.clone(),
+            laws: model.laws.clone(),
+            mass: taken(&vertices, &model.mass),
+            pinned,
+            grips: Vec::new(),
+            elastics: Vec::new(),
+            colliders: model.colliders.clone(),
+            contact: model.contact,
+            samples: samples.into_iter().map(|(_, sample)| sample).collect(),
+            layer: Vec::new(),
+            gravity: model.gravity,
+            air_drag: 0.0,
+            air: model.air,
+            elements: taken(&used, &model.elements),
+            bending: ScalarMatrix::from_entries(vertices.len(), &bending),
+            viscous_bending: None,
+            stencils: Vec::new(),
+            layout: taken(&vertices, &model.layout),
+            corner_start,
+            corners,
+            elastic_start: Vec::new(),
+            elastic_uses: Vec::new(),
+            triangles,
+        };
+        part.set_elastics(elastics);
+        Self {
+            model: part,
+            state,
+            touching,
+            own: own.len(),
+            vertices,
+        }
+    }
+
+    /// Its own vertices, as numbered in the whole, and where they are [m].
+    pub fn places(&self) -> impl Iterator<Item = (u32, Vec3)> + '_ {
+        let own = self.vertices[..self.own].iter().copied();
+        own.zip(self.state.positions.iter().copied())
+    }
+}
+
+fn taken<T: Copy>(which: &[u32], from: &[T]) -> Vec<T> {
+    which.iter().map(|&k| from[k as usize]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::elastic::ElasticLaw;
+    use crate::{Cloth, Collider, Inertia, Material, Workspace};
+    use std::sync::Arc;
+    use toile_geometry::{SurfaceTree, TriangleMesh};
+
+    /// Two waved sheets of 10 x 10 squares of 10 mm, 1.5 mm above each other.
+    fn sheets() -> TriangleMesh {
+        let mut mesh = TriangleMesh::default();
+        for sheet in 0..2u32 {
+            for v in 0..121u32 {
+                let (x, z) = (0.01 * f64::from(v % 11), 0.01 * f64::from(v / 11));
+                let y = 0.003 * (60.0 * x).sin() * (45.0 * z).cos() + 1.5e-3 * f64::from(sheet);
+                mesh.positions.push(Vec3::new(1.01 * x, y, 0.99 * z));
+            }
+            for q in 0..100u32 {
+                let a = sheet * 121 + q / 10 * 11 + q % 10;
+                mesh.triangles
+                    .extend([[a, a + 11, a + 1], [a + 1, a + 11, a + 12]]);
+            }
+        }
+        mesh
+    }
+
+    /// A wall of two triangles a little below the sheets' middles.
+    fn wall() -> Collider {
+        let mesh = TriangleMesh {
+            positions: [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+                .map(|[x, z]| Vec3::new(x, -3e-3, z))
+                .to_vec(),
+            triangles: vec![[0, 2, 1], [0, 3, 2]],
+        };
+        Collider::new(Arc::new(SurfaceTree::new(mesh)))
+    }
+
+    #[test]
+    fn a_part_has_the_forces_and_the_energy_of_the_whole() {
+        let mesh = sheets();
+        let cloth = Cloth::from_mesh("sheets", &mesh, Material::default()).unwrap();
+        let mut model = Model::new("sheets", &cloth).unwrap();
+        model.contact.cloth_offset = 2e-3;
+        model.colliders = vec![wall()];
+        model.refine_contact(48);
+        let law = ElasticLaw {
+            stiffness: 30.0,
+            largest_force: 1.0,
+        };
+        let elastic = |from, to| Elastic { from, to, law };
+        model.set_elastics(vec![
+            elastic(36, ElasticEnd::Point(Vec3::zeros())),
+            elastic(37, ElasticEnd::Vertex(200)),
+            elastic(90, ElasticEnd::Vertex(38)),
+            elastic(1, ElasticEnd::Vertex(120)),
+        ]);
+        let state = State::at_rest(&model, mesh.positions.clone());
+        let own: Vec<u32> = (0..36).map(|k| 24 + k / 6 * 11 + k % 6).collect();
+
+        let mut whole = Workspace::default();
+        let forces = whole.net_force(&model, &state).to_vec();
+        let part = Part::new(&model, &state, &whole.contacts.cloth.active, &own);
+        assert!(!part.touching.is_empty() && part.model.elastics.len() == 3);
+        let mut alone = Workspace::default();
+        alone.fit(&part.model);
+        alone.terms.hold_still(&part.model, &part.state);
+        alone.contacts.cloth.active.clone_from(&part.touching);
+        let places = &part.state.positions;
+        (alone.contacts).refresh_surfaces(&part.model, &part.state, places);
+        assert!(alone.contacts.active.iter().any(|c| c.plane.depth > 0.0));
+        let triangles = part.model.samples.iter().filter(|s| s.triangle.is_some());
+        assert_eq!(triangles.count(), 4);
+        alone.fill_gradient(&part.model, places, None);
+        let largest = forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
+        for (k, &v) in own.iter().enumerate() {
+            let off = (alone.gradient[k] + forces[v as usize]).norm();
+            assert!(off < 1e-12 * largest, "vertex {v}: {off:e} of {largest:e}");
+        }
+        assert!(
+            alone.gradient[own.len()..]
+                .iter()
+                .all(|g| *g == Vec3::zeros())
+        );
+
+        // Its vertices moved: the same change of the potential.
+        let moved = |v: u32| 1e-3 * Vec3::new(0.0, f64::from(v % 5) - 2.0, f64::from(v % 3) - 1.0);
+        let mut there = [state.positions.clone(), part.state.positions.clone()];
+        for (k, &v) in own.iter().enumerate() {
+            there[0][v as usize] += moved(v);
+            there[1][k] += moved(v);
+        }
+        let change = |workspace: &Workspace, model: &Model, from: &[Vec3], to: &[Vec3]| {
+            let inertia = Inertia {
+                weight: &vec![0.0; from.len()],
+                target: from,
+            };
+            workspace.potential(model, to, &inertia) - workspace.potential(model, from, &inertia)
+        };
+        let expected = change(&whole, &model, &state.positions, &there[0]);
+        let got = change(&alone, &part.model, places, &there[1]);
+        assert!(expected.abs() > 1e-5);
+        assert!(
+            (got - expected).abs() < 1e-11 * expected.abs(),
+            "{got:e} {expected:e}"
+        );
+    }
+}
