@@ -30,6 +30,8 @@ pub struct DistanceField {
     blocks: [usize; 3],
     /// Values of each block; none where it is far outside.
     samples: Vec<OnceLock<Option<Box<[f64]>>>>,
+    /// The triangles of the surface, made when the first block is sampled.
+    candidates: OnceLock<Vec<Candidate>>,
 }
 
 /// A triangle that may hold the closest point, in a disc round its centre.
@@ -82,6 +84,7 @@ impl DistanceField {
                     origin: low - margin,
                     blocks,
                     samples,
+                    candidates: OnceLock::new(),
                 };
             }
             cell *= 1.5;
@@ -97,10 +100,12 @@ impl DistanceField {
     /// Samples a block; nothing when no spline near the surface or inside it looks there.
     fn sample_block(&self, block: usize) -> Option<Box<[f64]>> {
         let corner = self.block_corner(block);
-        let width = SIDE as f64 * self.cell;
-        let centre = corner + Vec3::repeat(0.5 * width);
-        // Half the diagonal, and the two cells a spline looks beyond its own.
-        let near = 0.5 * width * 3f64.sqrt() + self.reach + 2.0 * self.cell;
+        // Half the diagonal of its nodes.
+        let half = 0.5 * (SIDE - 1) as f64 * self.cell;
+        let centre = corner + Vec3::repeat(half);
+        let span = half * 3f64.sqrt();
+        // And the cells a spline looks beyond its own.
+        let near = span + self.reach + 3.0 * self.cell;
         let middle = self.surface.closest_point(centre, f64::INFINITY)?;
         if middle.signed_distance > near {
             return None;
@@ -108,12 +113,19 @@ impl DistanceField {
         let mut values = vec![0.0; SIDE * SIDE * SIDE].into_boxed_slice();
         // Whatever is closest to any node is within the distance from the middle and the way
         // there and back.
-        let reach = middle.signed_distance.abs() + width * 3f64.sqrt();
+        let reach = (middle.signed_distance.abs() + 2.0 * span) * (1.0 + 1e-9);
         let mut near = self.surface.near_box(centre, centre, reach);
         near.sort_unstable();
-        let candidates: Vec<Candidate> = near.into_iter().map(|t| self.candidate(t)).collect();
+        let all = self.candidates.get_or_init(|| self.all_candidates());
+        let near = near.into_iter().map(|t| all[t as usize]);
+        let candidates: Vec<Candidate> = near.filter(|c| c.may_reach(centre, reach)).collect();
         self.fill(corner, [0; 3], SIDE, &candidates, &mut values);
         Some(values)
+    }
+
+    fn all_candidates(&self) -> Vec<Candidate> {
+        let count = self.surface.mesh().triangles.len() as u32;
+        (0..count).map(|t| self.candidate(t)).collect()
     }
 
     fn candidate(&self, triangle: u32) -> Candidate {
@@ -192,50 +204,74 @@ impl DistanceField {
         self.surface.closest_on(least.1, point).signed_distance
     }
 
-    fn node(&self, at: [usize; 3]) -> Option<f64> {
-        let b = at.map(|a| a / SIDE);
-        if b[0] >= self.blocks[0] || b[1] >= self.blocks[1] || b[2] >= self.blocks[2] {
+    fn block(&self, at: [usize; 3]) -> Option<&[f64]> {
+        let [nx, ny, nz] = self.blocks;
+        if at[0] >= nx || at[1] >= ny || at[2] >= nz {
             return None;
         }
-        let block = b[0] + self.blocks[0] * (b[1] + self.blocks[1] * b[2]);
-        let values = self.samples[block]
-            .get_or_init(|| self.sample_block(block))
-            .as_ref()?;
-        let [i, j, k] = at.map(|a| a % SIDE);
-        Some(values[i + SIDE * (j + SIDE * k)])
+        let block = at[0] + nx * (at[1] + ny * at[2]);
+        let sampled = self.samples[block].get_or_init(|| self.sample_block(block));
+        sampled.as_deref()
+    }
+
+    /// The values at a stencil's nodes, the last axis slowest.
+    fn values(&self, stencil: &Stencil) -> Option<[[[f64; 3]; 3]; 3]> {
+        let first = stencil.first.map(|at| at / SIDE);
+        let inside = stencil.first.map(|at| at % SIDE);
+        let crosses = inside.map(|at| at + 2 >= SIDE);
+        let mut blocks: [&[f64]; 8] = [&[]; 8];
+        for (which, values) in blocks.iter_mut().enumerate() {
+            let next = [which & 1, which >> 1 & 1, which >> 2];
+            if (0..3).all(|axis| next[axis] == 0 || crosses[axis]) {
+                *values = self.block([0, 1, 2].map(|axis| first[axis] + next[axis]))?;
+            }
+        }
+        let mut values = [[[0.0; 3]; 3]; 3];
+        for (k, slice) in values.iter_mut().enumerate() {
+            for (j, row) in slice.iter_mut().enumerate() {
+                for (i, value) in row.iter_mut().enumerate() {
+                    let at = [inside[0] + i, inside[1] + j, inside[2] + k];
+                    let block = at[0] / SIDE + 2 * (at[1] / SIDE) + 4 * (at[2] / SIDE);
+                    let [i, j, k] = at.map(|at| at % SIDE);
+                    *value = blocks[block][i + SIDE * (j + SIDE * k)];
+                }
+            }
+        }
+        Some(values)
     }
 
     /// Smooth signed distance \[m\] and its gradient at a point; nothing farther outside than the
     /// field reaches.
     pub fn distance(&self, point: Vec3) -> Option<(f64, Vec3)> {
         let stencil = self.stencil(point)?;
-        let mut distance = 0.0;
-        let mut gradient = Vec3::zeros();
+        let values = self.values(&stencil)?;
         let [x, y, z] = stencil.weights;
         let [dx, dy, dz] = stencil.slopes;
-        for [i, j, k] in PLACES {
-            let value = self.node(stencil.at([i, j, k]))?;
-            distance += value * x[i] * y[j] * z[k];
-            gradient += Vec3::new(
-                dx[i] * y[j] * z[k],
-                x[i] * dy[j] * z[k],
-                x[i] * y[j] * dz[k],
-            ) * value;
-        }
-        Some((distance, gradient / self.cell))
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        // One axis after the other.
+        let along_x = values.map(|slice| slice.map(|row| dot(row, x)));
+        let slope_x = values.map(|slice| slice.map(|row| dot(row, dx)));
+        let along_y = along_x.map(|row| dot(row, y));
+        let gradient = Vec3::new(
+            dot(slope_x.map(|row| dot(row, y)), z),
+            dot(along_x.map(|row| dot(row, dy)), z),
+            dot(along_y, dz),
+        );
+        Some((dot(along_y, z), gradient / self.cell))
     }
 
     /// Second derivative of the distance at a point \[1/m\]: the curvatures of the surface through
     /// it, negative where it is hollow. It jumps from cell to cell.
     pub fn curvature(&self, point: Vec3) -> Option<Matrix3<f64>> {
         let stencil = self.stencil(point)?;
+        let values = self.values(&stencil)?;
         let mut sum = Matrix3::zeros();
         let [x, y, z] = stencil.weights;
         let [dx, dy, dz] = stencil.slopes;
         // Second differences of a quadratic B-spline.
         const BEND: [f64; 3] = [1.0, -2.0, 1.0];
         for [i, j, k] in PLACES {
-            let value = self.node(stencil.at([i, j, k]))?;
+            let value = values[k][j][i];
             let xy = dx[i] * dy[j] * z[k];
             let xz = dx[i] * y[j] * dz[k];
             let yz = x[i] * dy[j] * dz[k];
@@ -290,12 +326,6 @@ struct Stencil {
     first: [usize; 3],
     weights: [[f64; 3]; 3],
     slopes: [[f64; 3]; 3],
-}
-
-impl Stencil {
-    fn at(&self, [i, j, k]: [usize; 3]) -> [usize; 3] {
-        [self.first[0] + i, self.first[1] + j, self.first[2] + k]
-    }
 }
 
 #[cfg(test)]

@@ -92,6 +92,15 @@ impl Quality {
         }
     }
 
+    /// Mean edge length of the mesh that is sewn and swings first [m]; none where that of
+    /// [`Self::edge_length`] is coarse enough.
+    pub fn first_edge_length(self) -> Option<f64> {
+        match self {
+            Self::Preview | Self::Fit => None,
+            Self::Final => Some(Self::Preview.edge_length()),
+        }
+    }
+
     /// Net force over weight at which the drape counts as at rest.
     pub fn residual(self) -> f64 {
         match self {

@@ -204,24 +204,9 @@ impl Derived {
         }
         let parts = self.sound_parts(project)?;
         let mannequin = self.mannequin(project)?;
-        let options = AssemblyOptions {
-            edge_length: project.quality.edge_length(),
-        };
-        let wearer = setup::wearer(&mannequin);
-        let mut meshed = Vec::new();
-        let mut notes = Vec::new();
-        for part in parts.iter() {
-            let assembled = assemble(&part.draft, &wearer, &options)?;
-            let prefix = match parts.len() {
-                1 => String::new(),
-                _ => format!("{}: ", part.name),
-            };
-            let found = assembled.diagnostics.iter();
-            notes.extend(found.map(|note| format!("{prefix}{note}")));
-            meshed.push((part.clone(), assembled.garment));
-        }
+        let (dressed, notes) = assembled(&parts, &mannequin, project.quality.edge_length())?;
         self.assembly_notes = notes;
-        Ok(self.dressed.insert(Arc::new(Dressed::new(meshed))).clone())
+        Ok(self.dressed.insert(Arc::new(dressed)).clone())
     }
 
     /// Whether the pieces are meshed and placed already.
@@ -233,7 +218,13 @@ impl Derived {
     pub fn job(&mut self, project: &Project) -> Result<GarmentJob, SessionError> {
         let dressed = self.dressed(project)?;
         let skin = self.kept_mannequin(project)?.skin.clone();
-        Ok(setup::job(&dressed, skin, project.quality))
+        let mut job = setup::job(&dressed, skin, project.quality);
+        if let Some(edge_length) = project.quality.first_edge_length() {
+            let (parts, mannequin) = (self.sound_parts(project)?, self.mannequin(project)?);
+            let (coarse, _) = assembled(&parts, &mannequin, edge_length)?;
+            job.setup.levels.insert(0, setup::level(&coarse));
+        }
+        Ok(job)
     }
 
     /// The drape.
@@ -250,6 +241,30 @@ impl Derived {
         self.drape = Some(made.clone());
         Ok(made)
     }
+}
+
+/// The parts meshed with edges of a length [m] and placed round a mannequin, and what is worth
+/// telling.
+fn assembled(
+    parts: &[DraftedPart],
+    mannequin: &Mannequin,
+    edge_length: f64,
+) -> Result<(Dressed, Vec<String>), SessionError> {
+    let options = AssemblyOptions { edge_length };
+    let wearer = setup::wearer(mannequin);
+    let mut meshed = Vec::new();
+    let mut notes = Vec::new();
+    for part in parts {
+        let assembled = assemble(&part.draft, &wearer, &options)?;
+        let prefix = match parts.len() {
+            1 => String::new(),
+            _ => format!("{}: ", part.name),
+        };
+        let found = assembled.diagnostics.iter();
+        notes.extend(found.map(|note| format!("{prefix}{note}")));
+        meshed.push((part.clone(), assembled.garment));
+    }
+    Ok((Dressed::new(meshed), notes))
 }
 
 /// A body's error, with the file its measurements came from.

@@ -85,7 +85,7 @@ pub(crate) fn job(dressed: &Dressed, skin: Arc<SurfaceTree>, quality: Quality) -
 /// layers fit between body and air.
 const CLOTH_OFFSET: f64 = 2e-3;
 
-fn level(dressed: &Dressed) -> GarmentLevel {
+pub(crate) fn level(dressed: &Dressed) -> GarmentLevel {
     let garment = &dressed.garment;
     let first = dressed.parts.first().map(|part| part.layer);
     let mut layer = Vec::new();
