@@ -219,7 +219,10 @@ impl Derived {
         let dressed = self.dressed(project)?;
         let skin = self.kept_mannequin(project)?.skin.clone();
         let mut job = setup::job(&dressed, skin, project.quality);
-        if let Some(edge_length) = project.quality.first_edge_length() {
+        // Gathers have as many folds as the mesh they swing in can hold.
+        let gathers = dressed.draft.seams.iter().any(|seam| seam.gathered);
+        let first = project.quality.first_edge_length();
+        if let Some(edge_length) = first.filter(|_| !gathers) {
             let (parts, mannequin) = (self.sound_parts(project)?, self.mannequin(project)?);
             let (coarse, _) = assembled(&parts, &mannequin, edge_length)?;
             job.setup.levels.insert(0, setup::level(&coarse));

@@ -4,8 +4,8 @@
 mod support;
 
 use std::ops::ControlFlow;
-use support::{band, files, lasting, make};
-use toile_session::{Command, Event, Session, SessionError, Silent, read_journal};
+use support::{BAND, band, files, lasting, make};
+use toile_session::{Command, Event, Quality, Session, SessionError, Silent, read_journal};
 
 const NAMES: [&str; 8] = [
     "drape.png",
@@ -177,4 +177,35 @@ fn what_was_not_made_is_not_exported() {
         .unwrap();
     let error = session.execute(export, &mut Silent).unwrap_err();
     assert!(matches!(error, SessionError::Nothing { .. }), "{error}");
+}
+
+#[test]
+fn the_finest_quality_swings_on_a_coarser_mesh_of_the_same_panels_first_unless_cloth_is_gathered() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = band(folder.path());
+    let levels = |quality| {
+        let mut session = Session::new();
+        for command in [
+            Command::OpenPattern { path: path.clone() },
+            Command::SetQuality { quality },
+        ] {
+            session.execute(command, &mut Silent).unwrap();
+        }
+        session.garment_setup().unwrap().setup.levels
+    };
+    assert_eq!(levels(Quality::Fit).len(), 1);
+    let [first, last] = levels(Quality::Final).try_into().unwrap();
+    assert_eq!(
+        first.cloth.triangles,
+        levels(Quality::Preview)[0].cloth.triangles
+    );
+    assert!(last.cloth.triangles.len() > 4 * first.cloth.triangles.len());
+    assert_eq!(
+        last.cloth.panel.iter().max(),
+        first.cloth.panel.iter().max()
+    );
+
+    let gathered = BAND.replace(r#""name": "left","#, r#""name": "left", "gathered": true,"#);
+    std::fs::write(&path, gathered).unwrap();
+    assert_eq!(levels(Quality::Final).len(), 1);
 }
