@@ -82,7 +82,7 @@ pub enum Task {
 /// `toile chart`.
 #[derive(Debug, Args)]
 pub struct ChartTask {
-    /// Scenes: cantilever, hang, sphere, tube, shirt. Default: all.
+    /// Scenes: cantilever, hang, sphere, tube, shirt; contact for the runs with contact of cloth with cloth. Default: all.
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<String>,
     /// Two steps on coarse meshes: under a minute.

@@ -266,7 +266,7 @@ impl GarmentRun {
                     .advance(&mut self.model, &mut self.state, &mut self.workspace)?;
                 let start = 0.3;
                 let shown = 0.5 * (1.0 - (self.sew.last_gap() / start).min(1.0));
-                self.share = self.share.max(shown);
+                self.show(shown);
                 if self.sew.closed() {
                     self.merge()?;
                 }
@@ -278,6 +278,14 @@ impl GarmentRun {
         Ok(self.progress())
     }
 
+    /// Shows a share of the way on the present level. A level takes about a quarter of the time of the
+    /// next.
+    fn show(&mut self, share: f64) {
+        let after = 4f64.powi(self.level as i32 + 1 - self.setup.levels.len() as i32);
+        let before = if self.level == 0 { 0.0 } else { 0.25 * after };
+        self.share = self.share.max(before + (after - before) * share);
+    }
+
     fn swing(&mut self) -> Result<(), DrapeError> {
         let model = &self.model;
         let swing = (self.swing).get_or_insert_with(|| match self.level {
@@ -285,14 +293,15 @@ impl GarmentRun {
             _ => SwingRun::carried(model),
         });
         swing.advance(&self.model, &mut self.state)?;
-        self.share = self.share.max(0.5 + 0.2 * swing.share());
+        let shown = 0.5 + 0.2 * swing.share();
         if swing.finished() {
-            self.cut_short = swing.stuck();
+            self.cut_short = swing.left_crossings();
             self.tally = self.tally.then(swing.cloth_tally());
             self.swing = None;
             self.swings += 1;
             self.stage = Stage::Settling;
         }
+        self.show(shown);
         Ok(())
     }
 
@@ -312,9 +321,7 @@ impl GarmentRun {
             }
         }
         let decades = (1.0 / self.rest.residual().max(1e-9)).log10() / 3.0;
-        self.share = self
-            .share
-            .max((0.7 + 0.3 * decades.clamp(0.0, 1.0)).min(0.99));
+        self.show((0.7 + 0.3 * decades.clamp(0.0, 1.0)).min(0.99));
         let finished = self.rest.finished();
         if !self.is_finest() {
             return if finished { self.refine() } else { Ok(()) };
@@ -413,7 +420,7 @@ impl GarmentRun {
         self.swing = None;
         self.rest = RestRun::near(self.rest_settings());
         self.stage = Stage::Swinging;
-        self.share = self.share.max(0.5);
+        self.show(0.5);
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use crate::collision::ClothContact;
 use crate::model::corner_lists;
 use crate::sparse::{BlockPattern, ScalarMatrix};
-use crate::{ContactSample, Elastic, ElasticEnd, Model, State};
+use crate::{ContactSample, ContactSettings, Elastic, ElasticEnd, Model, State};
 use std::collections::BTreeMap;
 use toile_geometry::Vec3;
 
@@ -13,7 +13,8 @@ pub struct Part {
     pub model: Model,
     /// Its state.
     pub state: State,
-    /// Contacts of cloth with cloth at its own vertices, as found on the whole.
+    /// Contacts of cloth with cloth at its own vertices, as found on the whole: the part itself looks
+    /// for none.
     pub touching: Vec<ClothContact>,
     /// Vertices of the whole, own ones first.
     vertices: Vec<u32>,
@@ -173,7 +174,10 @@ impl Part {
             grips: Vec::new(),
             elastics: Vec::new(),
             colliders: model.colliders.clone(),
-            contact: model.contact,
+            contact: ContactSettings {
+                cloth_offset: 0.0,
+                ..model.contact
+            },
             samples: samples.into_iter().map(|(_, sample)| sample).collect(),
             layer: Vec::new(),
             gravity: model.gravity,

@@ -49,10 +49,6 @@ pub struct RestRun {
     curvature: Curvature,
 }
 
-/// A direction of which the line search takes less than this is as bad as none.
-const CUT: f64 = 0.2;
-/// Share of the residual asked for at which regions need not be brought to rest apart.
-const ENOUGH: f64 = 0.5;
 /// Steps without a new low of the residual before a cycle is suspected.
 const PATIENCE: usize = 60;
 /// First pseudo time step [s]: a drop of 4 mm under gravity.
@@ -158,12 +154,11 @@ impl RestRun {
             self.linear_iterations += report.linear_iterations;
             if report.sound && state.first_not_finite().is_none() {
                 workspace.contacts.refresh(model, state, &state.positions);
-                workspace.contacts.settle(model, state);
-                let enough = ENOUGH * self.settings.residual * weight_norm(model);
+                let enough = self.settings.residual * weight_norm(model);
                 if workspace.eliminate(model, state, enough) {
                     workspace.contacts.refresh(model, state, &state.positions);
-                    workspace.contacts.settle(model, state);
                 }
+                workspace.contacts.settle(model, state);
                 let before = self.residual;
                 self.residual = residual(model, state, workspace);
                 self.adapt(&report, before);
@@ -194,7 +189,7 @@ impl RestRun {
     /// it when the line search or the limit on moves cut the step short.
     fn adapt(&mut self, report: &NewtonReport, residual_before: f64) {
         let (fraction, moved) = (report.fraction, report.moved);
-        self.adapt_curvature(report);
+        self.curvature = report.next_curvature();
         let free = moved < 0.5 * self.settings.longest_move;
         if fraction >= 1.0 && free && self.residual < 1.05 * residual_before {
             self.pseudo_step = (self.pseudo_step * 1.5).min(self.longest_step);
@@ -202,17 +197,6 @@ impl RestRun {
             self.pseudo_step = (self.pseudo_step * 0.7).max(SHORTEST_STEP);
         }
         self.break_cycles();
-    }
-
-    /// Keeps more of the destabilising curvature after a step that went well, less after one whose
-    /// matrix was not positive definite or whose direction had to be cut. With too little of it
-    /// cloth that is about to buckle creeps away from its saddle by a few per cent a step.
-    fn adapt_curvature(&mut self, report: &NewtonReport) {
-        self.curvature = if report.fraction > CUT {
-            report.curvature.more()
-        } else {
-            report.curvature.less()
-        };
     }
 
     /// Newton's method can go round in a cycle between two sets of contacts. When the residual has

@@ -76,8 +76,13 @@ impl SwingRun {
     }
 
     /// Whether crossings of cloth that are pulled apart keep it moving: the peaks fall no more.
-    pub fn stuck(&self) -> bool {
+    fn stuck(&self) -> bool {
         self.waited > PATIENCE
+    }
+
+    /// Whether it ended before the cloth was calm, with crossings of cloth left.
+    pub fn left_crossings(&self) -> bool {
+        !self.calm && !self.cloth.contacts.is_in_order()
     }
 
     /// Rough share of the way to calm, 0..=1.

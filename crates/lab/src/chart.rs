@@ -95,7 +95,7 @@ pub struct ChartData {
     pub motion: Vec<Point>,
     /// Rest: methods that look for it.
     pub rest: Vec<Point>,
-    /// Contact of cloth with cloth, where no scenes were asked for by name.
+    /// Contact of cloth with cloth.
     pub contact: Vec<Touched>,
     /// For each mesh: how far two unlike methods end apart [mm], and what they were.
     pub agreement: Vec<Agreement>,
@@ -210,7 +210,11 @@ impl Setting<'_> {
     }
 }
 
-/// Runs the scenes named (all by default).
+/// Name of the part of the chart about contact of cloth with cloth.
+const CONTACT: &str = "contact";
+
+/// Runs the scenes named and, where it is named, the part about contact of cloth with cloth; all by
+/// default.
 ///
 /// # Errors
 /// An unknown scene; the watcher asked to stop. Methods that fail are points with a reason.
@@ -219,8 +223,13 @@ pub fn chart(
     plan: ChartPlan,
     watcher: &mut dyn Watcher,
 ) -> Result<ChartData, LabError> {
-    for name in names {
-        card(name)?;
+    let known = |name: &String| name == CONTACT || SCENES.contains(&name.as_str());
+    if let Some(name) = names.iter().find(|name| !known(name)) {
+        return Err(LabError::Unknown {
+            what: "scene",
+            name: name.clone(),
+            known: format!("{}, {CONTACT}", SCENES.join(", ")),
+        });
     }
     let chosen: Vec<&str> = SCENES
         .into_iter()
@@ -250,7 +259,7 @@ pub fn chart(
     }
     mark_best(&mut data.motion);
     mark_best(&mut data.rest);
-    if names.is_empty() {
+    if names.is_empty() || names.iter().any(|name| name == CONTACT) {
         data.contact = contact_chart(plan, watcher)?;
     }
     Ok(data)
@@ -397,6 +406,8 @@ mod tests {
             ChartPlan::QUICK,
             &mut toile_session::Silent,
         );
-        assert!(matches!(error, Err(LabError::Unknown { .. })));
+        assert!(
+            matches!(error, Err(LabError::Unknown { known, .. }) if known.ends_with("shirt, contact"))
+        );
     }
 }

@@ -224,8 +224,10 @@ impl Derived {
         let first = project.quality.first_edge_length();
         if let Some(edge_length) = first.filter(|_| !gathers) {
             let (parts, mannequin) = (self.sound_parts(project)?, self.mannequin(project)?);
-            let (coarse, _) = assembled(&parts, &mannequin, edge_length)?;
-            job.setup.levels.insert(0, setup::level(&coarse));
+            // A piece too small for the coarse mesh is no fault: the fine one does alone.
+            if let Ok((coarse, _)) = assembled(&parts, &mannequin, edge_length) {
+                job.setup.levels.insert(0, setup::level(&coarse));
+            }
         }
         Ok(job)
     }

@@ -24,63 +24,81 @@ const RINGS: usize = 6;
 const SPREAD: f64 = 0.5;
 /// Times that regions are looked for, since one that comes to rest moves its rim's forces.
 const PASSES: usize = 3;
-/// A region is at rest at this share of its first force, or of the force outside all regions.
+/// A region is at rest at this share of its first force, of the force outside all regions, or of what
+/// is enough.
 const CALM: f64 = 0.05;
 const CALM_OUTSIDE: f64 = 0.3;
-/// Newton iterations of a region at the most, and its longest move in one [m].
+const CALM_ENOUGH: f64 = 0.5;
+/// Newton iterations of a region at the most, and its longest move in them all [m].
 const ITERATIONS: usize = 25;
 const LONGEST_MOVE: f64 = 5e-3;
-/// A step of which the line search takes less than this asks for less of the curvature.
-const CUT: f64 = 0.2;
 
 impl Workspace {
     /// Brings regions to rest that hold most of the net force, until it is `enough` [N] or spread
-    /// over the cloth. The contacts in hand must be those of the state. Returns whether anything
-    /// moved; contacts are then to be found anew.
+    /// over the cloth. The contacts in hand must be those of the state. Cloth that is tangled is left
+    /// alone: what draws it out is found anew after every move. Returns whether anything moved;
+    /// contacts are then to be found anew.
     pub(crate) fn eliminate(&mut self, model: &Model, state: &mut State, enough: f64) -> bool {
-        if !self.terms.are_of_stretch() {
+        if !self.terms.are_of_stretch() || !self.contacts.cloth.is_in_order() {
             return false;
         }
         let start = state.positions.clone();
         let mut moved = false;
         for _ in 0..PASSES {
-            self.fill_gradient(model, &state.positions, None);
+            let x = &state.positions;
+            self.contacts.refresh_surfaces(model, state, x);
+            self.fill_gradient(model, x, None);
             let total = dot(&self.gradient, &self.gradient);
             if total.is_nan() || total <= enough * enough {
                 break;
             }
             let regions = self.regions(model, total);
-            if regions.is_empty() {
-                break;
-            }
             let held = regions.iter().flatten().map(|&v| self.gradient[v as usize]);
             let outside = (total - held.map(|g| g.norm_squared()).sum::<f64>()).max(0.0);
-            let calm = (CALM_OUTSIDE * outside.sqrt()).max(0.5 * enough);
+            let calm = (CALM_OUTSIDE * outside.sqrt()).max(CALM_ENOUGH * enough);
             let calm = calm / (regions.len() as f64).sqrt();
             let touching = &self.contacts.cloth.active;
             let parts: Vec<Part> = regions
                 .par_iter()
-                .map(|own| {
+                .filter_map(|own| {
                     let mut part = Part::new(model, state, touching, own);
-                    bring_to_rest(&mut part, calm);
-                    part
+                    bring_to_rest(&mut part, calm).then_some(part)
                 })
                 .collect();
+            if parts.is_empty() {
+                break;
+            }
+            moved = true;
             for (v, place) in parts.iter().flat_map(Part::places) {
                 state.positions[v as usize] = place;
             }
-            moved = true;
         }
-        if moved {
-            let ways = state.positions.iter().zip(&start).map(|(x, s)| x - s);
-            let mut ways: Vec<Vec3> = ways.collect();
-            if self.contacts.cloth.bound(model, &start, &mut ways) > 0 {
-                for ((x, s), d) in state.positions.iter_mut().zip(&start).zip(&ways) {
-                    *x = s + d;
-                }
-            }
+        moved && self.hold_back(model, state, start)
+    }
+
+    /// Bounds what was moved so that no cloth passes through cloth, and takes it all back where the
+    /// potential is then higher than before. Returns whether anything stays moved.
+    fn hold_back(&mut self, model: &Model, state: &mut State, start: Vec<Vec3>) -> bool {
+        let ways = state.positions.iter().zip(&start).map(|(x, s)| x - s);
+        let mut ways: Vec<Vec3> = ways.collect();
+        if self.contacts.cloth.bound(model, &start, &mut ways) == 0 {
+            return true;
         }
-        moved
+        for ((x, s), d) in state.positions.iter_mut().zip(&start).zip(&ways) {
+            *x = s + d;
+        }
+        self.contacts.refresh_surfaces(model, state, &start);
+        let inertia = Inertia {
+            weight: &vec![0.0; start.len()],
+            target: &start,
+        };
+        let [before, after] =
+            [&start, &state.positions].map(|x| self.potential(model, x, &inertia));
+        let lower = after < before;
+        if !lower {
+            state.positions = start;
+        }
+        lower
     }
 
     /// Regions of free vertices, each ascending, round those that hold most of the force; `total`
@@ -115,7 +133,11 @@ impl Workspace {
         });
         let sewn = model.elastics.iter().filter_map(crate::Elastic::ends);
         let touching = self.contacts.cloth.couples();
-        let pairs = bent.chain(sewn).chain(touching);
+        let edges = all.iter().flat_map(|&v| {
+            let columns = model.pattern.row_columns(v as usize);
+            columns.iter().map(move |&u| [v, u])
+        });
+        let pairs = bent.chain(edges).chain(sewn).chain(touching);
         let coupled = pairs.filter(|pair| pair.iter().all(|&v| inside[v as usize]));
         let (region_of, _) = merge_map(squares.len(), coupled);
         all.retain(|&v| !model.pinned[v as usize]);
@@ -130,8 +152,8 @@ impl Workspace {
 }
 
 /// Lowers the potential of a part until its net force is `calm` [N] or a small share of the first.
-/// Contacts of cloth with cloth stay as they were found.
-fn bring_to_rest(part: &mut Part, calm: f64) {
+/// Contacts of cloth with cloth stay as they were found. Returns whether anything moved.
+fn bring_to_rest(part: &mut Part, calm: f64) -> bool {
     let Part {
         model,
         state,
@@ -141,14 +163,14 @@ fn bring_to_rest(part: &mut Part, calm: f64) {
     let mut workspace = Workspace::default();
     workspace.fit(model);
     workspace.terms.hold_still(model, state);
-    workspace.contacts.cloth.active.clone_from(touching);
+    let start = state.positions.clone();
     let inertia = Inertia {
         weight: &vec![0.0; model.vertex_count()],
-        target: &state.positions.clone(),
+        target: &start,
     };
     let mut settings = NewtonSettings {
         iterations: 1,
-        tolerance: 0.0,
+        tolerance: calm,
         longest_move: LONGEST_MOVE,
         curvature: Curvature::EXACT,
         linear: LinearSolver::Direct {
@@ -158,32 +180,22 @@ fn bring_to_rest(part: &mut Part, calm: f64) {
             },
         },
     };
-    for _ in 0..ITERATIONS {
-        let mut report = NewtonReport::default();
-        let x = &state.positions;
-        (workspace.contacts).refresh_surfaces(model, state, x);
-        workspace.fill_gradient(model, x, Some(&inertia));
-        let force = dot(&workspace.gradient, &workspace.gradient).sqrt();
-        if settings.tolerance == 0.0 {
-            settings.tolerance = calm.max(CALM * force);
-        }
-        if force.is_nan() || force <= settings.tolerance {
+    let mut report = NewtonReport::default();
+    while report.iterations < ITERATIONS && settings.longest_move > 0.0 {
+        workspace
+            .contacts
+            .refresh_surfaces(model, state, &state.positions);
+        workspace.contacts.cloth.active.clone_from(touching);
+        if !workspace.iterate(model, state, &inertia, &settings, &mut report) {
             break;
         }
-        workspace.turn_gradient();
-        workspace.find_direction(model, x, &inertia, &settings, &mut report);
-        workspace.limit_moves(settings.longest_move);
-        let fraction = workspace.line_search(model, x, &inertia);
-        if fraction == 0.0 {
-            break;
+        if report.iterations == 1 {
+            settings.tolerance = calm.max(CALM * report.gradient);
         }
-        settings.curvature = if fraction > CUT {
-            report.curvature.more()
-        } else {
-            report.curvature.less()
-        };
-        std::mem::swap(&mut state.positions, &mut workspace.trial);
+        settings.curvature = report.next_curvature();
+        settings.longest_move -= report.moved;
     }
+    state.positions != start
 }
 
 #[cfg(test)]

@@ -80,6 +80,23 @@ pub struct NewtonReport {
     pub sound: bool,
 }
 
+/// A direction of which the line search takes less than this is as bad as none.
+const CUT: f64 = 0.2;
+
+impl NewtonReport {
+    /// What the next Hessian should keep of the destabilising curvature: more after a step that went
+    /// well, less after one whose matrix was not positive definite or whose direction had to be cut.
+    /// With too little of it cloth that is about to buckle creeps away from its saddle by a few per
+    /// cent a step.
+    pub fn next_curvature(&self) -> Curvature {
+        if self.fraction > CUT {
+            self.curvature.more()
+        } else {
+            self.curvature.less()
+        }
+    }
+}
+
 /// Private memory of a solve, sized once for a model.
 #[derive(Default)]
 pub struct Workspace {
@@ -182,30 +199,40 @@ impl Workspace {
         };
         for _ in 0..settings.iterations {
             self.contacts.refresh(model, state, &state.positions);
-            self.fill_gradient(model, &state.positions, Some(inertia));
-            report.gradient = dot(&self.gradient, &self.gradient).sqrt();
-            if !report.gradient.is_finite() {
-                report.sound = false;
-                return report;
-            }
-            if report.gradient <= settings.tolerance {
+            if !self.iterate(model, state, inertia, settings, &mut report) {
                 break;
             }
-            report.iterations += 1;
-            self.turn_gradient();
-            self.find_direction(model, &state.positions, inertia, settings, &mut report);
-            self.limit_moves(settings.longest_move);
-            self.bound_moves(model, &state.positions);
-            let fraction = self.line_search(model, &state.positions, inertia);
-            report.fraction = fraction;
-            if fraction == 0.0 {
-                report.sound = false;
-                return report;
-            }
-            std::mem::swap(&mut state.positions, &mut self.trial);
-            report.moved = self.longest_direction() * fraction;
         }
         report
+    }
+
+    /// One iteration with the contacts in hand; false when there was none to take or it failed.
+    fn iterate(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        inertia: &Inertia,
+        settings: &NewtonSettings,
+        report: &mut NewtonReport,
+    ) -> bool {
+        self.fill_gradient(model, &state.positions, Some(inertia));
+        report.gradient = dot(&self.gradient, &self.gradient).sqrt();
+        report.sound = report.gradient.is_finite();
+        if !report.sound || report.gradient <= settings.tolerance {
+            return false;
+        }
+        report.iterations += 1;
+        self.turn_gradient();
+        self.find_direction(model, &state.positions, inertia, settings, report);
+        self.limit_moves(settings.longest_move);
+        self.bound_moves(model, &state.positions);
+        report.fraction = self.line_search(model, &state.positions, inertia);
+        report.sound = report.fraction > 0.0;
+        if report.sound {
+            std::mem::swap(&mut state.positions, &mut self.trial);
+            report.moved = self.longest_direction() * report.fraction;
+        }
+        report.sound
     }
 
     /// Potential at some positions, with the contact planes as they are [J].
