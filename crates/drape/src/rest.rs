@@ -201,7 +201,7 @@ impl RestRun {
 
     /// Newton's method can go round in a cycle between two sets of contacts. When the residual has
     /// found no new low for long, the pseudo step is bounded ten times lower: inertia then damps
-    /// the cycle.
+    /// the cycle, though not what regions do that are brought to rest apart.
     fn break_cycles(&mut self) {
         if self.residual < 0.9 * self.best {
             self.best = self.residual;

@@ -20,7 +20,7 @@ use toile_geometry::Vec3;
 const HELD: f64 = 0.8;
 /// Edges that regions grow by.
 const RINGS: usize = 6;
-/// Share of all vertices that regions may take: beyond it the whole is solved as fast.
+/// Share of all vertices that regions may take; beyond it the force counts as spread.
 const SPREAD: f64 = 0.5;
 /// Times that regions are looked for, since one that comes to rest moves its rim's forces.
 const PASSES: usize = 3;
