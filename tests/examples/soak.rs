@@ -20,6 +20,9 @@
 //! five women, five men and two children, or those named, prints a line each with the crossings
 //! of cloth with body and with cloth, and fails where there are any.
 //!
+//! `soak rest [--quality preview|fit|final] [--seeds N] [PATTERN]` drapes one garment, the T-shirt, from N starts that
+//! differ by micrometres, and prints steps and seconds of each stage: the way to rest is chaotic.
+//!
 //! `soak layers [--fit] [FIGURE...]` wears the shipped patterns in three layers on every mannequin, and fails
 //! where layers cross the body, themselves or each other, or are out of order.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
@@ -28,6 +31,8 @@
 mod cloth;
 #[path = "soak/layers.rs"]
 mod layers;
+#[path = "soak/rest.rs"]
+mod rest;
 #[path = "soak/sizes.rs"]
 mod sizes;
 #[path = "soak/worn.rs"]
@@ -42,6 +47,7 @@ use std::time::Instant;
 use toile_geometry::Vec2;
 use toile_interchange::{read_jagua, write_atomically};
 use toile_nesting::{Marker, Placement, judge};
+use toile_session::Quality;
 use toile_tests::root;
 
 /// Samples of the bootstrap (Efron 1979).
@@ -513,6 +519,14 @@ fn nest(task: &Task) -> Result<(), String> {
     }
 }
 
+/// The quality an option names.
+fn quality_named(name: Option<&String>) -> Result<Quality, String> {
+    let name = name.ok_or("--quality needs preview, fit or final")?;
+    let all = [Quality::Preview, Quality::Fit, Quality::Final];
+    let found = all.into_iter().find(|quality| quality.name() == name);
+    found.ok_or(format!("there is no quality {name}"))
+}
+
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let done = match arguments.split_first() {
@@ -521,8 +535,9 @@ fn main() -> ExitCode {
         Some((first, rest)) if first == "tangles" => cloth::tangles(rest),
         Some((first, rest)) if first == "sizes" => sizes::sizes(rest),
         Some((first, rest)) if first == "layers" => layers::layers(rest),
+        Some((first, rest)) if first == "rest" => rest::rest(rest),
         _ => Err(
-            "say what: soak nest [OPTIONS] INSTANCE.json..., soak hard, soak tangles, soak sizes, soak layers"
+            "say what: soak nest [OPTIONS] INSTANCE.json..., soak hard, soak tangles, soak sizes, soak layers, soak rest"
                 .to_owned(),
         ),
     };

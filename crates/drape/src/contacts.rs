@@ -237,6 +237,7 @@ fn find(
         normal,
         tangential: 0.5 * normal,
         friction,
+        hard_from: f64::INFINITY,
     };
     out.push(Contact {
         sample: at as u32,

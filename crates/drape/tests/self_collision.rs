@@ -15,7 +15,8 @@ use toile_drape::collision::{
     crossings, nearnesses,
 };
 use toile_drape::{
-    Cloth, ContactSettings, Material, Measures, MethodKind, Model, Scene, SceneRun, State,
+    Cloth, ContactSettings, Material, Measures, MethodKind, Model, RestRun, RestSettings, Scene,
+    SceneRun, State, Workspace,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3, segment_intersects_triangle};
 
@@ -295,6 +296,44 @@ fn a_sheet_that_falls_on_a_sheet_stays_on_it() {
         assert!(above, "{method:?}");
         assert_eq!(measures.self_intersections, 0, "{method:?}");
     }
+}
+
+/// A sheet on another that is pinned, their contact too soft for its weight by half; the net force it ends
+/// with, the steps it takes, and how near the sheets come at the least [m].
+fn pressed() -> (f64, usize, f64) {
+    let offset = 2e-3;
+    let low = sheet([4, 4], [0.12; 2], |u, v| Vec3::new(u, 0.0, v));
+    let high = sheet([5, 5], [0.1; 2], |u, v| {
+        Vec3::new(0.011 + u, 0.9 * offset, 0.008 + v)
+    });
+    let pinned = low.positions.len();
+    let mut mesh = low;
+    let shifted = |t: &[u32; 3]| t.map(|v| v + pinned as u32);
+    mesh.triangles.extend(high.triangles.iter().map(shifted));
+    mesh.positions.extend(high.positions);
+    let (mut model, mut state) = sheets::cloth(&mesh, Material::default());
+    model.pinned[..pinned].fill(true);
+    model.contact.cloth_offset = offset;
+    let weight = Material::default().density * model.gravity.norm();
+    model.contact.stiffness = 0.5 * weight / offset;
+    let mut rest = RestRun::near(RestSettings {
+        steps: 100,
+        ..RestSettings::default()
+    });
+    let mut workspace = Workspace::default();
+    while !rest.finished() {
+        rest.advance(&model, &mut state, &mut workspace).unwrap();
+    }
+    let heights = state.positions[pinned..].iter().map(|x| x.y);
+    let nearest = heights.fold(f64::INFINITY, f64::min);
+    (rest.residual(), rest.steps(), nearest)
+}
+
+#[test]
+fn cloth_pressed_harder_than_its_contact_bears_still_comes_to_rest_apart() {
+    let (residual, steps, nearest) = pressed();
+    assert!(residual < 5e-3, "{residual} after {steps}");
+    assert!(nearest > 1e-4, "{nearest}");
 }
 
 #[test]

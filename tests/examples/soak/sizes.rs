@@ -52,12 +52,7 @@ fn parse(arguments: &[String]) -> Result<Task, String> {
     while let Some(argument) = rest.next() {
         match argument.as_str() {
             "--out" => task.out = PathBuf::from(rest.next().ok_or("--out needs a folder")?),
-            "--quality" => {
-                let name = rest.next().ok_or("--quality needs preview, fit or final")?;
-                let all = [Quality::Preview, Quality::Fit, Quality::Final];
-                let found = all.into_iter().find(|quality| quality.name() == name);
-                task.quality = found.ok_or(format!("there is no quality {name}"))?;
-            }
+            "--quality" => task.quality = super::quality_named(rest.next())?,
             option if option.starts_with("--") => return Err(format!("{option} is not known")),
             name => task.names.push(name.to_owned()),
         }

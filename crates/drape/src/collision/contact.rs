@@ -151,6 +151,7 @@ fn pull(pull: &Pull) -> ClothContact {
             normal: pull.stiffness,
             tangential: pull.stiffness,
             friction: 0.0,
+            hard_from: f64::INFINITY,
         },
         restitution: None,
         pair: None,
@@ -183,6 +184,9 @@ pub struct ClothContacts {
 
 /// Contacts are kept from this many offsets away, so that a step is stopped before it lands.
 const REACH_IN_OFFSETS: f64 = 2.0;
+
+/// Share of the offset that two cloths give way by before their contact is hard.
+const HARD_FROM: f64 = 0.75;
 
 /// How far vertices may go off the way that near triangles were looked for on [m].
 const STRAY: f64 = 2.5e-4;
@@ -391,6 +395,7 @@ impl ClothContacts {
                 normal,
                 tangential: 0.5 * normal,
                 friction,
+                hard_from: HARD_FROM * kept,
             },
             restitution: self.restitution(vertices, near.weights),
             pair: Some(near.pair),

@@ -14,26 +14,44 @@ impl Graph {
     /// # Panics
     /// When a pair names a vertex there is not.
     pub fn from_pairs(vertices: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> Self {
-        let mut entries: Vec<[u32; 2]> = (0..vertices as u32).map(|v| [v, v]).collect();
-        for [a, b] in pairs {
-            entries.push([a, b]);
-            if a != b {
-                entries.push([b, a]);
-            }
-        }
-        entries.sort_unstable();
-        entries.dedup();
-        let mut start = vec![0; vertices + 1];
-        for &[row, _] in &entries {
-            start[row as usize + 1] += 1;
+        let pairs: Vec<[u32; 2]> = pairs.into_iter().collect();
+        // Rows as long as they may be: each vertex itself, and every pair both ways.
+        let mut first = vec![0usize; vertices + 1];
+        for &[a, b] in &pairs {
+            first[a as usize + 1] += 1;
+            first[b as usize + 1] += 1;
         }
         for row in 0..vertices {
-            start[row + 1] += start[row];
+            first[row + 1] += first[row] + 1;
         }
-        Self {
-            start,
-            columns: entries.into_iter().map(|[_, column]| column).collect(),
+        let mut entries = vec![0; first[vertices]];
+        let mut next = first.clone();
+        let mut enter = |row: u32, column: u32| {
+            entries[next[row as usize]] = column;
+            next[row as usize] += 1;
+        };
+        (0..vertices as u32).for_each(|v| enter(v, v));
+        for &[a, b] in &pairs {
+            enter(a, b);
+            enter(b, a);
         }
+        let mut graph = Self {
+            start: vec![0],
+            columns: Vec::with_capacity(entries.len()),
+        };
+        for row in 0..vertices {
+            let row = &mut entries[first[row]..first[row + 1]];
+            row.sort_unstable();
+            let mut last = u32::MAX;
+            for &column in row.iter() {
+                if column != last {
+                    graph.columns.push(column);
+                    last = column;
+                }
+            }
+            graph.start.push(graph.columns.len());
+        }
+        graph
     }
 
     /// Number of vertices.

@@ -18,6 +18,10 @@ const LARGEST_SEPARATOR: f64 = 0.5;
 /// Sweeps of which the separator is straightened.
 const STRAIGHTENED: usize = 2;
 
+/// Pieces of no more vertices are swept in two directions alone, and the better separator is
+/// straightened: most of the time would go into such pieces, and more sweeps save them nothing.
+const SMALL: usize = 1000;
+
 /// Passes of straightening at the most; two or three find nothing any more.
 const PASSES: usize = 6;
 
@@ -56,7 +60,7 @@ pub fn separate(piece: &Piece) -> Option<(Vec<u32>, Vec<u32>)> {
         .filter_map(|keys| sweep(piece, estimate, keys))
         .collect();
     swept.sort_by(|a, b| a.0.total_cmp(&b.0));
-    swept.truncate(STRAIGHTENED);
+    swept.truncate(if is_small(piece) { 1 } else { STRAIGHTENED });
     for (work, side) in &mut swept {
         *work = straighten(piece, estimate, side);
     }
@@ -83,11 +87,15 @@ fn bounds(places: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
     places.fold((none, -none), |(low, high), p| (low.inf(&p), high.sup(&p)))
 }
 
-/// Orders to sweep the vertices in: along the axes, along the principal directions, and by
-/// distance within the graph from a vertex at its rim.
+fn is_small(piece: &Piece) -> bool {
+    piece.len() <= SMALL
+}
+
+/// Orders to sweep the vertices in: along the principal directions, the longest first; in large
+/// pieces along the axes and by distance within the graph from a vertex at the rim too.
 fn candidate_keys(piece: &Piece) -> Vec<Vec<f64>> {
     let along = |d: Vec3| piece.places.iter().map(|p| p.dot(&d)).collect();
-    let mut all: Vec<Vec<f64>> = vec![along(Vec3::x()), along(Vec3::y()), along(Vec3::z())];
+    let mut all: Vec<Vec<f64>> = Vec::new();
     let centre = piece.places.iter().sum::<Vec3>() / piece.len() as f64;
     let spread = piece.places.iter().fold(Matrix3::zeros(), |sum, p| {
         sum + (p - centre) * (p - centre).transpose()
@@ -95,8 +103,16 @@ fn candidate_keys(piece: &Piece) -> Vec<Vec<f64>> {
     if spread.iter().all(|s| s.is_finite())
         && let Some(eigen) = SymmetricEigen::try_new(spread, 1e-12, 100)
     {
-        all.extend((0..3).map(|k| along(eigen.eigenvectors.column(k).into())));
+        let mut order = [0, 1, 2];
+        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        let direction = |k: usize| along(eigen.eigenvectors.column(k).into());
+        all.extend(order.into_iter().map(direction));
     }
+    if is_small(piece) && !all.is_empty() {
+        all.truncate(2);
+        return all;
+    }
+    all.extend([Vec3::x(), Vec3::y(), Vec3::z()].map(along));
     let rim = farthest(&hops(piece, 0));
     all.push(hops(piece, rim));
     all

@@ -14,7 +14,14 @@ pub struct ContactLaw {
     pub tangential: f64,
     /// Friction coefficient.
     pub friction: f64,
+    /// Depth from which it is [`HARDER`] [m]; infinite for surfaces that cloth may sink into.
+    pub hard_from: f64,
 }
+
+/// How much stiffer a contact is that has given way to its hard depth. A contact of two cloths whose
+/// force is at its end when they touch gives way to anything that presses more; what then keeps them
+/// apart is only the bound on moves, and the way to rest stands still before it.
+pub const HARDER: f64 = 100.0;
 
 /// A point near a surface, and the surface as seen from there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,9 +85,21 @@ pub fn damped_push(elastic: f64, normal: f64, mass: f64, leaving: f64) -> f64 {
 const AT_LIMIT: f64 = 0.99;
 
 impl ContactLaw {
+    /// Energy [J], force [N] and stiffness [N/m] of the push at some depth [m].
+    fn push(&self, depth: f64) -> [f64; 3] {
+        let (soft, hard) = (depth.max(0.0), (depth - self.hard_from).max(0.0));
+        let harder = HARDER * self.normal;
+        [
+            0.5 * (self.normal * soft * soft + harder * hard * hard),
+            self.normal * soft + harder * hard,
+            self.normal + if hard > 0.0 { harder } else { 0.0 },
+        ]
+    }
+
     /// Energy [J], gradient [N] and a positive semidefinite Hessian [N/m] at a point.
     ///
-    /// Normal part: k d^2 / 2 for depth d > 0. Its Hessian has k g g' and, where the surface is
+    /// Normal part: k d^2 / 2 for depth d > 0, and [`HARDER`] k (d - h)^2 / 2 more beyond the hard depth h.
+    /// Its Hessian has k g g' and, where the surface is
     /// hollow, the turning of the normal as the point slides along: without that Newton's steps in
     /// an armpit are too long by several times and never settle. Tangential part: the Huber function of the slip
     /// from the anchor with limit mu N, N lagged, so that it has an energy.
@@ -88,13 +107,14 @@ impl ContactLaw {
         let n = plane.normal;
         let depth = plane.depth_of(point);
         let (mut energy, mut gradient, mut hessian) = (0.0, Vec3::zeros(), Matrix3::zeros());
+        let [pushed, force, stiffness] = self.push(depth);
         if depth > 0.0 {
-            energy += 0.5 * self.normal * depth * depth;
-            gradient -= plane.gradient * (self.normal * depth);
-            hessian += plane.hollow * (self.normal * depth);
+            energy += pushed;
+            gradient -= plane.gradient * force;
+            hessian += plane.hollow * force;
         }
         if depth > 0.0 || plane.landing {
-            hessian += plane.gradient * plane.gradient.transpose() * self.normal;
+            hessian += plane.gradient * plane.gradient.transpose() * stiffness;
         }
         let limit = self.friction * plane.lagged_normal_force;
         if limit > 0.0 {
@@ -124,7 +144,8 @@ impl ContactLaw {
     /// What the exact Hessian lacks against the one of [`Self::evaluate`]: a point on a bulge is
     /// pushed off it the more the farther it slides down [N/m].
     pub fn missing_curvature(&self, plane: &ContactPlane, point: Vec3) -> Matrix3<f64> {
-        plane.bulge * (self.normal * plane.depth_of(point).max(0.0))
+        let [_, force, _] = self.push(plane.depth_of(point));
+        plane.bulge * force
     }
 
     /// Energy that a point at the limit of friction finds on a `step` back into the cone, and that
@@ -150,8 +171,8 @@ impl ContactLaw {
         if plane.depth_of(point) > 0.0 || plane.landing {
             return 0.0;
         }
-        let depth = plane.depth_of(point + step).max(0.0);
-        0.5 * self.normal * depth * depth
+        let [energy, ..] = self.push(plane.depth_of(point + step));
+        energy
     }
 
     /// Force that draws a point about to land down to the surface, so that the Newton step ends
@@ -164,8 +185,7 @@ impl ContactLaw {
     /// Energy alone [J].
     pub fn energy(&self, plane: &ContactPlane, point: Vec3) -> f64 {
         let n = plane.normal;
-        let depth = plane.depth_of(point).max(0.0);
-        let mut energy = 0.5 * self.normal * depth * depth;
+        let [mut energy, ..] = self.push(plane.depth_of(point));
         let limit = self.friction * plane.lagged_normal_force;
         if limit > 0.0 {
             let offset = point - plane.anchor;
@@ -181,7 +201,8 @@ impl ContactLaw {
 
     /// Normal force at a point [N].
     pub fn normal_force(&self, plane: &ContactPlane, point: Vec3) -> f64 {
-        self.normal * plane.depth_of(point).max(0.0) * plane.gradient.norm()
+        let [_, force, _] = self.push(plane.depth_of(point));
+        force * plane.gradient.norm()
     }
 
     /// The anchor after a step: it stays while the tangential spring is inside the friction cone
@@ -208,6 +229,7 @@ mod tests {
         normal: 300.0,
         tangential: 150.0,
         friction: 0.4,
+        hard_from: f64::INFINITY,
     };
 
     fn plane() -> ContactPlane {
@@ -227,18 +249,24 @@ mod tests {
     }
 
     #[test]
-    fn gradient_is_the_slope_of_the_energy_stuck_and_sliding() {
-        for offset in [
-            Vec3::new(-1e-4, 0.0, -2e-4),
-            Vec3::new(-4e-3, 2e-3, -1e-3),
-            Vec3::new(0.01, 0.01, 0.0),
+    fn gradient_is_the_slope_of_the_energy_stuck_and_sliding_soft_and_hard() {
+        let hard = ContactLaw {
+            hard_from: 1e-3,
+            ..LAW
+        };
+        for (law, offset) in [
+            (LAW, Vec3::new(-1e-4, 0.0, -2e-4)),
+            (LAW, Vec3::new(-4e-3, 2e-3, -1e-3)),
+            (LAW, Vec3::new(0.01, 0.01, 0.0)),
+            (hard, Vec3::new(-1e-4, 0.0, -2e-4)),
+            (hard, Vec3::new(-4e-3, 2e-3, -1e-3)),
         ] {
             let point = plane().point + offset;
-            let (_, gradient, hessian) = LAW.evaluate(&plane(), point);
+            let (_, gradient, hessian) = law.evaluate(&plane(), point);
             for axis in 0..3 {
                 let step = Vec3::ith(axis, 1e-8);
-                let slope = (LAW.energy(&plane(), point + step)
-                    - LAW.energy(&plane(), point - step))
+                let slope = (law.energy(&plane(), point + step)
+                    - law.energy(&plane(), point - step))
                     / 2e-8;
                 assert!(
                     (slope - gradient[axis]).abs() < 1e-6,
@@ -248,6 +276,9 @@ mod tests {
             }
             assert!(hessian.symmetric_eigenvalues().min() > -1e-9);
         }
+        let point = plane().point - plane().normal * 1.5e-3;
+        let force = hard.normal * (1.5e-3 + HARDER * 0.5e-3);
+        assert!((hard.normal_force(&plane(), point) - force).abs() < 1e-9);
     }
 
     #[test]

@@ -94,6 +94,7 @@ mod tests {
             normal: 100.0,
             tangential: 50.0,
             friction: 0.5,
+            hard_from: f64::INFINITY,
         };
         let plane = |v: usize, depth: f64| ContactPlane {
             point: mesh.positions[v],

@@ -1,0 +1,122 @@
+//! How long a garment takes to rest, many times over: the way there is chaotic, a start moved by
+//! micrometres takes other steps, so one run says little.
+
+use std::path::PathBuf;
+use std::time::Instant;
+use toile_drape::{GarmentRun, GarmentSetup, Stage};
+use toile_geometry::Vec3;
+use toile_session::{Command, Quality, Session, Silent};
+use toile_tests::root;
+
+/// How far a placed vertex is moved along each axis at the most [m].
+const MOVED: f64 = 1e-5;
+
+/// What is asked.
+struct Task {
+    pattern: PathBuf,
+    quality: Quality,
+    seeds: u64,
+}
+
+fn parse(arguments: &[String]) -> Result<Task, String> {
+    let mut task = Task {
+        pattern: root().join("patterns/t-shirt.toile.json"),
+        quality: Quality::Fit,
+        seeds: 8,
+    };
+    let mut rest = arguments.iter();
+    while let Some(argument) = rest.next() {
+        match argument.as_str() {
+            "--quality" => task.quality = super::quality_named(rest.next())?,
+            "--seeds" => {
+                let count = rest.next().and_then(|text| text.parse().ok());
+                task.seeds = count.ok_or("--seeds needs a number")?;
+            }
+            option if option.starts_with("--") => return Err(format!("{option} is not known")),
+            file => task.pattern = PathBuf::from(file),
+        }
+    }
+    Ok(task)
+}
+
+/// Drapes one garment from so many starts, and prints steps and seconds of each stage.
+pub fn rest(arguments: &[String]) -> Result<(), String> {
+    let task = parse(arguments)?;
+    let mut session = Session::new();
+    for command in [
+        Command::OpenPattern {
+            path: task.pattern.clone(),
+        },
+        Command::SetQuality {
+            quality: task.quality,
+        },
+    ] {
+        session
+            .execute(command, &mut Silent)
+            .map_err(|error| error.to_string())?;
+    }
+    let setup = session
+        .garment_setup()
+        .map_err(|error| error.to_string())?
+        .setup;
+    println!(
+        "seed,vertices,sewing_steps,settling_steps,residual,sewing_s,swinging_s,settling_s,wall_s"
+    );
+    let mut lines = Vec::new();
+    for seed in 0..task.seeds {
+        let line = draped(setup.clone(), seed)?;
+        println!("{seed},{}", row(&line));
+        lines.push(line);
+    }
+    let mean: Vec<f64> = (0..lines.first().map_or(0, Vec::len))
+        .map(|column| lines.iter().map(|line| line[column]).sum::<f64>() / lines.len() as f64)
+        .collect();
+    println!("mean,{}", row(&mean));
+    Ok(())
+}
+
+fn row(line: &[f64]) -> String {
+    let numbers: Vec<String> = line.iter().map(|number| format!("{number:.3}")).collect();
+    numbers.join(",")
+}
+
+/// One run: what stands in the header.
+fn draped(mut setup: GarmentSetup, seed: u64) -> Result<Vec<f64>, String> {
+    for (v, place) in setup.levels[0].cloth.positions.iter_mut().enumerate() {
+        *place += moved(seed, v as u64) * MOVED;
+    }
+    let start = Instant::now();
+    let mut run = GarmentRun::new(setup).map_err(|error| error.to_string())?;
+    let mut seconds = [0.0; 3];
+    loop {
+        let place = match run.progress().stage {
+            Stage::Sewing => 0,
+            Stage::Swinging => 1,
+            Stage::Settling => 2,
+            Stage::Finished => break,
+        };
+        let step = Instant::now();
+        run.advance().map_err(|error| error.to_string())?;
+        seconds[place] += step.elapsed().as_secs_f64();
+    }
+    let [sewing, settling] = run.steps().map(|steps| steps as f64);
+    let vertices = run.state.positions.len() as f64;
+    let mut line = vec![vertices, sewing, settling, run.progress().residual];
+    line.extend(seconds);
+    line.push(start.elapsed().as_secs_f64());
+    Ok(line)
+}
+
+/// A direction within the cube of side 2, none for the first seed (splitmix; Steele et al. 2014).
+fn moved(seed: u64, vertex: u64) -> Vec3 {
+    if seed == 0 {
+        return Vec3::zeros();
+    }
+    let number = |axis: u64| {
+        let mut z = (seed << 40 | vertex << 2 | axis).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    Vec3::new(number(0), number(1), number(2))
+}
