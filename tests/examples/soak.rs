@@ -23,7 +23,7 @@
 //! `soak rest [--quality preview|fit|final] [--seeds N] [PATTERN]` drapes one garment, the T-shirt, from N starts that
 //! differ by micrometres, and prints steps and seconds of each stage: the way to rest is chaotic.
 //!
-//! `soak layers [--fit] [FIGURE...]` wears the shipped patterns in three layers on every mannequin, and fails
+//! `soak layers [--fit] [--outfit 1|2|3] [FIGURE...]` wears the shipped patterns in three layers on every mannequin, and fails
 //! where layers cross the body, themselves or each other, or are out of order.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 

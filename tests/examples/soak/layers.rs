@@ -17,9 +17,17 @@ const OUTFITS: [[&str; 3]; 3] = [
 pub fn layers(arguments: &[String]) -> Result<(), String> {
     let mut quality = Quality::Preview;
     let mut names = Vec::new();
-    for argument in arguments {
+    let mut outfits: Vec<[&str; 3]> = OUTFITS.to_vec();
+    let mut rest = arguments.iter();
+    while let Some(argument) = rest.next() {
         match argument.as_str() {
             "--fit" => quality = Quality::Fit,
+            "--outfit" => {
+                let number = rest.next().and_then(|text| text.parse::<usize>().ok());
+                let outfit = number.and_then(|number| OUTFITS.get(number.wrapping_sub(1)));
+                outfits = vec![*outfit.ok_or("--outfit needs 1, 2 or 3")?];
+            }
+            option if option.starts_with("--") => return Err(format!("{option} is not known")),
             name => names.push(name.to_owned()),
         }
     }
@@ -31,7 +39,7 @@ pub fn layers(arguments: &[String]) -> Result<(), String> {
         if !names.is_empty() && !names.iter().any(|name| name == figure.name()) {
             continue;
         }
-        for outfit in OUTFITS {
+        for &outfit in &outfits {
             let worn = format!("{},{}", figure.name(), outfit.join(","));
             let start = Instant::now();
             match wear(figure, outfit, quality) {
