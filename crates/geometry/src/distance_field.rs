@@ -1,11 +1,12 @@
 //! A smooth signed distance to a surface: sampled on a sparse grid, blended by quadratic
 //! B-splines.
 
+use crate::closest_facet::{Facet, LANES, closest_facets};
 use crate::{SurfaceTree, Vec3};
 use nalgebra::Matrix3;
 use std::sync::{Arc, OnceLock};
 
-/// Nodes of a block along each axis, a power of two.
+/// Nodes of a block along each axis: two cubes of eight nodes.
 const SIDE: usize = 4;
 
 /// Blocks a field may be divided into; the cells grow until it has no more (a floor of a hundred
@@ -30,8 +31,8 @@ pub struct DistanceField {
     blocks: [usize; 3],
     /// Values of each block; none where it is far outside.
     samples: Vec<OnceLock<Option<Box<[f64]>>>>,
-    /// The triangles of the surface, made when the first block is sampled.
-    candidates: OnceLock<Vec<Candidate>>,
+    /// The triangles of the surface, prepared when the first block is sampled.
+    candidates: OnceLock<(Vec<Candidate>, Vec<Facet>)>,
 }
 
 /// A triangle that may hold the closest point, in a disc round its centre.
@@ -116,16 +117,21 @@ impl DistanceField {
         let reach = (middle.signed_distance.abs() + 2.0 * span) * (1.0 + 1e-9);
         let mut near = self.surface.near_box(centre, centre, reach);
         near.sort_unstable();
-        let all = self.candidates.get_or_init(|| self.all_candidates());
+        let (all, facets) = self.candidates.get_or_init(|| self.all_candidates());
         let near = near.into_iter().map(|t| all[t as usize]);
-        let candidates: Vec<Candidate> = near.filter(|c| c.may_reach(centre, reach)).collect();
-        self.fill(corner, [0; 3], SIDE, &candidates, &mut values);
+        let near: Vec<Candidate> = near.filter(|c| c.may_reach(centre, reach)).collect();
+        for eighth in 0..8 {
+            let first = [0, 1, 2].map(|axis| 2 * (eighth >> axis & 1));
+            self.fill((&near, facets), corner, first, &mut values);
+        }
         Some(values)
     }
 
-    fn all_candidates(&self) -> Vec<Candidate> {
-        let count = self.surface.mesh().triangles.len() as u32;
-        (0..count).map(|t| self.candidate(t)).collect()
+    fn all_candidates(&self) -> (Vec<Candidate>, Vec<Facet>) {
+        let mesh = self.surface.mesh();
+        let all = 0..mesh.triangles.len();
+        let facets = all.clone().map(|t| Facet::new(mesh.corners(t))).collect();
+        (all.map(|t| self.candidate(t as u32)).collect(), facets)
     }
 
     fn candidate(&self, triangle: u32) -> Candidate {
@@ -144,64 +150,36 @@ impl DistanceField {
         }
     }
 
-    /// Fills a cube of `side` nodes from `first` on: of the candidates those go on to its eighths
-    /// that may be closest to any of its nodes.
+    /// Fills a cube of eight nodes from `first` on: candidates that may be closest to any of them are
+    /// measured from all at once, and the closest then exactly.
     fn fill(
         &self,
+        (near, facets): (&[Candidate], &[Facet]),
         corner: Vec3,
         first: [usize; 3],
-        side: usize,
-        candidates: &[Candidate],
         values: &mut [f64],
     ) {
-        let reach = 0.5 * (side - 1) as f64 * self.cell;
-        let middle = corner + Vec3::from(first.map(|k| k as f64)) * self.cell + Vec3::repeat(reach);
+        let reach = 0.5 * self.cell;
+        let low = corner + Vec3::from(first.map(|k| k as f64)) * self.cell;
+        let middle = low + Vec3::repeat(reach);
         // The centre of a triangle is a point of it, so no closest point is farther.
-        let mut nearest = (f64::INFINITY, 0);
-        for (at, candidate) in candidates.iter().enumerate() {
-            let distance = (candidate.centre - middle).norm_squared();
-            if distance < nearest.0 {
-                nearest = (distance, at);
-            }
-        }
-        if side == 1 {
-            let [i, j, k] = first;
-            values[i + SIDE * (j + SIDE * k)] = self.closest_of(candidates, nearest.1, middle);
-            return;
-        }
+        let centres = near.iter().map(|c| (c.centre - middle).norm_squared());
+        let least = centres.fold(f64::INFINITY, f64::min).sqrt();
         // There and back, and what rounding may add.
-        let least = nearest.0.sqrt();
         let most = least + 2.0 * reach * 3f64.sqrt() + 1e-9 * (least + self.cell);
-        let kept: Vec<Candidate> = candidates
-            .iter()
-            .filter(|c| c.may_reach(middle, most))
-            .copied()
-            .collect();
-        let half = side / 2;
-        for eighth in 0..8 {
-            let next = [0, 1, 2].map(|axis| first[axis] + half * (eighth >> axis & 1));
-            self.fill(corner, next, half, &kept, values);
+        let among = near.iter().filter(|c| c.may_reach(middle, most));
+        let among: Vec<u32> = among.map(|c| c.triangle).collect();
+        let steps: [[usize; 3]; LANES] = std::array::from_fn(|k| [k & 1, k >> 1 & 1, k >> 2]);
+        let nodes = steps.map(|step| low + Vec3::from(step.map(|k| k as f64)) * self.cell);
+        let axis = |axis: usize| nodes.map(|node| node[axis]);
+        let closest = closest_facets(facets, &among, &[axis(0), axis(1), axis(2)]);
+        for ((step, node), closest) in steps.iter().zip(nodes).zip(closest) {
+            let [i, j, k] = [0, 1, 2].map(|axis| first[axis] + step[axis]);
+            values[i + SIDE * (j + SIDE * k)] = match among.is_empty() {
+                true => f64::INFINITY,
+                false => self.surface.closest_on(closest, node).signed_distance,
+            };
         }
-    }
-
-    /// Signed distance from the closest of some triangles, the one at `guess` tried first.
-    fn closest_of(&self, candidates: &[Candidate], guess: usize, point: Vec3) -> f64 {
-        let Some(guess) = candidates.get(guess) else {
-            return f64::INFINITY;
-        };
-        let mut least = (
-            self.surface.distance_to(guess.triangle, point),
-            guess.triangle,
-        );
-        for candidate in candidates {
-            if candidate.triangle != guess.triangle && candidate.may_reach(point, least.0) {
-                let distance = self.surface.distance_to(candidate.triangle, point);
-                if distance < least.0 {
-                    least = (distance, candidate.triangle);
-                }
-            }
-        }
-        self.surface.closest_on(least.1, point).signed_distance
     }
 
     fn block(&self, at: [usize; 3]) -> Option<&[f64]> {

@@ -7,6 +7,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod closest;
+mod closest_facet;
 mod curve;
 mod distance_field;
 mod ellipsoid;

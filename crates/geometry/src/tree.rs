@@ -121,13 +121,6 @@ impl SurfaceTree {
         Some(self.closest_on(triangle, point))
     }
 
-    /// Distance of a point from one triangle of the surface \[m\].
-    pub(crate) fn distance_to(&self, triangle: u32, point: Vec3) -> f64 {
-        let corners = self.mesh.corners(triangle as usize);
-        let (weights, _) = closest_point_on_triangle(point, corners);
-        (weighted(corners, weights) - point).norm()
-    }
-
     /// The closest point of one triangle.
     pub(crate) fn closest_on(&self, triangle: u32, point: Vec3) -> ClosestPoint {
         let t = triangle as usize;
