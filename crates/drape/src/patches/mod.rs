@@ -13,7 +13,7 @@
 //! It is fast because the cloth is cut into patches with halos, each moved by one task for several
 //! substeps; vertices and edges are worked on eight at a time, in an order in which their neighbours
 //! lie side by side; the membrane is evaluated as tensions of edges; and contact planes are measured
-//! every half millisecond only. A frame costs vertices x substeps, the substeps growing as 1 / edge:
+//! every half to whole millisecond only. A frame costs vertices x substeps, the substeps growing as 1 / edge:
 //! for light, soft cloth that is less than any implicit step, and without its damping.
 //!
 //! Bending in longer steps than the membrane's (impulses, Tuckerman et al.) was measured and left

@@ -27,9 +27,6 @@ const CUT_FROM: usize = 2000;
 /// Vertices of a patch at the most: two megabytes of positions, velocities and triangles.
 const PATCH: usize = 12_000;
 
-/// Longest time between two looks for contact [s]: at 3 m/s cloth goes 1.5 mm.
-const LOOK_STEP: f64 = 5e-4;
-
 /// A cloth cut into patches.
 pub struct Sheet {
     /// Largest frequency while no triangle is strained [rad/s].
@@ -143,8 +140,8 @@ impl Sheet {
         );
         self.load();
         self.touch.start(model, state);
-        self.touch
-            .look(model, &self.positions, &self.velocities, LOOK_STEP);
+        let time = self.touch.interval;
+        (self.touch).look(model, &self.positions, &self.velocities, time);
     }
 
     /// Gives every patch its part.
@@ -181,30 +178,34 @@ impl Sheet {
 
     /// Moves on by `count` substeps of `h` [s].
     pub fn advance(&mut self, model: &Model, h: f64, count: usize) {
-        let mut most = match self.patches.len() {
+        let most = match self.patches.len() {
             1 => count,
             _ => self.rings,
         };
-        if !model.colliders.is_empty() {
-            most = most.min((LOOK_STEP / h) as usize).max(1);
-        }
+        let touches = !model.colliders.is_empty();
+        // Substeps until the next look.
+        let mut seen = if touches { 0 } else { count };
         let mut left = count;
         while left > 0 {
-            let now = left.min(most);
+            if seen == 0 {
+                seen = ((self.touch.interval / h) as usize).clamp(1, left);
+                let (x, v) = (&self.positions, &self.velocities);
+                self.touch.look(model, x, v, h * seen as f64);
+            }
+            let now = seen.min(most);
             left -= now;
+            seen -= now;
             let course = Course {
                 h,
                 count: now,
                 gravity: model.gravity.into(),
                 drag: model.air_drag,
             };
-            let (x, v) = (&self.positions, &self.velocities);
-            self.touch.look(model, x, v, h * now as f64);
             self.on_patches(|patch| patch.advance(course));
             let (x, v) = (&mut self.positions, &mut self.velocities);
             for patch in &self.patches {
                 // All are looked at for contact, and at the end.
-                match left == 0 || !model.colliders.is_empty() {
+                match seen == 0 {
                     true => patch.unload(x, v),
                     false => patch.unload_border(x, v),
                 }
@@ -302,6 +303,7 @@ fn cut(model: &Model, count: usize) -> Vec<Vec<u32>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::touch::Touching;
     use super::*;
     use crate::{Cloth, Collider, Material};
     use std::sync::Arc;
@@ -363,6 +365,30 @@ mod tests {
         for (a, b) in whole.positions.iter().zip(&cut.positions) {
             let off = (Vec3::from(*a) - Vec3::from(*b)).norm();
             assert!(off < 1e-10, "{off:e}");
+        }
+    }
+
+    #[test]
+    fn looks_are_nearer_where_cloth_slides_over_what_is_curved() {
+        for (curved, least) in [(0.0, 1e-3), (50.0, 5e-4)] {
+            let (mut model, mut state) = falling();
+            model.pinned[0] = false;
+            let mut floor = grid(200, 0.4, 0.0);
+            for x in state.positions.iter_mut().chain(&mut floor.positions) {
+                x.y -= 0.5 * curved * x.x * x.x;
+            }
+            state.velocities.fill(Vec3::new(2.0, -0.5, 0.0));
+            model.colliders = vec![Collider::new(Arc::new(SurfaceTree::new(floor)))];
+            let mut sheet = Sheet::cut_into(&model, 2);
+            sheet.start(&model, &state);
+            let (mut shortest, mut pressed) = (f64::INFINITY, false);
+            for _ in 0..8 {
+                sheet.advance(&model, 1e-4, 10);
+                pressed |= sheet.touch.near.iter().any(Touching::presses);
+                shortest = shortest.min(sheet.touch.interval);
+            }
+            assert!(pressed);
+            assert_eq!(shortest, least, "{curved}");
         }
     }
 
