@@ -185,7 +185,7 @@ impl Direct {
                 .all(has)
     }
 
-    /// Solves A x = b; b must be zero at pins, and so is x. False when the matrix is not
+    /// Solves A x = b for the free vertices; x is zero at pins. False when the matrix is not
     /// numerically positive definite; `x` is then of no use.
     pub fn solve(&mut self, hessian: &Hessian, b: &[Vec3], x: &mut [Vec3]) -> bool {
         let unknowns = &self.unknowns;

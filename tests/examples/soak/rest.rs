@@ -11,6 +11,9 @@ use toile_tests::root;
 /// How far a placed vertex is moved along each axis at the most [m].
 const MOVED: f64 = 1e-5;
 
+/// Where the residual stands in a line.
+const RESIDUAL: usize = 3;
+
 /// What is asked.
 struct Task {
     pattern: PathBuf,
@@ -30,7 +33,7 @@ fn parse(arguments: &[String]) -> Result<Task, String> {
             "--quality" => task.quality = super::quality_named(rest.next())?,
             "--seeds" => {
                 let count = rest.next().and_then(|text| text.parse().ok());
-                task.seeds = count.ok_or("--seeds needs a number")?;
+                task.seeds = count.filter(|n| *n > 0).ok_or("--seeds needs a number")?;
             }
             option if option.starts_with("--") => return Err(format!("{option} is not known")),
             file => task.pattern = PathBuf::from(file),
@@ -62,17 +65,24 @@ pub fn rest(arguments: &[String]) -> Result<(), String> {
     println!(
         "seed,vertices,sewing_steps,settling_steps,residual,sewing_s,swinging_s,settling_s,wall_s"
     );
-    let mut lines = Vec::new();
+    let asked = setup.rest.residual;
+    let (mut lines, mut restless) = (Vec::new(), Vec::new());
     for seed in 0..task.seeds {
         let line = draped(setup.clone(), seed)?;
         println!("{seed},{}", row(&line));
+        if line[RESIDUAL] > asked {
+            restless.push(seed.to_string());
+        }
         lines.push(line);
     }
     let mean: Vec<f64> = (0..lines.first().map_or(0, Vec::len))
         .map(|column| lines.iter().map(|line| line[column]).sum::<f64>() / lines.len() as f64)
         .collect();
     println!("mean,{}", row(&mean));
-    Ok(())
+    match restless.is_empty() {
+        true => Ok(()),
+        false => Err(format!("not at rest: {}", restless.join(", "))),
+    }
 }
 
 fn row(line: &[f64]) -> String {

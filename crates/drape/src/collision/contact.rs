@@ -393,7 +393,8 @@ impl ClothContacts {
             },
             law: ContactLaw {
                 normal,
-                tangential: 0.5 * normal,
+                // What presses harder than the soft contact can slips no farther before it slides.
+                tangential: 0.5 * normal.max(force / kept),
                 friction,
                 hard_from: HARD_FROM * kept,
             },

@@ -109,8 +109,9 @@ pub struct Touch {
 #[derive(Default)]
 struct Chunk {
     near: Vec<Touching>,
-    /// How far off planes were at the most that were measured anew [m].
-    off: f64,
+    /// How far off planes that pressed were at the most when measured anew, by the way gone \[1\]; none
+    /// where none was.
+    off: Option<f64>,
 }
 
 #[derive(Clone, Copy)]
@@ -148,9 +149,12 @@ const SMOOTH_WITHIN: f64 = 0.012;
 /// Shortest and longest time between two looks [s]: at 3 m/s cloth goes 1.5 and 3 mm.
 const INTERVAL: [f64; 2] = [5e-4, 1e-3];
 
-/// Looks are nearer where planes were farther off than this when measured anew, and farther apart where
-/// they were off by less than an eighth: twice the time makes four times the error [m].
-const OFF: f64 = 1e-5;
+/// Looks are nearer where planes that pressed were off by more than this share of the way when measured
+/// anew, and farther apart where they were off by less than a quarter of it, since twice the way
+/// turns the plane twice as far: contact errs by that share of the speed. Over a radius R it is v t / 2 R,
+/// 0.017 on a limb of 30 mm at 2 m/s in 0.5 ms.
+const OFF: f64 = 0.02;
+const SURE: f64 = 0.25;
 
 /// Vertices looked at by one task: few, for some must lay the distance field.
 const CHUNK: usize = 256;
@@ -221,7 +225,7 @@ impl Touch {
             .enumerate()
             .for_each(|(chunk, (samples, found))| {
                 found.near.clear();
-                found.off = 0.0;
+                found.off = None;
                 for (k, sample) in samples.iter_mut().enumerate() {
                     let at = sample.vertex as usize;
                     let (place, velocity) = (positions[at], velocities[at]);
@@ -235,19 +239,22 @@ impl Touch {
                 }
             });
         self.near.clear();
-        let mut off = 0.0f64;
+        let mut off: Option<f64> = None;
         for chunk in &self.chunks {
             self.near.extend_from_slice(&chunk.near);
-            off = off.max(chunk.off);
+            off = match (off, chunk.off) {
+                (Some(a), Some(b)) => Some(a.max(b)),
+                (a, b) => a.or(b),
+            };
         }
         for (entry, contact) in (0..).zip(&mut self.near) {
             contact.entry = entry;
         }
         let [shortest, longest] = INTERVAL;
-        if off > OFF {
-            self.interval = (0.5 * self.interval).max(shortest);
-        } else if off < 0.125 * OFF {
-            self.interval = (2.0 * self.interval).min(longest);
+        match off {
+            Some(off) if off > OFF => self.interval = (0.5 * self.interval).max(shortest),
+            Some(off) if off < SURE * OFF => self.interval = (2.0 * self.interval).min(longest),
+            _ => {}
         }
     }
 
@@ -276,7 +283,7 @@ impl Touch {
         into.extend(self.places.iter().map(|s| (s.anchor, s.force, s.buried)));
     }
 
-    /// Puts it back.
+    /// Puts it back. Planes measured at places that are undone still say what they say of those.
     pub fn recall(&mut self, from: &[(Lane, f64, bool)]) {
         for (sample, &(anchor, force, buried)) in self.places.iter_mut().zip(from) {
             (sample.anchor, sample.force, sample.buried) = (anchor, force, buried);
@@ -285,14 +292,14 @@ impl Touch {
 }
 
 impl Sample {
-    /// The contact that it may have within `time` [s]; `off` grows to how far its plane was off.
+    /// The contact that it may have within `time` [s]; `off` grows to how far off its plane was, by the way.
     fn near(
         &mut self,
         model: &Model,
         place: Lane,
         velocity: Lane,
         time: f64,
-        off: &mut f64,
+        off: &mut Option<f64>,
     ) -> Option<Touching> {
         let place = Vec3::from(place);
         let moved = (place - self.last).norm();
@@ -303,12 +310,14 @@ impl Sample {
             return None;
         }
         if !moved.is_finite() || moved >= PLANE_REACH {
-            let before = self.plane.map(|(level, n)| (level, n, self.last));
+            let before = self
+                .plane
+                .map(|(level, n)| level + (place - self.last).dot(&n));
             self.measure(model, place);
-            if let (Some((level, n, last)), Some((now, _))) = (before, self.plane)
-                && now < self.offset
+            if let (Some(before), Some((now, _))) = (before, self.plane)
+                && before < self.offset
             {
-                *off = off.max((level + (place - last).dot(&n) - now).abs());
+                *off = Some(off.unwrap_or(0.0).max((before - now).abs() / moved));
             }
         }
         let Some((distance, n)) = self.plane else {
