@@ -39,6 +39,14 @@ pub enum BodyError {
         /// Place on the axis [m].
         z: f64,
     },
+    /// Landmarks of the skin that do not lie above each other as on a body.
+    #[error(
+        "the landmarks of the skin lie out of order at {level:.3} m on its template: give the primitives there back their places"
+    )]
+    Disordered {
+        /// Where: a height, or a way along the arm [m].
+        level: f64,
+    },
     /// A mesh that cannot be measured as a body.
     #[error("the mesh {0}")]
     Mesh(String),

@@ -7,6 +7,7 @@ use crate::levels::{Level, Levels};
 use crate::marks::{Marks, UNDERBUST};
 use crate::solve::Grown;
 use crate::warp::Shape;
+use std::cmp::Ordering;
 
 /// Scales that are solved for.
 #[derive(Clone, Debug)]
@@ -142,7 +143,7 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
     let sections = trunk(grown, s, levels, &on_template);
     let column = |k: usize| sections.iter().map(|row| [row[0], row[k]]).collect();
     let aspect = s.aspect[Girth::Hips as usize].sqrt();
-    Ok(Shape {
+    let shape = Shape {
         levels: heights,
         lateral: column(1),
         front: column(2),
@@ -176,7 +177,32 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
         sides: s.sides,
         fork: s.fork,
         armpit_rise: s.armpit,
-    })
+    };
+    in_order(&shape)?;
+    Ok(shape)
+}
+
+/// Whether every form of a shape has its levels one above the other: landmarks of a skin whose
+/// primitives were moved or deleted may not.
+fn in_order(shape: &Shape) -> Result<(), BodyError> {
+    let below = |w: &[[f64; 2]]| w[0][0].partial_cmp(&w[1][0]) == Some(Ordering::Less);
+    for form in [
+        &shape.lateral,
+        &shape.front,
+        &shape.back,
+        &shape.corners,
+        &shape.folds,
+        &shape.leg,
+        &shape.arm,
+        &shape.arm_length,
+        &shape.middle,
+        &shape.middle_to,
+    ] {
+        if let Some(pair) = form.windows(2).find(|pair| !below(pair)) {
+            return Err(BodyError::Disordered { level: pair[1][0] });
+        }
+    }
+    Ok(())
 }
 
 /// Sections of trunk, neck and head from below. Of two that lie too close, the more important

@@ -166,6 +166,21 @@ fn any_edit() -> impl Strategy<Value = PrimitiveEdit> {
     ]
 }
 
+#[test]
+fn a_body_whose_landmarks_are_gone_is_refused() {
+    let mut session = Session::new();
+    let delete = |primitive| edit(PrimitiveEdit::Delete { primitive });
+    let mut refused = 0;
+    for primitive in [0, 18] {
+        let before = session.project().clone();
+        if run(&mut session, delete(primitive)).is_err() {
+            assert_eq!(*session.project(), before);
+            refused += 1;
+        }
+    }
+    assert_eq!(refused, 1);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(6))]
     /// Whatever is done, undo gives back the very bytes of every step, and redo those after.
