@@ -116,7 +116,7 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
     }
     if heights
         .windows(2)
-        .any(|w| w[1][0] <= w[0][0] || w[1][1] <= w[0][1])
+        .any(|w| !below(w[0][0], w[1][0]) || !below(w[0][1], w[1][1]))
     {
         return Err(BodyError::Contradiction {
             first: "height",
@@ -182,10 +182,14 @@ pub(crate) fn shape(grown: &Grown, s: &Scales, levels: &Levels) -> Result<Shape,
     Ok(shape)
 }
 
+/// Whether a number is less than another, as no number is that is none.
+fn below(low: f64, high: f64) -> bool {
+    low.partial_cmp(&high) == Some(Ordering::Less)
+}
+
 /// Whether every form of a shape has its levels one above the other: landmarks of a skin whose
 /// primitives were moved or deleted may not.
 fn in_order(shape: &Shape) -> Result<(), BodyError> {
-    let below = |w: &[[f64; 2]]| w[0][0].partial_cmp(&w[1][0]) == Some(Ordering::Less);
     for form in [
         &shape.lateral,
         &shape.front,
@@ -198,7 +202,7 @@ fn in_order(shape: &Shape) -> Result<(), BodyError> {
         &shape.middle,
         &shape.middle_to,
     ] {
-        if let Some(pair) = form.windows(2).find(|pair| !below(pair)) {
+        if let Some(pair) = form.windows(2).find(|w| !below(w[0][0], w[1][0])) {
             return Err(BodyError::Disordered { level: pair[1][0] });
         }
     }

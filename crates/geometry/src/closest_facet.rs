@@ -56,7 +56,6 @@ impl Facet {
             let point = [points[0][lane], points[1][lane], points[2][lane]];
             let mut least = f64::INFINITY;
             let mut over = self.has_face;
-            let mut height = 0.0;
             for k in 0..3 {
                 let (corner, side) = (self.corners[k], self.sides[k]);
                 let (x, y, z) = (
@@ -73,8 +72,11 @@ impl Facet {
                 let inward = self.inward[k];
                 let inside = inward.x * x + inward.y * y + inward.z * z;
                 over = if inside >= 0.0 { over } else { 0.0 };
-                height = self.normal.x * x + self.normal.y * y + self.normal.z * z;
             }
+            let (corner, n) = (self.corners[0], self.normal);
+            let height = n.x * (point[0] - corner.x)
+                + n.y * (point[1] - corner.y)
+                + n.z * (point[2] - corner.z);
             *square = if over > 0.0 { height * height } else { least };
         }
         squares

@@ -105,12 +105,11 @@ fn candidate_keys(piece: &Piece) -> Vec<Vec<f64>> {
     {
         let mut order = [0, 1, 2];
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-        let direction = |k: usize| along(eigen.eigenvectors.column(k).into());
-        all.extend(order.into_iter().map(direction));
-    }
-    if is_small(piece) && !all.is_empty() {
-        all.truncate(2);
-        return all;
+        let direction = |&k: &usize| along(eigen.eigenvectors.column(k).into());
+        if is_small(piece) {
+            return order[..2].iter().map(direction).collect();
+        }
+        all.extend(order.iter().map(direction));
     }
     all.extend([Vec3::x(), Vec3::y(), Vec3::z()].map(along));
     let rim = farthest(&hops(piece, 0));
