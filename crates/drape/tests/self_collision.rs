@@ -65,11 +65,10 @@ fn pairs_are_those_of_brute_force_in_200_crumpled_states() {
         let mesh = crumpled(seed, 8);
         let x = &mesh.positions;
         let reach = 0.01;
-        let near = surface.near_triangles(Ways::still(x), reach);
-        let mut found = Vec::new();
-        for &pair in &near {
-            surface.features(pair, |pair| found.extend(Nearness::measure(pair, x, reach)));
-        }
+        let near = surface.near(Ways::still(x), reach);
+        let mut found = surface.features(&near, |pair, _, found| {
+            found.extend(Nearness::measure(pair, x, reach));
+        });
         found.sort_by_key(|near| near.pair);
         let mut expected: Vec<Nearness> = all_pairs(&mesh)
             .into_iter()
@@ -180,7 +179,7 @@ fn bounded_moves_never_cross() {
             for (x, d) in mesh.positions.iter_mut().zip(&moves) {
                 *x += d;
             }
-            let near = surface.near_triangles(Ways::still(&mesh.positions), 0.0);
+            let near = surface.near(Ways::still(&mesh.positions), 0.0);
             assert!(
                 crossings(&surface, &near, &mesh.positions).is_empty(),
                 "seed {seed}"
@@ -240,7 +239,7 @@ fn impulses_keep_layers_apart_and_keep_their_momentum() {
             .map(|(x, d)| x + d)
             .collect();
         let mut surface = ClothSurface::of_mesh(&mesh);
-        let near = surface.near_triangles(Ways::still(&end), 0.0);
+        let near = surface.near(Ways::still(&end), 0.0);
         assert!(crossings(&surface, &near, &end).is_empty(), "seed {seed}");
         if kept.cut == 0 {
             uncut += 1;

@@ -89,7 +89,7 @@ fn scene(name: &str) -> Result<(Model, State), LabError> {
 /// Edges of a model's cloth through faces of it, exactly.
 pub(crate) fn crossed(model: &Model, x: &[Vec3]) -> usize {
     let mut surface = ClothSurface::new(model);
-    let near = surface.near_triangles(Ways::still(x), 0.0);
+    let near = surface.near(Ways::still(x), 0.0);
     crossings(&surface, &near, x).len()
 }
 

@@ -62,7 +62,7 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
         }
     };
     counted("all", &mut |surface| {
-        surface.near_triangles(Ways::still(x), edge).len()
+        surface.near(Ways::still(x), edge).len()
     });
     counted("curved", &mut |surface| {
         surface.forget();
@@ -140,9 +140,7 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
             counted.insert(format!("{name}_{what}"), value);
         }
     };
-    look("all", &mut |surface| {
-        surface.near_triangles(Ways::still(x), reach)
-    });
+    look("all", &mut |surface| surface.near(Ways::still(x), reach));
     look("curved", &mut |surface| {
         surface.forget();
         surface.near_unless_clear(Ways::still(x), reach, clearance)
@@ -198,8 +196,8 @@ fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>], frame: usize) -> [f64;
             surface.forget();
         }
         let ways = Ways::together(&ends[0], &ends[1]);
-        let near = surface.near_unless_clear(ways, REACH + 2.0 * clearance.stray, clearance);
-        let near = surface.meeting(&near, Ways::still(&ends[1]), REACH);
+        std::hint::black_box(surface.near_unless_clear(ways, REACH, clearance));
+        let near = surface.near_unless_clear(Ways::still(&ends[1]), REACH, clearance);
         std::hint::black_box(nearnesses(surface, &near, &ends[1], REACH));
         std::hint::black_box(crossings(surface, &near, &ends[1]));
         let [regions, contours] = surface.opened();

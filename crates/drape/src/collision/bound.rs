@@ -92,38 +92,46 @@ pub struct Kept {
 }
 
 /// Corrects a motion so that no two features of the cloth meet on the way; pairs that `knots` lets
-/// through are left alone. `near` sees to it that all features that may meet in some moves are among
-/// those in hand.
+/// through are left alone. `near` gives the pairs of clusters that may meet in some moves.
 pub fn keep_apart(
     surface: &mut ClothSurface,
     knots: Knots,
     motion: &mut Motions,
-    mut near: impl FnMut(&mut ClothSurface, &[Vec3], &mut Vec<FeaturePair>),
+    mut near: impl FnMut(&mut ClothSurface, &[Vec3]) -> Vec<[u32; 2]>,
 ) -> Kept {
     let mut kept = Kept::default();
-    let mut pairs = Vec::new();
-    for _ in 0..IMPULSE_ROUNDS {
-        near(surface, motion.moves, &mut pairs);
-        let met = met(&pairs, knots, motion);
-        if met.is_empty() {
-            return kept;
-        }
-        for &(meeting, time) in &met {
-            kept.impulses += usize::from(push(&meeting, time, motion));
-        }
-    }
     let mut zones = Zones::new(motion.x.len());
-    for _ in 0..ZONE_ROUNDS {
-        near(surface, motion.moves, &mut pairs);
-        let met = met(&pairs, knots, motion);
+    // Vertices whose moves may not be what they were when nothing else met.
+    let mut stirred: Option<Vec<bool>> = None;
+    for round in 0..IMPULSE_ROUNDS + ZONE_ROUNDS {
+        let mut pairs = near(surface, motion.moves);
+        if let Some(stirred) = &stirred {
+            pairs = surface.marked(&pairs, stirred);
+        }
+        let met = met(surface, &pairs, knots, motion, stirred.as_deref());
         if met.is_empty() {
             kept.zoned = zones.count();
             return kept;
+        }
+        let stirred = stirred.insert(vec![false; motion.x.len()]);
+        for (meeting, _) in &met {
+            for v in meeting.pair.vertices() {
+                stirred[v as usize] = true;
+            }
+        }
+        if round < IMPULSE_ROUNDS {
+            for &(meeting, time) in &met {
+                kept.impulses += usize::from(push(&meeting, time, motion));
+            }
+            continue;
         }
         for (meeting, _) in &met {
             zones.join(meeting.pair.vertices(), motion.lightness);
         }
         zones.stiffen(motion);
+        for &v in zones.members() {
+            stirred[v as usize] = true;
+        }
     }
     kept.zoned = zones.count();
     // Cut about the mean motion, which nothing can meet by.
@@ -147,35 +155,37 @@ pub fn keep_apart(
     kept
 }
 
-/// Features that meet in a motion, with the times.
-fn met(near: &[FeaturePair], knots: Knots, motion: &Motions) -> Vec<(Meeting, f64)> {
+/// Features that meet in a motion, with the times; where some vertices are `stirred`, only those with
+/// one of these.
+fn met(
+    surface: &ClothSurface,
+    near: &[[u32; 2]],
+    knots: Knots,
+    motion: &Motions,
+    stirred: Option<&[bool]>,
+) -> Vec<(Meeting, f64)> {
     let (x, moves) = (motion.x, &*motion.moves);
-    let mean = |pair: FeaturePair| {
-        pair.vertices()
-            .map(|v| moves[v as usize])
-            .iter()
-            .sum::<Vec3>()
-            / 4.0
-    };
     let way = |pair: FeaturePair| {
-        let mean = mean(pair);
-        let ways = pair.vertices().map(|v| (moves[v as usize] - mean).norm());
-        2.0 * ways.into_iter().fold(0.0, f64::max)
+        let ways = pair.vertices().map(|v| moves[v as usize]);
+        let mean = ways.iter().sum::<Vec3>() / 4.0;
+        2.0 * ways
+            .map(|d| (d - mean).norm_squared())
+            .into_iter()
+            .fold(0.0, f64::max)
+            .sqrt()
     };
-    let meets = |pair: &FeaturePair| match knots.lets_through(*pair) {
-        true => None,
-        false => meeting(*pair, x, way(*pair)),
-    };
-    let found: Vec<Vec<Meeting>> = near
-        .par_chunks(512)
-        .map(|pairs| pairs.iter().filter_map(meets).collect())
-        .collect();
-    let meetings = found.concat();
-    let times = meetings.par_iter().with_min_len(64);
-    let times: Vec<Option<f64>> = times.map(|m| m.time(x, moves)).collect();
-    let both = meetings.into_iter().zip(times);
-    both.filter_map(|(meeting, time)| Some((meeting, time?)))
-        .collect()
+    surface.features(near, |pair, _, found| {
+        let is_stirred = |flags: &[bool]| pair.vertices().iter().any(|&v| flags[v as usize]);
+        if !stirred.is_none_or(is_stirred) {
+            return;
+        }
+        if let Some(meeting) = meeting(pair, x, way(pair))
+            && !knots.lets_through(pair)
+            && let Some(time) = meeting.time(x, moves)
+        {
+            found.push((meeting, time));
+        }
+    })
 }
 
 /// Takes back what brings two features together; whether there was anything.
@@ -234,7 +244,7 @@ pub fn bound_moves(
     bound_pairs(surface, &near, knots, x, moves)
 }
 
-/// [`bound_moves`] for pairs of triangles that hold all that may meet.
+/// [`bound_moves`] for pairs of clusters that hold all that may meet.
 fn bound_pairs(
     surface: &ClothSurface,
     near: &[[u32; 2]],
@@ -252,7 +262,9 @@ fn bound_pairs(
         let first = pair.first();
         long(0..first) + long(first..4)
     };
-    let mut meetings = meetings(surface, near, knots, |pair| meeting(pair, x, way(pair)));
+    let mut meetings = surface.features(near, |pair, _, found| {
+        found.extend(meeting(pair, x, way(pair)).filter(|_| !knots.lets_through(pair)));
+    });
     let mut held = vec![false; x.len()];
     let mut round = 0;
     while !meetings.is_empty() {
@@ -285,29 +297,6 @@ fn bound_pairs(
         round += 1;
     }
     held.iter().filter(|&&h| h).count()
-}
-
-fn meetings(
-    surface: &ClothSurface,
-    near: &[[u32; 2]],
-    knots: Knots,
-    meeting: impl Fn(FeaturePair) -> Option<Meeting> + Sync,
-) -> Vec<Meeting> {
-    let found: Vec<Vec<Meeting>> = near
-        .par_chunks(512)
-        .map(|pairs| {
-            let mut found = Vec::new();
-            for &pair in pairs {
-                surface.features(pair, |pair| {
-                    if !knots.lets_through(pair) {
-                        found.extend(meeting(pair));
-                    }
-                });
-            }
-            found
-        })
-        .collect();
-    found.concat()
 }
 
 /// How near the ways of two features must come [m] to be looked at: all that is ever kept.

@@ -1,4 +1,4 @@
-//! A tree of boxes over the triangles of a sheet: built once, refitted as they move.
+//! A tree of boxes over clusters of the triangles of a sheet: built once, refitted as they move.
 
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -54,7 +54,7 @@ impl Bounds {
     }
 }
 
-/// A node: where its box is, and the leaves below it. With c leaves below, half of them (rounded
+/// A node: where its box is, and the leaves below it, clusters of items. With c leaves below, half of them (rounded
 /// down) are below the first child, which follows at once; the tree needs no pointers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Node {
@@ -107,12 +107,20 @@ impl Region {
     pub fn count(&self) -> u32 {
         self.nodes().map(|node| node.count).sum()
     }
+
+    /// The one or two leaves that it is, where it cannot be looked into.
+    fn leaves(&self) -> Option<[u32; 2]> {
+        match *self {
+            Self::Own(a) => (a.count == 1).then_some([a.first; 2]),
+            Self::Two(a, b) => (a.count == 1 && b.count == 1).then_some([a.first, b.first]),
+        }
+    }
 }
 
 /// What a search of the tree found.
 #[derive(Clone, Debug, Default)]
 pub struct Pairs<N> {
-    /// Pairs of items whose boxes meet, each once.
+    /// Pairs of leaves whose boxes meet, each once, and leaves with themselves.
     pub pairs: Vec<[u32; 2]>,
     /// How many regions were looked into.
     pub opened: usize,
@@ -120,10 +128,15 @@ pub struct Pairs<N> {
     pub notes: Vec<N>,
 }
 
+/// The most items in a leaf.
+pub const CLUSTER: usize = 16;
+
 /// The tree.
 #[derive(Clone, Debug, Default)]
 pub struct BoxTree {
-    leaves: Vec<u32>,
+    items: Vec<u32>,
+    /// First item of every leaf, and the end.
+    starts: Vec<u32>,
     counts: Vec<u32>,
     boxes: Vec<Bounds>,
 }
@@ -135,47 +148,53 @@ impl BoxTree {
     /// Builds the tree over items at some centres [m], halving the longest axis, items of one piece
     /// together whatever lies between them; boxes are empty until it is fitted.
     pub fn new(centres: &[Vec3], pieces: &[u32]) -> Self {
-        let mut tree = Self {
-            leaves: (0..centres.len() as u32).collect(),
-            counts: Vec::with_capacity(2 * centres.len()),
-            boxes: Vec::new(),
-        };
-        let mut leaves = std::mem::take(&mut tree.leaves);
-        if !leaves.is_empty() {
-            tree.split((centres, pieces), &mut leaves);
+        let mut items: Vec<u32> = (0..centres.len() as u32).collect();
+        let mut tree = Self::default();
+        let leaves = items.len().div_ceil(CLUSTER);
+        if leaves > 0 {
+            tree.split((centres, pieces), (0, &mut items), leaves);
         }
-        tree.leaves = leaves;
+        tree.starts.push(items.len() as u32);
+        tree.items = items;
         tree.boxes = vec![Bounds::EMPTY; tree.counts.len()];
         tree
     }
 
-    fn split(&mut self, (centres, pieces): (&[Vec3], &[u32]), leaves: &mut [u32]) {
-        self.counts.push(leaves.len() as u32);
-        if leaves.len() == 1 {
+    fn split(
+        &mut self,
+        (centres, pieces): (&[Vec3], &[u32]),
+        (first, items): (usize, &mut [u32]),
+        leaves: usize,
+    ) {
+        self.counts.push(leaves as u32);
+        if leaves == 1 {
+            self.starts.push(first as u32);
             return;
         }
         let mut bounds = Bounds::EMPTY;
-        for &leaf in leaves.iter() {
-            bounds = bounds.join(&Bounds::round(&[centres[leaf as usize]], 0.0));
+        for &item in items.iter() {
+            bounds = bounds.join(&Bounds::round(&[centres[item as usize]], 0.0));
         }
         let length = |k: usize| bounds.high[k] - bounds.low[k];
         let axis = (1..3).fold(0, |best, k| if length(k) > length(best) { k } else { best });
-        let half = leaves.len() / 2;
-        leaves.select_nth_unstable_by(half, |&a, &b| {
+        // Neither side gets more items than its leaves hold.
+        let left = leaves / 2;
+        let half = items.len() * left / leaves;
+        items.select_nth_unstable_by(half, |&a, &b| {
             let (p, q) = (centres[a as usize][axis], centres[b as usize][axis]);
-            let piece = |leaf: u32| pieces[leaf as usize];
+            let piece = |item: u32| pieces[item as usize];
             (piece(a).cmp(&piece(b)))
                 .then(p.total_cmp(&q))
                 .then(a.cmp(&b))
         });
-        let (left, right) = leaves.split_at_mut(half);
-        self.split((centres, pieces), left);
-        self.split((centres, pieces), right);
+        let (below, above) = items.split_at_mut(half);
+        self.split((centres, pieces), (first, below), left);
+        self.split((centres, pieces), (first + half, above), leaves - left);
     }
 
     /// The node over everything; none when there is nothing.
     pub fn root(&self) -> Option<Node> {
-        let count = self.leaves.len() as u32;
+        let count = self.leaves() as u32;
         (count > 0).then_some(Node {
             at: 0,
             first: 0,
@@ -183,9 +202,14 @@ impl BoxTree {
         })
     }
 
-    /// The item of a leaf.
-    pub fn item(&self, leaf: u32) -> u32 {
-        self.leaves[leaf as usize]
+    /// How many leaves there are.
+    pub fn leaves(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    /// The items of a leaf.
+    pub fn items(&self, leaf: usize) -> &[u32] {
+        &self.items[self.starts[leaf] as usize..self.starts[leaf + 1] as usize]
     }
 
     /// Nodes in the order of their boxes: children come after their parents.
@@ -201,24 +225,19 @@ impl BoxTree {
         nodes
     }
 
-    /// Fits every box anew; `bounds` gives that of an item.
-    pub fn refit(&mut self, bounds: impl Fn(u32) -> Bounds + Sync) {
-        self.boxes = self.fitted(bounds);
+    /// Fits every box anew; `bounds` gives that of a leaf.
+    pub fn refit(&mut self, bounds: impl Fn(usize) -> Bounds + Sync) {
+        self.boxes = self.folded(bounds, Bounds::join);
     }
 
-    /// Boxes round those of the items below every node, in the order of the nodes' boxes.
-    fn fitted(&self, bounds: impl Fn(u32) -> Bounds + Sync) -> Vec<Bounds> {
-        self.folded(bounds, Bounds::join)
-    }
-
-    /// What some values of the items below every node come to, in the order of the nodes' boxes.
+    /// What some values of the leaves below every node come to, in the order of the nodes' boxes.
     pub fn folded<T: Clone + Send>(
         &self,
-        value: impl Fn(u32) -> T + Sync,
+        value: impl Fn(usize) -> T + Sync,
         join: impl Fn(&T, &T) -> T,
     ) -> Vec<T> {
-        let leaves = self.leaves.par_iter().with_min_len(256);
-        let mut leaves: Vec<T> = leaves.map(|&item| value(item)).collect();
+        let leaves = (0..self.leaves()).into_par_iter().with_min_len(32);
+        let mut leaves: Vec<T> = leaves.map(&value).collect();
         // From the last node to the first, so children come before their parents.
         let mut backward: Vec<T> = Vec::with_capacity(self.counts.len());
         let last = self.counts.len().wrapping_sub(1);
@@ -237,7 +256,7 @@ impl BoxTree {
         backward
     }
 
-    /// Pairs of items whose boxes meet in some regions, in an order that does not depend on the
+    /// Pairs of leaves whose boxes meet in some regions, in an order that does not depend on the
     /// number of threads. Regions that `skip` names are not looked into; it may note what it likes.
     pub fn pairs<N: Default + Send>(
         &self,
@@ -259,14 +278,13 @@ impl BoxTree {
             let mut next = Vec::with_capacity(3 * work.len());
             grown = false;
             for region in &work {
-                match *region {
-                    Region::Two(a, b) if a.count == 1 && b.count == 1 => next.push(*region),
-                    _ => {
-                        self.open(*region, |region| !skip(&mut note, region), &mut next);
-                        opened += 1;
-                        grown = true;
-                    }
+                if region.leaves().is_some() {
+                    next.push(*region);
+                    continue;
                 }
+                self.open(*region, |region| !skip(&mut note, region), &mut next);
+                opened += 1;
+                grown = true;
             }
             work = next;
         }
@@ -276,15 +294,12 @@ impl BoxTree {
                 let (mut stack, mut pairs, mut opened) = (vec![region], Vec::new(), 0);
                 let mut note = N::default();
                 while let Some(region) = stack.pop() {
-                    match region {
-                        Region::Two(a, b) if a.count == 1 && b.count == 1 => {
-                            pairs.push([self.item(a.first), self.item(b.first)]);
-                        }
-                        _ => {
-                            self.open(region, |region| !skip(&mut note, region), &mut stack);
-                            opened += 1;
-                        }
+                    if let Some(leaves) = region.leaves() {
+                        pairs.push(leaves);
+                        continue;
                     }
+                    self.open(region, |region| !skip(&mut note, region), &mut stack);
+                    opened += 1;
                 }
                 (pairs, opened, note)
             })

@@ -5,7 +5,6 @@ use super::bound::{Kept, Motions, REACH_OF_WAYS};
 use super::curvature::Clearance;
 use super::fade::fade;
 use super::layers::{Knots, Stray, layer_order, strays, ways_out};
-use super::near::Near;
 use super::proximity::{Nearness, nearnesses};
 use super::regions::Ways;
 use super::surface::{ClothSurface, FeaturePair};
@@ -64,6 +63,8 @@ pub struct ClothMemory {
     pub stray_reach: Option<f64>,
     /// Which way vertices at crossings were drawn, in order of the vertices.
     pub drawn: Vec<Drawn>,
+    /// For how many looks each vertex has been at a crossing; empty where none is.
+    pub crossed_for: Vec<u32>,
 }
 
 /// What was found and done so far.
@@ -174,12 +175,11 @@ pub struct ClothContacts {
     /// What was found and done so far.
     pub tally: Tally,
     surface: ClothSurface,
-    near: Near,
     drawn: Vec<Drawn>,
-    /// How far off contacts were last looked for [m].
-    reach: f64,
     /// What a state is to remember of vertices on the wrong side of a layer, as in [`ClothMemory`].
     stray_reach: Option<f64>,
+    /// For how many looks vertices have been at a crossing, likewise.
+    crossed_for: Vec<u32>,
 }
 
 /// Contacts are kept from this many offsets away, so that a step is stopped before it lands.
@@ -188,16 +188,18 @@ const REACH_IN_OFFSETS: f64 = 2.0;
 /// Share of the offset that two cloths give way by before their contact is hard.
 const HARD_FROM: f64 = 0.75;
 
-/// How far vertices may go off the way that near triangles were looked for on [m].
-const STRAY: f64 = 2.5e-4;
-
 /// How far the vertices of a region that is left out may stray from one another on their ways before
 /// it is looked at again [m].
-const BEYOND: f64 = 7.5e-4;
+const BEYOND: f64 = 1e-3;
 
 /// How far an edge that pierces a face is pulled at a time, in offsets: by less, a fold caught in a seam
 /// stays there.
 const PULL: f64 = 2.0;
+
+/// Looks after which a ring more of the cloth round a vertex is let go that stays at a crossing, and the
+/// most rings.
+const WIDER_AFTER: u32 = 40;
+const WIDEST: u32 = 8;
 
 /// How far within an inner layer an outer one may start [m]: the ease of a wide garment. What is found
 /// deeper by `STRAY_SLACK` [m] at the next look is found too.
@@ -208,7 +210,7 @@ impl ClothContacts {
     /// What regions that are left out must keep, for cloth that is kept `offset` [m] apart.
     pub fn clearance(offset: f64) -> Clearance {
         Clearance {
-            stray: STRAY,
+            stray: 0.0,
             kept: offset,
             beyond: BEYOND,
         }
@@ -224,7 +226,6 @@ impl ClothContacts {
         };
         if stale {
             self.surface = ClothSurface::new(model);
-            self.near.forget();
         }
         &mut self.surface
     }
@@ -241,15 +242,12 @@ impl ClothContacts {
         if model.contact.cloth_offset <= 0.0 {
             return;
         }
-        self.surface(model);
-        self.reach = reach;
         let clearance = Self::clearance(model.contact.cloth_offset);
-        let still = Ways::still(x);
-        let near = (self.near).along(&mut self.surface, still, reach, clearance);
-        let near = self.surface.meeting(near, still, reach);
+        let near = (self.surface(model)).near_unless_clear(Ways::still(x), reach, clearance);
         let crossings = crossings(&self.surface, &near, x);
         self.piercings = crossings.len();
         let (own, across) = self.mark(&crossings);
+        self.widen(&state.cloth.crossed_for);
         let strays = self.find_strays(x, !across.is_empty(), state.cloth.stray_reach);
         self.tally.look(self.piercings, self.strays);
         let knots = Knots {
@@ -292,6 +290,40 @@ impl ClothContacts {
         (own, across)
     }
 
+    /// Lets go of the cloth round vertices that stay at a crossing, one ring of edges more after every
+    /// [`WIDER_AFTER`] looks: where it lies on the wrong side round a crossing, its contacts hold it there.
+    fn widen(&mut self, before: &[u32]) {
+        let crossed: Vec<bool> = (self.tangled.iter().zip(&self.astray))
+            .map(|(tangled, astray)| *tangled || *astray)
+            .collect();
+        self.crossed_for.clear();
+        if !crossed.contains(&true) {
+            return;
+        }
+        let looks = |(v, &crossed): (usize, &bool)| match crossed {
+            true => 1 + before.get(v).copied().unwrap_or(0),
+            false => 0,
+        };
+        self.crossed_for
+            .extend(crossed.iter().enumerate().map(looks));
+        for flags in [&mut self.tangled, &mut self.astray] {
+            let looks = flags.iter().zip(&self.crossed_for);
+            let rings = looks.map(|(flag, looks)| u32::from(*flag) * looks / WIDER_AFTER);
+            let mut rings: Vec<u32> = rings.map(|rings| rings.min(WIDEST)).collect();
+            for _ in 0..rings.iter().copied().max().unwrap_or(0) {
+                let before = rings.clone();
+                for &[a, b] in &self.surface.edges {
+                    for [a, b] in [[a as usize, b as usize], [b as usize, a as usize]] {
+                        if before[a] > rings[b] {
+                            rings[b] = before[a] - 1;
+                            flags[b] = true;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
     /// Vertices on the wrong side of a layer no farther off than the last look says, where there may be
     /// any.
     fn find_strays(&mut self, x: &[Vec3], crossed: bool, reach: Option<f64>) -> Vec<Stray> {
@@ -315,6 +347,7 @@ impl ClothContacts {
     /// Has a state remember what the last look found of crossings and layers.
     pub fn remember(&self, state: &mut State) {
         state.cloth.drawn.clone_from(&self.drawn);
+        state.cloth.crossed_for.clone_from(&self.crossed_for);
         state.cloth.stray_reach = self.stray_reach.or(state.cloth.stray_reach);
     }
 
@@ -325,7 +358,6 @@ impl ClothContacts {
 
     /// Looks anew at the next search, so that it does not depend on what was found before.
     pub fn forget(&mut self) {
-        self.near.forget();
         self.surface.forget();
     }
 
@@ -507,31 +539,17 @@ impl ClothContacts {
         }
         self.surface(model);
         let clearance = Self::clearance(model.contact.cloth_offset);
-        // What is found now serves the next look for contacts too.
-        let reach = self.reach.max(REACH_OF_WAYS);
-        let Self {
-            surface,
-            near,
-            tangled,
-            astray,
-            ..
-        } = self;
         let knots = Knots {
-            tangled,
-            astray,
+            tangled: &self.tangled,
+            astray: &self.astray,
             layer: &model.layer,
         };
         let x = motion.x;
-        let find = |surface: &mut ClothSurface, moves: &[Vec3], pairs: &mut Vec<FeaturePair>| {
+        let near = |surface: &mut ClothSurface, moves: &[Vec3]| {
             let target: Vec<Vec3> = x.iter().zip(moves).map(|(x, d)| x + d).collect();
-            let ways = Ways::together(x, &target);
-            let near = near.along(surface, ways, reach, clearance);
-            pairs.clear();
-            for pair in surface.meeting(near, ways, REACH_OF_WAYS) {
-                surface.features(pair, |pair| pairs.push(pair));
-            }
+            surface.near_unless_clear(Ways::together(x, &target), REACH_OF_WAYS, clearance)
         };
-        let kept = super::bound::keep_apart(surface, knots, motion, find);
+        let kept = super::bound::keep_apart(&mut self.surface, knots, motion, near);
         self.tally.impulses += kept.impulses;
         self.tally.zoned += kept.zoned;
         self.tally.cut += kept.cut;

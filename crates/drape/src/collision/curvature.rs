@@ -8,7 +8,9 @@
 
 use super::boxes::{BoxTree, Node, Region};
 use crate::merge_map;
+use pulp::Arch;
 use rayon::prelude::*;
+use std::sync::LazyLock;
 use toile_geometry::Vec3;
 
 /// What a region must keep to be left out.
@@ -75,8 +77,11 @@ const DIRECTIONS: usize = 64;
 /// what is seen at a sharper one is narrower than what is to be kept.
 const WIDEST: f64 = 0.258_819_045_102_520_76;
 
-/// Regions of fewer triangles are looked into: that costs less than this.
-pub const LEAST: u32 = 16;
+/// Regions of fewer clusters are looked into: that costs less than this.
+pub const LEAST: u32 = 4;
+
+/// Single precision knows cosines to less than this.
+const SINGLE: f64 = 1e-6;
 
 /// Distances are known no better than this [m].
 const ROUNDING: f64 = 1e-9;
@@ -88,7 +93,6 @@ type Half = u32;
 /// What the mesh says of regions, and what they face now.
 #[derive(Clone, Debug, Default)]
 pub struct Curvature {
-    directions: Vec<Vec3>,
     nodes: Vec<Node>,
     /// Triangles at an edge that is no plain border between two that turn alike.
     barred: Vec<bool>,
@@ -102,15 +106,31 @@ pub struct Curvature {
     keeps: Vec<f64>,
 }
 
-/// Even places on the sphere along a spiral (Saff and Kuijlaars 1997).
-fn directions() -> Vec<Vec3> {
+/// Even places on the sphere along a spiral (Saff and Kuijlaars 1997), coordinate by coordinate.
+static PLACES: LazyLock<[[f32; DIRECTIONS]; 3]> = LazyLock::new(|| {
     let golden = std::f64::consts::PI * (3.0 - 5.0f64.sqrt());
     let place = |k: usize| {
         let y = 1.0 - (2 * k + 1) as f64 / DIRECTIONS as f64;
         let (radius, angle) = ((1.0 - y * y).sqrt(), golden * k as f64);
-        Vec3::new(radius * angle.cos(), y, radius * angle.sin())
+        [radius * angle.cos(), y, radius * angle.sin()]
     };
-    (0..DIRECTIONS).map(place).collect()
+    [0, 1, 2].map(|axis| std::array::from_fn(|k| place(k)[axis] as f32))
+});
+
+/// Which directions are at less than an angle from a unit normal, as bits.
+#[inline(always)]
+fn towards(directions: &[[f32; DIRECTIONS]; 3], normal: [f32; 3], cosine: f32) -> u64 {
+    let mut bits = 0u64;
+    for part in 0..DIRECTIONS / 16 {
+        let mut some = 0u32;
+        for lane in 0..16 {
+            let [x, y, z] = [0, 1, 2].map(|k| directions[k][16 * part + lane]);
+            let along = x * normal[0] + y * normal[1] + z * normal[2];
+            some |= u32::from(along > cosine) << lane;
+        }
+        bits |= u64::from(some) << (16 * part);
+    }
+    bits
 }
 
 impl Curvature {
@@ -140,9 +160,13 @@ impl Curvature {
             let at = node.at as usize;
             of_node[at] = match node.children() {
                 None => {
-                    let mut own = halves[tree.item(node.first) as usize].clone();
-                    own.sort_unstable();
-                    own
+                    let items = tree.items(node.first as usize).iter();
+                    let of_item = |&t: &u32| {
+                        let mut own = halves[t as usize].clone();
+                        own.sort_unstable();
+                        own
+                    };
+                    items.map(of_item).fold(Vec::new(), |a, b| joined(&a, &b))
                 }
                 Some([left, right]) => {
                     joined(&of_node[left.at as usize], &of_node[right.at as usize])
@@ -154,7 +178,6 @@ impl Curvature {
             starts.push(starts[starts.len() - 1] + contour.len() as u32);
         }
         Self {
-            directions: directions(),
             barred,
             contours: of_node.concat(),
             starts,
@@ -185,7 +208,7 @@ impl Curvature {
             return;
         };
         for level in 0..LEVELS {
-            let mut wanted = vec![0i32; triangles.len() + 1];
+            let mut wanted = vec![0i32; tree.leaves() + 1];
             let asked = regions.iter().filter(|(_, least)| *least >= level);
             let mut none = true;
             for node in asked.flat_map(|(region, _)| region.nodes()) {
@@ -197,20 +220,27 @@ impl Curvature {
                 self.facing[level].clear();
                 continue;
             }
-            for leaf in 0..triangles.len() {
+            for leaf in 0..tree.leaves() {
                 wanted[leaf + 1] += wanted[leaf];
             }
-            let (barred, keeps, directions) = (&self.barred, &self.keeps, &self.directions);
-            let facing = |leaf: usize| {
-                let t = tree.item(leaf as u32) as usize;
-                let corners = triangles[t].map(|v| x[v as usize]);
-                let keeps = triangles[t].map(|v| keeps[v as usize]);
-                match wanted[leaf] == 0 || barred[t] {
-                    true => 0,
-                    false => faced(directions, &corners, &keeps, clearance.margin(level)),
+            let (barred, keeps, places) = (&self.barred, &self.keeps, &*PLACES);
+            let arch = Arch::new();
+            let of_item = |&t: &u32| {
+                if barred[t as usize] {
+                    return 0;
                 }
+                let corners = triangles[t as usize].map(|v| x[v as usize]);
+                let keeps = triangles[t as usize].map(|v| keeps[v as usize]);
+                faced(places, &corners, &keeps, clearance.margin(level))
             };
-            let leaves = (0..triangles.len()).into_par_iter().with_min_len(256);
+            let facing = |leaf: usize| match wanted[leaf] {
+                0 => 0,
+                _ => arch.dispatch(|| {
+                    let all = tree.items(leaf).iter().map(of_item);
+                    all.fold(u64::MAX, |all, own| all & own)
+                }),
+            };
+            let leaves = (0..tree.leaves()).into_par_iter().with_min_len(16);
             let leaves: Vec<u64> = leaves.map(facing).collect();
             let all = &mut self.facing[level];
             all.resize(self.nodes.len(), 0);
@@ -242,7 +272,8 @@ impl Curvature {
         }
         let bits = (0..DIRECTIONS).filter(|k| facing >> k & 1 == 1);
         // What all of these have in sight, their mean has too.
-        let mean: Vec3 = bits.map(|k| self.directions[k]).sum();
+        let place = |k: usize| Vec3::from([0, 1, 2].map(|axis| f64::from(PLACES[axis][k])));
+        let mean: Vec3 = bits.map(place).sum();
         let Some(view) = mean.try_normalize(0.0) else {
             return Found::Open;
         };
@@ -298,7 +329,13 @@ fn joined(a: &[Half], b: &[Half]) -> Vec<Half> {
 ///
 /// With every corner h or more from the opposite side, the plane turns by sin(turn) <= 2 stray / h: each
 /// direction in it runs along a chord at least as long as the smallest height.
-fn faced(directions: &[Vec3], [a, b, c]: &[Vec3; 3], keeps: &[f64; 3], stray: f64) -> u64 {
+#[inline(always)]
+fn faced(
+    places: &[[f32; DIRECTIONS]; 3],
+    [a, b, c]: &[Vec3; 3],
+    keeps: &[f64; 3],
+    stray: f64,
+) -> u64 {
     let normal = (b - a).cross(&(c - a));
     let double_area = normal.norm();
     let heights = [b - c, c - a, a - b].map(|side| double_area / side.norm());
@@ -317,12 +354,10 @@ fn faced(directions: &[Vec3], [a, b, c]: &[Vec3; 3], keeps: &[f64; 3], stray: f6
         return 0;
     }
     // cos(angle - turn)
-    let cosine = (cosine * turned + across * sine) * double_area;
-    let mut bits = 0;
-    for (k, direction) in directions.iter().enumerate() {
-        bits |= u64::from(normal.dot(direction) > cosine) << k;
-    }
-    bits
+    let cosine = cosine * turned + across * sine;
+    let normal = normal / double_area;
+    let normal = [0, 1, 2].map(|k| normal[k] as f32);
+    towards(places, normal, (cosine + SINGLE) as f32)
 }
 
 /// A contour as it is seen.

@@ -194,6 +194,7 @@ fn normal_of([a, b, c]: [Vec3; 3]) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::regions::Ways;
     use super::*;
 
     /// Two squares of two triangles, the second `height` [m] above the first; normals point up.
@@ -242,9 +243,9 @@ mod tests {
 
     #[test]
     fn crossings_of_layers_lead_the_outer_one_out() {
-        let (surface, mut x) = squares(0.1);
+        let (mut surface, mut x) = squares(0.1);
         x[4].y = -0.1;
-        let near = [[0, 2], [0, 3], [1, 2], [1, 3]];
+        let near = surface.near(Ways::still(&x), 0.0);
         let crossed = super::super::tangle::crossings(&surface, &near, &x);
         let found = ways_out(&surface, &crossed, &x);
         assert!(!found.is_empty() && found.len() == crossed.len());

@@ -3,13 +3,13 @@
 
 mod bound;
 mod boxes;
+mod clusters;
 mod contact;
 mod coupling;
 mod curvature;
 mod fade;
 mod impact;
 mod layers;
-mod near;
 mod proximity;
 mod regions;
 mod surface;

@@ -102,36 +102,22 @@ pub(super) fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
 }
 
 /// Every pair of features within `reach` [m], in an order that does not depend on threads;
-/// `near` are pairs of triangles as [`ClothSurface::near_triangles`] gives them. Triangles that
-/// share a vertex count only where they are folded against each other by more than a right angle.
+/// `near` are pairs of clusters as [`ClothSurface::near`] gives them. Features of triangles that
+/// share a vertex count only where these are folded against each other by more than a right angle.
 pub fn nearnesses(
     surface: &ClothSurface,
     near: &[[u32; 2]],
     x: &[Vec3],
     reach: f64,
 ) -> Vec<Nearness> {
-    let normals: Vec<Vec3> = surface
-        .triangles
-        .par_iter()
-        .with_min_len(512)
-        .map(|t| {
-            let [a, b, c] = t.map(|v| x[v as usize]);
-            (b - a).cross(&(c - a))
-        })
-        .collect();
-    let found: Vec<Vec<Nearness>> = near
-        .par_chunks(512)
-        .map(|pairs| {
-            let mut found = Vec::new();
-            for &pair in pairs {
-                let [t, u] = pair.map(|t| normals[t as usize]);
-                if t.dot(&u) > 0.0 && surface.adjacent(pair) {
-                    continue;
-                }
-                surface.features(pair, |pair| found.extend(Nearness::measure(pair, x, reach)));
-            }
-            found
-        })
-        .collect();
-    found.concat()
+    let normal = |[a, b, c]: &[Vec3; 3]| (b - a).cross(&(c - a));
+    let corners = |t: &[u32; 3]| t.map(|v| x[v as usize]);
+    let triangles = surface.triangles.par_iter().with_min_len(512);
+    let normals: Vec<Vec3> = triangles.map(|t| normal(&corners(t))).collect();
+    surface.features(near, |pair, owners, found| {
+        let [t, u] = owners.map(|t| normals[t as usize]);
+        if !(t.dot(&u) > 0.0 && surface.adjacent(owners)) {
+            found.extend(Nearness::measure(pair, x, reach));
+        }
+    })
 }

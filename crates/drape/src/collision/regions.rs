@@ -45,16 +45,6 @@ impl<'a> Ways<'a> {
     fn are_still(&self) -> bool {
         std::ptr::eq(self.from, self.to)
     }
-
-    /// Box round what a triangle's corners touch.
-    pub fn bounds(&self, corners: [u32; 3], margin: f64) -> Bounds {
-        let start = Bounds::round(&corners.map(|v| self.from[v as usize]), margin);
-        if self.are_still() {
-            return start;
-        }
-        let end = Bounds::round(&corners.map(|v| self.to[v as usize]), margin);
-        start.join(&end)
-    }
 }
 
 /// The cloth that is searched.
@@ -218,8 +208,8 @@ fn moves(cloth: &Cloth, ways: &Ways, at: &[Vec3]) -> Vec<Moves> {
         }
     };
     let rest = Bounds::round(&[Vec3::zeros()], 0.0);
-    let of_triangle = |t: u32| {
-        let corners = cloth.triangles[t as usize].map(|v| v as usize);
+    let of_triangle = |t: &u32| {
+        let corners = cloth.triangles[*t as usize].map(|v| v as usize);
         let moving = round(corners.map(|v| ways.to[v] - ways.from[v]));
         Moves {
             since: round(corners.map(|v| ways.from[v] - at[v])),
@@ -230,7 +220,15 @@ fn moves(cloth: &Cloth, ways: &Ways, at: &[Vec3]) -> Vec<Moves> {
             },
         }
     };
-    cloth.tree.folded(of_triangle, Moves::join)
+    let none = Moves {
+        since: Bounds::EMPTY,
+        ways: Bounds::EMPTY,
+    };
+    let of_leaf = |leaf: usize| {
+        let all = cloth.tree.items(leaf).iter().map(of_triangle);
+        all.fold(none, |all, own| all.join(&own))
+    };
+    cloth.tree.folded(of_leaf, Moves::join)
 }
 
 impl Regions {
@@ -252,7 +250,7 @@ impl Regions {
         self.told
     }
 
-    /// Pairs of triangles whose boxes meet, without those of regions that keep clear of themselves,
+    /// Pairs of clusters whose boxes meet, without those of regions that keep clear of themselves,
     /// and how many regions were looked into.
     pub fn near(
         &mut self,

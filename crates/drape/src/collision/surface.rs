@@ -2,9 +2,12 @@
 //! one triangle, so that a pair of features is looked at once (Curtis, Tamstorf and Manocha 2008).
 
 use super::boxes::{BoxTree, Region};
+use super::clusters::{Clusters, Corners, Hits};
 use super::curvature::Clearance;
 use super::regions::{Cloth, Regions, Ways};
 use crate::{Model, merge_map};
+use pulp::Arch;
+use rayon::prelude::*;
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// Two features that might touch.
@@ -53,10 +56,11 @@ pub struct ClothSurface {
     pub layer: Vec<u16>,
     /// Vertices at an edge with cloth on one side only.
     pub border: Vec<bool>,
-    /// Edges that each triangle cares for.
-    own_edges: Vec<[u32; 3]>,
-    /// Vertices that each triangle cares for.
-    own_vertices: Vec<[u32; 3]>,
+    /// The triangle that cares for each vertex, or [`NONE`].
+    vertex_owners: Vec<u32>,
+    /// The triangle that cares for each edge.
+    edge_owners: Vec<u32>,
+    clusters: Clusters,
     tree: BoxTree,
     regions: Regions,
     opened: usize,
@@ -65,8 +69,11 @@ pub struct ClothSurface {
 /// Share of the shortest edge nearby above which no distance is kept: neighbours are not contacts.
 pub(super) const ROOM: f64 = 0.5;
 
-/// No feature.
+/// No triangle.
 const NONE: u32 = u32::MAX;
+
+/// Pairs of clusters that one core looks into at once.
+const AT_ONCE: usize = 32;
 
 impl ClothSurface {
     /// Features of a model's cloth.
@@ -95,8 +102,7 @@ impl ClothSurface {
             }
         }
         let mut surface = Self {
-            own_edges: vec![[NONE; 3]; mesh.triangles.len()],
-            own_vertices: vec![[NONE; 3]; mesh.triangles.len()],
+            vertex_owners: vec![NONE; count],
             triangles: mesh.triangles.clone(),
             room,
             area: vec![0.0; count],
@@ -106,22 +112,19 @@ impl ClothSurface {
             ..Self::default()
         };
         for (e, triangles) in topology.edge_triangles.iter().enumerate() {
-            if let Some(&t) = triangles.first() {
-                put(&mut surface.own_edges[t as usize], e as u32);
-            }
+            let owner = triangles.first().copied().unwrap_or(NONE);
+            surface.edge_owners.push(owner);
             if triangles.len() < 2 {
                 for v in topology.edges[e] {
                     surface.border[v as usize] = true;
                 }
             }
         }
-        let mut cared = vec![false; count];
         let mut centres = Vec::with_capacity(mesh.triangles.len());
         for (t, corners) in mesh.triangles.iter().enumerate() {
             for &v in corners {
-                if !std::mem::replace(&mut cared[v as usize], true) {
-                    put(&mut surface.own_vertices[t], v);
-                }
+                let owner = &mut surface.vertex_owners[v as usize];
+                *owner = (*owner).min(t as u32);
             }
             centres.push(mesh.corners(t).iter().sum::<Vec3>() / 3.0);
         }
@@ -133,6 +136,12 @@ impl ClothSurface {
             .map(|t| piece[t[0] as usize])
             .collect();
         surface.tree = BoxTree::new(&centres, &pieces);
+        let owners = [&surface.vertex_owners[..], &surface.edge_owners];
+        let corners = Corners {
+            edges: &surface.edges,
+            triangles: &surface.triangles,
+        };
+        surface.clusters = Clusters::new(&surface.tree, owners, corners);
         let cloth = Cloth {
             tree: &surface.tree,
             triangles: &surface.triangles,
@@ -148,9 +157,9 @@ impl ClothSurface {
         ROOM * self.room[v as usize]
     }
 
-    /// Pairs of triangles that come within `reach` [m] of each other on the way of the cloth; more
-    /// than those, but never fewer.
-    pub fn near_triangles(&mut self, ways: Ways, reach: f64) -> Vec<[u32; 2]> {
+    /// Pairs of clusters that come within `reach` [m] of each other on the way of the cloth, and clusters
+    /// with themselves; more than those, but never fewer.
+    pub fn near(&mut self, ways: Ways, reach: f64) -> Vec<[u32; 2]> {
         self.refit(ways, reach);
         let root: Vec<Region> = self.tree.root().map(Region::Own).into_iter().collect();
         let all = self.tree.pairs(&root, |_: &mut (), _| false);
@@ -164,7 +173,7 @@ impl ClothSurface {
         [self.opened, self.regions.told()]
     }
 
-    /// [`Self::near_triangles`] without those of a region that keeps clear of itself: no two of their
+    /// [`Self::near`] without those of a region that keeps clear of itself: no two of their
     /// features without a common vertex come nearer than the clearance says. What was found of
     /// regions serves the next search with the same clearance too.
     pub fn near_unless_clear(
@@ -190,58 +199,98 @@ impl ClothSurface {
         self.regions.forget();
     }
 
-    /// Those of some pairs of triangles whose boxes come within `reach` [m] of each other on the way.
-    pub fn meeting(&self, pairs: &[[u32; 2]], ways: Ways, reach: f64) -> Vec<[u32; 2]> {
-        let bounds = |t: u32| ways.bounds(self.triangles[t as usize], 0.5 * reach);
-        let meet = |&&[t, u]: &&[u32; 2]| bounds(t).meets(&bounds(u));
-        pairs.iter().filter(meet).copied().collect()
-    }
-
     fn refit(&mut self, ways: Ways, reach: f64) {
-        let triangles = &self.triangles;
-        (self.tree).refit(|t| ways.bounds(triangles[t as usize], 0.5 * reach));
+        let corners = Corners {
+            edges: &self.edges,
+            triangles: &self.triangles,
+        };
+        self.clusters.fit(&ways, corners, 0.5 * reach);
+        let clusters = &self.clusters;
+        self.tree.refit(|leaf| clusters.bounds(leaf));
     }
 
-    /// Pairs of features of two triangles, those that share a vertex left out.
-    pub fn features(&self, pair: [u32; 2], mut each: impl FnMut(FeaturePair)) {
-        let [t, u] = pair.map(|t| t as usize);
-        for (t, u) in [(t, u), (u, t)] {
-            let face = self.triangles[u];
-            for v in self.own_vertices[t].into_iter().take_while(|&v| v != NONE) {
-                if !face.contains(&v) {
-                    each(FeaturePair::VertexFace([v, face[0], face[1], face[2]]));
+    /// Collects what `each` makes of pairs of features in some pairs of clusters, in an order that does
+    /// not depend on threads: all that come as near each other as was asked for when the pairs of
+    /// clusters were found, and more; those that share a vertex left out. `each` is given the triangles
+    /// that care for the two as well.
+    pub fn features<T: Clone + Send + Sync>(
+        &self,
+        near: &[[u32; 2]],
+        each: impl Fn(FeaturePair, [u32; 2], &mut Vec<T>) + Sync,
+    ) -> Vec<T> {
+        let arch = Arch::new();
+        let of_pairs = |pairs: &[[u32; 2]]| {
+            let (mut hits, mut found) = (Hits::default(), Vec::new());
+            for &pair in pairs {
+                self.clusters.near(arch, pair, &mut hits);
+                for [v, t] in hits.vertex_face.drain(..) {
+                    let [a, b, c] = self.triangles[t as usize];
+                    if v != a && v != b && v != c {
+                        let owners = [self.vertex_owners[v as usize], t];
+                        each(FeaturePair::VertexFace([v, a, b, c]), owners, &mut found);
+                    }
+                }
+                for [e, f] in hits.edge_edge.drain(..) {
+                    // The same pair reads the same whichever cluster comes first.
+                    let (e, f) = (e.min(f), e.max(f));
+                    let ([a, b], [c, d]) = (self.edges[e as usize], self.edges[f as usize]);
+                    if a != c && a != d && b != c && b != d {
+                        let owners = [e, f].map(|e| self.edge_owners[e as usize]);
+                        each(FeaturePair::EdgeEdge([a, b, c, d]), owners, &mut found);
+                    }
                 }
             }
-        }
-        for e in self.own_edges[t].into_iter().take_while(|&e| e != NONE) {
-            let [a, b] = self.edges[e as usize];
-            for f in self.own_edges[u].into_iter().take_while(|&f| f != NONE) {
-                let [c, d] = self.edges[f as usize];
-                if a != c && a != d && b != c && b != d {
-                    // The same pair reads the same whichever triangle comes first.
-                    let four = if e < f { [a, b, c, d] } else { [c, d, a, b] };
-                    each(FeaturePair::EdgeEdge(four));
-                }
-            }
-        }
+            found
+        };
+        let found: Vec<Vec<T>> = near.par_chunks(AT_ONCE).map(of_pairs).collect();
+        found.concat()
     }
 
-    /// Edges that a triangle cares for.
-    pub fn own_edges(&self, t: u32) -> impl Iterator<Item = u32> + use<> {
-        self.own_edges[t as usize]
-            .into_iter()
-            .take_while(|&e| e != NONE)
+    /// Collects edges and faces that `crosses` says yes to, of those in some pairs of clusters whose ways
+    /// meet, in an order that does not depend on threads; those that share a vertex left out.
+    pub fn edges_and_faces(
+        &self,
+        near: &[[u32; 2]],
+        crosses: impl Fn([u32; 2]) -> bool + Sync,
+    ) -> Vec<[u32; 2]> {
+        let arch = Arch::new();
+        let of_pairs = |pairs: &[[u32; 2]]| {
+            let (mut hits, mut found) = (Hits::default(), Vec::new());
+            for &pair in pairs {
+                self.clusters.crossing(arch, pair, &mut hits);
+                let apart = |&[e, t]: &[u32; 2]| {
+                    let face = self.triangles[t as usize];
+                    !self.edges[e as usize].iter().any(|v| face.contains(v))
+                };
+                let pairs = hits.edge_face.drain(..).filter(apart);
+                found.extend(pairs.filter(|&pair| crosses(pair)));
+            }
+            found
+        };
+        let found: Vec<Vec<[u32; 2]>> = near.par_chunks(AT_ONCE).map(of_pairs).collect();
+        found.concat()
+    }
+
+    /// Those of some pairs of clusters in which a triangle has a marked corner.
+    pub fn marked(&self, near: &[[u32; 2]], marks: &[bool]) -> Vec<[u32; 2]> {
+        let has = |&t: &u32| {
+            self.triangles[t as usize]
+                .iter()
+                .any(|&v| marks[v as usize])
+        };
+        let clusters = 0..self.tree.leaves();
+        let marked: Vec<bool> = clusters
+            .map(|c| self.tree.items(c).iter().any(has))
+            .collect();
+        let pairs = near.iter().copied();
+        pairs
+            .filter(|pair| pair.iter().any(|&c| marked[c as usize]))
+            .collect()
     }
 
     /// Whether two triangles share a vertex.
     pub fn adjacent(&self, [t, u]: [u32; 2]) -> bool {
         let other = self.triangles[u as usize];
         self.triangles[t as usize].iter().any(|v| other.contains(v))
-    }
-}
-
-fn put(slots: &mut [u32; 3], value: u32) {
-    if let Some(slot) = slots.iter_mut().find(|slot| **slot == NONE) {
-        *slot = value;
     }
 }

@@ -2,9 +2,7 @@
 //! so that the line of intersection grows shorter (Volino and Magnenat-Thalmann 2006, Resolving
 //! surface collisions through intersection contour minimization).
 
-use super::boxes::Bounds;
 use super::surface::ClothSurface;
-use rayon::prelude::*;
 use toile_geometry::{Vec3, segment_intersects_triangle};
 
 /// An edge that pierces a face.
@@ -94,52 +92,19 @@ pub fn piercings(surface: &ClothSurface, crossings: &[[u32; 2]], x: &[Vec3]) -> 
 }
 
 /// Every edge and face that cross, exactly, and share no vertex, sorted; `near` are pairs of
-/// triangles that may meet.
+/// clusters that may meet.
 pub fn crossings(surface: &ClothSurface, near: &[[u32; 2]], x: &[Vec3]) -> Vec<[u32; 2]> {
-    let found: Vec<Vec<[u32; 2]>> = near
-        .par_chunks(512)
-        .map(|pairs| {
-            let mut found = Vec::new();
-            for &[t, u] in pairs {
-                let box_of = |t: u32| {
-                    let corners = surface.triangles[t as usize].map(|v| x[v as usize]);
-                    Bounds::round(&corners, 0.0)
-                };
-                if !box_of(t).meets(&box_of(u)) {
-                    continue;
-                }
-                for (t, u) in [(t, u), (u, t)] {
-                    surface.pierced_by_own(t, u, x, &mut found);
-                }
-            }
-            found
-        })
-        .collect();
-    let mut found = found.concat();
+    let mut found = surface.edges_and_faces(near, |[e, t]| {
+        let ends = surface.edges[e as usize].map(|v| x[v as usize]);
+        let corners = surface.triangles[t as usize].map(|v| x[v as usize]);
+        let apart = (0..3).any(|k| {
+            let (low, high) = (ends[0][k].min(ends[1][k]), ends[0][k].max(ends[1][k]));
+            corners.iter().all(|c| c[k] < low) || corners.iter().all(|c| c[k] > high)
+        });
+        !apart && segment_intersects_triangle(ends, corners)
+    });
     found.sort_unstable();
-    found.dedup();
     found
-}
-
-impl ClothSurface {
-    fn pierced_by_own(&self, t: u32, u: u32, x: &[Vec3], out: &mut Vec<[u32; 2]>) {
-        let face = self.triangles[u as usize];
-        let corners = face.map(|v| x[v as usize]);
-        for e in self.own_edges(t) {
-            let [a, b] = self.edges[e as usize];
-            if face.contains(&a) || face.contains(&b) {
-                continue;
-            }
-            let ends = [x[a as usize], x[b as usize]];
-            let apart = (0..3).any(|k| {
-                let (low, high) = (ends[0][k].min(ends[1][k]), ends[0][k].max(ends[1][k]));
-                corners.iter().all(|c| c[k] < low) || corners.iter().all(|c| c[k] > high)
-            });
-            if !apart && segment_intersects_triangle(ends, corners) {
-                out.push([e, u]);
-            }
-        }
-    }
 }
 
 /// The direction of a piercing, none where the edge lies in the face or nothing is to be gained.

@@ -45,6 +45,11 @@ impl Zones {
         self.members.len()
     }
 
+    /// Those vertices.
+    pub fn members(&self) -> &[u32] {
+        &self.members
+    }
+
     fn root(&mut self, mut v: u32) -> u32 {
         while self.parent[v as usize] != v {
             self.parent[v as usize] = self.parent[self.parent[v as usize] as usize];
