@@ -104,6 +104,37 @@ fn pairs_are_those_of_brute_force_in_200_crumpled_states() {
 }
 
 #[test]
+fn neighbours_that_face_alike_touch_only_where_they_were_sewn_twisted() {
+    // Two rungs of a row of a skirt that had crossed: two triangles with one corner in common.
+    let twisted = TriangleMesh {
+        positions: [
+            [-186.375, 1009.480, -111.535],
+            [-212.008, 998.612, -117.375],
+            [-198.934, 1008.728, -98.243],
+            [-198.431, 1009.574, -122.955],
+            [-197.343, 994.883, -97.460],
+        ]
+        .map(|p| Vec3::from(p) * 1e-3)
+        .to_vec(),
+        triangles: vec![[0, 1, 2], [3, 4, 0]],
+    };
+    let found = |mesh: &TriangleMesh| {
+        let mut surface = ClothSurface::of_mesh(mesh);
+        let near = surface.near(Ways::still(&mesh.positions), 4e-3);
+        nearnesses(&surface, &near, &mesh.positions, 4e-3)
+    };
+    let rungs = found(&twisted);
+    assert!(
+        rungs
+            .iter()
+            .any(|near| near.pair == FeaturePair::EdgeEdge([0, 1, 3, 4]) && near.distance < 1e-4),
+        "{rungs:?}"
+    );
+    let flat = sheet([6; 2], [1.0; 2], |u, v| Vec3::new(0.03 * u, 0.0, 0.02 * v));
+    assert!(found(&flat).iter().all(|near| !near.neighbours));
+}
+
+#[test]
 fn what_came_nearer_since_it_was_looked_at_is_still_kept_apart() {
     let lower = sheet([3; 2], [1.0; 2], |u, v| Vec3::new(0.09 * u, 0.0, 0.09 * v));
     let upper = sheet([3; 2], [1.0; 2], |u, v| {

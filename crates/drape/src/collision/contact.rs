@@ -384,8 +384,8 @@ impl ClothContacts {
                 .map(|(&v, w)| values[v as usize] * w.abs())
                 .sum::<f64>()
         };
-        let kept = vertices.iter().map(|&v| self.surface.most_kept(v));
-        let kept = kept.fold(model.contact.cloth_offset, f64::min);
+        let offset = model.contact.cloth_offset;
+        let kept = self.surface.kept(near.pair, near.neighbours, offset);
         // Each side's vertices see the other's faces: half the area each.
         let normal = 0.5 * model.contact.stiffness * of(&self.surface.area);
         let between = near.normal * near.distance;

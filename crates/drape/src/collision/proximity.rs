@@ -15,6 +15,8 @@ pub struct Nearness {
     pub normal: Vec3,
     /// Distance [m].
     pub distance: f64,
+    /// Whether they belong to triangles that share a vertex and face alike, as neighbours do.
+    pub neighbours: bool,
 }
 
 /// Weights of the closest points of two features, those of the second negative; `p` are the places
@@ -56,6 +58,7 @@ impl Nearness {
             weights,
             normal: between / distance,
             distance,
+            neighbours: false,
         })
     }
 
@@ -81,7 +84,11 @@ impl Nearness {
     }
 }
 
-/// Whether boxes round two features are farther apart than `reach` [m].
+/// Distances of planes are trusted to this share.
+const PLANES: f64 = 1.0 + 1e-9;
+
+/// Whether boxes round two features are farther apart than `reach` [m], or the plane of a face is from
+/// its vertex, or the lines of two edges are from each other.
 #[inline(always)]
 pub(super) fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
     let (low, high, other_low, other_high) = match pair {
@@ -98,12 +105,21 @@ pub(super) fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
             p[2].sup(&p[3]),
         ),
     };
-    (0..3).any(|k| low[k] > other_high[k] + reach || other_low[k] > high[k] + reach)
+    if (0..3).any(|k| low[k] > other_high[k] + reach || other_low[k] > high[k] + reach) {
+        return true;
+    }
+    let (across, between) = match pair {
+        FeaturePair::VertexFace(_) => ((p[2] - p[1]).cross(&(p[3] - p[1])), p[1] - p[0]),
+        FeaturePair::EdgeEdge(_) => ((p[1] - p[0]).cross(&(p[3] - p[2])), p[2] - p[0]),
+    };
+    let along = between.dot(&across);
+    along * along > PLANES * reach * reach * across.norm_squared()
 }
 
 /// Every pair of features within `reach` [m], in an order that does not depend on threads;
 /// `near` are pairs of clusters as [`ClothSurface::near`] gives them. Features of triangles that
-/// share a vertex count only where these are folded against each other by more than a right angle.
+/// share a vertex and are not folded against each other by more than a right angle count only where they
+/// come nearer than neighbours do.
 pub fn nearnesses(
     surface: &ClothSurface,
     near: &[[u32; 2]],
@@ -116,8 +132,13 @@ pub fn nearnesses(
     let normals: Vec<Vec3> = triangles.map(|t| normal(&corners(t))).collect();
     surface.features(near, |pair, owners, found| {
         let [t, u] = owners.map(|t| normals[t as usize]);
-        if !(t.dot(&u) > 0.0 && surface.adjacent(owners)) {
-            found.extend(Nearness::measure(pair, x, reach));
-        }
+        let neighbours = t.dot(&u) > 0.0 && surface.adjacent(owners);
+        let reach = if neighbours {
+            surface.kept(pair, neighbours, reach)
+        } else {
+            reach
+        };
+        let near = Nearness::measure(pair, x, reach);
+        found.extend(near.map(|near| Nearness { neighbours, ..near }));
     })
 }

@@ -69,6 +69,10 @@ pub struct ClothSurface {
 /// Share of the shortest edge nearby above which no distance is kept: neighbours are not contacts.
 pub(super) const ROOM: f64 = 0.5;
 
+/// The same between features of triangles that share a vertex and face alike: in a triangle with angles of
+/// 20 degrees and more a corner is a third of an edge from the side opposite.
+const NEIGHBOURS: f64 = 0.1;
+
 /// No triangle.
 const NONE: u32 = u32::MAX;
 
@@ -155,6 +159,14 @@ impl ClothSurface {
     /// The most that is kept between features at a vertex [m]: neighbours are not contacts.
     pub fn most_kept(&self, v: u32) -> f64 {
         ROOM * self.room[v as usize]
+    }
+
+    /// What is kept between two features [m]: `asked`, as far as there is room between them. Features of
+    /// neighbouring triangles that face alike have little.
+    pub fn kept(&self, pair: FeaturePair, neighbours: bool, asked: f64) -> f64 {
+        let share = if neighbours { NEIGHBOURS } else { ROOM };
+        let rooms = pair.vertices().map(|v| share * self.room[v as usize]);
+        rooms.into_iter().fold(asked, f64::min)
     }
 
     /// Pairs of clusters that come within `reach` [m] of each other on the way of the cloth, and clusters
