@@ -14,6 +14,8 @@ use toile_geometry::{TriangleMesh, Vec2, Vec3};
 /// Distance that cloth keeps from cloth [m], and how far it is looked.
 const OFFSET: f64 = 2e-3;
 const REACH: f64 = 2.0 * OFFSET;
+/// How near ways must come to be looked at for what meets on them [m].
+const WAYS_REACH: f64 = 5e-4;
 /// Looks timed, and frames of 1/60 s.
 const LOOKS: usize = 20;
 const FRAMES: usize = 12;
@@ -32,7 +34,7 @@ fn waved(cells: usize) -> Result<TriangleMesh, LabError> {
     })
 }
 
-/// Finds the near triangles of a smooth sheet again and again, vertices free to stray by a tenth of an
+/// Finds the near clusters of a smooth sheet again and again, vertices free to stray by a tenth of an
 /// edge meanwhile.
 pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
     let mesh = waved(cells)?;
@@ -196,7 +198,10 @@ fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>], frame: usize) -> [f64;
             surface.forget();
         }
         let ways = Ways::together(&ends[0], &ends[1]);
-        std::hint::black_box(surface.near_unless_clear(ways, REACH, clearance));
+        let met = surface.near_unless_clear(ways, WAYS_REACH, clearance);
+        std::hint::black_box(nearnesses(surface, &met, &ends[0], WAYS_REACH));
+        let [regions, contours] = surface.opened();
+        opened = [opened[0] + regions, opened[1] + contours];
         let near = surface.near_unless_clear(Ways::still(&ends[1]), REACH, clearance);
         std::hint::black_box(nearnesses(surface, &near, &ends[1], REACH));
         std::hint::black_box(crossings(surface, &near, &ends[1]));

@@ -1,7 +1,7 @@
 //! Features of the cloth in clusters of neighbours, each with its box: those of two clusters are held
 //! against each other sixteen at a time, in single precision rounded outward.
 
-use super::boxes::{Bounds, BoxTree};
+use super::boxes::{Bounds, BoxTree, CLUSTER};
 use super::regions::Ways;
 use pulp::Arch;
 use rayon::prelude::*;
@@ -12,6 +12,9 @@ const LANES: usize = 16;
 
 /// No feature.
 const NONE: u32 = u32::MAX;
+
+// The features of a cluster, three edges a triangle at the most, have a bit each.
+const _: () = assert!(3 * CLUSTER <= u64::BITS as usize);
 
 /// A box along the axes [m].
 #[derive(Clone, Copy, Debug)]
@@ -336,16 +339,14 @@ impl Clusters {
             let (block, features) = (&first.blocks[at], &first.features[at]);
             for lane in lanes(block.meeting(round, less)) {
                 let one = block.get(lane);
-                let mut wanted = match a == b {
-                    true => own[LANES * at + lane],
-                    false => u64::MAX,
-                };
-                for at in second.of(b) {
-                    let meeting = second.blocks[at].meeting(&one, less) & wanted as u32 & 0xffff;
-                    out.extend(
-                        lanes(meeting).map(|other| [features[lane], second.features[at][other]]),
-                    );
-                    wanted >>= LANES;
+                let wanted = own[LANES * at + lane];
+                for (k, at) in second.of(b).enumerate() {
+                    let mut meeting = second.blocks[at].meeting(&one, less);
+                    if a == b {
+                        meeting &= (wanted >> (LANES * k)) as u32;
+                    }
+                    let found = &second.features[at];
+                    out.extend(lanes(meeting).map(|other| [features[lane], found[other]]));
                 }
             }
         }

@@ -8,7 +8,7 @@ use super::layers::{Knots, Stray, layer_order, strays, ways_out};
 use super::proximity::{Nearness, nearnesses};
 use super::regions::Ways;
 use super::surface::{ClothSurface, FeaturePair};
-use super::tangle::{Drawn, Piercing, crossings, keep_on, piercings};
+use super::tangle::{Drawn, Piercing, crossed_for, crossings, keep_on, loose_round, piercings};
 use crate::laws::contact::{ContactLaw, ContactPlane};
 use crate::{Model, State};
 use nalgebra::Matrix3;
@@ -63,7 +63,7 @@ pub struct ClothMemory {
     pub stray_reach: Option<f64>,
     /// Which way vertices at crossings were drawn, in order of the vertices.
     pub drawn: Vec<Drawn>,
-    /// For how many looks each vertex has been at a crossing; empty where none is.
+    /// For how many looks each vertex has been at a crossing, those without taken off; empty where none is.
     pub crossed_for: Vec<u32>,
 }
 
@@ -172,6 +172,8 @@ pub struct ClothContacts {
     pub tangled: Vec<bool>,
     /// Vertices at a crossing of two layers, or on the wrong side of one.
     pub astray: Vec<bool>,
+    /// Vertices round a crossing that stays; empty where none does.
+    pub loose: Vec<bool>,
     /// What was found and done so far.
     pub tally: Tally,
     surface: ClothSurface,
@@ -195,11 +197,6 @@ const BEYOND: f64 = 1e-3;
 /// How far an edge that pierces a face is pulled at a time, in offsets: by less, a fold caught in a seam
 /// stays there.
 const PULL: f64 = 2.0;
-
-/// Looks after which a ring more of the cloth round a vertex is let go that stays at a crossing, and the
-/// most rings.
-const WIDER_AFTER: u32 = 40;
-const WIDEST: u32 = 8;
 
 /// How far within an inner layer an outer one may start [m]: the ease of a wide garment. What is found
 /// deeper by `STRAY_SLACK` [m] at the next look is found too.
@@ -240,6 +237,9 @@ impl ClothContacts {
             flags.resize(x.len(), false);
         }
         if model.contact.cloth_offset <= 0.0 {
+            self.loose.clear();
+            self.crossed_for.clear();
+            self.drawn.clear();
             return;
         }
         let clearance = Self::clearance(model.contact.cloth_offset);
@@ -247,12 +247,13 @@ impl ClothContacts {
         let crossings = crossings(&self.surface, &near, x);
         self.piercings = crossings.len();
         let (own, across) = self.mark(&crossings);
-        self.widen(&state.cloth.crossed_for);
+        self.loosen(&state.cloth.crossed_for);
         let strays = self.find_strays(x, !across.is_empty(), state.cloth.stray_reach);
         self.tally.look(self.piercings, self.strays);
         let knots = Knots {
             tangled: &self.tangled,
             astray: &self.astray,
+            loose: &self.loose,
             layer: &model.layer,
         };
         let mut active = std::mem::take(&mut self.active);
@@ -290,38 +291,12 @@ impl ClothContacts {
         (own, across)
     }
 
-    /// Lets go of the cloth round vertices that stay at a crossing, one ring of edges more after every
-    /// [`WIDER_AFTER`] looks: where it lies on the wrong side round a crossing, its contacts hold it there.
-    fn widen(&mut self, before: &[u32]) {
-        let crossed: Vec<bool> = (self.tangled.iter().zip(&self.astray))
-            .map(|(tangled, astray)| *tangled || *astray)
-            .collect();
-        self.crossed_for.clear();
-        if !crossed.contains(&true) {
-            return;
-        }
-        let looks = |(v, &crossed): (usize, &bool)| match crossed {
-            true => 1 + before.get(v).copied().unwrap_or(0),
-            false => 0,
-        };
-        self.crossed_for
-            .extend(crossed.iter().enumerate().map(looks));
-        for flags in [&mut self.tangled, &mut self.astray] {
-            let looks = flags.iter().zip(&self.crossed_for);
-            let rings = looks.map(|(flag, looks)| u32::from(*flag) * looks / WIDER_AFTER);
-            let mut rings: Vec<u32> = rings.map(|rings| rings.min(WIDEST)).collect();
-            for _ in 0..rings.iter().copied().max().unwrap_or(0) {
-                let before = rings.clone();
-                for &[a, b] in &self.surface.edges {
-                    for [a, b] in [[a as usize, b as usize], [b as usize, a as usize]] {
-                        if before[a] > rings[b] {
-                            rings[b] = before[a] - 1;
-                            flags[b] = true;
-                        }
-                    }
-                }
-            }
-        }
+    /// Loosens the cloth round vertices that stay at a crossing.
+    fn loosen(&mut self, before: &[u32]) {
+        let crossed = self.tangled.iter().zip(&self.astray);
+        let crossed: Vec<bool> = crossed.map(|(own, across)| *own || *across).collect();
+        self.crossed_for = crossed_for(&crossed, before);
+        self.loose = loose_round(&self.surface.edges, &crossed, &self.crossed_for);
     }
 
     /// Vertices on the wrong side of a layer no farther off than the last look says, where there may be
@@ -542,6 +517,7 @@ impl ClothContacts {
         let knots = Knots {
             tangled: &self.tangled,
             astray: &self.astray,
+            loose: &self.loose,
             layer: &model.layer,
         };
         let x = motion.x;
@@ -566,6 +542,7 @@ impl ClothContacts {
         let knots = Knots {
             tangled: &self.tangled,
             astray: &self.astray,
+            loose: &self.loose,
             layer: &model.layer,
         };
         super::bound::bound_moves(&mut self.surface, knots, x, moves)

@@ -26,19 +26,26 @@ pub struct Knots<'a> {
     pub tangled: &'a [bool],
     /// At a crossing of two layers, or on the wrong side of one.
     pub astray: &'a [bool],
+    /// Round a crossing that stays; empty where none does.
+    pub loose: &'a [bool],
     /// Layer of each vertex; empty where all are of one.
     pub layer: &'a [u16],
 }
 
+/// Whether any vertex of a feature has a flag.
+fn any(flags: &[bool], feature: &[u32]) -> bool {
+    (feature.iter()).any(|&v| flags.get(v as usize).is_some_and(|&flag| flag))
+}
+
 impl Knots<'_> {
     /// Whether two features are let through each other: in one layer where both have a tangled
-    /// vertex, between layers where either has one that is astray.
+    /// vertex, between layers where either has one that is astray, and anywhere where both are loose.
     pub fn lets_through(&self, pair: FeaturePair) -> bool {
         let vertices = pair.vertices();
         let (first, second) = vertices.split_at(pair.first());
-        let any = |flags: &[bool], feature: &[u32]| {
-            (feature.iter()).any(|&v| flags.get(v as usize).is_some_and(|&flag| flag))
-        };
+        if any(self.loose, first) && any(self.loose, second) {
+            return true;
+        }
         if layer_order(self.layer, first[0], second[0]) == Ordering::Equal {
             any(self.tangled, first) && any(self.tangled, second)
         } else {
@@ -54,7 +61,8 @@ impl Knots<'_> {
             Ordering::Equal => self.tangled,
             _ => self.astray,
         };
-        (vertices.iter()).any(|&v| flags.get(v as usize).is_some_and(|&flag| flag))
+        let (first, second) = vertices.split_at(pair.first());
+        any(flags, &vertices) || any(self.loose, first) && any(self.loose, second)
     }
 }
 
@@ -268,6 +276,7 @@ mod tests {
         let knots = Knots {
             tangled: &tangled,
             astray: &astray,
+            loose: &[],
             layer: &layer,
         };
         assert!(knots.lets_through(pair) && knots.lets_go(pair));
@@ -281,5 +290,13 @@ mod tests {
             ..alone
         };
         assert!(same.lets_through(pair));
+        // Round a crossing both have to be loose.
+        for (loose, free) in [([true, true, false], true), ([true, false, true], false)] {
+            let knots = Knots {
+                loose: &loose,
+                ..alone
+            };
+            assert_eq!([knots.lets_through(pair), knots.lets_go(pair)], [free; 2]);
+        }
     }
 }

@@ -84,8 +84,13 @@ impl Nearness {
     }
 }
 
-/// Distances of planes are trusted to this share.
-const PLANES: f64 = 1.0 + 1e-9;
+/// Square of the sine below which two edges, or two sides of a face, count as parallel: the direction
+/// across both is then rounding.
+const PARALLEL: f64 = 1e-8;
+
+/// Share of the way between two features that their distance across is off by at the most, where it
+/// is asked.
+const ROUNDING: f64 = 1e-10;
 
 /// Whether boxes round two features are farther apart than `reach` [m], or the plane of a face is from
 /// its vertex, or the lines of two edges are from each other.
@@ -108,13 +113,20 @@ pub(super) fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
     if (0..3).any(|k| low[k] > other_high[k] + reach || other_low[k] > high[k] + reach) {
         return true;
     }
-    let (across, between) = match pair {
-        FeaturePair::VertexFace(_) => ((p[2] - p[1]).cross(&(p[3] - p[1])), p[1] - p[0]),
-        FeaturePair::EdgeEdge(_) => ((p[1] - p[0]).cross(&(p[3] - p[2])), p[2] - p[0]),
+    let (sides, between) = match pair {
+        FeaturePair::VertexFace(_) => ([p[2] - p[1], p[3] - p[1]], p[1] - p[0]),
+        FeaturePair::EdgeEdge(_) => ([p[1] - p[0], p[3] - p[2]], p[2] - p[0]),
     };
+    let across = sides[0].cross(&sides[1]);
+    let square = across.norm_squared();
     let along = between.dot(&across);
-    along * along > PLANES * reach * reach * across.norm_squared()
+    let reach = reach + ROUNDING * (between.x.abs() + between.y.abs() + between.z.abs());
+    along * along > reach * reach * square
+        && square > PARALLEL * sides[0].norm_squared() * sides[1].norm_squared()
 }
+
+/// Neighbours are looked for at this many times the distance that they keep.
+const NEIGHBOURS_REACH: f64 = 2.0;
 
 /// Every pair of features within `reach` [m], in an order that does not depend on threads;
 /// `near` are pairs of clusters as [`ClothSurface::near`] gives them. Features of triangles that
@@ -133,12 +145,53 @@ pub fn nearnesses(
     surface.features(near, |pair, owners, found| {
         let [t, u] = owners.map(|t| normals[t as usize]);
         let neighbours = t.dot(&u) > 0.0 && surface.adjacent(owners);
-        let reach = if neighbours {
-            surface.kept(pair, neighbours, reach)
-        } else {
-            reach
+        let reach = match neighbours {
+            true => NEIGHBOURS_REACH * surface.kept(pair, true, reach / NEIGHBOURS_REACH),
+            false => reach,
         };
         let near = Nearness::measure(pair, x, reach);
         found.extend(near.map(|near| Nearness { neighbours, ..near }));
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A number in -0.5..0.5.
+    fn next(state: &mut u64) -> f64 {
+        *state = (state.wrapping_mul(6_364_136_223_846_793_005)).wrapping_add(1);
+        (*state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    }
+
+    #[test]
+    fn what_is_far_is_far_even_of_edges_and_slivers_that_are_parallel_but_for_rounding() {
+        let mut state = 1;
+        let mut vector = |size: f64| Vec3::from_fn(|_, _| next(&mut state)) * size;
+        let mut told = 0;
+        for turn in [0.0, 1e-15, 1e-14, 1e-12, 1e-7, 1e-5, 1e-2] {
+            for distance in [5e-6, 5e-5, 5e-4] {
+                for _ in 0..2000 {
+                    let (start, along) = (vector(2.0), vector(1.0).normalize() * 0.01);
+                    let off = along.cross(&vector(1.0)).normalize() * distance;
+                    let other = start + off + along * 0.3;
+                    let end = other + along + vector(0.02 * turn);
+                    let edges = [start, start + along, other, end];
+                    let sliver = [start + along * 0.7 + off, start, end, other];
+                    for (pair, p) in [
+                        (FeaturePair::EdgeEdge([0, 1, 2, 3]), edges),
+                        (FeaturePair::VertexFace([0, 1, 2, 3]), sliver),
+                    ] {
+                        let exact = Nearness::distance(pair, &p);
+                        assert!(
+                            !is_far(pair, &p, 1.000_001 * exact),
+                            "{turn} {distance} {pair:?}"
+                        );
+                        told += usize::from(is_far(pair, &p, 0.5 * exact));
+                    }
+                }
+            }
+        }
+        assert!(told > 1000, "{told}");
+    }
 }

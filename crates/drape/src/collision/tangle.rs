@@ -78,6 +78,54 @@ pub fn keep_on(piercings: &mut [Piercing], before: &[Drawn]) -> Vec<Drawn> {
     after
 }
 
+/// Looks after which a ring of edges more round a vertex that stays at a crossing is loose, and the most
+/// rings.
+const WIDER_AFTER: u32 = 40;
+const WIDEST: u32 = 8;
+
+/// For how many looks vertices have been at a crossing, each look without taken off; empty where none was.
+pub fn crossed_for(crossed: &[bool], before: &[u32]) -> Vec<u32> {
+    if before.is_empty() && !crossed.contains(&true) {
+        return Vec::new();
+    }
+    let before = before.iter().copied().chain(std::iter::repeat(0));
+    let looks = crossed.iter().zip(before);
+    let looks = looks.map(|(&crossed, before)| match crossed {
+        true => before + 1,
+        false => before.saturating_sub(1),
+    });
+    let looks: Vec<u32> = looks.collect();
+    match looks.iter().any(|&looks| looks > 0) {
+        true => looks,
+        false => Vec::new(),
+    }
+}
+
+/// Vertices round those that stay at a crossing, one ring of edges more after every [`WIDER_AFTER`] looks:
+/// where cloth lies on the wrong side round a crossing, its contacts hold it there. Empty where none stays.
+pub fn loose_round(edges: &[[u32; 2]], crossed: &[bool], looks: &[u32]) -> Vec<bool> {
+    let rings = crossed.iter().zip(looks);
+    let rings = rings.map(|(&crossed, looks)| u32::from(crossed) * looks / WIDER_AFTER);
+    let mut rings: Vec<u32> = rings.map(|rings| rings.min(WIDEST)).collect();
+    let widest = rings.iter().copied().max().unwrap_or(0);
+    if widest == 0 {
+        return Vec::new();
+    }
+    let mut loose: Vec<bool> = rings.iter().map(|&rings| rings > 0).collect();
+    for _ in 0..widest {
+        let before = rings.clone();
+        for &[a, b] in edges {
+            for [a, b] in [[a as usize, b as usize], [b as usize, a as usize]] {
+                if before[a] > rings[b] {
+                    rings[b] = before[a] - 1;
+                    loose[b] = true;
+                }
+            }
+        }
+    }
+    loose
+}
+
 /// The cosine between edge and face's normal is not taken smaller than this: a move along the face
 /// cannot help an edge that lies in it.
 const FLAT: f64 = 0.15;
@@ -160,6 +208,34 @@ mod tests {
             weights: [0.5, 0.5, -0.4, -0.3, -0.3],
             way,
         }
+    }
+
+    #[test]
+    fn cloth_grows_loose_ring_by_ring_round_a_crossing_that_stays() {
+        // A row of vertices, the first of which is at a crossing.
+        let edges: Vec<[u32; 2]> = (0..12).map(|v| [v, v + 1]).collect();
+        let crossed: Vec<bool> = (0..13).map(|v| v == 0).collect();
+        let mut looks = Vec::new();
+        for look in 1..=400 {
+            looks = crossed_for(&crossed, &looks);
+            let loose = loose_round(&edges, &crossed, &looks);
+            let rings = (look / WIDER_AFTER).min(WIDEST) as usize;
+            match rings {
+                0 => assert_eq!(loose, []),
+                _ => assert!(
+                    (0..13).all(|v| loose[v] == (v <= rings)),
+                    "{look}: {loose:?}"
+                ),
+            }
+        }
+        let none = [false; 13];
+        assert_eq!(loose_round(&edges, &none, &looks), [], "not where none is");
+        for _ in 0..399 {
+            looks = crossed_for(&none, &looks);
+        }
+        assert_eq!(looks[0], 1);
+        assert_eq!(crossed_for(&none, &looks), []);
+        assert_eq!(crossed_for(&none, &[]), []);
     }
 
     #[test]
