@@ -291,12 +291,10 @@ impl ClothContacts {
         (own, across)
     }
 
-    /// Loosens the cloth round vertices that stay at a crossing.
+    /// Loosens the cloth round vertices that stay at a crossing within a layer.
     fn loosen(&mut self, before: &[u32]) {
-        let crossed = self.tangled.iter().zip(&self.astray);
-        let crossed: Vec<bool> = crossed.map(|(own, across)| *own || *across).collect();
-        self.crossed_for = crossed_for(&crossed, before);
-        self.loose = loose_round(&self.surface.edges, &crossed, &self.crossed_for);
+        self.crossed_for = crossed_for(&self.tangled, before);
+        self.loose = loose_round(&self.surface.edges, &self.tangled, &self.crossed_for);
     }
 
     /// Vertices on the wrong side of a layer no farther off than the last look says, where there may be

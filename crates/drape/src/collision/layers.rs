@@ -39,15 +39,13 @@ fn any(flags: &[bool], feature: &[u32]) -> bool {
 
 impl Knots<'_> {
     /// Whether two features are let through each other: in one layer where both have a tangled
-    /// vertex, between layers where either has one that is astray, and anywhere where both are loose.
+    /// vertex or both a loose one, between layers where either has one that is astray.
     pub fn lets_through(&self, pair: FeaturePair) -> bool {
         let vertices = pair.vertices();
         let (first, second) = vertices.split_at(pair.first());
-        if any(self.loose, first) && any(self.loose, second) {
-            return true;
-        }
         if layer_order(self.layer, first[0], second[0]) == Ordering::Equal {
-            any(self.tangled, first) && any(self.tangled, second)
+            let both = |flags| any(flags, first) && any(flags, second);
+            both(self.tangled) || both(self.loose)
         } else {
             any(self.astray, &vertices)
         }
@@ -62,7 +60,8 @@ impl Knots<'_> {
             _ => self.astray,
         };
         let (first, second) = vertices.split_at(pair.first());
-        any(flags, &vertices) || any(self.loose, first) && any(self.loose, second)
+        let loose = ordered == Ordering::Equal && any(self.loose, first) && any(self.loose, second);
+        any(flags, &vertices) || loose
     }
 }
 
@@ -293,7 +292,9 @@ mod tests {
         // Round a crossing both have to be loose.
         for (loose, free) in [([true, true, false], true), ([true, false, true], false)] {
             let knots = Knots {
+                tangled: &[],
                 loose: &loose,
+                layer: &[],
                 ..alone
             };
             assert_eq!([knots.lets_through(pair), knots.lets_go(pair)], [free; 2]);
