@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 use toile_drape::{GarmentRun, GarmentSetup, Stage};
 use toile_geometry::Vec3;
-use toile_session::{Command, Quality, Session, Silent};
+use toile_session::{Command, Figure, OtherGarment, Quality, Session, Silent};
 use toile_tests::root;
 
 /// How far a placed vertex is moved along each axis at the most [m].
@@ -17,15 +17,24 @@ const RESIDUAL: usize = 3;
 /// What is asked.
 struct Task {
     pattern: PathBuf,
+    /// Patterns worn over it, innermost first.
+    over: Vec<PathBuf>,
+    /// The pattern's own where none is named.
+    figure: Option<Figure>,
     quality: Quality,
     seeds: u64,
+    /// Seconds after which a run is given up.
+    limit: f64,
 }
 
 fn parse(arguments: &[String]) -> Result<Task, String> {
     let mut task = Task {
         pattern: root().join("patterns/t-shirt.toile.json"),
+        over: Vec::new(),
+        figure: None,
         quality: Quality::Fit,
         seeds: 8,
+        limit: f64::INFINITY,
     };
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
@@ -35,6 +44,21 @@ fn parse(arguments: &[String]) -> Result<Task, String> {
                 let count = rest.next().and_then(|text| text.parse().ok());
                 task.seeds = count.filter(|n| *n > 0).ok_or("--seeds needs a number")?;
             }
+            "--over" => {
+                let file = rest.next().ok_or("--over needs a pattern")?;
+                task.over.push(PathBuf::from(file));
+            }
+            "--body" => {
+                let name = rest.next().ok_or("--body needs a figure")?;
+                let figure = Figure::ALL.into_iter().find(|figure| figure.name() == name);
+                task.figure = Some(figure.ok_or_else(|| format!("{name} is not a figure"))?);
+            }
+            "--limit" => {
+                let seconds = rest.next().and_then(|text| text.parse().ok());
+                task.limit = seconds
+                    .filter(|s| *s > 0.0)
+                    .ok_or("--limit needs seconds")?;
+            }
             option if option.starts_with("--") => return Err(format!("{option} is not known")),
             file => task.pattern = PathBuf::from(file),
         }
@@ -42,18 +66,33 @@ fn parse(arguments: &[String]) -> Result<Task, String> {
     Ok(task)
 }
 
-/// Drapes one garment from so many starts, and prints steps and seconds of each stage.
+/// Drapes one garment, or several over one another, from so many starts, and prints steps and seconds of
+/// each stage.
 pub fn rest(arguments: &[String]) -> Result<(), String> {
     let task = parse(arguments)?;
     let mut session = Session::new();
-    for command in [
+    let over = task.over.iter().zip(2..);
+    let others = over.map(|(path, layer)| OtherGarment {
+        path: path.clone(),
+        layer,
+    });
+    let mut commands = vec![
         Command::OpenPattern {
             path: task.pattern.clone(),
         },
         Command::SetQuality {
             quality: task.quality,
         },
-    ] {
+        Command::SetLayers {
+            layer: 1,
+            others: others.collect(),
+        },
+    ];
+    commands.extend(task.figure.map(|figure| Command::SetBody {
+        figure: Some(figure),
+        measurements: None,
+    }));
+    for command in commands {
         session
             .execute(command, &mut Silent)
             .map_err(|error| error.to_string())?;
@@ -68,7 +107,7 @@ pub fn rest(arguments: &[String]) -> Result<(), String> {
     let asked = setup.rest.residual;
     let (mut lines, mut restless) = (Vec::new(), Vec::new());
     for seed in 0..task.seeds {
-        let line = draped(setup.clone(), seed)?;
+        let line = draped(setup.clone(), seed, task.limit)?;
         println!("{seed},{}", row(&line));
         if line[RESIDUAL] > asked {
             restless.push(seed.to_string());
@@ -91,14 +130,14 @@ fn row(line: &[f64]) -> String {
 }
 
 /// One run: what stands in the header.
-fn draped(mut setup: GarmentSetup, seed: u64) -> Result<Vec<f64>, String> {
+fn draped(mut setup: GarmentSetup, seed: u64, limit: f64) -> Result<Vec<f64>, String> {
     for (v, place) in setup.levels[0].cloth.positions.iter_mut().enumerate() {
         *place += moved(seed, v as u64) * MOVED;
     }
     let start = Instant::now();
     let mut run = GarmentRun::new(setup).map_err(|error| error.to_string())?;
     let mut seconds = [0.0; 3];
-    loop {
+    while start.elapsed().as_secs_f64() < limit {
         let place = match run.progress().stage {
             Stage::Sewing => 0,
             Stage::Swinging => 1,
@@ -111,7 +150,11 @@ fn draped(mut setup: GarmentSetup, seed: u64) -> Result<Vec<f64>, String> {
     }
     let [sewing, settling] = run.steps().map(|steps| steps as f64);
     let vertices = run.state.positions.len() as f64;
-    let mut line = vec![vertices, sewing, settling, run.progress().residual];
+    let residual = match run.progress().stage {
+        Stage::Finished => run.progress().residual,
+        _ => f64::INFINITY,
+    };
+    let mut line = vec![vertices, sewing, settling, residual];
     line.extend(seconds);
     line.push(start.elapsed().as_secs_f64());
     Ok(line)

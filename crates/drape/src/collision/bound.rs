@@ -92,22 +92,24 @@ pub struct Kept {
 }
 
 /// Corrects a motion so that no two features of the cloth meet on the way; pairs that `knots` lets
-/// through are left alone. `near` gives the pairs of clusters that may meet in some moves.
+/// through are left alone, and so are regions that keep their `clearance` in the motion given.
 pub fn keep_apart(
     surface: &mut ClothSurface,
     knots: Knots,
     motion: &mut Motions,
-    mut near: impl FnMut(&mut ClothSurface, &[Vec3]) -> Vec<[u32; 2]>,
+    clearance: Clearance,
 ) -> Kept {
     let mut kept = Kept::default();
     let mut zones = Zones::new(motion.x.len());
     // Vertices whose moves may not be what they were when nothing else met.
     let mut stirred: Option<Vec<bool>> = None;
     for round in 0..IMPULSE_ROUNDS + ZONE_ROUNDS {
-        let mut pairs = near(surface, motion.moves);
-        if let Some(stirred) = &stirred {
-            pairs = surface.marked(&pairs, stirred);
-        }
+        let target = ends(motion.x, motion.moves);
+        let ways = Ways::together(motion.x, &target);
+        let pairs = match &stirred {
+            None => surface.near_unless_clear(ways, REACH_OF_WAYS, clearance),
+            Some(stirred) => surface.near_marked(ways, REACH_OF_WAYS, stirred),
+        };
         let met = met(surface, &pairs, knots, motion, stirred.as_deref());
         if met.is_empty() {
             kept.zoned = zones.count();
@@ -153,6 +155,11 @@ pub fn keep_apart(
         *d += drift;
     }
     kept
+}
+
+/// Where moves lead [m].
+fn ends(x: &[Vec3], moves: &[Vec3]) -> Vec<Vec3> {
+    x.iter().zip(moves).map(|(x, d)| x + d).collect()
 }
 
 /// Features that meet in a motion, with the times; where some vertices are `stirred`, only those with
@@ -234,7 +241,7 @@ pub fn bound_moves(
     x: &[Vec3],
     moves: &mut [Vec3],
 ) -> usize {
-    let target: Vec<Vec3> = x.iter().zip(&*moves).map(|(x, d)| x + d).collect();
+    let target = ends(x, moves);
     let clearance = Clearance {
         stray: 0.0,
         kept: 0.0,

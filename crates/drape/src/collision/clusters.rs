@@ -66,6 +66,24 @@ impl Block {
         }
     }
 
+    /// Fits the boxes of some features; `corners` gives the vertices of one.
+    fn fit<const N: usize>(
+        &mut self,
+        features: &[u32; LANES],
+        ways: &[Slab],
+        corners: impl Fn(u32) -> [u32; N],
+    ) {
+        for (lane, &feature) in features.iter().enumerate() {
+            if feature != NONE {
+                let ways = corners(feature).map(|v| ways[v as usize]);
+                self.set(
+                    lane,
+                    &ways.iter().fold(NOTHING, |round, way| round.join(way)),
+                );
+            }
+        }
+    }
+
     fn get(&self, lane: usize) -> Slab {
         Slab {
             low: [0, 1, 2].map(|k| self.low[k][lane]),
@@ -134,16 +152,20 @@ impl Kind {
     /// Fits all boxes; `corners` gives the vertices of a feature.
     fn fit<const N: usize>(&mut self, ways: &[Slab], corners: impl Fn(u32) -> [u32; N] + Sync) {
         let all = self.blocks.par_iter_mut().with_min_len(64);
-        all.zip(&self.features).for_each(|(block, features)| {
-            for (lane, &feature) in features.iter().enumerate() {
-                if feature != NONE {
-                    let round = corners(feature)
-                        .iter()
-                        .fold(NOTHING, |round, &v| round.join(&ways[v as usize]));
-                    block.set(lane, &round);
-                }
-            }
-        });
+        all.zip(&self.features)
+            .for_each(|(block, features)| block.fit(features, ways, &corners));
+    }
+
+    /// [`Self::fit`] for the boxes of a cluster.
+    fn fit_one<const N: usize>(
+        &mut self,
+        cluster: u32,
+        ways: &[Slab],
+        corners: impl Fn(u32) -> [u32; N],
+    ) {
+        for at in self.of(cluster) {
+            self.blocks[at].fit(&self.features[at], ways, &corners);
+        }
     }
 
     /// For each place, the features of another kind in the same cluster that `against` says yes to.
@@ -220,6 +242,12 @@ pub struct Corners<'a> {
 /// Share of the largest coordinate that single precision is off by after a few sums.
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 
+/// What single precision counts from: a vertex whose place is known.
+fn origin(ways: &Ways) -> Vec3 {
+    let known = |p: &&Vec3| p.iter().all(|c| c.is_finite());
+    ways.from.iter().find(known).copied().unwrap_or_default()
+}
+
 impl Clusters {
     /// Clusters as a tree has them; every vertex and every edge is in the cluster of the triangle that
     /// cares for it.
@@ -270,8 +298,7 @@ impl Clusters {
 
     /// Fits all boxes round the ways of the vertices, with a margin [m].
     pub fn fit(&mut self, ways: &Ways, corners: Corners, margin: f64) {
-        let known = |p: &&Vec3| p.iter().all(|c| c.is_finite());
-        let origin = ways.from.iter().find(known).copied().unwrap_or_default();
+        let origin = origin(ways);
         let both = ways.from.par_iter().zip(ways.to).with_min_len(1024);
         both.map(|(from, to)| Slab::of_way(from - origin, to - origin, margin))
             .collect_into_vec(&mut self.ways);
@@ -279,12 +306,8 @@ impl Clusters {
         self.edges.fit(&self.ways, |e| corners.edges[e as usize]);
         self.faces
             .fit(&self.ways, |t| corners.triangles[t as usize]);
-        for (cluster, round) in self.round.iter_mut().enumerate() {
-            let blocks = &self.faces.blocks[self.faces.of(cluster as u32)];
-            let all = blocks
-                .iter()
-                .flat_map(|block| (0..LANES).map(|lane| block.get(lane)));
-            *round = all.fold(NOTHING, |round, slab| round.join(&slab));
+        for cluster in 0..self.round.len() {
+            self.round[cluster] = self.round_of(cluster);
         }
         let ends = self
             .round
@@ -293,6 +316,40 @@ impl Clusters {
         let farthest = f64::from(ends.fold(0.0, |most: f32, end| most.max(end.abs())));
         // The margin is of both boxes.
         self.slack = (2.0 * margin - ROUNDING * farthest).max(0.0) as f32;
+    }
+
+    /// Fits boxes anew where only marked vertices go another way than when all were fitted, with the same
+    /// margin: those of the clusters that these belong to.
+    pub fn fit_again(
+        &mut self,
+        ways: &Ways,
+        corners: Corners,
+        margin: f64,
+        marks: &[bool],
+        clusters: &[u32],
+    ) {
+        self.slack = 0.0;
+        let origin = origin(ways);
+        for (v, way) in self.ways.iter_mut().enumerate().filter(|(v, _)| marks[*v]) {
+            *way = Slab::of_way(ways.from[v] - origin, ways.to[v] - origin, margin);
+        }
+        for &cluster in clusters {
+            self.vertices.fit_one(cluster, &self.ways, |v| [v]);
+            self.edges
+                .fit_one(cluster, &self.ways, |e| corners.edges[e as usize]);
+            self.faces
+                .fit_one(cluster, &self.ways, |t| corners.triangles[t as usize]);
+            self.round[cluster as usize] = self.round_of(cluster as usize);
+        }
+    }
+
+    /// The box round everything of a cluster.
+    fn round_of(&self, cluster: usize) -> Slab {
+        let blocks = &self.faces.blocks[self.faces.of(cluster as u32)];
+        let all = blocks
+            .iter()
+            .flat_map(|block| (0..LANES).map(|lane| block.get(lane)));
+        all.fold(NOTHING, |round, slab| round.join(&slab))
     }
 
     /// The box of a cluster, from an origin that is the same for all [m].

@@ -1,7 +1,7 @@
 //! Contact of cloth with cloth: the laws of contact with a surface, on the vector between two
 //! features in place of the point.
 
-use super::bound::{Kept, Motions, REACH_OF_WAYS};
+use super::bound::{Kept, Motions};
 use super::curvature::Clearance;
 use super::fade::fade;
 use super::layers::{Knots, Stray, layer_order, strays, ways_out};
@@ -518,12 +518,7 @@ impl ClothContacts {
             loose: &self.loose,
             layer: &model.layer,
         };
-        let x = motion.x;
-        let near = |surface: &mut ClothSurface, moves: &[Vec3]| {
-            let target: Vec<Vec3> = x.iter().zip(moves).map(|(x, d)| x + d).collect();
-            surface.near_unless_clear(Ways::together(x, &target), REACH_OF_WAYS, clearance)
-        };
-        let kept = super::bound::keep_apart(&mut self.surface, knots, motion, near);
+        let kept = super::bound::keep_apart(&mut self.surface, knots, motion, clearance);
         self.tally.impulses += kept.impulses;
         self.tally.zoned += kept.zoned;
         self.tally.cut += kept.cut;

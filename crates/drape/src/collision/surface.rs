@@ -206,6 +206,27 @@ impl ClothSurface {
         pairs
     }
 
+    /// [`Self::near`] for pairs in which a triangle has a marked corner, where no other vertex goes
+    /// another way than in the last search, which had the same reach.
+    pub fn near_marked(&mut self, ways: Ways, reach: f64, marks: &[bool]) -> Vec<[u32; 2]> {
+        let (tree, triangles) = (&self.tree, &self.triangles);
+        let has = |&t: &u32| triangles[t as usize].iter().any(|&v| marks[v as usize]);
+        let marked = |cluster: usize| tree.items(cluster).iter().any(has);
+        let nodes = tree.folded(marked, |a, b| a | b);
+        let corners = Corners {
+            edges: &self.edges,
+            triangles,
+        };
+        let clusters = (0..tree.leaves()).filter(|&cluster| marked(cluster));
+        let clusters: Vec<u32> = clusters.map(|cluster| cluster as u32).collect();
+        self.clusters
+            .fit_again(&ways, corners, 0.5 * reach, marks, &clusters);
+        self.tree.refit(|leaf| self.clusters.bounds(leaf));
+        let root: Vec<Region> = self.tree.root().map(Region::Own).into_iter().collect();
+        let unmarked = |_: &mut (), region: &Region| !region.nodes().any(|n| nodes[n.at as usize]);
+        self.tree.pairs(&root, unmarked).pairs
+    }
+
     /// Forgets what earlier searches found of regions.
     pub fn forget(&mut self) {
         self.regions.forget();
@@ -281,23 +302,6 @@ impl ClothSurface {
         };
         let found: Vec<Vec<[u32; 2]>> = near.par_chunks(AT_ONCE).map(of_pairs).collect();
         found.concat()
-    }
-
-    /// Those of some pairs of clusters in which a triangle has a marked corner.
-    pub fn marked(&self, near: &[[u32; 2]], marks: &[bool]) -> Vec<[u32; 2]> {
-        let has = |&t: &u32| {
-            self.triangles[t as usize]
-                .iter()
-                .any(|&v| marks[v as usize])
-        };
-        let clusters = 0..self.tree.leaves();
-        let marked: Vec<bool> = clusters
-            .map(|c| self.tree.items(c).iter().any(has))
-            .collect();
-        let pairs = near.iter().copied();
-        pairs
-            .filter(|pair| pair.iter().any(|&c| marked[c as usize]))
-            .collect()
     }
 
     /// Whether two triangles share a vertex.

@@ -3,6 +3,7 @@
 use super::contact::{ContactStencil, Touch};
 use super::{Xpbd, XpbdReport, middle};
 use crate::collision::{ClothContact, ClothContacts, Kept, Motions};
+use crate::laws::contact::HARDER;
 use crate::{DrapeError, Model, State};
 use toile_geometry::Vec3;
 
@@ -117,7 +118,7 @@ impl Xpbd {
                 watch.contacts.remember(state);
                 watch.travelled = Some(0.0);
                 watch.time = 0.0;
-                self.touch_cloth(&watch.contacts.active);
+                self.touch_cloth(&watch.contacts.active, 2.0 * watch.allowed);
             }
             let travelled = watch.travelled.unwrap_or(0.0);
             let time = ((watch.allowed - travelled) / speed).min(LONGEST - watch.time);
@@ -135,23 +136,33 @@ impl Xpbd {
         Ok(report)
     }
 
-    /// Holds contacts of cloth with cloth from here on, in place of those held before.
-    fn touch_cloth(&mut self, contacts: &[ClothContact]) {
+    /// Holds contacts of cloth with cloth from here on, in place of those held before: those that may give
+    /// way to their hard depth before the next look, `way` [m] ahead, as two.
+    fn touch_cloth(&mut self, contacts: &[ClothContact], way: f64) {
         let slot_of = &self.order.slot_of;
-        let stencils = contacts.iter().map(|contact| {
-            let plane = &contact.plane;
+        let stencil = |contact: &ClothContact, hard: bool| {
+            let (plane, law) = (&contact.plane, &contact.law);
+            let (depth, stiffness, friction) = match hard {
+                false => (plane.depth, law.normal, law.friction),
+                true => (plane.depth - law.hard_from, HARDER * law.normal, 0.0),
+            };
             ContactStencil {
                 vertices: contact.vertices.map(|v| slot_of[v as usize]),
                 weights: contact.weights.map(|w| w as f32),
                 touch: Touch {
                     normal: [0, 1, 2].map(|k| plane.normal[k] as f32),
-                    level: (plane.depth + plane.normal.dot(&plane.point)) as f32,
-                    softness: (1.0 / contact.law.normal).min(1e30) as f32,
-                    friction: contact.law.friction as f32,
+                    level: (depth + plane.normal.dot(&plane.point)) as f32,
+                    softness: (1.0 / stiffness).min(1e30) as f32,
+                    friction: friction as f32,
                     ..Touch::none()
                 },
                 restitution: contact.restitution.map(|e| e as f32),
             }
+        };
+        let stencils = contacts.iter().flat_map(|contact| {
+            let hard = contact.plane.depth + way > contact.law.hard_from;
+            let hard = hard.then(|| stencil(contact, true));
+            std::iter::once(stencil(contact, false)).chain(hard)
         });
         let held = &mut self.regions.rest.contacts;
         held.truncate(self.sample_contacts);
