@@ -11,7 +11,7 @@ mod sheets;
 use numbers::Numbers;
 use sheets::{object, sheet};
 use toile_drape::collision::{
-    ClothContacts, ClothSurface, FeaturePair, Knots, Motions, Nearness, Ways, bound_moves,
+    ClothContacts, ClothSurface, FeaturePair, Knots, Motions, Nearness, Reach, Ways, bound_moves,
     crossings, nearnesses,
 };
 use toile_drape::{
@@ -79,7 +79,7 @@ fn pairs_are_those_of_brute_force_in_200_crumpled_states() {
         assert_eq!(found, expected, "state {seed}");
         near_pairs += found.len();
         // What is left out for contact is a neighbour that faces the same way.
-        assert!(nearnesses(&surface, &near, x, reach).len() <= found.len());
+        assert!(nearnesses(&surface, &near, x, &Reach::all(reach)).len() <= found.len());
 
         let edges = mesh.topology().edges;
         let mut brute = Vec::new();
@@ -162,7 +162,7 @@ fn neighbours_that_face_alike_touch_only_where_they_were_sewn_twisted() {
     let found = |mesh: &TriangleMesh| {
         let mut surface = ClothSurface::of_mesh(mesh);
         let near = surface.near(Ways::still(&mesh.positions), 4e-3);
-        nearnesses(&surface, &near, &mesh.positions, 4e-3)
+        nearnesses(&surface, &near, &mesh.positions, &Reach::all(4e-3))
     };
     let rungs = found(&twisted);
     let crossed = FeaturePair::EdgeEdge([0, 1, 3, 4]);
@@ -504,7 +504,7 @@ fn contacts_do_not_depend_on_threads_and_push_both_ways_alike() {
             .build()
             .unwrap();
         let mut contacts = ClothContacts::default();
-        pool.install(|| contacts.find(&model, &state, &state.positions, 8e-3));
+        pool.install(|| contacts.find(&model, &state, &state.positions, &Reach::all(8e-3)));
         contacts
     };
     let one = found(1);

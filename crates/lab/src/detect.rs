@@ -7,7 +7,9 @@ use crate::chart_contact::fall;
 use crate::clock::Clock;
 use crate::scenes::card;
 use crate::{LabError, MeshKind, rectangle, subdivided};
-use toile_drape::collision::{Clearance, ClothContacts, ClothSurface, Ways, crossings, nearnesses};
+use toile_drape::collision::{
+    Clearance, ClothContacts, ClothSurface, Reach, Ways, crossings, nearnesses,
+};
 use toile_drape::{Cloth, MethodKind, MethodSettings, Model, State};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
@@ -129,7 +131,7 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
         let (clock, mut found) = (Clock::start(), [0; 3]);
         for _ in 0..LOOKS {
             let near = near(&mut surface);
-            let touching = nearnesses(&surface, &near, x, REACH).len();
+            let touching = nearnesses(&surface, &near, x, &Reach::all(REACH)).len();
             found = [near.len(), touching, crossings(&surface, &near, x).len()];
         }
         for (what, value) in [
@@ -199,11 +201,11 @@ fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>], frame: usize) -> [f64;
         }
         let ways = Ways::together(&ends[0], &ends[1]);
         let met = surface.near_unless_clear(ways, WAYS_REACH, clearance);
-        std::hint::black_box(nearnesses(surface, &met, &ends[0], WAYS_REACH));
+        std::hint::black_box(nearnesses(surface, &met, &ends[0], &Reach::all(WAYS_REACH)));
         let [regions, contours] = surface.opened();
         opened = [opened[0] + regions, opened[1] + contours];
         let near = surface.near_unless_clear(Ways::still(&ends[1]), REACH, clearance);
-        std::hint::black_box(nearnesses(surface, &near, &ends[1], REACH));
+        std::hint::black_box(nearnesses(surface, &near, &ends[1], &Reach::all(REACH)));
         std::hint::black_box(crossings(surface, &near, &ends[1]));
         let [regions, contours] = surface.opened();
         opened = [opened[0] + regions, opened[1] + contours];

@@ -6,6 +6,7 @@ use super::curvature::Clearance;
 use super::fade::fade;
 use super::layers::{Knots, Stray, layer_order, strays, ways_out};
 use super::proximity::{Nearness, nearnesses};
+use super::reach::Reach;
 use super::regions::Ways;
 use super::surface::{ClothSurface, FeaturePair};
 use super::tangle::{Drawn, Piercing, crossed_for, crossings, keep_on, loose_round, piercings};
@@ -227,8 +228,8 @@ impl ClothContacts {
         &mut self.surface
     }
 
-    /// Finds contacts within `reach` [m] and crossings; what the state remembers of friction goes into them.
-    pub fn find(&mut self, model: &Model, state: &State, x: &[Vec3], reach: f64) {
+    /// Finds contacts and crossings; what the state remembers of friction goes into the contacts.
+    pub fn find(&mut self, model: &Model, state: &State, x: &[Vec3], reach: &Reach) {
         self.active.clear();
         self.piercings = 0;
         self.strays = 0;
@@ -243,7 +244,7 @@ impl ClothContacts {
             return;
         }
         let clearance = Self::clearance(model.contact.cloth_offset);
-        let near = (self.surface(model)).near_unless_clear(Ways::still(x), reach, clearance);
+        let near = (self.surface(model)).near_unless_clear(Ways::still(x), reach.most, clearance);
         let crossings = crossings(&self.surface, &near, x);
         self.piercings = crossings.len();
         let (own, across) = self.mark(&crossings);
@@ -336,12 +337,8 @@ impl ClothContacts {
 
     /// Contacts within the usual reach; two edges fade where their contact would come and go at once.
     pub fn refresh(&mut self, model: &Model, state: &State, x: &[Vec3]) {
-        self.find(
-            model,
-            state,
-            x,
-            REACH_IN_OFFSETS * model.contact.cloth_offset,
-        );
+        let reach = Reach::all(REACH_IN_OFFSETS * model.contact.cloth_offset);
+        self.find(model, state, x, &reach);
         for contact in &mut self.active {
             let fade = fade(contact, x);
             contact.law.normal *= fade;

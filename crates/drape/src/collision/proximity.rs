@@ -1,5 +1,6 @@
 //! Places where cloth is near cloth.
 
+use super::reach::Reach;
 use super::surface::{ClothSurface, FeaturePair};
 use rayon::prelude::*;
 use toile_geometry::{Vec3, closest_on_face, closest_on_segments};
@@ -128,7 +129,7 @@ pub(super) fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
 /// Neighbours are looked for at this many times the distance that they keep.
 const NEIGHBOURS_REACH: f64 = 2.0;
 
-/// Every pair of features within `reach` [m], in an order that does not depend on threads;
+/// Every pair of features within its reach, in an order that does not depend on threads;
 /// `near` are pairs of clusters as [`ClothSurface::near`] gives them. Features of triangles that
 /// share a vertex and are not folded against each other by more than a right angle count only where they
 /// come nearer than neighbours do.
@@ -136,13 +137,17 @@ pub fn nearnesses(
     surface: &ClothSurface,
     near: &[[u32; 2]],
     x: &[Vec3],
-    reach: f64,
+    reach: &Reach,
 ) -> Vec<Nearness> {
     let normal = |[a, b, c]: &[Vec3; 3]| (b - a).cross(&(c - a));
     let corners = |t: &[u32; 3]| t.map(|v| x[v as usize]);
     let triangles = surface.triangles.par_iter().with_min_len(512);
     let normals: Vec<Vec3> = triangles.map(|t| normal(&corners(t))).collect();
     surface.features(near, |pair, owners, found| {
+        if is_far(pair, &pair.vertices().map(|v| x[v as usize]), reach.most) {
+            return;
+        }
+        let reach = reach.of(pair);
         let [t, u] = owners.map(|t| normals[t as usize]);
         let neighbours = t.dot(&u) > 0.0 && surface.adjacent(owners);
         let reach = match neighbours {

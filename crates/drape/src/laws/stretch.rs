@@ -23,6 +23,8 @@
 /// Stiffness of a strain limit as a multiple of the membrane's own.
 const LIMIT_STIFFNESS: f64 = 100.0;
 
+use std::sync::LazyLock;
+
 /// Width over which a strain limit sets in, as a share of the limit.
 const LIMIT_ONSET: f64 = 0.02;
 
@@ -176,8 +178,16 @@ struct Wrinkle {
 /// unless warp and bias differ by more than a factor of 10^4.
 const DIRECTIONS: usize = 32;
 
+/// Angle from one to the next, and sine and cosine of twice each angle.
+const WIDTH: f64 = std::f64::consts::PI / DIRECTIONS as f64;
+static DOUBLED: LazyLock<[(f64, f64); DIRECTIONS]> =
+    LazyLock::new(|| std::array::from_fn(|k| (2.0 * k as f64 * WIDTH).sin_cos()));
+
 /// Newton and bisection steps of the refinement: 60 halvings reach rounding.
 const REFINEMENTS: usize = 60;
+
+/// A step of the refinement below this is its last: rounding is a few times less.
+const CLOSE: f64 = 1e-15;
 
 impl Field {
     fn of(stiffness: [f64; 4], [e_uu, e_vv, gamma]: [f64; 3], s: [f64; 3]) -> Self {
@@ -200,8 +210,7 @@ impl Field {
         let a4 = (s11 + s22 - 2.0 * s12 - sg) / 8.0;
         let (mean, half) = (0.5 * (e_uu + e_vv), 0.5 * (e_uu - e_vv));
         // p = t.E.t and q with their first two derivatives by the angle.
-        let at = |angle: f64| {
-            let (sin, cos) = (2.0 * angle).sin_cos();
+        let doubled = |(sin, cos): (f64, f64)| {
             let (sin2, cos2) = (2.0 * sin * cos, cos * cos - sin * sin);
             let p = [
                 mean + half * cos + 0.5 * gamma * sin,
@@ -215,21 +224,20 @@ impl Field {
             ];
             (p, q)
         };
-        let width = std::f64::consts::PI / DIRECTIONS as f64;
+        let at = |angle: f64| doubled((2.0 * angle).sin_cos());
         let mut best = (f64::NEG_INFINITY, 0.0);
-        for k in 0..DIRECTIONS {
-            let angle = k as f64 * width;
-            let (p, q) = at(angle);
+        for (k, &direction) in DOUBLED.iter().enumerate() {
+            let (p, q) = doubled(direction);
             let value = p[0].max(0.0).powi(2) / q[0];
             if value > best.0 {
-                best = (value, angle);
+                best = (value, k as f64 * WIDTH);
             }
         }
         if best.0.is_nan() || best.0 <= 0.0 {
             return Self::Slack;
         }
         // d(p^2/q) = p (2 p' q - p q') / q^2 falls through zero at the best angle.
-        let (mut low, mut high) = (best.1 - width, best.1 + width);
+        let (mut low, mut high) = (best.1 - WIDTH, best.1 + WIDTH);
         let mut angle = best.1;
         for _ in 0..REFINEMENTS {
             let (p, q) = at(angle);
@@ -246,7 +254,7 @@ impl Field {
             } else {
                 0.5 * (low + high)
             };
-            let done = (next - angle).abs() <= 1e-16;
+            let done = (next - angle).abs() <= CLOSE;
             angle = next;
             if done {
                 break;

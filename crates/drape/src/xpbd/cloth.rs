@@ -2,7 +2,7 @@
 
 use super::contact::{ContactStencil, Touch};
 use super::{Xpbd, XpbdReport, middle};
-use crate::collision::{ClothContact, ClothContacts, Kept, Motions};
+use crate::collision::{Ahead, ClothContact, ClothContacts, Kept, Motions, Reach};
 use crate::laws::contact::HARDER;
 use crate::{DrapeError, Model, State};
 use toile_geometry::Vec3;
@@ -113,8 +113,17 @@ impl Xpbd {
             if ahead.is_none_or(|far| far > watch.allowed) || watch.time + fewest > LONGEST {
                 watch.allowed = (2.0 * speed * LONGEST).clamp(LEAST_WAY, LOOK_AGAIN);
                 // Two vertices may come nearer by twice the way.
-                let reach = model.contact.cloth_offset + 2.0 * watch.allowed;
-                watch.contacts.find(model, state, &state.positions, reach);
+                let kept = model.contact.cloth_offset;
+                let reach = Reach {
+                    most: kept + 2.0 * watch.allowed,
+                    ahead: Some(Ahead {
+                        velocities: &state.velocities,
+                        kept,
+                        time: LONGEST,
+                        least: LEAST_WAY,
+                    }),
+                };
+                watch.contacts.find(model, state, &state.positions, &reach);
                 watch.contacts.remember(state);
                 watch.travelled = Some(0.0);
                 watch.time = 0.0;
