@@ -44,9 +44,8 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
     let mut surface = ClothSurface::of_mesh(&mesh);
     let edge = 1.0 / cells as f64;
     let clearance = Clearance {
-        stray: 0.1 * edge,
         kept: 0.1 * edge,
-        beyond: 0.0,
+        beyond: 0.1 * edge,
     };
     let x = &mesh.positions;
     let mut counted = |name: &str, find: &mut dyn FnMut(&mut ClothSurface) -> usize| {
@@ -125,7 +124,6 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
     result.vertices = model.vertex_count();
     let mut surface = ClothSurface::new(&model);
     let (x, clearance) = (&state.positions, ClothContacts::clearance(OFFSET));
-    let reach = REACH + 2.0 * clearance.stray;
     let counted = &mut result.counted;
     let mut look = |name: &str, near: &mut dyn FnMut(&mut ClothSurface) -> Vec<[u32; 2]>| {
         let (clock, mut found) = (Clock::start(), [0; 3]);
@@ -144,10 +142,10 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
             counted.insert(format!("{name}_{what}"), value);
         }
     };
-    look("all", &mut |surface| surface.near(Ways::still(x), reach));
+    look("all", &mut |surface| surface.near(Ways::still(x), REACH));
     look("curved", &mut |surface| {
         surface.forget();
-        surface.near_unless_clear(Ways::still(x), reach, clearance)
+        surface.near_unless_clear(Ways::still(x), REACH, clearance)
     });
     for (name, turn) in [("worn", 0.0), ("turning", TURN)] {
         let mut start = state.clone();

@@ -243,7 +243,6 @@ pub fn bound_moves(
 ) -> usize {
     let target = ends(x, moves);
     let clearance = Clearance {
-        stray: 0.0,
         kept: 0.0,
         beyond: longest(moves.iter().map(|d| d.norm())),
     };

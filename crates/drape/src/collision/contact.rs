@@ -208,7 +208,6 @@ impl ClothContacts {
     /// What regions that are left out must keep, for cloth that is kept `offset` [m] apart.
     pub fn clearance(offset: f64) -> Clearance {
         Clearance {
-            stray: 0.0,
             kept: offset,
             beyond: BEYOND,
         }

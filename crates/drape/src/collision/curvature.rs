@@ -16,13 +16,11 @@ use toile_geometry::Vec3;
 /// What a region must keep to be left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
-    /// How far any vertex may go off its way, a motion of all left out [m].
-    pub stray: f64,
     /// Distance that two features without a common vertex keep all that time, as far as there is
     /// room at them [m].
     pub kept: f64,
-    /// How much farther the vertices of a region may stray from one another, on their way and on later
-    /// ones, before it is looked at again [m]; twice and four times as far where their way asks for it.
+    /// How far the vertices of a region may stray from one another, on their way and on later ones, before
+    /// it is looked at again [m]; twice and four times as far where their way asks for it.
     pub beyond: f64,
 }
 
@@ -30,8 +28,7 @@ pub struct Clearance {
 pub const LEVELS: usize = 3;
 
 impl Clearance {
-    /// How far the vertices of a region may stray from one another, beyond what each may, before it is
-    /// looked at again [m].
+    /// How far the vertices of a region may stray from one another before it is looked at again [m].
     pub fn budget(&self, level: usize) -> f64 {
         self.beyond * f64::from(1u32 << level)
     }
@@ -40,11 +37,6 @@ impl Clearance {
     /// their way [m].
     pub fn level(&self, stray: f64) -> Option<usize> {
         (0..LEVELS).find(|&level| stray <= self.budget(level))
-    }
-
-    /// How far vertices may stray from one another after a region was found clear [m].
-    fn margin(&self, level: usize) -> f64 {
-        self.stray + self.budget(level)
     }
 }
 
@@ -231,7 +223,7 @@ impl Curvature {
                 }
                 let corners = triangles[t as usize].map(|v| x[v as usize]);
                 let keeps = triangles[t as usize].map(|v| keeps[v as usize]);
-                faced(places, &corners, &keeps, clearance.margin(level))
+                faced(places, &corners, &keeps, clearance.budget(level))
             };
             let facing = |leaf: usize| match wanted[leaf] {
                 0 => 0,
@@ -292,7 +284,7 @@ impl Curvature {
         let contour = Contour::new(&halves, edges, &self.keeps, (x, view));
         match contour.is_connected()
             && contour.alternates()
-            && contour.is_clear(clearance.kept, clearance.margin(level))
+            && contour.is_clear(clearance.kept, clearance.budget(level))
         {
             true => Found::Clear,
             false => Found::Open,

@@ -77,12 +77,6 @@ impl Nearness {
             }
         }
     }
-
-    /// Sum of w_i x_i.
-    pub fn between(&self, x: &[Vec3]) -> Vec3 {
-        let four = self.pair.vertices().into_iter().zip(self.weights);
-        four.map(|(v, w)| x[v as usize] * w).sum()
-    }
 }
 
 /// Square of the sine below which two edges, or two sides of a face, count as parallel: the direction
