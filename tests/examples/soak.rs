@@ -18,14 +18,14 @@
 //!
 //! `soak sizes [--quality preview|fit|final] [--out DIR] [NAME...]` drapes every pattern that ships, or those named, on
 //! five women, five men and two children, or those named, prints a line each with the crossings
-//! of cloth with body and with cloth, and fails where there are any.
+//! of cloth with body and with cloth, and fails where there are any or one is not at rest.
 //!
 //! `soak rest [--quality preview|fit|final] [--seeds N] [--limit SECONDS] [--body FIGURE] [--over PATTERN]... [PATTERN]`
 //! drapes one garment, the T-shirt, and those over it from N starts that differ by micrometres, and prints steps and
 //! seconds of each stage: the way to rest is chaotic. A run is given up at the limit.
 //!
 //! `soak layers [--fit] [--outfit 1|2|3] [FIGURE...]` wears the shipped patterns in three layers on every mannequin, and fails
-//! where layers cross the body, themselves or each other, or are out of order.
+//! where layers cross the body, themselves or each other, are out of order or not at rest.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[path = "soak/cloth.rs"]

@@ -1,6 +1,7 @@
 //! Long runs of garments on bodies: every pattern that ships on women, men and children from small
 //! to large.
 
+use super::worn::Worn;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -105,7 +106,7 @@ pub fn sizes(arguments: &[String]) -> Result<(), String> {
     }
     match left.is_empty() {
         true => Ok(()),
-        false => Err(format!("not clean: {}", left.join(", "))),
+        false => Err(format!("not clean or not at rest: {}", left.join(", "))),
     }
 }
 
@@ -138,10 +139,14 @@ fn dressed((name, figure, lengths): &Wearer, out: &Path) -> Result<Command, Stri
     })
 }
 
-/// One garment on one body: its row, and whether nothing crosses.
+/// One garment on one body: its row, and whether it is at rest and nothing crosses.
 fn worn(pattern: &Path, wearer: &Wearer, task: &Task) -> Result<(String, bool), String> {
     let start = Instant::now();
-    let (run, measures) = super::worn::worn([
+    let Worn {
+        run,
+        measures,
+        at_rest,
+    } = super::worn::worn([
         Command::OpenPattern {
             path: pattern.to_owned(),
         },
@@ -160,6 +165,6 @@ fn worn(pattern: &Path, wearer: &Wearer, task: &Task) -> Result<(String, bool), 
         run.gap_before_merging() * 1e3,
         start.elapsed().as_secs_f64()
     );
-    let clean = measures.body_intersections == 0 && measures.self_intersections == 0;
-    Ok((row, clean))
+    let crossings = measures.body_intersections + measures.self_intersections;
+    Ok((row, at_rest && crossings == 0))
 }

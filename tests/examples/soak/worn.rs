@@ -3,8 +3,18 @@
 use toile_drape::{GarmentRun, Measures, Stage};
 use toile_session::{Command, Session, Silent};
 
+/// A garment as it ended.
+pub struct Worn {
+    /// The drape.
+    pub run: GarmentRun,
+    /// What it measures.
+    pub measures: Measures,
+    /// Whether it came to rest as nearly as was asked.
+    pub at_rest: bool,
+}
+
 /// Executes commands, drapes what they set up, and measures it.
-pub fn worn(commands: impl IntoIterator<Item = Command>) -> Result<(GarmentRun, Measures), String> {
+pub fn worn(commands: impl IntoIterator<Item = Command>) -> Result<Worn, String> {
     let mut session = Session::new();
     for command in commands {
         session
@@ -12,10 +22,16 @@ pub fn worn(commands: impl IntoIterator<Item = Command>) -> Result<(GarmentRun, 
             .map_err(|error| error.to_string())?;
     }
     let job = session.garment_setup().map_err(|error| error.to_string())?;
+    let asked = job.setup.rest.residual;
     let mut run = GarmentRun::new(job.setup).map_err(|error| error.to_string())?;
     while run.progress().stage != Stage::Finished {
         run.advance().map_err(|error| error.to_string())?;
     }
     let measures = run.measure();
-    Ok((run, measures))
+    let at_rest = run.progress().residual <= asked;
+    Ok(Worn {
+        run,
+        measures,
+        at_rest,
+    })
 }
