@@ -306,7 +306,7 @@ fn bound_pairs(
 }
 
 /// How near the ways of two features must come [m] to be looked at: all that is ever kept.
-pub const REACH_OF_WAYS: f64 = MOST_KEPT;
+const REACH_OF_WAYS: f64 = MOST_KEPT;
 
 /// A pair that may meet when its features come nearer by up to `way` [m]: its distance is less.
 fn meeting(pair: FeaturePair, x: &[Vec3], way: f64) -> Option<Meeting> {

@@ -319,7 +319,7 @@ impl Clusters {
     }
 
     /// Fits boxes anew where only marked vertices go another way than when all were fitted, with the same
-    /// margin: those of the clusters that these belong to.
+    /// margin; `clusters` are all with a triangle that has a marked corner.
     pub fn fit_again(
         &mut self,
         ways: &Ways,

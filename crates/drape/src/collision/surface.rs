@@ -211,14 +211,15 @@ impl ClothSurface {
     pub fn near_marked(&mut self, ways: Ways, reach: f64, marks: &[bool]) -> Vec<[u32; 2]> {
         let (tree, triangles) = (&self.tree, &self.triangles);
         let has = |&t: &u32| triangles[t as usize].iter().any(|&v| marks[v as usize]);
-        let marked = |cluster: usize| tree.items(cluster).iter().any(has);
-        let nodes = tree.folded(marked, |a, b| a | b);
+        let of_leaf = |cluster: usize| tree.items(cluster).iter().any(has);
+        let leaves: Vec<bool> = (0..tree.leaves()).into_par_iter().map(of_leaf).collect();
+        let nodes = tree.folded(|cluster| leaves[cluster], |a, b| a | b);
         let corners = Corners {
             edges: &self.edges,
             triangles,
         };
-        let clusters = (0..tree.leaves()).filter(|&cluster| marked(cluster));
-        let clusters: Vec<u32> = clusters.map(|cluster| cluster as u32).collect();
+        let clusters = (0u32..).zip(&leaves).filter(|(_, marked)| **marked);
+        let clusters: Vec<u32> = clusters.map(|(cluster, _)| cluster).collect();
         self.clusters
             .fit_again(&ways, corners, 0.5 * reach, marks, &clusters);
         self.tree.refit(|leaf| self.clusters.bounds(leaf));

@@ -20,10 +20,10 @@
 //! (t.E.t)^2 / (2 q(t)) largest, q(t) = t t : C^-1 : t t, T = t.E.t / q. The stress is never
 //! compressive and the energy is convex, so its Hessian is exact and positive semidefinite.
 
+use std::sync::LazyLock;
+
 /// Stiffness of a strain limit as a multiple of the membrane's own.
 const LIMIT_STIFFNESS: f64 = 100.0;
-
-use std::sync::LazyLock;
 
 /// Width over which a strain limit sets in, as a share of the limit.
 const LIMIT_ONSET: f64 = 0.02;
@@ -178,8 +178,10 @@ struct Wrinkle {
 /// unless warp and bias differ by more than a factor of 10^4.
 const DIRECTIONS: usize = 32;
 
-/// Angle from one to the next, and sine and cosine of twice each angle.
+/// Angle from one to the next.
 const WIDTH: f64 = std::f64::consts::PI / DIRECTIONS as f64;
+
+/// Sine and cosine of twice each angle.
 static DOUBLED: LazyLock<[(f64, f64); DIRECTIONS]> =
     LazyLock::new(|| std::array::from_fn(|k| (2.0 * k as f64 * WIDTH).sin_cos()));
 

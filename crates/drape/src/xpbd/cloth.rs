@@ -20,9 +20,13 @@ pub(crate) struct Span {
 
 /// How far the fastest vertex may go, the motion of the whole cloth left out, before contacts are
 /// looked for anew [m]: at the most, and where everything is slow. What is looked for reaches twice
-/// as far beyond the offset.
+/// as far beyond the offset at the most.
 const LOOK_AGAIN: f64 = 2e-3;
 const LEAST_WAY: f64 = 2e-4;
+
+/// Share of the way of the fastest vertex that any may go whatever its speed is now: what moves pushes what
+/// does not.
+const UNFORESEEN: f64 = 0.25;
 
 /// Longest time that contacts are kept [s]: forces are not known ahead.
 const LONGEST: f64 = 5e-3;
@@ -112,15 +116,16 @@ impl Xpbd {
             let ahead = watch.travelled.map(|t| t + speed * fewest);
             if ahead.is_none_or(|far| far > watch.allowed) || watch.time + fewest > LONGEST {
                 watch.allowed = (2.0 * speed * LONGEST).clamp(LEAST_WAY, LOOK_AGAIN);
-                // Two vertices may come nearer by twice the way.
                 let kept = model.contact.cloth_offset;
                 let reach = Reach {
+                    // Two vertices may come nearer by twice the way.
                     most: kept + 2.0 * watch.allowed,
                     ahead: Some(Ahead {
                         velocities: &state.velocities,
                         kept,
-                        time: LONGEST,
-                        least: LEAST_WAY,
+                        pinned: &model.pinned,
+                        time: LONGEST.max(fewest),
+                        least: LEAST_WAY.max(UNFORESEEN * watch.allowed),
                     }),
                 };
                 watch.contacts.find(model, state, &state.positions, &reach);
@@ -151,9 +156,9 @@ impl Xpbd {
         let slot_of = &self.order.slot_of;
         let stencil = |contact: &ClothContact, hard: bool| {
             let (plane, law) = (&contact.plane, &contact.law);
-            let (depth, stiffness, friction) = match hard {
-                false => (plane.depth, law.normal, law.friction),
-                true => (plane.depth - law.hard_from, HARDER * law.normal, 0.0),
+            let (depth, stiffness) = match hard {
+                false => (plane.depth, law.normal),
+                true => (plane.depth - law.hard_from, HARDER * law.normal),
             };
             ContactStencil {
                 vertices: contact.vertices.map(|v| slot_of[v as usize]),
@@ -162,7 +167,7 @@ impl Xpbd {
                     normal: [0, 1, 2].map(|k| plane.normal[k] as f32),
                     level: (depth + plane.normal.dot(&plane.point)) as f32,
                     softness: (1.0 / stiffness).min(1e30) as f32,
-                    friction: friction as f32,
+                    friction: law.friction as f32,
                     ..Touch::none()
                 },
                 restitution: contact.restitution.map(|e| e as f32),

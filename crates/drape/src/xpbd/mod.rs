@@ -11,9 +11,8 @@
 //! v = (x - x0) / h
 //! ```
 //! Iterated to the end this is implicit Euler of the same potential that [`crate::Workspace`]
-//! minimises, but for the hard part of contact of cloth with cloth. Many substeps of one iteration
-//! are stable at any stiffness; what they leave unsolved acts as extra compliance of the order of
-//! h^2 / m.
+//! minimises. Many substeps of one iteration are stable at any stiffness; what they leave unsolved
+//! acts as extra compliance of the order of h^2 / m.
 //!
 //! Inner loops run in single precision on positions relative to the middle of the cloth, with what
 //! rounding leaves out of them carried along; the state outside is in double precision. Viscosity,
