@@ -80,7 +80,7 @@ pub fn keep_on(piercings: &mut [Piercing], before: &[Drawn]) -> Vec<Drawn> {
 
 /// Looks after which a ring of edges more round a vertex that stays at a crossing is loose, and the most
 /// rings.
-const WIDER_AFTER: u32 = 40;
+const WIDER_AFTER: u32 = 25;
 const WIDEST: u32 = 8;
 
 /// For how many looks vertices have been at a crossing, each look without taken off; empty where none was.
