@@ -248,11 +248,15 @@ fn what_was_found_of_regions_serves_while_they_move() {
         let mut numbers = Numbers(seed + 500);
         let drift = numbers.vector(0.02);
         let share = 0.02 * numbers.next();
-        let place = |k: usize| -> Vec<Vec3> {
+        let mut shaken = Numbers(seed + 900);
+        let mut place = |k: usize| -> Vec<Vec3> {
             let share = share * k as f64;
             let both = start.iter().zip(&goal);
-            both.map(|(a, b)| a + (b - a) * share + drift * k as f64)
-                .collect()
+            both.map(|(a, b)| {
+                let way = shaken.vector(1.0);
+                a + (b - a) * share + drift * k as f64 + way * (0.249e-3 / way.norm())
+            })
+            .collect()
         };
         let mut from = place(0);
         for step in 1..12 {

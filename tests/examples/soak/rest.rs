@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 use toile_drape::{GarmentRun, GarmentSetup, Stage};
 use toile_geometry::Vec3;
-use toile_session::{Command, Figure, OtherGarment, Quality, Session, Silent};
+use toile_session::{Command, Figure, OtherGarment, Quality, figure_named};
 use toile_tests::root;
 
 /// How far a placed vertex is moved along each axis at the most [m].
@@ -50,7 +50,7 @@ fn parse(arguments: &[String]) -> Result<Task, String> {
             }
             "--body" => {
                 let name = rest.next().ok_or("--body needs a figure")?;
-                let figure = Figure::ALL.into_iter().find(|figure| figure.name() == name);
+                let figure = figure_named(name);
                 task.figure = Some(figure.ok_or_else(|| format!("{name} is not a figure"))?);
             }
             "--limit" => {
@@ -70,7 +70,6 @@ fn parse(arguments: &[String]) -> Result<Task, String> {
 /// each stage.
 pub fn rest(arguments: &[String]) -> Result<(), String> {
     let task = parse(arguments)?;
-    let mut session = Session::new();
     let over = task.over.iter().zip(2..);
     let others = over.map(|(path, layer)| OtherGarment {
         path: path.clone(),
@@ -92,15 +91,7 @@ pub fn rest(arguments: &[String]) -> Result<(), String> {
         figure: Some(figure),
         measurements: None,
     }));
-    for command in commands {
-        session
-            .execute(command, &mut Silent)
-            .map_err(|error| error.to_string())?;
-    }
-    let setup = session
-        .garment_setup()
-        .map_err(|error| error.to_string())?
-        .setup;
+    let setup = super::worn::prepared(commands)?;
     println!(
         "seed,vertices,sewing_steps,settling_steps,residual,sewing_s,swinging_s,settling_s,wall_s"
     );
@@ -112,12 +103,15 @@ pub fn rest(arguments: &[String]) -> Result<(), String> {
         if line[RESIDUAL] > asked {
             restless.push(seed.to_string());
         }
-        lines.push(line);
+        // What was given up says nothing of the time it would have taken.
+        lines.extend(line[RESIDUAL].is_finite().then_some(line));
     }
     let mean: Vec<f64> = (0..lines.first().map_or(0, Vec::len))
         .map(|column| lines.iter().map(|line| line[column]).sum::<f64>() / lines.len() as f64)
         .collect();
-    println!("mean,{}", row(&mean));
+    if !lines.is_empty() {
+        println!("mean of {},{}", lines.len(), row(&mean));
+    }
     match restless.is_empty() {
         true => Ok(()),
         false => Err(format!("not at rest: {}", restless.join(", "))),

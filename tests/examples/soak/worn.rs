@@ -1,6 +1,6 @@
 //! A garment taken the whole way by the application's commands.
 
-use toile_drape::{GarmentRun, Measures, Stage};
+use toile_drape::{GarmentRun, GarmentSetup, Measures, Stage};
 use toile_session::{Command, Session, Silent};
 
 /// A garment as it ended.
@@ -13,8 +13,8 @@ pub struct Worn {
     pub at_rest: bool,
 }
 
-/// Executes commands, drapes what they set up, and measures it.
-pub fn worn(commands: impl IntoIterator<Item = Command>) -> Result<Worn, String> {
+/// What commands set up to be draped.
+pub fn prepared(commands: impl IntoIterator<Item = Command>) -> Result<GarmentSetup, String> {
     let mut session = Session::new();
     for command in commands {
         session
@@ -22,8 +22,14 @@ pub fn worn(commands: impl IntoIterator<Item = Command>) -> Result<Worn, String>
             .map_err(|error| error.to_string())?;
     }
     let job = session.garment_setup().map_err(|error| error.to_string())?;
-    let asked = job.setup.rest.residual;
-    let mut run = GarmentRun::new(job.setup).map_err(|error| error.to_string())?;
+    Ok(job.setup)
+}
+
+/// Executes commands, drapes what they set up, and measures it.
+pub fn worn(commands: impl IntoIterator<Item = Command>) -> Result<Worn, String> {
+    let setup = prepared(commands)?;
+    let asked = setup.rest.residual;
+    let mut run = GarmentRun::new(setup).map_err(|error| error.to_string())?;
     while run.progress().stage != Stage::Finished {
         run.advance().map_err(|error| error.to_string())?;
     }

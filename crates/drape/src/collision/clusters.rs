@@ -412,18 +412,13 @@ impl Clusters {
 
 #[cfg(test)]
 mod tests {
+    use super::super::numbers::Numbers;
     use super::*;
 
     #[test]
     fn boxes_meet_as_their_bounds_do() {
-        let mut numbers = 1u64;
-        let mut next = || {
-            numbers = numbers
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (numbers >> 40) as f64 / f64::from(1u32 << 24) - 0.5
-        };
-        let mut place = |scale: f64| Vec3::new(next(), next(), next()) * scale;
+        let mut numbers = Numbers(1);
+        let mut place = |scale: f64| numbers.vector(0.5 * scale);
         let mut met = 0;
         for _ in 0..200 {
             let mut block = Kind::new([(0..LANES as u32).collect()].iter()).blocks[0].clone();

@@ -10,6 +10,9 @@ mod curvature;
 mod fade;
 mod impact;
 mod layers;
+#[cfg(test)]
+#[path = "../../tests/support/numbers.rs"]
+mod numbers;
 mod proximity;
 mod reach;
 mod regions;

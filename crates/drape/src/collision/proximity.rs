@@ -155,18 +155,13 @@ pub fn nearnesses(
 
 #[cfg(test)]
 mod tests {
+    use super::super::numbers::Numbers;
     use super::*;
-
-    /// A number in -0.5..0.5.
-    fn next(state: &mut u64) -> f64 {
-        *state = (state.wrapping_mul(6_364_136_223_846_793_005)).wrapping_add(1);
-        (*state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-    }
 
     #[test]
     fn what_is_far_is_far_even_of_edges_and_slivers_that_are_parallel_but_for_rounding() {
-        let mut state = 1;
-        let mut vector = |size: f64| Vec3::from_fn(|_, _| next(&mut state)) * size;
+        let mut numbers = Numbers(1);
+        let mut vector = |size: f64| numbers.vector(0.5 * size);
         let mut told = 0;
         for turn in [0.0, 1e-15, 1e-14, 1e-12, 1e-7, 1e-5, 1e-2] {
             for distance in [5e-6, 5e-5, 5e-4] {

@@ -154,12 +154,8 @@ impl Xpbd {
     /// way to their hard depth before the next look, `way` [m] ahead, as two.
     fn touch_cloth(&mut self, contacts: &[ClothContact], way: f64) {
         let slot_of = &self.order.slot_of;
-        let stencil = |contact: &ClothContact, hard: bool| {
-            let (plane, law) = (&contact.plane, &contact.law);
-            let (depth, stiffness) = match hard {
-                false => (plane.depth, law.normal),
-                true => (plane.depth - law.hard_from, HARDER * law.normal),
-            };
+        let stencil = |contact: &ClothContact, depth: f64, stiffness: f64| {
+            let plane = &contact.plane;
             ContactStencil {
                 vertices: contact.vertices.map(|v| slot_of[v as usize]),
                 weights: contact.weights.map(|w| w as f32),
@@ -167,16 +163,18 @@ impl Xpbd {
                     normal: [0, 1, 2].map(|k| plane.normal[k] as f32),
                     level: (depth + plane.normal.dot(&plane.point)) as f32,
                     softness: (1.0 / stiffness).min(1e30) as f32,
-                    friction: law.friction as f32,
+                    friction: contact.law.friction as f32,
                     ..Touch::none()
                 },
                 restitution: contact.restitution.map(|e| e as f32),
             }
         };
         let stencils = contacts.iter().flat_map(|contact| {
-            let hard = contact.plane.depth + way > contact.law.hard_from;
-            let hard = hard.then(|| stencil(contact, true));
-            std::iter::once(stencil(contact, false)).chain(hard)
+            let (depth, law) = (contact.plane.depth, &contact.law);
+            let soft = stencil(contact, depth, law.normal);
+            let hard = depth + way > law.hard_from;
+            let hard = hard.then(|| stencil(contact, depth - law.hard_from, HARDER * law.normal));
+            std::iter::once(soft).chain(hard)
         });
         let held = &mut self.regions.rest.contacts;
         held.truncate(self.sample_contacts);
