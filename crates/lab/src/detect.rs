@@ -8,7 +8,7 @@ use crate::clock::Clock;
 use crate::scenes::card;
 use crate::{LabError, MeshKind, rectangle, subdivided};
 use toile_drape::collision::{
-    Clearance, ClothContacts, ClothSurface, Reach, Ways, crossings, nearnesses,
+    Clearance, ClothContacts, ClothSurface, Near, Reach, Ways, crossings, nearnesses,
 };
 use toile_drape::{Cloth, MethodKind, MethodSettings, Model, State};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
@@ -68,7 +68,6 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
         surface.near(Ways::still(x), edge).len()
     });
     counted("curved", &mut |surface| {
-        surface.forget();
         surface
             .near_unless_clear(Ways::still(x), edge, clearance)
             .len()
@@ -76,8 +75,9 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
     Ok(())
 }
 
-/// Frames that the shirt settles in before its mesh is divided, and after; drag of the air then [1/s].
-const SETTLED: [usize; 2] = [60, 12];
+/// Frames that the shirt settles in before its mesh is divided, and after, until it hangs still; drag of the
+/// air then [1/s].
+const SETTLED: [usize; 2] = [60, 60];
 const SETTLING_DRAG: f64 = 10.0;
 /// Turn of the worn shirt about the upright when it is set in motion [rad/s].
 const TURN: f64 = 2.0;
@@ -144,7 +144,6 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
     };
     look("all", &mut |surface| surface.near(Ways::still(x), REACH));
     look("curved", &mut |surface| {
-        surface.forget();
         surface.near_unless_clear(Ways::still(x), REACH, clearance)
     });
     for (name, turn) in [("worn", 0.0), ("turning", TURN)] {
@@ -170,7 +169,7 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
             method.advance(&model, &mut start, STEP / looks)?;
             path.push(start.positions.clone());
         }
-        let each = follow(&mut surface, &path, looks.ceil() as usize);
+        let each = follow(&mut surface, &path);
         result.wall_s += clock.wall();
         for (what, value) in [
             ("frame_without_ms", 1e3 * plain),
@@ -187,26 +186,26 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
     Ok(())
 }
 
-/// Finds contacts and crossings at places along a path, so many of them in a frame; what a look takes
-/// [s], and how many regions it opens and looks at closely.
-fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>], frame: usize) -> [f64; 3] {
+/// Finds contacts and crossings at places along a path; what a look takes [s], and how many regions it opens
+/// and looks at closely.
+fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>]) -> [f64; 3] {
     let clearance = ClothContacts::clearance(OFFSET);
-    let clock = Clock::start();
+    let [of_ways, of_contacts] = [WAYS_REACH, REACH].map(Reach::all);
     let mut opened = [0; 2];
-    for (k, ends) in path.windows(2).enumerate() {
-        if k % frame.max(1) == 0 {
-            surface.forget();
+    surface.look(Ways::still(&path[0]), &of_contacts, clearance);
+    let clock = Clock::start();
+    for ends in path.windows(2) {
+        let still = Ways::still(&ends[1]);
+        for (ways, reach) in [
+            (Ways::together(&ends[0], &ends[1]), &of_ways),
+            (still, &of_contacts),
+        ] {
+            surface.look(ways, reach, clearance);
+            std::hint::black_box(nearnesses(surface, Near::Listed, ways.from, reach));
+            let [regions, contours] = surface.opened();
+            opened = [opened[0] + regions, opened[1] + contours];
         }
-        let ways = Ways::together(&ends[0], &ends[1]);
-        let met = surface.near_unless_clear(ways, WAYS_REACH, clearance);
-        std::hint::black_box(nearnesses(surface, &met, &ends[0], &Reach::all(WAYS_REACH)));
-        let [regions, contours] = surface.opened();
-        opened = [opened[0] + regions, opened[1] + contours];
-        let near = surface.near_unless_clear(Ways::still(&ends[1]), REACH, clearance);
-        std::hint::black_box(nearnesses(surface, &near, &ends[1], &Reach::all(REACH)));
-        std::hint::black_box(crossings(surface, &near, &ends[1]));
-        let [regions, contours] = surface.opened();
-        opened = [opened[0] + regions, opened[1] + contours];
+        std::hint::black_box(crossings(surface, Near::Listed, still.from));
     }
     let count = (path.len() - 1) as f64;
     [

@@ -7,8 +7,9 @@ use super::curvature::{Clearance, longest};
 use super::impact::{edge_edge_impact, vertex_face_impact};
 use super::layers::Knots;
 use super::proximity::{Nearness, closest, is_far};
+use super::reach::Reach;
 use super::regions::Ways;
-use super::surface::{ClothSurface, FeaturePair};
+use super::surface::{ClothSurface, FeaturePair, Near};
 use super::zones::Zones;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -106,11 +107,13 @@ pub fn keep_apart(
     for round in 0..IMPULSE_ROUNDS + ZONE_ROUNDS {
         let target = ends(motion.x, motion.moves);
         let ways = Ways::together(motion.x, &target);
-        let pairs = match &stirred {
-            None => surface.near_unless_clear(ways, REACH_OF_WAYS, clearance),
-            Some(stirred) => surface.near_marked(ways, REACH_OF_WAYS, stirred),
-        };
-        let met = met(surface, &pairs, knots, motion, stirred.as_deref());
+        surface.look_again(
+            ways,
+            &Reach::all(REACH_OF_WAYS),
+            clearance,
+            stirred.as_deref(),
+        );
+        let met = met(surface, knots, motion, stirred.as_deref());
         if met.is_empty() {
             kept.zoned = zones.count();
             return kept;
@@ -162,11 +165,10 @@ fn ends(x: &[Vec3], moves: &[Vec3]) -> Vec<Vec3> {
     x.iter().zip(moves).map(|(x, d)| x + d).collect()
 }
 
-/// Features that meet in a motion, with the times; where some vertices are `stirred`, only those with
+/// Features that meet in a motion, sorted, with the times; where some vertices are `stirred`, only those with
 /// one of these.
 fn met(
     surface: &ClothSurface,
-    near: &[[u32; 2]],
     knots: Knots,
     motion: &Motions,
     stirred: Option<&[bool]>,
@@ -181,7 +183,7 @@ fn met(
             .fold(0.0, f64::max)
             .sqrt()
     };
-    surface.features(near, |pair, _, found| {
+    let mut found = surface.features(Near::Listed, |pair, _, found| {
         let is_stirred = |flags: &[bool]| pair.vertices().iter().any(|&v| flags[v as usize]);
         if !stirred.is_none_or(is_stirred) {
             return;
@@ -192,7 +194,9 @@ fn met(
         {
             found.push((meeting, time));
         }
-    })
+    });
+    found.sort_unstable_by_key(|(meeting, _): &(Meeting, f64)| meeting.pair);
+    found
 }
 
 /// Takes back what brings two features together; whether there was anything.

@@ -31,6 +31,23 @@ impl Bounds {
         bounds
     }
 
+    /// Round some points; everywhere where one is no number.
+    pub fn round_all(points: impl Iterator<Item = Vec3>) -> Self {
+        let (mut bounds, mut sum) = (Self::EMPTY, 0.0);
+        for p in points {
+            sum += p.x + p.y + p.z;
+            for k in 0..3 {
+                bounds.low[k] = bounds.low[k].min(p[k]);
+                bounds.high[k] = bounds.high[k].max(p[k]);
+            }
+        }
+        let everywhere = Self {
+            low: [f64::NEG_INFINITY; 3],
+            high: [f64::INFINITY; 3],
+        };
+        if sum.is_finite() { bounds } else { everywhere }
+    }
+
     /// Round two boxes.
     pub fn join(&self, other: &Self) -> Self {
         let mut bounds = *self;
@@ -51,6 +68,15 @@ impl Bounds {
     #[inline(always)]
     pub fn meets(&self, other: &Self) -> bool {
         (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
+    }
+
+    /// Distance of two boxes [m].
+    pub fn distance(&self, other: &Self) -> f64 {
+        let between = |k: usize| {
+            let apart = (self.low[k] - other.high[k]).max(other.low[k] - self.high[k]);
+            apart.max(0.0).powi(2)
+        };
+        (between(0) + between(1) + between(2)).sqrt()
     }
 }
 
@@ -120,7 +146,7 @@ impl Region {
 /// What a search of the tree found.
 #[derive(Clone, Debug, Default)]
 pub struct Pairs<N> {
-    /// Pairs of leaves whose boxes meet, each once, and leaves with themselves.
+    /// Pairs of leaves that the search came to, each once, and leaves with themselves.
     pub pairs: Vec<[u32; 2]>,
     /// How many regions were looked into.
     pub opened: usize,
@@ -139,6 +165,8 @@ pub struct BoxTree {
     starts: Vec<u32>,
     counts: Vec<u32>,
     boxes: Vec<Bounds>,
+    /// Where the box of every leaf is.
+    leaf_boxes: Vec<u32>,
 }
 
 /// Parts that a search is cut into before cores share them.
@@ -157,6 +185,8 @@ impl BoxTree {
         tree.starts.push(items.len() as u32);
         tree.items = items;
         tree.boxes = vec![Bounds::EMPTY; tree.counts.len()];
+        let leaves = (0u32..).zip(&tree.counts).filter(|(_, count)| **count == 1);
+        tree.leaf_boxes = leaves.map(|(at, _)| at).collect();
         tree
     }
 
@@ -256,7 +286,38 @@ impl BoxTree {
         backward
     }
 
-    /// Pairs of leaves whose boxes meet in some regions, in an order that does not depend on the
+    /// Whether the boxes of a region's nodes meet.
+    pub fn meets(&self, region: &Region) -> bool {
+        match *region {
+            Region::Own(_) => true,
+            Region::Two(a, b) => self.boxes[a.at as usize].meets(&self.boxes[b.at as usize]),
+        }
+    }
+
+    /// Distance of the boxes of a region's nodes [m]; none of a node from itself.
+    pub fn distance(&self, region: &Region) -> Option<f64> {
+        match *region {
+            Region::Own(_) => None,
+            Region::Two(a, b) => {
+                Some(self.boxes[a.at as usize].distance(&self.boxes[b.at as usize]))
+            }
+        }
+    }
+
+    /// Two leaves as a region, or one with itself.
+    pub fn region(&self, [a, b]: [u32; 2]) -> Region {
+        let leaf = |first: u32| Node {
+            at: self.leaf_boxes[first as usize],
+            first,
+            count: 1,
+        };
+        match a == b {
+            true => Region::Own(leaf(a)),
+            false => Region::Two(leaf(a), leaf(b)),
+        }
+    }
+
+    /// Pairs of leaves in some regions, in an order that does not depend on the
     /// number of threads. Regions that `skip` names are not looked into; it may note what it likes.
     pub fn pairs<N: Default + Send>(
         &self,
@@ -282,7 +343,7 @@ impl BoxTree {
                     next.push(*region);
                     continue;
                 }
-                self.open(*region, |region| !skip(&mut note, region), &mut next);
+                open(*region, |region| !skip(&mut note, region), &mut next);
                 opened += 1;
                 grown = true;
             }
@@ -298,7 +359,7 @@ impl BoxTree {
                         pairs.push(leaves);
                         continue;
                     }
-                    self.open(region, |region| !skip(&mut note, region), &mut stack);
+                    open(region, |region| !skip(&mut note, region), &mut stack);
                     opened += 1;
                 }
                 (pairs, opened, note)
@@ -317,32 +378,28 @@ impl BoxTree {
         }
         all
     }
+}
 
-    fn open(&self, region: Region, mut keep: impl FnMut(&Region) -> bool, out: &mut Vec<Region>) {
-        let meet = |a: Node, b: Node| self.boxes[a.at as usize].meets(&self.boxes[b.at as usize]);
-        let mut add = |region: Region| {
-            if keep(&region) {
-                out.push(region);
-            }
-        };
-        match region {
-            Region::Own(node) => {
-                let Some([left, right]) = node.children() else {
-                    return;
-                };
-                add(Region::Own(left));
-                add(Region::Own(right));
-                if meet(left, right) {
-                    add(Region::Two(left, right));
-                }
-            }
-            Region::Two(a, b) => {
-                let (large, small) = if a.count >= b.count { (a, b) } else { (b, a) };
-                for child in large.children().into_iter().flatten() {
-                    if meet(child, small) {
-                        add(Region::Two(child, small));
-                    }
-                }
+/// The regions that make up one, of those to keep.
+fn open(region: Region, mut keep: impl FnMut(&Region) -> bool, out: &mut Vec<Region>) {
+    let mut add = |region: Region| {
+        if keep(&region) {
+            out.push(region);
+        }
+    };
+    match region {
+        Region::Own(node) => {
+            let Some([left, right]) = node.children() else {
+                return;
+            };
+            add(Region::Own(left));
+            add(Region::Own(right));
+            add(Region::Two(left, right));
+        }
+        Region::Two(a, b) => {
+            let (large, small) = if a.count >= b.count { (a, b) } else { (b, a) };
+            for child in large.children().into_iter().flatten() {
+                add(Region::Two(child, small));
             }
         }
     }

@@ -228,6 +228,8 @@ pub struct Clusters {
     ways: Vec<Slab>,
     /// By how much boxes may be made smaller again before two are held against each other [m].
     slack: f32,
+    /// By how much single precision is off [m].
+    rounding: f64,
 }
 
 /// Ends of edges and corners of triangles.
@@ -246,6 +248,21 @@ const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 fn origin(ways: &Ways) -> Vec3 {
     let known = |p: &&Vec3| p.iter().all(|c| c.is_finite());
     ways.from.iter().find(known).copied().unwrap_or_default()
+}
+
+impl Hits {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        let all = [&self.vertex_face, &self.edge_edge, &self.edge_face];
+        all.iter().all(|hits| hits.is_empty())
+    }
+
+    /// Empties it.
+    pub fn clear(&mut self) {
+        self.vertex_face.clear();
+        self.edge_edge.clear();
+        self.edge_face.clear();
+    }
 }
 
 impl Clusters {
@@ -318,22 +335,21 @@ impl Clusters {
         self.slack = (2.0 * margin - ROUNDING * farthest).max(0.0) as f32;
     }
 
-    /// Fits boxes anew where only marked vertices go another way than when all were fitted, with the same
-    /// margin; `clusters` are all with a triangle that has a marked corner.
-    pub fn fit_again(
-        &mut self,
-        ways: &Ways,
-        corners: Corners,
-        margin: f64,
-        marks: &[bool],
-        clusters: &[u32],
-    ) {
-        self.slack = 0.0;
+    /// Fits the boxes of some clusters round the ways of their vertices, without a margin.
+    pub fn fit_some(&mut self, ways: &Ways, corners: Corners, clusters: &[u32]) {
         let origin = origin(ways);
-        for (v, way) in self.ways.iter_mut().enumerate().filter(|(v, _)| marks[*v]) {
-            *way = Slab::of_way(ways.from[v] - origin, ways.to[v] - origin, margin);
-        }
+        self.ways.resize(ways.from.len(), NOTHING);
+        let mut farthest = 0.0f64;
         for &cluster in clusters {
+            for at in self.faces.of(cluster) {
+                let faces = self.faces.features[at].iter().filter(|t| **t != NONE);
+                for v in faces.flat_map(|&t| corners.triangles[t as usize]) {
+                    let [from, to] = [ways.from, ways.to].map(|x| x[v as usize] - origin);
+                    farthest = farthest.max(from.amax()).max(to.amax());
+                    self.ways[v as usize] = Slab::of_way(from, to, 0.0);
+                }
+            }
+            // Every edge and vertex of a cluster is one of its faces'.
             self.vertices.fit_one(cluster, &self.ways, |v| [v]);
             self.edges
                 .fit_one(cluster, &self.ways, |e| corners.edges[e as usize]);
@@ -341,6 +357,7 @@ impl Clusters {
                 .fit_one(cluster, &self.ways, |t| corners.triangles[t as usize]);
             self.round[cluster as usize] = self.round_of(cluster as usize);
         }
+        self.rounding = ROUNDING * farthest;
     }
 
     /// The box round everything of a cluster.
@@ -362,25 +379,44 @@ impl Clusters {
     }
 
     /// Vertices and faces, and edges, whose boxes meet, of two clusters or one.
-    pub fn near(&self, arch: Arch, [a, b]: [u32; 2], hits: &mut Hits) {
-        arch.dispatch(|| {
-            self.meet(Against::VertexFace, [a, b], 0.0, &mut hits.vertex_face);
-            if a != b {
-                self.meet(Against::VertexFace, [b, a], 0.0, &mut hits.vertex_face);
-            }
-            self.meet(Against::EdgeEdge, [a, b], 0.0, &mut hits.edge_edge);
-        });
+    pub fn near(&self, arch: Arch, pair: [u32; 2], hits: &mut Hits) {
+        arch.dispatch(|| self.meet_near(pair, 0.0, hits));
+    }
+
+    /// Vertices and faces, and edges, whose boxes come within a distance of each other [m], and some more.
+    pub fn near_within(&self, arch: Arch, pair: [u32; 2], distance: f64, hits: &mut Hits) {
+        arch.dispatch(|| self.meet_near(pair, self.wider(distance), hits));
+    }
+
+    /// The same of edges and faces.
+    pub fn piercing_within(&self, arch: Arch, pair: [u32; 2], distance: f64, hits: &mut Hits) {
+        arch.dispatch(|| self.meet_crossing(pair, self.wider(distance), hits));
+    }
+
+    fn wider(&self, distance: f64) -> f32 {
+        -((distance + self.rounding) as f32).next_up()
+    }
+
+    #[inline(always)]
+    fn meet_near(&self, [a, b]: [u32; 2], less: f32, hits: &mut Hits) {
+        self.meet(Against::VertexFace, [a, b], less, &mut hits.vertex_face);
+        if a != b {
+            self.meet(Against::VertexFace, [b, a], less, &mut hits.vertex_face);
+        }
+        self.meet(Against::EdgeEdge, [a, b], less, &mut hits.edge_edge);
+    }
+
+    #[inline(always)]
+    fn meet_crossing(&self, [a, b]: [u32; 2], less: f32, hits: &mut Hits) {
+        self.meet(Against::EdgeFace, [a, b], less, &mut hits.edge_face);
+        if a != b {
+            self.meet(Against::EdgeFace, [b, a], less, &mut hits.edge_face);
+        }
     }
 
     /// Edges and faces whose ways meet, of two clusters or one.
-    pub fn crossing(&self, arch: Arch, [a, b]: [u32; 2], hits: &mut Hits) {
-        let less = self.slack;
-        arch.dispatch(|| {
-            self.meet(Against::EdgeFace, [a, b], less, &mut hits.edge_face);
-            if a != b {
-                self.meet(Against::EdgeFace, [b, a], less, &mut hits.edge_face);
-            }
-        });
+    pub fn crossing(&self, arch: Arch, pair: [u32; 2], hits: &mut Hits) {
+        arch.dispatch(|| self.meet_crossing(pair, self.slack, hits));
     }
 
     /// Holds features of the first cluster against those of the second.

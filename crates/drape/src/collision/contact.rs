@@ -8,7 +8,7 @@ use super::layers::{Knots, Stray, layer_order, strays, ways_out};
 use super::proximity::{Nearness, nearnesses};
 use super::reach::Reach;
 use super::regions::Ways;
-use super::surface::{ClothSurface, FeaturePair};
+use super::surface::{ClothSurface, FeaturePair, Near};
 use super::tangle::{Drawn, Piercing, crossed_for, crossings, keep_on, loose_round, piercings};
 use crate::laws::contact::{ContactLaw, ContactPlane};
 use crate::{Model, State};
@@ -243,8 +243,8 @@ impl ClothContacts {
             return;
         }
         let clearance = Self::clearance(model.contact.cloth_offset);
-        let near = (self.surface(model)).near_unless_clear(Ways::still(x), reach.most, clearance);
-        let crossings = crossings(&self.surface, &near, x);
+        self.surface(model).look(Ways::still(x), reach, clearance);
+        let crossings = crossings(&self.surface, Near::Listed, x);
         self.piercings = crossings.len();
         let (own, across) = self.mark(&crossings);
         self.loosen(&state.cloth.crossed_for);
@@ -257,7 +257,7 @@ impl ClothContacts {
             layer: &model.layer,
         };
         let mut active = std::mem::take(&mut self.active);
-        for near in nearnesses(&self.surface, &near, x, reach) {
+        for near in nearnesses(&self.surface, Near::Listed, x, reach) {
             let vertices = near.pair.vertices();
             let fixed = vertices.iter().all(|&v| model.pinned[v as usize]);
             if !fixed && !knots.lets_go(near.pair) {
@@ -327,11 +327,6 @@ impl ClothContacts {
     /// Whether nothing crosses and nothing is on the wrong side of a layer.
     pub fn is_in_order(&self) -> bool {
         self.piercings == 0 && self.strays == 0
-    }
-
-    /// Looks anew at the next search, so that it does not depend on what was found before.
-    pub fn forget(&mut self) {
-        self.surface.forget();
     }
 
     /// Contacts within the usual reach; two edges fade where their contact would come and go at once.

@@ -40,17 +40,6 @@ impl Clearance {
     }
 }
 
-/// What a region is found to be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Found {
-    /// No two of its features without a common vertex can come nearer than is to be kept.
-    Clear,
-    /// They might, or it cannot be told.
-    Open,
-    /// It cannot be told, wherever its vertices are.
-    Apart,
-}
-
 /// The longest of some ways [m]; without end where one is not known.
 pub fn longest(ways: impl Iterator<Item = f64>) -> f64 {
     ways.fold(0.0, |longest, way| {
@@ -182,6 +171,9 @@ impl Curvature {
 
     /// Sets what is to be kept of the `room` [m] at each vertex.
     pub fn keep(&mut self, room: impl Iterator<Item = f64>, clearance: Clearance) {
+        if self.clearance == Some(clearance) {
+            return;
+        }
         self.keeps.clear();
         self.keeps.extend(room.map(|room| room.min(clearance.kept)));
         self.clearance = Some(clearance);
@@ -250,24 +242,25 @@ impl Curvature {
         &self.contours[self.starts[at] as usize..self.starts[at + 1] as usize]
     }
 
-    /// What a region is at a level that [`Curvature::face`] was asked for.
-    pub fn find(&self, edges: &[[u32; 2]], x: &[Vec3], region: &Region, level: usize) -> Found {
+    /// Whether no two features of a region without a common vertex can come nearer than is to be kept, at
+    /// a level that [`Curvature::face`] was asked for; where it cannot be told, it says no.
+    pub fn is_clear(&self, edges: &[[u32; 2]], x: &[Vec3], region: &Region, level: usize) -> bool {
         let of_node = |node: Node| self.facing[level].get(node.at as usize).copied();
         let facing = region
             .nodes()
             .fold(u64::MAX, |facing, node| facing & of_node(node).unwrap_or(0));
         let Some(clearance) = self.clearance else {
-            return Found::Open;
+            return false;
         };
         if facing == 0 || region.count() < LEAST {
-            return Found::Open;
+            return false;
         }
         let bits = (0..DIRECTIONS).filter(|k| facing >> k & 1 == 1);
         // What all of these have in sight, their mean has too.
         let place = |k: usize| Vec3::from([0, 1, 2].map(|axis| f64::from(PLACES[axis][k])));
         let mean: Vec3 = bits.map(place).sum();
         let Some(view) = mean.try_normalize(0.0) else {
-            return Found::Open;
+            return false;
         };
         let halves = match *region {
             Region::Own(a) => self.contour(a).to_vec(),
@@ -276,19 +269,15 @@ impl Curvature {
                 let joined = joined(a, b);
                 if joined.len() == a.len() + b.len() {
                     // No border in common: two plies, most often.
-                    return Found::Apart;
+                    return false;
                 }
                 joined
             }
         };
         let contour = Contour::new(&halves, edges, &self.keeps, (x, view));
-        match contour.is_connected()
+        contour.is_connected()
             && contour.alternates()
             && contour.is_clear(clearance.kept, clearance.budget(level))
-        {
-            true => Found::Clear,
-            false => Found::Open,
-        }
     }
 }
 

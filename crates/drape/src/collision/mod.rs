@@ -8,8 +8,10 @@ mod contact;
 mod coupling;
 mod curvature;
 mod fade;
+mod front;
 mod impact;
 mod layers;
+mod moves;
 #[cfg(test)]
 #[path = "../../tests/support/numbers.rs"]
 mod numbers;
@@ -30,5 +32,5 @@ pub use layers::{BETWEEN_LAYERS, Knots, Stray, layer_order, layers_of, strays, s
 pub use proximity::{Nearness, nearnesses};
 pub use reach::{Ahead, Reach};
 pub use regions::Ways;
-pub use surface::{ClothSurface, FeaturePair};
+pub use surface::{ClothSurface, FeaturePair, Near};
 pub use tangle::{Drawn, Piercing, crossings, keep_on, piercings};

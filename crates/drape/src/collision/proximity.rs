@@ -1,7 +1,7 @@
 //! Places where cloth is near cloth.
 
 use super::reach::Reach;
-use super::surface::{ClothSurface, FeaturePair};
+use super::surface::{ClothSurface, FeaturePair, Near};
 use rayon::prelude::*;
 use toile_geometry::{Vec3, closest_on_face, closest_on_segments};
 
@@ -123,34 +123,37 @@ pub(super) fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
 /// Neighbours are looked for at this many times the distance that they keep.
 const NEIGHBOURS_REACH: f64 = 2.0;
 
-/// Every pair of features within its reach, in an order that does not depend on threads;
-/// `near` are pairs of clusters as [`ClothSurface::near`] gives them. Features of triangles that
+/// Every pair of features within its reach, of those that are near, sorted. Features of triangles that
 /// share a vertex and are not folded against each other by more than a right angle count only where they
 /// come nearer than neighbours do.
-pub fn nearnesses(
+pub fn nearnesses<'a>(
     surface: &ClothSurface,
-    near: &[[u32; 2]],
+    near: impl Into<Near<'a>>,
     x: &[Vec3],
     reach: &Reach,
 ) -> Vec<Nearness> {
-    let normal = |[a, b, c]: &[Vec3; 3]| (b - a).cross(&(c - a));
-    let corners = |t: &[u32; 3]| t.map(|v| x[v as usize]);
-    let triangles = surface.triangles.par_iter().with_min_len(512);
-    let normals: Vec<Vec3> = triangles.map(|t| normal(&corners(t))).collect();
-    surface.features(near, |pair, owners, found| {
+    let normal = |t: u32| {
+        let [a, b, c] = surface.triangles[t as usize].map(|v| x[v as usize]);
+        (b - a).cross(&(c - a))
+    };
+    let mut found = surface.features(near, |pair, owners, found| {
         if is_far(pair, &pair.vertices().map(|v| x[v as usize]), reach.most) {
             return;
         }
         let reach = reach.of(pair);
-        let [t, u] = owners.map(|t| normals[t as usize]);
-        let neighbours = t.dot(&u) > 0.0 && surface.adjacent(owners);
+        let neighbours = surface.adjacent(owners) && {
+            let [n, m] = owners.map(normal);
+            n.dot(&m) > 0.0
+        };
         let reach = match neighbours {
             true => NEIGHBOURS_REACH * surface.kept(pair, true, reach / NEIGHBOURS_REACH),
             false => reach,
         };
         let near = Nearness::measure(pair, x, reach);
         found.extend(near.map(|near| Nearness { neighbours, ..near }));
-    })
+    });
+    found.par_sort_unstable_by_key(|near| near.pair);
+    found
 }
 
 #[cfg(test)]

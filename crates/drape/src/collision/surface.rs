@@ -1,9 +1,11 @@
 //! The cloth as collision sees it: its triangles, edges and vertices, each feature in the care of
 //! one triangle, so that a pair of features is looked at once (Curtis, Tamstorf and Manocha 2008).
 
-use super::boxes::{BoxTree, Region};
+use super::boxes::{Bounds, BoxTree, Region};
 use super::clusters::{Clusters, Corners, Hits};
 use super::curvature::Clearance;
+use super::front::Front;
+use super::reach::Reach;
 use super::regions::{Cloth, Regions, Ways};
 use crate::{Model, merge_map};
 use pulp::Arch;
@@ -35,6 +37,27 @@ impl FeaturePair {
     }
 }
 
+/// Where features are looked for.
+#[derive(Clone, Copy, Debug)]
+pub enum Near<'a> {
+    /// In pairs of clusters that a search found.
+    Clusters(&'a [[u32; 2]]),
+    /// In what the last look lists.
+    Listed,
+}
+
+impl<'a> From<&'a Vec<[u32; 2]>> for Near<'a> {
+    fn from(pairs: &'a Vec<[u32; 2]>) -> Self {
+        Self::Clusters(pairs)
+    }
+}
+
+impl<'a> From<&'a [[u32; 2]]> for Near<'a> {
+    fn from(pairs: &'a [[u32; 2]]) -> Self {
+        Self::Clusters(pairs)
+    }
+}
+
 /// Features of the cloth.
 #[derive(Clone, Debug, Default)]
 pub struct ClothSurface {
@@ -62,8 +85,11 @@ pub struct ClothSurface {
     edge_owners: Vec<u32>,
     clusters: Clusters,
     tree: BoxTree,
+    /// The corners of each cluster's triangles, cluster after cluster; where those of each begin, and the end.
+    cluster_vertices: [Vec<u32>; 2],
     regions: Regions,
-    opened: usize,
+    front: Front,
+    opened: [usize; 2],
 }
 
 /// Share of the shortest edge nearby above which no distance is kept: neighbours are not contacts.
@@ -146,13 +172,17 @@ impl ClothSurface {
             triangles: &surface.triangles,
         };
         surface.clusters = Clusters::new(&surface.tree, owners, corners);
-        let cloth = Cloth {
-            tree: &surface.tree,
-            triangles: &surface.triangles,
-            edges: &surface.edges,
-            room: &[],
-        };
-        surface.regions = Regions::new(&cloth, &surface.edge_triangles);
+        let [mut vertices, mut starts] = [Vec::new(), vec![0]];
+        for leaf in 0..surface.tree.leaves() {
+            let items = surface.tree.items(leaf).iter();
+            let mut own: Vec<u32> = items.flat_map(|&t| surface.triangles[t as usize]).collect();
+            own.sort_unstable();
+            own.dedup();
+            vertices.extend(own);
+            starts.push(vertices.len() as u32);
+        }
+        surface.cluster_vertices = [vertices, starts];
+        surface.regions = Regions::new(&surface.cloth(), &surface.edge_triangles);
         surface
     }
 
@@ -169,25 +199,35 @@ impl ClothSurface {
         rooms.into_iter().fold(asked, f64::min)
     }
 
+    fn cloth(&self) -> Cloth<'_> {
+        Cloth {
+            tree: &self.tree,
+            leaf_vertices: self.cluster_vertices.each_ref().map(|list| &list[..]),
+            triangles: &self.triangles,
+            edges: &self.edges,
+            room: &self.room,
+        }
+    }
+
     /// Pairs of clusters that come within `reach` [m] of each other on the way of the cloth, and clusters
     /// with themselves; more than those, but never fewer.
     pub fn near(&mut self, ways: Ways, reach: f64) -> Vec<[u32; 2]> {
         self.refit(ways, reach);
         let root: Vec<Region> = self.tree.root().map(Region::Own).into_iter().collect();
-        let all = self.tree.pairs(&root, |_: &mut (), _| false);
-        self.opened = all.opened;
+        let tree = &self.tree;
+        let all = tree.pairs(&root, |_: &mut (), region| !tree.meets(region));
+        self.opened = [all.opened, 0];
         all.pairs
     }
 
     /// How many regions of the tree the last search looked into, and how many of them it looked at
     /// closely to leave them out.
     pub fn opened(&self) -> [usize; 2] {
-        [self.opened, self.regions.told()]
+        self.opened
     }
 
     /// [`Self::near`] without those of a region that keeps clear of itself: no two of their
-    /// features without a common vertex come nearer than the clearance says. What was found of
-    /// regions serves the next search with the same clearance too.
+    /// features without a common vertex come nearer than the clearance says.
     pub fn near_unless_clear(
         &mut self,
         ways: Ways,
@@ -195,42 +235,54 @@ impl ClothSurface {
         clearance: Clearance,
     ) -> Vec<[u32; 2]> {
         self.refit(ways, reach);
-        let cloth = Cloth {
-            tree: &self.tree,
-            triangles: &self.triangles,
-            edges: &self.edges,
-            room: &self.room,
-        };
-        let pairs;
-        (pairs, self.opened) = self.regions.near(&cloth, &ways, clearance);
-        pairs
+        let mut regions = std::mem::take(&mut self.regions);
+        let found = regions.near(&self.cloth(), &ways, clearance);
+        self.regions = regions;
+        self.opened = [found.opened, found.told];
+        found.pairs
     }
 
-    /// [`Self::near`] for pairs in which a triangle has a marked corner, where no other vertex goes
-    /// another way than in the last search, which had the same reach.
-    pub fn near_marked(&mut self, ways: Ways, reach: f64, marks: &[bool]) -> Vec<[u32; 2]> {
-        let (tree, triangles) = (&self.tree, &self.triangles);
-        let has = |&t: &u32| triangles[t as usize].iter().any(|&v| marks[v as usize]);
-        let of_leaf = |cluster: usize| tree.items(cluster).iter().any(has);
-        let leaves: Vec<bool> = (0..tree.leaves()).into_par_iter().map(of_leaf).collect();
-        let nodes = tree.folded(|cluster| leaves[cluster], |a, b| a | b);
-        let corners = Corners {
-            edges: &self.edges,
-            triangles,
-        };
-        let clusters = (0u32..).zip(&leaves).filter(|(_, marked)| **marked);
-        let clusters: Vec<u32> = clusters.map(|(cluster, _)| cluster).collect();
-        self.clusters
-            .fit_again(&ways, corners, 0.5 * reach, marks, &clusters);
-        self.tree.refit(|leaf| self.clusters.bounds(leaf));
-        let root: Vec<Region> = self.tree.root().map(Region::Own).into_iter().collect();
-        let unmarked = |_: &mut (), region: &Region| !region.nodes().any(|n| nodes[n.at as usize]);
-        self.tree.pairs(&root, unmarked).pairs
+    /// Lists features that come within reach of each other on the way of the cloth, and edges and faces that
+    /// may cross where it begins, and more, but for those of a region that keeps clear of itself. What is listed serves the next
+    /// looks as long as vertices stray little from their neighbours.
+    pub fn look(&mut self, ways: Ways, reach: &Reach, clearance: Clearance) {
+        self.look_again(ways, reach, clearance, None);
     }
 
-    /// Forgets what earlier searches found of regions.
+    /// [`Self::look`] for features with a marked vertex, where no other goes another way than in the last look,
+    /// which was for the same.
+    pub fn look_again(
+        &mut self,
+        ways: Ways,
+        reach: &Reach,
+        clearance: Clearance,
+        marks: Option<&[bool]>,
+    ) {
+        let mut front = std::mem::take(&mut self.front);
+        let (expired, asked) = front.expired(&self.cloth(), (&ways, reach), clearance);
+        let (x, [vertices, starts]) = (ways.from, &self.cluster_vertices);
+        if !expired.is_empty() {
+            self.tree.refit(|leaf| {
+                let own = &vertices[starts[leaf] as usize..starts[leaf + 1] as usize];
+                Bounds::round_all(own.iter().map(|&v| x[v as usize]))
+            });
+        }
+        let mut regions = std::mem::take(&mut self.regions);
+        let mut clusters = std::mem::take(&mut self.clusters);
+        let (cloth, mut opened) = (self.cloth(), [0; 2]);
+        if !expired.is_empty() {
+            let fitted = (&mut regions, &mut clusters);
+            opened = front.search(&cloth, fitted, x, (&expired, &asked));
+        }
+        front.fit(&cloth, &mut clusters, (&ways, &asked), marks);
+        self.opened = opened;
+        (self.regions, self.clusters) = (regions, clusters);
+        self.front = front;
+    }
+
+    /// Has the next look search all.
     pub fn forget(&mut self) {
-        self.regions.forget();
+        self.front.forget();
     }
 
     fn refit(&mut self, ways: Ways, reach: f64) {
@@ -243,65 +295,108 @@ impl ClothSurface {
         self.tree.refit(|leaf| clusters.bounds(leaf));
     }
 
-    /// Collects what `each` makes of pairs of features in some pairs of clusters, in an order that does
-    /// not depend on threads: all that come as near each other as was asked for when the pairs of
-    /// clusters were found, and more; those that share a vertex left out. `each` is given the triangles
+    /// Collects what `each` makes of pairs of features that are near, in an order that does
+    /// not depend on threads: all that come as near each other as was asked for when they
+    /// were looked for, and more; those that share a vertex left out. `each` is given the triangles
     /// that care for the two as well.
-    pub fn features<T: Clone + Send + Sync>(
+    pub fn features<'a, T: Clone + Send + Sync>(
         &self,
-        near: &[[u32; 2]],
+        near: impl Into<Near<'a>>,
         each: impl Fn(FeaturePair, [u32; 2], &mut Vec<T>) + Sync,
     ) -> Vec<T> {
+        let cloth = self.cloth();
+        let of_hits = |hits: &Hits, found: &mut Vec<T>| {
+            for &[v, t] in &hits.vertex_face {
+                if let Some(pair) = cloth.vertex_face([v, t]) {
+                    each(pair, [self.vertex_owners[v as usize], t], found);
+                }
+            }
+            for &[e, f] in &hits.edge_edge {
+                if let Some(pair) = cloth.edge_edge([e, f]) {
+                    let owners = [e.min(f), e.max(f)].map(|e| self.edge_owners[e as usize]);
+                    each(pair, owners, found);
+                }
+            }
+        };
         let arch = Arch::new();
         let of_pairs = |pairs: &[[u32; 2]]| {
             let (mut hits, mut found) = (Hits::default(), Vec::new());
             for &pair in pairs {
+                hits.clear();
                 self.clusters.near(arch, pair, &mut hits);
-                for [v, t] in hits.vertex_face.drain(..) {
-                    let [a, b, c] = self.triangles[t as usize];
-                    if v != a && v != b && v != c {
-                        let owners = [self.vertex_owners[v as usize], t];
-                        each(FeaturePair::VertexFace([v, a, b, c]), owners, &mut found);
-                    }
-                }
-                for [e, f] in hits.edge_edge.drain(..) {
-                    // The same pair reads the same whichever cluster comes first.
-                    let (e, f) = (e.min(f), e.max(f));
-                    let ([a, b], [c, d]) = (self.edges[e as usize], self.edges[f as usize]);
-                    if a != c && a != d && b != c && b != d {
-                        let owners = [e, f].map(|e| self.edge_owners[e as usize]);
-                        each(FeaturePair::EdgeEdge([a, b, c, d]), owners, &mut found);
-                    }
-                }
+                of_hits(&hits, &mut found);
             }
             found
         };
-        let found: Vec<Vec<T>> = near.par_chunks(AT_ONCE).map(of_pairs).collect();
+        let of_open = |open: &[([u32; 2], f64)]| {
+            let (mut hits, mut found) = (Hits::default(), Vec::new());
+            for &(pair, reach) in open {
+                hits.clear();
+                self.clusters.near_within(arch, pair, reach, &mut hits);
+                of_hits(&hits, &mut found);
+            }
+            found
+        };
+        let of_lists = |mut found: Vec<T>, hits: Option<&Hits>| {
+            hits.into_iter().for_each(|hits| of_hits(hits, &mut found));
+            found
+        };
+        let found: Vec<Vec<T>> = match near.into() {
+            Near::Clusters(near) => near.par_chunks(AT_ONCE).map(of_pairs).collect(),
+            Near::Listed => {
+                let lists = self.front.lists();
+                let listed = lists.fold_chunks(AT_ONCE, Vec::new, of_lists);
+                let open = self.front.open().par_chunks(AT_ONCE).map(of_open);
+                listed.chain(open).collect()
+            }
+        };
         found.concat()
     }
 
-    /// Collects edges and faces that `crosses` says yes to, of those in some pairs of clusters whose ways
-    /// meet, in an order that does not depend on threads; those that share a vertex left out.
-    pub fn edges_and_faces(
+    /// Collects edges and faces that `crosses` says yes to, of those that are near, in an order that
+    /// does not depend on threads; those that share a vertex left out.
+    pub fn edges_and_faces<'a>(
         &self,
-        near: &[[u32; 2]],
+        near: impl Into<Near<'a>>,
         crosses: impl Fn([u32; 2]) -> bool + Sync,
     ) -> Vec<[u32; 2]> {
+        let cloth = self.cloth();
+        let of_hits = |hits: &Hits, found: &mut Vec<[u32; 2]>| {
+            let apart = hits.edge_face.iter().filter(|hit| cloth.are_apart(**hit));
+            found.extend(apart.filter(|hit| crosses(**hit)));
+        };
         let arch = Arch::new();
         let of_pairs = |pairs: &[[u32; 2]]| {
             let (mut hits, mut found) = (Hits::default(), Vec::new());
             for &pair in pairs {
+                hits.clear();
                 self.clusters.crossing(arch, pair, &mut hits);
-                let apart = |&[e, t]: &[u32; 2]| {
-                    let face = self.triangles[t as usize];
-                    !self.edges[e as usize].iter().any(|v| face.contains(v))
-                };
-                let pairs = hits.edge_face.drain(..).filter(apart);
-                found.extend(pairs.filter(|&pair| crosses(pair)));
+                of_hits(&hits, &mut found);
             }
             found
         };
-        let found: Vec<Vec<[u32; 2]>> = near.par_chunks(AT_ONCE).map(of_pairs).collect();
+        let of_open = |open: &[([u32; 2], f64)]| {
+            let (mut hits, mut found) = (Hits::default(), Vec::new());
+            for &(pair, _) in open {
+                hits.clear();
+                self.clusters.piercing_within(arch, pair, 0.0, &mut hits);
+                of_hits(&hits, &mut found);
+            }
+            found
+        };
+        let of_lists = |mut found: Vec<[u32; 2]>, hits: Option<&Hits>| {
+            hits.into_iter().for_each(|hits| of_hits(hits, &mut found));
+            found
+        };
+        let found: Vec<Vec<[u32; 2]>> = match near.into() {
+            Near::Clusters(near) => near.par_chunks(AT_ONCE).map(of_pairs).collect(),
+            Near::Listed => {
+                let lists = self.front.lists();
+                let listed = lists.fold_chunks(AT_ONCE, Vec::new, of_lists);
+                let open = self.front.open().par_chunks(AT_ONCE).map(of_open);
+                listed.chain(open).collect()
+            }
+        };
         found.concat()
     }
 

@@ -2,7 +2,7 @@
 //! so that the line of intersection grows shorter (Volino and Magnenat-Thalmann 2006, Resolving
 //! surface collisions through intersection contour minimization).
 
-use super::surface::ClothSurface;
+use super::surface::{ClothSurface, Near};
 use toile_geometry::{Vec3, segment_intersects_triangle};
 
 /// An edge that pierces a face.
@@ -139,9 +139,12 @@ pub fn piercings(surface: &ClothSurface, crossings: &[[u32; 2]], x: &[Vec3]) -> 
         .collect()
 }
 
-/// Every edge and face that cross, exactly, and share no vertex, sorted; `near` are pairs of
-/// clusters that may meet.
-pub fn crossings(surface: &ClothSurface, near: &[[u32; 2]], x: &[Vec3]) -> Vec<[u32; 2]> {
+/// Every edge and face that cross, exactly, and share no vertex, of those that are near, sorted.
+pub fn crossings<'a>(
+    surface: &ClothSurface,
+    near: impl Into<Near<'a>>,
+    x: &[Vec3],
+) -> Vec<[u32; 2]> {
     let mut found = surface.edges_and_faces(near, |[e, t]| {
         let ends = surface.edges[e as usize].map(|v| x[v as usize]);
         let corners = surface.triangles[t as usize].map(|v| x[v as usize]);

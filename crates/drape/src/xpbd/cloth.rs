@@ -22,14 +22,17 @@ pub(crate) struct Span {
 /// looked for anew [m]: at the most, and where everything is slow. What is looked for reaches twice
 /// as far beyond the offset at the most.
 const LOOK_AGAIN: f64 = 2e-3;
-const LEAST_WAY: f64 = 2e-4;
+const LEAST_WAY: f64 = 5e-4;
 
 /// Share of the way of the fastest vertex that any may go whatever its speed is now: what moves pushes what
 /// does not.
 const UNFORESEEN: f64 = 0.25;
 
-/// Longest time that contacts are kept [s]: forces are not known ahead.
-const LONGEST: f64 = 5e-3;
+/// Time that contacts are to serve at twice the speed of the fastest vertex [s]: forces are not known ahead.
+const SERVES: f64 = 5e-3;
+
+/// Longest time that they are kept where little moves [s].
+const LONGEST: f64 = 1.0 / 60.0;
 
 /// Substeps between two looks, at the least.
 const FEWEST: u32 = 2;
@@ -55,7 +58,6 @@ impl ClothWatch {
     /// Looks anew at the next step, whatever was found before.
     pub fn forget(&mut self) {
         self.travelled = None;
-        self.contacts.forget();
     }
 
     /// Corrects the way of the last substeps, `span` [s] long, where cloth would have passed through cloth.
@@ -115,7 +117,7 @@ impl Xpbd {
             let speed = spread(state) + model.gravity.norm() * fewest;
             let ahead = watch.travelled.map(|t| t + speed * fewest);
             if ahead.is_none_or(|far| far > watch.allowed) || watch.time + fewest > LONGEST {
-                watch.allowed = (2.0 * speed * LONGEST).clamp(LEAST_WAY, LOOK_AGAIN);
+                watch.allowed = (2.0 * speed * SERVES).clamp(LEAST_WAY, LOOK_AGAIN);
                 let kept = model.contact.cloth_offset;
                 let reach = Reach {
                     // Two vertices may come nearer by twice the way.
@@ -124,7 +126,7 @@ impl Xpbd {
                         velocities: &state.velocities,
                         kept,
                         pinned: &model.pinned,
-                        time: LONGEST.max(fewest),
+                        time: SERVES.max(fewest),
                         least: LEAST_WAY.max(UNFORESEEN * watch.allowed),
                     }),
                 };

@@ -1,0 +1,189 @@
+//! How far the vertices of regions stray from a motion that they have in common: a shift and a turn.
+//!
+//! The common motion is linear, x -> x + t + w x (x - c). With all singular values 1 or more, 1 + [w]
+//! brings nothing nearer to anything (nor does any part of the way), and as it can be undone nothing
+//! crosses by it: what strays by r from it comes nearer by 2 r at the most.
+
+use super::boxes::{Bounds, Region};
+use super::regions::Cloth;
+use nalgebra::Matrix3;
+use toile_geometry::Vec3;
+
+/// Below this no turn is looked for [m].
+const LITTLE: f64 = 3e-4;
+
+/// Moves of the vertices below every node.
+#[derive(Debug)]
+pub struct Moves {
+    /// Boxes round them.
+    round: Vec<Bounds>,
+    /// What the nodes have in common; nothing where only a shift counts.
+    common: Vec<Common>,
+}
+
+/// Sums over some vertices.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    count: f64,
+    places: Vec3,
+    moves: Vec3,
+    /// x . x and x x^T.
+    squares: Matrix3<f64>,
+    /// x x d.
+    moments: Vec3,
+}
+
+impl Sums {
+    fn add(&mut self, x: Vec3, d: Vec3) {
+        self.count += 1.0;
+        self.places += x;
+        self.moves += d;
+        self.squares += x * x.transpose();
+        self.moments += x.cross(&d);
+    }
+
+    fn join(&self, other: &Self) -> Self {
+        Self {
+            count: self.count + other.count,
+            places: self.places + other.places,
+            moves: self.moves + other.moves,
+            squares: self.squares + other.squares,
+            moments: self.moments + other.moments,
+        }
+    }
+
+    /// The shift and turn nearest to the moves, in the mean of squares.
+    fn motion(&self) -> Motion {
+        let (centre, shift) = (self.places / self.count, self.moves / self.count);
+        let spread = self.squares - centre * self.places.transpose();
+        let inertia = Matrix3::identity() * spread.trace() - spread;
+        let moment = self.moments - centre.cross(&self.moves);
+        let turn = inertia
+            .cholesky()
+            .map_or(Vec3::zeros(), |l| l.solve(&moment));
+        let known = turn.iter().all(|c| c.is_finite());
+        Motion {
+            centre,
+            shift,
+            turn: if known { turn } else { Vec3::zeros() },
+        }
+    }
+}
+
+/// x -> x + shift + turn x (x - centre).
+#[derive(Clone, Copy, Debug)]
+struct Motion {
+    centre: Vec3,
+    shift: Vec3,
+    turn: Vec3,
+}
+
+impl Motion {
+    fn at(&self, x: Vec3) -> Vec3 {
+        self.shift + self.turn.cross(&(x - self.centre))
+    }
+}
+
+/// What the vertices below a node have in common.
+#[derive(Clone, Copy, Debug)]
+struct Common {
+    sums: Sums,
+    motion: Motion,
+    /// How far a vertex is from the centre of the motion at the most [m].
+    radius: f64,
+    /// How far its move is from that motion at the most [m].
+    rest: f64,
+}
+
+impl Common {
+    /// How far the moves are from another motion at the most [m].
+    fn rest_from(&self, motion: &Motion) -> f64 {
+        let centre = self.motion.centre;
+        let shifted = (motion.at(centre) - self.motion.shift).norm();
+        let turned = (motion.turn - self.motion.turn).norm();
+        self.rest + shifted + turned * self.radius
+    }
+
+    /// What two have in common.
+    fn join(&self, other: &Self) -> Self {
+        let sums = self.sums.join(&other.sums);
+        let motion = sums.motion();
+        let both = [self, other];
+        let from = |c: &Self| (c.motion.centre - motion.centre).norm() + c.radius;
+        Self {
+            sums,
+            motion,
+            radius: both.map(from).into_iter().fold(0.0, f64::max),
+            rest: both
+                .map(|c| c.rest_from(&motion))
+                .into_iter()
+                .fold(0.0, f64::max),
+        }
+    }
+}
+
+impl Moves {
+    /// From some places by some moves, straight and at one pace.
+    pub fn new(cloth: &Cloth, x: &[Vec3], of: impl Fn(u32) -> Vec3 + Sync) -> Self {
+        let mut moves = Self::shifts(cloth, &of, false);
+        let far = |bounds: &Bounds| bounds.radius() > LITTLE;
+        if !moves.round.first().is_some_and(far) {
+            return moves;
+        }
+        let of_leaf = |leaf: usize| {
+            let vertices = || cloth.leaf(leaf).iter().map(|&v| (x[v as usize], of(v)));
+            let mut sums = Sums::default();
+            vertices().for_each(|(x, d)| sums.add(x, d));
+            let motion = sums.motion();
+            let (mut radius, mut rest) = (0.0, 0.0);
+            for (x, d) in vertices() {
+                radius = (x - motion.centre).norm_squared().max(radius);
+                rest = (d - motion.at(x)).norm_squared().max(rest);
+            }
+            Common {
+                sums,
+                motion,
+                radius: f64::sqrt(radius),
+                rest: f64::sqrt(rest),
+            }
+        };
+        moves.common = cloth.tree.folded(of_leaf, Common::join);
+        moves
+    }
+
+    /// Shifts alone; `rest` where any may also stay.
+    pub fn shifts(cloth: &Cloth, of: impl Fn(u32) -> Vec3 + Sync, rest: bool) -> Self {
+        let still = Bounds::round(&[Vec3::zeros()], 0.0);
+        let of_leaf = |leaf: usize| {
+            let round = Bounds::round_all(cloth.leaf(leaf).iter().map(|&v| of(v)));
+            if rest { round.join(&still) } else { round }
+        };
+        Self {
+            round: cloth.tree.folded(of_leaf, Bounds::join),
+            common: Vec::new(),
+        }
+    }
+
+    /// How far the vertices of a region stray from a motion that they have in common, at the most [m].
+    pub fn stray(&self, region: &Region) -> f64 {
+        let round = |at: u32| &self.round[at as usize];
+        let shifted = match *region {
+            Region::Own(a) => round(a.at).radius(),
+            Region::Two(a, b) => round(a.at).join(round(b.at)).radius(),
+        };
+        // Where moves are no numbers they stray without end.
+        if shifted <= LITTLE || self.common.is_empty() || !shifted.is_finite() {
+            return shifted;
+        }
+        let common = |at: u32| &self.common[at as usize];
+        let turned = match *region {
+            Region::Own(a) => common(a.at).rest,
+            Region::Two(a, b) => {
+                let motion = common(a.at).sums.join(&common(b.at).sums).motion();
+                let rest = |at: u32| common(at).rest_from(&motion);
+                rest(a.at).max(rest(b.at))
+            }
+        };
+        turned.min(shifted)
+    }
+}
