@@ -331,12 +331,18 @@ impl Clusters {
             .iter()
             .flat_map(|round| round.low.into_iter().chain(round.high));
         let farthest = f64::from(ends.fold(0.0, |most: f32, end| most.max(end.abs())));
+        self.rounding = ROUNDING * farthest;
         // The margin is of both boxes.
-        self.slack = (2.0 * margin - ROUNDING * farthest).max(0.0) as f32;
+        self.slack = (2.0 * margin - self.rounding).max(0.0) as f32;
     }
 
     /// Fits the boxes of some clusters round the ways of their vertices, without a margin.
     pub fn fit_some(&mut self, ways: &Ways, corners: Corners, clusters: &[u32]) {
+        if 2 * clusters.len() > self.round.len() {
+            // All of them side by side take no longer.
+            self.fit(ways, corners, 0.0);
+            return;
+        }
         let origin = origin(ways);
         self.ways.resize(ways.from.len(), NOTHING);
         let mut farthest = 0.0f64;
