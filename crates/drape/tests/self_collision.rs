@@ -3,59 +3,25 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/crumpled.rs"]
+mod crumpled;
 #[path = "support/numbers.rs"]
 mod numbers;
 #[path = "support/sheets.rs"]
 mod sheets;
 
+use crumpled::{all_pairs, crumpled};
 use numbers::Numbers;
 use sheets::{object, sheet};
 use toile_drape::collision::{
-    Clearance, ClothContacts, ClothSurface, FeaturePair, Knots, Motions, Near, Nearness, Reach,
-    Ways, bound_moves, crossings, nearnesses,
+    ClothContacts, ClothSurface, FeaturePair, Knots, Motions, Nearness, Reach, Ways, bound_moves,
+    crossings, nearnesses,
 };
 use toile_drape::{
     Cloth, ContactSettings, Material, Measures, MethodKind, Model, RestRun, RestSettings, Scene,
     SceneRun, State, Workspace,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3, segment_intersects_triangle};
-
-/// A sheet crumpled by a few waves.
-fn crumpled(seed: u64, n: usize) -> TriangleMesh {
-    let mut numbers = Numbers(seed + 1);
-    let waves: Vec<(Vec3, f64, f64, f64)> = (0..6)
-        .map(|_| {
-            let (a, b, c) = (numbers.next(), numbers.next(), numbers.next());
-            (numbers.vector(0.15), 12.0 * a, 12.0 * b, 6.3 * c)
-        })
-        .collect();
-    sheet([n; 2], [1.0; 2], |u, v| {
-        let flat = Vec3::new(0.4 * u, 0.0, 0.4 * v);
-        flat + waves
-            .iter()
-            .map(|&(way, a, b, c)| way * (a * u + b * v + c).sin())
-            .sum::<Vec3>()
-    })
-}
-
-fn all_pairs(mesh: &TriangleMesh) -> Vec<FeaturePair> {
-    let edges = mesh.topology().edges;
-    let mut pairs = Vec::new();
-    for v in 0..mesh.positions.len() as u32 {
-        for face in mesh.triangles.iter().filter(|face| !face.contains(&v)) {
-            pairs.push(FeaturePair::VertexFace([v, face[0], face[1], face[2]]));
-        }
-    }
-    for (k, &[a, b]) in edges.iter().enumerate() {
-        for &[c, d] in edges[k + 1..]
-            .iter()
-            .filter(|e| !e.contains(&a) && !e.contains(&b))
-        {
-            pairs.push(FeaturePair::EdgeEdge([a, b, c, d]));
-        }
-    }
-    pairs
-}
 
 #[test]
 fn pairs_are_those_of_brute_force_in_200_crumpled_states() {
@@ -102,114 +68,6 @@ fn pairs_are_those_of_brute_force_in_200_crumpled_states() {
         near_pairs > 10_000 && crossed > 1_000,
         "{near_pairs} {crossed}"
     );
-}
-
-/// Nothing keeps clear by this.
-const NEVER_CLEAR: Clearance = Clearance {
-    kept: 0.0,
-    beyond: -1.0,
-};
-
-/// Pairs of features with a vertex of some that come within a distance [m] of each other, and how near.
-fn within(
-    surface: &ClothSurface,
-    x: &[Vec3],
-    reach: f64,
-    marks: Option<&[bool]>,
-) -> Vec<(FeaturePair, f64)> {
-    let marked = |v: &u32| marks.is_none_or(|marks| marks[*v as usize]);
-    let mut found = surface.features(Near::Listed, |pair, _, found| {
-        let distance = Nearness::distance(pair, x);
-        if distance <= reach && pair.vertices().iter().any(marked) {
-            found.push((pair, distance));
-        }
-    });
-    found.sort_by_key(|found| found.0);
-    found
-}
-
-#[test]
-fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
-    let (reach, mut told, mut crossed, mut opened) = (4e-3, 0, 0, 0);
-    let looks = Reach::all(reach);
-    for seed in 0..12 {
-        let mesh = crumpled(seed, 12);
-        let pairs = all_pairs(&mesh);
-        let mut surface = ClothSurface::of_mesh(&mesh);
-        let mut fresh = ClothSurface::of_mesh(&mesh);
-        let mut numbers = Numbers(seed + 77);
-        let turn = numbers.vector(0.02);
-        let goal = crumpled(seed + 1, 12).positions;
-        let (mut share, mut from) = (0.0, mesh.positions.clone());
-        for step in 0..60 {
-            // Slowly, then fast, then slowly again.
-            share += if (25..30).contains(&step) { 0.01 } else { 5e-4 };
-            let turned = nalgebra::Rotation3::from_scaled_axis(turn * f64::from(step));
-            let both = mesh.positions.iter().zip(&goal);
-            let x: Vec<Vec3> = both.map(|(a, b)| turned * (a + (b - a) * share)).collect();
-            if step % 7 > 0 {
-                surface.look(Ways::together(&from, &x), &Reach::all(5e-4), NEVER_CLEAR);
-            }
-            surface.look(Ways::still(&x), &looks, NEVER_CLEAR);
-            opened += surface.opened()[0];
-            let found = within(&surface, &x, reach, None);
-            let expected = pairs
-                .iter()
-                .map(|&pair| (pair, Nearness::distance(pair, &x)));
-            let mut expected: Vec<_> = expected
-                .filter(|(_, distance)| *distance <= reach)
-                .collect();
-            expected.sort_by_key(|found| found.0);
-            assert_eq!(found, expected, "state {seed}, step {step}");
-            told += found.len();
-            let crossing = crossings(&surface, Near::Listed, &x);
-            let near = fresh.near(Ways::still(&x), 0.0);
-            let expected = crossings(&fresh, &near, &x);
-            assert_eq!(crossing, expected, "state {seed}, step {step}");
-            crossed += crossing.len();
-            from = x;
-        }
-    }
-    assert!(told > 10_000 && crossed > 10_000, "{told} {crossed}");
-    assert!(opened < 20_000, "{opened} regions looked into");
-}
-
-#[test]
-fn a_look_for_what_goes_another_way_finds_all_that_meets_it() {
-    let (reach, mut told) = (2e-3, 0);
-    for seed in 0..40 {
-        let mesh = crumpled(seed, 16);
-        let (x, count) = (&mesh.positions, mesh.positions.len());
-        let mut ends: Vec<Vec3> = x
-            .iter()
-            .map(|p| p + Vec3::new(p.z, 0.0, -p.x) * 0.1)
-            .collect();
-        let mut surface = ClothSurface::of_mesh(&mesh);
-        surface.look(Ways::together(x, &ends), &Reach::all(reach), NEVER_CLEAR);
-        // One round after another, as where impulses push on.
-        for round in 0..3 {
-            let mut marks = vec![false; count];
-            for k in 0..3 {
-                let v = (seed as usize * 31 + 97 * k + 41 * round) % count;
-                marks[v] = true;
-                ends[v] += Vec3::new(0.02, -0.01 * k as f64, 0.03);
-            }
-            let ways = Ways::together(x, &ends);
-            let all = Reach::all(reach);
-            surface.look_again(ways, &all, NEVER_CLEAR, Some(&marks));
-            let mut anew = ClothSurface::of_mesh(&mesh);
-            anew.look(ways, &all, NEVER_CLEAR);
-            for part in [0.0, 0.5, 1.0] {
-                let both = x.iter().zip(&ends);
-                let then: Vec<Vec3> = both.map(|(a, b)| a + (b - a) * part).collect();
-                let found = within(&surface, &then, reach, Some(&marks));
-                let expected = within(&anew, &then, reach, Some(&marks));
-                assert_eq!(found, expected, "state {seed}");
-                told += found.len();
-            }
-        }
-    }
-    assert!(told > 1_000, "{told}");
 }
 
 #[test]
