@@ -9,10 +9,11 @@ mod sheets;
 
 use crumpled::{all_pairs, crumpled};
 use numbers::Numbers;
+use std::collections::BTreeSet;
 use toile_drape::collision::{
-    Clearance, ClothSurface, FeaturePair, Near, Nearness, Reach, Ways, crossings,
+    Ahead, Clearance, ClothSurface, FeaturePair, Near, Nearness, Reach, Ways, crossings,
 };
-use toile_geometry::Vec3;
+use toile_geometry::{TriangleMesh, Vec3};
 
 /// Nothing keeps clear by this.
 const NEVER_CLEAR: Clearance = Clearance {
@@ -120,4 +121,91 @@ fn a_look_for_what_goes_another_way_finds_all_that_meets_it() {
         }
     }
     assert!(told > 1_000, "{told}");
+}
+
+#[test]
+fn a_look_ahead_lists_all_that_velocities_may_bring_near() {
+    let mut told = 0;
+    for seed in 0..20 {
+        let mesh = crumpled(seed, 12);
+        let (x, count) = (&mesh.positions, mesh.positions.len());
+        let mut surface = ClothSurface::of_mesh(&mesh);
+        let mut numbers = Numbers(seed + 5);
+        for time in [0.0, 5e-3, 5e-3] {
+            let drift = numbers.vector(2.0);
+            let velocities: Vec<Vec3> = (0..count).map(|_| drift + numbers.vector(0.2)).collect();
+            let pinned: Vec<bool> = (0..count).map(|_| numbers.next() < 0.05).collect();
+            let ahead = Ahead {
+                velocities: &velocities,
+                pinned: &pinned,
+                kept: 2e-3,
+                time,
+                least: 5e-4,
+            };
+            let reach = Reach {
+                most: 6e-3,
+                ahead: Some(ahead),
+            };
+            surface.look(Ways::still(x), &reach, NEVER_CLEAR);
+            let found = surface.features(Near::Listed, |pair, _, found| found.push(pair));
+            let found: BTreeSet<FeaturePair> = found.into_iter().collect();
+            for pair in all_pairs(&mesh) {
+                if Nearness::distance(pair, x) <= reach.of(pair) {
+                    assert!(found.contains(&pair), "state {seed}: {pair:?}");
+                    told += 1;
+                }
+            }
+        }
+    }
+    assert!(told > 5_000, "{told}");
+}
+
+#[test]
+fn a_vertex_lost_or_come_back_is_looked_for() {
+    let mesh = crumpled(3, 12);
+    let all = Reach::all(4e-3);
+    let mut surface = ClothSurface::of_mesh(&mesh);
+    surface.look(Ways::still(&mesh.positions), &all, NEVER_CLEAR);
+    let whole = within(&surface, &mesh.positions, 4e-3, None);
+    for lost in [f64::NAN, f64::INFINITY] {
+        let mut x = mesh.positions.clone();
+        x[80] = Vec3::repeat(lost);
+        surface.look(Ways::together(&mesh.positions, &x), &all, NEVER_CLEAR);
+        let with = surface.features(Near::Listed, |pair, _, found| {
+            found.extend(pair.vertices().contains(&80).then_some(pair));
+        });
+        let count = with.len();
+        assert!(count > 100, "{count} pairs at a vertex that is {lost}");
+        surface.look(Ways::still(&x), &all, NEVER_CLEAR);
+        surface.look(Ways::still(&mesh.positions), &all, NEVER_CLEAR);
+        let again = within(&surface, &mesh.positions, 4e-3, None);
+        assert_eq!(again, whole, "{lost}");
+    }
+}
+
+#[test]
+fn an_edge_through_a_face_that_is_a_line_but_for_rounding_is_found() {
+    let mut crossed = 0;
+    for seed in 0..4000 {
+        let mut numbers = Numbers(seed);
+        let from = numbers.vector(0.05);
+        let side = numbers.vector(0.03);
+        let face = [from, from + side, from + side * (1.0 + numbers.next())];
+        // Through a point of the line.
+        let point = from + side * (2.0 * numbers.next());
+        let way = numbers.vector(0.02);
+        let [a, b] = [point - way, point + way];
+        let mesh = TriangleMesh {
+            positions: vec![face[0], face[1], face[2], a, b, b + numbers.vector(0.02)],
+            triangles: vec![[0, 1, 2], [3, 4, 5]],
+        };
+        let x = &mesh.positions;
+        let mut surface = ClothSurface::of_mesh(&mesh);
+        let near = surface.near(Ways::still(x), 0.0);
+        let expected = crossings(&surface, &near, x);
+        surface.look(Ways::still(x), &Reach::all(1e-3), NEVER_CLEAR);
+        assert_eq!(crossings(&surface, Near::Listed, x), expected, "{seed}");
+        crossed += expected.len();
+    }
+    assert!(crossed > 10, "{crossed}");
 }

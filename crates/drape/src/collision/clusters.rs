@@ -203,7 +203,7 @@ enum Against {
     EdgeFace,
 }
 
-/// Features whose boxes meet; those of one cluster share no vertex.
+/// Features near each other; those of one cluster share no vertex.
 #[derive(Clone, Debug, Default)]
 pub struct Hits {
     /// A vertex and a face.
@@ -364,6 +364,7 @@ impl Clusters {
             self.round[cluster as usize] = self.round_of(cluster as usize);
         }
         self.rounding = ROUNDING * farthest;
+        self.slack = 0.0;
     }
 
     /// The box round everything of a cluster.

@@ -329,6 +329,11 @@ impl ClothContacts {
         self.piercings == 0 && self.strays == 0
     }
 
+    /// Searches all at the next look, so that it does not depend on what was found before.
+    pub fn forget(&mut self) {
+        self.surface.forget();
+    }
+
     /// Contacts within the usual reach; two edges fade where their contact would come and go at once.
     pub fn refresh(&mut self, model: &Model, state: &State, x: &[Vec3]) {
         let reach = Reach::all(REACH_IN_OFFSETS * model.contact.cloth_offset);

@@ -8,7 +8,7 @@ use super::boxes::{BoxTree, Region};
 use super::clusters::{Clusters, Hits};
 use super::curvature::Clearance;
 use super::moves::Moves;
-use super::proximity::{Nearness, is_far};
+use super::proximity::{Nearness, PARALLEL, is_far};
 use super::reach::Reach;
 use super::regions::{Cloth, Leave, Regions, Ways};
 use super::surface::FeaturePair;
@@ -42,6 +42,9 @@ const SAME: f64 = 1e-12;
 /// All is searched again when the parts have grown by this share and this many: those that come of one
 /// never become one again.
 const GROWTH: (f64, usize) = (0.25, 64);
+
+/// Looks after which all is searched again in any case: clusters that were near may be far.
+const LOOKS: usize = 256;
 
 /// Where a search ended.
 #[derive(Clone, Debug)]
@@ -99,7 +102,7 @@ impl Part {
 
 /// How near features come that are looked for.
 #[derive(Clone, Debug, Default)]
-struct Near {
+struct Sought {
     /// At the most [m].
     most: f64,
     pace: Option<Arc<Pace>>,
@@ -116,7 +119,7 @@ struct Pace {
     time: f64,
 }
 
-impl Near {
+impl Sought {
     fn new(cloth: &Cloth, reach: &Reach) -> Self {
         let pace = reach.ahead.as_ref().map(|ahead| {
             // What is held may be led anywhere.
@@ -145,6 +148,9 @@ impl Near {
         };
         // Of four velocities in a ball none is farther than 3/2 of its radius from their mean.
         let speed = times * 1.5 * pace.velocities.stray(region);
+        if !speed.is_finite() {
+            return self.most;
+        }
         let way = (2.0 * speed * pace.time).max(pace.least);
         (pace.kept + 2.0 * way).min(self.most)
     }
@@ -153,9 +159,9 @@ impl Near {
 /// What is asked of the parts.
 pub struct Asked {
     /// How near features come on their ways that are to be listed.
-    near: Near,
+    near: Sought,
     /// The same for contacts, as they were last asked for where nothing moves.
-    contacts: Near,
+    contacts: Sought,
     clearance: Clearance,
     /// Moves since the last look.
     since: Since,
@@ -214,14 +220,21 @@ impl Asked {
 
     /// Whether features of two clusters, or one, are to be listed.
     fn lists(&self, region: &Region) -> bool {
-        let pace = self.last.as_ref().map_or(0.0, |moves| moves.stray(region));
-        pace <= CALM[0] && !self.is_dense(region)
+        self.pace(region) <= CALM[0] && !self.is_dense(region)
+    }
+
+    /// How far the vertices of a region stray on the way, or strayed on the last one [m].
+    fn pace(&self, region: &Region) -> f64 {
+        match (&self.ways, &self.last) {
+            (Some(moves), _) | (None, Some(moves)) => moves.stray(region),
+            (None, None) => 0.0,
+        }
     }
 
     /// How far off features of a region are listed, and how far off edges and faces [m].
     fn wanted(&self, region: &Region) -> [f64; 2] {
         let way = self.on_the_way(region);
-        let pace = self.last.as_ref().map_or(0.0, |moves| moves.stray(region));
+        let pace = self.pace(region);
         let slack = (2.0 * SERVES * pace).clamp(SLACK[0], SLACK[1]);
         let near = self.near.of(region, 1.0) + 2.0 * way;
         [near.max(self.contacts.of(region, FASTER)) + slack, slack]
@@ -263,13 +276,14 @@ impl Leave for Parted<'_> {
 #[derive(Clone, Debug, Default)]
 pub struct Front {
     parts: Vec<Part>,
-    /// How many there were when all was searched.
+    /// How many there were when all was searched, and the looks since.
     first: usize,
+    looks: usize,
     clearance: Option<Clearance>,
     /// Places at the last look [m], and the ends of the ways that were asked about.
     at: Vec<Vec3>,
     ends: Vec<Vec3>,
-    contacts: Near,
+    contacts: Sought,
     last: Option<Arc<Moves>>,
     /// Parts with a list.
     listed: Vec<u32>,
@@ -308,8 +322,10 @@ impl Front {
         let most = self.first + fewest + (grown * self.first as f64) as usize;
         let anew = self.clearance != Some(clearance)
             || self.at.len() != ways.from.len()
-            || self.parts.len() > most;
-        let near = Near::new(cloth, reach);
+            || self.parts.len() > most
+            || self.looks > LOOKS;
+        self.looks = if anew { 0 } else { self.looks + 1 };
+        let near = Sought::new(cloth, reach);
         if ways.are_still() {
             self.contacts = near.clone();
         }
@@ -507,16 +523,18 @@ fn near(cloth: &Cloth, x: &[Vec3], hits: &Hits, [gap, piercing]: [f64; 2]) -> Op
 }
 
 /// Whether an edge may cross a face, or come no farther from it than so [m]: its ends are not both farther
-/// from the plane of the face on one side.
+/// from the plane of the face on one side. Of a face that is hardly more than a line the plane is rounding.
 fn edge_within(cloth: &Cloth, x: &[Vec3], [e, t]: [u32; 2], far: f64) -> bool {
     let at = |v: u32| x[v as usize];
     let (ends, [p, q, r]) = (
         cloth.edges[e as usize].map(at),
         cloth.triangles[t as usize].map(at),
     );
-    let across = (q - p).cross(&(r - p));
+    let sides = [q - p, r - p];
+    let across = sides[0].cross(&sides[1]);
+    let square = across.norm_squared();
+    let known = square > PARALLEL * sides[0].norm_squared() * sides[1].norm_squared();
     let [a, b] = ends.map(|end| across.dot(&(end - p)));
-    let most = (far + ROUNDING) * across.norm();
-    // Not where it is no number, or the face a needle.
-    !(a.min(b) > most || a.max(b) < -most)
+    let most = (far + ROUNDING) * square.sqrt();
+    !(known && (a.min(b) > most || a.max(b) < -most))
 }

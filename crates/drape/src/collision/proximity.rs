@@ -81,7 +81,7 @@ impl Nearness {
 
 /// Square of the sine below which two edges, or two sides of a face, count as parallel: the direction
 /// across both is then rounding.
-const PARALLEL: f64 = 1e-8;
+pub(super) const PARALLEL: f64 = 1e-8;
 
 /// Share of the way between two features that their distance across is off by at the most, where it
 /// is asked.

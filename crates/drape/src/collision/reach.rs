@@ -21,7 +21,7 @@ pub struct Ahead<'a> {
     pub pinned: &'a [bool],
     /// Distance that is kept [m].
     pub kept: f64,
-    /// How long it is at the most [s].
+    /// How long features may go on at twice their speed [s].
     pub time: f64,
     /// How far a feature may go in it that does not move now [m]: forces are not known ahead.
     pub least: f64,

@@ -37,7 +37,7 @@ impl FeaturePair {
     }
 }
 
-/// Where features are looked for.
+/// Where features are looked for: in what the last search found, until the next one of any kind.
 #[derive(Clone, Copy, Debug)]
 pub enum Near<'a> {
     /// In pairs of clusters that a search found.

@@ -127,8 +127,9 @@ const DECREASE: f64 = 1e-4;
 const HALVINGS: usize = 12;
 
 impl Workspace {
-    /// Forgets the places that pairs of cloth took in the matrix.
+    /// Forgets which pairs of cloth were near, and the places they took in the matrix.
     pub(crate) fn forget_pairs(&mut self) {
+        self.contacts.cloth.forget();
         if !self.contacts.cloth.active.is_empty() {
             self.direct = None;
         }

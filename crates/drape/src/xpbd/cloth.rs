@@ -31,7 +31,7 @@ const UNFORESEEN: f64 = 0.25;
 /// Time that contacts are to serve at twice the speed of the fastest vertex [s]: forces are not known ahead.
 const SERVES: f64 = 5e-3;
 
-/// Longest time that they are kept where little moves [s].
+/// Longest time that they are kept where all is slow [s].
 const LONGEST: f64 = 1.0 / 60.0;
 
 /// Substeps between two looks, at the least.
@@ -55,9 +55,17 @@ pub(crate) struct ClothWatch {
 }
 
 impl ClothWatch {
-    /// Looks anew at the next step, whatever was found before.
+    /// Looks anew at the next step.
     pub fn forget(&mut self) {
         self.travelled = None;
+    }
+
+    /// How long contacts are kept [s].
+    fn longest(&self) -> f64 {
+        match self.allowed > LEAST_WAY {
+            true => SERVES,
+            false => LONGEST,
+        }
     }
 
     /// Corrects the way of the last substeps, `span` [s] long, where cloth would have passed through cloth.
@@ -86,6 +94,11 @@ impl ClothWatch {
     }
 }
 
+/// Time in which something goes a way [m] that moves at a speed [m/s] and falls freely [m/s2].
+fn falling(way: f64, speed: f64, gravity: f64) -> f64 {
+    2.0 * way / (speed + (speed * speed + 2.0 * gravity * way).sqrt())
+}
+
 /// Speed of the fastest vertex, the mean velocity left out [m/s].
 fn spread(state: &State) -> f64 {
     let count = state.velocities.len().max(1) as f64;
@@ -112,11 +125,13 @@ impl Xpbd {
         let mut left = span.count;
         let mut report = XpbdReport::default();
         let mut pieces = 1;
+        let gravity = model.gravity.norm();
         while left > 0 {
             let fewest = f64::from(FEWEST) * span.substep;
-            let speed = spread(state) + model.gravity.norm() * fewest;
+            let speed = spread(state) + gravity * fewest;
             let ahead = watch.travelled.map(|t| t + speed * fewest);
-            if ahead.is_none_or(|far| far > watch.allowed) || watch.time + fewest > LONGEST {
+            let longest = watch.longest();
+            if ahead.is_none_or(|far| far > watch.allowed) || watch.time + fewest > longest {
                 watch.allowed = (2.0 * speed * SERVES).clamp(LEAST_WAY, LOOK_AGAIN);
                 let kept = model.contact.cloth_offset;
                 let reach = Reach {
@@ -137,7 +152,8 @@ impl Xpbd {
                 self.touch_cloth(&watch.contacts.active, 2.0 * watch.allowed);
             }
             let travelled = watch.travelled.unwrap_or(0.0);
-            let time = ((watch.allowed - travelled) / speed).min(LONGEST - watch.time);
+            let time = falling((watch.allowed - travelled).max(0.0), speed, gravity);
+            let time = time.min(watch.longest() - watch.time);
             let count = ((time / span.substep) as u32).max(FEWEST).min(left);
             watch.before.clone_from(&state.positions);
             report = self.advance_about(model, state, origin, &Span { count, ..*span })?;
