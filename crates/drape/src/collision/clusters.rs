@@ -385,12 +385,8 @@ impl Clusters {
         }
     }
 
-    /// Vertices and faces, and edges, whose boxes meet, of two clusters or one.
-    pub fn near(&self, arch: Arch, pair: [u32; 2], hits: &mut Hits) {
-        arch.dispatch(|| self.meet_near(pair, 0.0, hits));
-    }
-
-    /// Vertices and faces, and edges, whose boxes come within a distance of each other [m], and some more.
+    /// Vertices and faces, and edges, whose boxes come within a distance of each other [m], and some more, of
+    /// two clusters or one.
     pub fn near_within(&self, arch: Arch, pair: [u32; 2], distance: f64, hits: &mut Hits) {
         arch.dispatch(|| self.meet_near(pair, self.wider(distance), hits));
     }

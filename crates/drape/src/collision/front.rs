@@ -128,7 +128,7 @@ impl Sought {
                 false => ahead.velocities[v as usize],
             };
             Arc::new(Pace {
-                velocities: Moves::shifts(cloth, velocity, false),
+                velocities: Moves::shifts(cloth, velocity),
                 kept: ahead.kept,
                 least: ahead.least,
                 time: ahead.time,
@@ -234,7 +234,10 @@ impl Asked {
     /// How far off features of a region are listed, and how far off edges and faces [m].
     fn wanted(&self, region: &Region) -> [f64; 2] {
         let way = self.on_the_way(region);
-        let pace = self.pace(region);
+        let pace = match self.ways.is_some() {
+            true => way,
+            false => self.pace(region),
+        };
         let slack = (2.0 * SERVES * pace).clamp(SLACK[0], SLACK[1]);
         let near = self.near.of(region, 1.0) + 2.0 * way;
         [near.max(self.contacts.of(region, FASTER)) + slack, slack]
@@ -334,10 +337,8 @@ impl Front {
             false => self.since(cloth, ways.from),
         };
         let moves = ways.moves(cloth).map(Arc::new);
-        match (&moves, &since) {
-            (Some(moves), _) | (None, Since::Moved(moves)) => self.last = Some(moves.clone()),
-            _ if anew => self.last = None,
-            _ => {}
+        if let (Some(moves), _) | (None, Since::Moved(moves)) = (&moves, &since) {
+            self.last = Some(moves.clone());
         }
         let asked = Asked {
             near,

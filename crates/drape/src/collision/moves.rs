@@ -125,7 +125,7 @@ impl Common {
 impl Moves {
     /// From some places by some moves, straight and at one pace.
     pub fn new(cloth: &Cloth, x: &[Vec3], of: impl Fn(u32) -> Vec3 + Sync) -> Self {
-        let mut moves = Self::shifts(cloth, &of, false);
+        let mut moves = Self::shifts(cloth, &of);
         let far = |bounds: &Bounds| bounds.radius() > LITTLE;
         if !moves.round.first().is_some_and(far) {
             return moves;
@@ -151,17 +151,23 @@ impl Moves {
         moves
     }
 
-    /// Shifts alone; `rest` where any may also stay.
-    pub fn shifts(cloth: &Cloth, of: impl Fn(u32) -> Vec3 + Sync, rest: bool) -> Self {
-        let still = Bounds::round(&[Vec3::zeros()], 0.0);
-        let of_leaf = |leaf: usize| {
-            let round = Bounds::round_all(cloth.leaf(leaf).iter().map(|&v| of(v)));
-            if rest { round.join(&still) } else { round }
-        };
+    /// Shifts alone.
+    pub fn shifts(cloth: &Cloth, of: impl Fn(u32) -> Vec3 + Sync) -> Self {
+        let of_leaf = |leaf: usize| Bounds::round_all(cloth.leaf(leaf).iter().map(|&v| of(v)));
         Self {
             round: cloth.tree.folded(of_leaf, Bounds::join),
             common: Vec::new(),
         }
+    }
+
+    /// The same where any may stop on its way.
+    pub fn or_less(mut self) -> Self {
+        let still = Bounds::round(&[Vec3::zeros()], 0.0);
+        for round in &mut self.round {
+            *round = round.join(&still);
+        }
+        self.common.clear();
+        self
     }
 
     /// How far the vertices of a region stray from a motion that they have in common, at the most [m].

@@ -53,7 +53,7 @@ impl<'a> Ways<'a> {
         let way = |v: u32| self.to[v as usize] - self.from[v as usize];
         (!self.are_still()).then(|| match self.together {
             true => Moves::new(cloth, self.from, way),
-            false => Moves::shifts(cloth, way, true),
+            false => Moves::shifts(cloth, way).or_less(),
         })
     }
 }

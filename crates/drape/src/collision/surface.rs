@@ -243,8 +243,8 @@ impl ClothSurface {
     }
 
     /// Lists features that come within reach of each other on the way of the cloth, and edges and faces that
-    /// may cross where it begins, and more, but for those of a region that keeps clear of itself. What is listed serves the next
-    /// looks as long as vertices stray little from their neighbours.
+    /// may cross where it begins, and more, but for those of a region that keeps clear of itself. What is
+    /// listed serves the next looks as long as vertices stray little from their neighbours.
     pub fn look(&mut self, ways: Ways, reach: &Reach, clearance: Clearance) {
         self.look_again(ways, reach, clearance, None);
     }
@@ -318,39 +318,10 @@ impl ClothSurface {
                 }
             }
         };
-        let arch = Arch::new();
-        let of_pairs = |pairs: &[[u32; 2]]| {
-            let (mut hits, mut found) = (Hits::default(), Vec::new());
-            for &pair in pairs {
-                hits.clear();
-                self.clusters.near(arch, pair, &mut hits);
-                of_hits(&hits, &mut found);
-            }
-            found
+        let hold = |pair, reach, hits: &mut Hits| {
+            (self.clusters).near_within(Arch::new(), pair, reach, hits);
         };
-        let of_open = |open: &[([u32; 2], f64)]| {
-            let (mut hits, mut found) = (Hits::default(), Vec::new());
-            for &(pair, reach) in open {
-                hits.clear();
-                self.clusters.near_within(arch, pair, reach, &mut hits);
-                of_hits(&hits, &mut found);
-            }
-            found
-        };
-        let of_lists = |mut found: Vec<T>, hits: Option<&Hits>| {
-            hits.into_iter().for_each(|hits| of_hits(hits, &mut found));
-            found
-        };
-        let found: Vec<Vec<T>> = match near.into() {
-            Near::Clusters(near) => near.par_chunks(AT_ONCE).map(of_pairs).collect(),
-            Near::Listed => {
-                let lists = self.front.lists();
-                let listed = lists.fold_chunks(AT_ONCE, Vec::new, of_lists);
-                let open = self.front.open().par_chunks(AT_ONCE).map(of_open);
-                listed.chain(open).collect()
-            }
-        };
-        found.concat()
+        self.collected(near.into(), hold, of_hits)
     }
 
     /// Collects edges and faces that `crosses` says yes to, of those that are near, in an order that
@@ -365,35 +336,42 @@ impl ClothSurface {
             let apart = hits.edge_face.iter().filter(|hit| cloth.are_apart(**hit));
             found.extend(apart.filter(|hit| crosses(**hit)));
         };
-        let arch = Arch::new();
-        let of_pairs = |pairs: &[[u32; 2]]| {
+        let hold = |pair, _: f64, hits: &mut Hits| {
+            (self.clusters).crossing(Arch::new(), pair, hits);
+        };
+        self.collected(near.into(), hold, of_hits)
+    }
+
+    /// Collects what `of_hits` makes of what is listed, and of what `hold` finds in pairs of clusters that are
+    /// not, with how much farther than their boxes say it is to look [m].
+    fn collected<T: Clone + Send + Sync>(
+        &self,
+        near: Near,
+        hold: impl Fn([u32; 2], f64, &mut Hits) + Sync,
+        of_hits: impl Fn(&Hits, &mut Vec<T>) + Sync,
+    ) -> Vec<T> {
+        let of_pairs = |pairs: &mut dyn Iterator<Item = ([u32; 2], f64)>| {
             let (mut hits, mut found) = (Hits::default(), Vec::new());
-            for &pair in pairs {
+            for (pair, reach) in pairs {
                 hits.clear();
-                self.clusters.crossing(arch, pair, &mut hits);
+                hold(pair, reach, &mut hits);
                 of_hits(&hits, &mut found);
             }
             found
         };
-        let of_open = |open: &[([u32; 2], f64)]| {
-            let (mut hits, mut found) = (Hits::default(), Vec::new());
-            for &(pair, _) in open {
-                hits.clear();
-                self.clusters.piercing_within(arch, pair, 0.0, &mut hits);
-                of_hits(&hits, &mut found);
-            }
-            found
-        };
-        let of_lists = |mut found: Vec<[u32; 2]>, hits: Option<&Hits>| {
+        let of_lists = |mut found: Vec<T>, hits: Option<&Hits>| {
             hits.into_iter().for_each(|hits| of_hits(hits, &mut found));
             found
         };
-        let found: Vec<Vec<[u32; 2]>> = match near.into() {
-            Near::Clusters(near) => near.par_chunks(AT_ONCE).map(of_pairs).collect(),
+        let found: Vec<Vec<T>> = match near {
+            Near::Clusters(pairs) => (pairs.par_chunks(AT_ONCE))
+                .map(|pairs| of_pairs(&mut pairs.iter().map(|&pair| (pair, 0.0))))
+                .collect(),
             Near::Listed => {
                 let lists = self.front.lists();
                 let listed = lists.fold_chunks(AT_ONCE, Vec::new, of_lists);
-                let open = self.front.open().par_chunks(AT_ONCE).map(of_open);
+                let open = self.front.open().par_chunks(AT_ONCE);
+                let open = open.map(|pairs| of_pairs(&mut pairs.iter().copied()));
                 listed.chain(open).collect()
             }
         };
