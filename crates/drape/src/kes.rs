@@ -107,8 +107,8 @@ pub const fn tensile_curve(extension: f64, linearity: f64) -> (f64, f64) {
 }
 
 /// Bending stiffness [N m] from a bending length [m] (Peirce 1930): B = rho g c^3.
-pub fn bending_of_length(density: f64, bending_length: f64) -> f64 {
-    density * GRAVITY * bending_length.powi(3)
+pub const fn bending_of_length(density: f64, bending_length: f64) -> f64 {
+    density * GRAVITY * (bending_length * bending_length * bending_length)
 }
 
 /// Bending stiffness [N m] of a strip whose overhang [m] sinks to an angle [rad] below the level,

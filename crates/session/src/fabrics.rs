@@ -60,7 +60,7 @@ mod tests {
     fn the_library_is_reached_by_name() {
         let project = Project::default();
         let denim = fabric_named(&project, "denim").expect("in the library");
-        assert!((denim.density - 0.407).abs() < 1e-12);
+        assert!((denim.density - 0.334).abs() < 1e-12);
         assert!(fabric_named(&project, "unobtainium").is_none());
         for name in fabric_names(&project) {
             assert!(fabric_named(&project, name).is_some(), "{name}");

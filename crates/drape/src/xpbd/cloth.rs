@@ -18,36 +18,29 @@ pub(crate) struct Span {
     pub drag: f64,
 }
 
-/// How far the fastest vertex may go, the motion of the whole cloth left out, before contacts are
-/// looked for anew [m]: at the most, and where everything is slow. What is looked for reaches twice
-/// as far beyond the offset at the most.
-const LOOK_AGAIN: f64 = 2e-3;
+/// How far two features may come nearer before contacts are looked for anew [m], and how far each may go of
+/// that at the least whatever its speed is now: what moves pushes what does not.
+const FORESEEN: f64 = 4e-3;
 const LEAST_WAY: f64 = 5e-4;
 
-/// Share of the way of the fastest vertex that any may go whatever its speed is now: what moves pushes what
-/// does not.
-const UNFORESEEN: f64 = 0.25;
+/// How far those that press may slide on each other meanwhile [m], and what share of them counts: their
+/// planes stay as they were found.
+const SLIDES: f64 = 3e-4;
+const SLIDING: f64 = 0.9;
 
-/// Time that contacts are to serve at twice the speed of the fastest vertex [s]: forces are not known ahead.
-const SERVES: f64 = 5e-3;
-
-/// Longest time that they are kept where all is slow [s].
+/// Longest time that contacts serve [s].
 const LONGEST: f64 = 1.0 / 60.0;
 
 /// Substeps between two looks, at the least.
-const FEWEST: u32 = 2;
+const FEWEST: u32 = 4;
 
 /// Contacts of cloth with cloth as they were last found.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ClothWatch {
     /// The contacts.
     pub contacts: ClothContacts,
-    /// How far the fastest vertex may have gone since [m]; none before the first look.
-    travelled: Option<f64>,
-    /// How far it may go before the next look [m].
-    allowed: f64,
-    /// Time since [s].
-    time: f64,
+    /// For how long they are to serve yet [s]; none before the first look.
+    serves: Option<f64>,
     /// Positions before the last substeps [m], and how far they went.
     before: Vec<Vec3>,
     moves: Vec<Vec3>,
@@ -57,14 +50,46 @@ pub(crate) struct ClothWatch {
 impl ClothWatch {
     /// Looks anew at the next step.
     pub fn forget(&mut self) {
-        self.travelled = None;
+        self.serves = None;
     }
 
-    /// How long contacts are kept [s].
-    fn longest(&self) -> f64 {
-        match self.allowed > LEAST_WAY {
-            true => SERVES,
-            false => LONGEST,
+    /// Looks for contacts, which are to serve for so many seconds at the least.
+    fn look(&mut self, model: &Model, state: &mut State, least: f64) {
+        let kept = model.contact.cloth_offset;
+        let fastest = fastest(model, state);
+        let longest = (FORESEEN / fastest).min(LONGEST).max(least);
+        let reach = Reach {
+            most: kept + FORESEEN,
+            ahead: Some(Ahead {
+                velocities: &state.velocities,
+                kept,
+                pinned: &model.pinned,
+                time: longest,
+                // The fastest may be stopped, and what follows it comes nearer by its whole way.
+                least: (0.5 * fastest * longest).clamp(LEAST_WAY, 0.5 * FORESEEN),
+            }),
+        };
+        self.contacts.find(model, state, &state.positions, &reach);
+        self.contacts.remember(state);
+        let slides = SLIDES / self.sliding(&state.velocities);
+        let serves = self.contacts.foreseen().min(slides).min(longest);
+        self.serves = Some(serves.max(least));
+    }
+
+    /// Speed that most contacts which press are slower than [m/s], one side seen from the other.
+    fn sliding(&self, velocities: &[Vec3]) -> f64 {
+        let speed = |contact: &ClothContact| {
+            let four = contact.vertices.iter().zip(contact.weights);
+            let velocity: Vec3 = four.map(|(&v, w)| velocities[v as usize] * w).sum();
+            velocity.norm()
+        };
+        let contacts = self.contacts.active.iter();
+        let pressed = contacts.filter(|contact| contact.plane.depth > 0.0);
+        let mut speeds: Vec<f64> = pressed.map(speed).collect();
+        let at = (SLIDING * speeds.len() as f64) as usize;
+        match speeds.is_empty() {
+            true => 0.0,
+            false => *speeds.select_nth_unstable_by(at, f64::total_cmp).1,
         }
     }
 
@@ -94,17 +119,20 @@ impl ClothWatch {
     }
 }
 
-/// Time in which something goes a way [m] that moves at a speed [m/s] and falls freely [m/s2].
-fn falling(way: f64, speed: f64, gravity: f64) -> f64 {
-    2.0 * way / (speed + (speed * speed + 2.0 * gravity * way).sqrt())
-}
-
-/// Speed of the fastest vertex, the mean velocity left out [m/s].
-fn spread(state: &State) -> f64 {
-    let count = state.velocities.len().max(1) as f64;
-    let mean = state.velocities.iter().sum::<Vec3>() / count;
-    let speed2 = state.velocities.iter().map(|v| (v - mean).norm_squared());
-    speed2.fold(0.0, f64::max).sqrt()
+/// Speed of what is fastest [m/s]: a vertex, one that is led, or a surface.
+fn fastest(model: &Model, state: &State) -> f64 {
+    let times = [0.0, LONGEST].map(|later| state.time + later);
+    let of_cloth = state.velocities.iter().map(Vec3::norm);
+    let of_bodies = model.colliders.iter().filter_map(|collider| {
+        let [from, to] = times.map(|time| collider.pose(time));
+        Some(collider.travel(&from?, &to?) / LONGEST)
+    });
+    let of_grips = model.grips.iter().map(|grip| {
+        let [from, to] = times.map(|time| grip.motion.pose(time).apply(grip.home));
+        (to - from).norm() / LONGEST
+    });
+    let all = of_cloth.chain(of_bodies).chain(of_grips);
+    all.fold(0.0, f64::max)
 }
 
 impl Xpbd {
@@ -125,43 +153,22 @@ impl Xpbd {
         let mut left = span.count;
         let mut report = XpbdReport::default();
         let mut pieces = 1;
-        let gravity = model.gravity.norm();
         while left > 0 {
             let fewest = f64::from(FEWEST) * span.substep;
-            let speed = spread(state) + gravity * fewest;
-            let ahead = watch.travelled.map(|t| t + speed * fewest);
-            let longest = watch.longest();
-            if ahead.is_none_or(|far| far > watch.allowed) || watch.time + fewest > longest {
-                watch.allowed = (2.0 * speed * SERVES).clamp(LEAST_WAY, LOOK_AGAIN);
-                let kept = model.contact.cloth_offset;
-                let reach = Reach {
-                    // Two vertices may come nearer by twice the way.
-                    most: kept + 2.0 * watch.allowed,
-                    ahead: Some(Ahead {
-                        velocities: &state.velocities,
-                        kept,
-                        pinned: &model.pinned,
-                        time: SERVES.max(fewest),
-                        least: LEAST_WAY.max(UNFORESEEN * watch.allowed),
-                    }),
-                };
-                watch.contacts.find(model, state, &state.positions, &reach);
-                watch.contacts.remember(state);
-                watch.travelled = Some(0.0);
-                watch.time = 0.0;
-                self.touch_cloth(&watch.contacts.active, 2.0 * watch.allowed);
+            if watch.serves.is_none_or(|serves| serves < fewest) {
+                watch.look(model, state, fewest);
+                self.touch_cloth(&watch.contacts.active, FORESEEN);
             }
-            let travelled = watch.travelled.unwrap_or(0.0);
-            let time = falling((watch.allowed - travelled).max(0.0), speed, gravity);
-            let time = time.min(watch.longest() - watch.time);
-            let count = ((time / span.substep) as u32).max(FEWEST).min(left);
+            let serves = watch.serves.map_or(fewest, |serves| serves.max(fewest));
+            // What is left is shared out evenly.
+            let looks = (span.substep * f64::from(left) / serves).round().max(1.0);
+            let count = (f64::from(left) / looks).ceil() as u32;
             watch.before.clone_from(&state.positions);
             report = self.advance_about(model, state, origin, &Span { count, ..*span })?;
-            watch.keep_apart(model, state, span.substep * f64::from(count));
-            pieces = pieces.max(report.pieces);
             let time = span.substep * f64::from(count);
-            watch.travelled = Some(travelled + speed.max(spread(state)) * time);
-            watch.time += time;
+            watch.keep_apart(model, state, time);
+            pieces = pieces.max(report.pieces);
+            watch.serves = watch.serves.map(|serves| serves - time);
             left -= count;
         }
         report.pieces = pieces;
