@@ -111,6 +111,7 @@ pub struct Xpbd {
     kappa: f64,
     built_for: Fingerprint,
     domain_starts: Vec<usize>,
+    settle_starts: Vec<usize>,
     cut_starts: Vec<usize>,
     /// Contacts of samples in what is solved alone; those of cloth with cloth follow them.
     sample_contacts: usize,
@@ -200,6 +201,7 @@ impl Xpbd {
             kappa: f64::NAN,
             built_for: Fingerprint::new(model),
             domain_starts: order.domain_starts(),
+            settle_starts: order.settle_starts(),
             cut_starts: order.cut_starts(),
             order,
         }
@@ -450,11 +452,13 @@ impl Xpbd {
             time,
             iterations: self.settings.iterations.max(1),
             domain_starts: &self.domain_starts,
+            settle_starts: &self.settle_starts,
             cut_starts: &self.cut_starts,
             arch: pulp::Arch::new(),
         };
         let (regions, particles) = (&mut self.regions, &mut self.particles);
-        if self.domain_starts.len() <= 2 {
+        let meets = run.sweep.solid.stands() && self.settle_starts.len() > 2;
+        if self.domain_starts.len() <= 2 && !meets {
             run.substeps(regions, particles, count);
         } else {
             // One entry into the pool for all substeps.

@@ -79,6 +79,15 @@ impl Order {
         self.halves.iter().copied().step_by(2).collect()
     }
 
+    /// First slot of each part of the vertices that meets surfaces by itself, and the end: halves of domains,
+    /// but all together where there are few.
+    pub fn settle_starts(&self) -> Vec<usize> {
+        match self.len() < DOMAIN {
+            true => self.domain_starts(),
+            false => self.halves.clone(),
+        }
+    }
+
     /// First slot of each range about a cut, and the end; empty with one domain.
     pub fn cut_starts(&self) -> Vec<usize> {
         if self.domains() == 1 {

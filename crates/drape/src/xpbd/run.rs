@@ -28,6 +28,8 @@ pub struct Run<'a> {
     pub iterations: u32,
     /// First slots of the domains, and the end.
     pub domain_starts: &'a [usize],
+    /// First slots of what meets surfaces by itself, and the end.
+    pub settle_starts: &'a [usize],
     /// First slots of the ranges about cuts, and the end.
     pub cut_starts: &'a [usize],
     /// The processor's vectors.
@@ -225,7 +227,11 @@ impl Run<'_> {
             velocity,
             touch,
         };
-        for_domains(self.domain_starts, 0, all, &|_, mut fields| {
+        let starts = match sweep.solid.stands() {
+            true => self.settle_starts,
+            false => self.domain_starts,
+        };
+        for_domains(starts, 0, all, &|_, mut fields| {
             self.arch.dispatch(Settle {
                 fields: &mut fields,
                 solid: sweep.solid.stands().then_some(sweep.solid),
