@@ -195,9 +195,6 @@ const HARD_FROM: f64 = 0.75;
 /// it is looked at again [m].
 const BEYOND: f64 = 1e-3;
 
-/// Share of the parts of a look whose features may come nearer than is foreseen before the next one.
-const UNFORESEEN: f64 = 0.05;
-
 /// How far an edge that pierces a face is pulled at a time, in offsets: by less, a fold caught in a seam
 /// stays there.
 const PULL: f64 = 2.0;
@@ -330,12 +327,6 @@ impl ClothContacts {
     /// Whether nothing crosses and nothing is on the wrong side of a layer.
     pub fn is_in_order(&self) -> bool {
         self.piercings == 0 && self.strays == 0
-    }
-
-    /// Time in which some of the features come as near as is kept that the last look, which was told
-    /// velocities, left out [s].
-    pub fn foreseen(&self) -> f64 {
-        self.surface.foreseen(UNFORESEEN)
     }
 
     /// Searches all at the next look, so that it does not depend on what was found before.

@@ -313,26 +313,6 @@ impl Front {
         &self.open
     }
 
-    /// Times in which features that the last look for contacts left out may come as near as is kept at the
-    /// velocities it was told, part by part [s]; not of regions that keep clear of themselves, nor where
-    /// something is held.
-    pub fn foreseen(&self) -> Vec<f64> {
-        let Some(pace) = &self.contacts.pace else {
-            return Vec::new();
-        };
-        let time = |part: &Part| {
-            let gap = match &part.end {
-                End::Clear(_) => return None,
-                End::Apart(gap) => gap - 2.0 * part.strayed,
-                End::Listed(_) | End::Open => self.contacts.of(&part.region, 1.0),
-            };
-            let speed = pace.velocities.stray(&part.region);
-            let time = (gap - pace.kept).max(0.0) / (2.0 * speed);
-            speed.is_finite().then_some(time)
-        };
-        self.parts.iter().filter_map(time).collect()
-    }
-
     /// Takes out what does not serve for features that come within reach on their ways; the regions
     /// that are to be searched for it, and what is asked of them.
     pub fn expired(

@@ -280,17 +280,6 @@ impl ClothSurface {
         self.front = front;
     }
 
-    /// Time in which features that the last look for contacts left out come as near as is kept in a share of
-    /// the parts that it was made of, at the velocities it was told [s].
-    pub fn foreseen(&self, share: f64) -> f64 {
-        let mut times = self.front.foreseen();
-        let at = (share * times.len() as f64) as usize;
-        match at < times.len() {
-            true => *times.select_nth_unstable_by(at, f64::total_cmp).1,
-            false => f64::INFINITY,
-        }
-    }
-
     /// Has the next look search all.
     pub fn forget(&mut self) {
         self.front.forget();

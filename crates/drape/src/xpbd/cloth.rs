@@ -18,9 +18,10 @@ pub(crate) struct Span {
     pub drag: f64,
 }
 
-/// How far two features may come nearer before contacts are looked for anew [m], and how far each may go of
-/// that at the least whatever its speed is now: what moves pushes what does not.
-const FORESEEN: f64 = 4e-3;
+/// How far the fastest vertex or surface may go before contacts are looked for anew [m]; features that both
+/// go so far are found before they come as near as is kept. So far each may go at the least: what moves
+/// pushes what does not.
+const FARTHEST: f64 = 2e-3;
 const LEAST_WAY: f64 = 5e-4;
 
 /// How far those that press may slide on each other meanwhile [m], and what share of them counts: their
@@ -57,23 +58,21 @@ impl ClothWatch {
     fn look(&mut self, model: &Model, state: &mut State, least: f64) {
         let kept = model.contact.cloth_offset;
         let fastest = fastest(model, state);
-        let longest = (FORESEEN / fastest).min(LONGEST).max(least);
+        let longest = (FARTHEST / fastest).min(LONGEST).max(least);
         let reach = Reach {
-            most: kept + FORESEEN,
+            most: kept + 2.0 * FARTHEST,
             ahead: Some(Ahead {
                 velocities: &state.velocities,
                 kept,
                 pinned: &model.pinned,
                 time: longest,
-                // The fastest may be stopped, and what follows it comes nearer by its whole way.
-                least: (0.5 * fastest * longest).clamp(LEAST_WAY, 0.5 * FORESEEN),
+                least: (fastest * longest).clamp(LEAST_WAY, FARTHEST),
             }),
         };
         self.contacts.find(model, state, &state.positions, &reach);
         self.contacts.remember(state);
         let slides = SLIDES / self.sliding(&state.velocities);
-        let serves = self.contacts.foreseen().min(slides).min(longest);
-        self.serves = Some(serves.max(least));
+        self.serves = Some(longest.min(slides).max(least));
     }
 
     /// Speed that most contacts which press are slower than [m/s], one side seen from the other.
@@ -157,7 +156,7 @@ impl Xpbd {
             let fewest = f64::from(FEWEST) * span.substep;
             if watch.serves.is_none_or(|serves| serves < fewest) {
                 watch.look(model, state, fewest);
-                self.touch_cloth(&watch.contacts.active, FORESEEN);
+                self.touch_cloth(&watch.contacts.active, 2.0 * FARTHEST);
             }
             let serves = watch.serves.map_or(fewest, |serves| serves.max(fewest));
             // What is left is shared out evenly.
