@@ -18,22 +18,23 @@ pub(crate) struct Span {
     pub drag: f64,
 }
 
-/// How far the fastest vertex or surface may go before contacts are looked for anew [m]; features that both
-/// go so far are found before they come as near as is kept. So far each may go at the least: what moves
-/// pushes what does not.
+/// How far the fastest vertex or surface is to go, at the speed that it has, before contacts are looked for
+/// anew [m]. Features that both go so far are found before they come as near as is kept.
 const FARTHEST: f64 = 2e-3;
+
+/// How far each is taken to go at the least [m]: what moves pushes what does not.
 const LEAST_WAY: f64 = 5e-4;
 
-/// How far those that press may slide on each other meanwhile [m], and what share of them counts: their
+/// How far those that press may move against each other meanwhile [m], and what share of them counts: their
 /// planes stay as they were found.
-const SLIDES: f64 = 3e-4;
-const SLIDING: f64 = 0.9;
+const SHIFTS: f64 = 3e-4;
+const SHIFTING: f64 = 0.9;
 
 /// Longest time that contacts serve [s].
 const LONGEST: f64 = 1.0 / 60.0;
 
 /// Substeps between two looks, at the least.
-const FEWEST: u32 = 4;
+const FEWEST: u32 = 5;
 
 /// Contacts of cloth with cloth as they were last found.
 #[derive(Clone, Debug, Default)]
@@ -57,8 +58,9 @@ impl ClothWatch {
     /// Looks for contacts, which are to serve for so many seconds at the least.
     fn look(&mut self, model: &Model, state: &mut State, least: f64) {
         let kept = model.contact.cloth_offset;
-        let fastest = fastest(model, state);
-        let longest = (FARTHEST / fastest).min(LONGEST).max(least);
+        let speed = fastest(model, state, least);
+        let longest = (FARTHEST / speed).min(LONGEST).max(least);
+        let fall = 0.5 * model.gravity.norm() * longest * longest;
         let reach = Reach {
             most: kept + 2.0 * FARTHEST,
             ahead: Some(Ahead {
@@ -66,26 +68,28 @@ impl ClothWatch {
                 kept,
                 pinned: &model.pinned,
                 time: longest,
-                least: (fastest * longest).clamp(LEAST_WAY, FARTHEST),
+                least: (speed * longest + fall).clamp(LEAST_WAY, FARTHEST),
             }),
         };
         self.contacts.find(model, state, &state.positions, &reach);
         self.contacts.remember(state);
-        let slides = SLIDES / self.sliding(&state.velocities);
-        self.serves = Some(longest.min(slides).max(least));
+        let shifts = SHIFTS / self.shifting(&state.velocities);
+        self.serves = Some(longest.min(shifts).max(least));
     }
 
-    /// Speed that most contacts which press are slower than [m/s], one side seen from the other.
-    fn sliding(&self, velocities: &[Vec3]) -> f64 {
+    /// Speed that most contacts which press are slower than [m/s], one side seen from the other; pulls that
+    /// lead out of a crossing are none.
+    fn shifting(&self, velocities: &[Vec3]) -> f64 {
         let speed = |contact: &ClothContact| {
             let four = contact.vertices.iter().zip(contact.weights);
             let velocity: Vec3 = four.map(|(&v, w)| velocities[v as usize] * w).sum();
             velocity.norm()
         };
         let contacts = self.contacts.active.iter();
-        let pressed = contacts.filter(|contact| contact.plane.depth > 0.0);
+        let pressed =
+            contacts.filter(|contact| contact.pair.is_some() && contact.plane.depth > 0.0);
         let mut speeds: Vec<f64> = pressed.map(speed).collect();
-        let at = (SLIDING * speeds.len() as f64) as usize;
+        let at = (SHIFTING * speeds.len() as f64) as usize;
         match speeds.is_empty() {
             true => 0.0,
             false => *speeds.select_nth_unstable_by(at, f64::total_cmp).1,
@@ -118,20 +122,33 @@ impl ClothWatch {
     }
 }
 
-/// Speed of what is fastest [m/s]: a vertex, one that is led, or a surface.
-fn fastest(model: &Model, state: &State) -> f64 {
-    let times = [0.0, LONGEST].map(|later| state.time + later);
+/// Speed of what is fastest [m/s]: a vertex, one that is led, or a surface, in the next `soon` seconds or as
+/// long as contacts may serve.
+fn fastest(model: &Model, state: &State, soon: f64) -> f64 {
     let of_cloth = state.velocities.iter().map(Vec3::norm);
-    let of_bodies = model.colliders.iter().filter_map(|collider| {
-        let [from, to] = times.map(|time| collider.pose(time));
-        Some(collider.travel(&from?, &to?) / LONGEST)
+    let spans = [soon, LONGEST].into_iter();
+    let led = spans.flat_map(|span| {
+        let times = [state.time, state.time + span];
+        let of_bodies = model.colliders.iter().filter_map(move |collider| {
+            let [from, to] = times.map(|time| collider.pose(time));
+            Some(collider.travel(&from?, &to?) / span)
+        });
+        let of_grips = model.grips.iter().map(move |grip| {
+            let to = grip.motion.pose(times[1]).apply(grip.home);
+            (to - state.positions[grip.vertex as usize]).norm() / span
+        });
+        of_bodies.chain(of_grips)
     });
-    let of_grips = model.grips.iter().map(|grip| {
-        let [from, to] = times.map(|time| grip.motion.pose(time).apply(grip.home));
-        (to - from).norm() / LONGEST
-    });
-    let all = of_cloth.chain(of_bodies).chain(of_grips);
-    all.fold(0.0, f64::max)
+    of_cloth.chain(led).fold(0.0, f64::max)
+}
+
+/// How many of the substeps that are left go before the next look when contacts serve for so many: shared out
+/// evenly.
+fn before_next(left: u32, serves: f64) -> u32 {
+    let serves = (serves + 1e-6).floor().max(f64::from(FEWEST));
+    let looks = (f64::from(left) / serves).ceil().max(1.0);
+    let count = (f64::from(left) / looks).ceil() as u32;
+    count.max(FEWEST).min(left)
 }
 
 impl Xpbd {
@@ -144,9 +161,13 @@ impl Xpbd {
         span: &Span,
     ) -> Result<XpbdReport, DrapeError> {
         if model.contact.cloth_offset <= 0.0 {
+            watch.forget();
             return self.advance(model, state, span.substep, span.count, span.drag);
         }
-        self.take_up(model);
+        if self.take_up(model) {
+            // The contacts in hand are gone.
+            watch.forget();
+        }
         let origin = middle(&state.positions);
         self.forget_surfaces();
         let mut left = span.count;
@@ -158,10 +179,8 @@ impl Xpbd {
                 watch.look(model, state, fewest);
                 self.touch_cloth(&watch.contacts.active, 2.0 * FARTHEST);
             }
-            let serves = watch.serves.map_or(fewest, |serves| serves.max(fewest));
-            // What is left is shared out evenly.
-            let looks = (span.substep * f64::from(left) / serves).round().max(1.0);
-            let count = (f64::from(left) / looks).ceil() as u32;
+            let serves = watch.serves.map_or(0.0, |serves| serves / span.substep);
+            let count = before_next(left, serves);
             watch.before.clone_from(&state.positions);
             report = self.advance_about(model, state, origin, &Span { count, ..*span })?;
             let time = span.substep * f64::from(count);
@@ -203,5 +222,46 @@ impl Xpbd {
         let held = &mut self.regions.rest.contacts;
         held.truncate(self.sample_contacts);
         held.extend(stencils);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn substeps_are_shared_out_between_looks() {
+        for left in 1..=200 {
+            for serves in [
+                0.0,
+                1.0,
+                4.9,
+                5.0,
+                6.5,
+                19.999_999_9,
+                48.1,
+                1e9,
+                f64::INFINITY,
+                f64::NAN,
+            ] {
+                let (mut rest, mut pieces) = (left, Vec::new());
+                while rest > 0 {
+                    pieces.push(before_next(rest, serves));
+                    rest -= pieces[pieces.len() - 1];
+                }
+                let (last, before) = pieces.split_last().expect("one at the least");
+                let most = f64::from(FEWEST).max(serves + 1e-3);
+                assert!(
+                    pieces.iter().all(|&n| n > 0 && f64::from(n) <= most),
+                    "{left} {serves}"
+                );
+                assert!(
+                    before.iter().all(|&n| n >= FEWEST && n >= *last),
+                    "{left} {serves}"
+                );
+            }
+        }
+        assert_eq!(before_next(20, 20.0 * (1.0 - 1e-12)), 20);
+        assert_eq!(before_next(40, 26.6), 20);
     }
 }

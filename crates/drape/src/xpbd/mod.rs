@@ -295,11 +295,13 @@ impl Xpbd {
         })
     }
 
-    /// Builds the constraints anew where the model has changed.
-    fn take_up(&mut self, model: &Model) {
-        if !self.built_for.fits(model) {
+    /// Builds the constraints anew where the model has changed; whether it has.
+    fn take_up(&mut self, model: &Model) -> bool {
+        let changed = !self.built_for.fits(model);
+        if changed {
             *self = Self::with_settings(model, self.settings);
         }
+        changed
     }
 
     /// Looks up surfaces anew.
