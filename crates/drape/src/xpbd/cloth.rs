@@ -34,7 +34,7 @@ const SHIFTING: f64 = 0.9;
 const LONGEST: f64 = 1.0 / 60.0;
 
 /// Substeps between two looks, at the least.
-const FEWEST: u32 = 5;
+const FEWEST: u32 = 4;
 
 /// Contacts of cloth with cloth as they were last found.
 #[derive(Clone, Debug, Default)]
@@ -77,8 +77,8 @@ impl ClothWatch {
         self.serves = Some(longest.min(shifts).max(least));
     }
 
-    /// Speed that most contacts which press are slower than [m/s], one side seen from the other; pulls that
-    /// lead out of a crossing are none.
+    /// Speed that most contacts which press, or pull out of a crossing, are slower than [m/s], one side seen
+    /// from the other.
     fn shifting(&self, velocities: &[Vec3]) -> f64 {
         let speed = |contact: &ClothContact| {
             let four = contact.vertices.iter().zip(contact.weights);
@@ -86,8 +86,7 @@ impl ClothWatch {
             velocity.norm()
         };
         let contacts = self.contacts.active.iter();
-        let pressed =
-            contacts.filter(|contact| contact.pair.is_some() && contact.plane.depth > 0.0);
+        let pressed = contacts.filter(|contact| contact.plane.depth > 0.0);
         let mut speeds: Vec<f64> = pressed.map(speed).collect();
         let at = (SHIFTING * speeds.len() as f64) as usize;
         match speeds.is_empty() {
