@@ -153,6 +153,8 @@ pub struct Direct {
     /// Right side and solution at the unknowns.
     right: Vec<Vec3>,
     found: Vec<Vec3>,
+    /// Whether the last factorisation came about.
+    ready: bool,
 }
 
 impl Direct {
@@ -170,6 +172,7 @@ impl Direct {
             right: Vec::new(),
             found: vec![Vec3::zeros(); places.len()],
             unknowns,
+            ready: false,
         }
     }
 
@@ -185,21 +188,28 @@ impl Direct {
                 .all(has)
     }
 
-    /// Solves A x = b for the free vertices; x is zero at pins. False when the matrix is not
-    /// numerically positive definite; `x` is then of no use.
+    /// Factorises A and solves A x = b for the free vertices; x is zero at pins. False when the matrix is
+    /// not numerically positive definite; `x` is then of no use.
     pub fn solve(&mut self, hessian: &Hessian, b: &[Vec3], x: &mut [Vec3]) -> bool {
         let unknowns = &self.unknowns;
         let fill = |row: usize, columns: &[u32], out: &mut [Block<3>]| {
             hessian.fill_row(unknowns, row, columns, out);
         };
-        if self.factor.factorise(fill).is_err() {
+        self.ready = self.factor.factorise(fill).is_ok();
+        self.solve_again(b, x)
+    }
+
+    /// Solves A x = b with the matrix factorised last; false where there is none.
+    pub fn solve_again(&mut self, b: &[Vec3], x: &mut [Vec3]) -> bool {
+        if !self.ready {
             return false;
         }
+        let vertices = &self.unknowns.vertex;
         self.right.clear();
-        (self.right).extend(unknowns.vertex.iter().map(|&v| b[v as usize]));
+        (self.right).extend(vertices.iter().map(|&v| b[v as usize]));
         self.factor.solve(&self.right, &mut self.found);
         x.fill(Vec3::zeros());
-        for (&v, found) in unknowns.vertex.iter().zip(&self.found) {
+        for (&v, found) in vertices.iter().zip(&self.found) {
             x[v as usize] = *found;
         }
         (self.found.iter()).all(|x| x.iter().all(|x| x.is_finite()))
@@ -383,5 +393,6 @@ mod tests {
         let mut x = [Vec3::zeros(); 3];
         let mut direct = Direct::new(&model, &model.layout, &[]);
         assert!(!direct.solve(&hessian, &[Vec3::x(); 3], &mut x));
+        assert!(!direct.solve_again(&[Vec3::x(); 3], &mut x));
     }
 }

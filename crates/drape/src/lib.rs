@@ -24,6 +24,7 @@ mod methods;
 mod model;
 mod motion;
 mod newton;
+mod pairs;
 mod part;
 mod patches;
 mod pcg;

@@ -1,12 +1,14 @@
 //! The way to rest: pseudo-transient continuation (Kelley and Keyes 1998). Each step is one
 //! Newton iteration held back by inertia m/h^2 towards where the cloth is; h grows while all goes
 //! well and shrinks when the line search has to cut the step, so far from rest it creeps safely
-//! and near rest it is Newton's method. After each step regions that hold most of the net force are
-//! brought to rest apart (nonlinear elimination). How much of the curvature that compression takes away is
-//! kept in the Hessian is found in the same way: as much as leaves it positive definite.
+//! and near rest it is Newton's method. The matrix of each step serves a few more, and then regions
+//! that hold most of the net force are brought to rest apart (nonlinear elimination). How much of the
+//! curvature that compression takes away is kept in the Hessian is found in the same way: as much as
+//! leaves it positive definite.
 
 use crate::laws::membrane::Curvature;
 use crate::measure::{residual, weight_norm};
+use crate::newton::ChordLimits;
 use crate::{
     DrapeError, Inertia, LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State,
     Workspace,
@@ -51,6 +53,10 @@ pub struct RestRun {
 
 /// Steps without a new low of the residual before a cycle is suspected.
 const PATIENCE: usize = 60;
+/// Steps with the matrix of a Newton step after it at the most, and at which share of the net force that is
+/// enough they end.
+const CHORDS: usize = 24;
+const CALM: f64 = 0.5;
 /// First pseudo time step [s]: a drop of 4 mm under gravity.
 const FIRST_STEP: f64 = 0.02;
 /// The same where a swing has brought the cloth near rest.
@@ -153,8 +159,14 @@ impl RestRun {
             let report = workspace.solve(model, state, &inertia, &newton);
             self.linear_iterations += report.linear_iterations;
             if report.sound && state.first_not_finite().is_none() {
-                workspace.contacts.refresh(model, state, &state.positions);
                 let enough = self.settings.residual * weight_norm(model);
+                let limits = ChordLimits {
+                    steps: CHORDS,
+                    tolerance: CALM * enough,
+                    longest_move: self.settings.longest_move,
+                };
+                workspace.follow_on(model, state, &inertia, limits);
+                workspace.contacts.refresh(model, state, &state.positions);
                 if workspace.eliminate(model, state, enough) {
                     workspace.contacts.refresh(model, state, &state.positions);
                 }

@@ -78,7 +78,7 @@ impl Workspace {
 
     /// Bounds what was moved so that no cloth passes through cloth, and takes it all back where the
     /// potential is then higher than before. Returns whether anything stays moved.
-    fn hold_back(&mut self, model: &Model, state: &mut State, start: Vec<Vec3>) -> bool {
+    pub(super) fn hold_back(&mut self, model: &Model, state: &mut State, start: Vec<Vec3>) -> bool {
         let ways = state.positions.iter().zip(&start).map(|(x, s)| x - s);
         let mut ways: Vec<Vec3> = ways.collect();
         if self.contacts.cloth.bound(model, &start, &mut ways) == 0 {
@@ -199,14 +199,14 @@ fn bring_to_rest(part: &mut Part, calm: f64) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::measure::residual;
     use crate::{Cloth, Material, RestRun, RestSettings};
     use toile_geometry::TriangleMesh;
 
     /// A sheet of 40 x 40 squares of 10 mm at rest, hung by its upper edge.
-    fn hung() -> (Model, State, Workspace) {
+    pub fn hung() -> (Model, State, Workspace) {
         let mut mesh = TriangleMesh::default();
         for v in 0..41 * 41u32 {
             let (x, y) = (0.01 * f64::from(v % 41), -0.01 * f64::from(v / 41));
@@ -234,7 +234,7 @@ mod tests {
     }
 
     /// Pushes the vertices within 20 mm of one out of the sheet and together.
-    fn dent(state: &mut State, vertex: usize) {
+    pub fn dent(state: &mut State, vertex: usize) {
         let centre = state.positions[vertex];
         for x in &mut state.positions {
             let off = *x - centre;

@@ -6,9 +6,12 @@
 //! With w = m/h^2 and y = x_n + h v_n a minimum of Phi is a step of implicit Euler (Martin et al.
 //! 2011, equation 3). With y = x_n and growing h it is pseudo-transient continuation to rest.
 
+mod chord;
 mod direction;
 mod elimination;
 mod foresight;
+
+pub(crate) use chord::ChordLimits;
 
 use crate::collision::Couplings;
 use crate::contacts::Contacts;

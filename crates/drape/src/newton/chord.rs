@@ -1,0 +1,178 @@
+//! Steps with the matrix of the last Newton step: its factor is the metric of L-BFGS (Nocedal 1980; that
+//! one matrix serves many steps: Kelley 1995, chapter 5). A solve costs a tenth of a factorisation, and
+//! cloth that buckles changes few entries of the Hessian at a time.
+
+use super::{Inertia, Workspace};
+use crate::pairs::Pairs;
+use crate::sparse::dot;
+use crate::{Model, State};
+
+/// A step of which the line search takes less than this is the last: the matrix is no longer that of the
+/// cloth.
+const CUT: f64 = 0.2;
+
+/// How far chord steps go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ChordLimits {
+    /// Steps at the most.
+    pub steps: usize,
+    /// Stop when the gradient's norm is below this [N].
+    pub tolerance: f64,
+    /// Longest move of any vertex in one step [m].
+    pub longest_move: f64,
+}
+
+impl Workspace {
+    /// Lowers the potential further with the matrix factorised last; friction follows after each step, so
+    /// that points creep to rest while the matrix serves. Contacts with surfaces are found before each
+    /// step, those of cloth with cloth once; tangled cloth, whose way out is found anew after every move,
+    /// is left alone. Returns the steps taken.
+    pub(crate) fn follow_on(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        inertia: &Inertia,
+        limits: ChordLimits,
+    ) -> usize {
+        self.contacts.refresh(model, state, &state.positions);
+        if !self.contacts.cloth.is_in_order() {
+            return 0;
+        }
+        let start = state.clone();
+        let mut pairs = Pairs::default();
+        let mut steps = 0;
+        while steps < limits.steps {
+            if steps > 0 {
+                self.contacts
+                    .refresh_surfaces(model, state, &state.positions);
+            }
+            let share = self.chord(model, state, inertia, &mut pairs, limits);
+            steps += usize::from(share > 0.0);
+            if share < CUT {
+                break;
+            }
+        }
+        if steps > 0 && !self.hold_back(model, state, start.positions.clone()) {
+            *state = start;
+            return 0;
+        }
+        steps
+    }
+
+    /// One step with the contacts in hand; the share of it that was taken.
+    fn chord(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        inertia: &Inertia,
+        pairs: &mut Pairs,
+        limits: ChordLimits,
+    ) -> f64 {
+        self.fill_gradient(model, &state.positions, Some(inertia));
+        let norm = dot(&self.gradient, &self.gradient).sqrt();
+        if !norm.is_finite() || norm <= limits.tolerance {
+            return 0.0;
+        }
+        pairs.note(&state.positions, &self.gradient, limits.steps);
+        let Some(direct) = &mut self.direct else {
+            return 0.0;
+        };
+        let mut solved = false;
+        pairs.aim(&mut self.direction, |q, r| {
+            solved = direct.solve_again(q, r);
+        });
+        self.turn_gradient();
+        if !solved || dot(&self.gradient, &self.direction) <= 0.0 {
+            return 0.0;
+        }
+        self.limit_moves(limits.longest_move);
+        let share = self.line_search(model, &state.positions, inertia);
+        if share > 0.0 {
+            std::mem::swap(&mut state.positions, &mut self.trial);
+            self.contacts.settle(model, state);
+        }
+        share
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::elimination::tests::hung;
+    use super::*;
+    use crate::measure::residual;
+    use crate::{LinearSolver, NewtonSettings, PcgLimits};
+
+    const LIMITS: ChordLimits = ChordLimits {
+        steps: 24,
+        tolerance: 0.0,
+        longest_move: 0.015,
+    };
+
+    /// A rumpled sheet after one Newton step of a pseudo step of 0.1 s: chord steps, and what is left of the
+    /// net force before and after them.
+    fn after_newton(direct: bool) -> (usize, [f64; 2]) {
+        let (model, rest, mut workspace) = hung();
+        let mut state = rest;
+        for (v, x) in state.positions.iter_mut().enumerate().skip(41) {
+            x.z += 3e-4 * (v as f64 * 1.7).sin();
+        }
+        let weight: Vec<f64> = model.mass.iter().map(|m| m * 100.0).collect();
+        let target = state.positions.clone();
+        let inertia = Inertia {
+            weight: &weight,
+            target: &target,
+        };
+        let pcg = PcgLimits {
+            tolerance: 1e-3,
+            iterations: 500,
+        };
+        let settings = NewtonSettings {
+            iterations: 1,
+            tolerance: 0.0,
+            longest_move: 0.015,
+            linear: match direct {
+                true => LinearSolver::Direct { otherwise: pcg },
+                false => LinearSolver::Iterative(pcg),
+            },
+            curvature: crate::laws::membrane::Curvature::CONVEX,
+        };
+        if !direct {
+            workspace = Workspace::default();
+        }
+        assert!(
+            workspace
+                .solve(&model, &mut state, &inertia, &settings)
+                .sound
+        );
+        let before = residual(&model, &state, &mut workspace);
+        let start = state.positions.clone();
+        let steps = workspace.follow_on(&model, &mut state, &inertia, LIMITS);
+        assert_eq!(steps == 0, state.positions == start);
+        (steps, [before, residual(&model, &state, &mut workspace)])
+    }
+
+    #[test]
+    fn one_matrix_serves_many_steps() {
+        let (steps, [before, after]) = after_newton(true);
+        assert!(
+            steps > 10 && after < 0.1 * before,
+            "{steps} {before} {after}"
+        );
+    }
+
+    #[test]
+    fn without_a_matrix_nothing_moves() {
+        assert_eq!(after_newton(false).0, 0);
+    }
+
+    #[test]
+    fn numbers_that_are_none_are_left_alone() {
+        let (model, mut state, mut workspace) = hung();
+        let inertia = Inertia {
+            weight: &vec![1.0; model.vertex_count()],
+            target: &state.positions.clone(),
+        };
+        state.positions[800].x = f64::NAN;
+        assert_eq!(workspace.follow_on(&model, &mut state, &inertia, LIMITS), 0);
+    }
+}

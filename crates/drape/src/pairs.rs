@@ -1,0 +1,140 @@
+//! The memory of L-BFGS: steps, and the changes of the gradient over them.
+
+use crate::sparse::dot;
+use std::collections::VecDeque;
+use toile_geometry::Vec3;
+
+/// A step s and the change y of the gradient over it.
+#[derive(Default)]
+struct Pair {
+    s: Vec<Vec3>,
+    y: Vec<Vec3>,
+    product: f64,
+}
+
+/// The last steps of a descent.
+#[derive(Default)]
+pub struct Pairs {
+    pairs: VecDeque<Pair>,
+    spare: Option<Pair>,
+    place: Vec<Vec3>,
+    gradient: Vec<Vec3>,
+    rest: Vec<Vec3>,
+    shares: Vec<f64>,
+}
+
+/// Least s.y as a share of |s| |y|: below it a pair says nothing but rounding.
+const LEAST_CURVATURE: f64 = 1e-10;
+
+impl Pairs {
+    /// Forgets the steps, but not where the last one ended.
+    pub fn clear(&mut self) {
+        self.pairs.clear();
+    }
+
+    /// Whether nothing is remembered.
+    pub fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
+    }
+
+    /// Notes a place and the gradient there; the step from the one noted before is remembered where the
+    /// gradient rises along it, with no more than `most` others.
+    pub fn note(&mut self, x: &[Vec3], gradient: &[Vec3], most: usize) {
+        if self.place.len() == x.len() {
+            let mut pair = match self.pairs.len() >= most {
+                true => self.pairs.pop_front().unwrap_or_default(),
+                false => self.spare.take().unwrap_or_default(),
+            };
+            let difference = |to: &mut Vec<Vec3>, now: &[Vec3], before: &[Vec3]| {
+                to.clear();
+                to.extend(now.iter().zip(before).map(|(a, b)| a - b));
+            };
+            difference(&mut pair.s, x, &self.place);
+            difference(&mut pair.y, gradient, &self.gradient);
+            pair.product = dot(&pair.s, &pair.y);
+            let scale = (dot(&pair.s, &pair.s) * dot(&pair.y, &pair.y)).sqrt();
+            match pair.product > LEAST_CURVATURE * scale {
+                true => self.pairs.push_back(pair),
+                false => self.spare = Some(pair),
+            }
+        }
+        self.place.clear();
+        self.place.extend_from_slice(x);
+        self.gradient.clear();
+        self.gradient.extend_from_slice(gradient);
+    }
+
+    /// The direction down from the place noted last, by the two loops (Nocedal and Wright 2006, algorithm
+    /// 7.4): q = g; for the pairs from new to old a_i = s_i.q / s_i.y_i, q -= a_i y_i; r = A^-1 q; from
+    /// old to new r += (a_i - y_i.r / s_i.y_i) s_i; the direction is -r. `solve` gives A^-1 of a vector.
+    pub fn aim(&mut self, direction: &mut [Vec3], solve: impl FnOnce(&[Vec3], &mut [Vec3])) {
+        let q = &mut self.rest;
+        q.clone_from(&self.gradient);
+        self.shares.clear();
+        for pair in self.pairs.iter().rev() {
+            let share = dot(&pair.s, q) / pair.product;
+            self.shares.push(share);
+            for (q, y) in q.iter_mut().zip(&pair.y) {
+                *q -= y * share;
+            }
+        }
+        solve(q, direction);
+        for (pair, &share) in self.pairs.iter().zip(self.shares.iter().rev()) {
+            let rest = share - dot(&pair.y, direction) / pair.product;
+            for (r, s) in direction.iter_mut().zip(&pair.s) {
+                *r += s * rest;
+            }
+        }
+        for d in direction {
+            *d = -*d;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix3;
+
+    /// Descends x.Hx / 2 for three numbers with exact steps along the direction; the metric is 1.
+    #[test]
+    fn as_many_pairs_as_unknowns_find_the_bottom_of_a_bowl() {
+        let h = Matrix3::new(4.0, 1.0, 0.0, 1.0, 3.0, 0.5, 0.0, 0.5, 40.0);
+        let mut x = vec![Vec3::new(1.0, -2.0, 0.5)];
+        let (mut pairs, mut direction) = (Pairs::default(), [Vec3::zeros()]);
+        let mut norms = Vec::<f64>::new();
+        for _ in 0..4 {
+            let gradient = [h * x[0]];
+            norms.push(gradient[0].norm());
+            pairs.note(&x, &gradient, 8);
+            pairs.aim(&mut direction, |q, r| r.copy_from_slice(q));
+            let slope = gradient[0].dot(&direction[0]);
+            assert!(slope < 0.0 || norms[norms.len() - 1] < 1e-12);
+            let curvature = direction[0].dot(&(h * direction[0]));
+            if curvature > 0.0 {
+                x[0] -= direction[0] * (slope / curvature);
+            }
+        }
+        assert!(norms[3] < 1e-12 * norms[0], "{norms:?}");
+        assert!(norms[2] > 1e-3 * norms[0], "{norms:?}");
+    }
+
+    #[test]
+    fn steps_along_which_the_gradient_falls_and_old_ones_are_not_remembered() {
+        let mut pairs = Pairs::default();
+        let at = |x: f64| vec![Vec3::x() * x];
+        pairs.note(&at(0.0), &at(0.0), 2);
+        assert!(pairs.is_empty(), "one place is no step");
+        pairs.note(&at(1.0), &at(-1.0), 2);
+        assert!(pairs.is_empty());
+        for k in 2..6 {
+            pairs.note(&at(f64::from(k)), &at(f64::from(k * k)), 2);
+        }
+        assert_eq!(pairs.pairs.len(), 2);
+        assert_eq!(pairs.pairs[1].product, 9.0);
+        pairs.clear();
+        assert!(pairs.is_empty());
+        pairs.note(&at(9.0), &at(81.0), 2);
+        assert_eq!(pairs.pairs[0].product, 4.0 * 56.0);
+    }
+}
