@@ -33,8 +33,9 @@ const SHIFTING: f64 = 0.9;
 /// Longest time that contacts serve [s].
 const LONGEST: f64 = 1.0 / 60.0;
 
-/// Substeps between two looks, at the least.
-const FEWEST: u32 = 4;
+/// Substeps between two looks, at the least; and where cloth crosses cloth, whose way out is to be found soon.
+const FEWEST: u32 = 5;
+const FEWEST_CROSSED: u32 = 4;
 
 /// Contacts of cloth with cloth as they were last found.
 #[derive(Clone, Debug, Default)]
@@ -55,11 +56,21 @@ impl ClothWatch {
         self.serves = None;
     }
 
-    /// Looks for contacts, which are to serve for so many seconds at the least.
-    fn look(&mut self, model: &Model, state: &mut State, least: f64) {
+    /// Substeps before the next look, at the least.
+    fn fewest(&self) -> u32 {
+        match self.contacts.is_in_order() {
+            true => FEWEST,
+            false => FEWEST_CROSSED,
+        }
+    }
+
+    /// Looks for contacts, which are to serve for a few substeps of so many seconds at the least.
+    fn look(&mut self, model: &Model, state: &mut State, substep: f64) {
         let kept = model.contact.cloth_offset;
+        let least = f64::from(FEWEST) * substep;
         let speed = fastest(model, state, least);
-        let longest = (FARTHEST / speed).min(LONGEST).max(least);
+        let soon = (FARTHEST / speed).min(LONGEST);
+        let longest = soon.max(least);
         let fall = 0.5 * model.gravity.norm() * longest * longest;
         let reach = Reach {
             most: kept + 2.0 * FARTHEST,
@@ -74,7 +85,8 @@ impl ClothWatch {
         self.contacts.find(model, state, &state.positions, &reach);
         self.contacts.remember(state);
         let shifts = SHIFTS / self.shifting(&state.velocities);
-        self.serves = Some(longest.min(shifts).max(least));
+        let least = f64::from(self.fewest()) * substep;
+        self.serves = Some(soon.min(shifts).max(least));
     }
 
     /// Speed that most contacts which press, or pull out of a crossing, are slower than [m/s], one side seen
@@ -141,13 +153,13 @@ fn fastest(model: &Model, state: &State, soon: f64) -> f64 {
     of_cloth.chain(led).fold(0.0, f64::max)
 }
 
-/// How many of the substeps that are left go before the next look when contacts serve for so many: shared out
-/// evenly.
-fn before_next(left: u32, serves: f64) -> u32 {
-    let serves = (serves + 1e-6).floor().max(f64::from(FEWEST));
+/// How many of the substeps that are left go before the next look when contacts serve for so many, and so few
+/// at the least: shared out evenly.
+fn before_next(left: u32, serves: f64, fewest: u32) -> u32 {
+    let serves = (serves + 1e-6).floor().max(f64::from(fewest));
     let looks = (f64::from(left) / serves).ceil().max(1.0);
     let count = (f64::from(left) / looks).ceil() as u32;
-    count.max(FEWEST).min(left)
+    count.max(fewest).min(left)
 }
 
 impl Xpbd {
@@ -173,13 +185,13 @@ impl Xpbd {
         let mut report = XpbdReport::default();
         let mut pieces = 1;
         while left > 0 {
-            let fewest = f64::from(FEWEST) * span.substep;
-            if watch.serves.is_none_or(|serves| serves < fewest) {
-                watch.look(model, state, fewest);
+            let least = f64::from(watch.fewest()) * span.substep;
+            if watch.serves.is_none_or(|serves| serves < least) {
+                watch.look(model, state, span.substep);
                 self.touch_cloth(&watch.contacts.active, 2.0 * FARTHEST);
             }
             let serves = watch.serves.map_or(0.0, |serves| serves / span.substep);
-            let count = before_next(left, serves);
+            let count = before_next(left, serves, watch.fewest());
             watch.before.clone_from(&state.positions);
             report = self.advance_about(model, state, origin, &Span { count, ..*span })?;
             let time = span.substep * f64::from(count);
@@ -245,7 +257,7 @@ mod tests {
             ] {
                 let (mut rest, mut pieces) = (left, Vec::new());
                 while rest > 0 {
-                    pieces.push(before_next(rest, serves));
+                    pieces.push(before_next(rest, serves, FEWEST));
                     rest -= pieces[pieces.len() - 1];
                 }
                 let (last, before) = pieces.split_last().expect("one at the least");
@@ -260,7 +272,8 @@ mod tests {
                 );
             }
         }
-        assert_eq!(before_next(20, 20.0 * (1.0 - 1e-12)), 20);
-        assert_eq!(before_next(40, 26.6), 20);
+        assert_eq!(before_next(20, 20.0 * (1.0 - 1e-12), FEWEST), 20);
+        assert_eq!(before_next(40, 26.6, FEWEST), 20);
+        assert_eq!(before_next(20, 0.0, FEWEST_CROSSED), 4);
     }
 }
