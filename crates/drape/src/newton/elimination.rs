@@ -234,7 +234,7 @@ pub(super) mod tests {
     }
 
     /// Pushes the vertices within 20 mm of one out of the sheet and together.
-    pub fn dent(state: &mut State, vertex: usize) {
+    fn dent(state: &mut State, vertex: usize) {
         let centre = state.positions[vertex];
         for x in &mut state.positions {
             let off = *x - centre;
