@@ -9,6 +9,7 @@ mod dissection;
 mod graph;
 mod layout;
 mod numeric;
+mod panel;
 mod separator;
 mod solve;
 mod symbolic;

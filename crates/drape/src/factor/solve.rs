@@ -4,14 +4,11 @@
 //! the vertices of its boundary, so that subtrees are independent and sums have one order.
 
 use super::dense::Number;
-use super::layout::{Layout, stride};
+use super::layout::Layout;
+use super::panel::Panel;
 use super::symbolic::{Front, Symbolic};
-use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::{
-    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
-};
-use faer::prelude::{Reborrow, ReborrowMut};
-use faer::{Accum, MatMut, MatRef, Par};
+use faer::MatMut;
+use faer::prelude::ReborrowMut;
 
 /// What a task needs to read.
 pub struct Substitution<'a, T> {
@@ -78,14 +75,14 @@ impl<T: Number> Substitution<'_, T> {
         )
     }
 
-    /// Columns of the factor that belong to a front: the triangle, and the rows below it.
-    fn panel(&self, f: usize) -> (MatRef<'_, T>, MatRef<'_, T>) {
+    /// Columns of the factor that belong to a front.
+    fn panel(&self, f: usize) -> Panel<'_, T> {
         let front = &self.symbolic.fronts[f];
-        let rows = front.rows() * self.unknowns;
-        let pivots = front.pivots as usize * self.unknowns;
-        let values = &self.panels[self.layout.panel[f]..self.layout.panel[f + 1]];
-        MatRef::from_column_major_slice_with_stride(values, rows, pivots, stride(rows))
-            .split_at_row(pivots)
+        Panel::new(
+            &self.panels[self.layout.panel[f]..self.layout.panel[f + 1]],
+            front.pivots as usize * self.unknowns,
+            front.boundary as usize * self.unknowns,
+        )
     }
 
     /// L y = b for a unit and all below it, in place.
@@ -155,18 +152,11 @@ impl<T: Number> Substitution<'_, T> {
         if pivots == 0 {
             return;
         }
-        let (triangle, below) = self.panel(f);
-        solve_lower_triangular_in_place(triangle, pivot_rows.rb_mut(), Par::Seq);
-        if rows > 0 {
-            let own = MatMut::from_column_major_slice_mut(own, rows, self.columns);
-            matmul(
-                own,
-                Accum::Add,
-                below,
-                pivot_rows.rb(),
-                -T::rounded(1.0),
-                Par::Seq,
-            );
+        let panel = self.panel(f);
+        for k in 0..self.columns {
+            let x = pivot_rows.rb_mut().col_mut(k).try_as_col_major_mut();
+            let below = &mut own[k * rows..(k + 1) * rows];
+            panel.forward(x.expect("columns of x are whole").as_slice_mut(), below);
         }
     }
 
@@ -208,19 +198,12 @@ impl<T: Number> Substitution<'_, T> {
             .rb_mut()
             .subrows_mut((front.first as usize - part.first) * d, pivots * d);
         if pivots > 0 {
-            let (triangle, below) = self.panel(f);
-            if rows > 0 {
-                let own = MatRef::from_column_major_slice(own, rows, self.columns);
-                matmul(
-                    pivot_rows.rb_mut(),
-                    Accum::Add,
-                    below.transpose(),
-                    own,
-                    -T::rounded(1.0),
-                    Par::Seq,
-                );
+            let panel = self.panel(f);
+            for k in 0..self.columns {
+                let x = pivot_rows.rb_mut().col_mut(k).try_as_col_major_mut();
+                let below = &own[k * rows..(k + 1) * rows];
+                panel.backward(x.expect("columns of x are whole").as_slice_mut(), below);
             }
-            solve_upper_triangular_in_place(triangle.transpose(), pivot_rows.rb_mut(), Par::Seq);
         }
         for &c in &front.children {
             let child = &self.symbolic.fronts[c as usize];
