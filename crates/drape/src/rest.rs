@@ -61,10 +61,6 @@ const CALM: f64 = 0.5;
 const FIRST_STEP: f64 = 0.02;
 /// The same where a swing has brought the cloth near rest.
 const NEAR_STEP: f64 = 0.1;
-/// How many times as long the next pseudo step is after a good one, and after one whose potential chord steps
-/// brought all the way down.
-const GROWTH: f64 = 1.5;
-const SETTLED_GROWTH: f64 = 3.0;
 /// Bounds of the pseudo time step [s]: at the upper one inertia is 1e-6 of gravity over a metre.
 const SHORTEST_STEP: f64 = 1e-6;
 const LONGEST_STEP: f64 = 100.0;
@@ -169,7 +165,7 @@ impl RestRun {
                     tolerance: CALM * enough,
                     longest_move: self.settings.longest_move,
                 };
-                let chords = workspace.follow_on(model, state, &inertia, limits);
+                workspace.follow_on(model, state, &inertia, limits);
                 workspace.contacts.refresh(model, state, &state.positions);
                 if workspace.eliminate(model, state, enough) {
                     workspace.contacts.refresh(model, state, &state.positions);
@@ -177,7 +173,7 @@ impl RestRun {
                 workspace.contacts.settle(model, state);
                 let before = self.residual;
                 self.residual = residual(model, state, workspace);
-                self.adapt(&report, chords.settled, before);
+                self.adapt(&report, before);
                 break;
             }
             let vertex = state.first_not_finite();
@@ -201,17 +197,14 @@ impl RestRun {
         Ok(())
     }
 
-    /// Grows the pseudo step while the full step is taken and the residual does not rise, and faster where
-    /// chord steps did all that it asks for; shrinks it when the line search or the limit on moves cut the step
-    /// short.
-    fn adapt(&mut self, report: &NewtonReport, settled: bool, residual_before: f64) {
+    /// Grows the pseudo step while the full step is taken and the residual does not rise; shrinks
+    /// it when the line search or the limit on moves cut the step short.
+    fn adapt(&mut self, report: &NewtonReport, residual_before: f64) {
         let (fraction, moved) = (report.fraction, report.moved);
         self.curvature = report.next_curvature();
         let free = moved < 0.5 * self.settings.longest_move;
-        if settled && free {
-            self.pseudo_step = (self.pseudo_step * SETTLED_GROWTH).min(self.longest_step);
-        } else if fraction >= 1.0 && free && self.residual < 1.05 * residual_before {
-            self.pseudo_step = (self.pseudo_step * GROWTH).min(self.longest_step);
+        if fraction >= 1.0 && free && self.residual < 1.05 * residual_before {
+            self.pseudo_step = (self.pseudo_step * 1.5).min(self.longest_step);
         } else if fraction < 0.3 || moved >= 0.99 * self.settings.longest_move {
             self.pseudo_step = (self.pseudo_step * 0.7).max(SHORTEST_STEP);
         }

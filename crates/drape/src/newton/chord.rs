@@ -22,54 +22,44 @@ pub(crate) struct ChordLimits {
     pub longest_move: f64,
 }
 
-/// What chord steps came to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct ChordReport {
-    /// Steps taken.
-    pub steps: usize,
-    /// Whether the gradient came below the tolerance.
-    pub settled: bool,
-}
-
 impl Workspace {
     /// Lowers the potential further with the matrix factorised last; friction follows after each step, so
     /// that points creep to rest while the matrix serves. Contacts with surfaces are found before each
     /// step, those of cloth with cloth once; tangled cloth, whose way out is found anew after every move,
-    /// is left alone.
+    /// is left alone. Returns the steps taken.
     pub(crate) fn follow_on(
         &mut self,
         model: &Model,
         state: &mut State,
         inertia: &Inertia,
         limits: ChordLimits,
-    ) -> ChordReport {
+    ) -> usize {
         self.contacts.refresh(model, state, &state.positions);
         if !self.contacts.cloth.is_in_order() {
-            return ChordReport::default();
+            return 0;
         }
         let start = state.clone();
         let mut pairs = Pairs::default();
-        let mut report = ChordReport::default();
-        while report.steps < limits.steps {
-            if report.steps > 0 {
+        let mut steps = 0;
+        while steps < limits.steps {
+            if steps > 0 {
                 self.contacts
                     .refresh_surfaces(model, state, &state.positions);
             }
             let share = self.chord(model, state, inertia, &mut pairs, limits);
-            report.settled = share.is_none();
-            report.steps += usize::from(share > Some(0.0));
-            if share < Some(CUT) {
+            steps += usize::from(share > 0.0);
+            if share < CUT {
                 break;
             }
         }
-        if report.steps > 0 && !self.hold_back(model, state, start.positions.clone()) {
+        if steps > 0 && !self.hold_back(model, state, start.positions.clone()) {
             *state = start;
-            return ChordReport::default();
+            return 0;
         }
-        report
+        steps
     }
 
-    /// One step with the contacts in hand; the share of it that was taken, none where nothing is left to do.
+    /// One step with the contacts in hand; the share of it that was taken.
     fn chord(
         &mut self,
         model: &Model,
@@ -77,18 +67,15 @@ impl Workspace {
         inertia: &Inertia,
         pairs: &mut Pairs,
         limits: ChordLimits,
-    ) -> Option<f64> {
+    ) -> f64 {
         self.fill_gradient(model, &state.positions, Some(inertia));
         let norm = dot(&self.gradient, &self.gradient).sqrt();
-        if norm <= limits.tolerance {
-            return None;
-        }
-        if !norm.is_finite() {
-            return Some(0.0);
+        if !norm.is_finite() || norm <= limits.tolerance {
+            return 0.0;
         }
         pairs.note(&state.positions, &self.gradient, limits.steps);
         let Some(direct) = &mut self.direct else {
-            return Some(0.0);
+            return 0.0;
         };
         let mut solved = false;
         pairs.aim(&mut self.direction, |q, r| {
@@ -96,7 +83,7 @@ impl Workspace {
         });
         self.turn_gradient();
         if !solved || dot(&self.gradient, &self.direction) <= 0.0 {
-            return Some(0.0);
+            return 0.0;
         }
         self.limit_moves(limits.longest_move);
         let share = self.line_search(model, &state.positions, inertia);
@@ -104,7 +91,7 @@ impl Workspace {
             std::mem::swap(&mut state.positions, &mut self.trial);
             self.contacts.settle(model, state);
         }
-        Some(share)
+        share
     }
 }
 
@@ -159,9 +146,7 @@ mod tests {
         );
         let before = residual(&model, &state, &mut workspace);
         let start = state.positions.clone();
-        let steps = workspace
-            .follow_on(&model, &mut state, &inertia, LIMITS)
-            .steps;
+        let steps = workspace.follow_on(&model, &mut state, &inertia, LIMITS);
         assert_eq!(steps == 0, state.positions == start);
         (steps, [before, residual(&model, &state, &mut workspace)])
     }
@@ -188,7 +173,6 @@ mod tests {
             target: &state.positions.clone(),
         };
         state.positions[800].x = f64::NAN;
-        let report = workspace.follow_on(&model, &mut state, &inertia, LIMITS);
-        assert_eq!(report, ChordReport::default());
+        assert_eq!(workspace.follow_on(&model, &mut state, &inertia, LIMITS), 0);
     }
 }
