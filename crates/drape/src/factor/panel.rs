@@ -1,7 +1,8 @@
 //! Solving with the columns of the factor that belong to one front.
 //!
 //! A solve reads every number of the factor twice and does two operations with it: memory sets its
-//! pace. So columns are read side by side, from top to bottom, each number once.
+//! pace. So columns are fetched in the order they lie in, as many as the cache holds, and then worked on
+//! side by side.
 
 use super::dense::Number;
 use super::layout::stride;
@@ -31,7 +32,7 @@ pub struct Panel<'a, T> {
 }
 
 impl<'a, T: Number> Panel<'a, T> {
-    /// The columns of so many pivots with so many rows below them.
+    /// The columns of so many pivots, one or more, with so many rows below them.
     pub fn new(values: &'a [T], pivots: usize, below: usize) -> Self {
         let rows = pivots + below;
         Self {
@@ -56,7 +57,7 @@ impl<'a, T: Number> Panel<'a, T> {
     /// Runs of columns that fit the second-level cache together.
     #[inline(always)]
     fn runs(&self) -> impl DoubleEndedIterator<Item = Range<usize>> + use<T> {
-        let width = (RUN / self.stride.max(1)).next_multiple_of(WIDTH);
+        let width = (RUN / self.stride).max(1).next_multiple_of(WIDTH);
         let pivots = self.pivots;
         let firsts = (0..pivots).step_by(width);
         firsts.map(move |first| first..pivots.min(first + width))
@@ -199,4 +200,18 @@ fn products<T: Number, const W: usize>(columns: [&[T]; W], with: &[T]) -> [T; W]
         let rest = ends.iter().zip(split[k].1);
         rest.fold(sum, |sum, (&with, &number)| sum + number * with)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_hold_every_column_once_however_long_it_is() {
+        for (pivots, below) in [(1, 0), (3, 8), (300, 20), (5, 2 * RUN), (8, 200 * RUN)] {
+            let panel = Panel::<f64>::new(&[], pivots, below);
+            let columns: Vec<usize> = panel.runs().flatten().collect();
+            assert_eq!(columns, (0..pivots).collect::<Vec<_>>());
+        }
+    }
 }
