@@ -6,6 +6,8 @@
 
 use super::dense::Number;
 use super::layout::stride;
+use faer::MatMut;
+use faer::prelude::ReborrowMut;
 use pulp::{Arch, NullaryFnOnce};
 use std::array::from_fn;
 use std::hint::black_box;
@@ -16,6 +18,9 @@ const WIDTH: usize = 4;
 
 /// Rows worked on at a time.
 const LANES: usize = 8;
+
+/// Lines of the cache asked for at a time.
+const STREAMS: usize = 4;
 
 /// Numbers fetched before they are worked on: a quarter of a megabyte.
 const RUN: usize = 1 << 15;
@@ -67,32 +72,42 @@ impl<'a, T: Number> Panel<'a, T> {
     /// four streams at a time, or backward, come at half that pace.
     #[inline(always)]
     fn fetch(&self, run: &Range<usize>) {
-        let (mut from, to) = (run.start * (self.stride + 1), run.end * self.stride);
-        let mut sum = T::rounded(0.0);
-        while from < to {
-            sum += self.values[from];
-            from += LANES;
+        let values = &self.values[run.start * self.stride..run.end * self.stride];
+        let lines = values.chunks_exact(STREAMS * LANES);
+        let mut sum = [T::rounded(0.0); STREAMS];
+        for numbers in lines {
+            sum = from_fn(|k| sum[k] + numbers[k * LANES]);
         }
         black_box(sum);
     }
 
-    /// x <- y of L y = x for the triangle; below <- below - (rows below) y.
-    pub fn forward(&self, x: &mut [T], below: &mut [T]) {
+    /// x <- y of L y = x for the triangle; below <- below - (rows below) y. A column of x and of
+    /// below for each right-hand side.
+    pub fn forward(&self, x: MatMut<'_, T>, below: &mut [T]) {
         let panel = *self;
         Arch::new().dispatch(Forward { panel, x, below });
     }
 
     #[inline(always)]
-    fn go_forward(&self, x: &mut [T], below: &mut [T]) {
+    fn go_forward(&self, mut x: MatMut<'_, T>, below: &mut [T]) {
+        let height = self.rows - self.pivots;
         for run in self.runs() {
             self.fetch(&run);
-            let whole = run.end - run.len() % WIDTH;
-            for first in (run.start..whole).step_by(WIDTH) {
-                self.forward_some::<WIDTH>(first, x, below);
+            for k in 0..x.ncols() {
+                let below = &mut below[k * height..][..height];
+                self.forward_run(&run, slice(&mut x, k), below);
             }
-            for first in whole..run.end {
-                self.forward_some::<1>(first, x, below);
-            }
+        }
+    }
+
+    #[inline(always)]
+    fn forward_run(&self, run: &Range<usize>, x: &mut [T], below: &mut [T]) {
+        let whole = run.end - run.len() % WIDTH;
+        for first in (run.start..whole).step_by(WIDTH) {
+            self.forward_some::<WIDTH>(first, x, below);
+        }
+        for first in whole..run.end {
+            self.forward_some::<1>(first, x, below);
         }
     }
 
@@ -109,23 +124,33 @@ impl<'a, T: Number> Panel<'a, T> {
         take(below, self.columns(first, self.pivots..self.rows), y);
     }
 
-    /// x <- z of L^T z = x - (rows below)^T below.
-    pub fn backward(&self, x: &mut [T], below: &[T]) {
+    /// x <- z of L^T z = x - (rows below)^T below. A column of x and of below for each right-hand
+    /// side.
+    pub fn backward(&self, x: MatMut<'_, T>, below: &[T]) {
         let panel = *self;
         Arch::new().dispatch(Backward { panel, x, below });
     }
 
     #[inline(always)]
-    fn go_backward(&self, x: &mut [T], below: &[T]) {
+    fn go_backward(&self, mut x: MatMut<'_, T>, below: &[T]) {
+        let height = self.rows - self.pivots;
         for run in self.runs().rev() {
             self.fetch(&run);
-            let whole = run.end - run.len() % WIDTH;
-            for first in (whole..run.end).rev() {
-                self.backward_some::<1>(first, x, below);
+            for k in 0..x.ncols() {
+                let below = &below[k * height..][..height];
+                self.backward_run(&run, slice(&mut x, k), below);
             }
-            for first in (run.start..whole).step_by(WIDTH).rev() {
-                self.backward_some::<WIDTH>(first, x, below);
-            }
+        }
+    }
+
+    #[inline(always)]
+    fn backward_run(&self, run: &Range<usize>, x: &mut [T], below: &[T]) {
+        let whole = run.end - run.len() % WIDTH;
+        for first in (whole..run.end).rev() {
+            self.backward_some::<1>(first, x, below);
+        }
+        for first in (run.start..whole).step_by(WIDTH).rev() {
+            self.backward_some::<WIDTH>(first, x, below);
         }
     }
 
@@ -145,7 +170,7 @@ impl<'a, T: Number> Panel<'a, T> {
 
 struct Forward<'a, T> {
     panel: Panel<'a, T>,
-    x: &'a mut [T],
+    x: MatMut<'a, T>,
     below: &'a mut [T],
 }
 
@@ -160,7 +185,7 @@ impl<T: Number> NullaryFnOnce for Forward<'_, T> {
 
 struct Backward<'a, T> {
     panel: Panel<'a, T>,
-    x: &'a mut [T],
+    x: MatMut<'a, T>,
     below: &'a [T],
 }
 
@@ -171,6 +196,13 @@ impl<T: Number> NullaryFnOnce for Backward<'_, T> {
     fn call(self) {
         self.panel.go_backward(self.x, self.below);
     }
+}
+
+/// A column as numbers side by side.
+#[inline(always)]
+fn slice<'a, T: Number>(x: &'a mut MatMut<'_, T>, column: usize) -> &'a mut [T] {
+    let column = x.rb_mut().col_mut(column).try_as_col_major_mut();
+    column.expect("columns of x are whole").as_slice_mut()
 }
 
 /// out <- out - columns y

@@ -152,12 +152,7 @@ impl<T: Number> Substitution<'_, T> {
         if pivots == 0 {
             return;
         }
-        let panel = self.panel(f);
-        for k in 0..self.columns {
-            let x = pivot_rows.rb_mut().col_mut(k).try_as_col_major_mut();
-            let below = &mut own[k * rows..(k + 1) * rows];
-            panel.forward(x.expect("columns of x are whole").as_slice_mut(), below);
-        }
+        self.panel(f).forward(pivot_rows, own);
     }
 
     /// L^T x = y for a unit and all below it, in place; `above` holds what follows its part.
@@ -198,12 +193,7 @@ impl<T: Number> Substitution<'_, T> {
             .rb_mut()
             .subrows_mut((front.first as usize - part.first) * d, pivots * d);
         if pivots > 0 {
-            let panel = self.panel(f);
-            for k in 0..self.columns {
-                let x = pivot_rows.rb_mut().col_mut(k).try_as_col_major_mut();
-                let below = &own[k * rows..(k + 1) * rows];
-                panel.backward(x.expect("columns of x are whole").as_slice_mut(), below);
-            }
+            self.panel(f).backward(pivot_rows.rb_mut(), own);
         }
         for &c in &front.children {
             let child = &self.symbolic.fronts[c as usize];
