@@ -3,7 +3,7 @@
 
 use super::boxes::{Bounds, BoxTree, CLUSTER};
 use super::regions::Ways;
-use pulp::Arch;
+use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
@@ -250,6 +250,40 @@ fn origin(ways: &Ways) -> Vec3 {
     ways.from.iter().find(known).copied().unwrap_or_default()
 }
 
+/// Vertices and faces, and edges, of two clusters or one to be held against each other, their boxes made smaller
+/// by so much [m]. What is no closure is compiled for the vectors that the processor has.
+struct Near<'a>(&'a Clusters, [u32; 2], f32, &'a mut Hits);
+
+impl NullaryFnOnce for Near<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self(clusters, [a, b], less, hits) = self;
+        clusters.meet(Against::VertexFace, [a, b], less, &mut hits.vertex_face);
+        if a != b {
+            clusters.meet(Against::VertexFace, [b, a], less, &mut hits.vertex_face);
+        }
+        clusters.meet(Against::EdgeEdge, [a, b], less, &mut hits.edge_edge);
+    }
+}
+
+/// The same of edges and faces.
+struct Crossing<'a>(&'a Clusters, [u32; 2], f32, &'a mut Hits);
+
+impl NullaryFnOnce for Crossing<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self(clusters, [a, b], less, hits) = self;
+        clusters.meet(Against::EdgeFace, [a, b], less, &mut hits.edge_face);
+        if a != b {
+            clusters.meet(Against::EdgeFace, [b, a], less, &mut hits.edge_face);
+        }
+    }
+}
+
 impl Hits {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
@@ -388,38 +422,23 @@ impl Clusters {
     /// Vertices and faces, and edges, whose boxes come within a distance of each other [m], and some more, of
     /// two clusters or one.
     pub fn near_within(&self, arch: Arch, pair: [u32; 2], distance: f64, hits: &mut Hits) {
-        arch.dispatch(|| self.meet_near(pair, self.wider(distance), hits));
+        let less = self.wider(distance);
+        arch.dispatch(Near(self, pair, less, hits));
     }
 
     /// The same of edges and faces.
     pub fn piercing_within(&self, arch: Arch, pair: [u32; 2], distance: f64, hits: &mut Hits) {
-        arch.dispatch(|| self.meet_crossing(pair, self.wider(distance), hits));
+        let less = self.wider(distance);
+        arch.dispatch(Crossing(self, pair, less, hits));
     }
 
     fn wider(&self, distance: f64) -> f32 {
         -((distance + self.rounding) as f32).next_up()
     }
 
-    #[inline(always)]
-    fn meet_near(&self, [a, b]: [u32; 2], less: f32, hits: &mut Hits) {
-        self.meet(Against::VertexFace, [a, b], less, &mut hits.vertex_face);
-        if a != b {
-            self.meet(Against::VertexFace, [b, a], less, &mut hits.vertex_face);
-        }
-        self.meet(Against::EdgeEdge, [a, b], less, &mut hits.edge_edge);
-    }
-
-    #[inline(always)]
-    fn meet_crossing(&self, [a, b]: [u32; 2], less: f32, hits: &mut Hits) {
-        self.meet(Against::EdgeFace, [a, b], less, &mut hits.edge_face);
-        if a != b {
-            self.meet(Against::EdgeFace, [b, a], less, &mut hits.edge_face);
-        }
-    }
-
     /// Edges and faces whose ways meet, of two clusters or one.
     pub fn crossing(&self, arch: Arch, pair: [u32; 2], hits: &mut Hits) {
-        arch.dispatch(|| self.meet_crossing(pair, self.slack, hits));
+        arch.dispatch(Crossing(self, pair, self.slack, hits));
     }
 
     /// Holds features of the first cluster against those of the second.

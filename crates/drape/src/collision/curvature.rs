@@ -8,7 +8,7 @@
 
 use super::boxes::{BoxTree, Node, Region};
 use crate::merge_map;
-use pulp::Arch;
+use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 use std::sync::LazyLock;
 use toile_geometry::Vec3;
@@ -207,21 +207,18 @@ impl Curvature {
             for leaf in 0..tree.leaves() {
                 wanted[leaf + 1] += wanted[leaf];
             }
-            let (barred, keeps, places) = (&self.barred, &self.keeps, &*PLACES);
-            let arch = Arch::new();
-            let of_item = |&t: &u32| {
-                if barred[t as usize] {
-                    return 0;
-                }
-                let corners = triangles[t as usize].map(|v| x[v as usize]);
-                let keeps = triangles[t as usize].map(|v| keeps[v as usize]);
-                faced(places, &corners, &keeps, clearance.budget(level))
-            };
+            let (barred, keeps, places) = (&*self.barred, &*self.keeps, &*PLACES);
+            let (arch, stray) = (Arch::new(), clearance.budget(level));
             let facing = |leaf: usize| match wanted[leaf] {
                 0 => 0,
-                _ => arch.dispatch(|| {
-                    let all = tree.items(leaf).iter().map(of_item);
-                    all.fold(u64::MAX, |all, own| all & own)
+                _ => arch.dispatch(Facing {
+                    items: tree.items(leaf),
+                    triangles,
+                    x,
+                    barred,
+                    keeps,
+                    places,
+                    stray,
                 }),
             };
             let leaves = (0..tree.leaves()).into_par_iter().with_min_len(16);
@@ -304,6 +301,42 @@ fn joined(a: &[Half], b: &[Half]) -> Vec<Half> {
     joined.extend_from_slice(&a[i..]);
     joined.extend_from_slice(&b[j..]);
     joined
+}
+
+/// Triangles whose common directions are asked for. What is no closure is compiled for the vectors that the
+/// processor has.
+struct Facing<'a> {
+    items: &'a [u32],
+    triangles: &'a [[u32; 3]],
+    x: &'a [Vec3],
+    barred: &'a [bool],
+    keeps: &'a [f64],
+    places: &'a [[f32; DIRECTIONS]; 3],
+    /// How far corners stray [m].
+    stray: f64,
+}
+
+impl NullaryFnOnce for Facing<'_> {
+    type Output = u64;
+
+    #[inline(always)]
+    fn call(self) -> u64 {
+        let mut all = u64::MAX;
+        for &t in self.items {
+            if self.barred[t as usize] {
+                return 0;
+            }
+            let [a, b, c] = self.triangles[t as usize];
+            let corners = [self.x[a as usize], self.x[b as usize], self.x[c as usize]];
+            let keeps = [
+                self.keeps[a as usize],
+                self.keeps[b as usize],
+                self.keeps[c as usize],
+            ];
+            all &= faced(self.places, &corners, &keeps, self.stray);
+        }
+        all
+    }
 }
 
 /// The directions that a triangle faces and will face while its corners stray.

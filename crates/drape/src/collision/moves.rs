@@ -6,11 +6,14 @@
 
 use super::boxes::{Bounds, Region};
 use super::regions::Cloth;
-use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 
 /// Below this no turn is looked for [m].
 const LITTLE: f64 = 3e-4;
+
+/// Below this share of the cube of their sum the moments of inertia are those of places in a line, which
+/// tell no turn.
+const STRAIGHT: f64 = 1e-9;
 
 /// Moves of the vertices below every node.
 #[derive(Debug)]
@@ -27,8 +30,8 @@ struct Sums {
     count: f64,
     places: Vec3,
     moves: Vec3,
-    /// x . x and x x^T.
-    squares: Matrix3<f64>,
+    /// x x, y y, z z, and y z, z x, x y.
+    squares: [Vec3; 2],
     /// x x d.
     moments: Vec3,
 }
@@ -38,7 +41,8 @@ impl Sums {
         self.count += 1.0;
         self.places += x;
         self.moves += d;
-        self.squares += x * x.transpose();
+        self.squares[0] += x.component_mul(&x);
+        self.squares[1] += Vec3::new(x.y * x.z, x.z * x.x, x.x * x.y);
         self.moments += x.cross(&d);
     }
 
@@ -47,7 +51,7 @@ impl Sums {
             count: self.count + other.count,
             places: self.places + other.places,
             moves: self.moves + other.moves,
-            squares: self.squares + other.squares,
+            squares: [0, 1].map(|k| self.squares[k] + other.squares[k]),
             moments: self.moments + other.moments,
         }
     }
@@ -55,13 +59,29 @@ impl Sums {
     /// The shift and turn nearest to the moves, in the mean of squares.
     fn motion(&self) -> Motion {
         let (centre, shift) = (self.places / self.count, self.moves / self.count);
-        let spread = self.squares - centre * self.places.transpose();
-        let inertia = Matrix3::identity() * spread.trace() - spread;
+        let places = self.places;
+        let spread = self.squares[0] - centre.component_mul(&places);
+        let [a, b, c] = [
+            spread.y + spread.z,
+            spread.z + spread.x,
+            spread.x + spread.y,
+        ];
+        let products = Vec3::new(
+            places.y * centre.z,
+            places.z * centre.x,
+            places.x * centre.y,
+        );
+        let [d, e, f] = (products - self.squares[1]).into();
         let moment = self.moments - centre.cross(&self.moves);
-        let turn = inertia
-            .cholesky()
-            .map_or(Vec3::zeros(), |l| l.solve(&moment));
-        let known = turn.iter().all(|c| c.is_finite());
+        // The inertia [[a, f, e], [f, b, d], [e, d, c]] is undone by its cofactors.
+        let rows = [
+            Vec3::new(b * c - d * d, d * e - c * f, f * d - b * e),
+            Vec3::new(d * e - c * f, a * c - e * e, e * f - a * d),
+            Vec3::new(f * d - b * e, e * f - a * d, a * b - f * f),
+        ];
+        let determinant = a * rows[0].x + f * rows[0].y + e * rows[0].z;
+        let turn = Vec3::from(rows.map(|row| row.dot(&moment))) / determinant;
+        let known = determinant > STRAIGHT * (a + b + c).powi(3) && turn.norm().is_finite();
         Motion {
             centre,
             shift,
@@ -191,5 +211,37 @@ impl Moves {
             }
         };
         turned.min(shifted)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::numbers::Numbers;
+    use super::*;
+
+    fn motion_of(places: &[Vec3], of: impl Fn(Vec3) -> Vec3) -> Motion {
+        let mut sums = Sums::default();
+        places.iter().for_each(|&x| sums.add(x, of(x)));
+        sums.motion()
+    }
+
+    #[test]
+    fn a_shift_and_a_turn_are_found_where_places_tell_them() {
+        let mut numbers = Numbers(1);
+        let mut vector = |size: f64| numbers.vector(0.5 * size);
+        for _ in 0..100 {
+            let (centre, shift, turn) = (vector(2.0), vector(0.01), vector(0.1));
+            let rigid = |x: Vec3| shift + turn.cross(&(x - centre));
+            let places: Vec<Vec3> = (0..12).map(|_| centre + vector(0.02)).collect();
+            let motion = motion_of(&places, rigid);
+            for x in places {
+                assert!((motion.at(x) - rigid(x)).norm() < 1e-9);
+            }
+            let along = vector(1.0);
+            let line: Vec<Vec3> = (0..12).map(|k| centre + along * f64::from(k)).collect();
+            assert_eq!(motion_of(&line, rigid).turn, Vec3::zeros());
+        }
+        let nowhere = motion_of(&[Vec3::repeat(f64::NAN)], |x| x);
+        assert_eq!(nowhere.turn, Vec3::zeros());
     }
 }

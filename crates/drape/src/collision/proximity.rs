@@ -43,7 +43,7 @@ impl Nearness {
     /// count only where the closest points are inside both: their ends are seen to by their faces.
     pub fn measure(pair: FeaturePair, x: &[Vec3], reach: f64) -> Option<Self> {
         let p = pair.vertices().map(|v| x[v as usize]);
-        if is_far(pair, &p, reach) {
+        if is_far(pair, &p, reach) || passes_by(pair, &p) {
             return None;
         }
         let weights = closest(pair, &p);
@@ -120,6 +120,22 @@ pub(super) fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
         && square > PARALLEL * sides[0].norm_squared() * sides[1].norm_squared()
 }
 
+/// Whether two edges, not parallel, pass by each other: the lines through them are nearest where one of the
+/// edges is not. So do nearly all of a smooth sheet, at any distance.
+#[inline(always)]
+fn passes_by(pair: FeaturePair, p: &[Vec3; 4]) -> bool {
+    let FeaturePair::EdgeEdge(_) = pair else {
+        return false;
+    };
+    let (u, v, w) = (p[1] - p[0], p[3] - p[2], p[0] - p[2]);
+    let (uu, vv, uv) = (u.norm_squared(), v.norm_squared(), u.dot(&v));
+    let (uw, vw) = (u.dot(&w), v.dot(&w));
+    let square = uu * vv - uv * uv;
+    let (s, t) = (uv * vw - uw * vv, uu * vw - uv * uw);
+    let inside = s > 0.0 && s < square && t > 0.0 && t < square;
+    !inside && square > PARALLEL * uu * vv
+}
+
 /// Neighbours are looked for at this many times the distance that they keep.
 const NEIGHBOURS_REACH: f64 = 2.0;
 
@@ -137,7 +153,8 @@ pub fn nearnesses<'a>(
         (b - a).cross(&(c - a))
     };
     let mut found = surface.features(near, |pair, owners, found| {
-        if is_far(pair, &pair.vertices().map(|v| x[v as usize]), reach.most) {
+        let p = pair.vertices().map(|v| x[v as usize]);
+        if is_far(pair, &p, reach.most) || passes_by(pair, &p) {
             return;
         }
         let reach = reach.of(pair);
