@@ -261,29 +261,19 @@ impl BoxTree {
     }
 
     /// What some values of the leaves below every node come to, in the order of the nodes' boxes.
-    pub fn folded<T: Clone + Send>(
+    pub fn folded<T: Clone + Send + Sync>(
         &self,
         value: impl Fn(usize) -> T + Sync,
-        join: impl Fn(&T, &T) -> T,
+        join: impl Fn(&T, &T) -> T + Sync,
     ) -> Vec<T> {
         let leaves = (0..self.leaves()).into_par_iter().with_min_len(32);
-        let mut leaves: Vec<T> = leaves.map(&value).collect();
-        // From the last node to the first, so children come before their parents.
-        let mut backward: Vec<T> = Vec::with_capacity(self.counts.len());
-        let last = self.counts.len().wrapping_sub(1);
-        for (at, &count) in self.counts.iter().enumerate().rev() {
-            let value = match count {
-                1 => leaves.pop(),
-                _ => {
-                    let second = at + 2 * (count as usize / 2);
-                    let [first, second] = [at + 1, second].map(|at| &backward[last - at]);
-                    Some(join(first, second))
-                }
-            };
-            backward.extend(value);
-        }
-        backward.reverse();
-        backward
+        let leaves: Vec<T> = leaves.map(&value).collect();
+        let Some(first) = leaves.first() else {
+            return Vec::new();
+        };
+        let mut all = vec![first.clone(); self.counts.len()];
+        fold(&leaves, &mut all, &join);
+        all
     }
 
     /// Whether the boxes of a region's nodes meet.
@@ -378,6 +368,32 @@ impl BoxTree {
         }
         all
     }
+}
+
+/// Nodes of more leaves are folded by two threads.
+const SHARED: usize = 64;
+
+/// Fills the values of a node and all below it from those of its leaves.
+fn fold<T: Clone + Send + Sync>(leaves: &[T], all: &mut [T], join: &(impl Fn(&T, &T) -> T + Sync)) {
+    let Some((own, below)) = all.split_first_mut() else {
+        return;
+    };
+    if let [leaf] = leaves {
+        own.clone_from(leaf);
+        return;
+    }
+    let half = leaves.len() / 2;
+    let (first, second) = below.split_at_mut(2 * half - 1);
+    let (of_first, of_second) = leaves.split_at(half);
+    let mut fold_first = || fold(of_first, first, join);
+    let mut fold_second = || fold(of_second, second, join);
+    if leaves.len() > SHARED {
+        rayon::join(fold_first, fold_second);
+    } else {
+        fold_first();
+        fold_second();
+    }
+    *own = join(&first[0], &second[0]);
 }
 
 /// The regions that make up one, of those to keep.

@@ -13,6 +13,7 @@ use super::tangle::{Drawn, Piercing, crossed_for, crossings, keep_on, loose_roun
 use crate::laws::contact::{ContactLaw, ContactPlane};
 use crate::{Model, State};
 use nalgebra::Matrix3;
+use rayon::prelude::*;
 use std::cmp::Ordering;
 use toile_geometry::Vec3;
 
@@ -257,13 +258,14 @@ impl ClothContacts {
             layer: &model.layer,
         };
         let mut active = std::mem::take(&mut self.active);
-        for near in nearnesses(&self.surface, Near::Listed, x, reach) {
+        let contact = |near: &Nearness| {
             let vertices = near.pair.vertices();
             let fixed = vertices.iter().all(|&v| model.pinned[v as usize]);
-            if !fixed && !knots.lets_go(near.pair) {
-                active.push(self.contact(model, state, x, &near));
-            }
-        }
+            let kept = !fixed && !knots.lets_go(near.pair);
+            kept.then(|| self.contact(model, state, x, near))
+        };
+        let found = nearnesses(&self.surface, Near::Listed, x, reach);
+        active.par_extend(found.par_iter().with_min_len(256).filter_map(contact));
         let mut ways = piercings(&self.surface, &own, x);
         self.drawn = keep_on(&mut ways, &state.cloth.drawn);
         ways.extend(ways_out(&self.surface, &across, x));

@@ -13,6 +13,7 @@ use super::reach::Reach;
 use super::regions::{Cloth, Leave, Regions, Ways};
 use super::surface::FeaturePair;
 use pulp::Arch;
+use rayon::iter::Either;
 use rayon::prelude::*;
 use std::sync::Arc;
 use toile_geometry::Vec3;
@@ -405,13 +406,24 @@ impl Front {
         let tree = cloth.tree;
         let parted = Parted { tree, asked };
         let found = regions.search(cloth, (x, expired), asked.clearance, &parted);
-        self.parts.extend(found.notes.into_iter().flatten());
-        let (listed, open): (Vec<[u32; 2]>, Vec<_>) =
-            (found.pairs.iter()).partition(|pair| asked.lists(&tree.region(**pair)));
-        let open = open.iter().map(|&pair| tree.region(pair));
-        let open = open.map(|region| Part::new(region, End::Open, asked.on_the_way(&region)));
+        for mut parts in found.notes {
+            self.parts.append(&mut parts);
+        }
+        let end = |&pair: &[u32; 2]| {
+            let region = tree.region(pair);
+            match asked.lists(&region) {
+                true => Either::Left(pair),
+                false => Either::Right(Part::new(region, End::Open, asked.on_the_way(&region))),
+            }
+        };
+        let pairs = found.pairs.par_iter().with_min_len(64);
+        let (listed, open): (Vec<[u32; 2]>, Vec<Part>) = pairs.partition_map(end);
         self.parts.extend(open);
-        clusters.fit_some(&Ways::still(x), cloth.corners(), &of_pairs(&listed));
+        clusters.fit_some(
+            &Ways::still(x),
+            cloth.corners(),
+            &of_pairs(cloth, listed.iter().copied()),
+        );
         let (arch, clusters) = (Arch::new(), &*clusters);
         let list = |hits: &mut Hits, &pair: &[u32; 2]| {
             let region = tree.region(pair);
@@ -459,33 +471,28 @@ impl Front {
             None => vec![true; leaves.len()],
             Some(_) => leaves.map(marked).collect(),
         };
-        let open = self
-            .parts
-            .iter()
-            .filter(|part| matches!(part.end, End::Open));
-        let pair = |part: &Part| {
+        let open = |part: &Part| {
             let mut leaves = part.region.nodes().map(|node| node.first);
-            let first = leaves.next().unwrap_or(0);
-            (
-                [first, leaves.next().unwrap_or(first)],
-                asked.near.of(&part.region, 1.0),
-            )
+            let first = leaves.next()?;
+            let pair = [first, leaves.next().unwrap_or(first)];
+            let asked_for =
+                matches!(part.end, End::Open) && pair.iter().any(|&leaf| marked[leaf as usize]);
+            asked_for.then(|| (pair, asked.near.of(&part.region, 1.0)))
         };
-        let open = open.map(pair);
-        self.open.clear();
-        let any = |pair: [u32; 2]| pair.iter().any(|&leaf| marked[leaf as usize]);
-        self.open.extend(open.filter(|(pair, _)| any(*pair)));
-        let pairs: Vec<[u32; 2]> = self.open.iter().map(|(pair, _)| *pair).collect();
-        clusters.fit_some(ways, cloth.corners(), &of_pairs(&pairs));
+        let parts = self.parts.par_iter().with_min_len(512);
+        self.open = parts.filter_map(open).collect();
+        let pairs = self.open.iter().map(|(pair, _)| *pair);
+        let clusters_of_pairs = of_pairs(cloth, pairs);
+        clusters.fit_some(ways, cloth.corners(), &clusters_of_pairs);
     }
 }
 
-/// The clusters of some pairs.
-fn of_pairs(pairs: &[[u32; 2]]) -> Vec<u32> {
-    let mut clusters: Vec<u32> = pairs.iter().flatten().copied().collect();
-    clusters.sort_unstable();
-    clusters.dedup();
-    clusters
+/// The clusters of some pairs, sorted.
+fn of_pairs(cloth: &Cloth, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
+    let mut named = vec![false; cloth.tree.leaves()];
+    pairs.flatten().for_each(|leaf| named[leaf as usize] = true);
+    let leaves = 0..named.len() as u32;
+    leaves.filter(|&leaf| named[leaf as usize]).collect()
 }
 
 /// The mean of the shortest edges at the vertices of every cluster [m].

@@ -208,4 +208,25 @@ mod tests {
         }
         assert!(told > 1000, "{told}");
     }
+
+    #[test]
+    fn edges_pass_by_each_other_where_an_end_is_nearest() {
+        let mut numbers = Numbers(1);
+        let mut vector = |size: f64| numbers.vector(0.5 * size);
+        let pair = FeaturePair::EdgeEdge([0, 1, 2, 3]);
+        let mut told = [0; 2];
+        for turn in [0.0, 1e-15, 1e-7, 1e-3, 1.0] {
+            for _ in 0..2000 {
+                let (start, along, other) = (vector(2.0), vector(1.0), vector(2.0));
+                let end = other + along + vector(turn);
+                let p = [start, start + along, other, end];
+                let weights = closest(pair, &p);
+                let least = weights.iter().fold(1.0, |least: f64, w| least.min(w.abs()));
+                let passes = passes_by(pair, &p);
+                assert!(least < 1e-7 || !passes, "{turn} {weights:?}");
+                told[usize::from(passes)] += 1;
+            }
+        }
+        assert!(told[0] > 2000 && told[1] > 2000, "{told:?}");
+    }
 }

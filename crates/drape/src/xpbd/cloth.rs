@@ -5,6 +5,7 @@ use super::{Xpbd, XpbdReport, middle};
 use crate::collision::{Ahead, ClothContact, ClothContacts, Kept, Motions, Reach};
 use crate::laws::contact::HARDER;
 use crate::{DrapeError, Model, State};
+use rayon::prelude::*;
 use toile_geometry::Vec3;
 
 /// Some substeps.
@@ -97,7 +98,7 @@ impl ClothWatch {
             let velocity: Vec3 = four.map(|(&v, w)| velocities[v as usize] * w).sum();
             velocity.norm()
         };
-        let contacts = self.contacts.active.iter();
+        let contacts = self.contacts.active.par_iter().with_min_len(256);
         let pressed = contacts.filter(|contact| contact.plane.depth > 0.0);
         let mut speeds: Vec<f64> = pressed.map(speed).collect();
         let at = (SHIFTING * speeds.len() as f64) as usize;
@@ -223,7 +224,8 @@ impl Xpbd {
                 restitution: contact.restitution.map(|e| e as f32),
             }
         };
-        let stencils = contacts.iter().flat_map(|contact| {
+        let contacts = contacts.par_iter().with_min_len(256);
+        let stencils = contacts.flat_map_iter(|contact| {
             let (depth, law) = (contact.plane.depth, &contact.law);
             let soft = stencil(contact, depth, law.normal);
             let hard = depth + way > law.hard_from;
@@ -232,7 +234,7 @@ impl Xpbd {
         });
         let held = &mut self.regions.rest.contacts;
         held.truncate(self.sample_contacts);
-        held.extend(stencils);
+        held.par_extend(stencils);
     }
 }
 
