@@ -370,7 +370,7 @@ impl BoxTree {
     }
 }
 
-/// Nodes of more leaves are folded by two threads.
+/// Nodes of more leaves than this have both sides folded at a time.
 const SHARED: usize = 64;
 
 /// Fills the values of a node and all below it from those of its leaves.

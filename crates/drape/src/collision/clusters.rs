@@ -250,16 +250,32 @@ fn origin(ways: &Ways) -> Vec3 {
     ways.from.iter().find(known).copied().unwrap_or_default()
 }
 
-/// Vertices and faces, and edges, of two clusters or one to be held against each other, their boxes made smaller
-/// by so much [m]. What is no closure is compiled for the vectors that the processor has.
-struct Near<'a>(&'a Clusters, [u32; 2], f32, &'a mut Hits);
+/// Vertices and faces, and edges, of two clusters or one to be held against each other. A type of its own, since
+/// a closure would not be compiled for the processor's vectors.
+struct HoldNear<'a>(Hold<'a>);
 
-impl NullaryFnOnce for Near<'_> {
+/// The same of edges and faces.
+struct HoldCrossing<'a>(Hold<'a>);
+
+struct Hold<'a> {
+    clusters: &'a Clusters,
+    pair: [u32; 2],
+    /// By how much boxes are made smaller [m].
+    less: f32,
+    hits: &'a mut Hits,
+}
+
+impl NullaryFnOnce for HoldNear<'_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self(clusters, [a, b], less, hits) = self;
+        let Hold {
+            clusters,
+            pair: [a, b],
+            less,
+            hits,
+        } = self.0;
         clusters.meet(Against::VertexFace, [a, b], less, &mut hits.vertex_face);
         if a != b {
             clusters.meet(Against::VertexFace, [b, a], less, &mut hits.vertex_face);
@@ -268,15 +284,17 @@ impl NullaryFnOnce for Near<'_> {
     }
 }
 
-/// The same of edges and faces.
-struct Crossing<'a>(&'a Clusters, [u32; 2], f32, &'a mut Hits);
-
-impl NullaryFnOnce for Crossing<'_> {
+impl NullaryFnOnce for HoldCrossing<'_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self(clusters, [a, b], less, hits) = self;
+        let Hold {
+            clusters,
+            pair: [a, b],
+            less,
+            hits,
+        } = self.0;
         clusters.meet(Against::EdgeFace, [a, b], less, &mut hits.edge_face);
         if a != b {
             clusters.meet(Against::EdgeFace, [b, a], less, &mut hits.edge_face);
@@ -423,13 +441,22 @@ impl Clusters {
     /// two clusters or one.
     pub fn near_within(&self, arch: Arch, pair: [u32; 2], distance: f64, hits: &mut Hits) {
         let less = self.wider(distance);
-        arch.dispatch(Near(self, pair, less, hits));
+        arch.dispatch(HoldNear(self.hold(pair, less, hits)));
     }
 
     /// The same of edges and faces.
     pub fn piercing_within(&self, arch: Arch, pair: [u32; 2], distance: f64, hits: &mut Hits) {
         let less = self.wider(distance);
-        arch.dispatch(Crossing(self, pair, less, hits));
+        arch.dispatch(HoldCrossing(self.hold(pair, less, hits)));
+    }
+
+    fn hold<'a>(&'a self, pair: [u32; 2], less: f32, hits: &'a mut Hits) -> Hold<'a> {
+        Hold {
+            clusters: self,
+            pair,
+            less,
+            hits,
+        }
     }
 
     fn wider(&self, distance: f64) -> f32 {
@@ -438,7 +465,7 @@ impl Clusters {
 
     /// Edges and faces whose ways meet, of two clusters or one.
     pub fn crossing(&self, arch: Arch, pair: [u32; 2], hits: &mut Hits) {
-        arch.dispatch(Crossing(self, pair, self.slack, hits));
+        arch.dispatch(HoldCrossing(self.hold(pair, self.slack, hits)));
     }
 
     /// Holds features of the first cluster against those of the second.

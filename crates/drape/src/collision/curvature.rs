@@ -9,7 +9,6 @@
 use super::boxes::{BoxTree, Node, Region};
 use crate::merge_map;
 use pulp::{Arch, NullaryFnOnce};
-use rayon::prelude::*;
 use std::sync::LazyLock;
 use toile_geometry::Vec3;
 
@@ -74,7 +73,6 @@ type Half = u32;
 /// What the mesh says of regions, and what they face now.
 #[derive(Clone, Debug, Default)]
 pub struct Curvature {
-    nodes: Vec<Node>,
     /// Triangles at an edge that is no plain border between two that turn alike.
     barred: Vec<bool>,
     /// Contours of the nodes, sorted, one after the other; where each begins.
@@ -163,7 +161,6 @@ impl Curvature {
             contours: of_node.concat(),
             starts,
             facing: [const { Vec::new() }; LEVELS],
-            nodes,
             clearance: None,
             keeps: Vec::new(),
         }
@@ -221,16 +218,7 @@ impl Curvature {
                     stray,
                 }),
             };
-            let leaves = (0..tree.leaves()).into_par_iter().with_min_len(16);
-            let leaves: Vec<u64> = leaves.map(facing).collect();
-            let all = &mut self.facing[level];
-            all.resize(self.nodes.len(), 0);
-            for node in self.nodes.iter().rev() {
-                all[node.at as usize] = match node.children() {
-                    None => leaves[node.first as usize],
-                    Some([left, right]) => all[left.at as usize] & all[right.at as usize],
-                };
-            }
+            self.facing[level] = tree.folded(facing, |a, b| a & b);
         }
     }
 
@@ -303,8 +291,8 @@ fn joined(a: &[Half], b: &[Half]) -> Vec<Half> {
     joined
 }
 
-/// Triangles whose common directions are asked for. What is no closure is compiled for the vectors that the
-/// processor has.
+/// Triangles whose common directions are asked for. A type of its own, since a closure would not be
+/// compiled for the processor's vectors.
 struct Facing<'a> {
     items: &'a [u32],
     triangles: &'a [[u32; 3]],

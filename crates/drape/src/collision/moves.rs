@@ -11,8 +11,8 @@ use toile_geometry::Vec3;
 /// Below this no turn is looked for [m].
 const LITTLE: f64 = 3e-4;
 
-/// Below this share of the cube of their sum the moments of inertia are those of places in a line, which
-/// tell no turn.
+/// Places whose moments of inertia have a product below this share of the cube of their sum lie in a line,
+/// and tell no turn.
 const STRAIGHT: f64 = 1e-9;
 
 /// Moves of the vertices below every node.
@@ -30,9 +30,9 @@ struct Sums {
     count: f64,
     places: Vec3,
     moves: Vec3,
-    /// x x, y y, z z, and y z, z x, x y.
+    /// Squares x^2, y^2, z^2 and products yz, zx, xy of the places [m2].
     squares: [Vec3; 2],
-    /// x x d.
+    /// Cross products of places and moves [m2].
     moments: Vec3,
 }
 

@@ -121,7 +121,7 @@ pub(super) fn is_far(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> bool {
 }
 
 /// Whether two edges, not parallel, pass by each other: the lines through them are nearest where one of the
-/// edges is not. So do nearly all of a smooth sheet, at any distance.
+/// edges is not. So do nearly all neighbours in a smooth sheet.
 #[inline(always)]
 fn passes_by(pair: FeaturePair, p: &[Vec3; 4]) -> bool {
     let FeaturePair::EdgeEdge(_) = pair else {

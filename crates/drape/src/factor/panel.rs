@@ -19,10 +19,11 @@ const WIDTH: usize = 4;
 /// Rows worked on at a time.
 const LANES: usize = 8;
 
-/// Lines of the cache asked for at a time.
-const STREAMS: usize = 4;
+/// Lines of the cache read side by side as they lie, half lines in single precision: sums need not wait for
+/// one another.
+const LINES: usize = 4;
 
-/// Numbers fetched before they are worked on: a quarter of a megabyte.
+/// Numbers fetched before they are worked on: a quarter of a megabyte in double precision.
 const RUN: usize = 1 << 15;
 
 /// Columns of the factor, a triangle on top and the rows below it.
@@ -59,7 +60,7 @@ impl<'a, T: Number> Panel<'a, T> {
         self.values[column * self.stride + row]
     }
 
-    /// Runs of columns that fit the second-level cache together.
+    /// Runs of columns that fit the second-level cache together, four at the least.
     #[inline(always)]
     fn runs(&self) -> impl DoubleEndedIterator<Item = Range<usize>> + use<T> {
         let width = (RUN / self.stride).max(1).next_multiple_of(WIDTH);
@@ -69,12 +70,12 @@ impl<'a, T: Number> Panel<'a, T> {
     }
 
     /// Reads columns once in the order they lie in memory, so that they come as fast as memory gives:
-    /// four streams at a time, or backward, come at half that pace.
+    /// four columns at a time, or backward, come at half that pace.
     #[inline(always)]
     fn fetch(&self, run: &Range<usize>) {
         let values = &self.values[run.start * self.stride..run.end * self.stride];
-        let lines = values.chunks_exact(STREAMS * LANES);
-        let mut sum = [T::rounded(0.0); STREAMS];
+        let lines = values.chunks_exact(LINES * LANES);
+        let mut sum = [T::rounded(0.0); LINES];
         for numbers in lines {
             sum = from_fn(|k| sum[k] + numbers[k * LANES]);
         }
