@@ -203,6 +203,12 @@ enum Against {
     EdgeFace,
 }
 
+/// What may come near.
+const NEAR: [Against; 2] = [Against::VertexFace, Against::EdgeEdge];
+
+/// What may cross.
+const CROSSING: [Against; 1] = [Against::EdgeFace];
+
 /// Features near each other; those of one cluster share no vertex.
 #[derive(Clone, Debug, Default)]
 pub struct Hits {
@@ -250,54 +256,33 @@ fn origin(ways: &Ways) -> Vec3 {
     ways.from.iter().find(known).copied().unwrap_or_default()
 }
 
-/// Vertices and faces, and edges, of two clusters or one to be held against each other. A type of its own, since
-/// a closure would not be compiled for the processor's vectors.
-struct HoldNear<'a>(Hold<'a>);
-
-/// The same of edges and faces.
-struct HoldCrossing<'a>(Hold<'a>);
-
+/// Features of two clusters, or of one, to be held against each other. A type of its own, since a closure would
+/// not be compiled for the processor's vectors.
 struct Hold<'a> {
     clusters: &'a Clusters,
+    kinds: &'a [Against],
     pair: [u32; 2],
     /// By how much boxes are made smaller [m].
     less: f32,
     hits: &'a mut Hits,
 }
 
-impl NullaryFnOnce for HoldNear<'_> {
+impl NullaryFnOnce for Hold<'_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Hold {
-            clusters,
-            pair: [a, b],
-            less,
-            hits,
-        } = self.0;
-        clusters.meet(Against::VertexFace, [a, b], less, &mut hits.vertex_face);
-        if a != b {
-            clusters.meet(Against::VertexFace, [b, a], less, &mut hits.vertex_face);
-        }
-        clusters.meet(Against::EdgeEdge, [a, b], less, &mut hits.edge_edge);
-    }
-}
-
-impl NullaryFnOnce for HoldCrossing<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Hold {
-            clusters,
-            pair: [a, b],
-            less,
-            hits,
-        } = self.0;
-        clusters.meet(Against::EdgeFace, [a, b], less, &mut hits.edge_face);
-        if a != b {
-            clusters.meet(Against::EdgeFace, [b, a], less, &mut hits.edge_face);
+        let [a, b] = self.pair;
+        for &against in self.kinds {
+            let (hits, both_ways) = match against {
+                Against::VertexFace => (&mut self.hits.vertex_face, a != b),
+                Against::EdgeEdge => (&mut self.hits.edge_edge, false),
+                Against::EdgeFace => (&mut self.hits.edge_face, a != b),
+            };
+            self.clusters.meet(against, [a, b], self.less, hits);
+            if both_ways {
+                self.clusters.meet(against, [b, a], self.less, hits);
+            }
         }
     }
 }
@@ -440,23 +425,22 @@ impl Clusters {
     /// Vertices and faces, and edges, whose boxes come within a distance of each other [m], and some more, of
     /// two clusters or one.
     pub fn near_within(&self, arch: Arch, pair: [u32; 2], distance: f64, hits: &mut Hits) {
-        let less = self.wider(distance);
-        arch.dispatch(HoldNear(self.hold(pair, less, hits)));
+        self.hold(arch, &NEAR, (pair, self.wider(distance)), hits);
     }
 
     /// The same of edges and faces.
     pub fn piercing_within(&self, arch: Arch, pair: [u32; 2], distance: f64, hits: &mut Hits) {
-        let less = self.wider(distance);
-        arch.dispatch(HoldCrossing(self.hold(pair, less, hits)));
+        self.hold(arch, &CROSSING, (pair, self.wider(distance)), hits);
     }
 
-    fn hold<'a>(&'a self, pair: [u32; 2], less: f32, hits: &'a mut Hits) -> Hold<'a> {
-        Hold {
+    fn hold(&self, arch: Arch, kinds: &[Against], (pair, less): ([u32; 2], f32), hits: &mut Hits) {
+        arch.dispatch(Hold {
             clusters: self,
+            kinds,
             pair,
             less,
             hits,
-        }
+        });
     }
 
     fn wider(&self, distance: f64) -> f32 {
@@ -465,7 +449,7 @@ impl Clusters {
 
     /// Edges and faces whose ways meet, of two clusters or one.
     pub fn crossing(&self, arch: Arch, pair: [u32; 2], hits: &mut Hits) {
-        arch.dispatch(HoldCrossing(self.hold(pair, self.slack, hits)));
+        self.hold(arch, &CROSSING, (pair, self.slack), hits);
     }
 
     /// Holds features of the first cluster against those of the second.

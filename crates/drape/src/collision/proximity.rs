@@ -43,10 +43,18 @@ impl Nearness {
     /// count only where the closest points are inside both: their ends are seen to by their faces.
     pub fn measure(pair: FeaturePair, x: &[Vec3], reach: f64) -> Option<Self> {
         let p = pair.vertices().map(|v| x[v as usize]);
-        if is_far(pair, &p, reach) || passes_by(pair, &p) {
+        match passes_by(pair, &p) {
+            true => None,
+            false => Self::measured(pair, &p, reach),
+        }
+    }
+
+    /// [`Self::measure`] for what does not pass by each other, at the places of the vertices.
+    fn measured(pair: FeaturePair, p: &[Vec3; 4], reach: f64) -> Option<Self> {
+        if is_far(pair, p, reach) {
             return None;
         }
-        let weights = closest(pair, &p);
+        let weights = closest(pair, p);
         if let FeaturePair::EdgeEdge(_) = pair
             && weights.contains(&0.0)
         {
@@ -166,7 +174,7 @@ pub fn nearnesses<'a>(
             true => NEIGHBOURS_REACH * surface.kept(pair, true, reach / NEIGHBOURS_REACH),
             false => reach,
         };
-        let near = Nearness::measure(pair, x, reach);
+        let near = Nearness::measured(pair, &p, reach);
         found.extend(near.map(|near| Nearness { neighbours, ..near }));
     });
     found.par_sort_unstable_by_key(|near| near.pair);
