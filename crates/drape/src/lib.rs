@@ -16,6 +16,7 @@ pub mod factor;
 mod garment;
 mod hessian;
 pub mod kes;
+mod lanes;
 pub mod laws;
 mod material;
 mod measure;

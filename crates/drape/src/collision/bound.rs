@@ -9,6 +9,7 @@ use super::layers::Knots;
 use super::proximity::{Nearness, closest, is_far};
 use super::reach::Reach;
 use super::regions::Ways;
+use super::sieve::Sieve;
 use super::surface::{ClothSurface, FeaturePair, Near};
 use super::zones::Zones;
 use rayon::prelude::*;
@@ -183,7 +184,8 @@ fn met(
             .fold(0.0, f64::max)
             .sqrt()
     };
-    let mut found = surface.features(Near::Listed, |pair, _, found| {
+    let sieve = Sieve::together(x, &ends(x, moves), REACH_OF_WAYS);
+    let mut found = surface.sifted(Near::Listed, Some(&sieve), |pair, _, found| {
         let is_stirred = |flags: &[bool]| pair.vertices().iter().any(|&v| flags[v as usize]);
         if !stirred.is_none_or(is_stirred) {
             return;

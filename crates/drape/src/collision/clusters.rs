@@ -294,6 +294,13 @@ impl Hits {
         all.iter().all(|hits| hits.is_empty())
     }
 
+    /// Takes in others.
+    pub fn append(&mut self, other: &Self) {
+        self.vertex_face.extend_from_slice(&other.vertex_face);
+        self.edge_edge.extend_from_slice(&other.edge_edge);
+        self.edge_face.extend_from_slice(&other.edge_face);
+    }
+
     /// Empties it.
     pub fn clear(&mut self) {
         self.vertex_face.clear();

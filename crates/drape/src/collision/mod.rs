@@ -1,6 +1,7 @@
 //! Collision of cloth with cloth: which pairs might touch, which do, what they cost, how far a
 //! motion may go, and how what has crossed is led apart.
 
+mod apart;
 mod bound;
 mod boxes;
 mod clusters;
@@ -18,6 +19,7 @@ mod numbers;
 mod proximity;
 mod reach;
 mod regions;
+mod sieve;
 mod surface;
 mod tangle;
 mod zones;

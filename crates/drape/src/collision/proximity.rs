@@ -1,6 +1,7 @@
 //! Places where cloth is near cloth.
 
 use super::reach::Reach;
+use super::sieve::Sieve;
 use super::surface::{ClothSurface, FeaturePair, Near};
 use rayon::prelude::*;
 use toile_geometry::{Vec3, closest_on_face, closest_on_segments};
@@ -160,7 +161,8 @@ pub fn nearnesses<'a>(
         let [a, b, c] = surface.triangles[t as usize].map(|v| x[v as usize]);
         (b - a).cross(&(c - a))
     };
-    let mut found = surface.features(near, |pair, owners, found| {
+    let sieve = Sieve::still(x, reach.most);
+    let mut found = surface.sifted(near, Some(&sieve), |pair, owners, found| {
         let p = pair.vertices().map(|v| x[v as usize]);
         if is_far(pair, &p, reach.most) || passes_by(pair, &p) {
             return;

@@ -7,6 +7,7 @@ use super::curvature::Clearance;
 use super::front::Front;
 use super::reach::Reach;
 use super::regions::{Cloth, Regions, Ways};
+use super::sieve::{Looked, Sieve};
 use crate::{Model, merge_map};
 use pulp::Arch;
 use rayon::prelude::*;
@@ -304,14 +305,27 @@ impl ClothSurface {
         near: impl Into<Near<'a>>,
         each: impl Fn(FeaturePair, [u32; 2], &mut Vec<T>) + Sync,
     ) -> Vec<T> {
+        self.sifted(near, None, each)
+    }
+
+    /// [`Self::features`] without those that a sieve tells apart.
+    pub fn sifted<'a, T: Clone + Send + Sync>(
+        &self,
+        near: impl Into<Near<'a>>,
+        sieve: Option<&Sieve>,
+        each: impl Fn(FeaturePair, [u32; 2], &mut Vec<T>) + Sync,
+    ) -> Vec<T> {
         let cloth = self.cloth();
-        let of_hits = |hits: &Hits, found: &mut Vec<T>| {
-            for &[v, t] in &hits.vertex_face {
+        let of_hits = |looked: &mut Looked, found: &mut Vec<T>| {
+            if let Some(sieve) = sieve {
+                looked.sift(sieve, &cloth);
+            }
+            for &[v, t] in &looked.hits.vertex_face {
                 if let Some(pair) = cloth.vertex_face([v, t]) {
                     each(pair, [self.vertex_owners[v as usize], t], found);
                 }
             }
-            for &[e, f] in &hits.edge_edge {
+            for &[e, f] in &looked.hits.edge_edge {
                 if let Some(pair) = cloth.edge_edge([e, f]) {
                     let owners = [e.min(f), e.max(f)].map(|e| self.edge_owners[e as usize]);
                     each(pair, owners, found);
@@ -321,7 +335,8 @@ impl ClothSurface {
         let hold = |pair, reach, hits: &mut Hits| {
             (self.clusters).near_within(Arch::new(), pair, reach, hits);
         };
-        self.collected(near.into(), hold, of_hits)
+        let reach = sieve.map_or(0.0, Sieve::reach);
+        self.collected((near.into(), reach), hold, of_hits)
     }
 
     /// Collects edges and faces that `crosses` says yes to, of those that are near, in an order that
@@ -332,46 +347,60 @@ impl ClothSurface {
         crosses: impl Fn([u32; 2]) -> bool + Sync,
     ) -> Vec<[u32; 2]> {
         let cloth = self.cloth();
-        let of_hits = |hits: &Hits, found: &mut Vec<[u32; 2]>| {
-            let apart = hits.edge_face.iter().filter(|hit| cloth.are_apart(**hit));
+        let of_hits = |looked: &mut Looked, found: &mut Vec<[u32; 2]>| {
+            let apart = (looked.hits.edge_face.iter()).filter(|hit| cloth.are_apart(**hit));
             found.extend(apart.filter(|hit| crosses(**hit)));
         };
         let hold = |pair, _: f64, hits: &mut Hits| {
             (self.clusters).crossing(Arch::new(), pair, hits);
         };
-        self.collected(near.into(), hold, of_hits)
+        self.collected((near.into(), 0.0), hold, of_hits)
     }
 
     /// Collects what `of_hits` makes of what is listed, and of what `hold` finds in pairs of clusters that are
     /// not, with how much farther than their boxes say it is to look [m].
     fn collected<T: Clone + Send + Sync>(
         &self,
-        near: Near,
+        (near, reach): (Near, f64),
         hold: impl Fn([u32; 2], f64, &mut Hits) + Sync,
-        of_hits: impl Fn(&Hits, &mut Vec<T>) + Sync,
+        of_hits: impl Fn(&mut Looked, &mut Vec<T>) + Sync,
     ) -> Vec<T> {
-        let of_pairs = |pairs: &mut dyn Iterator<Item = ([u32; 2], f64)>| {
-            let (mut hits, mut found) = (Hits::default(), Vec::new());
-            for (pair, reach) in pairs {
-                hits.clear();
-                hold(pair, reach, &mut hits);
-                of_hits(&hits, &mut found);
-            }
-            found
-        };
-        let of_lists = |mut found: Vec<T>, hits: Option<&Hits>| {
-            hits.into_iter().for_each(|hits| of_hits(hits, &mut found));
+        let of_pairs =
+            |looked: &mut Looked, pairs: &mut dyn Iterator<Item = ([u32; 2], f64, f64)>| {
+                looked.clear();
+                for (pair, wider, reach) in pairs {
+                    hold(pair, wider, &mut looked.hits);
+                    looked.come_within(reach);
+                }
+                let mut found = Vec::new();
+                of_hits(looked, &mut found);
+                found
+            };
+        let of_lists = |looked: &mut Looked, lists: Vec<Option<&Hits>>| {
+            looked.clear();
+            let lists = lists.into_iter().flatten();
+            lists.for_each(|hits| looked.hits.append(hits));
+            looked.come_within(reach);
+            let mut found = Vec::new();
+            of_hits(looked, &mut found);
             found
         };
         let found: Vec<Vec<T>> = match near {
             Near::Clusters(pairs) => (pairs.par_chunks(AT_ONCE))
-                .map(|pairs| of_pairs(&mut pairs.iter().map(|&pair| (pair, 0.0))))
+                .map_init(Looked::default, |looked, pairs| {
+                    of_pairs(looked, &mut pairs.iter().map(|&pair| (pair, 0.0, reach)))
+                })
                 .collect(),
             Near::Listed => {
-                let lists = self.front.lists();
-                let listed = lists.fold_chunks(AT_ONCE, Vec::new, of_lists);
+                let lists = self.front.lists().chunks(AT_ONCE);
+                let listed = lists.map_init(Looked::default, of_lists);
                 let open = self.front.open().par_chunks(AT_ONCE);
-                let open = open.map(|pairs| of_pairs(&mut pairs.iter().copied()));
+                let open = open.map_init(Looked::default, |looked, pairs| {
+                    of_pairs(
+                        looked,
+                        &mut pairs.iter().map(|&(pair, reach)| (pair, reach, reach)),
+                    )
+                });
                 listed.chain(open).collect()
             }
         };

@@ -7,8 +7,8 @@
 //! (A D)^-1: the 3x3 system B W B^T + (A D)^-1 / h^2 is constant, one for x, y and z, and is
 //! inverted before the run (Macklin, Müller and Chentanez 2016, equation 18, for the block).
 
-use super::lanes::{Corner, LANES, Point, Row, Triple, add_scaled, gather, parts, scatter, sub};
 use super::membrane::inverse_mass;
+use crate::lanes::{Corner, LANES, Point, Row, Triple, add_scaled, gather, parts, scatter, sub};
 use crate::laws::bending::RestSheet;
 use crate::{Material, Model};
 use nalgebra::Matrix3;

@@ -6,9 +6,9 @@
 //! together, each by impulses along its normal that never pull.
 
 use super::contact::{ContactStencil, NO_SAMPLE, Touch};
-use super::lanes::{LANES, Point};
 use super::particles::Particles;
 use crate::Model;
+use crate::lanes::{LANES, Point};
 
 /// Rounds over contacts that share points.
 const ROUNDS: usize = 8;

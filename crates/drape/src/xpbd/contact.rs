@@ -5,7 +5,7 @@
 //! began is taken back by an impulse of at most mu times the normal one, so a point that sticks does
 //! not creep. Contacts of cloth with cloth are stencils of the same form with other weights.
 
-use super::lanes::{LANES, Point, Row, add_scaled, dot, load, store, sub};
+use crate::lanes::{LANES, Point, Row, add_scaled, dot, load, store, sub};
 use crate::{Model, Pose};
 use pulp::Simd;
 use toile_geometry::Vec3;

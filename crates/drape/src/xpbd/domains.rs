@@ -1,9 +1,9 @@
 //! Sharing domains between cores: slices are halved down to single domains, each of which goes to
 //! whatever thread is free. Nothing depends on which.
 
-use super::lanes::{LANES, Point};
 use super::particles::{Bound, Free, Stage};
 use super::region::Region;
+use crate::lanes::{LANES, Point};
 
 /// Something that holds one slice or more of the slots of some domains.
 pub trait Divide: Sized + Send {

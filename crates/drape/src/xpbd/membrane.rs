@@ -15,10 +15,10 @@
 //! A law that is no straight line is linearised where the triangle is: with stress s and slope D,
 //! C becomes D^-1 s and S becomes D.
 
-use super::lanes::{
+use crate::Model;
+use crate::lanes::{
     Corner, LANES, Point, Row, add_scaled, blend, dot, gather, parts, scatter, sub,
 };
-use crate::Model;
 use crate::laws::stretch::{MembraneLaw, StrainLaw};
 use pulp::Simd;
 

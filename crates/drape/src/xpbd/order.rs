@@ -6,7 +6,7 @@
 //! elastic across the garment) comes last, alone. Two rounds are two barriers whatever the number
 //! of colours, and ranges are slices that two threads may hold at once.
 
-use super::lanes::LANES;
+use crate::lanes::LANES;
 use crate::{ElasticEnd, Model};
 
 /// Vertices of a domain: two a side make a sheet of 10,000 vertices worth sharing.

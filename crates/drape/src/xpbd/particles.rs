@@ -2,7 +2,7 @@
 
 use super::bending::{BendingForce, Filter};
 use super::contact::{ContactStep, Solid, TouchBlock, press};
-use super::lanes::{LANES, Point, load, parts, store};
+use crate::lanes::{LANES, Point, load, parts, store};
 use pulp::bytemuck::cast_slice;
 use pulp::{Simd, WithSimd};
 

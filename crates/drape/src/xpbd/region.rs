@@ -2,9 +2,9 @@
 
 use super::bending::{self, BendingBatch, Stencil};
 use super::contact::{ContactStencil, ContactStep, Solid, Tie, Touch, solve_stencils, solve_ties};
-use super::lanes::{LANES, Point, Row};
 use super::membrane::{self, LawRow, MembraneBatch};
 use super::order::{Order, Place, batches};
+use crate::lanes::{LANES, Point, Row};
 use crate::{ElasticEnd, Model};
 use pulp::{Simd, WithSimd};
 use toile_geometry::Vec3;
