@@ -148,14 +148,18 @@ pub fn to_edge<S: Simd>(
     let longest = simd.max_f32s(ww, simd.max_f32s(uu, vv));
     let off = simd.mul_f32s(longest, simd.sqrt_f32s(longest));
     let off = simd.mul_f32s(off, simd.splat_f32s(8.0 * ROUNDING * farthest));
-    let outside = |share: S::f32s| {
-        let below = simd.greater_than_f32s(simd.neg_f32s(share), off);
-        let above = simd.greater_than_f32s(simd.sub_f32s(share, square), off);
-        simd.or_m32s(below, above)
-    };
     let known = simd.greater_than_f32s(square, simd.add_f32s(off, off));
-    (
-        n,
-        simd.and_m32s(known, simd.or_m32s(outside(s), outside(t))),
-    )
+    let outside = simd.or_m32s(
+        is_outside(simd, s, square, off),
+        is_outside(simd, t, square, off),
+    );
+    (n, simd.and_m32s(known, outside))
+}
+
+/// Whether a share of a whole is below nothing or above all of it, known no better than so.
+#[inline(always)]
+fn is_outside<S: Simd>(simd: S, share: S::f32s, whole: S::f32s, off: S::f32s) -> S::m32s {
+    let below = simd.greater_than_f32s(simd.neg_f32s(share), off);
+    let above = simd.greater_than_f32s(simd.sub_f32s(share, whole), off);
+    simd.or_m32s(below, above)
 }
