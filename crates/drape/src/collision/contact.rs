@@ -258,14 +258,14 @@ impl ClothContacts {
             layer: &model.layer,
         };
         let mut active = std::mem::take(&mut self.active);
-        let contact = |near: &Nearness| {
+        let mut found = nearnesses(&self.surface, Near::Listed, x, reach);
+        found.retain(|near| {
             let vertices = near.pair.vertices();
             let fixed = vertices.iter().all(|&v| model.pinned[v as usize]);
-            let kept = !fixed && !knots.lets_go(near.pair);
-            kept.then(|| self.contact(model, state, x, near))
-        };
-        let found = nearnesses(&self.surface, Near::Listed, x, reach);
-        active.par_extend(found.par_iter().with_min_len(256).filter_map(contact));
+            !fixed && !knots.lets_go(near.pair)
+        });
+        let contacts = found.par_iter().with_min_len(256);
+        active.par_extend(contacts.map(|near| self.contact(model, state, x, near)));
         let mut ways = piercings(&self.surface, &own, x);
         self.drawn = keep_on(&mut ways, &state.cloth.drawn);
         ways.extend(ways_out(&self.surface, &across, x));

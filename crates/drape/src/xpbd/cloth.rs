@@ -209,32 +209,33 @@ impl Xpbd {
     /// way to their hard depth before the next look, `way` [m] ahead, as two.
     fn touch_cloth(&mut self, contacts: &[ClothContact], way: f64) {
         let slot_of = &self.order.slot_of;
-        let stencil = |contact: &ClothContact, depth: f64, stiffness: f64| {
-            let plane = &contact.plane;
+        let slots = |contact: &ClothContact| contact.vertices.map(|v| slot_of[v as usize]);
+        let stencil = |&(contact, is_hard): &(&ClothContact, bool), start: u32| {
+            let (plane, law) = (&contact.plane, &contact.law);
+            let (depth, stiffness) = match is_hard {
+                true => (plane.depth - law.hard_from, HARDER * law.normal),
+                false => (plane.depth, law.normal),
+            };
             ContactStencil {
-                vertices: contact.vertices.map(|v| slot_of[v as usize]),
+                vertices: slots(contact).map(|slot| slot - start),
                 weights: contact.weights.map(|w| w as f32),
                 touch: Touch {
                     normal: [0, 1, 2].map(|k| plane.normal[k] as f32),
                     level: (depth + plane.normal.dot(&plane.point)) as f32,
                     softness: (1.0 / stiffness).min(1e30) as f32,
-                    friction: contact.law.friction as f32,
+                    friction: law.friction as f32,
                     ..Touch::none()
                 },
                 restitution: contact.restitution.map(|e| e as f32),
             }
         };
-        let contacts = contacts.par_iter().with_min_len(256);
-        let stencils = contacts.flat_map_iter(|contact| {
-            let (depth, law) = (contact.plane.depth, &contact.law);
-            let soft = stencil(contact, depth, law.normal);
-            let hard = depth + way > law.hard_from;
-            let hard = hard.then(|| stencil(contact, depth - law.hard_from, HARDER * law.normal));
-            std::iter::once(soft).chain(hard)
+        let each = contacts.iter().flat_map(|contact| {
+            let hard = contact.plane.depth + way > contact.law.hard_from;
+            std::iter::once((contact, false)).chain(hard.then_some((contact, true)))
         });
-        let held = &mut self.regions.rest.contacts;
-        held.truncate(self.sample_contacts);
-        held.par_extend(stencils);
+        let each: Vec<(&ClothContact, bool)> = each.collect();
+        self.regions
+            .hold_cloth(&self.order, &each, |(contact, _)| slots(contact), stencil);
     }
 }
 

@@ -112,8 +112,6 @@ pub struct Xpbd {
     domain_starts: Vec<usize>,
     settle_starts: Vec<usize>,
     cut_starts: Vec<usize>,
-    /// Contacts of samples in what is solved alone; those of cloth with cloth follow them.
-    sample_contacts: usize,
 }
 
 /// What of a model the constraints were built from.
@@ -189,7 +187,6 @@ impl Xpbd {
         }
         Self {
             settings,
-            sample_contacts: regions.rest.contacts.len(),
             regions,
             particles,
             bending: BendingForce::new(model, &order.vertex_of, &order.slot_of),
@@ -440,6 +437,7 @@ impl Xpbd {
                 },
                 laws: &self.laws,
                 contact: ContactStep::new(kappa as f32, h as f32),
+                begins: None,
                 iterated: self.settings.iterations > 1,
                 bends: self.filter.is_none(),
             },

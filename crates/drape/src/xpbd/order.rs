@@ -98,10 +98,22 @@ impl Order {
 
     /// Where a constraint on some vertices is solved.
     pub fn place(&self, vertices: &[u32]) -> Place {
-        let slots = || vertices.iter().map(|&v| self.slot_of[v as usize] as usize);
-        let (Some(low), Some(high)) = (slots().min(), slots().max()) else {
-            return Place::Rest;
-        };
+        let slots = vertices.iter().map(|&v| self.slot_of[v as usize]);
+        match (slots.clone().min(), slots.max()) {
+            (Some(low), Some(high)) => self.place_between(low as usize, high as usize),
+            _ => Place::Rest,
+        }
+    }
+
+    /// The same by slots.
+    pub fn place_of_slots(&self, slots: [u32; 4]) -> Place {
+        let [low, high] = [slots.iter().min(), slots.iter().max()];
+        let slot = |end: Option<&u32>| end.map_or(0, |&slot| slot as usize);
+        self.place_between(slot(low), slot(high))
+    }
+
+    /// Where a constraint on slots of which these are the lowest and the highest is solved.
+    fn place_between(&self, low: usize, high: usize) -> Place {
         let half = |slot: usize| self.halves.partition_point(|&start| start <= slot) - 1;
         let (low, high) = (half(low), half(high));
         if low / 2 == high / 2 {
@@ -110,6 +122,24 @@ impl Order {
             Place::Cut(low / 2)
         } else {
             Place::Rest
+        }
+    }
+
+    /// All places, in their order.
+    pub fn places(&self) -> impl Iterator<Item = Place> + use<> {
+        let count = self.domains();
+        (0..count)
+            .map(Place::Domain)
+            .chain((0..count - 1).map(Place::Cut))
+            .chain(std::iter::once(Place::Rest))
+    }
+
+    /// The number of a place in that order.
+    pub fn number(&self, place: Place) -> usize {
+        match place {
+            Place::Domain(d) => d,
+            Place::Cut(d) => self.domains() + d,
+            Place::Rest => 2 * self.domains() - 1,
         }
     }
 

@@ -7,6 +7,7 @@ use super::order::{Order, Place, batches};
 use crate::lanes::{LANES, Point, Row};
 use crate::{ElasticEnd, Model};
 use pulp::{Simd, WithSimd};
+use rayon::prelude::*;
 use toile_geometry::Vec3;
 
 /// Constraints of one place, indices being relative to its first slot.
@@ -17,8 +18,10 @@ pub struct Region {
     bending: Vec<BendingBatch>,
     bending_sums: Vec<bending::Sums>,
     ties: Vec<Tie>,
-    /// Contacts of points within triangles.
+    /// Contacts of points within triangles with surfaces.
     pub contacts: Vec<ContactStencil>,
+    /// Contacts of cloth with cloth.
+    pub cloth: Vec<ContactStencil>,
 }
 
 /// The regions of a model.
@@ -154,6 +157,29 @@ impl Regions {
         }
     }
 
+    /// Holds contacts of cloth with cloth in place of those held before: `stencil` makes one of each, its
+    /// vertices being slots counted from the one that is given.
+    pub fn hold_cloth<T: Sync>(
+        &mut self,
+        order: &Order,
+        all: &[T],
+        slots: impl Fn(&T) -> [u32; 4] + Sync,
+        stencil: impl Fn(&T, u32) -> ContactStencil + Sync,
+    ) {
+        let place = |one: &T| order.place_of_slots(slots(one));
+        let places: Vec<Place> = all.par_iter().with_min_len(512).map(place).collect();
+        let mut members: Vec<Vec<&T>> = order.places().map(|_| Vec::new()).collect();
+        for (one, place) in all.iter().zip(&places) {
+            members[order.number(*place)].push(one);
+        }
+        for (place, members) in order.places().zip(&members) {
+            let start = order.start(place) as u32;
+            let made = members.par_iter().with_min_len(256);
+            let held = &mut self.at(place).cloth;
+            made.map(|one| stencil(one, start)).collect_into_vec(held);
+        }
+    }
+
     /// Every region.
     pub fn all(&self) -> impl Iterator<Item = &Region> {
         (self.domains.iter())
@@ -187,19 +213,11 @@ fn by_place<'a, T>(
     all: &'a [T],
     vertices: impl Fn(&'a T) -> &'a [u32],
 ) -> Vec<(Place, Vec<&'a T>)> {
-    let count = order.domains();
-    let mut places: Vec<(Place, Vec<&T>)> = (0..count)
-        .map(|d| (Place::Domain(d), Vec::new()))
-        .chain((0..count - 1).map(|d| (Place::Cut(d), Vec::new())))
-        .chain(std::iter::once((Place::Rest, Vec::new())))
-        .collect();
+    let places = order.places().map(|place| (place, Vec::new()));
+    let mut places: Vec<(Place, Vec<&T>)> = places.collect();
     for member in all {
-        let at = match order.place(vertices(member)) {
-            Place::Domain(d) => d,
-            Place::Cut(d) => count + d,
-            Place::Rest => 2 * count - 1,
-        };
-        places[at].1.push(member);
+        let place = order.place(vertices(member));
+        places[order.number(place)].1.push(member);
     }
     // Neighbours in memory come one after the other.
     for (_, members) in &mut places {
@@ -221,6 +239,8 @@ pub struct SweepStep<'a> {
     pub laws: &'a [LawRow],
     /// (1 + drag h) / h^2 [1/s2], and the like for contacts.
     pub contact: ContactStep,
+    /// How far surfaces move in the substep, where it begins [m].
+    pub begins: Option<f32>,
     /// Whether forces are kept from iteration to iteration.
     pub iterated: bool,
     /// Whether bending is a constraint.
@@ -259,20 +279,20 @@ impl Region {
     }
 
     /// Forces start from zero.
-    pub fn clear(&mut self) {
+    fn clear(&mut self) {
         self.membrane_sums.fill([Row::splat(0.0); 3]);
         self.bending_sums.fill([[Row::splat(0.0); 3]; 3]);
         for tie in &mut self.ties {
             tie.sum = [0.0; 3];
         }
-        for contact in &mut self.contacts {
+        for contact in self.contacts.iter_mut().chain(&mut self.cloth) {
             contact.touch.push = 0.0;
             contact.touch.rub = [0.0; 3];
         }
     }
 
     /// Surfaces move by up to `travel` [m] in the substep that begins.
-    pub fn age(&mut self, travel: f32) {
+    fn age(&mut self, travel: f32) {
         for contact in &mut self.contacts {
             contact.touch.age(travel);
         }
@@ -280,6 +300,12 @@ impl Region {
 
     /// Solves every constraint once.
     pub fn sweep(&mut self, step: &SweepStep, points: &mut [Point], starts: &[Point]) {
+        if let Some(travel) = step.begins {
+            self.clear();
+            if travel > 0.0 {
+                self.age(travel);
+            }
+        }
         for contact in &mut self.contacts {
             let point = contact.point(points);
             if contact.touch.is_stale(point) {
@@ -293,6 +319,7 @@ impl Region {
         });
         solve_ties(&mut self.ties, points, step.contact.kappa);
         solve_stencils(&mut self.contacts, points, starts, &step.contact);
+        solve_stencils(&mut self.cloth, points, starts, &step.contact);
     }
 }
 

@@ -49,12 +49,6 @@ impl Run<'_> {
                 },
                 ..self.sweep
             };
-            for region in regions.all_mut() {
-                region.clear();
-                if travel > 0.0 {
-                    region.age(travel);
-                }
-            }
             if sweep.solid.stands() {
                 for touch in &mut particles.touch {
                     touch.clear();
@@ -65,6 +59,10 @@ impl Run<'_> {
             }
             self.filter_bending(particles);
             for iteration in 0..self.iterations {
+                let sweep = SweepStep {
+                    begins: (iteration == 0).then_some(travel),
+                    ..sweep
+                };
                 self.domains(regions, particles, &sweep, iteration == 0);
                 self.cuts(regions, particles, &sweep);
                 let Particles { start, now, .. } = &mut *particles;
@@ -77,7 +75,9 @@ impl Run<'_> {
                 let runs = domains
                     .chain(cuts)
                     .chain(std::iter::once((&0, &regions.rest)))
-                    .map(|(&first, region)| (first, &region.contacts[..]));
+                    .flat_map(|(&first, region)| {
+                        [&region.contacts, &region.cloth].map(|run| (first, &run[..]))
+                    });
                 bounce(sweep.solid.model, runs, particles, step);
             }
         }
