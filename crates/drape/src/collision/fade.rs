@@ -5,7 +5,8 @@ use super::surface::FeaturePair;
 use toile_geometry::Vec3;
 
 /// The sine of the angle between two edges from which on they push with all their stiffness, and
-/// how far from the ends of both, over their lengths.
+/// how far from the ends of both, over their lengths; no farther than the distance that is kept, or two
+/// corners would have next to nothing between them that the faces there are still too far off to push.
 const CROSSWISE: f64 = 0.1;
 const INSIDE: f64 = 0.25;
 
@@ -23,9 +24,14 @@ pub(super) fn fade(contact: &ClothContact, x: &[Vec3]) -> f64 {
     let lengths = first.norm_squared() * second.norm_squared();
     let sine = first.cross(&second).norm_squared() / (lengths * CROSSWISE * CROSSWISE);
     let across = if sine < 1.0 { sine * (2.0 - sine) } else { 1.0 };
-    let inside = |w: [f64; 2]| (w[0].abs().min(w[1].abs()) / INSIDE).min(1.0);
+    let kept = contact.plane.depth + contact.plane.point.norm();
+    let inside = |edge: &Vec3, w: [f64; 2]| {
+        let length = edge.norm();
+        let far = kept.min(INSIDE * length);
+        (length * w[0].abs().min(w[1].abs()) / far).min(1.0)
+    };
     let [p, q, r, s] = contact.weights;
-    across * inside([p, q]) * inside([r, s])
+    across * inside(&first, [p, q]) * inside(&second, [r, s])
 }
 
 #[cfg(test)]
@@ -101,5 +107,37 @@ mod tests {
         for [jump, most] in [turning, passing] {
             assert!(most > 1e-4 && jump < 0.02 * most, "{jump:e} of {most:e}");
         }
+    }
+
+    /// The push between two edges of 30 mm that cross 0.1 mm apart, so far from an end of each [m].
+    fn push(from_end: f64) -> f64 {
+        let mesh = TriangleMesh {
+            positions: vec![
+                Vec3::zeros(),
+                Vec3::new(0.03, 0.0, 0.0),
+                Vec3::new(0.015, -0.02, 0.0),
+                Vec3::new(from_end, 1e-4, -from_end),
+                Vec3::new(from_end, 1e-4, 0.03 - from_end),
+                Vec3::new(from_end, 0.02, 0.015),
+            ],
+            triangles: vec![[0, 1, 2], [3, 4, 5]],
+        };
+        let cloth = Cloth::from_mesh("corners", &mesh, Material::default()).unwrap();
+        let mut model = Model::new("corners", &cloth).unwrap();
+        model.contact.cloth_offset = 2e-3;
+        let state = State::at_rest(&model, mesh.positions);
+        let mut workspace = Workspace::default();
+        workspace.contacts.refresh(&model, &state, &state.positions);
+        let active = workspace.contacts.cloth.active.iter();
+        let edges = active.filter(|c| matches!(c.pair, Some(FeaturePair::EdgeEdge(_))));
+        let forces = edges.map(|c| c.law.evaluate(&c.plane, c.plane.point).1.norm());
+        forces.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn corners_a_millimetre_past_each_other_still_push() {
+        let [middle, corner] = [0.015, 0.001].map(push);
+        assert!(corner > 0.2 * middle, "{corner:e} of {middle:e}");
+        assert!(middle > 0.0);
     }
 }
