@@ -6,7 +6,7 @@
 use pulp::Simd;
 use pulp::bytemuck::cast;
 
-/// A point: x, y, z [m] relative to the origin of the step, and its inverse mass [1/kg].
+/// A point: x, y, z [m] relative to some origin, and its inverse mass [1/kg] where that counts.
 pub type Point = [f32; 4];
 
 /// Constraints solved side by side.

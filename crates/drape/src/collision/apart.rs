@@ -123,7 +123,8 @@ fn choose<S: Simd>(
 
 /// From the closest point of an edge to that of another, about (Ericson 2005, section 5.1.9), and whether they
 /// pass by each other for certain: with every vector in it off by d, no longer than l, a product of four of
-/// them is off by 4 d l^3, and a difference of two by 8 d l^3.
+/// them is off by 4 d l^3, a difference of two by 8 d l^3, and that of two of those by 16 d l^3. `farthest` is the
+/// largest coordinate [m], whose rounding d is.
 #[inline(always)]
 pub fn to_edge<S: Simd>(
     simd: S,
@@ -160,6 +161,6 @@ pub fn to_edge<S: Simd>(
 #[inline(always)]
 fn is_outside<S: Simd>(simd: S, share: S::f32s, whole: S::f32s, off: S::f32s) -> S::m32s {
     let below = simd.greater_than_f32s(simd.neg_f32s(share), off);
-    let above = simd.greater_than_f32s(simd.sub_f32s(share, whole), off);
+    let above = simd.greater_than_f32s(simd.sub_f32s(share, whole), simd.add_f32s(off, off));
     simd.or_m32s(below, above)
 }

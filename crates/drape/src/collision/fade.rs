@@ -24,7 +24,7 @@ pub(super) fn fade(contact: &ClothContact, x: &[Vec3]) -> f64 {
     let lengths = first.norm_squared() * second.norm_squared();
     let sine = first.cross(&second).norm_squared() / (lengths * CROSSWISE * CROSSWISE);
     let across = if sine < 1.0 { sine * (2.0 - sine) } else { 1.0 };
-    let kept = contact.plane.depth + contact.plane.point.norm();
+    let kept = (contact.plane.depth + contact.plane.point.norm()).max(0.0);
     let inside = |edge: &Vec3, w: [f64; 2]| {
         let length = edge.norm();
         let far = kept.min(INSIDE * length);

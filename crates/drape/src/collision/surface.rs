@@ -358,7 +358,8 @@ impl ClothSurface {
     }
 
     /// Collects what `of_hits` makes of what is listed, and of what `hold` finds in pairs of clusters that are
-    /// not, with how much farther than their boxes say it is to look [m].
+    /// not, with how much farther than their boxes say it is to look [m]. `reach` is how near features come that
+    /// count, but in parts of the last look, which say it themselves [m].
     fn collected<T: Clone + Send + Sync>(
         &self,
         (near, reach): (Near, f64),

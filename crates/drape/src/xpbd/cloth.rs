@@ -241,7 +241,83 @@ impl Xpbd {
 
 #[cfg(test)]
 mod tests {
+    use super::super::XpbdSettings;
     use super::*;
+    use crate::{Cloth, Material};
+    use toile_geometry::TriangleMesh;
+
+    /// A sheet of 60 by 60 cells of 10 mm in pleats 2.5 mm apart, and a flat one on it: more vertices than a
+    /// domain holds.
+    fn pleats_under_a_sheet() -> (Model, State) {
+        let mut mesh = TriangleMesh::default();
+        for flat in [false, true] {
+            let first = mesh.positions.len() as u32;
+            for i in 0..=60u32 {
+                for j in 0..=60u32 {
+                    let (pleat, along) = (i / 5, 0.01 * f64::from(i % 5));
+                    let up = if pleat % 2 == 0 { along } else { 0.04 - along };
+                    let folded = [2.5e-3 * f64::from(pleat), up];
+                    let [x, y] = match flat {
+                        true => [0.01 * f64::from(i), 0.0425],
+                        false => folded,
+                    };
+                    mesh.positions.push(Vec3::new(x, y, 0.01 * f64::from(j)));
+                }
+            }
+            for i in 0..60 {
+                for j in 0..60 {
+                    let a = first + 61 * i + j;
+                    mesh.triangles.push([a, a + 61, a + 1]);
+                    mesh.triangles.push([a + 1, a + 61, a + 62]);
+                }
+            }
+        }
+        let cloth = Cloth::from_mesh("pleats", &mesh, Material::default()).expect("a cloth");
+        let mut model = Model::new("pleats", &cloth).expect("a model");
+        model.contact.cloth_offset = 3e-3;
+        let state = State::at_rest(&model, mesh.positions);
+        (model, state)
+    }
+
+    #[test]
+    fn contacts_in_domains_across_cuts_and_alone_give_the_same_bytes_at_any_number_of_threads() {
+        let (model, start) = pleats_under_a_sheet();
+        let span = Span {
+            substep: 1.0 / 1200.0,
+            count: 10,
+            drag: 0.1,
+        };
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            pool.build().expect("threads").install(|| {
+                let settings = XpbdSettings {
+                    iterations: 2,
+                    ..XpbdSettings::default()
+                };
+                let mut solver = Xpbd::with_settings(&model, settings);
+                let (mut state, mut watch) = (start.clone(), ClothWatch::default());
+                solver
+                    .advance_touching(&model, &mut state, &mut watch, &span)
+                    .expect("sound");
+                let held = |region: &super::super::region::Region| region.cloth.len();
+                let regions = &solver.regions;
+                let domains: Vec<usize> = regions.domains.iter().map(held).collect();
+                let cuts: Vec<usize> = regions.cuts.iter().map(held).collect();
+                let alone = held(&regions.rest);
+                assert!(
+                    domains.iter().sum::<usize>() > 0 && cuts[0] > 0 && alone > 0,
+                    "{domains:?} {cuts:?} {alone}"
+                );
+                let found = watch.contacts.active.len();
+                let all = domains.iter().chain(&cuts).sum::<usize>() + alone;
+                assert!((found..=2 * found).contains(&all), "{all} of {found}");
+                state
+            })
+        };
+        let (one, three) = (run(1), run(3));
+        assert!(one.positions == three.positions && one.velocities == three.velocities);
+        assert!(one.positions != start.positions);
+    }
 
     #[test]
     fn substeps_are_shared_out_between_looks() {

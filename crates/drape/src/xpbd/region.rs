@@ -239,7 +239,7 @@ pub struct SweepStep<'a> {
     pub laws: &'a [LawRow],
     /// (1 + drag h) / h^2 [1/s2], and the like for contacts.
     pub contact: ContactStep,
-    /// How far surfaces move in the substep, where it begins [m].
+    /// How far surfaces move in the substep [m]; said in its first sweep, which lets forces start from zero.
     pub begins: Option<f32>,
     /// Whether forces are kept from iteration to iteration.
     pub iterated: bool,
