@@ -114,7 +114,7 @@ pub fn keep_apart(
             clearance,
             stirred.as_deref(),
         );
-        let met = met(surface, knots, motion, stirred.as_deref());
+        let met = met(surface, knots, motion, (&target, stirred.as_deref()));
         if met.is_empty() {
             kept.zoned = zones.count();
             return kept;
@@ -166,13 +166,13 @@ fn ends(x: &[Vec3], moves: &[Vec3]) -> Vec<Vec3> {
     x.iter().zip(moves).map(|(x, d)| x + d).collect()
 }
 
-/// Features that meet in a motion, sorted, with the times; where some vertices are `stirred`, only those with
+/// Features that meet in a motion to `target` [m], sorted, with the times; where some vertices are `stirred`, only those with
 /// one of these.
 fn met(
     surface: &ClothSurface,
     knots: Knots,
     motion: &Motions,
-    stirred: Option<&[bool]>,
+    (target, stirred): (&[Vec3], Option<&[bool]>),
 ) -> Vec<(Meeting, f64)> {
     let (x, moves) = (motion.x, &*motion.moves);
     let way = |pair: FeaturePair| {
@@ -184,7 +184,7 @@ fn met(
             .fold(0.0, f64::max)
             .sqrt()
     };
-    let sieve = Sieve::together(x, &ends(x, moves), REACH_OF_WAYS);
+    let sieve = Sieve::together(x, target, REACH_OF_WAYS);
     let mut found = surface.sifted(Near::Listed, Some(&sieve), |pair, _, found| {
         let is_stirred = |flags: &[bool]| pair.vertices().iter().any(|&v| flags[v as usize]);
         if !stirred.is_none_or(is_stirred) {

@@ -3,12 +3,10 @@
 
 use super::boxes::{Bounds, BoxTree, CLUSTER};
 use super::regions::Ways;
+use crate::lanes::LANES;
 use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
-
-/// Boxes held against one at a time.
-const LANES: usize = 16;
 
 /// No feature.
 const NONE: u32 = u32::MAX;
@@ -250,10 +248,10 @@ pub struct Corners<'a> {
 /// Share of the largest coordinate that single precision is off by after a few sums.
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 
-/// What single precision counts from: a vertex whose place is known.
-fn origin(ways: &Ways) -> Vec3 {
+/// What single precision counts from: a vertex whose place is known [m].
+pub(super) fn origin(x: &[Vec3]) -> Vec3 {
     let known = |p: &&Vec3| p.iter().all(|c| c.is_finite());
-    ways.from.iter().find(known).copied().unwrap_or_default()
+    x.iter().find(known).copied().unwrap_or_default()
 }
 
 /// Features of two clusters, or of one, to be held against each other. A type of its own, since a closure would
@@ -359,7 +357,7 @@ impl Clusters {
 
     /// Fits all boxes round the ways of the vertices, with a margin [m].
     pub fn fit(&mut self, ways: &Ways, corners: Corners, margin: f64) {
-        let origin = origin(ways);
+        let origin = origin(ways.from);
         let both = ways.from.par_iter().zip(ways.to).with_min_len(1024);
         both.map(|(from, to)| Slab::of_way(from - origin, to - origin, margin))
             .collect_into_vec(&mut self.ways);
@@ -387,7 +385,7 @@ impl Clusters {
             self.fit(ways, corners, 0.0);
             return;
         }
-        let origin = origin(ways);
+        let origin = origin(ways.from);
         self.ways.resize(ways.from.len(), NOTHING);
         let mut farthest = 0.0f64;
         for &cluster in clusters {

@@ -10,7 +10,7 @@
 //! What is not told apart, numbers that are none among it, is left to be measured.
 
 use super::apart::{edge_is_beyond, face_is_beyond, to_edge, to_face};
-use super::clusters::Hits;
+use super::clusters::{Hits, origin};
 use super::regions::Cloth;
 use crate::lanes::{Corner, LANES, Point, Row, Triple, dot, gather, parts};
 use pulp::{Arch, Simd, WithSimd};
@@ -55,8 +55,7 @@ impl Sieve {
     }
 
     fn new(from: &[Vec3], to: Option<&[Vec3]>, reach: f64) -> Self {
-        let known = |p: &&Vec3| p.iter().all(|c| c.is_finite());
-        let origin = from.iter().find(known).copied().unwrap_or_default();
+        let origin = origin(from);
         let points = |x: &[Vec3]| -> Vec<Point> {
             let points = x.par_iter().with_min_len(4096).map(|x| {
                 let place = x - origin;
