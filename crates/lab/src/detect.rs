@@ -242,3 +242,27 @@ pub(crate) fn cost(cells: usize, result: &mut Timed) -> Result<(), LabError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_worn_shirt_comes_to_rest_under_xpbd_with_few_substeps() {
+        let card = card("shirt").expect("the card");
+        let cloth = card.cloth(0).expect("its cloth");
+        let (mut model, mut state) = card.model(&cloth, &[]).expect("a model");
+        model.air_drag = SETTLING_DRAG;
+        let mut method = MethodSettings {
+            substeps: Some(4),
+            ..MethodKind::Xpbd.into()
+        }
+        .build();
+        for _ in 0..120 {
+            method.advance(&model, &mut state, STEP).expect("a step");
+        }
+        let speeds = state.velocities.iter().map(Vec3::norm);
+        let fastest = speeds.fold(0.0, f64::max);
+        assert!(fastest < 0.05, "{fastest} m/s after two seconds");
+    }
+}

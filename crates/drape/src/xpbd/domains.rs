@@ -60,6 +60,7 @@ impl Divide for Free<'_> {
 impl Divide for Bound<'_> {
     fn divide(self, slots: usize, _: usize) -> (Self, Self) {
         let (start, start_) = self.start.split_at_mut(slots);
+        let (ahead, ahead_) = self.ahead.split_at_mut(slots);
         let (now, now_) = self.now.split_at_mut(slots);
         let (free, free_) = self.free.split_at(slots);
         let (velocity, velocity_) = self.velocity.split_at_mut(slots);
@@ -67,6 +68,7 @@ impl Divide for Bound<'_> {
         (
             Self {
                 start,
+                ahead,
                 now,
                 free,
                 velocity,
@@ -74,6 +76,7 @@ impl Divide for Bound<'_> {
             },
             Self {
                 start: start_,
+                ahead: ahead_,
                 now: now_,
                 free: free_,
                 velocity: velocity_,

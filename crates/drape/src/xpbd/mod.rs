@@ -4,7 +4,7 @@
 //! A substep of h (Macklin, Müller and Chentanez 2016, algorithm 1; Macklin et al. 2019 for many
 //! substeps of one iteration):
 //! ```text
-//! v = (v + h (g + f_bend / m)) / (1 + drag h),  x = x0 + h v
+//! v = (v + h (g + f_bend(x0 + theta h v) / m)) / (1 + drag h),  x = x0 + h v
 //! for every constraint:  dlambda = -(J W J^T + alpha / h^2)^-1 (C + alpha / h^2 lambda)
 //!                        x = x + W J^T dlambda
 //! contacts and friction likewise
@@ -427,6 +427,7 @@ impl Xpbd {
             gravity: [g.x as f32, g.y as f32, g.z as f32, 0.0],
             kept: (1.0 / (1.0 + drag * h)) as f32,
             speed_limit: self.settings.speed_limit as f32,
+            lead: (bending::LEAD * h) as f32,
         };
         let run = Run {
             sweep: SweepStep {

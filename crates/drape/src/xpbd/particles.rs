@@ -15,6 +15,8 @@ const FARTHEST_MOVE: f32 = 10.0;
 pub struct Particles {
     /// Where they were when the substep began [m].
     pub start: Vec<Point>,
+    /// Where they would be a little later [m]: bending is felt from there, see [`super::bending::LEAD`].
+    pub ahead: Vec<Point>,
     /// Where they are [m].
     pub now: Vec<Point>,
     /// Where they went by themselves [m].
@@ -40,6 +42,7 @@ impl Particles {
         let points = vec![[0.0; 4]; count];
         Self {
             start: points.clone(),
+            ahead: points.clone(),
             now: points.clone(),
             free: points.clone(),
             low: points.clone(),
@@ -63,6 +66,8 @@ pub struct MotionStep {
     pub kept: f32,
     /// Largest speed a vertex keeps [m/s].
     pub speed_limit: f32,
+    /// How long after a substep's start bending is felt as it would be then [s].
+    pub lead: f32,
 }
 
 /// How bending enters free motion.
@@ -70,8 +75,8 @@ pub struct MotionStep {
 pub enum Bend<'a> {
     /// It does not.
     None,
-    /// As the force at the start.
-    Force(&'a BendingForce),
+    /// As the force at some places, [`Particles::ahead`].
+    Force(&'a BendingForce, &'a [Point]),
     /// As moves found before, times a factor.
     Moves(&'a [Point], f32),
 }
@@ -121,9 +126,10 @@ impl WithSimd for Predict<'_, '_> {
                     let slot = LANES * (first + b);
                     match self.bend {
                         Bend::None => [simd.splat_f32s(0.0); 3],
-                        Bend::Force(force) => {
-                            let here = load(simd, &starts[first + b], part);
-                            let sum = force.times(simd, slot, self.start, here, part);
+                        Bend::Force(force, ahead) => {
+                            let (places, _) = ahead.as_chunks::<LANES>();
+                            let here = load(simd, &places[first + b], part);
+                            let sum = force.times(simd, slot, ahead, here, part);
                             let scale = simd.mul_f32s(here[3], simd.splat_f32s(-self.step.step));
                             scaled(simd, sum, scale)
                         }
@@ -203,8 +209,8 @@ pub struct RunStage<'a, 'b> {
     pub fields: &'b mut Stage<'a>,
     /// Slot of its first point.
     pub first: usize,
-    /// All points at the start of the substep.
-    pub start: &'a [Point],
+    /// As in [`Particles`].
+    pub ahead: &'a [Point],
     /// The moves of the last stage; none before the first.
     pub last: Option<&'a [Point]>,
     /// K.
@@ -221,7 +227,7 @@ impl WithSimd for RunStage<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let first = self.first / LANES;
-        let (starts, _) = self.start.as_chunks::<LANES>();
+        let (places, _) = self.ahead.as_chunks::<LANES>();
         let (pull, _) = self.fields.pull.as_chunks_mut::<LANES>();
         let (moves, _) = self.fields.moves.as_chunks_mut::<LANES>();
         let [mu, nu, kappa] = self.numbers.map(|x| simd.splat_f32s(x));
@@ -229,11 +235,11 @@ impl WithSimd for RunStage<'_, '_> {
         for b in 0..pull.len() {
             let slot = LANES * (first + b);
             for part in 0..parts::<S>() {
-                let here = load(simd, &starts[first + b], part);
+                let here = load(simd, &places[first + b], part);
                 let scale = simd.mul_f32s(here[3], simd.splat_f32s(self.step2));
                 let new = match self.last {
                     None => {
-                        let sum = self.force.times(simd, slot, self.start, here, part);
+                        let sum = self.force.times(simd, slot, self.ahead, here, part);
                         let [x, y, z] = scaled(simd, sum, scale);
                         store(simd, &mut pull[b], part, [x, y, z, zero]);
                         scaled(simd, [x, y, z], simd.sub_f32s(zero, kappa))
@@ -272,6 +278,8 @@ pub struct Bound<'a> {
     /// As in [`Particles`].
     pub start: &'a mut [Point],
     /// As in [`Particles`].
+    pub ahead: &'a mut [Point],
+    /// As in [`Particles`].
     pub now: &'a mut [Point],
     /// As in [`Particles`].
     pub free: &'a [Point],
@@ -301,6 +309,7 @@ impl WithSimd for Settle<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let (start, _) = self.fields.start.as_chunks_mut::<LANES>();
+        let (ahead, _) = self.fields.ahead.as_chunks_mut::<LANES>();
         let (now, _) = self.fields.now.as_chunks_mut::<LANES>();
         let (free, _) = self.fields.free.as_chunks::<LANES>();
         let (velocity, _) = self.fields.velocity.as_chunks_mut::<LANES>();
@@ -319,12 +328,23 @@ impl WithSimd for Settle<'_, '_> {
             if let Some(step) = self.finish {
                 step.finish(simd, &now[b], &free[b], &mut velocity[b]);
                 start[b] = now[b];
+                step.look_ahead(&start[b], &velocity[b], &mut ahead[b]);
             }
         }
     }
 }
 
 impl MotionStep {
+    /// Where points would be when bending is felt.
+    #[inline(always)]
+    pub fn look_ahead(&self, start: &[Point], velocity: &[Point], ahead: &mut [Point]) {
+        for ((ahead, x), v) in ahead.iter_mut().zip(start).zip(velocity) {
+            for k in 0..4 {
+                ahead[k] = x[k] + self.lead * v[k];
+            }
+        }
+    }
+
     #[inline(always)]
     fn finish<S: Simd>(
         &self,

@@ -40,6 +40,7 @@ impl Run<'_> {
     /// Takes some substeps.
     pub fn substeps(&self, regions: &mut Regions, particles: &mut Particles, count: u32) {
         let mut poses = Vec::new();
+        self.look_ahead(particles);
         for number in 0..count {
             let travel = self.place_surfaces(number, &mut poses);
             let sweep = SweepStep {
@@ -79,8 +80,20 @@ impl Run<'_> {
                         [&region.contacts, &region.cloth].map(|run| (first, &run[..]))
                     });
                 bounce(sweep.solid.model, runs, particles, step);
+                self.look_ahead(particles);
             }
         }
+    }
+
+    /// Says where bending is felt.
+    fn look_ahead(&self, particles: &mut Particles) {
+        let Particles {
+            start,
+            ahead,
+            velocity,
+            ..
+        } = particles;
+        self.motion.look_ahead(start, velocity, ahead);
     }
 
     /// Where moving surfaces stand before and after a substep; returns how far they move [m].
@@ -108,7 +121,7 @@ impl Run<'_> {
     fn filter_bending(&self, particles: &mut Particles) {
         let stages = self.filter.map_or(&[][..], |filter| &filter.stages);
         let Particles {
-            start, pull, bend, ..
+            ahead, pull, bend, ..
         } = particles;
         let [mut moves, mut last] = bend.each_mut();
         for (stage, &numbers) in stages.iter().enumerate() {
@@ -121,7 +134,7 @@ impl Run<'_> {
                 self.arch.dispatch(RunStage {
                     fields: &mut fields,
                     first: self.domain_starts[d],
-                    start,
+                    ahead,
                     last: known,
                     force: self.bending,
                     numbers,
@@ -142,6 +155,7 @@ impl Run<'_> {
     ) {
         let Particles {
             start,
+            ahead,
             now,
             free,
             low,
@@ -163,7 +177,7 @@ impl Run<'_> {
         }
         let bend = match self.filter {
             None => Bend::None,
-            Some(filter) if filter.is_plain() => Bend::Force(self.bending),
+            Some(filter) if filter.is_plain() => Bend::Force(self.bending, ahead),
             // Stages take turns in two places; the first one writes the first.
             Some(filter) => {
                 let last = (filter.stages.len() + 1) % 2;
@@ -214,6 +228,7 @@ impl Run<'_> {
     fn settle(&self, particles: &mut Particles, sweep: &SweepStep, last: bool) {
         let Particles {
             start,
+            ahead,
             now,
             free,
             velocity,
@@ -222,6 +237,7 @@ impl Run<'_> {
         } = particles;
         let all = Bound {
             start,
+            ahead,
             now,
             free,
             velocity,
