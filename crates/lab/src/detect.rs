@@ -77,7 +77,7 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
 
 /// Frames that the shirt settles in before its mesh is divided, and after, until it hangs still; drag of the
 /// air then [1/s].
-const SETTLED: [usize; 2] = [60, 60];
+const SETTLED: [usize; 2] = [60, 180];
 const SETTLING_DRAG: f64 = 10.0;
 /// Turn of the worn shirt about the upright when it is set in motion [rad/s].
 const TURN: f64 = 2.0;

@@ -26,10 +26,14 @@ const SERVES: f64 = 8.0;
 const SLACK: [f64; 2] = [1e-3, 2e-3];
 
 /// How far the vertices of two clusters may stray from one another in a look for their features to be
-/// listed [m], and to be listed again; and how far off they may be listed, as a share of the shortest edge
-/// there.
+/// listed [m], and to be listed again.
 const CALM: [f64; 2] = [2.5e-4, 1e-4];
+
+/// How far off features may be listed, as a share of the shortest edge there; and those that stray less than
+/// so far in a look [m]: their list is long, but serves for very long.
 const DENSE: f64 = 0.5;
+const DENSE_AT_REST: f64 = 2.0;
+const AT_REST: f64 = 2e-5;
 
 /// How many times as fast vertices may become before features that come near by that are searched for again.
 const FASTER: f64 = 2.0;
@@ -216,7 +220,11 @@ impl Asked {
     fn is_dense(&self, region: &Region) -> bool {
         let edge = |first: u32| self.shortest[first as usize];
         let edge = region.nodes().map(|n| edge(n.first)).fold(0.0, f64::max);
-        self.wanted(region)[0] > DENSE * edge
+        let most = match self.pace(region) <= AT_REST {
+            true => DENSE_AT_REST,
+            false => DENSE,
+        };
+        self.wanted(region)[0] > most * edge
     }
 
     /// Whether features of two clusters, or one, are to be listed.

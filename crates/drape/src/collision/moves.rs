@@ -8,8 +8,10 @@ use super::boxes::{Bounds, Region};
 use super::regions::Cloth;
 use toile_geometry::Vec3;
 
-/// Below this no turn is looked for [m].
+/// Regions that stray less than this are asked for no turn [m], and where all the cloth strays less than
+/// that, none is.
 const LITTLE: f64 = 3e-4;
+const LITTLE_IN_ALL: f64 = 2e-3;
 
 /// Places whose moments of inertia have a product below this share of the cube of their sum lie in a line,
 /// and tell no turn.
@@ -146,7 +148,7 @@ impl Moves {
     /// From some places by some moves, straight and at one pace.
     pub fn new(cloth: &Cloth, x: &[Vec3], of: impl Fn(u32) -> Vec3 + Sync) -> Self {
         let mut moves = Self::shifts(cloth, &of);
-        let far = |bounds: &Bounds| bounds.radius() > LITTLE;
+        let far = |bounds: &Bounds| bounds.radius() > LITTLE_IN_ALL;
         if !moves.round.first().is_some_and(far) {
             return moves;
         }
