@@ -18,8 +18,11 @@ use pulp::Simd;
 pub struct Patch {
     /// Its vertices in the model, in its own order.
     pub vertices: Vec<u32>,
-    /// Contacts of its vertices, by their places in it.
-    pub touching: Vec<Touching>,
+    /// Contacts of its vertices, by their places in it; those at vertices that others look at, and those at
+    /// its halo.
+    touching: Vec<Touching>,
+    shown: Vec<u32>,
+    watched: Vec<u32>,
     /// Largest and smallest principal squared stretch when last measured.
     pub stretch: [f64; 2],
     /// Energy of motion, stretch and bending [J] when last measured, of what it owns.
@@ -32,8 +35,9 @@ pub struct Patch {
     local: Vec<u32>,
     /// The ring of each vertex; zero are those it owns.
     ring: Vec<usize>,
-    /// Owned vertices that others look at.
+    /// Owned vertices that others look at, and whether each is one.
     border: Vec<u32>,
+    is_border: Vec<bool>,
     /// Vertices it does not own.
     halo: Vec<u32>,
     /// Groups with a vertex within each ring.
@@ -130,12 +134,15 @@ impl Patch {
             gradient: Points::new(count),
             moved: Points::new(count),
             border: Vec::new(),
+            is_border: vec![false; count],
             halo: (0u32..)
                 .zip(&ring)
                 .filter(|(_, ring)| **ring > 0)
                 .map(|(at, _)| at)
                 .collect(),
             touching: Vec::new(),
+            shown: Vec::new(),
+            watched: Vec::new(),
             stretch: [1.0; 2],
             energy: 0.0,
             inverse_mass,
@@ -156,6 +163,9 @@ impl Patch {
         let places = 0..self.vertices.len();
         let shared = places.filter(|&at| self.owns(at) && looked_at(self.vertices[at]));
         self.border = shared.map(|at| at as u32).collect();
+        for &at in &self.border {
+            self.is_border[at as usize] = true;
+        }
     }
 
     /// The vertices of its halo, in the model.
@@ -163,7 +173,7 @@ impl Patch {
         self.halo.iter().map(|&at| self.vertices[at as usize])
     }
 
-    /// Copies its vertices.
+    /// Copies its vertices, and forgets its contacts.
     pub fn load(&mut self, positions: &[Lane], velocities: &[Lane]) {
         // Lanes without a vertex too: what blew up there would come back as zero times no number.
         let all = [
@@ -176,6 +186,10 @@ impl Patch {
             axis.fill(0.0);
         }
         self.forces.membrane.clear();
+        for contacts in [&mut self.shown, &mut self.watched] {
+            contacts.clear();
+        }
+        self.touching.clear();
         for at in 0..self.vertices.len() {
             self.load_vertex(at, positions, velocities);
         }
@@ -196,37 +210,67 @@ impl Patch {
         self.velocities.set(at, velocities[v]);
     }
 
-    /// Hands over what it owns.
-    pub fn unload(&self, positions: &mut [Lane], velocities: &mut [Lane]) {
-        for at in (0..self.vertices.len()).filter(|&at| self.owns(at)) {
-            self.unload_vertex(at, positions, velocities);
-        }
+    /// Vertices that it owns: their numbers in the model, and their places in it.
+    pub fn owned(&self) -> impl Iterator<Item = (u32, u32)> {
+        let all = (0u32..).zip(&self.vertices);
+        let own = all.filter(|(at, _)| self.owns(*at as usize));
+        own.map(|(at, &v)| (v, at))
+    }
+
+    /// Position and velocity of a vertex, by its place.
+    #[inline]
+    pub fn vertex(&self, at: u32) -> (Lane, Lane) {
+        let at = at as usize;
+        (self.positions.get(at), self.velocities.get(at))
     }
 
     /// Hands over what others look at.
     pub fn unload_border(&self, positions: &mut [Lane], velocities: &mut [Lane]) {
         for &at in &self.border {
-            self.unload_vertex(at as usize, positions, velocities);
+            let v = self.vertices[at as usize] as usize;
+            (positions[v], velocities[v]) = self.vertex(at);
         }
-    }
-
-    fn unload_vertex(&self, at: usize, positions: &mut [Lane], velocities: &mut [Lane]) {
-        let v = self.vertices[at] as usize;
-        positions[v] = self.positions.get(at);
-        velocities[v] = self.velocities.get(at);
     }
 
     /// Takes over the contacts at its vertices.
     pub fn load_contacts(&mut self, touching: &[Touching]) {
+        for contacts in [&mut self.shown, &mut self.watched] {
+            contacts.clear();
+        }
         self.touching.clear();
         for contact in touching {
             let at = self.local[contact.vertex as usize];
-            if at != NOWHERE {
-                let mut mine = *contact;
-                mine.vertex = at;
-                self.touching.push(mine);
+            if at == NOWHERE {
+                continue;
             }
+            let mine = self.touching.len() as u32;
+            if !self.owns(at as usize) {
+                self.watched.push(mine);
+            } else if self.is_border[at as usize] {
+                self.shown.push(mine);
+            }
+            let mut contact = *contact;
+            contact.vertex = at;
+            self.touching.push(contact);
         }
+    }
+
+    /// Takes over what contacts at its halo have become; the others it has.
+    pub fn renew_contacts(&mut self, touching: &[Touching]) {
+        for &k in &self.watched {
+            self.touching[k as usize].renew(touching);
+        }
+    }
+
+    /// Contacts at vertices that it owns.
+    pub fn own_contacts(&self) -> impl Iterator<Item = &Touching> {
+        let touching = self.touching.iter();
+        touching.filter(|contact| self.owns(contact.vertex as usize))
+    }
+
+    /// Those that others look at.
+    pub fn border_contacts(&self) -> impl Iterator<Item = &Touching> {
+        self.shown.iter().map(|&k| &self.touching[k as usize])
     }
 
     /// Moves the patch on under all its forces: drift half a step, kick, drift half a step

@@ -3,7 +3,7 @@
 use super::Lane;
 use super::limits;
 use super::patch::{Course, Patch, end_of, wider};
-use super::touch::Touch;
+use super::touch::{Touch, Touching};
 use crate::laws::membrane::MembraneElement;
 use crate::laws::stretch::MembraneLaw;
 use crate::methods::damped_contact_frequency;
@@ -27,12 +27,17 @@ const CUT_FROM: usize = 2000;
 /// Vertices of a patch at the most: two megabytes of positions, velocities and triangles.
 const PATCH: usize = 12_000;
 
+/// Vertices taken back by one task.
+const UNLOADED: usize = 2048;
+
 /// A cloth cut into patches.
 pub struct Sheet {
     /// Largest frequency while no triangle is strained [rad/s].
     pub frequency: f64,
     key: Key,
     patches: Vec<Patch>,
+    /// The patch that owns each vertex, and its place there.
+    home: Vec<[u32; 2]>,
     /// Width of their halos.
     rings: usize,
     touch: Touch,
@@ -90,6 +95,12 @@ impl Sheet {
         for patch in &mut patches {
             patch.share(|v| looked_at[v as usize]);
         }
+        let mut home = vec![[0; 2]; model.vertex_count()];
+        for (patch, number) in patches.iter().zip(0..) {
+            for (v, at) in patch.owned() {
+                home[v as usize] = [number, at];
+            }
+        }
         let mut sheet = Self {
             frequency: 0.0,
             key: Key {
@@ -103,6 +114,7 @@ impl Sheet {
                 contact: damped_contact_frequency(model),
             },
             patches,
+            home,
             rings,
             touch: Touch::default(),
             positions: Vec::new(),
@@ -187,7 +199,8 @@ impl Sheet {
         let mut seen = if touches { 0 } else { count };
         let mut left = count;
         while left > 0 {
-            if seen == 0 {
+            let looks = seen == 0;
+            if looks {
                 let substeps = |touch: &Touch| ((touch.interval / h) as usize).clamp(1, left);
                 seen = substeps(&self.touch);
                 let (x, v) = (&self.positions, &self.velocities);
@@ -204,45 +217,63 @@ impl Sheet {
                 gravity: model.gravity.into(),
                 drag: model.air_drag,
             };
-            self.on_patches(|patch| patch.advance(course));
-            let (x, v) = (&mut self.positions, &mut self.velocities);
-            for patch in &self.patches {
-                // All are looked at for contact, and at the end.
-                match seen == 0 {
-                    true => patch.unload(x, v),
-                    false => patch.unload_border(x, v),
+            self.on_patches(|patch, touching| {
+                match looks {
+                    true => patch.load_contacts(touching),
+                    false => patch.renew_contacts(touching),
                 }
-                for contact in &patch.touching {
-                    if patch.owns(contact.vertex as usize) {
-                        self.touch.take_back(contact);
-                    }
-                }
+                patch.advance(course);
+            });
+            // All are looked at for contact, and at the end.
+            match seen == 0 {
+                true => self.unload(),
+                false => self.unload_borders(),
+            }
+        }
+    }
+
+    /// Takes back all vertices and contacts.
+    fn unload(&mut self) {
+        let patches = &self.patches;
+        let all = (&mut self.positions, &mut self.velocities, &self.home).into_par_iter();
+        all.with_min_len(UNLOADED)
+            .for_each(|(x, v, &[patch, at])| (*x, *v) = patches[patch as usize].vertex(at));
+        for contact in patches.iter().flat_map(Patch::own_contacts) {
+            self.touch.take_back(contact);
+        }
+    }
+
+    /// Takes back what patches look at of one another.
+    fn unload_borders(&mut self) {
+        for patch in &self.patches {
+            patch.unload_border(&mut self.positions, &mut self.velocities);
+            for contact in patch.border_contacts() {
+                self.touch.show(contact);
             }
         }
     }
 
     /// Lets every patch work on its part of the cloth.
-    fn on_patches(&mut self, work: impl Fn(&mut Patch) + Sync) {
+    fn on_patches(&mut self, work: impl Fn(&mut Patch, &[Touching]) + Sync) {
         let (positions, velocities) = (&self.positions, &self.velocities);
         let touching = &self.touch.near;
         self.patches.par_iter_mut().for_each(|patch| {
             patch.load_halo(positions, velocities);
-            patch.load_contacts(touching);
-            work(patch);
+            work(patch, touching);
         });
     }
 
     /// Largest and smallest principal squared stretch; the largest is 1 or more, the smallest 1 or
     /// less, and both are no numbers where a place is none.
     pub fn stretch(&mut self) -> [f64; 2] {
-        self.on_patches(Patch::measure_stretch);
+        self.on_patches(|patch, _| patch.measure_stretch());
         let patches = self.patches.iter();
         patches.fold([1.0; 2], |most, patch| wider(most, patch.stretch))
     }
 
     /// Energy of motion, strain, elastics and contact [J].
     pub fn energy(&mut self) -> f64 {
-        self.on_patches(Patch::measure_energy);
+        self.on_patches(|patch, _| patch.measure_energy());
         let own: f64 = self.patches.iter().map(|patch| patch.energy).sum();
         let elastics = self.key.elastics.iter().map(|elastic| {
             let from = self.positions[elastic.from as usize];
@@ -306,7 +337,6 @@ fn cut(model: &Model, count: usize) -> Vec<Vec<u32>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::touch::Touching;
     use super::*;
     use crate::{Cloth, Collider, Material};
     use std::sync::Arc;
@@ -358,7 +388,8 @@ mod tests {
         let run = |count: usize| {
             let mut sheet = Sheet::cut_into(&model, count);
             sheet.start(&model, &state);
-            sheet.advance(&model, 2e-4, 25);
+            // Patches meet between looks, too.
+            sheet.advance(&model, 1e-4, 50);
             sheet
         };
         let (whole, cut) = (run(1), run(4));

@@ -80,6 +80,12 @@ impl Touching {
             .add_scaled(slip, -tangential * kept)
     }
 
+    /// Takes over what it has become elsewhere, of all contacts.
+    pub fn renew(&mut self, all: &[Self]) {
+        let now = &all[self.entry as usize];
+        (self.anchor, self.force, self.buried) = (now.anchor, now.force, now.buried);
+    }
+
     /// Whether anything presses it.
     #[cfg(test)]
     pub fn presses(&self) -> bool {
@@ -263,6 +269,11 @@ impl Touch {
         let sample = &mut self.places[contact.place as usize];
         (sample.anchor, sample.force) = (contact.anchor, contact.force);
         sample.buried = contact.buried;
+        self.show(contact);
+    }
+
+    /// The same for those who look at the contact alone.
+    pub fn show(&mut self, contact: &Touching) {
         let near = &mut self.near[contact.entry as usize];
         (near.anchor, near.force) = (contact.anchor, contact.force);
         near.buried = contact.buried;
