@@ -126,6 +126,24 @@ impl ProportionBox {
         }
     }
 
+    /// What a body with proportions `got` misses of these by more than a hundredth of a head: its
+    /// name, asked and got in head lengths [1].
+    pub fn missed_by(&self, got: &Self) -> Vec<(&'static str, f64, f64)> {
+        /// What no eye sees, and what words with two decimals do not show [1].
+        const SEEN: f64 = 0.01;
+        let rows = [
+            ("heads", Some(self.heads), Some(got.heads)),
+            ("crotch", self.crotch, got.crotch),
+            ("shoulders", self.shoulders, got.shoulders),
+            ("hips", self.hips, got.hips),
+        ];
+        let both = rows
+            .into_iter()
+            .filter_map(|(name, asked, got)| Some((name, asked?, got?)));
+        both.filter(|(_, asked, got)| (asked - got).abs() > SEEN)
+            .collect()
+    }
+
     /// Brings a body to these proportions at the stature it has; girths of trunk and legs stay but
     /// for the breadths asked for.
     ///

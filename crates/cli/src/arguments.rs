@@ -1,18 +1,18 @@
 //! What can be asked on the command line.
 
+use crate::nest_arguments::Nest;
 use crate::stretch::Stretch;
-use crate::values::{flaw, repeat, roll, size_count};
+use crate::values::blend;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
-use toile_geometry::Length;
-use toile_session::{
-    Command, GivenFlaw, MarkerFormat, OtherGarment, PatternFormat, Quality, Spread,
-};
+use toile_geometry::{Duration, Length};
+use toile_session::{Command, OtherGarment, PatternFormat, Quality};
 
 /// Sewing patterns checked, laid out on fabric, sewn round a mannequin, draped and exported.
 ///
 /// Without a command it makes the sample T-shirt into the folder `out`. Lengths are written with
-/// their unit: mm, cm, m or in, as in 150cm. Files are in metres, Y up, the mannequin facing +Z.
+/// their unit: mm, cm, m or in, as in 150cm; durations with ms, s or min, a number alone is in
+/// seconds. Files are in metres, Y up, the mannequin facing +Z.
 ///
 /// Exit status: 0 on success, 2 on bad input, 1 on failure.
 #[derive(Debug, Parser)]
@@ -37,9 +37,9 @@ pub enum Task {
     Make(Make),
     /// Sew, drape and export a garment, or several in layers, without laying it out on fabric.
     Drape(Make),
-    /// List faults of a pattern, each with its place and remedy.
+    /// List faults of patterns and markers, each with its place and remedy.
     ///
-    /// Exit status 2 if the garment cannot be made.
+    /// Exit status 2 if a garment cannot be made or a marker has faults.
     Check(Check),
     /// Lay the pieces of one or more patterns on fabric: marker.svg (true size, mm), marker.json.
     ///
@@ -51,7 +51,7 @@ pub enum Task {
     /// Write the triangulated panels as OBJ, in metres, side by side.
     Mesh(Mesh),
     /// Make a mannequin as OBJ, in metres, and list its measurements as asked and as got.
-    Body(Body),
+    Body(Box<Body>),
     /// Convert a pattern between formats; lists what could not be carried over.
     Convert(Convert),
     /// Do the commands of a journal again; what they write goes into one folder.
@@ -280,209 +280,16 @@ pub fn body_command(text: &str) -> Command {
 /// `toile check`.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// The pattern: native or GarmentCode; or a marker.json: its overlaps, gaps, margins, nap and
-    /// flaws as it stands.
-    pub pattern: PathBuf,
+    /// Patterns, native or GarmentCode; or marker.json files: their overlaps, gaps, margins, nap and
+    /// flaws as they stand. Each file gets its own verdict.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
     /// Named size to check. Default: the pattern's base size.
     #[arg(long, value_name = "NAME")]
     pub size: Option<String>,
     /// Folder for the drawing of a marker, where what is cut twice is red.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-}
-
-/// `toile nest`.
-#[derive(Debug, Args)]
-pub struct Nest {
-    /// The patterns: native or GarmentCode. Pieces of one fabric share a marker. Or one nesting
-    /// instance in the JSON of jagua-rs: its solution is written to DIR/NAME.json.
-    #[arg(required = true)]
-    pub patterns: Vec<PathBuf>,
-    /// Full width of the fabric, as in 150cm. Default: the fabric's own.
-    #[arg(long, value_name = "LENGTH")]
-    pub width: Option<Length>,
-    /// Length of fabric at hand, all plies together. Default: as long as it takes.
-    #[arg(long, value_name = "LENGTH")]
-    pub length: Option<Length>,
-    /// Unusable edge at either side. Default: 10mm.
-    #[arg(long, value_name = "LENGTH")]
-    pub selvedge: Option<Length>,
-    /// Fabric left free at either end. Default: 0mm.
-    #[arg(long, value_name = "LENGTH")]
-    pub end_margin: Option<Length>,
-    /// Least distance between pieces. Default: 2mm.
-    #[arg(long, value_name = "LENGTH")]
-    pub gap: Option<Length>,
-    /// Nap of the fabric. Default: the fabric's own.
-    #[arg(long, value_enum)]
-    pub nap: Option<NapName>,
-    /// How the fabric is spread. The width is that of the fabric laid open. Default: open.
-    #[arg(long, value_enum)]
-    pub spread: Option<SpreadName>,
-    /// Layers cut at once. Default: 1; face to face 2.
-    #[arg(long, value_name = "COUNT")]
-    pub plies: Option<u32>,
-    /// A roll at hand: its length, all plies together, and its width if that is not the fabric's.
-    /// May be given again; rolls are filled in this order, and what fits none is named with the reason.
-    #[arg(long, value_name = "L[,L]", value_parser = roll, conflicts_with = "length")]
-    pub roll: Vec<(f64, Option<f64>)>,
-    /// Price of a metre of the fabric's length.
-    #[arg(long, value_name = "PRICE")]
-    pub price: Option<f64>,
-    /// File of marker settings (JSON), by fabric and by piece: spreads, rolls, prices, print,
-    /// flaws, gaps, blocks, turns, tilt, folds, locked pieces, marks that match, further fabrics.
-    /// See docs/FORMATS.md. Options given here come first.
-    #[arg(long, value_name = "FILE")]
-    pub settings: Option<PathBuf>,
-    /// What to write: svg (true size, mm), json, dxf (release 12, mm), pdf (one page at true size),
-    /// report (A4: picture, table, yardage, cost), plt (HPGL/2), instance (the pieces alone, for
-    /// other nesting programs).
-    #[arg(
-        long,
-        value_name = "FORMAT",
-        value_enum,
-        value_delimiter = ',',
-        default_value = "svg,json"
-    )]
-    pub write: Vec<MarkerFormatName>,
-    /// How far the grain of every piece may lie off the warp (degrees). Default: 0.
-    #[arg(long, value_name = "DEGREES")]
-    pub tilt: Option<f64>,
-    /// Repeat of stripes or checks along the warp and across, as in 50mm,40mm; 0mm where it does
-    /// not repeat. The hem and the middle of every piece lie on its lines.
-    #[arg(long, value_name = "L[,L]", value_parser = repeat)]
-    pub repeat: Option<[f64; 2]>,
-    /// A flaw no piece may lie on: x along the warp, y across the fabric laid open, length, width;
-    /// where there are several fabrics after its name, as in lining:1m,20cm,3cm,3cm. May be given
-    /// again.
-    #[arg(long, value_name = "[FABRIC:]L,L,L,L", value_parser = flaw)]
-    pub defect: Vec<GivenFlaw>,
-    /// Named size. Default: each pattern's base size.
-    #[arg(long, value_name = "NAME", conflicts_with = "sizes")]
-    pub size: Option<String>,
-    /// Several sizes in a ratio, as in S:1,M:2,L:1. Each garment is a bundle.
-    #[arg(long, value_name = "NAME:COUNT", value_delimiter = ',', value_parser = size_count)]
-    pub sizes: Vec<(String, u32)>,
-    /// Time to search each fabric (s). The result depends on the machine; see --evaluations.
-    #[arg(long, value_name = "SECONDS", conflicts_with = "evaluations")]
-    pub time: Option<f64>,
-    /// Evaluations of pairs of pieces to search for on each fabric: the same ones give the same
-    /// bytes.
-    #[arg(long, value_name = "COUNT", default_value_t = 10_000_000)]
-    pub evaluations: u64,
-    /// Start of the sequence of chance.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
-    pub seed: u64,
-    /// Searches side by side. Default: 2; with --time one a processor, 2 at least.
-    #[arg(
-        long,
-        value_name = "COUNT",
-        default_value_t = 0,
-        hide_default_value = true
-    )]
-    pub islands: usize,
-    /// Threads. Default: as many as there are processors; their number does not change the bytes.
-    #[arg(
-        long,
-        value_name = "COUNT",
-        default_value_t = 0,
-        hide_default_value = true
-    )]
-    pub threads: usize,
-    /// A marker.json to go on from, made before or changed by hand; one for each fabric.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["roll", "study"])]
-    pub from: Vec<PathBuf>,
-    /// Pieces that stay where the marker gone on from has them, as in front,back.
-    #[arg(long, value_name = "NAME", value_delimiter = ',', requires = "from")]
-    pub lock: Vec<String>,
-    /// Instead of one marker, lay the garments with and without each rule of the trade, and print
-    /// what each costs in points of efficiency. Nothing is written.
-    #[arg(long)]
-    pub study: bool,
-    /// Seeds that are averaged in a study.
-    #[arg(long, value_name = "COUNT", default_value_t = 3, requires = "study")]
-    pub seeds: u64,
-    /// Folder to write into; it is made if need be.
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    pub out: PathBuf,
-}
-
-/// How fabric is spread.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SpreadName {
-    /// Open, right side up.
-    Open,
-    /// Folded in two along the warp: pieces cut on the fold lie on it, pairs are cut at once.
-    Folded,
-    /// A tube laid flat, a fold at both sides; its width is its girth.
-    Tubular,
-    /// Open, every second ply turned over: pairs are cut at once.
-    FaceToFace,
-}
-
-impl From<SpreadName> for Spread {
-    fn from(name: SpreadName) -> Self {
-        match name {
-            SpreadName::Open => Self::Open,
-            SpreadName::Folded => Self::Folded,
-            SpreadName::Tubular => Self::Tubular,
-            SpreadName::FaceToFace => Self::FaceToFace,
-        }
-    }
-}
-
-/// Files of a marker.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum MarkerFormatName {
-    /// Drawing at true size.
-    Svg,
-    /// Data.
-    Json,
-    /// DXF release 12, millimetres.
-    Dxf,
-    /// One page at true size.
-    Pdf,
-    /// A4 report of all markers.
-    Report,
-    /// HPGL/2.
-    Plt,
-    /// The pieces as a nesting instance in the JSON of jagua-rs.
-    Instance,
-}
-
-impl From<MarkerFormatName> for MarkerFormat {
-    fn from(name: MarkerFormatName) -> Self {
-        match name {
-            MarkerFormatName::Svg => Self::Svg,
-            MarkerFormatName::Json => Self::Json,
-            MarkerFormatName::Dxf => Self::Dxf,
-            MarkerFormatName::Pdf => Self::Pdf,
-            MarkerFormatName::Report => Self::Report,
-            MarkerFormatName::Plt => Self::Hpgl,
-            MarkerFormatName::Instance => Self::Instance,
-        }
-    }
-}
-
-/// Nap of a fabric.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum NapName {
-    /// Pieces may point either way.
-    None,
-    /// All pieces point one way.
-    OneWay,
-    /// All pieces of a garment point one way.
-    PerGarment,
-}
-
-impl From<NapName> for toile_session::Nap {
-    fn from(name: NapName) -> Self {
-        match name {
-            NapName::None => Self::None,
-            NapName::OneWay => Self::OneWay,
-            NapName::PerGarment => Self::PerBundle,
-        }
-    }
 }
 
 /// `toile mesh`.
@@ -532,7 +339,7 @@ pub struct Body {
     pub stretch: Stretch,
     /// Edits of its ellipsoids, made last (JSON list, m and rad), as in
     /// [{"edit": "weigh", "primitive": 3, "weight": 1.2}]; also create, delete, move, turn, scale,
-    /// group, blend, deform, attach, detach, join, part. Ellipsoids are counted from 0: those of
+    /// group, blend, deform, attach, detach, join, part: their fields are in docs/FORMATS.md. Ellipsoids are counted from 0: those of
     /// trunk, head, left arm and left leg as in a mannequin file.
     #[arg(long, value_name = "FILE", conflicts_with = "mesh")]
     pub edits: Option<PathBuf>,
@@ -540,9 +347,17 @@ pub struct Body {
     /// with OrientationInterpolators routed to H-Anim joints. Default: at rest.
     #[arg(long, value_name = "MOTION")]
     pub motion: Option<String>,
-    /// Time in the motion (s).
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
-    pub time: f64,
+    /// A second gait to mix in at equal phase, walk or run, with its share from 0 to 1, as in run:0.3.
+    #[arg(long, value_name = "GAIT:SHARE", value_parser = blend, requires = "motion")]
+    pub blend: Option<(String, f64)>,
+    /// Time in the motion, as in 300ms; for .obj, as a .glb holds the whole motion. Default: 0s.
+    #[arg(
+        long,
+        value_name = "DURATION",
+        allow_negative_numbers = true,
+        requires = "motion"
+    )]
+    pub time: Option<Duration>,
     /// File to write, by its ending: .obj the skin (m), .glb the skin with its skeleton and the
     /// whole motion, .json a mannequin file; measurements (JSON) with --mesh.
     #[arg(long, value_name = "FILE")]
@@ -572,7 +387,7 @@ impl From<FormatName> for PatternFormat {
 pub struct Convert {
     /// The pattern to read; its format is seen from its content.
     pub input: PathBuf,
-    /// The file to write.
+    /// The file to write: NAME.toile.json, or NAME.json for GarmentCode.
     pub output: PathBuf,
     /// Format to write. Default: native if the name ends in .toile.json, else GarmentCode.
     #[arg(long, value_enum, value_name = "FORMAT")]

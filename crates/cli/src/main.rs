@@ -5,7 +5,9 @@
 
 mod arguments;
 mod bar;
+mod check_commands;
 mod lab_commands;
+mod nest_arguments;
 mod nest_commands;
 mod output;
 mod session_commands;
@@ -47,10 +49,7 @@ fn run(task: Task, output: &Output) -> Result<serde_json::Value, Failure> {
     match task {
         Task::Make(make) => session_commands::make(&make, output),
         Task::Drape(drape) => session_commands::drape(&drape, output),
-        Task::Check(check) if toile_session::is_marker_file(&check.pattern) => {
-            nest_commands::check_marker(&check, output)
-        }
-        Task::Check(check) => session_commands::check(&check, output),
+        Task::Check(check) => check_commands::check(&check, output),
         Task::Replay(replay) => session_commands::replay(&replay, output),
         Task::Convert(convert) => tool_commands::convert(&convert, output),
         Task::Mesh(mesh) => tool_commands::mesh(&mesh, output),

@@ -1,14 +1,14 @@
 //! `toile nest`: pieces laid on fabric.
 
-use crate::arguments::{Check, Nest};
 use crate::bar::Bar;
+use crate::nest_arguments::Nest;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
 use std::path::Path;
-use toile_geometry::Length;
+use toile_geometry::{Duration, Length};
 use toile_session::{
-    Budget, Event, MarkerSettings, NestOptions, Nested, is_nesting_instance, judge_marker_file,
-    nest_instance, nest_patterns, open_marker_settings, rule_table, study_rules,
+    Budget, Event, MarkerSettings, NestOptions, Nested, is_nesting_instance, nest_instance,
+    nest_patterns, open_marker_settings, rule_table, study_rules,
 };
 
 /// A yard [m].
@@ -17,9 +17,10 @@ const YARD: f64 = 0.9144;
 /// What the arguments ask for.
 fn nest_options(nest: &Nest) -> Result<NestOptions, Failure> {
     let metres = |length: &Option<Length>| length.map(|l| l.as_metres());
-    if let Some(seconds) = nest.time.filter(|t| !t.is_finite() || *t <= 0.0) {
+    let seconds = nest.time.map(Duration::as_seconds);
+    if let Some(seconds) = seconds.filter(|&t| t <= 0.0) {
         return Err(Failure::bad_input(format!(
-            "--time is {seconds}; give a number of seconds above 0"
+            "--time is {seconds} s; give a time above 0, as in 10s"
         )));
     }
     let sizes = match &nest.size {
@@ -49,7 +50,7 @@ fn nest_options(nest: &Nest) -> Result<NestOptions, Failure> {
         locked: nest.lock.clone(),
         keep_best: true,
         formats: nest.write.iter().map(|&f| f.into()).collect(),
-        budget: match nest.time {
+        budget: match seconds {
             Some(seconds) => Budget::Seconds(seconds),
             None => Budget::Evaluations(nest.evaluations),
         },
@@ -198,29 +199,4 @@ fn study(nest: &Nest, options: &NestOptions, output: &Output) -> Result<Value, F
         })
     });
     Ok(json!({ "rules": listed.collect::<Vec<_>>() }))
-}
-
-/// A marker judged as it stands.
-pub fn check_marker(check: &Check, output: &Output) -> Result<Value, Failure> {
-    let judged = judge_marker_file(&check.pattern, check.out.as_deref())?;
-    let nested = &judged.nested;
-    for path in &judged.files {
-        output.say(format!("wrote {}", path.display()));
-    }
-    let report = json!({
-        "files": judged.files,
-        "pieces": nested.pieces,
-        "length_m": nested.length,
-        "faults": judged.faults,
-    });
-    if judged.faults.is_empty() {
-        output.say(format!(
-            "{} on {:.1} cm of fabric: no faults",
-            count(nested.pieces, "piece"),
-            nested.length * 100.0
-        ));
-        return Ok(report);
-    }
-    let failure = Failure::bad_input(judged.faults.join("\n"));
-    Err(failure.about(&check.pattern).with_report(report))
 }

@@ -38,6 +38,21 @@ impl Failure {
         }
     }
 
+    /// Whether what was given is at fault, and not the work on it.
+    pub fn is_bad_input(&self) -> bool {
+        self.bad_input
+    }
+
+    /// What went wrong, with place and remedy.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// What was found all the same.
+    pub fn report(&self) -> Option<&Value> {
+        self.report.as_ref()
+    }
+
     /// The same with what was found so far.
     pub fn with_report(self, report: Value) -> Self {
         Self {
@@ -53,6 +68,14 @@ impl Failure {
             self.message = format!("{file}: {}", self.message);
         }
         self
+    }
+}
+
+impl Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut lines = self.message.lines();
+        write!(f, "error: {}", lines.next().unwrap_or_default())?;
+        lines.try_for_each(|line| write!(f, "\nerror: {line}"))
     }
 }
 
@@ -118,9 +141,7 @@ impl Output {
 
     /// Ends with a failure.
     pub fn fail(&self, failure: &Failure) -> ExitCode {
-        for line in failure.message.lines() {
-            complain(format_args!("error: {line}"));
-        }
+        complain(failure);
         if self.json {
             let report = failure.report.clone().unwrap_or_else(|| json!({}));
             let start = json!({ "ok": false, "error": failure.message });

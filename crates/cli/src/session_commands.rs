@@ -1,11 +1,11 @@
 //! Commands that run through a session.
 
-use crate::arguments::{Check, Make, Replay};
+use crate::arguments::{Make, Replay};
 use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use toile_session::{Command, Event, Session, read_journal, read_text_file};
+use toile_session::{Command, Event, Session, Wanted, read_input, read_journal};
 
 /// The whole job.
 pub fn make(make: &Make, output: &Output) -> Result<Value, Failure> {
@@ -88,48 +88,10 @@ fn refuse_nobody(commands: &[Command]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Faults of a pattern.
-pub fn check(check: &Check, output: &Output) -> Result<Value, Failure> {
-    let mut session = Session::new();
-    let mut commands = vec![Command::OpenPattern {
-        path: check.pattern.clone(),
-    }];
-    if let Some(size) = check.size.clone() {
-        commands.push(Command::SetSize { size: Some(size) });
-    }
-    commands.push(Command::Check);
-    let events = session
-        .execute_all(&commands, &mut Bar::new())
-        .map_err(|error| Failure::from(error).about(&check.pattern))?;
-    let diagnostics = session.diagnostics();
-    let place = |place| session.project().pattern.describe(place);
-    let listed: Vec<Value> = diagnostics
-        .iter()
-        .map(|d| {
-            json!({
-                "severity": d.severity.to_string(),
-                "place": place(&d.place),
-                "message": d.message,
-                "hint": d.hint,
-            })
-        })
-        .collect();
-    output.tell(&events);
-    let report = json!({ "diagnostics": listed, "warnings": warnings(&events) });
-    let errors = events
-        .iter()
-        .any(|e| matches!(e, Event::Checked { errors, .. } if *errors > 0));
-    if errors {
-        let message = format!("{}: the garment cannot be made", check.pattern.display());
-        return Err(Failure::bad_input(message).with_report(report));
-    }
-    Ok(report)
-}
-
 /// A journal done again.
 pub fn replay(replay: &Replay, output: &Output) -> Result<Value, Failure> {
     let about = |error: toile_session::SessionError| Failure::from(error).about(&replay.journal);
-    let text = read_text_file(&replay.journal).map_err(about)?;
+    let text = read_input(&replay.journal, Wanted::Journal).map_err(about)?;
     let commands = read_journal(&text).map_err(about)?;
     let (_, events) = Session::replay(&commands, &replay.out, &mut Bar::new()).map_err(about)?;
     output.tell(&events);
@@ -152,7 +114,8 @@ fn outcome(events: &[Event], folder: &Path) -> Value {
     json!({ "files": files, "warnings": warnings(events), "report": report })
 }
 
-fn warnings(events: &[Event]) -> Vec<&str> {
+/// What was warned of.
+pub fn warnings(events: &[Event]) -> Vec<&str> {
     let warned = events.iter().filter_map(|event| match event {
         Event::Warned { message } => Some(&**message),
         _ => None,

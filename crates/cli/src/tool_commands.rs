@@ -1,11 +1,12 @@
 //! Commands that need no session.
 
-use crate::arguments::{Body, Convert, FormatName, Mesh, Run};
+use crate::arguments::{Body, Convert, Mesh, Run};
 use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use toile_geometry::Duration;
 use toile_measure::Origin;
 use toile_session::{
     BodyChoice, BodyReport, BodySource, Description, Figure, Fit, Moment, Project,
@@ -15,12 +16,8 @@ use toile_session::{
 
 /// A pattern in another format.
 pub fn convert(convert: &Convert, output: &Output) -> Result<Value, Failure> {
-    let native = convert.output.to_string_lossy().ends_with(".toile.json");
-    let format = convert.to.unwrap_or(match native {
-        true => FormatName::Native,
-        false => FormatName::Garmentcode,
-    });
-    let lost = convert_file(&convert.input, &convert.output, format.into())
+    let format = convert.to.map(Into::into);
+    let lost = convert_file(&convert.input, &convert.output, format)
         .map_err(|error| Failure::from(error).about(&convert.input))?;
     for note in &lost {
         output.say(format!("not carried over or assumed: {note}"));
@@ -82,14 +79,10 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         body: choice,
         ..Project::default()
     };
-    if !body.time.is_finite() {
-        return Err(Failure::bad_input(
-            "--time is no number of seconds".to_owned(),
-        ));
-    }
     let moment = body.motion.clone().map(|motion| Moment {
         motion,
-        time: body.time,
+        blend: body.blend.clone(),
+        time: body.time.map_or(0.0, Duration::as_seconds),
     });
     if body.landmarks.is_some() && body.fit.is_none() {
         return Err(Failure::bad_input(
@@ -105,13 +98,14 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         (None, Some(path)) => Some(open_mannequin(path).map_err(Failure::from)?),
         (None, None) => None,
     };
-    let described = match body.stretch.asked()? {
+    let stretch = body.stretch.asked()?;
+    let described = match &stretch {
         Some(_) if body.measurements.is_some() => {
             return Err(Failure::bad_input(
                 "--proportions, --heads, --stature and the ratios scale a body as it is: leave out --measurements, or give lengths there".to_owned(),
             ));
         }
-        Some(stretch) => Some(stretch_body(described, figure, &stretch).map_err(Failure::from)?),
+        Some(stretch) => Some(stretch_body(described, figure, stretch).map_err(Failure::from)?),
         None => described,
     };
     let described = match &body.edits {
@@ -133,7 +127,14 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         output.warn(format!("note: {note}"));
     }
     body_table(&report, output);
-    output.say(format!("{:.2} head lengths tall", report.heads));
+    output.say(format!("{:.2} head lengths tall", report.proportions.heads));
+    let asked = stretch.as_ref().and_then(|s| s.proportions.as_ref());
+    let missed = asked.map_or_else(Vec::new, |asked| asked.missed_by(&report.proportions));
+    for (name, asked, got) in &missed {
+        output.warn(format!(
+            "note: {name}: asked {asked:.2}, got {got:.2} head lengths, the nearest that this body comes to"
+        ));
+    }
     output.say(format!(
         "wrote {} ({} compared)",
         body.out.display(),
@@ -158,7 +159,10 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         "not_taken": report.untaken,
         "conflicts": conflicts,
         "notes": report.notes,
-        "heads": report.heads,
+        "heads": report.proportions.heads,
+        "proportions_missed": missed.iter().map(|(name, asked, got)| {
+            json!({ "name": name, "asked": asked, "got": got })
+        }).collect::<Vec<_>>(),
     });
     if let Some(fit) = &fit {
         let m = &fit.misfit;

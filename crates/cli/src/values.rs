@@ -17,6 +17,20 @@ pub fn size_count(text: &str) -> Result<(String, u32), String> {
     }
 }
 
+/// A gait and its share from 0 to 1, as in run:0.3.
+pub fn blend(text: &str) -> Result<(String, f64), String> {
+    let parts = text.split_once(':');
+    let share = parts.and_then(|(_, share)| share.parse::<f64>().ok());
+    match (parts, share) {
+        (Some((gait @ ("walk" | "run"), _)), Some(share)) if (0.0..=1.0).contains(&share) => {
+            Ok((gait.to_owned(), share))
+        }
+        _ => Err(format!(
+            "{text:?} is no gait with a share from 0 to 1; write for example run:0.3"
+        )),
+    }
+}
+
 /// Lengths with commas between [m].
 fn lengths(text: &str) -> Result<Vec<f64>, String> {
     text.split(',')

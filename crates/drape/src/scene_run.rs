@@ -135,6 +135,27 @@ impl SceneRun {
         self.model.set_elastics(elastics);
     }
 
+    /// Pairs of cloths that elastics have merged vertices of, as indices into the scene's objects.
+    pub fn sewn_objects(&self) -> Vec<[usize; 2]> {
+        let mut owner: Vec<Option<usize>> = vec![None; self.model.vertex_count()];
+        let mut pairs = Vec::new();
+        for (index, object) in self.scene.objects.iter().enumerate() {
+            let Some(first) = self.first[index] else {
+                continue;
+            };
+            let own = first as usize..first as usize + object.mesh.positions.len();
+            for &vertex in &self.target[own] {
+                match owner[vertex as usize].replace(index) {
+                    Some(other) if other != index => pairs.push([other, index]),
+                    _ => {}
+                }
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
     /// Layer of each present vertex; empty where all are of one.
     fn layers(&self) -> Vec<u16> {
         let mut layers = Vec::with_capacity(self.target.len());

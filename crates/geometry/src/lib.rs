@@ -45,7 +45,7 @@ pub use predicates::{
 pub use section::{closed_length, horizontal_section};
 pub use tree::{ClosestPoint, SurfaceTree};
 pub use triangle::{Feature, closest_point_on_triangle, tetrahedron_volume, triangle_area};
-pub use units::{Angle, Length, UnitError};
+pub use units::{Angle, Duration, Length, UnitError};
 
 /// Point or vector in the plane \[m\].
 pub type Vec2 = nalgebra::Vector2<f64>;

@@ -1,4 +1,4 @@
-//! Lengths and angles with their units, for constructors, command lines and files.
+//! Lengths, angles and durations with their units, for constructors, command lines and files.
 
 use std::fmt;
 use std::str::FromStr;
@@ -11,12 +11,16 @@ pub struct Length(f64);
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Default)]
 pub struct Angle(f64);
 
-/// Why a text is not a length or an angle.
+/// A duration. Stored in seconds.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Default)]
+pub struct Duration(f64);
+
+/// Why a text is not a length, an angle or a duration.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum UnitError {
     /// No number could be read.
-    #[error("\"{0}\" does not start with a number; write for example 150cm")]
-    NotANumber(String),
+    #[error("\"{0}\" does not start with a number; write for example {1}")]
+    NotANumber(String, &'static str),
     /// The number is followed by a unit that is not known here.
     #[error("\"{0}\" is not a unit known here; use one of {1}")]
     UnknownUnit(String, &'static str),
@@ -80,8 +84,19 @@ impl Angle {
     }
 }
 
-/// Splits `"12.5 cm"` into its number and its unit.
-fn split(text: &str) -> Result<(f64, &str), UnitError> {
+impl Duration {
+    /// From seconds \[s\].
+    pub const fn seconds(value: f64) -> Self {
+        Self(value)
+    }
+    /// In seconds \[s\].
+    pub const fn as_seconds(self) -> f64 {
+        self.0
+    }
+}
+
+/// Splits `"12.5 cm"` into its number and its unit; `example` is one that could be read.
+fn split<'a>(text: &'a str, example: &'static str) -> Result<(f64, &'a str), UnitError> {
     let text = text.trim();
     let end = text
         .char_indices()
@@ -93,7 +108,7 @@ fn split(text: &str) -> Result<(f64, &str), UnitError> {
         .map_or(text.len(), |(at, _)| at);
     let number: f64 = text[..end]
         .parse()
-        .map_err(|_| UnitError::NotANumber(text.to_owned()))?;
+        .map_err(|_| UnitError::NotANumber(text.to_owned(), example))?;
     if !number.is_finite() {
         return Err(UnitError::NotFinite(text.to_owned()));
     }
@@ -113,7 +128,7 @@ impl FromStr for Length {
 
     /// Reads `150cm`, `1.5 m`, `12 mm`, `60in`. A unit is required, but for zero.
     fn from_str(text: &str) -> Result<Self, UnitError> {
-        let (number, unit) = split(text)?;
+        let (number, unit) = split(text, "150cm")?;
         match unit {
             "mm" => Ok(Self::millimetres(number)),
             "cm" => Ok(Self::centimetres(number)),
@@ -130,12 +145,27 @@ impl FromStr for Angle {
 
     /// Reads `45deg`, `45°`, `0.5rad`. A unit is required, but for zero.
     fn from_str(text: &str) -> Result<Self, UnitError> {
-        let (number, unit) = split(text)?;
+        let (number, unit) = split(text, "45deg")?;
         match unit {
             "deg" | "°" => Ok(Self::degrees(number)),
             "rad" => Ok(Self::radians(number)),
             "" if number == 0.0 => Ok(Self(0.0)),
             other => Err(unit_error(text, other, "deg, rad")),
+        }
+    }
+}
+
+impl FromStr for Duration {
+    type Err = UnitError;
+
+    /// Reads `10s`, `250 ms`, `1.5min`; a number alone is in seconds.
+    fn from_str(text: &str) -> Result<Self, UnitError> {
+        let (number, unit) = split(text, "10s")?;
+        match unit {
+            "ms" => Ok(Self(number * 1e-3)),
+            "s" | "" => Ok(Self(number)),
+            "min" => Ok(Self(number * 60.0)),
+            other => Err(unit_error(text, other, "ms, s, min")),
         }
     }
 }
@@ -175,7 +205,7 @@ mod tests {
         );
         assert!(matches!(
             "cm".parse::<Length>(),
-            Err(UnitError::NotANumber(_))
+            Err(UnitError::NotANumber(_, "150cm"))
         ));
         assert!(matches!(
             "1e999m".parse::<Length>(),
@@ -188,5 +218,33 @@ mod tests {
         let right: Angle = "90deg".parse().expect("degrees");
         assert!((right.as_radians() - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
         assert!("90 turns".parse::<Angle>().is_err());
+    }
+
+    #[test]
+    fn durations_are_read_in_every_unit() {
+        for (text, seconds) in [
+            ("10s", 10.0),
+            ("250 ms", 0.25),
+            ("1.5min", 90.0),
+            ("7", 7.0),
+        ] {
+            let got: Duration = text.parse().expect(text);
+            assert!(
+                (got.as_seconds() - seconds).abs() < 1e-12,
+                "{text}: {got:?}"
+            );
+        }
+        let error = "2 hours"
+            .parse::<Duration>()
+            .expect_err("no unit known here");
+        assert_eq!(
+            error.to_string(),
+            "\"hours\" is not a unit known here; use one of ms, s, min"
+        );
+        let error = "soon".parse::<Duration>().expect_err("no number");
+        assert!(
+            error.to_string().ends_with("write for example 10s"),
+            "{error}"
+        );
     }
 }

@@ -30,6 +30,13 @@ pub fn read_fabric_test(text: &str) -> Result<FabricTest, FormatError> {
     } else {
         csv(text)?
     };
+    if values.is_empty() {
+        return Err(FormatError::new(
+            "the whole file",
+            "it holds no test value",
+            "write names and values, as in B,0.12,0.08",
+        ));
+    }
     Reader { values }.read()
 }
 
@@ -98,10 +105,11 @@ fn csv(text: &str) -> Result<Values, FormatError> {
             continue;
         };
         let place = format!("line {}", line + 1);
-        if line == 0 && cells.clone().all(|cell| cell.parse::<f64>().is_err()) {
+        let known = NAMES.iter().find(|(_, n)| *n == name);
+        // The first line may name the columns.
+        if line == 0 && known.is_none() && cells.clone().all(|cell| cell.parse::<f64>().is_err()) {
             continue;
         }
-        let known = NAMES.iter().find(|(_, n)| *n == name);
         let &(_, known) = known.ok_or_else(|| unknown(&place, name))?;
         let numbers: Option<Vec<f64>> = cells.map(|cell| cell.parse().ok()).collect();
         match numbers.as_deref() {
@@ -302,7 +310,10 @@ mod tests {
             (r#"{"kes": {"Q": 1}}"#, "kes.Q"),
             (r#"{"kes": {"B": "soft"}}"#, "kes.B"),
             (r#"{"kes": 3}"#, "kes"),
-            ("B,soft\nG,1,2,3", "line 2"),
+            ("property,warp,weft\nG,1,2,3", "line 2"),
+            ("B,soft\nG,1", "line 1"),
+            ("hello\n", "the whole file"),
+            (r#"{"name": "suiting"}"#, "the whole file"),
             ("B,-1", "B"),
             ("B,NaN", "B"),
             ("overhang,50\nangle,89", "angle"),

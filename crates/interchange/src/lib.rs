@@ -9,6 +9,7 @@ mod atomic;
 mod bvh;
 mod dxf;
 mod error;
+mod fabric_file;
 mod fabric_test;
 mod garmentcode;
 mod gltf;
@@ -32,6 +33,7 @@ mod obj;
 mod obj_read;
 mod pdf;
 mod proportions;
+mod recognise;
 mod scene;
 mod scene_motion;
 mod x3d;
@@ -42,6 +44,7 @@ mod x3d_xml;
 pub use atomic::{write_all_atomically, write_atomically};
 pub use bvh::read_bvh;
 pub use error::{FileError, FormatError, read_text};
+pub use fabric_file::{FabricFile, read_fabric};
 pub use fabric_test::{FabricTest, read_fabric_test};
 pub use garmentcode::{
     GarmentCodeReading, GarmentCodeWriting, read_garmentcode, write_garmentcode,
@@ -69,6 +72,7 @@ pub use native::{read_pattern, write_pattern};
 pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;
 pub use proportions::{proportion_boxes, read_proportions};
+pub use recognise::{FileKind, Wanted};
 pub use scene::{
     AirFile, DampingFile, ElasticFile, EndFile, MaterialFile, ObjectFile, SceneFile, TransformFile,
     read_scene,

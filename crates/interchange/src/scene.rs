@@ -304,11 +304,25 @@ impl MaterialFile {
                     let known: Vec<_> = LIBRARY.iter().map(|fabric| fabric.name).collect();
                     FormatError::new(
                         format!("{place}.fabric"),
-                        format!("\"{name}\" is not a fabric of the library"),
-                        format!("write one of {}", known.join(", ")),
+                        format!("\"{name}\" is neither a fabric of the library nor a file"),
+                        format!("write one of {}, or name a fabric file", known.join(", ")),
                     )
                 })?,
         };
+        self.over(usual, place)
+    }
+
+    /// The fields that are not known here, taken out.
+    pub(crate) fn take_unknown(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.unknown).into_keys().collect()
+    }
+
+    /// The material with the figures of another, `usual`, where nothing is written, whatever
+    /// fabric is named.
+    ///
+    /// # Errors
+    /// A kind of compression that is not known; `place` says where it stands.
+    pub fn over(&self, usual: Material, place: &str) -> Result<Material, FormatError> {
         let compression = match self.compression.as_deref() {
             None => usual.compression,
             Some("full") => Compression::Full,
@@ -482,21 +496,20 @@ impl SceneFile {
     }
 }
 
+/// What is wrong with JSON, and where.
+pub(crate) fn json_error(error: &serde_json::Error) -> FormatError {
+    let place = format!("line {}, column {}", error.line(), error.column());
+    let what = error.to_string();
+    let what = what.split(" at line ").next().unwrap_or_default();
+    FormatError::new(place, what, "see this kind of file in docs/FORMATS.md")
+}
+
 /// Reads a scene file. Beside it come the paths of fields that are not known here.
 ///
 /// # Errors
 /// With line and column: text that is not JSON, a field missing or of the wrong kind.
 pub fn read_scene(text: &str) -> Result<(SceneFile, Vec<String>), FormatError> {
-    let file: SceneFile = serde_json::from_str(text).map_err(|error| {
-        let place = format!("line {}, column {}", error.line(), error.column());
-        let what = error.to_string();
-        let what = what
-            .split(" at line ")
-            .next()
-            .unwrap_or_default()
-            .to_owned();
-        FormatError::new(place, what, "see the scene file in docs/FORMATS.md")
-    })?;
+    let file: SceneFile = serde_json::from_str(text).map_err(|error| json_error(&error))?;
     let unknown = file.unknown_fields();
     Ok((file, unknown))
 }

@@ -7,9 +7,8 @@ use crate::{LabError, Resolved};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use toile_drape::MethodKind;
-use toile_interchange::{write_all_atomically, write_atomically};
+use toile_interchange::{read_text, write_all_atomically, write_atomically};
 use toile_picture::{Axis, Chart, Joined, Marker, Series, palette};
-use toile_session::read_text_file;
 
 /// A field of a CSV file.
 pub(crate) fn field(text: &str) -> String {
@@ -321,7 +320,7 @@ pub fn write_files(folder: &Path, files: &[(String, String)]) -> Result<Vec<Path
 /// The document cannot be read or written.
 pub fn write_section(path: &Path, name: &str, section: &str) -> Result<(), LabError> {
     let failed = |what: String| LabError::Files { what };
-    let text = read_text_file(path).map_err(|error| failed(error.to_string()))?;
+    let text = read_text(path).map_err(|error| failed(error.to_string()))?;
     write_atomically(path, with_section(&text, name, section).as_bytes())
         .map_err(|error| failed(error.to_string()))
 }

@@ -202,6 +202,12 @@ impl Pattern {
             .chain(&fabric.stretch)
             .chain(&fabric.bend)
             .chain(&fabric.colour);
+        let flow = &fabric.rheology;
+        let all = all.chain(&flow.hardening).chain(&flow.kept).chain([
+            &flow.viscosity,
+            &flow.bend_viscosity,
+            &flow.relaxation_time,
+        ]);
         if !all.copied().all(f64::is_finite) {
             return Err(EditError::NotFinite(format!("fabric {:?}", fabric.name)));
         }

@@ -191,6 +191,9 @@ fn check_fabric(fabric: &Fabric, diagnostics: &mut Vec<Diagnostic>) {
             "give a number between -0.9 and 0.9, usually 0.2 to 0.3",
         );
     }
+    if let Some(defect) = fabric.rheology.defect() {
+        report(defect.into(), "change it, or leave it out");
+    }
     if !fabric.colour.iter().all(|c| (0.0..=1.0).contains(c)) {
         report(
             "its colour is not between 0 and 1".into(),

@@ -237,4 +237,58 @@ pub struct Fabric {
     pub nap: bool,
     /// Base colour, sRGB 0..=1.
     pub colour: [f64; 3],
+    /// What its stress depends on besides the strain of the moment.
+    #[serde(default)]
+    pub rheology: Rheology,
+}
+
+/// How a cloth hardens, damps and keeps folds. All zero: linear and elastic.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Rheology {
+    /// Hardening k of warp and weft: stress C (E + k E^3) in tension [1].
+    pub hardening: [f64; 2],
+    /// Viscosity of stretch and shear (Kelvin-Voigt) [N s/m].
+    pub viscosity: f64,
+    /// Viscosity of bending (Kelvin-Voigt) [N m s].
+    pub bend_viscosity: f64,
+    /// Share of a stretch and of a fold that is kept when held for long, 0 to below 1 [1].
+    pub kept: [f64; 2],
+    /// Time in which the kept share settles [s].
+    pub relaxation_time: f64,
+}
+
+impl Default for Rheology {
+    fn default() -> Self {
+        Self {
+            hardening: [0.0; 2],
+            viscosity: 0.0,
+            bend_viscosity: 0.0,
+            kept: [0.0; 2],
+            relaxation_time: 10.0,
+        }
+    }
+}
+
+impl Rheology {
+    /// Whether the stress depends on time: on speeds, or on what was held before.
+    pub fn acts_in_time(&self) -> bool {
+        self.viscosity > 0.0 || self.bend_viscosity > 0.0 || self.kept != [0.0; 2]
+    }
+
+    /// What no cloth has, in words; nothing where all is in order.
+    pub fn defect(&self) -> Option<&'static str> {
+        let good = |x: f64| x.is_finite() && x >= 0.0;
+        if !self.hardening.iter().all(|&k| good(k)) {
+            Some("its hardening is not two numbers of 0 or more")
+        } else if !(good(self.viscosity) && good(self.bend_viscosity)) {
+            Some("its viscosity is not 0 or more")
+        } else if !self.kept.iter().all(|k| (0.0..1.0).contains(k)) {
+            Some("its kept shares are not from 0 to below 1")
+        } else if !(good(self.relaxation_time) && self.relaxation_time > 0.0) {
+            Some("its relaxation time is not above 0")
+        } else {
+            None
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Fabrics to begin with: figures of common cloths, rounded.
 
-use crate::{Fabric, FabricId};
+use crate::{Fabric, FabricId, Rheology};
 
 impl Fabric {
     /// Cotton poplin: a light, firm plain weave for shirts and skirts. 1.5 m wide.
@@ -18,6 +18,7 @@ impl Fabric {
             width: 1.5,
             nap: false,
             colour: [0.55, 0.68, 0.80],
+            rheology: Rheology::default(),
         }
     }
 
@@ -36,6 +37,7 @@ impl Fabric {
             width: 1.5,
             nap: false,
             colour: [0.78, 0.36, 0.32],
+            rheology: Rheology::default(),
         }
     }
 }

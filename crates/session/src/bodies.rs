@@ -1,12 +1,15 @@
 //! Bodies of one's own: mannequin files as the wearer's body, their primitives edited, and figures
 //! brought to proportions.
 
+use crate::open::{open_measurements, read_input};
 use crate::tools::open_mannequin;
 use crate::{BodyChoice, Project, SessionError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use toile_body::{BodyError, Description, Mannequin, PrimitiveEdit, ProportionBox};
-use toile_interchange::{FormatError, proportion_boxes, read_proportions, read_text};
+use toile_body::{BodyError, Description, Figure, Mannequin, PrimitiveEdit, ProportionBox};
+use toile_interchange::{
+    FileError, FileKind, FormatError, Wanted, proportion_boxes, read_proportions,
+};
 use toile_measure::{Measurements, Origin};
 
 /// The body of a description as a choice, with what a tape finds on it. A body whose primitives
@@ -29,14 +32,26 @@ pub(crate) fn shaped(
 }
 
 /// The description in a file that is a mannequin's; none where it is something else.
-pub(crate) fn described(path: &Path) -> Result<Option<Description>, SessionError> {
-    let text = read_text(path)?;
-    let kind = serde_json::from_str::<serde_json::Value>(&text)
-        .ok()
-        .and_then(|value| Some(value.get("kind")?.as_str()? == "mannequin"));
-    match kind {
-        Some(true) => open_mannequin(path).map(Some),
+fn described(path: &Path) -> Result<Option<Description>, SessionError> {
+    let bytes = std::fs::read(path).map_err(|error| FileError::from_io("read", path, &error))?;
+    match FileKind::of(&bytes) {
+        Some(FileKind::Mannequin) => open_mannequin(path).map(Some),
         _ => Ok(None),
+    }
+}
+
+/// The body of a file, measurements or a mannequin; `figure` is what measurements are grown from.
+///
+/// # Errors
+/// The file cannot be read, or no body is made of it.
+pub(crate) fn body_of(figure: Option<Figure>, path: &Path) -> Result<BodyChoice, SessionError> {
+    match described(path)? {
+        Some(description) => Ok(shaped(description, Some(path.to_owned()))?),
+        None => Ok(BodyChoice::Measured {
+            figure: figure.unwrap_or(Figure::Mean),
+            path: path.to_owned(),
+            measurements: Arc::new(open_measurements(path)?),
+        }),
     }
 }
 
@@ -60,7 +75,7 @@ pub(crate) fn description_of(project: &Project) -> Description {
 /// # Errors
 /// The file cannot be read, or is no such list.
 pub fn open_body_edits(path: &Path) -> Result<Vec<PrimitiveEdit>, SessionError> {
-    serde_json::from_str(&read_text(path)?).map_err(|error| SessionError::Format {
+    serde_json::from_str(&read_input(path, Wanted::SmallJson)?).map_err(|error| SessionError::Format {
         path: path.to_owned(),
         error: FormatError::new(
             format!("line {}, column {}", error.line(), error.column()),
@@ -98,12 +113,12 @@ pub fn proportions_named(text: &str) -> Result<ProportionBox, SessionError> {
     };
     let table = match &file {
         None => proportion_boxes(),
-        Some(path) => {
-            read_proportions(&read_text(path)?).map_err(|error| SessionError::Format {
+        Some(path) => read_proportions(&read_input(path, Wanted::SmallJson)?).map_err(|error| {
+            SessionError::Format {
                 path: path.clone(),
                 error,
-            })?
-        }
+            }
+        })?,
     };
     let chosen = match (&file, name) {
         (Some(_), "") => table.first(),

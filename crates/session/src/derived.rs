@@ -4,7 +4,7 @@ use crate::NestOptions;
 use crate::choice::BodyChoice;
 use crate::drape::{Drape, drape};
 use crate::dressed::{DraftedPart, Dressed, tell_apart};
-use crate::fabrics::fabric_named;
+use crate::fabrics::{FabricChoice, unseen_at_rest};
 use crate::laying::{Garments, Laying, lay};
 use crate::setup::{self, GarmentJob};
 use crate::{Project, SessionError, StampedInput, Watcher};
@@ -59,7 +59,7 @@ pub(crate) struct Derived {
     /// The garments worn, drafted.
     parts: Option<Arc<Vec<DraftedPart>>>,
     dressed: Option<Arc<Dressed>>,
-    /// What is worth telling about the garment's mesh and placement.
+    /// What is worth telling about the garment's mesh, placement and cloth.
     pub assembly_notes: Vec<String>,
     /// The drape, if it was made.
     pub drape: Option<Arc<Drape>>,
@@ -115,12 +115,9 @@ impl Derived {
             let measurements = project.drafted_to();
             let diagnostics = project.pattern.check(&measurements);
             let (mut draft, _) = project.pattern.resolve(&measurements);
-            let chosen = project.fabric.as_deref();
-            if let Some(fabric) = chosen.and_then(|name| fabric_named(project, name)) {
-                draft.fabrics = vec![fabric];
-                for piece in &mut draft.pieces {
-                    piece.fabric = 0;
-                }
+            let chosen = project.fabric.as_ref();
+            if let Some(fabric) = chosen.and_then(|choice| choice.fabric(&project.pattern)) {
+                FabricChoice::cut(fabric, &mut draft);
             }
             (Arc::new(draft), Arc::new(diagnostics))
         });
@@ -206,6 +203,7 @@ impl Derived {
         let mannequin = self.mannequin(project)?;
         let (dressed, notes) = assembled(&parts, &mannequin, project.quality.edge_length())?;
         self.assembly_notes = notes;
+        self.assembly_notes.extend(unseen_at_rest(&dressed.draft));
         Ok(self.dressed.insert(Arc::new(dressed)).clone())
     }
 

@@ -2,7 +2,7 @@
 //! several parts, each in its layer.
 
 use crate::drape::Drape;
-use crate::fabrics::fabric_of;
+use crate::fabrics::FabricChoice;
 use crate::{Project, SessionError, WornGarment};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -58,15 +58,10 @@ impl DraftedPart {
         let measurements = project.drafted_for(&worn.pattern);
         let diagnostics = Arc::new(worn.pattern.check(&measurements));
         let (mut draft, _) = worn.pattern.resolve(&measurements);
-        let chosen = project.fabric.as_deref();
-        let fabric = chosen.and_then(|name| {
-            fabric_of(&worn.pattern, name).or_else(|| fabric_of(&project.pattern, name))
-        });
-        if let Some(fabric) = fabric {
-            draft.fabrics = vec![fabric];
-            for piece in &mut draft.pieces {
-                piece.fabric = 0;
-            }
+        let chosen = project.fabric.as_ref();
+        let of = |pattern| chosen.and_then(|choice| choice.fabric(pattern));
+        if let Some(fabric) = of(&worn.pattern).or_else(|| of(&project.pattern)) {
+            FabricChoice::cut(fabric, &mut draft);
         }
         Self {
             name: worn.pattern.name.clone(),

@@ -1,31 +1,123 @@
-//! Fabrics by name: a pattern's own, then the library's.
+//! Fabrics by name: a pattern's own, then the library's, then those of files.
 
-use crate::Project;
-use toile_drape::{LIBRARY, LibraryFabric};
-use toile_pattern::{Fabric, FabricId, Pattern};
+use crate::open::read_input;
+use crate::{Project, SessionError};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use toile_drape::{Compression, LIBRARY, LibraryFabric, Material};
+use toile_interchange::{FabricFile, FormatError, Wanted, read_fabric};
+use toile_pattern::{Draft, Fabric, FabricId, Pattern, Rheology};
 
-/// Width of a roll of library fabric [m].
+/// Width of a roll of a fabric that comes without one [m].
 const WIDTH: f64 = 1.5;
+
+/// A fabric that takes the place of every panel's.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FabricChoice {
+    /// One of the pattern's, or of the library.
+    Named(String),
+    /// One of a file.
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What it says.
+        fabric: Arc<Fabric>,
+    },
+}
+
+impl FabricChoice {
+    /// Its name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Named(name) => name,
+            Self::File { fabric, .. } => &fabric.name,
+        }
+    }
+
+    /// The fabric, for a pattern; nothing where neither it nor the library has one of that name.
+    pub(crate) fn fabric(&self, pattern: &Pattern) -> Option<Fabric> {
+        match self {
+            Self::Named(name) => fabric_of(pattern, name),
+            Self::File { fabric, .. } => Some((**fabric).clone()),
+        }
+    }
+
+    /// Cuts every piece of a draft from it.
+    pub(crate) fn cut(fabric: Fabric, draft: &mut Draft) {
+        draft.fabrics = vec![fabric];
+        for piece in &mut draft.pieces {
+            piece.fabric = 0;
+        }
+    }
+}
+
+/// The fabric asked for by its name or its file, with what is worth telling.
+///
+/// # Errors
+/// A name that is not there, with those that are; a file that cannot be read, or that says more
+/// than the fabric of a garment has.
+pub(crate) fn chosen(
+    project: &Project,
+    asked: &str,
+) -> Result<(FabricChoice, Vec<String>), SessionError> {
+    if fabric_of(&project.pattern, asked).is_some() {
+        return Ok((FabricChoice::Named(asked.to_owned()), Vec::new()));
+    }
+    let path = Path::new(asked);
+    if !path.is_file() {
+        let names = fabric_names(project);
+        return Err(SessionError::Unknown {
+            kind: "fabric",
+            name: asked.to_owned(),
+            hint: format!("choose one of {}, or name a fabric file", names.join(", ")),
+        });
+    }
+    let file = open_fabric(path)?;
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = file.name.clone().unwrap_or_else(|| stem.into_owned());
+    let fabric = of_material(&name, &file.material).map_err(|what| SessionError::Format {
+        path: path.to_owned(),
+        error: FormatError::new(
+            what,
+            "the fabric of a garment has no such figure",
+            "leave it out, or use it in a scene (`toile run`)",
+        ),
+    })?;
+    let choice = FabricChoice::File {
+        path: path.to_owned(),
+        fabric: Arc::new(fabric),
+    };
+    Ok((choice, file.notes))
+}
+
+/// The fabric in a file.
+///
+/// # Errors
+/// The file cannot be read.
+pub(crate) fn open_fabric(path: &Path) -> Result<FabricFile, SessionError> {
+    read_fabric(&read_input(path, Wanted::Fabric)?).map_err(|error| SessionError::Format {
+        path: path.to_owned(),
+        error,
+    })
+}
 
 /// A fabric by name: one of the pattern's, else `jersey` or `poplin` as patterns begin with, else
 /// one of the library.
-pub(crate) fn fabric_named(project: &Project, name: &str) -> Option<Fabric> {
-    fabric_of(&project.pattern, name)
-}
-
-/// [`fabric_named`] for any pattern.
-pub(crate) fn fabric_of(pattern: &Pattern, name: &str) -> Option<Fabric> {
+fn fabric_of(pattern: &Pattern, name: &str) -> Option<Fabric> {
     let own = pattern.fabrics.iter().find(|f| f.name == name);
     match (own, name) {
         (Some(own), _) => Some((**own).clone()),
         (None, "jersey") => Some(Fabric::jersey(FabricId(0))),
         (None, "poplin") => Some(Fabric::poplin(FabricId(0))),
-        (None, _) => LibraryFabric::named(name).map(of_library),
+        (None, _) => {
+            let library = LibraryFabric::named(name)?;
+            of_material(name, &library.material()).ok()
+        }
     }
 }
 
-/// Names that [`fabric_named`] knows, in order.
-pub(crate) fn fabric_names(project: &Project) -> Vec<&str> {
+/// Names that [`fabric_of`] knows, in order.
+fn fabric_names(project: &Project) -> Vec<&str> {
     let own = project.pattern.fabrics.iter().map(|f| &*f.name);
     let library = LIBRARY.iter().map(|f| f.name);
     let mut names: Vec<&str> = own.chain(library).collect();
@@ -34,11 +126,25 @@ pub(crate) fn fabric_names(project: &Project) -> Vec<&str> {
     names
 }
 
-fn of_library(fabric: &LibraryFabric) -> Fabric {
-    let material = fabric.material();
-    Fabric {
+/// A fabric of a material; the figure that a pattern's fabric cannot hold, if there is one.
+fn of_material(name: &str, material: &Material) -> Result<Fabric, &'static str> {
+    let usual = Material::default();
+    let beyond = [
+        ("strain_limit", material.strain_limit != usual.strain_limit),
+        ("compression", material.compression != Compression::Full),
+        ("bend_poisson", material.bend_poisson != usual.bend_poisson),
+        (
+            "stiffness_damping",
+            material.stiffness_damping != usual.stiffness_damping,
+        ),
+        ("restitution", material.restitution.is_some()),
+    ];
+    if let Some((field, _)) = beyond.iter().find(|(_, beyond)| *beyond) {
+        return Err(field);
+    }
+    Ok(Fabric {
         id: FabricId(0),
-        name: fabric.name.into(),
+        name: name.into(),
         density: material.density,
         thickness: material.thickness,
         stretch: material.stretch,
@@ -49,7 +155,52 @@ fn of_library(fabric: &LibraryFabric) -> Fabric {
         width: WIDTH,
         nap: false,
         colour: [0.72, 0.70, 0.66],
+        rheology: Rheology {
+            hardening: material.hardening,
+            viscosity: material.viscosity,
+            bend_viscosity: material.bend_viscosity,
+            kept: material.kept,
+            relaxation_time: material.relaxation_time,
+        },
+    })
+}
+
+/// The material of a fabric.
+pub(crate) fn cloth_material(fabric: &Fabric) -> Material {
+    let own = &fabric.rheology;
+    // A pattern that repeats the figures of a library fabric has the curve of its stretch too.
+    let library = LibraryFabric::named(&fabric.name).map(LibraryFabric::material);
+    let hardening = library
+        .filter(|material| material.stretch == fabric.stretch && own.hardening == [0.0; 2])
+        .map_or(own.hardening, |material| material.hardening);
+    Material {
+        density: fabric.density,
+        thickness: fabric.thickness,
+        stretch: fabric.stretch,
+        shear: fabric.shear,
+        poisson: fabric.poisson,
+        bend: fabric.bend,
+        friction: fabric.friction,
+        hardening,
+        viscosity: own.viscosity,
+        bend_viscosity: own.bend_viscosity,
+        kept: own.kept,
+        relaxation_time: own.relaxation_time,
+        ..Material::default()
     }
+}
+
+/// What of the fabrics of a draft a garment at rest does not show, in words.
+pub(crate) fn unseen_at_rest(draft: &Draft) -> Vec<String> {
+    let timed = draft.fabrics.iter().filter(|f| f.rheology.acts_in_time());
+    timed
+        .map(|fabric| {
+            format!(
+                "fabric {:?}: viscosity and kept folds act in motion only; the garment at rest is draped without them",
+                fabric.name
+            )
+        })
+        .collect()
 }
 
 #[cfg(test)]
@@ -59,11 +210,42 @@ mod tests {
     #[test]
     fn the_library_is_reached_by_name() {
         let project = Project::default();
-        let denim = fabric_named(&project, "denim").expect("in the library");
+        let denim = fabric_of(&project.pattern, "denim").expect("in the library");
         assert!((denim.density - 0.334).abs() < 1e-12);
-        assert!(fabric_named(&project, "unobtainium").is_none());
+        assert!(fabric_of(&project.pattern, "unobtainium").is_none());
         for name in fabric_names(&project) {
-            assert!(fabric_named(&project, name).is_some(), "{name}");
+            let fabric = fabric_of(&project.pattern, name).expect(name);
+            if let (Some(library), false) = (
+                LibraryFabric::named(name),
+                name == "jersey" || name == "poplin",
+            ) {
+                assert_eq!(cloth_material(&fabric), library.material());
+            }
         }
+    }
+
+    #[test]
+    fn a_fabric_file_takes_the_place_of_every_panels_fabric_and_says_what_it_cannot_hold() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("ponte.json");
+        let text = |more: &str| {
+            format!(
+                r#"{{"toile": 1, "kind": "fabric", "viscosity": 0.02, "kept": [0, 0.2]{more}}}"#
+            )
+        };
+        std::fs::write(&path, text("")).unwrap();
+        let project = Project::default();
+        let asked = path.to_str().unwrap();
+        let (choice, notes) = chosen(&project, asked).unwrap();
+        assert!(notes.is_empty() && choice.name() == "ponte");
+        let fabric = choice.fabric(&project.pattern).unwrap();
+        let material = cloth_material(&fabric);
+        assert_eq!((material.viscosity, material.kept), (0.02, [0.0, 0.2]));
+        std::fs::write(&path, text(r#", "restitution": 0.5"#)).unwrap();
+        let error = chosen(&project, asked).unwrap_err().to_string();
+        assert!(
+            error.contains("restitution") && error.contains("ponte.json"),
+            "{error}"
+        );
     }
 }

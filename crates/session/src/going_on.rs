@@ -1,8 +1,9 @@
 //! Going on from markers made before: where their pieces lie, and which of them stay there.
 
+use crate::open::read_input;
 use crate::{NestOptions, SessionError};
 use std::path::Path;
-use toile_interchange::{MarkerFile, read_marker_json, read_text};
+use toile_interchange::{MarkerFile, Wanted, read_marker_json};
 use toile_nesting::{Item, Locked, Marker, Placement, Strip, Unplaced};
 
 /// The markers that a job goes on from.
@@ -35,7 +36,7 @@ pub(crate) fn read_starts(options: &NestOptions) -> Result<Vec<MarkerFile>, Sess
 }
 
 fn read_start(path: &Path) -> Result<MarkerFile, SessionError> {
-    read_marker_json(&read_text(path)?).map_err(|error| SessionError::Format {
+    read_marker_json(&read_input(path, Wanted::Marker)?).map_err(|error| SessionError::Format {
         path: path.to_owned(),
         error,
     })

@@ -1,13 +1,14 @@
 //! A `marker.json` judged as it stands, after a hand has changed it.
 
 use crate::export::cannot;
+use crate::open::read_input;
 use crate::{Nested, SessionError};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::path::{Path, PathBuf};
 use toile_geometry::{Polygon, Vec2, total_area};
 use toile_interchange::{
-    MarkerDrawing, MarkerFacts, MarkerFile, MarkerPiece, read_marker_json, read_text,
+    MarkerDrawing, MarkerFacts, MarkerFile, MarkerPiece, Wanted, read_marker_json, read_text,
     write_all_atomically, write_marker_svg,
 };
 use toile_nesting::{Allowed, Item, Marker, Mirror, Nap, Violation, judge};
@@ -48,9 +49,11 @@ pub fn is_marker_file(path: &Path) -> bool {
 /// # Errors
 /// The file cannot be read or is no marker; the drawing cannot be written.
 pub fn judge_marker_file(path: &Path, folder: Option<&Path>) -> Result<JudgedMarker, SessionError> {
-    let file = read_marker_json(&read_text(path)?).map_err(|error| SessionError::Format {
-        path: path.to_owned(),
-        error,
+    let file = read_marker_json(&read_input(path, Wanted::Marker)?).map_err(|error| {
+        SessionError::Format {
+            path: path.to_owned(),
+            error,
+        }
     })?;
     let items = items_of(&file);
     let mut marker = file.marker();

@@ -36,6 +36,7 @@ mod product;
 mod project;
 mod report;
 mod scene;
+mod scene_builder;
 mod session;
 mod setup;
 mod snapshot;
@@ -51,6 +52,7 @@ pub use drape::DrapeResult;
 pub use dressed::GarmentPart;
 pub use error::SessionError;
 pub use event::{Assembled, Draped, Event, Nested};
+pub use fabrics::FabricChoice;
 pub use flaws::GivenFlaw;
 pub use hands::{LiveInput, StampedInput};
 pub use journal::{journal_lines, read_journal};
@@ -59,8 +61,7 @@ pub use live::{LiveFrame, LiveRun};
 pub use marking::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
 pub use nest_options::{MarkerFormat, NestOptions};
 pub use open::{
-    Opened, PatternFormat, SAMPLE, open_measurements, open_pattern, read_pattern_text,
-    read_text_file,
+    Opened, PatternFormat, SAMPLE, open_measurements, open_pattern, read_input, read_pattern_text,
 };
 pub use project::{Project, WornGarment};
 pub use scene::{SceneOutcome, run_scene};
@@ -71,7 +72,7 @@ pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
 pub use toile_body::{Description, Figure, Fit, PrimitiveEdit, ProportionBox, Scaling};
 pub use toile_drape::Stage;
-pub use toile_interchange::{MarkerSettings, Spread};
+pub use toile_interchange::{MarkerSettings, Spread, Wanted};
 pub use toile_nesting::{Budget, Nap};
 pub use tools::{
     BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, convert, fit_mesh, make_body,

@@ -2,6 +2,7 @@
 
 use crate::export::{cannot, file_name, marker_files};
 use crate::laying::{Garments, lay};
+use crate::open::read_input;
 use crate::tools::{project_of, sound_draft};
 use crate::watcher::tell;
 use crate::{NestOptions, Nested, SessionError, Watcher};
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use toile_interchange::{
-    MarkerSettings, is_jagua_instance, read_jagua, read_marker_settings, read_text,
+    MarkerSettings, Wanted, is_jagua_instance, read_jagua, read_marker_settings, read_text,
     write_all_atomically, write_jagua,
 };
 use toile_nesting::{Budget, Control, Progress, judge, make_marker};
@@ -123,9 +124,11 @@ pub fn nest_patterns(
 /// # Errors
 /// The file cannot be read, or is not what it should be.
 pub fn open_marker_settings(path: &Path) -> Result<MarkerSettings, SessionError> {
-    read_marker_settings(&read_text(path)?).map_err(|error| SessionError::Format {
-        path: path.to_owned(),
-        error,
+    read_marker_settings(&read_input(path, Wanted::MarkerSettings)?).map_err(|error| {
+        SessionError::Format {
+            path: path.to_owned(),
+            error,
+        }
     })
 }
 

@@ -3,7 +3,7 @@
 use crate::SessionError;
 use std::path::{Path, PathBuf};
 use toile_interchange::{
-    FormatError, read_garmentcode, read_measurements, read_pattern, read_text,
+    FileError, FormatError, Wanted, read_garmentcode, read_measurements, read_pattern,
 };
 use toile_measure::Measurements;
 use toile_pattern::Pattern;
@@ -41,7 +41,7 @@ pub struct Opened {
 pub fn open_pattern(path: &Path) -> Result<Opened, SessionError> {
     let text = match path.to_str() {
         Some(SAMPLE) => SAMPLE_TEXT.to_owned(),
-        _ => read_text(path)?,
+        _ => read_input(path, Wanted::Pattern)?,
     };
     let mut opened = read_pattern_text(&text).map_err(|error| SessionError::Format {
         path: PathBuf::from(path),
@@ -53,12 +53,25 @@ pub fn open_pattern(path: &Path) -> Result<Opened, SessionError> {
     Ok(opened)
 }
 
-/// Reads a whole text file.
+/// Reads a whole text file that should be of a kind.
 ///
 /// # Errors
-/// It is missing, may not be read, or is not text.
-pub fn read_text_file(path: &Path) -> Result<String, SessionError> {
-    Ok(read_text(path)?)
+/// It is missing, may not be read, is plainly of another kind, or is not text in UTF-8.
+pub fn read_input(path: &Path, wanted: Wanted) -> Result<String, SessionError> {
+    let bytes = std::fs::read(path).map_err(|error| FileError::from_io("read", path, &error))?;
+    wanted.check(&bytes).map_err(|error| SessionError::Format {
+        path: PathBuf::from(path),
+        error,
+    })?;
+    let mut text = String::from_utf8(bytes).map_err(|error| {
+        let cause = std::io::Error::new(std::io::ErrorKind::InvalidData, error.utf8_error());
+        FileError::from_io("read", path, &cause)
+    })?;
+    // Editors on Windows begin UTF-8 with a mark that JSON does not allow.
+    if text.starts_with('\u{feff}') {
+        text.remove(0);
+    }
+    Ok(text)
 }
 
 /// A file's name without folder and endings, as a title.
@@ -113,8 +126,10 @@ fn looks_like_garmentcode(text: &str) -> bool {
 /// # Errors
 /// The file cannot be read, or is not such a table.
 pub fn open_measurements(path: &Path) -> Result<Measurements, SessionError> {
-    read_measurements(&read_text(path)?).map_err(|error| SessionError::Format {
-        path: PathBuf::from(path),
-        error,
+    read_measurements(&read_input(path, Wanted::Measurements)?).map_err(|error| {
+        SessionError::Format {
+            path: PathBuf::from(path),
+            error,
+        }
     })
 }

@@ -1,10 +1,10 @@
 //! What each command does.
 
-use crate::bodies::{described, description_of, shaped};
+use crate::bodies::{body_of, description_of, shaped};
 use crate::export::{cannot, files, portable};
-use crate::fabrics::{fabric_named, fabric_names};
+use crate::fabrics::chosen;
 use crate::history::History;
-use crate::open::{open_measurements, open_pattern};
+use crate::open::open_pattern;
 use crate::watcher::{Part, tell};
 use crate::{
     Assembled, BodyChoice, Command, Event, OtherGarment, Project, Session, SessionError,
@@ -142,8 +142,8 @@ impl Session {
         }
         if next
             .fabric
-            .as_deref()
-            .is_some_and(|name| fabric_named(&next, name).is_none())
+            .as_ref()
+            .is_some_and(|choice| choice.fabric(&next.pattern).is_none())
         {
             next.fabric = None;
         }
@@ -154,14 +154,7 @@ impl Session {
         let body = match (figure, measurements) {
             (None, None) => BodyChoice::OfPattern,
             (Some(figure), None) => BodyChoice::Sample(figure),
-            (figure, Some(path)) => match described(path)? {
-                Some(description) => shaped(description, Some(path.to_owned()))?,
-                None => BodyChoice::Measured {
-                    figure: figure.unwrap_or(Figure::Mean),
-                    path: path.to_owned(),
-                    measurements: Arc::new(open_measurements(path)?),
-                },
-            },
+            (figure, Some(path)) => body_of(figure, path)?,
         };
         let next = Project {
             body,
@@ -199,21 +192,21 @@ impl Session {
     }
 
     fn set_fabric(&mut self, fabric: Option<String>) -> Outcome {
-        if let Some(name) = &fabric
-            && fabric_named(&self.project, name).is_none()
-        {
-            let names = fabric_names(&self.project);
-            return Err(SessionError::Unknown {
-                kind: "fabric",
-                name: name.clone(),
-                hint: format!("choose one of {}", names.join(", ")),
-            });
-        }
+        let (fabric, notes) = match &fabric {
+            Some(asked) => {
+                let (choice, notes) = chosen(&self.project, asked)?;
+                (Some(choice), notes)
+            }
+            None => (None, Vec::new()),
+        };
         let next = Project {
             fabric,
             ..self.project.clone()
         };
-        Ok(self.change(next, "Choose fabric", None))
+        let warned = notes.into_iter().map(|message| Event::Warned { message });
+        let mut events: Vec<Event> = warned.collect();
+        events.extend(self.change(next, "Choose fabric", None));
+        Ok(events)
     }
 
     fn set_width(&mut self, width: Option<f64>) -> Outcome {

@@ -1,7 +1,7 @@
 //! The one ground state.
 
 use crate::choice::sample_of;
-use crate::{BodyChoice, Quality, SessionError};
+use crate::{BodyChoice, FabricChoice, Quality, SessionError};
 use std::path::PathBuf;
 use std::sync::Arc;
 use toile_body::Figure;
@@ -19,8 +19,8 @@ pub struct Project {
     pub body: BodyChoice,
     /// Named size of the pattern; nothing means its base size, or the measured body.
     pub size: Option<String>,
-    /// Name of a fabric that takes the place of every panel's.
-    pub fabric: Option<String>,
+    /// A fabric that takes the place of every panel's.
+    pub fabric: Option<FabricChoice>,
     /// Width of the fabric [m]; nothing means the fabric's own.
     pub width: Option<f64>,
     /// How finely it is meshed and draped.

@@ -155,6 +155,26 @@ fn by_direction([warp, weft]: [f64; 2]) -> ByDirection {
     ByDirection { warp, weft }
 }
 
+/// The fabric that was chosen, else those that sewn or loose pieces are cut from.
+fn fabric_names(project: &Project, parts: &[DraftedPart]) -> Option<String> {
+    if let Some(choice) = &project.fabric {
+        return Some(choice.name().to_owned());
+    }
+    let mut names: Vec<&str> = Vec::new();
+    for draft in parts.iter().map(|part| &part.draft) {
+        for fabric in draft
+            .pieces
+            .iter()
+            .filter_map(|p| draft.fabrics.get(p.fabric))
+        {
+            if !names.contains(&&*fabric.name) {
+                names.push(&fabric.name);
+            }
+        }
+    }
+    (!names.is_empty()).then(|| names.join(", "))
+}
+
 impl Report {
     /// The report on everything made of a project.
     pub fn new(project: &Project, parts: &[DraftedPart]) -> Self {
@@ -201,7 +221,7 @@ impl Report {
             pattern: project.pattern.name.clone(),
             source: source.map(|name| name.to_string_lossy().into_owned()),
             size: project.size_name().map(str::to_owned),
-            fabric: project.fabric.clone(),
+            fabric: fabric_names(project, parts),
             body: figure_name(project.figure()),
             body_height_m: project.wearer().get("height"),
             area_m2: 1e-4 * pieces.iter().map(|p| p.area_cm2).sum::<f64>(),

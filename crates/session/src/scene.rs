@@ -1,24 +1,17 @@
 //! Running a scene file: its meshes, patterns and bodies found, simulated, and written.
 
-use crate::choice::figure_named;
 use crate::export::{cannot, file_name};
-use crate::open::{open_measurements, read_text_file};
+use crate::open::read_input;
+use crate::scene_builder::Builder;
 use crate::timing::Timing;
 use crate::watcher::tell;
-use crate::{BodyChoice, Command, Project, Quality, Session, SessionError, Watcher};
+use crate::{SessionError, Watcher};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Instant;
-use toile_body::Figure;
 use toile_drape::collision::Tally;
-use toile_drape::{
-    Cloth, GarmentRun, Material, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject,
-    SceneRun, Stage,
-};
-use toile_geometry::{TriangleMesh, Vec3};
+use toile_drape::{ObjectKind, Scene, SceneObject, SceneRun};
 use toile_interchange::{
-    EndFile, FormatError, ObjMesh, ObjectFile, SceneFile, read_obj, read_scene,
-    write_all_atomically, write_obj,
+    FormatError, ObjMesh, Wanted, read_scene, write_all_atomically, write_obj,
 };
 
 /// What running a scene made.
@@ -45,19 +38,22 @@ pub fn run_scene(
     let mut timing = Timing::default();
     timing.restart();
     let start = Instant::now();
-    let text = read_text_file(path)?;
+    let text = read_input(path, Wanted::Scene)?;
     let wrong = |error| SessionError::Format {
         path: path.to_owned(),
         error,
     };
     let (file, unknown) = read_scene(&text).map_err(wrong)?;
-    let base = path.parent().unwrap_or(Path::new("."));
-    let scene = Builder {
+    let mut builder = Builder {
         path,
-        base,
+        base: path.parent().unwrap_or(Path::new(".")),
         file: &file,
-    }
-    .scene(watcher)?;
+        notes: unknown
+            .iter()
+            .map(|field| format!("the field {field} is not known and was left out"))
+            .collect(),
+    };
+    let scene = builder.scene(watcher)?;
     timing.add("read", start);
     let start = Instant::now();
     let names = state_names(&scene).map_err(wrong)?;
@@ -88,7 +84,7 @@ pub fn run_scene(
     let mut files = state_files(&run, (&names, ""))?;
     timing.add("simulate", start);
     let start = Instant::now();
-    let report = report(&mut run, &unknown);
+    let report = report(&mut run, builder.notes);
     timing.add("measure", start);
     let pretty = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
     files.push(("report.json".to_owned(), pretty.into_bytes()));
@@ -160,12 +156,13 @@ fn state_files(
     Ok(files)
 }
 
-fn report(run: &mut SceneRun, unknown: &[String]) -> serde_json::Value {
+fn report(run: &mut SceneRun, notes: Vec<String>) -> serde_json::Value {
     let measures = run.measure();
-    let mut warnings: Vec<String> = unknown
-        .iter()
-        .map(|field| format!("the field {field} is not known and was left out"))
-        .collect();
+    let mut warnings = notes;
+    warnings.extend(run.sewn_objects().iter().map(|pair| {
+        let [a, b] = pair.map(|index| &run.scene().objects[index].name);
+        format!("{a:?} and {b:?} were sewn together; they are still written as two files, each with its own copy of the seam's vertices")
+    }));
     if run.split_steps() > 0 {
         warnings.push(format!(
             "{} steps failed and were taken in smaller ones",
@@ -229,239 +226,5 @@ impl Tangles {
             left,
             astray: tally.astray,
         }
-    }
-}
-
-/// Turns a scene file into a scene.
-struct Builder<'a> {
-    path: &'a Path,
-    base: &'a Path,
-    file: &'a SceneFile,
-}
-
-impl Builder<'_> {
-    fn wrong(&self, place: String, what: String, hint: &str) -> SessionError {
-        SessionError::Format {
-            path: self.path.to_owned(),
-            error: FormatError::new(place, what, hint),
-        }
-    }
-
-    fn scene(&self, watcher: &mut dyn Watcher) -> Result<Scene, SessionError> {
-        let file = self.file;
-        let wrong = |error| SessionError::Format {
-            path: self.path.to_owned(),
-            error,
-        };
-        let mut objects = Vec::new();
-        for (index, object) in file.objects.iter().enumerate() {
-            objects.push(self.object(index, object, watcher)?);
-        }
-        let mut grips = Vec::new();
-        for (index, object) in file.objects.iter().enumerate() {
-            grips.extend(object.grips.iter().map(|grip| SceneGrip {
-                object: index,
-                vertices: grip.vertices.clone(),
-                motion: grip.motion.motion(),
-            }));
-        }
-        let mut elastics = Vec::new();
-        for (index, elastic) in file.elastics.iter().enumerate() {
-            elastics.push(SceneElastic {
-                from: self.end(index, &elastic.from, &objects)?,
-                to: self.end(index, &elastic.to, &objects)?,
-                stiffness: elastic.stiffness,
-                merge_within: elastic.merge_within,
-            });
-        }
-        Ok(Scene {
-            gravity: Vec3::from(file.gravity),
-            air: file.air.air(),
-            damping: file.damping.damping(),
-            duration: file.duration,
-            step: file.step,
-            frame_step: file.frame_step,
-            method: file.method().map_err(wrong)?,
-            contact: file.contact(),
-            objects,
-            elastics,
-            grips,
-        })
-    }
-
-    fn end(
-        &self,
-        index: usize,
-        end: &EndFile,
-        objects: &[SceneObject],
-    ) -> Result<SceneEnd, SessionError> {
-        match end {
-            EndFile::Point(point) => Ok(SceneEnd::Point(Vec3::from(*point))),
-            EndFile::Vertex(name, vertex) => {
-                let object = objects
-                    .iter()
-                    .position(|o| o.name == *name)
-                    .ok_or_else(|| {
-                        let what = format!("there is no object \"{name}\"");
-                        self.wrong(
-                            format!("elastics[{index}]"),
-                            what,
-                            "name an object of the scene",
-                        )
-                    })?;
-                Ok(SceneEnd::Vertex {
-                    object,
-                    vertex: *vertex,
-                })
-            }
-        }
-    }
-
-    fn object(
-        &self,
-        index: usize,
-        object: &ObjectFile,
-        watcher: &mut dyn Watcher,
-    ) -> Result<SceneObject, SessionError> {
-        let place = format!("objects[{index}]");
-        let deformable = match (object.kind.as_str(), &object.motion) {
-            ("static", None) | ("animated", Some(_)) => false,
-            ("deformable", None) => true,
-            ("animated", None) => {
-                let what = "it is animated but has no motion".to_owned();
-                return Err(self.wrong(place, what, "give it a motion, or write static"));
-            }
-            ("static" | "deformable", Some(_)) => {
-                let what = format!("it is {} but has a motion", object.kind);
-                let hint = "write animated; vertices of cloth are led by grips";
-                return Err(self.wrong(place, what, hint));
-            }
-            (other, _) => {
-                let what = format!("kind \"{other}\" cannot be simulated here");
-                return Err(self.wrong(place, what, "write static, animated or deformable"));
-            }
-        };
-        let (mut mesh, mut cloth) = match (&object.mesh, &object.pattern, &object.body) {
-            (Some(mesh), None, None) => (self.obj(mesh)?, None),
-            (None, None, Some(body)) if !deformable => (self.skin(body)?, None),
-            (None, Some(pattern), None) if deformable => {
-                let cloth = self.garment(pattern, watcher)?;
-                (cloth.mesh(), Some(cloth))
-            }
-            _ => {
-                let what = "it needs one of mesh, pattern (deformable) or body (static)".to_owned();
-                return Err(self.wrong(place, what, "name one file"));
-            }
-        };
-        for p in mesh
-            .positions
-            .iter_mut()
-            .chain(cloth.iter_mut().flat_map(|c| &mut c.positions))
-        {
-            *p = object.transform.apply(*p);
-        }
-        let kind = if deformable {
-            let material = match (&object.material, &cloth) {
-                (Some(material), _) => {
-                    let place = format!("{place}.material");
-                    material
-                        .material(&place)
-                        .map_err(|error| SessionError::Format {
-                            path: self.path.to_owned(),
-                            error,
-                        })?
-                }
-                (None, Some(cloth)) => cloth.materials.first().cloned().unwrap_or_default(),
-                (None, None) => Material::default(),
-            };
-            ObjectKind::Deformable {
-                material,
-                pins: object.pins.clone(),
-            }
-        } else {
-            match &object.motion {
-                Some(motion) => ObjectKind::Animated {
-                    motion: motion.motion(),
-                },
-                None => ObjectKind::Static,
-            }
-        };
-        Ok(SceneObject {
-            name: object.name.clone(),
-            kind,
-            mesh,
-            cloth,
-            layer: object.layer.unwrap_or_default(),
-        })
-    }
-
-    fn obj(&self, name: &str) -> Result<TriangleMesh, SessionError> {
-        let path = self.base.join(name);
-        let text = read_text_file(&path)?;
-        let mesh =
-            read_obj(text.as_bytes()).map_err(|error| SessionError::Format { path, error })?;
-        Ok(mesh.into_triangle_mesh())
-    }
-
-    fn skin(&self, body: &str) -> Result<TriangleMesh, SessionError> {
-        let body = match figure_named(body) {
-            Some(figure) => BodyChoice::Sample(figure),
-            None => {
-                let path = self.base.join(body);
-                let measurements = Arc::new(open_measurements(&path)?);
-                BodyChoice::Measured {
-                    figure: Figure::Mean,
-                    path,
-                    measurements,
-                }
-            }
-        };
-        let project = Project {
-            body,
-            ..Project::default()
-        };
-        let mannequin = toile_body::Mannequin::new(&project.wearer(), project.figure())?;
-        Ok(mannequin.skin().clone())
-    }
-
-    /// A pattern's garment, sewn round the scene's first body, or the one its pattern is for.
-    fn garment(&self, pattern: &str, watcher: &mut dyn Watcher) -> Result<Cloth, SessionError> {
-        let mut session = Session::new();
-        let mut commands = vec![Command::OpenPattern {
-            path: self.base.join(pattern),
-        }];
-        if let Some(body) = self.file.objects.iter().find_map(|o| o.body.as_ref()) {
-            let figure = figure_named(body);
-            let measurements = figure.is_none().then(|| self.base.join(body));
-            commands.push(Command::SetBody {
-                figure,
-                measurements,
-            });
-        }
-        commands.push(Command::SetQuality {
-            quality: Quality::Preview,
-        });
-        for command in commands {
-            session.execute(command, watcher)?;
-        }
-        let mut setup = session.garment_setup()?.setup;
-        // Only the sewing is wanted: the finest level alone.
-        setup.levels.drain(..setup.levels.len() - 1);
-        let mut cloth = setup.levels[0].cloth.clone();
-        let mut run = GarmentRun::new(setup)?;
-        while run.progress().stage == Stage::Sewing {
-            let progress = run.advance()?;
-            tell(
-                watcher,
-                "sewing",
-                0.0,
-                &format!("gap {:.0} mm", progress.gap * 1e3),
-            )?;
-        }
-        let count = run.state.positions.len();
-        for (position, &to) in cloth.positions.iter_mut().zip(&run.target) {
-            *position = run.state.positions[to as usize];
-        }
-        Ok(cloth.merged(&run.target, count))
     }
 }

@@ -2,15 +2,13 @@
 
 use crate::Quality;
 use crate::dressed::{Dressed, GarmentPart};
+use crate::fabrics::cloth_material;
 use std::sync::Arc;
 use toile_assembly::{Garment, Levels, Limb, Wearer};
 use toile_body::{Mannequin, Part};
-use toile_drape::{
-    Cloth, ContactSettings, GarmentLevel, GarmentSetup, LibraryFabric, Material, RestSettings,
-    SewSettings,
-};
+use toile_drape::{Cloth, ContactSettings, GarmentLevel, GarmentSetup, RestSettings, SewSettings};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
-use toile_pattern::{BodyPart, Draft, Fabric, PieceId};
+use toile_pattern::{BodyPart, Draft, PieceId};
 
 /// Acceleration of gravity [m/s2].
 pub(crate) const GRAVITY: f64 = 9.81;
@@ -101,25 +99,6 @@ pub(crate) fn level(dressed: &Dressed) -> GarmentLevel {
     }
 }
 
-fn material(fabric: &Fabric) -> Material {
-    // A library fabric as it stands keeps the curve of its stretch, which patterns do not hold.
-    let library = LibraryFabric::named(&fabric.name).map(LibraryFabric::material);
-    let hardening = library
-        .filter(|material| material.stretch == fabric.stretch)
-        .map_or([0.0; 2], |material| material.hardening);
-    Material {
-        density: fabric.density,
-        thickness: fabric.thickness,
-        stretch: fabric.stretch,
-        shear: fabric.shear,
-        poisson: fabric.poisson,
-        bend: fabric.bend,
-        friction: fabric.friction,
-        hardening,
-        ..Material::default()
-    }
-}
-
 /// The pieces as cloth: each triangle's rest shape is its place in the piece, turned so that the
 /// warp is the first axis.
 fn cloth(draft: &Draft, garment: &Garment) -> Cloth {
@@ -141,7 +120,7 @@ fn cloth(draft: &Draft, garment: &Garment) -> Cloth {
         rest,
         material: material_of,
         panel: panel_of,
-        materials: draft.fabrics.iter().map(material).collect(),
+        materials: draft.fabrics.iter().map(cloth_material).collect(),
     }
 }
 

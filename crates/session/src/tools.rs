@@ -1,7 +1,7 @@
 //! Single jobs that need no session: conversion, panel meshes, bodies.
 
 use crate::export::cannot;
-use crate::open::open_pattern;
+use crate::open::{open_pattern, read_input};
 use crate::product::body_obj;
 use crate::{PatternFormat, Project, SessionError};
 use std::path::Path;
@@ -9,16 +9,39 @@ use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_body::{
     BodyError, Conflict, Description, Figure, Fit, Gap, Mannequin, Motion, ProportionBox, Scaling,
-    Scan, ScanLandmarks,
+    Scan, ScanLandmarks, Skeleton,
 };
 use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{
-    FormatError, ObjGroup, ObjMesh, read_bvh, read_mannequin, read_obj, read_text, read_x3d,
-    write_atomically, write_body_glb, write_garmentcode, write_mannequin, write_measurements,
-    write_obj, write_pattern,
+    FileError, FormatError, ObjGroup, ObjMesh, Wanted, read_bvh, read_mannequin, read_obj,
+    read_x3d, write_atomically, write_body_glb, write_garmentcode, write_mannequin,
+    write_measurements, write_obj, write_pattern,
 };
 use toile_measure::Measurements;
 use toile_pattern::Draft;
+
+/// Refuses a file whose name does not end as one of those that can be written.
+///
+/// # Errors
+/// Another ending, or none.
+pub(crate) fn check_ending(to: &Path, known: &[&str], remedy: &str) -> Result<(), SessionError> {
+    let name = to
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_lowercase();
+    if known.iter().any(|ending| name.ends_with(ending)) {
+        return Ok(());
+    }
+    let ending = match name.rsplit_once('.') {
+        Some((_, ending)) => format!("a name that ends in .{ending}"),
+        None => "a name without an ending".to_owned(),
+    };
+    Err(SessionError::Conflict(format!(
+        "{}: nothing is written under {ending}; {remedy}",
+        to.display()
+    )))
+}
 
 /// The project a pattern file makes, in a named size.
 pub(crate) fn project_of(
@@ -43,11 +66,24 @@ pub(crate) fn sound_draft(project: &Project) -> Result<Draft, SessionError> {
     Ok(project.pattern.resolve(&measurements).0)
 }
 
-/// Converts a pattern between formats. Returns what was left out or assumed on the way in and out.
+/// Converts a pattern between formats: to the one asked for, else by the name of the output.
+/// Returns what was left out or assumed on the way in and out.
 ///
 /// # Errors
-/// The input cannot be read, or the output cannot be written.
-pub fn convert(from: &Path, to: &Path, format: PatternFormat) -> Result<Vec<String>, SessionError> {
+/// The input cannot be read, the output has a name of another format, or cannot be written.
+pub fn convert(
+    from: &Path,
+    to: &Path,
+    format: Option<PatternFormat>,
+) -> Result<Vec<String>, SessionError> {
+    let remedy = "patterns are written as NAME.toile.json (Toile) and NAME.json (GarmentCode); \
+                  `toile nest --write` writes markers as svg, dxf, pdf and plt";
+    check_ending(to, &[".json"], remedy)?;
+    let native = to.to_string_lossy().to_lowercase().ends_with(".toile.json");
+    let format = format.unwrap_or(match native {
+        true => PatternFormat::Native,
+        false => PatternFormat::GarmentCode,
+    });
     let (project, mut notes) = project_of(from, None)?;
     let text = match format {
         PatternFormat::Native => write_pattern(&project.pattern).map_err(cannot("the pattern"))?,
@@ -75,6 +111,7 @@ pub fn mesh_panels(
 ) -> Result<MeshQuality, SessionError> {
     /// Room between panels [m].
     const ROOM: f64 = 0.05;
+    check_ending(to, &[".obj"], "panels are written as NAME.obj")?;
     let (project, _) = project_of(pattern, size)?;
     let draft = sound_draft(&project)?;
     let meshes = mesh_pieces(&draft, edge_length)?;
@@ -116,8 +153,8 @@ pub struct BodyReport {
     pub conflicts: Vec<Conflict>,
     /// What of the motion's file was left out.
     pub notes: Vec<String>,
-    /// Stature in head lengths from crown to chin [1].
-    pub heads: f64,
+    /// Its proportions in head lengths.
+    pub proportions: ProportionBox,
 }
 
 /// A moment of a motion: `walk`, `run`, a BVH file or a VRML or X3D one, and the time [s].
@@ -125,22 +162,44 @@ pub struct BodyReport {
 pub struct Moment {
     /// Which motion.
     pub motion: String,
+    /// A second gait mixed in at equal phase, and its share, 0 to 1.
+    pub blend: Option<(String, f64)>,
     /// When [s].
     pub time: f64,
+}
+
+/// A gait of our own, by name.
+fn gait(name: &str, skeleton: &Skeleton) -> Option<Motion> {
+    match name {
+        "walk" => Some(Motion::walk(skeleton)),
+        "run" => Some(Motion::run(skeleton)),
+        _ => None,
+    }
 }
 
 impl Moment {
     /// The whole motion, for a mannequin, and what of its file was left out.
     fn motion_for(&self, mannequin: &Mannequin) -> Result<(Motion, Vec<String>), SessionError> {
         let skeleton = mannequin.skeleton();
-        let own = |motion| Ok((motion, Vec::new()));
-        let path = match self.motion.as_str() {
-            "walk" => return own(Motion::walk(skeleton)),
-            "run" => return own(Motion::run(skeleton)),
-            path => Path::new(path),
-        };
+        let (own, blend) = (gait(&self.motion, skeleton), &self.blend);
+        let second = blend
+            .as_ref()
+            .map(|(name, share)| (gait(name, skeleton), share));
+        match (own, second) {
+            (Some(own), None) => return Ok((own, Vec::new())),
+            (Some(own), Some((Some(other), &share))) => {
+                return Ok((own.between(&other, share), Vec::new()));
+            }
+            (_, Some(_)) => {
+                return Err(SessionError::Conflict(
+                    "only walk and run are blended: the phases of other motions are not known; give one of them alone".to_owned(),
+                ));
+            }
+            (None, None) => {}
+        }
+        let path = Path::new(&self.motion);
         let ending = path.extension().map(|end| end.to_ascii_lowercase());
-        let text = read_text(path)?;
+        let text = read_input(path, Wanted::Motion)?;
         let read = match ending.as_ref().and_then(|end| end.to_str()) {
             Some("wrl" | "vrml" | "x3d" | "x3dv") => read_x3d(&text, skeleton),
             _ => read_bvh(&text, skeleton).map(|motion| (motion, Vec::new())),
@@ -168,16 +227,14 @@ fn open_scan(mesh: &Path, landmarks: Option<&Path>) -> Result<Scan, SessionError
         path: path.to_owned(),
         error,
     };
-    let bytes = std::fs::read(mesh).map_err(|error| {
-        at(
-            mesh,
-            FormatError::new("the file", error.to_string(), "give an OBJ file"),
-        )
-    })?;
+    let bytes = std::fs::read(mesh).map_err(|error| FileError::from_io("read", mesh, &error))?;
+    Wanted::Mesh
+        .check(&bytes)
+        .map_err(|error| at(mesh, error))?;
     let read = read_obj(&bytes).map_err(|error| at(mesh, error))?;
     let given = match landmarks {
         None => ScanLandmarks::default(),
-        Some(path) => serde_json::from_str(&read_text(path)?).map_err(|error| {
+        Some(path) => serde_json::from_str(&read_input(path, Wanted::SmallJson)?).map_err(|error| {
             let remedy = "give heights such as \"waist\": 1.05 and points such as \"nape\": [0, 1.4, -0.05] in metres";
             at(path, FormatError::new("the landmarks", error.to_string(), remedy))
         })?,
@@ -206,6 +263,7 @@ pub fn measure_mesh(
     landmarks: Option<&Path>,
     to: &Path,
 ) -> Result<MeshMeasured, SessionError> {
+    check_ending(to, &[".json"], "measurements are written as NAME.json")?;
     let scan = open_scan(mesh, landmarks)?;
     let measurements = scan.measurements();
     let text = write_measurements(&measurements).map_err(cannot("the measurements"))?;
@@ -235,7 +293,7 @@ pub fn fit_mesh(
 /// # Errors
 /// The file cannot be read.
 pub fn open_mannequin(path: &Path) -> Result<Description, SessionError> {
-    read_mannequin(&read_text(path)?).map_err(|error| SessionError::Format {
+    read_mannequin(&read_input(path, Wanted::Mannequin)?).map_err(|error| SessionError::Format {
         path: path.to_owned(),
         error,
     })
@@ -290,20 +348,35 @@ pub enum BodySource<'a> {
 /// motion. Returns every measurement as asked or predicted and as got at rest.
 ///
 /// # Errors
-/// Measurements no body can have, a motion that cannot be read, or the file cannot be written.
+/// Measurements no body can have, a motion that cannot be read, a file of another kind or one that
+/// holds no pose, or the file cannot be written.
 pub fn make_body(
     source: BodySource,
     moment: Option<&Moment>,
     to: &Path,
 ) -> Result<BodyReport, SessionError> {
-    let mannequin = match source {
-        BodySource::Wearer(project) => Mannequin::new(&project.wearer(), project.figure())?,
-        BodySource::Described(description) => Mannequin::from_description(description)?,
-    };
+    let remedy = "bodies are written as NAME.obj (skin), NAME.glb (with skeleton and motion) and NAME.json (mannequin file)";
+    check_ending(to, &[".obj", ".glb", ".json"], remedy)?;
     let extension = to
         .extension()
         .and_then(|end| end.to_str())
         .unwrap_or_default();
+    if moment.is_some() && extension.eq_ignore_ascii_case("json") {
+        return Err(SessionError::Conflict(format!(
+            "{}: a mannequin file holds no pose; write a posed body as NAME.obj or NAME.glb",
+            to.display()
+        )));
+    }
+    if moment.is_some_and(|m| m.time != 0.0) && extension.eq_ignore_ascii_case("glb") {
+        return Err(SessionError::Conflict(format!(
+            "{}: this file holds the whole motion; leave --time out, or write the pose as NAME.obj",
+            to.display()
+        )));
+    }
+    let mannequin = match source {
+        BodySource::Wearer(project) => Mannequin::new(&project.wearer(), project.figure())?,
+        BodySource::Described(description) => Mannequin::from_description(description)?,
+    };
     let motion = moment.map(|m| m.motion_for(&mannequin)).transpose()?;
     let (motion, notes) = match motion {
         Some((motion, notes)) => (moment.map(|m| (m, motion)), notes),
@@ -334,6 +407,6 @@ pub fn make_body(
         untaken: mannequin.untaken(),
         conflicts: mannequin.conflicts(),
         notes,
-        heads: ProportionBox::of_body(&mannequin).heads,
+        proportions: ProportionBox::of_body(&mannequin),
     })
 }

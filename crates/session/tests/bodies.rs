@@ -207,3 +207,24 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn every_edit_of_a_mannequin_is_documented_as_it_is_read() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/FORMATS.md");
+    let text = std::fs::read_to_string(path).unwrap();
+    let section = text.split("## Edits of a mannequin").nth(1).unwrap();
+    let section = section.split("\n## ").next().unwrap();
+    let lines = section.lines().filter(|line| line.starts_with("{\"edit\""));
+    let mut named: Vec<String> = Vec::new();
+    for line in lines {
+        let edit: PrimitiveEdit = serde_json::from_str(line).expect(line);
+        let written = serde_json::to_value(&edit).unwrap();
+        named.push(written["edit"].as_str().unwrap().to_owned());
+    }
+    // The refusal of an edit that is not known lists them all.
+    let error = serde_json::from_str::<PrimitiveEdit>(r#"{"edit": "none"}"#).unwrap_err();
+    let listed = error.to_string();
+    let known: Vec<&str> = listed.split('`').skip(3).step_by(2).collect();
+    assert!(known.len() >= 13, "{listed}");
+    assert_eq!(named, known);
+}

@@ -60,3 +60,24 @@ fn names_of_one_file_and_endless_frames_are_refused() {
         assert!(!out.exists());
     }
 }
+
+#[test]
+fn objects_that_were_sewn_together_are_named_as_two_files() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("cloth.obj"), OBJ).unwrap();
+    let text = r#"{ "duration": 0.05, "gravity": [0, 0, 0], "objects": [
+        { "name": "left", "kind": "deformable", "mesh": "cloth.obj" },
+        { "name": "right", "kind": "deformable", "mesh": "cloth.obj",
+          "transform": { "translation": [0.0005, 0, 0] } } ],
+        "elastics": [ { "from": ["left", 0], "to": ["right", 0], "stiffness": 1, "merge_within": 0.002 } ] }"#;
+    let path = folder.path().join("scene.json");
+    std::fs::write(&path, text).unwrap();
+    let outcome = run_scene(&path, &folder.path().join("out"), &mut Silent).unwrap();
+    assert_eq!(outcome.report["vertices"], 5);
+    let warnings = outcome.report["warnings"].to_string();
+    let words = r#"\"left\" and \"right\" were sewn together"#;
+    assert!(
+        warnings.contains(words) && warnings.contains("two files"),
+        "{warnings}"
+    );
+}

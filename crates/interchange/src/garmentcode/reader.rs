@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use toile_geometry::{Curve, Vec2, Vec3};
 use toile_pattern::{
-    Edge, EdgeCurve, EdgeId, Fabric, NAME_LENGTH, Panel, Pattern, Point, PointId, PointPlace, Seam,
-    Span, WornRule,
+    Edge, EdgeCurve, EdgeId, Fabric, NAME_LENGTH, Panel, Pattern, Point, PointId, PointPlace,
+    Rheology, Seam, Span, WornRule,
 };
 
 /// A seam whose sides differ by more than this ratio is gathered on purpose.
@@ -55,6 +55,7 @@ pub fn read_garmentcode(text: &str) -> Result<GarmentCodeReading, FormatError> {
         width: 1.5,
         nap: false,
         colour: [0.45, 0.58, 0.72],
+        rheology: Rheology::default(),
     }));
     for panel in &specification.panels {
         builder.add_panel(panel, fabric);

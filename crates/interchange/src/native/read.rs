@@ -10,8 +10,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
 use toile_pattern::{
-    Diagnostic, DisplayUnit, EdgeId, Fabric, IdCounters, Number, Panel, PanelId, Pattern, Seam,
-    Size, Span, Variable, nearest,
+    Diagnostic, DisplayUnit, EdgeId, Fabric, IdCounters, Number, Panel, PanelId, Pattern, Rheology,
+    Seam, Size, Span, Variable, nearest,
 };
 
 /// Reads a pattern in the native format (`*.toile.json`).
@@ -208,10 +208,25 @@ impl Reader {
                 "width_m",
                 "nap",
                 "colour",
+                "hardening",
+                "viscosity_N_s_per_m",
+                "bend_viscosity_N_m_s",
+                "kept",
+                "relaxation_time_s",
             ],
             &mut self.notes,
         )?;
         let value = |field: &str| fields.need(field)?.plain_value();
+        let usual = Rheology::default();
+        let or = |field: &str, usual| fields.get(field).map_or(Ok(usual), |v| v.plain_value());
+        let pair_or = |field: &str, usual| fields.get(field).map_or(Ok(usual), |v| values(&v));
+        let rheology = Rheology {
+            hardening: pair_or("hardening", usual.hardening)?,
+            viscosity: or("viscosity_N_s_per_m", usual.viscosity)?,
+            bend_viscosity: or("bend_viscosity_N_m_s", usual.bend_viscosity)?,
+            kept: pair_or("kept", usual.kept)?,
+            relaxation_time: or("relaxation_time_s", usual.relaxation_time)?,
+        };
         Ok(Fabric {
             id: self.ids.fabric(fields.get("id"), item)?,
             name: name.to_owned(),
@@ -228,6 +243,7 @@ impl Reader {
                 Some(colour) => values(&colour)?,
                 None => [0.8, 0.8, 0.8],
             },
+            rheology,
         })
     }
 

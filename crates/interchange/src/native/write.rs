@@ -8,7 +8,7 @@ use crate::FormatError;
 use std::collections::BTreeSet;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
 use toile_pattern::{
-    DisplayUnit, Fabric, IdCounters, Number, Panel, Pattern, Seam, Span, is_part_name,
+    DisplayUnit, Fabric, IdCounters, Number, Panel, Pattern, Rheology, Seam, Span, is_part_name,
 };
 
 /// Writes a pattern in the native format. Reading it back gives the same pattern.
@@ -204,6 +204,22 @@ impl Writer<'_> {
         fields.put("width_m", number(fabric.width)?);
         fields.put("nap", Value::Flag(fabric.nap));
         fields.put("colour", numbers(&fabric.colour)?);
+        let (own, usual) = (&fabric.rheology, Rheology::default());
+        if own.hardening != usual.hardening {
+            fields.put("hardening", numbers(&own.hardening)?);
+        }
+        if own.viscosity != usual.viscosity {
+            fields.put("viscosity_N_s_per_m", number(own.viscosity)?);
+        }
+        if own.bend_viscosity != usual.bend_viscosity {
+            fields.put("bend_viscosity_N_m_s", number(own.bend_viscosity)?);
+        }
+        if own.kept != usual.kept {
+            fields.put("kept", numbers(&own.kept)?);
+        }
+        if own.relaxation_time != usual.relaxation_time {
+            fields.put("relaxation_time_s", number(own.relaxation_time)?);
+        }
         Ok(fields.done())
     }
 

@@ -170,6 +170,11 @@ fn fabric(dice: &mut Dice, id: FabricId, k: usize) -> Fabric {
         fabric.density = dice.finite();
         fabric.bend[1] = dice.finite();
     }
+    if dice.chance(20) {
+        fabric.rheology.viscosity = dice.finite().abs();
+        fabric.rheology.kept = [0.0, 0.25];
+        fabric.rheology.relaxation_time = 3.5;
+    }
     fabric
 }
 

@@ -1,0 +1,128 @@
+//! `toile check`: faults of patterns and of markers.
+
+use crate::arguments::Check;
+use crate::bar::Bar;
+use crate::output::{Failure, Output, count};
+use crate::session_commands::warnings;
+use serde_json::{Value, json};
+use std::path::Path;
+use toile_session::{Command, Event, Session, is_marker_file, judge_marker_file};
+
+/// One file judged, or several with a verdict each.
+pub fn check(check: &Check, output: &Output) -> Result<Value, Failure> {
+    if let [path] = &check.files[..] {
+        return one(path, check, output);
+    }
+    if check.out.is_some() {
+        return Err(Failure::bad_input(
+            "--out takes the drawing of one marker; check the others without it",
+        ));
+    }
+    let mut verdicts = Vec::new();
+    let mut failures = Vec::new();
+    for path in &check.files {
+        output.say(format!("{}:", path.display()));
+        let mut verdict = json!({ "file": path, "ok": true });
+        let report = match one(path, check, output) {
+            Ok(report) => report,
+            Err(failure) => {
+                output.warn(&failure);
+                verdict["ok"] = false.into();
+                verdict["error"] = failure.message().into();
+                let report = failure.report().cloned().unwrap_or_default();
+                failures.push(failure);
+                report
+            }
+        };
+        if let (Some(into), Value::Object(found)) = (verdict.as_object_mut(), report) {
+            into.extend(found);
+        }
+        verdicts.push(verdict);
+    }
+    let report = json!({ "checks": verdicts });
+    if failures.is_empty() {
+        output.say(format!("all {} passed", count(check.files.len(), "file")));
+        return Ok(report);
+    }
+    let summary = format!(
+        "{} of {} failed",
+        failures.len(),
+        count(check.files.len(), "file")
+    );
+    // What was given is at fault if that is so of any file.
+    let failure = match failures.iter().any(Failure::is_bad_input) {
+        true => Failure::bad_input(summary),
+        false => Failure::failed(summary),
+    };
+    Err(failure.with_report(report))
+}
+
+fn one(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure> {
+    match is_marker_file(path) {
+        true => marker(path, check, output),
+        false => pattern(path, check, output),
+    }
+}
+
+/// Faults of a pattern.
+fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure> {
+    let mut session = Session::new();
+    let mut commands = vec![Command::OpenPattern {
+        path: path.to_owned(),
+    }];
+    if let Some(size) = check.size.clone() {
+        commands.push(Command::SetSize { size: Some(size) });
+    }
+    commands.push(Command::Check);
+    let events = session
+        .execute_all(&commands, &mut Bar::new())
+        .map_err(|error| Failure::from(error).about(path))?;
+    let diagnostics = session.diagnostics();
+    let place = |place| session.project().pattern.describe(place);
+    let listed: Vec<Value> = diagnostics
+        .iter()
+        .map(|d| {
+            json!({
+                "severity": d.severity.to_string(),
+                "place": place(&d.place),
+                "message": d.message,
+                "hint": d.hint,
+            })
+        })
+        .collect();
+    output.tell(&events);
+    let report = json!({ "diagnostics": listed, "warnings": warnings(&events) });
+    let errors = events
+        .iter()
+        .any(|e| matches!(e, Event::Checked { errors, .. } if *errors > 0));
+    if errors {
+        let message = format!("{}: the garment cannot be made", path.display());
+        return Err(Failure::bad_input(message).with_report(report));
+    }
+    Ok(report)
+}
+
+/// A marker judged as it stands.
+fn marker(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure> {
+    let judged = judge_marker_file(path, check.out.as_deref())?;
+    let nested = &judged.nested;
+    for path in &judged.files {
+        output.say(format!("wrote {}", path.display()));
+    }
+    let report = json!({
+        "files": judged.files,
+        "pieces": nested.pieces,
+        "length_m": nested.length,
+        "faults": judged.faults,
+    });
+    if judged.faults.is_empty() {
+        output.say(format!(
+            "{} on {:.1} cm of fabric: no faults",
+            count(nested.pieces, "piece"),
+            nested.length * 100.0
+        ));
+        return Ok(report);
+    }
+    let failure = Failure::bad_input(judged.faults.join("\n"));
+    Err(failure.about(path).with_report(report))
+}

@@ -1,0 +1,130 @@
+//! Fabric files: figures as a scene's material has them, or test values of a laboratory.
+
+use crate::scene::json_error;
+use crate::{FormatError, MaterialFile, read_fabric_test};
+use serde::Deserialize;
+use serde_json::Value;
+use toile_drape::Material;
+
+/// A fabric in a file of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FabricFile {
+    /// Its name; nothing where the file gives none.
+    pub name: Option<String>,
+    /// Its material. What the file leaves out is that of the library's fabric it names, else the
+    /// default.
+    pub material: Material,
+    /// Fields that are not known here, and what else is worth telling.
+    pub notes: Vec<String>,
+}
+
+/// Head of a file of figures; the rest is a material.
+#[derive(Deserialize)]
+struct Figures {
+    toile: u32,
+    name: Option<String>,
+    #[serde(flatten)]
+    material: MaterialFile,
+}
+
+/// Reads a fabric file: JSON of the kind `fabric` with the fields of a scene's material, or test
+/// values as [`read_fabric_test`] takes them.
+///
+/// # Errors
+/// Text that is neither, fields of the wrong kind, or figures that no cloth has.
+pub fn read_fabric(text: &str) -> Result<FabricFile, FormatError> {
+    let head: Option<Value> = serde_json::from_str(text).ok();
+    let says = |field: &str| head.as_ref().and_then(|head| head.get(field)?.as_str());
+    let file = match says("kind") {
+        Some("fabric") => figures(text)?,
+        _ => {
+            let test = read_fabric_test(text)?;
+            let mut material = test.material;
+            let mut notes = Vec::new();
+            if let Some(kept) = test.kept_fold {
+                material.kept[1] = kept;
+                notes.push(format!(
+                    "the hysteresis of bending (2HB) keeps {:.0} % of a fold",
+                    kept * 100.0
+                ));
+            }
+            FabricFile {
+                name: says("name").map(str::to_owned),
+                material,
+                notes,
+            }
+        }
+    };
+    let checked = file.material.check("fabric");
+    checked.map_err(|error| FormatError::new("the fabric", error.to_string(), "correct it"))?;
+    Ok(file)
+}
+
+fn figures(text: &str) -> Result<FabricFile, FormatError> {
+    let mut file: Figures = serde_json::from_str(text).map_err(|error| json_error(&error))?;
+    if file.toile != 1 {
+        return Err(FormatError::new(
+            "toile",
+            format!("version {} of fabric files is not known", file.toile),
+            "write \"toile\": 1",
+        ));
+    }
+    let material = file.material.material("the fabric")?;
+    let unknown = file.material.take_unknown().into_iter();
+    let unknown = unknown.filter(|field| field != "kind");
+    Ok(FabricFile {
+        name: file.name,
+        material,
+        notes: unknown
+            .map(|field| format!("the field {field} is not known and was left out"))
+            .collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_and_test_values_are_read_from_one_kind_of_file() {
+        let text = r#"{ "toile": 1, "kind": "fabric", "name": "ponte", "fabric": "jersey",
+            "density": 0.3, "viscosity": 0.02, "kept": [0, 0.2], "relaxation_time": 4, "gloss": 1 }"#;
+        let file = read_fabric(text).unwrap();
+        assert_eq!(file.name.as_deref(), Some("ponte"));
+        assert_eq!(
+            (file.material.density, file.material.viscosity),
+            (0.3, 0.02)
+        );
+        assert_eq!(
+            (file.material.kept, file.material.relaxation_time),
+            ([0.0, 0.2], 4.0)
+        );
+        assert_eq!(
+            file.notes,
+            ["the field gloss is not known and was left out"]
+        );
+        let test = read_fabric("B,0.136\n2HB,0.062\nW,26.35\n").unwrap();
+        assert!(test.material.kept[1] > 0.08 && test.material.kept[0] == 0.0);
+        assert_eq!(test.name, None);
+    }
+
+    #[test]
+    fn figures_no_cloth_has_are_refused_with_their_place() {
+        for (text, words) in [
+            (
+                r#"{"toile": 1, "kind": "fabric", "density": -1}"#,
+                "density",
+            ),
+            (
+                r#"{"toile": 1, "kind": "fabric", "fabric": "gold"}"#,
+                "gold",
+            ),
+            (r#"{"toile": 2, "kind": "fabric"}"#, "version 2"),
+            (r#"{"toile": 1, "kind": "fabric", "kept": 3}"#, "line 1"),
+            ("B,-1", "B"),
+        ] {
+            let error = read_fabric(text).expect_err(text).to_string();
+            assert!(error.contains(words), "{text}: {error}");
+        }
+    }
+}

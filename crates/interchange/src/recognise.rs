@@ -1,0 +1,444 @@
+//! What a file is, told from its content, so that a file given in the wrong place is refused by
+//! name and not by the first character that does not fit.
+
+use crate::FormatError;
+use serde_json::{Map, Value};
+
+/// A kind of file that can be told from its content.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileKind {
+    /// Nothing but blanks.
+    Empty,
+    /// Text in UTF-16.
+    Utf16,
+    /// PNG, JPEG, GIF, BMP, TIFF or WebP.
+    Picture,
+    /// PDF.
+    Pdf,
+    /// PostScript or EPS.
+    PostScript,
+    /// A compressed archive, ZIP or gzip.
+    Archive,
+    /// glTF 2.0 binary.
+    Glb,
+    /// DXF, text or binary.
+    Dxf,
+    /// SVG.
+    Svg,
+    /// A page of HTML.
+    Html,
+    /// HPGL, as plotters take it.
+    Hpgl,
+    /// A pattern of Valentina (.val).
+    ValentinaPattern,
+    /// A pattern of Seamly2D (.sm2d).
+    SeamlyPattern,
+    /// A pattern drafted by FreeSewing.
+    FreeSewingPattern,
+    /// XML of some other kind.
+    OtherXml,
+    /// STL.
+    Stl,
+    /// A table of measurements of any of the forms that are read.
+    Measurements,
+    /// A Wavefront mesh.
+    Obj,
+    /// A BVH motion.
+    Bvh,
+    /// A VRML 97 or X3D file.
+    X3d,
+    /// A pattern of Toile.
+    Pattern,
+    /// A GarmentCode specification.
+    GarmentCode,
+    /// A mannequin file.
+    Mannequin,
+    /// A marker as data.
+    Marker,
+    /// Settings of a marker maker.
+    MarkerSettings,
+    /// A nesting instance of jagua-rs.
+    NestingInstance,
+    /// A scene.
+    Scene,
+    /// A report of a run.
+    Report,
+    /// A journal of commands.
+    Journal,
+    /// A fabric: test values or figures.
+    Fabric,
+}
+
+impl FileKind {
+    /// The kind of a file; nothing where its content does not tell.
+    pub fn of(bytes: &[u8]) -> Option<Self> {
+        of_magic(bytes).or_else(|| {
+            let text = std::str::from_utf8(bytes).ok()?;
+            let text = text.trim_start_matches('\u{feff}').trim_start();
+            match text.chars().next() {
+                None => Some(Self::Empty),
+                Some('<') => Some(of_xml(text)),
+                Some('{') => of_json(text),
+                Some(_) => of_lines(text),
+            }
+        })
+    }
+
+    /// Its name in a sentence.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Empty => "an empty file",
+            Self::Utf16 => "text in UTF-16",
+            Self::Picture => "a picture",
+            Self::Pdf => "a PDF",
+            Self::PostScript => "PostScript",
+            Self::Archive => "a compressed archive",
+            Self::Glb => "a glTF binary",
+            Self::Dxf => "a DXF drawing",
+            Self::Svg => "an SVG drawing",
+            Self::Html => "a web page",
+            Self::Hpgl => "a plotter file (HPGL)",
+            Self::ValentinaPattern => "a pattern of Valentina (.val)",
+            Self::SeamlyPattern => "a pattern of Seamly2D (.sm2d)",
+            Self::FreeSewingPattern => "a pattern drafted by FreeSewing",
+            Self::OtherXml => "XML of a kind that is not known here",
+            Self::Stl => "an STL mesh",
+            Self::Measurements => "a table of measurements",
+            Self::Obj => "an OBJ mesh",
+            Self::Bvh => "a BVH motion",
+            Self::X3d => "a VRML or X3D file",
+            Self::Pattern => "a Toile pattern",
+            Self::GarmentCode => "a GarmentCode pattern",
+            Self::Mannequin => "a mannequin file",
+            Self::Marker => "a marker",
+            Self::MarkerSettings => "a file of marker settings",
+            Self::NestingInstance => "a nesting instance",
+            Self::Scene => "a scene",
+            Self::Report => "a report",
+            Self::Journal => "a journal",
+            Self::Fabric => "a fabric file",
+        }
+    }
+
+    /// Which command takes it; nothing where none reads it yet.
+    fn taken_by(self) -> Option<&'static str> {
+        match self {
+            Self::Measurements => {
+                Some("`toile make --body` and `toile body --measurements` take it")
+            }
+            Self::Obj => Some("`toile body --mesh` and scenes take it"),
+            Self::Bvh | Self::X3d => Some("`toile body --motion` takes it"),
+            Self::Pattern | Self::GarmentCode => Some("`toile make`, `check` and `nest` take it"),
+            Self::Mannequin => Some("`toile make --body` and `toile body --mannequin` take it"),
+            Self::Marker => Some("`toile check` and `toile nest --from` take it"),
+            Self::MarkerSettings => Some("`toile nest --settings` takes it"),
+            Self::NestingInstance => Some("`toile nest` takes it"),
+            Self::Scene => Some("`toile run` takes it"),
+            Self::Journal => Some("`toile replay` takes it"),
+            Self::Fabric => Some("`toile make --fabric` and scenes take it"),
+            _ => None,
+        }
+    }
+
+    /// A remedy of its own, where that is nearer than another file.
+    fn remedy(self) -> Option<&'static str> {
+        match self {
+            Self::Empty => Some("it holds nothing: it may not have been saved"),
+            Self::Utf16 => Some("save it as UTF-8"),
+            Self::Archive => Some("unpack it first"),
+            _ => None,
+        }
+    }
+}
+
+/// What a reader takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// A pattern.
+    Pattern,
+    /// Body measurements.
+    Measurements,
+    /// A mannequin file.
+    Mannequin,
+    /// A mesh.
+    Mesh,
+    /// A motion of a body.
+    Motion,
+    /// A scene.
+    Scene,
+    /// A marker as data.
+    Marker,
+    /// Marker settings.
+    MarkerSettings,
+    /// A journal.
+    Journal,
+    /// A fabric file.
+    Fabric,
+    /// JSON of a small form of its own: edits, proportions, landmarks.
+    SmallJson,
+}
+
+impl Wanted {
+    fn takes(self, kind: FileKind) -> bool {
+        match self {
+            Self::Pattern => matches!(kind, FileKind::Pattern | FileKind::GarmentCode),
+            Self::Measurements => kind == FileKind::Measurements,
+            Self::Mannequin => kind == FileKind::Mannequin,
+            Self::Mesh => kind == FileKind::Obj,
+            Self::Motion => matches!(kind, FileKind::Bvh | FileKind::X3d),
+            Self::Scene => kind == FileKind::Scene,
+            Self::Marker => kind == FileKind::Marker,
+            Self::MarkerSettings => kind == FileKind::MarkerSettings,
+            Self::Journal => kind == FileKind::Journal,
+            Self::Fabric => kind == FileKind::Fabric,
+            Self::SmallJson => false,
+        }
+    }
+
+    /// What is read, for the remedy.
+    fn reads(self) -> &'static str {
+        match self {
+            Self::Pattern => {
+                "patterns are read from *.toile.json and from GarmentCode specifications (JSON)"
+            }
+            Self::Measurements => {
+                "measurements are read from JSON, GarmentCode YAML, .smis, .smms, .vit, .vst and FreeSewing JSON"
+            }
+            Self::Mannequin => {
+                "mannequins are read from JSON that `toile body --out NAME.json` wrote"
+            }
+            Self::Mesh => "meshes are read from OBJ",
+            Self::Motion => "motions are read from BVH, VRML 97 and X3D",
+            Self::Scene => "scenes are read from JSON, see docs/FORMATS.md",
+            Self::Marker => "markers are read from a marker.json that `toile nest` wrote",
+            Self::MarkerSettings => "marker settings are read from JSON, see docs/FORMATS.md",
+            Self::Journal => "journals are read from journal.jsonl, one command a line",
+            Self::Fabric => "fabrics are read from JSON or CSV, see docs/FORMATS.md",
+            Self::SmallJson => "this is read from JSON, see docs/FORMATS.md",
+        }
+    }
+
+    /// Refuses content that is plainly of another kind, by its name. Damaged content and what
+    /// cannot be told passes: the reader says where it is wrong.
+    ///
+    /// # Errors
+    /// The content is of a kind that this reader does not take.
+    pub fn check(self, bytes: &[u8]) -> Result<(), FormatError> {
+        let Some(kind) = FileKind::of(bytes).filter(|&kind| !self.takes(kind)) else {
+            return Ok(());
+        };
+        let what = match (kind.taken_by(), kind.remedy()) {
+            (None, None) => format!("this is {}, which is not read yet", kind.name()),
+            _ => format!("this is {}", kind.name()),
+        };
+        let hint = match kind.taken_by().or(kind.remedy()) {
+            Some(remedy) => format!("{remedy}; {}", self.reads()),
+            None => self.reads().to_owned(),
+        };
+        Err(FormatError::new("the whole file", what, hint))
+    }
+}
+
+/// Kinds that begin with certain bytes.
+fn of_magic(bytes: &[u8]) -> Option<FileKind> {
+    const STARTS: [(&[u8], FileKind); 16] = [
+        (b"\x89PNG", FileKind::Picture),
+        (b"\xff\xd8\xff", FileKind::Picture),
+        (b"GIF8", FileKind::Picture),
+        (b"BM", FileKind::Picture),
+        (b"II*\0", FileKind::Picture),
+        (b"MM\0*", FileKind::Picture),
+        (b"%PDF", FileKind::Pdf),
+        (b"%!PS", FileKind::PostScript),
+        (b"PK\x03\x04", FileKind::Archive),
+        (b"\x1f\x8b", FileKind::Archive),
+        (b"glTF", FileKind::Glb),
+        (b"AutoCAD Binary DXF", FileKind::Dxf),
+        (b"\xff\xfe", FileKind::Utf16),
+        (b"\xfe\xff", FileKind::Utf16),
+        (b"\x1b%", FileKind::Hpgl),
+        (b"\x1bE", FileKind::Hpgl),
+    ];
+    if bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP") {
+        return Some(FileKind::Picture);
+    }
+    let start = STARTS.iter().find(|(start, _)| bytes.starts_with(start));
+    match start {
+        // Text may begin with these letters; a bitmap is no text.
+        Some((b"BM", _)) if std::str::from_utf8(bytes).is_ok() => None,
+        found => found.map(|&(_, kind)| kind),
+    }
+}
+
+/// Kinds of XML, by the root element.
+fn of_xml(text: &str) -> FileKind {
+    match root_element(text) {
+        Some("svg") => FileKind::Svg,
+        Some("html") => FileKind::Html,
+        Some("X3D") => FileKind::X3d,
+        Some("vit" | "vst" | "smis" | "smms") => FileKind::Measurements,
+        // Seamly2D took Valentina's form over and says its own name in a comment.
+        Some("pattern") if text.contains("Seamly2D") => FileKind::SeamlyPattern,
+        Some("pattern") => FileKind::ValentinaPattern,
+        _ => FileKind::OtherXml,
+    }
+}
+
+/// Name of the root element, without its prefix.
+fn root_element(text: &str) -> Option<&str> {
+    let mut rest = text;
+    loop {
+        rest = &rest[rest.find('<')? + 1..];
+        if let Some(comment) = rest.strip_prefix("!--") {
+            rest = &comment[comment.find("-->")? + 3..];
+        } else if !rest.starts_with(['!', '?']) {
+            let end = rest.find(|c: char| c.is_whitespace() || matches!(c, '>' | '/'))?;
+            return rest[..end].rsplit(':').next();
+        } else if rest.to_ascii_lowercase().starts_with("!doctype html") {
+            return Some("html");
+        }
+    }
+}
+
+/// Kinds of JSON objects, by their fields. Damaged JSON has none.
+fn of_json(text: &str) -> Option<FileKind> {
+    let mut objects = serde_json::Deserializer::from_str(text).into_iter::<Map<String, Value>>();
+    let head = objects.next()?.ok()?;
+    let has = |name: &str| head.contains_key(name);
+    let says = |name: &str| head.get(name).and_then(Value::as_str);
+    let kind = match (says("kind"), says("format")) {
+        (Some("pattern"), _) if has("toile") => FileKind::Pattern,
+        (Some("fabric"), _) => FileKind::Fabric,
+        (Some("mannequin"), _) => FileKind::Mannequin,
+        (Some("measurements"), _) => FileKind::Measurements,
+        (Some("marker-settings"), _) => FileKind::MarkerSettings,
+        (_, Some("toile-marker")) => FileKind::Marker,
+        (_, Some("toile-report")) => FileKind::Report,
+        _ if says("generator").is_some_and(|g| g.contains("freesewing")) => {
+            FileKind::FreeSewingPattern
+        }
+        _ if head.get("pattern").is_some_and(Value::is_object) => FileKind::GarmentCode,
+        _ if has("command") => FileKind::Journal,
+        _ if has("objects") => FileKind::Scene,
+        _ if has("items") && has("strip_height") => FileKind::NestingInstance,
+        _ if has("kes") || has("cantilever") || has("cusick") => FileKind::Fabric,
+        _ if head.len() == 1 && has("body") => FileKind::Measurements,
+        _ => return None,
+    };
+    Some(kind)
+}
+
+/// Kinds of text, by their lines.
+fn of_lines(text: &str) -> Option<FileKind> {
+    let mut lines = text.lines().map(str::trim);
+    let first = lines.next().unwrap_or_default();
+    let second = lines.next().unwrap_or_default();
+    if first == "HIERARCHY" {
+        return Some(FileKind::Bvh);
+    }
+    if first.starts_with("#VRML") || first.starts_with("#X3D") {
+        return Some(FileKind::X3d);
+    }
+    // A DXF is pairs of lines, a number and a value; 999 is a comment.
+    if first == "999" || (first == "0" && second == "SECTION") {
+        return Some(FileKind::Dxf);
+    }
+    if first == "body:" {
+        return Some(FileKind::Measurements);
+    }
+    if first.starts_with("solid") && text.contains("facet normal") {
+        return Some(FileKind::Stl);
+    }
+    if first.starts_with("IN;") || first.starts_with("PU") && first.contains(';') {
+        return Some(FileKind::Hpgl);
+    }
+    let vertex = |line: &str| {
+        let mut words = line.split_whitespace();
+        let numbers = |words: std::str::SplitWhitespace<'_>| {
+            words
+                .take(3)
+                .filter(|word| word.parse::<f64>().is_ok())
+                .count()
+        };
+        words.next() == Some("v") && numbers(words) == 3
+    };
+    let mut told = text.lines().map(str::trim).take(2000);
+    told.any(vertex).then_some(FileKind::Obj)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_known_by_their_content() {
+        let cases: [(&[u8], FileKind); 26] = [
+            (b"  \n", FileKind::Empty),
+            (b"\xff\xfe<\0s\0", FileKind::Utf16),
+            (b"\x89PNG\r\n\x1a\n", FileKind::Picture),
+            (b"\xff\xd8\xff\xe0", FileKind::Picture),
+            (b"BM\x9a\xff\0\0", FileKind::Picture),
+            (b"%PDF-1.7\n", FileKind::Pdf),
+            (b"PK\x03\x04\x14\0", FileKind::Archive),
+            (b"glTF\x02\0\0\0", FileKind::Glb),
+            (b"  0\r\nSECTION\r\n  2\r\n", FileKind::Dxf),
+            (b"999\nmade by hand\n0\nSECTION\n", FileKind::Dxf),
+            (
+                b"<?xml version='1.0'?>\n<!-- <html> -->\n<svg:svg xmlns:svg='x'/>",
+                FileKind::Svg,
+            ),
+            (b"<!DOCTYPE html><p>", FileKind::Html),
+            (
+                b"<pattern>\n<!--Valentina pattern format.--></pattern>",
+                FileKind::ValentinaPattern,
+            ),
+            (
+                b"<pattern><!--Pattern created with Seamly2D v0.6--></pattern>",
+                FileKind::SeamlyPattern,
+            ),
+            (b"<vst><size base='50'/></vst>", FileKind::Measurements),
+            (b"<broken", FileKind::OtherXml),
+            (b"IN;SP1;PU0,0;", FileKind::Hpgl),
+            (b"# mesh\no a\nv 0 0 1\nf 1 1 1\n", FileKind::Obj),
+            (b"HIERARCHY\nROOT Hips\n", FileKind::Bvh),
+            (b"body:\n  height: 171\n", FileKind::Measurements),
+            (br#"{"toile": 1, "kind": "pattern"}"#, FileKind::Pattern),
+            (br#"{"pattern": {"panels": {}}}"#, FileKind::GarmentCode),
+            (br#"{"format": "toile-marker"}"#, FileKind::Marker),
+            (
+                br#"{"format": "toile-report", "pattern": "T-shirt"}"#,
+                FileKind::Report,
+            ),
+            (br#"{"objects": []}"#, FileKind::Scene),
+            (br#"{"name": "suiting", "kes": {}}"#, FileKind::Fabric),
+        ];
+        for (bytes, kind) in cases {
+            let text = String::from_utf8_lossy(bytes);
+            assert_eq!(FileKind::of(bytes), Some(kind), "{text}");
+        }
+        for untold in [&b"{\"toile\": 1, "[..], b"[1, 2]", b"B,0.1\n", b"nonsense"] {
+            assert_eq!(FileKind::of(untold), None);
+        }
+    }
+
+    #[test]
+    fn a_file_of_another_kind_is_refused_by_its_name_with_what_is_read() {
+        let error = Wanted::Pattern
+            .check(b"0\nSECTION\n")
+            .expect_err("a drawing");
+        assert_eq!(
+            error.to_string(),
+            "the whole file: this is a DXF drawing, which is not read yet; patterns are read from \
+             *.toile.json and from GarmentCode specifications (JSON)"
+        );
+        let error = Wanted::Pattern
+            .check(br#"{"objects": []}"#)
+            .expect_err("a scene");
+        assert!(error.hint.starts_with("`toile run` takes it"), "{error}");
+        assert!(Wanted::Scene.check(br#"{"objects": []}"#).is_ok());
+        assert!(
+            Wanted::Pattern.check(b"{\"toile\": 1, ").is_ok(),
+            "the reader says where"
+        );
+    }
+}

@@ -1,0 +1,364 @@
+//! From a scene file to a scene: its meshes, patterns, bodies and fabrics found.
+
+use crate::bodies::body_of;
+use crate::choice::figure_named;
+use crate::derived::Derived;
+use crate::fabrics::open_fabric;
+use crate::open::read_input;
+use crate::watcher::tell;
+use crate::{BodyChoice, Command, Project, Quality, Session, SessionError, Watcher};
+use std::path::Path;
+use toile_drape::{
+    Cloth, GarmentRun, Material, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject,
+    Stage,
+};
+use toile_geometry::{TriangleMesh, Vec3};
+use toile_interchange::{
+    EndFile, FormatError, MaterialFile, ObjectFile, SceneFile, Wanted, read_obj,
+};
+/// Turns a scene file into a scene.
+pub(crate) struct Builder<'a> {
+    /// The scene file.
+    pub path: &'a Path,
+    /// The folder that other files are named from.
+    pub base: &'a Path,
+    /// What it says.
+    pub file: &'a SceneFile,
+    /// What is worth telling.
+    pub notes: Vec<String>,
+}
+
+impl Builder<'_> {
+    fn wrong(&self, place: String, what: String, hint: &str) -> SessionError {
+        SessionError::Format {
+            path: self.path.to_owned(),
+            error: FormatError::new(place, what, hint),
+        }
+    }
+
+    /// The scene: its meshes, patterns and bodies found.
+    ///
+    /// # Errors
+    /// A file it names cannot be read, or what it says does not fit together.
+    pub fn scene(&mut self, watcher: &mut dyn Watcher) -> Result<Scene, SessionError> {
+        let file = self.file;
+        let path = self.path;
+        let wrong = |error| SessionError::Format {
+            path: path.to_owned(),
+            error,
+        };
+        let mut objects = Vec::new();
+        for (index, object) in file.objects.iter().enumerate() {
+            objects.push(self.object(index, object, watcher)?);
+        }
+        let mut grips = Vec::new();
+        for (index, object) in file.objects.iter().enumerate() {
+            grips.extend(object.grips.iter().map(|grip| SceneGrip {
+                object: index,
+                vertices: grip.vertices.clone(),
+                motion: grip.motion.motion(),
+            }));
+        }
+        let mut elastics = Vec::new();
+        for (index, elastic) in file.elastics.iter().enumerate() {
+            elastics.push(SceneElastic {
+                from: self.end(index, &elastic.from, &objects)?,
+                to: self.end(index, &elastic.to, &objects)?,
+                stiffness: elastic.stiffness,
+                merge_within: elastic.merge_within,
+            });
+        }
+        Ok(Scene {
+            gravity: Vec3::from(file.gravity),
+            air: file.air.air(),
+            damping: file.damping.damping(),
+            duration: file.duration,
+            step: file.step,
+            frame_step: file.frame_step,
+            method: file.method().map_err(wrong)?,
+            contact: file.contact(),
+            objects,
+            elastics,
+            grips,
+        })
+    }
+
+    fn end(
+        &self,
+        index: usize,
+        end: &EndFile,
+        objects: &[SceneObject],
+    ) -> Result<SceneEnd, SessionError> {
+        match end {
+            EndFile::Point(point) => Ok(SceneEnd::Point(Vec3::from(*point))),
+            EndFile::Vertex(name, vertex) => {
+                let object = objects
+                    .iter()
+                    .position(|o| o.name == *name)
+                    .ok_or_else(|| {
+                        let what = format!("there is no object \"{name}\"");
+                        self.wrong(
+                            format!("elastics[{index}]"),
+                            what,
+                            "name an object of the scene",
+                        )
+                    })?;
+                Ok(SceneEnd::Vertex {
+                    object,
+                    vertex: *vertex,
+                })
+            }
+        }
+    }
+
+    fn object(
+        &mut self,
+        index: usize,
+        object: &ObjectFile,
+        watcher: &mut dyn Watcher,
+    ) -> Result<SceneObject, SessionError> {
+        let place = format!("objects[{index}]");
+        let deformable = match (object.kind.as_str(), &object.motion) {
+            ("static", None) | ("animated", Some(_)) => false,
+            ("deformable", None) => true,
+            ("animated", None) => {
+                let what = "it is animated but has no motion".to_owned();
+                return Err(self.wrong(place, what, "give it a motion, or write static"));
+            }
+            ("static" | "deformable", Some(_)) => {
+                let what = format!("it is {} but has a motion", object.kind);
+                let hint = "write animated; vertices of cloth are led by grips";
+                return Err(self.wrong(place, what, hint));
+            }
+            (other, _) => {
+                let what = format!("kind \"{other}\" cannot be simulated here");
+                return Err(self.wrong(place, what, "write static, animated or deformable"));
+            }
+        };
+        let (mut mesh, mut cloth) = match (&object.mesh, &object.pattern, &object.body) {
+            (Some(mesh), None, None) => (self.obj(mesh)?, None),
+            (None, None, Some(body)) if !deformable => (self.skin(body)?, None),
+            (None, Some(pattern), None) if deformable => {
+                let cloth = self.garment(pattern, watcher)?;
+                (cloth.mesh(), Some(cloth))
+            }
+            _ => {
+                let what = "it needs one of mesh, pattern (deformable) or body (static)".to_owned();
+                return Err(self.wrong(place, what, "name one file"));
+            }
+        };
+        for p in mesh
+            .positions
+            .iter_mut()
+            .chain(cloth.iter_mut().flat_map(|c| &mut c.positions))
+        {
+            *p = object.transform.apply(*p);
+        }
+        for corner in cloth.iter_mut().flat_map(|c| c.rest.iter_mut().flatten()) {
+            *corner *= object.transform.scale;
+        }
+        let kind = if deformable {
+            let mut materials = match &cloth {
+                Some(cloth) => cloth.materials.clone(),
+                None => vec![Material::default()],
+            };
+            if let Some(file) = &object.material {
+                self.change_materials(file, &format!("{place}.material"), &mut materials)?;
+            }
+            let material = materials.first().cloned().unwrap_or_default();
+            if let Some(cloth) = &mut cloth {
+                cloth.materials = materials;
+            }
+            ObjectKind::Deformable {
+                material,
+                pins: object.pins.clone(),
+            }
+        } else {
+            match &object.motion {
+                Some(motion) => ObjectKind::Animated {
+                    motion: motion.motion(),
+                },
+                None => ObjectKind::Static,
+            }
+        };
+        Ok(SceneObject {
+            name: object.name.clone(),
+            kind,
+            mesh,
+            cloth,
+            layer: object.layer.unwrap_or_default(),
+        })
+    }
+
+    /// Changes materials as a file says: to the fabric it names, of the library or of a file, and
+    /// field by field.
+    fn change_materials(
+        &mut self,
+        file: &MaterialFile,
+        place: &str,
+        materials: &mut [Material],
+    ) -> Result<(), SessionError> {
+        let wrong = |error| SessionError::Format {
+            path: self.path.to_owned(),
+            error,
+        };
+        let own_file = file.fabric.as_ref().map(|name| self.base.join(name));
+        let own_file = own_file.filter(|path| path.is_file());
+        for material in materials {
+            *material = match (&file.fabric, &own_file) {
+                (Some(_), Some(path)) => {
+                    let fabric = open_fabric(path)?;
+                    self.notes.extend(fabric.notes);
+                    file.over(fabric.material, place).map_err(wrong)?
+                }
+                (Some(_), None) => file.material(place).map_err(wrong)?,
+                (None, _) => file.over(material.clone(), place).map_err(wrong)?,
+            };
+        }
+        Ok(())
+    }
+
+    fn obj(&self, name: &str) -> Result<TriangleMesh, SessionError> {
+        let path = self.base.join(name);
+        let text = read_input(&path, Wanted::Mesh)?;
+        let mesh =
+            read_obj(text.as_bytes()).map_err(|error| SessionError::Format { path, error })?;
+        Ok(mesh.into_triangle_mesh())
+    }
+
+    fn skin(&self, body: &str) -> Result<TriangleMesh, SessionError> {
+        let body = match figure_named(body) {
+            Some(figure) => BodyChoice::Sample(figure),
+            None => body_of(None, &self.base.join(body))?,
+        };
+        let project = Project {
+            body,
+            ..Project::default()
+        };
+        let mannequin = Derived::default().mannequin(&project)?;
+        Ok(mannequin.skin().clone())
+    }
+
+    /// A pattern's garment, sewn round the scene's first body, or the one its pattern is for.
+    fn garment(&self, pattern: &str, watcher: &mut dyn Watcher) -> Result<Cloth, SessionError> {
+        let mut session = Session::new();
+        let mut commands = vec![Command::OpenPattern {
+            path: self.base.join(pattern),
+        }];
+        if let Some(body) = self.file.objects.iter().find_map(|o| o.body.as_ref()) {
+            let figure = figure_named(body);
+            let measurements = figure.is_none().then(|| self.base.join(body));
+            commands.push(Command::SetBody {
+                figure,
+                measurements,
+            });
+        }
+        commands.push(Command::SetQuality {
+            quality: Quality::Preview,
+        });
+        for command in commands {
+            session.execute(command, watcher)?;
+        }
+        let mut setup = session.garment_setup()?.setup;
+        // Only the sewing is wanted: the finest level alone.
+        setup.levels.drain(..setup.levels.len() - 1);
+        let mut cloth = setup.levels[0].cloth.clone();
+        let mut run = GarmentRun::new(setup)?;
+        while run.progress().stage == Stage::Sewing {
+            let progress = run.advance()?;
+            tell(
+                watcher,
+                "sewing",
+                0.0,
+                &format!("gap {:.0} mm", progress.gap * 1e3),
+            )?;
+        }
+        let count = run.state.positions.len();
+        for (position, &to) in cloth.positions.iter_mut().zip(&run.target) {
+            *position = run.state.positions[to as usize];
+        }
+        Ok(cloth.merged(&run.target, count))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Silent;
+    use toile_interchange::read_scene;
+
+    /// The cloth of a poncho in a scene, with more fields of its object.
+    fn poncho(more: &str) -> Result<SceneObject, SessionError> {
+        let pattern = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../patterns/poncho.toile.json"
+        );
+        let text = format!(
+            r#"{{ "objects": [ {{ "name": "poncho", "kind": "deformable", "pattern": "{pattern}" {more} }} ] }}"#
+        );
+        let (file, _) = read_scene(&text).unwrap();
+        let mut builder = Builder {
+            path: Path::new("scene.json"),
+            base: Path::new("."),
+            file: &file,
+            notes: Vec::new(),
+        };
+        builder.object(0, &file.objects[0], &mut Silent)
+    }
+
+    #[test]
+    fn a_scenes_material_and_scale_change_the_cloth_of_a_pattern() {
+        let usual = poncho("").unwrap().cloth.unwrap();
+        let more =
+            r#", "material": { "density": 0.9, "viscosity": 0.1 }, "transform": { "scale": 1.5 }"#;
+        let object = poncho(more).unwrap();
+        let changed = object.cloth.unwrap();
+        // What is left out stays the pattern's own.
+        let expected = Material {
+            density: 0.9,
+            viscosity: 0.1,
+            ..usual.materials[0].clone()
+        };
+        assert_eq!(changed.materials, [expected.clone()]);
+        assert!(
+            matches!(object.kind, ObjectKind::Deformable { material, .. } if material == expected)
+        );
+        for (a, b) in usual
+            .rest
+            .iter()
+            .flatten()
+            .zip(changed.rest.iter().flatten())
+        {
+            assert!((b - 1.5 * a).norm() < 1e-12);
+        }
+        assert!(usual.rest[0][1].norm() > 0.0);
+    }
+
+    #[test]
+    fn a_scenes_body_takes_a_mannequin_file_and_its_material_a_fabric_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let to = folder.path().join("me.json");
+        let source = crate::BodySource::Wearer(&Project::default());
+        crate::make_body(source, None, &to).unwrap();
+        let fabric = r#"{ "toile": 1, "kind": "fabric", "density": 0.31 }"#;
+        std::fs::write(folder.path().join("ponte.json"), fabric).unwrap();
+        let mesh = "v 0 1 0\nv 0.1 1 0\nv 0 1 0.1\nf 1 2 3\n";
+        std::fs::write(folder.path().join("mesh.obj"), mesh).unwrap();
+        let text = r#"{ "objects": [ { "name": "me", "kind": "static", "body": "me.json" },
+            { "name": "a", "kind": "deformable", "mesh": "mesh.obj",
+              "material": { "fabric": "ponte.json", "thickness": 0.001 } } ] }"#;
+        let (file, _) = read_scene(text).unwrap();
+        let mut builder = Builder {
+            path: Path::new("scene.json"),
+            base: folder.path(),
+            file: &file,
+            notes: Vec::new(),
+        };
+        let scene = builder.scene(&mut Silent).unwrap();
+        assert!(scene.objects[0].mesh.positions.len() > 1000);
+        let ObjectKind::Deformable { material, .. } = &scene.objects[1].kind else {
+            panic!("it is cloth");
+        };
+        assert_eq!((material.density, material.thickness), (0.31, 0.001));
+    }
+}
