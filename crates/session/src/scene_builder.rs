@@ -319,7 +319,7 @@ mod tests {
             viscosity: 0.1,
             ..usual.materials[0].clone()
         };
-        assert_eq!(changed.materials, [expected.clone()]);
+        assert_eq!(changed.materials, std::slice::from_ref(&expected));
         assert!(
             matches!(object.kind, ObjectKind::Deformable { material, .. } if material == expected)
         );
