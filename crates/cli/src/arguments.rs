@@ -51,7 +51,7 @@ pub enum Task {
     /// Write the triangulated panels as OBJ, in metres, side by side.
     Mesh(Mesh),
     /// Make a mannequin as OBJ, in metres, and list its measurements as asked and as got.
-    Body(Body),
+    Body(Box<Body>),
     /// Convert a pattern between formats; lists what could not be carried over.
     Convert(Convert),
     /// Do the commands of a journal again; what they write goes into one folder.
@@ -509,6 +509,13 @@ pub struct Body {
     /// Default: the average of the figure.
     #[arg(long, value_name = "FILE")]
     pub measurements: Option<PathBuf>,
+    /// Size of a table for several (.smms, .vst), as in 50: half the chest girth (cm). Default: the
+    /// table's base size.
+    #[arg(long, value_name = "SIZE", requires = "measurements")]
+    pub size: Option<f64>,
+    /// Height of a table for several sizes, as in 176cm. Default: the table's base height.
+    #[arg(long, value_name = "LENGTH", requires = "measurements")]
+    pub height: Option<Length>,
     /// Figure to grow it from: woman, man, mean, or child-2, child-4, ... child-14 (by age).
     #[arg(long, value_name = "FIGURE", default_value = "mean")]
     pub figure: String,

@@ -3,7 +3,7 @@
 use crate::SessionError;
 use std::path::{Path, PathBuf};
 use toile_interchange::{
-    FormatError, read_garmentcode, read_measurements, read_pattern, read_text,
+    FormatError, SizeChoice, read_garmentcode, read_pattern, read_sized_measurements, read_text,
 };
 use toile_measure::Measurements;
 use toile_pattern::Pattern;
@@ -108,12 +108,17 @@ fn looks_like_garmentcode(text: &str) -> bool {
     }
 }
 
-/// Reads a table of body measurements, native JSON or GarmentCode YAML.
+/// Reads a table of body measurements: native JSON, GarmentCode YAML, Seamly, Valentina or
+/// FreeSewing; of a table for several sizes the one chosen. Also tells which was taken, and what
+/// was left out.
 ///
 /// # Errors
-/// The file cannot be read, or is not such a table.
-pub fn open_measurements(path: &Path) -> Result<Measurements, SessionError> {
-    read_measurements(&read_text(path)?).map_err(|error| SessionError::Format {
+/// The file cannot be read, is not such a table, or does not have the size.
+pub fn open_measurements(
+    path: &Path,
+    choice: SizeChoice,
+) -> Result<(Measurements, Vec<String>), SessionError> {
+    read_sized_measurements(&read_text(path)?, choice).map_err(|error| SessionError::Format {
         path: PathBuf::from(path),
         error,
     })

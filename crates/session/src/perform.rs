@@ -15,7 +15,9 @@ use std::sync::Arc;
 use std::time::Instant;
 use toile_body::{Figure, PrimitiveEdit};
 use toile_drape::MOST_LAYER;
-use toile_interchange::{write_all_atomically, write_atomically, write_mannequin, write_pattern};
+use toile_interchange::{
+    SizeChoice, write_all_atomically, write_atomically, write_mannequin, write_pattern,
+};
 use toile_pattern::{Edit, Severity};
 
 type Outcome = Result<Vec<Event>, SessionError>;
@@ -151,23 +153,31 @@ impl Session {
     }
 
     fn set_body(&mut self, figure: Option<Figure>, measurements: Option<&Path>) -> Outcome {
+        let mut notes = Vec::new();
         let body = match (figure, measurements) {
             (None, None) => BodyChoice::OfPattern,
             (Some(figure), None) => BodyChoice::Sample(figure),
             (figure, Some(path)) => match described(path)? {
                 Some(description) => shaped(description, Some(path.to_owned()))?,
-                None => BodyChoice::Measured {
-                    figure: figure.unwrap_or(Figure::Mean),
-                    path: path.to_owned(),
-                    measurements: Arc::new(open_measurements(path)?),
-                },
+                None => {
+                    let (table, found) = open_measurements(path, SizeChoice::default())?;
+                    let note = |note: &String| format!("{}: {note}", path.display());
+                    notes.extend(found.iter().map(note));
+                    BodyChoice::Measured {
+                        figure: figure.unwrap_or(Figure::Mean),
+                        path: path.to_owned(),
+                        measurements: Arc::new(table),
+                    }
+                }
             },
         };
         let next = Project {
             body,
             ..self.project.clone()
         };
-        Ok(self.change(next, "Choose body", None))
+        let mut events = self.change(next, "Choose body", None);
+        events.extend(Event::warnings(&notes));
+        Ok(events)
     }
 
     fn edit_body(&mut self, edits: &[PrimitiveEdit], label: &str, drag: Option<u64>) -> Outcome {

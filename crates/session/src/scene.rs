@@ -6,6 +6,7 @@ use crate::open::{open_measurements, read_text_file};
 use crate::timing::Timing;
 use crate::watcher::tell;
 use crate::{BodyChoice, Command, Project, Quality, Session, SessionError, Watcher};
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -17,7 +18,7 @@ use toile_drape::{
 };
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_interchange::{
-    EndFile, FormatError, ObjMesh, ObjectFile, SceneFile, read_obj, read_scene,
+    EndFile, FormatError, ObjMesh, ObjectFile, SceneFile, SizeChoice, read_obj, read_scene,
     write_all_atomically, write_obj,
 };
 
@@ -52,12 +53,13 @@ pub fn run_scene(
     };
     let (file, unknown) = read_scene(&text).map_err(wrong)?;
     let base = path.parent().unwrap_or(Path::new("."));
-    let scene = Builder {
+    let builder = Builder {
         path,
         base,
         file: &file,
-    }
-    .scene(watcher)?;
+        notes: RefCell::default(),
+    };
+    let scene = builder.scene(watcher)?;
     timing.add("read", start);
     let start = Instant::now();
     let names = state_names(&scene).map_err(wrong)?;
@@ -88,7 +90,10 @@ pub fn run_scene(
     let mut files = state_files(&run, (&names, ""))?;
     timing.add("simulate", start);
     let start = Instant::now();
-    let report = report(&mut run, &unknown);
+    let mut report = report(&mut run, &unknown);
+    if let Some(warnings) = report["warnings"].as_array_mut() {
+        warnings.extend(builder.notes.into_inner().into_iter().map(Into::into));
+    }
     timing.add("measure", start);
     let pretty = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
     files.push(("report.json".to_owned(), pretty.into_bytes()));
@@ -237,6 +242,8 @@ struct Builder<'a> {
     path: &'a Path,
     base: &'a Path,
     file: &'a SceneFile,
+    /// What was taken of the files it names, and what was left out.
+    notes: RefCell<Vec<String>>,
 }
 
 impl Builder<'_> {
@@ -408,11 +415,13 @@ impl Builder<'_> {
             Some(figure) => BodyChoice::Sample(figure),
             None => {
                 let path = self.base.join(body);
-                let measurements = Arc::new(open_measurements(&path)?);
+                let (table, found) = open_measurements(&path, SizeChoice::default())?;
+                let note = |note: String| format!("{}: {note}", path.display());
+                self.notes.borrow_mut().extend(found.into_iter().map(note));
                 BodyChoice::Measured {
                     figure: Figure::Mean,
                     path,
-                    measurements,
+                    measurements: Arc::new(table),
                 }
             }
         };
