@@ -316,6 +316,13 @@ pub struct Body {
     /// Default: the average of the figure.
     #[arg(long, value_name = "FILE")]
     pub measurements: Option<PathBuf>,
+    /// Size of a table for several (.smms, .vst), as in 50: half the chest girth (cm). Default: the
+    /// table's base size.
+    #[arg(long, value_name = "SIZE", requires = "measurements")]
+    pub size: Option<f64>,
+    /// Height of a table for several sizes, as in 176cm. Default: the table's base height.
+    #[arg(long, value_name = "LENGTH", requires = "measurements")]
+    pub height: Option<Length>,
     /// Figure to grow it from: woman, man, mean, or child-2, child-4, ... child-14 (by age).
     #[arg(long, value_name = "FIGURE", default_value = "mean")]
     pub figure: String,

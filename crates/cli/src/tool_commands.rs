@@ -9,7 +9,7 @@ use std::sync::Arc;
 use toile_geometry::Duration;
 use toile_measure::Origin;
 use toile_session::{
-    BodyChoice, BodyReport, BodySource, Description, Figure, Fit, Moment, Project,
+    BodyChoice, BodyReport, BodySource, Description, Figure, Fit, Moment, Project, SizeChoice,
     convert as convert_file, edit_body, figure_named, fit_mesh, make_body, measure_mesh,
     mesh_panels, open_body_edits, open_mannequin, open_measurements, run_scene, stretch_body,
 };
@@ -67,14 +67,7 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
             body.figure
         ))
     })?;
-    let choice = match &body.measurements {
-        None => BodyChoice::Sample(figure),
-        Some(path) => BodyChoice::Measured {
-            figure,
-            path: path.clone(),
-            measurements: Arc::new(open_measurements(path)?),
-        },
-    };
+    let (choice, mut notes) = chosen_body(body, figure)?;
     let project = Project {
         body: choice,
         ..Project::default()
@@ -123,7 +116,8 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
             None => failure,
         }
     })?;
-    for note in &report.notes {
+    notes.extend(report.notes.iter().cloned());
+    for note in &notes {
         output.warn(format!("note: {note}"));
     }
     body_table(&report, output);
@@ -158,7 +152,7 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         "measurements": listed,
         "not_taken": report.untaken,
         "conflicts": conflicts,
-        "notes": report.notes,
+        "notes": notes,
         "heads": report.proportions.heads,
         "proportions_missed": missed.iter().map(|(name, asked, got)| {
             json!({ "name": name, "asked": asked, "got": got })
@@ -181,6 +175,24 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
         });
     }
     Ok(made)
+}
+
+/// The body of a figure or of a file of measurements, and what was taken of the file.
+fn chosen_body(body: &Body, figure: Figure) -> Result<(BodyChoice, Vec<String>), Failure> {
+    let Some(path) = &body.measurements else {
+        return Ok((BodyChoice::Sample(figure), Vec::new()));
+    };
+    let size = SizeChoice {
+        size: body.size.map(|size| size / 100.0),
+        height: body.height.map(|height| height.as_metres()),
+    };
+    let (table, notes) = open_measurements(path, size)?;
+    let choice = BodyChoice::Measured {
+        figure,
+        path: path.clone(),
+        measurements: Arc::new(table),
+    };
+    Ok((choice, notes))
 }
 
 /// A body with its ellipsoids edited as a file says.

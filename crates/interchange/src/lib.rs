@@ -28,6 +28,7 @@ mod marker_svg;
 mod measurements;
 mod measurements_foreign;
 mod measurements_json;
+mod measurements_seamly;
 mod native;
 mod obj;
 mod obj_read;
@@ -40,6 +41,7 @@ mod x3d;
 mod x3d_nodes;
 mod x3d_vrml;
 mod x3d_xml;
+mod xml;
 
 pub use atomic::{write_all_atomically, write_atomically};
 pub use bvh::read_bvh;
@@ -66,8 +68,9 @@ pub use marker_settings::{
 };
 pub use marker_svg::write_marker_svg;
 pub use measurements::read_body_yaml;
-pub use measurements_foreign::{read_freesewing, read_seamly};
-pub use measurements_json::{read_measurements, write_measurements};
+pub use measurements_foreign::read_freesewing;
+pub use measurements_json::{read_measurements, read_sized_measurements, write_measurements};
+pub use measurements_seamly::{SizeChoice, read_seamly};
 pub use native::{read_pattern, write_pattern};
 pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;

@@ -1,8 +1,10 @@
 //! A marker as SVG: millimetres, at true size, y down.
 //!
 //! The fabric lies along x from the origin of the drawing, the upper selvedge at y = 0. Numbers
-//! have a fixed count of decimals, so that the same marker gives the same bytes.
+//! have a fixed count of decimals, so that the same marker gives the same bytes. Its groups are
+//! layers in Inkscape, which knows them by attributes of its own.
 
+use crate::marker_label::lines_within;
 use crate::marker_strokes::{Layer, Stroke, Strokes, Words, fill_of};
 use crate::{FormatError, MarkerDrawing, MarkerPiece};
 use std::fmt::Write as _;
@@ -11,8 +13,18 @@ use toile_nesting::Fold;
 
 /// White round the fabric \[mm\].
 const BORDER: f64 = 20.0;
-/// Height of the text above the fabric \[mm\].
-const HEADER: f64 = 90.0;
+/// Length that the heading and the bar of known length have at the least \[mm\].
+const SHORTEST: f64 = 400.0;
+/// Sizes of the letters of the title and of the lines under it \[mm\].
+const TITLE: f64 = 22.0;
+const LETTERS: f64 = 14.0;
+/// Distance of the lines under the title \[mm\].
+const LINE: f64 = 18.0;
+/// From the last line of the heading to the fabric: the bar of known length lies there \[mm\].
+const BELOW: f64 = 36.0;
+const BLACK: &str = "#222222";
+const RED: &str = "#b00020";
+
 /// The SVG text of a marker.
 ///
 /// # Errors
@@ -20,20 +32,19 @@ const HEADER: f64 = 90.0;
 pub fn write_marker_svg(drawing: &MarkerDrawing) -> Result<String, FormatError> {
     drawing.check_numbers()?;
     let (length, width) = (drawing.length * 1e3, drawing.strip.width * 1e3);
-    let sheet = (
-        length.max(400.0) + 2.0 * BORDER,
-        width + HEADER + 2.0 * BORDER,
-    );
+    let right = length.max(SHORTEST);
+    let summary = drawing.summary();
+    let heading = Heading::new(&drawing.title, &summary, right);
+    let sheet = (right + 2.0 * BORDER, width + heading.height + 2.0 * BORDER);
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
     let _ = writeln!(
         text,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"{0}mm\" height=\"{1}mm\" viewBox=\"{2} {3} {0} {1}\" font-family=\"Helvetica, Arial, sans-serif\">",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" version=\"1.1\" width=\"{0}mm\" height=\"{1}mm\" viewBox=\"{2} {3} {0} {1}\" font-family=\"Helvetica, Arial, sans-serif\">",
         number(sheet.0),
         number(sheet.1),
         number(-BORDER),
-        number(-HEADER - BORDER),
+        number(-heading.height - BORDER),
     );
-    let summary = drawing.summary();
     let _ = writeln!(
         text,
         "<title>{}: {}</title>",
@@ -41,16 +52,39 @@ pub fn write_marker_svg(drawing: &MarkerDrawing) -> Result<String, FormatError> 
         summary[0]
     );
     let _ = writeln!(text, "<desc>{}</desc>", escape(&summary.join(" ")));
-    header(&mut text, drawing, &summary);
-    fabric(&mut text, drawing);
-    text.push_str("<g id=\"pieces\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n");
+    heading.write(&mut text, right);
+    let mut inside = String::new();
+    fabric(&mut inside, drawing);
+    layer(&mut text, ("fabric", "Fabric", ""), &inside);
+    inside.clear();
+    print_and_flaws(&mut inside, drawing);
+    layer(
+        &mut text,
+        ("print-and-flaws", "Print and flaws", ""),
+        &inside,
+    );
+    inside.clear();
     for piece in &drawing.pieces {
-        write_piece(&mut text, piece, drawing.strip.width);
+        write_piece(&mut inside, piece, drawing.strip.width);
     }
-    text.push_str("</g>\n");
-    overlaps(&mut text, drawing);
+    let style = " stroke-linejoin=\"round\" stroke-linecap=\"round\"";
+    layer(&mut text, ("pieces", "Pieces", style), &inside);
+    inside.clear();
+    overlaps(&mut inside, drawing);
+    layer(&mut text, ("overlaps", "Overlaps", ""), &inside);
     text.push_str("</svg>\n");
     Ok(text)
+}
+
+/// A group that is a layer in Inkscape, by its id, the name shown and its style; none if nothing
+/// is drawn on it.
+fn layer(text: &mut String, (id, label, style): (&str, &str, &str), inside: &str) {
+    if !inside.is_empty() {
+        let _ = writeln!(
+            text,
+            "<g id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"{style}>\n{inside}</g>"
+        );
+    }
 }
 
 /// Three decimals of a millimetre; no negative zero.
@@ -79,34 +113,67 @@ fn escape(text: &str) -> String {
     safe
 }
 
-fn header(text: &mut String, drawing: &MarkerDrawing, summary: &[String]) {
-    text.push_str("<g id=\"heading\" fill=\"#222222\" stroke=\"none\">\n");
-    let mut line = |y: f64, size: f64, colour: &str, words: &str| {
-        let _ = writeln!(
-            text,
-            "<text x=\"0\" y=\"{}\" font-size=\"{}\" fill=\"{colour}\">{}</text>",
-            number(y),
-            number(size),
-            escape(words)
-        );
-    };
-    line(-HEADER + 14.0, 22.0, "#222222", &drawing.title);
-    for (k, words) in summary.iter().enumerate() {
-        let colour = if k >= 2 { "#b00020" } else { "#222222" };
-        line(-HEADER + 36.0 + 18.0 * k as f64, 14.0, colour, words);
+/// What is said above the fabric.
+struct Heading {
+    /// Lines with the height of their letters \[mm\] and their colour.
+    lines: Vec<(f64, &'static str, String)>,
+    /// From the fabric to the upper border \[mm\].
+    height: f64,
+}
+
+impl Heading {
+    /// A title and lines, none longer than a length \[mm\].
+    fn new(title: &str, summary: &[String], length: f64) -> Self {
+        let title = lines_within(title, TITLE, length);
+        let mut lines: Vec<_> = title.into_iter().map(|line| (TITLE, BLACK, line)).collect();
+        for (k, words) in summary.iter().enumerate() {
+            let colour = if k >= 2 { RED } else { BLACK };
+            let wrapped = lines_within(words, LETTERS, length);
+            lines.extend(wrapped.into_iter().map(|line| (LETTERS, colour, line)));
+        }
+        let first = lines.first().map_or(0.0, |_| 14.0);
+        let steps: f64 = lines.windows(2).map(step).sum();
+        Self {
+            height: first + steps + BELOW,
+            lines,
+        }
     }
-    text.push_str("</g>\n");
-    // A bar of known length, to check the scale of a print.
-    let right = (drawing.length * 1e3).max(400.0);
-    let _ = writeln!(
-        text,
-        "<g id=\"scale\"><path d=\"M{0} -{2}v-6M{0} -{3}H{1}M{1} -{2}v-6\" fill=\"none\" stroke=\"#222222\" stroke-width=\"1\"/><text x=\"{4}\" y=\"-18\" font-size=\"12\" text-anchor=\"middle\" fill=\"#222222\">100 mm</text></g>",
-        number(right - 100.0),
-        number(right),
-        8,
-        11,
-        number(right - 50.0)
-    );
+
+    /// The lines, and a bar of known length to check the scale of a print, which ends at `right`
+    /// \[mm\].
+    fn write(&self, text: &mut String, right: f64) {
+        let mut inside = String::new();
+        let mut y = -self.height + 14.0;
+        for (k, (size, colour, words)) in self.lines.iter().enumerate() {
+            if k > 0 {
+                y += step(&self.lines[k - 1..=k]);
+            }
+            let _ = writeln!(
+                inside,
+                "<text x=\"0\" y=\"{}\" font-size=\"{}\" fill=\"{colour}\">{}</text>",
+                number(y),
+                number(*size),
+                escape(words)
+            );
+        }
+        let _ = writeln!(
+            inside,
+            "<g id=\"scale\"><path d=\"M{0} -8v-6M{0} -11H{1}M{1} -8v-6\" fill=\"none\" stroke=\"{BLACK}\" stroke-width=\"1\"/><text x=\"{2}\" y=\"-18\" font-size=\"12\" text-anchor=\"middle\" fill=\"{BLACK}\">100 mm</text></g>",
+            number(right - 100.0),
+            number(right),
+            number(right - 50.0)
+        );
+        let style = format!(" fill=\"{BLACK}\" stroke=\"none\"");
+        layer(text, ("heading", "Heading", &style), &inside);
+    }
+}
+
+/// From one line of a heading to the next \[mm\].
+fn step(pair: &[(f64, &'static str, String)]) -> f64 {
+    match pair {
+        [(size, ..), _] if *size == TITLE => TITLE,
+        _ => LINE,
+    }
 }
 
 fn fabric(text: &mut String, drawing: &MarkerDrawing) {
@@ -150,7 +217,6 @@ fn fabric(text: &mut String, drawing: &MarkerDrawing) {
             number(length)
         );
     }
-    print_and_flaws(text, drawing);
 }
 
 /// The lines of the print and the flaws of the fabric.
@@ -214,7 +280,7 @@ fn write_piece(text: &mut String, piece: &MarkerPiece, width: f64) {
     let name = escape(&piece.name);
     let _ = writeln!(
         text,
-        "<g class=\"piece\" data-name=\"{name}\" data-turn=\"{}\" data-face-down=\"{}\">",
+        "<g class=\"piece\" inkscape:label=\"{name}\" data-name=\"{name}\" data-turn=\"{}\" data-face-down=\"{}\">",
         number(piece.pose.turn.to_degrees()),
         piece.pose.mirrored
     );

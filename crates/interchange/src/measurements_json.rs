@@ -1,7 +1,8 @@
 //! Tables of body measurements in the native format.
 
 use crate::measurements_foreign::looks_like_freesewing;
-use crate::{FormatError, read_body_yaml, read_freesewing, read_seamly};
+use crate::measurements_seamly::one_size;
+use crate::{FormatError, SizeChoice, read_body_yaml, read_freesewing, read_seamly};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
@@ -20,22 +21,32 @@ struct MeasurementsFile {
 }
 
 /// Reads a table of measurements, which is seen from its content: native (JSON), GarmentCode's
-/// (YAML), Seamly's and Valentina's (XML) or FreeSewing's (JSON).
+/// (YAML), Seamly's and Valentina's (XML) or FreeSewing's (JSON). Of a table for several sizes the
+/// base is taken.
 ///
 /// # Errors
 /// What is wrong, where, and the remedy.
 pub fn read_measurements(text: &str) -> Result<Measurements, FormatError> {
-    match text
-        .trim_start_matches('\u{feff}')
-        .trim_start()
-        .chars()
-        .next()
-    {
+    Ok(read_sized_measurements(text, SizeChoice::default())?.0)
+}
+
+/// The same in a size of a table for several; also tells which was taken and what was left out.
+///
+/// # Errors
+/// The same, and a size that the table does not have, or any size of a table of one body.
+pub fn read_sized_measurements(
+    text: &str,
+    choice: SizeChoice,
+) -> Result<(Measurements, Vec<String>), FormatError> {
+    let body = text.trim_start_matches('\u{feff}').trim_start();
+    let table = match body.chars().next() {
+        Some('<') => return read_seamly(text, choice),
+        _ if choice.is_given() => return Err(one_size()),
         Some('{') if looks_like_freesewing(text) => read_freesewing(text),
         Some('{') => read_json(text),
-        Some('<') => read_seamly(text),
         _ => read_body_yaml(text),
-    }
+    };
+    Ok((table?, Vec::new()))
 }
 
 fn read_json(text: &str) -> Result<Measurements, FormatError> {

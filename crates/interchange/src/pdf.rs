@@ -185,6 +185,13 @@ const WIDTHS: [u16; 95] = [
     222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
 ];
 
+/// Width of a letter over its size in Helvetica, from the space to the tilde.
+pub(crate) fn letter_width(c: char) -> Option<f64> {
+    let place = u32::from(c).checked_sub(32)?;
+    let width = WIDTHS.get(usize::try_from(place).ok()?)?;
+    Some(f64::from(*width) / 1e3)
+}
+
 /// Width of encoded text over the size of its letters.
 fn text_width(encoded: &[u8]) -> f64 {
     let width = |&byte: &u8| match byte {

@@ -1,181 +1,71 @@
-//! The XML encoding of X3D (ISO/IEC 19776-1): tags and their attributes.
+//! The XML encoding of X3D (ISO/IEC 19776-1): elements and their attributes.
 
 use crate::FormatError;
-use crate::x3d_nodes::{Node, Route, Scene, ends_within, is_kept, not_open};
-use std::collections::BTreeMap;
-
-/// What is being read.
-#[derive(Default)]
-struct Reader {
-    scene: Scene,
-    /// Line and name of the elements that are open, and their nodes.
-    open: Vec<(usize, String, Option<usize>)>,
-    /// Elements open within prototypes and they themselves.
-    prototypes: usize,
-}
+use crate::x3d_nodes::{Node, Route, Scene, is_kept};
+use crate::xml::Xml;
+use roxmltree::Node as Element;
 
 pub(crate) fn read(text: &str) -> Result<Scene, FormatError> {
-    let mut reader = Reader::default();
-    let (mut rest, mut line) = (text, 1);
-    let lines = |part: &str| part.matches('\n').count();
-    while let Some(start) = rest.find('<') {
-        line += lines(&rest[..start]);
-        rest = &rest[start..];
-        let length = length_of(rest).ok_or_else(|| ends_within(format!("line {line}, a tag")))?;
-        let (tag, after) = rest.split_at(length);
-        if let Some(closed) = tag.strip_prefix("</") {
-            reader.close(closed.trim_end_matches('>').trim(), line)?;
-        } else if !tag.starts_with("<!") && !tag.starts_with("<?") {
-            reader.open(tag, line);
+    let xml = Xml::read(text, "export the motion again")?;
+    let mut scene = Scene::default();
+    // Elements still to be read, each with the node it stands in.
+    let mut waiting = vec![(xml.root(), None)];
+    while let Some((element, within)) = waiting.pop() {
+        if element.tag_name().name() == "ProtoDeclare" {
+            continue;
         }
-        line += lines(tag);
-        rest = after;
+        let node = take_up(&mut scene, element, (within, xml.line(element)));
+        let inside = element.children().filter(Element::is_element).rev();
+        waiting.extend(inside.map(|child| (child, node)));
     }
-    match reader.open.last() {
-        None => Ok(reader.scene),
-        Some((line, name, _)) => Err(ends_within(format!("line {line}, {name}"))),
-    }
+    Ok(scene)
 }
 
-impl Reader {
-    fn open(&mut self, tag: &str, line: usize) {
-        let inner = tag[1..].trim_end_matches('>');
-        let is_empty = inner.ends_with('/');
-        let inner = inner.trim_end_matches('/');
-        let kind: String = inner.chars().take_while(|c| !c.is_whitespace()).collect();
-        let node = match self.prototypes > 0 || kind == "ProtoDeclare" {
-            true => None,
-            false => self.read(&kind, attributes(&inner[kind.len()..]), line),
-        };
-        if is_empty {
-            return;
+/// Takes an element of a line up, which stands in a node; the number of its own node, if it is one.
+fn take_up(
+    scene: &mut Scene,
+    element: Element<'_, '_>,
+    (within, line): (Option<usize>, usize),
+) -> Option<usize> {
+    let given = |name: &str| element.attribute(name).unwrap_or_default();
+    match element.tag_name().name() {
+        "ROUTE" => {
+            let to = (given("toNode"), given("toField"));
+            let route = Route::new(given("fromNode"), to, line);
+            scene.routes.push(route);
+            None
         }
-        if self.prototypes > 0 || kind == "ProtoDeclare" {
-            self.prototypes += 1;
-        }
-        self.open.push((line, kind, node));
-    }
-
-    fn close(&mut self, name: &str, line: usize) -> Result<(), FormatError> {
-        match self.open.pop() {
-            Some((_, open, _)) if open == name => {
-                self.prototypes = self.prototypes.saturating_sub(1);
-                Ok(())
+        "fieldValue" => {
+            // A field of the instance of a prototype that this stands in.
+            let field = given("name");
+            if let Some(node) = within.filter(|_| is_kept(field)) {
+                let words = words(given("value"));
+                scene.nodes[node].fields.insert(field.to_owned(), words);
             }
-            Some((from, open, _)) => Err(FormatError::new(
-                format!("line {line}"),
-                format!("</{name}> closes <{open}> of line {from}"),
-                "export the motion again",
-            )),
-            None => Err(not_open(line)),
+            None
         }
-    }
-
-    /// Takes an element up; the number of its node, if it is one.
-    fn read(
-        &mut self,
-        kind: &str,
-        mut attributes: BTreeMap<String, String>,
-        line: usize,
-    ) -> Option<usize> {
-        let mut take = |name: &str| attributes.remove(name).unwrap_or_default();
-        match kind {
-            "ROUTE" => {
-                let to = (take("toNode"), take("toField"));
-                let to = (to.0.as_str(), to.1.as_str());
-                let route = Route::new(&take("fromNode"), to, line);
-                self.scene.routes.push(route);
-                return None;
-            }
-            "fieldValue" => {
-                // A field of the instance of a prototype that this stands in.
-                let (field, value) = (take("name"), take("value"));
-                let instance = self.open.last().and_then(|open| open.2);
-                if let Some(node) = instance.filter(|_| is_kept(&field)) {
-                    self.scene.nodes[node].fields.insert(field, words(&value));
-                }
-                return None;
-            }
-            _ => {}
+        kind => {
+            let is_instance = kind == "ProtoInstance";
+            let kept = element.attributes().filter(|field| {
+                // The name of an instance is that of its prototype.
+                is_kept(field.name()) && !(is_instance && field.name() == "name")
+            });
+            scene.nodes.push(Node {
+                kind: if is_instance { given("name") } else { kind }.to_owned(),
+                name: given("DEF").to_owned(),
+                line,
+                fields: kept
+                    .map(|field| (field.name().to_owned(), words(field.value())))
+                    .collect(),
+            });
+            Some(scene.nodes.len() - 1)
         }
-        let name = take("DEF");
-        let kind = match kind {
-            "ProtoInstance" => take("name"),
-            _ => kind.to_owned(),
-        };
-        let kept = attributes.iter().filter(|field| is_kept(field.0));
-        self.scene.nodes.push(Node {
-            kind,
-            name,
-            line,
-            fields: kept.map(|(k, v)| (k.clone(), words(v))).collect(),
-        });
-        Some(self.scene.nodes.len() - 1)
     }
 }
 
 fn words(value: &str) -> Vec<String> {
     let words = value.split(|c: char| c.is_whitespace() || c == ',');
     words.filter(|w| !w.is_empty()).map(str::to_owned).collect()
-}
-
-/// Length of what begins with `<`: a comment, a section of text, or a tag, whose values in quotes
-/// may hold anything \[bytes\]. Nothing if it does not end.
-fn length_of(text: &str) -> Option<usize> {
-    let to = |ending: &str| text.find(ending).map(|at| at + ending.len());
-    if text.starts_with("<!--") {
-        return to("-->");
-    }
-    if text.starts_with("<![CDATA[") {
-        return to("]]>");
-    }
-    let mut quote = None;
-    let mut depth = 0;
-    for (at, c) in text.char_indices() {
-        match (quote, c) {
-            (Some(open), c) if c == open => quote = None,
-            (Some(_), _) => {}
-            (None, '"' | '\'') => quote = Some(c),
-            // A document type may hold declarations of its own.
-            (None, '[') => depth += 1,
-            (None, ']') => depth -= 1,
-            (None, '>') if depth <= 0 => return Some(at + 1),
-            _ => {}
-        }
-    }
-    None
-}
-
-/// Attributes of a tag: `name='value'` or `name="value"`.
-fn attributes(mut text: &str) -> BTreeMap<String, String> {
-    let mut all = BTreeMap::new();
-    while let Some(equals) = text.find('=') {
-        let name = text[..equals].trim();
-        let value = text[equals + 1..].trim_start();
-        let Some(quote) = value.chars().next().filter(|c| matches!(c, '"' | '\'')) else {
-            break;
-        };
-        let Some(end) = value[1..].find(quote) else {
-            break;
-        };
-        let name = name.rsplit(char::is_whitespace).next().unwrap_or(name);
-        all.insert(name.to_owned(), unescaped(&value[1..=end]));
-        text = &value[end + 2..];
-    }
-    all
-}
-
-/// A value with the five letters that XML names.
-fn unescaped(value: &str) -> String {
-    let names = [
-        ("&lt;", "<"),
-        ("&gt;", ">"),
-        ("&quot;", "\""),
-        ("&apos;", "'"),
-        ("&amp;", "&"),
-    ];
-    let replaced = |text: String, (name, letter): (&str, &str)| text.replace(name, letter);
-    names.into_iter().fold(value.to_owned(), replaced)
 }
 
 #[cfg(test)]
@@ -216,10 +106,13 @@ mod tests {
     #[test]
     fn elements_left_open_or_closed_twice_are_refused() {
         for (text, what) in [
-            ("<X3D>\n<Scene>", "line 2, Scene"),
+            ("<X3D>\n<Scene>", "line 2: the file ends too early"),
             ("<X3D></X3D>\n</Scene>", "line 2"),
-            ("<X3D>\n<Scene></X3D>", "</X3D> closes <Scene>"),
-            ("<X3D>\n<Scene a='", "line 2, a tag"),
+            (
+                "<X3D>\n<Scene></X3D>",
+                "line 2: expected 'Scene' tag, not 'X3D'",
+            ),
+            ("<X3D>\n<Scene a='", "line 2: the file ends too early"),
         ] {
             let error = read(text).unwrap_err().to_string();
             assert!(error.contains(what), "{text}: {error}");
@@ -237,5 +130,33 @@ mod tests {
             "{:?}",
             started.elapsed()
         );
+    }
+
+    #[test]
+    fn entities_of_the_file_and_letters_by_number_are_followed() {
+        let text = "<!DOCTYPE X3D [ <!ENTITY hip \"l_hip\"> ]>\n\
+            <X3D><Scene><!-- <HAnimJoint DEF='no'/> --><![CDATA[ <HAnimJoint DEF='no'/> ]]>\n\
+            <HAnimJoint DEF='a' name='&hip;' center=\"&#48; 1&#x20;2\"/></Scene></X3D>";
+        let scene = read(text).unwrap();
+        let joint = scene.named("a").unwrap();
+        assert_eq!((joint.line, joint.text("name")), (3, Some("l_hip")));
+        assert_eq!(joint.numbers("center").unwrap(), [0.0, 1.0, 2.0]);
+        assert!(scene.named("no").is_none());
+        let bomb = text.replace("\"l_hip\"", "\"&hip;&hip;\"");
+        assert!(read(&bomb).unwrap_err().to_string().contains("entity"));
+    }
+
+    #[test]
+    fn what_is_not_well_formed_is_refused_and_not_guessed() {
+        for (attribute, what) in [
+            ("DEF='a' DEF='b'", "DEF"),
+            ("DEF=a", "expected"),
+            ("DEF='&none;'", "none"),
+        ] {
+            let text = format!("<X3D>\n<HAnimJoint {attribute}/></X3D>");
+            let error = read(&text).unwrap_err();
+            assert_eq!(error.place, "line 2");
+            assert!(error.what.contains(what), "{error}");
+        }
     }
 }

@@ -4,7 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_interchange::{MarkerDrawing, MarkerFacts, MarkerPiece, write_marker_svg};
-use toile_nesting::{Fold, Nap, Pose, Strip};
+use toile_nesting::{Defect, Fold, Nap, Pose, Strip};
 
 fn drawing() -> MarkerDrawing {
     let cut = Polygon::rectangle(Bounds2 {
@@ -75,7 +75,7 @@ fn the_drawing_is_true_to_size_and_says_what_it_is() {
     let text = write_marker_svg(&drawing()).unwrap();
     check_well_formed(&text);
     for part in [
-        "width=\"1060mm\" height=\"830mm\" viewBox=\"-20 -110 1060 830\"",
+        "width=\"1060mm\" height=\"848mm\" viewBox=\"-20 -128 1060 848\"",
         "<title>Shirt &lt;1&gt; &amp; &quot;2&quot;: 2 pieces on 1.020 m of fabric 0.700 m wide, efficiency 42.8 %</title>",
         "nap: all pieces point one way",
         "Not on this marker: collar.",
@@ -140,4 +140,107 @@ fn folds_and_what_is_cut_twice_are_drawn() {
     let text = write_marker_svg(&drawing).unwrap();
     assert_eq!(text.matches("class=\"fold\"").count(), 2);
     assert_eq!(text.matches("class=\"selvedge\"").count(), 0);
+}
+
+#[test]
+fn what_is_drawn_lies_on_layers_that_inkscape_shows() {
+    let mut drawing = drawing();
+    let corners = [[0.1, 0.1], [0.2, 0.1], [0.2, 0.3]].map(Vec2::from);
+    drawing.overlaps = vec![Polygon::new(corners.to_vec())];
+    drawing.strip.defects = vec![Defect {
+        outline: drawing.overlaps[0].clone(),
+        clearance: 0.0,
+    }];
+    let text = write_marker_svg(&drawing).unwrap();
+    check_well_formed(&text);
+    assert!(text.contains("xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\""));
+    let layers: Vec<&str> = text
+        .lines()
+        .filter(|line| line.contains("inkscape:groupmode=\"layer\""))
+        .map(|line| {
+            let label = line.split_once("inkscape:label=\"").unwrap().1;
+            label.split_once('"').unwrap().0
+        })
+        .collect();
+    let all = ["Heading", "Fabric", "Print and flaws", "Pieces", "Overlaps"];
+    assert_eq!(layers, all);
+    // Nothing that is drawn lies outside of them.
+    let mut depth = 0;
+    for line in text.lines().skip(2) {
+        let drawn = ["<rect", "<path", "<text"]
+            .iter()
+            .any(|t| line.starts_with(t));
+        assert!(!drawn || depth > 0, "{line}");
+        depth += line.matches("<g").count();
+        depth -= line.matches("</g>").count();
+    }
+    let pieces = text.matches("<g class=\"piece\"").count();
+    assert_eq!(pieces, 2);
+    // What a marker does not have is no empty layer.
+    drawing.overlaps.clear();
+    drawing.strip.defects.clear();
+    let text = write_marker_svg(&drawing).unwrap();
+    assert_eq!(text.matches("inkscape:groupmode=\"layer\"").count(), 3);
+}
+
+/// The texts of a heading: where each begins, its height and its letters.
+fn heading(text: &str) -> Vec<([f64; 2], f64, String)> {
+    let number = |line: &str, name: &str| -> f64 {
+        let rest = line.split_once(&format!("{name}=\"")).unwrap().1;
+        rest.split_once('"').unwrap().0.parse().unwrap()
+    };
+    let inside = text.split_once("id=\"heading\"").unwrap().1;
+    let inside = inside.split_once("id=\"scale\"").unwrap().0;
+    inside
+        .lines()
+        .filter(|line| line.starts_with("<text"))
+        .map(|line| {
+            let words = line.split_once('>').unwrap().1;
+            let words = words.split_once('<').unwrap().0.to_owned();
+            let at = [number(line, " x"), number(line, " y")];
+            (at, number(line, "font-size"), words)
+        })
+        .collect()
+}
+
+#[test]
+fn the_heading_lies_on_the_sheet_however_short_the_fabric_and_long_the_words() {
+    let long = "a-name-of-a-piece-without-any-space-".repeat(9);
+    for (length, title) in [
+        (0.682, "T-shirt, jersey"),
+        (0.1, "T-shirt, jersey"),
+        (2.0, &*long),
+    ] {
+        let mut drawing = drawing();
+        drawing.length = length;
+        drawing.pieces.clear();
+        drawing.title = title.into();
+        drawing.unplaced = vec![[long.clone(), "no room is left".into()]];
+        let text = write_marker_svg(&drawing).unwrap();
+        let right = 1e3 * length.max(0.4) + 20.0;
+        let lines = heading(&text);
+        assert!(lines.len() >= 4, "{lines:?}");
+        for ([x, y], size, words) in &lines {
+            // Wide sans-serif fonts, DejaVu Sans and Verdana, take about 0.56 of their size a letter.
+            let end = x + 0.57 * size * words.chars().count() as f64;
+            assert!(end <= right, "{length}: {words} ends at {end} of {right}");
+            assert!(
+                *y < -30.0,
+                "{words} lies on the bar of known length or the fabric"
+            );
+        }
+        for pair in lines.windows(2) {
+            assert!(pair[1].0[1] - pair[0].0[1] >= pair[1].1, "{pair:?}");
+        }
+        // No letter is lost.
+        let letters = |text: &str| text.replace(' ', "");
+        let all: String = lines.iter().map(|line| letters(&line.2)).collect();
+        assert!(
+            all.contains(&letters(title)) && all.contains(&letters(&long)),
+            "{all}"
+        );
+        let top = text.split_once("viewBox=\"-20 ").unwrap().1;
+        let top: f64 = top.split_once(' ').unwrap().0.parse().unwrap();
+        assert!(lines[0].0[1] - lines[0].1 > top);
+    }
 }

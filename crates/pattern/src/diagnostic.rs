@@ -67,6 +67,10 @@ pub enum Code {
     BadFabric,
     /// A seam allowance or other length is negative.
     Negative,
+    /// A corner of the cut line is too sharp for a mitre and is cut off.
+    SharpCorner,
+    /// The seam allowance of a hole is left out of the cut line.
+    HoleAllowance,
     /// A mirrored pair is cut an odd number of times.
     OddPair,
     /// The file has a field this version does not know.

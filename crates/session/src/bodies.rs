@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_body::{BodyError, Description, Figure, Mannequin, PrimitiveEdit, ProportionBox};
 use toile_interchange::{
-    FileError, FileKind, FormatError, Wanted, proportion_boxes, read_proportions,
+    FileError, FileKind, FormatError, SizeChoice, Wanted, proportion_boxes, read_proportions,
 };
 use toile_measure::{Measurements, Origin};
 
@@ -40,19 +40,26 @@ fn described(path: &Path) -> Result<Option<Description>, SessionError> {
     }
 }
 
-/// The body of a file, measurements or a mannequin; `figure` is what measurements are grown from.
+/// The body of a file, measurements or a mannequin, and what is worth telling of it; `figure` is
+/// what measurements are grown from.
 ///
 /// # Errors
 /// The file cannot be read, or no body is made of it.
-pub(crate) fn body_of(figure: Option<Figure>, path: &Path) -> Result<BodyChoice, SessionError> {
-    match described(path)? {
-        Some(description) => Ok(shaped(description, Some(path.to_owned()))?),
-        None => Ok(BodyChoice::Measured {
-            figure: figure.unwrap_or(Figure::Mean),
-            path: path.to_owned(),
-            measurements: Arc::new(open_measurements(path)?),
-        }),
+pub(crate) fn body_of(
+    figure: Option<Figure>,
+    path: &Path,
+) -> Result<(BodyChoice, Vec<String>), SessionError> {
+    if let Some(description) = described(path)? {
+        return Ok((shaped(description, Some(path.to_owned()))?, Vec::new()));
     }
+    let (table, found) = open_measurements(path, SizeChoice::default())?;
+    let body = BodyChoice::Measured {
+        figure: figure.unwrap_or(Figure::Mean),
+        path: path.to_owned(),
+        measurements: Arc::new(table),
+    };
+    let note = |note: &String| format!("{}: {note}", path.display());
+    Ok((body, found.iter().map(note).collect()))
 }
 
 /// The description of a project's body, whatever it was chosen by.

@@ -1,7 +1,9 @@
-//! Pieces as they are cut: flattened outlines with their seam allowance.
+//! Pieces as they are cut: flattened outlines with their seam allowance, and what these leave out.
 
 use toile_geometry::{Curve, Polygon, Vec2, wound_region};
-use toile_pattern::{DartId, EdgeOrigin, Piece, PieceEdge};
+use toile_pattern::{
+    Code, DartId, Diagnostic, Draft, EdgeOrigin, Panel, Pattern, Piece, PieceEdge, Place, Severity,
+};
 
 /// Flattened curves stay this near to the drawn ones [m].
 const FLATNESS: f64 = 1e-4;
@@ -15,12 +17,15 @@ struct SewnRing {
     points: Vec<Vec2>,
     /// Width of cloth beside the segment that starts at each point [m].
     allowance: Vec<f64>,
+    /// What each segment is a part of.
+    origin: Vec<EdgeOrigin>,
 }
 
 fn ring<'a>(edges: impl IntoIterator<Item = &'a PieceEdge>) -> SewnRing {
     let mut ring = SewnRing {
         points: Vec::new(),
         allowance: Vec::new(),
+        origin: Vec::new(),
     };
     for edge in edges {
         let points = edge.curve.flatten(FLATNESS);
@@ -32,6 +37,7 @@ fn ring<'a>(edges: impl IntoIterator<Item = &'a PieceEdge>) -> SewnRing {
             {
                 ring.points.push(p);
                 ring.allowance.push(edge.seam_allowance.max(0.0));
+                ring.origin.push(edge.origin);
             }
         }
     }
@@ -85,43 +91,70 @@ fn dart_of(edge: &PieceEdge) -> Option<(DartId, bool)> {
     }
 }
 
+/// The sewn outline with closed darts, as it is drawn.
+fn closed_ring(piece: &Piece) -> SewnRing {
+    ring(&with_closed_darts(&piece.outline))
+}
+
+impl SewnRing {
+    /// The same counter-clockwise.
+    fn counter_clockwise(mut self) -> Self {
+        if toile_geometry::ring_area(&self.points) < 0.0 {
+            self.points.reverse();
+            // The segment that started at a point now ends there.
+            self.allowance.reverse();
+            self.allowance.rotate_left(1);
+            self.origin.reverse();
+            self.origin.rotate_left(1);
+        }
+        self
+    }
+
+    /// The segments before and after a point.
+    fn beside(&self, k: usize) -> [usize; 2] {
+        let count = self.points.len();
+        [(k + count - 1) % count, k]
+    }
+
+    /// The outward normal of a segment.
+    fn normal(&self, k: usize) -> Vec2 {
+        let along = self.points[(k + 1) % self.points.len()] - self.points[k];
+        Vec2::new(along.y, -along.x)
+            .try_normalize(0.0)
+            .unwrap_or_default()
+    }
+
+    /// The cut line's corner at a point.
+    fn corner(&self, k: usize) -> Option<Corner> {
+        let beside = self.beside(k);
+        Corner::new(
+            beside.map(|k| self.normal(k)),
+            beside.map(|k| self.allowance[k]),
+        )
+    }
+}
+
 /// The line a piece is cut along, without holes [m]: the sewn outline, darts closed, grown by each
 /// edge's allowance, with mitred corners.
 ///
 /// It is the union of the outline, a rectangle outside each segment, and a kite at each outer
 /// corner, so that narrow necks and tight curves come out whole.
 pub(crate) fn cut_outline(piece: &Piece) -> Polygon {
-    let mut sewn = ring(&with_closed_darts(&piece.outline));
-    if sewn.allowance.iter().all(|&a| a == 0.0) {
-        return Polygon::new(sewn.points);
+    let drawn = closed_ring(piece);
+    if drawn.allowance.iter().all(|&a| a == 0.0) {
+        return Polygon::new(drawn.points);
     }
-    if toile_geometry::ring_area(&sewn.points) < 0.0 {
-        sewn.points.reverse();
-        // The segment that started at a point now ends there.
-        sewn.allowance.reverse();
-        sewn.allowance.rotate_left(1);
-    }
+    let sewn = drawn.counter_clockwise();
     let count = sewn.points.len();
-    let normal = |k: usize| {
-        let along = sewn.points[(k + 1) % count] - sewn.points[k];
-        Vec2::new(along.y, -along.x)
-            .try_normalize(0.0)
-            .unwrap_or_default()
-    };
     let mut loops = vec![sewn.points.clone()];
     for k in 0..count {
         let (p, q) = (sewn.points[k], sewn.points[(k + 1) % count]);
         let width = sewn.allowance[k];
         if width > 0.0 {
-            let out = normal(k) * width;
+            let out = sewn.normal(k) * width;
             loops.push(vec![p + out, q + out, q, p]);
         }
-        let before = (k + count - 1) % count;
-        loops.extend(corner(
-            p,
-            [normal(before), normal(k)],
-            [sewn.allowance[before], width],
-        ));
+        loops.extend(sewn.corner(k).map(|corner| corner.cloth(p)));
     }
     let whole = wound_region(&loops);
     let largest = whole
@@ -130,24 +163,155 @@ pub(crate) fn cut_outline(piece: &Piece) -> Polygon {
     Polygon::new(largest.map_or(sewn.points, |polygon| polygon.outer))
 }
 
-/// The cloth outside an outer corner between two allowances, counter-clockwise.
-fn corner(p: Vec2, normals: [Vec2; 2], widths: [f64; 2]) -> Option<Vec<Vec2>> {
-    let [n, m] = normals;
-    let turn = n.perp(&m);
-    if turn <= 1e-9 || widths[0].max(widths[1]) == 0.0 {
-        return None;
+/// An outer corner between two allowances, seen from the seam's corner [m].
+struct Corner {
+    /// Where the offset line of the segment before it ends.
+    before: Vec2,
+    /// Where that of the segment after it begins.
+    after: Vec2,
+    /// Where both offset lines meet.
+    tip: Vec2,
+    /// The wider allowance.
+    width: f64,
+}
+
+impl Corner {
+    /// Nothing where the outline turns inwards or not at all.
+    fn new(normals: [Vec2; 2], widths: [f64; 2]) -> Option<Self> {
+        let [n, m] = normals;
+        let turn = n.perp(&m);
+        let width = widths[0].max(widths[1]);
+        if turn <= 1e-9 || width == 0.0 {
+            return None;
+        }
+        // Both offset lines meet where n.x = n.p + widths[0] and m.x = m.p + widths[1].
+        let tip = Vec2::new(
+            widths[0] * m.y - widths[1] * n.y,
+            widths[1] * n.x - widths[0] * m.x,
+        ) / turn;
+        Some(Self {
+            before: n * widths[0],
+            after: m * widths[1],
+            tip,
+            width,
+        })
     }
-    let (a, b) = (p + n * widths[0], p + m * widths[1]);
-    // Both offset lines meet where n.x = n.p + widths[0] and m.x = m.p + widths[1].
-    let reach = Vec2::new(
-        widths[0] * m.y - widths[1] * n.y,
-        widths[1] * n.x - widths[0] * m.x,
-    ) / turn;
-    let longest = LONGEST_MITRE * widths[0].max(widths[1]);
-    if reach.norm() <= longest {
-        return Some(vec![p, a, p + reach, b]);
+
+    /// Whether it is too sharp for a mitre, so that it is cut off.
+    fn is_cut_off(&self) -> bool {
+        self.tip.norm() > LONGEST_MITRE * self.width
     }
-    Some(vec![p, a, b])
+
+    /// The cloth outside it, counter-clockwise.
+    fn cloth(&self, p: Vec2) -> Vec<Vec2> {
+        match self.is_cut_off() {
+            true => vec![p, p + self.before, p + self.after],
+            false => vec![p, p + self.before, p + self.tip, p + self.after],
+        }
+    }
+}
+
+/// What the cut lines of a draft do not do as drawn: corners that are cut off, and holes whose
+/// seam allowance is left out. Each is found once for all copies of a panel. A draft with errors
+/// is not looked at.
+pub(crate) fn cut_findings(pattern: &Pattern, draft: &Draft) -> Vec<Diagnostic> {
+    let first = draft.pieces.iter().filter(|piece| piece.id.copy == 0);
+    first
+        .flat_map(|piece| piece_findings(pattern, piece))
+        .collect()
+}
+
+/// The same of one piece.
+pub(crate) fn piece_findings(pattern: &Pattern, piece: &Piece) -> Vec<Diagnostic> {
+    let mut found = sharp_corners(pattern, piece);
+    found.extend(bare_holes(pattern, piece));
+    found
+}
+
+fn sharp_corners(pattern: &Pattern, piece: &Piece) -> Vec<Diagnostic> {
+    let id = piece.id.panel;
+    let Some(panel) = pattern.panel(id) else {
+        return Vec::new();
+    };
+    let sewn = closed_ring(piece).counter_clockwise();
+    let mut seen: Vec<[String; 2]> = Vec::new();
+    let mut found = Vec::new();
+    for k in 0..sewn.points.len() {
+        let Some(corner) = sewn.corner(k).filter(Corner::is_cut_off) else {
+            continue;
+        };
+        let origins = sewn.beside(k).map(|k| sewn.origin[k]);
+        let [mut one, mut other] = origins.map(|origin| edge_words(panel, origin));
+        if one > other {
+            std::mem::swap(&mut one, &mut other);
+        }
+        // A folded panel has each corner twice.
+        if seen.contains(&[one.clone(), other.clone()]) {
+            continue;
+        }
+        let corner_words = match one == other {
+            true if origins[0] != origins[1] => format!("the corner of {one} at the fold"),
+            true => format!("a corner of {one}"),
+            false => format!("the corner of {one} and {other}"),
+        };
+        seen.push([one, other]);
+        found.push(Diagnostic::new(
+            Severity::Warning,
+            Code::SharpCorner,
+            match origins[1] {
+                EdgeOrigin::Edge { edge, .. } => Place::Edge(id, edge),
+                EdgeOrigin::DartLeg { dart, .. } => Place::Dart(id, dart),
+            },
+            format!(
+                "panel {:?}: {corner_words} is too sharp for its seam allowance of {:.0} mm, which would reach {:.0} mm beyond it: it is cut off there",
+                panel.name,
+                corner.width * 1e3,
+                corner.tip.norm() * 1e3,
+            ),
+            "blunt the corner, or lessen the seam allowance of its edges",
+        ));
+    }
+    found
+}
+
+fn edge_words(panel: &Panel, origin: EdgeOrigin) -> String {
+    match origin {
+        EdgeOrigin::Edge { edge, .. } => match panel.edge(edge) {
+            Some(edge) => format!("edge {:?}", edge.name),
+            None => edge.to_string(),
+        },
+        EdgeOrigin::DartLeg { dart, .. } => match panel.darts.iter().find(|d| d.id == dart) {
+            Some(dart) => format!("dart {:?}", dart.name),
+            None => dart.to_string(),
+        },
+    }
+}
+
+fn bare_holes(pattern: &Pattern, piece: &Piece) -> Vec<Diagnostic> {
+    let id = piece.id.panel;
+    let as_drawn =
+        |edge: &&PieceEdge| matches!(edge.origin, EdgeOrigin::Edge { reflected, .. } if !reflected);
+    let mut found = Vec::new();
+    for (k, hole) in piece.holes.iter().enumerate() {
+        let widths = hole.iter().filter(as_drawn).map(|edge| edge.seam_allowance);
+        let widest = widths.fold(0.0, f64::max);
+        if widest <= 0.0 {
+            continue;
+        }
+        let place = Place::Hole(id, k);
+        let words = pattern.describe(&place);
+        found.push(Diagnostic::new(
+            Severity::Warning,
+            Code::HoleAllowance,
+            place,
+            format!(
+                "{words}: its seam allowance of {:.0} mm is left out: a marker shows the line the hole is sewn along and none to cut",
+                widest * 1e3
+            ),
+            "cut the hole by hand, that much inside its seam line, or give its edges an allowance of 0",
+        ));
+    }
+    found
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use crate::NestOptions;
 use crate::choice::BodyChoice;
 use crate::drape::{Drape, drape};
-use crate::dressed::{DraftedPart, Dressed, tell_apart};
+use crate::dressed::{DraftedPart, Dressed, checked, tell_apart};
 use crate::fabrics::{FabricChoice, unseen_at_rest};
 use crate::laying::{Garments, Laying, lay};
 use crate::setup::{self, GarmentJob};
@@ -113,8 +113,7 @@ impl Derived {
     pub fn drafted(&mut self, project: &Project) -> (Arc<Draft>, Arc<Vec<Diagnostic>>) {
         let (draft, diagnostics) = self.drafted.get_or_insert_with(|| {
             let measurements = project.drafted_to();
-            let diagnostics = project.pattern.check(&measurements);
-            let (mut draft, _) = project.pattern.resolve(&measurements);
+            let (mut draft, diagnostics) = checked(&project.pattern, &measurements);
             let chosen = project.fabric.as_ref();
             if let Some(fabric) = chosen.and_then(|choice| choice.fabric(&project.pattern)) {
                 FabricChoice::cut(fabric, &mut draft);

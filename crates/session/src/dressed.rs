@@ -1,6 +1,7 @@
 //! Several garments worn at once: each is drafted and meshed by itself, then all are one garment of
 //! several parts, each in its layer.
 
+use crate::cut::cut_findings;
 use crate::drape::Drape;
 use crate::fabrics::FabricChoice;
 use crate::{Project, SessionError, WornGarment};
@@ -10,7 +11,8 @@ use std::sync::Arc;
 use toile_assembly::Garment;
 use toile_geometry::TriangleMesh;
 use toile_interchange::ObjMesh;
-use toile_pattern::{Diagnostic, Draft, Pattern};
+use toile_measure::Measurements;
+use toile_pattern::{Diagnostic, Draft, Pattern, Severity};
 
 /// One of the garments worn: what of the whole is its own.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,8 +58,7 @@ impl DraftedPart {
     /// A garment worn with it, in the project's size and fabric.
     pub fn other(project: &Project, worn: &WornGarment) -> Self {
         let measurements = project.drafted_for(&worn.pattern);
-        let diagnostics = Arc::new(worn.pattern.check(&measurements));
-        let (mut draft, _) = worn.pattern.resolve(&measurements);
+        let (mut draft, diagnostics) = checked(&worn.pattern, &measurements);
         let chosen = project.fabric.as_ref();
         let of = |pattern| chosen.and_then(|choice| choice.fabric(pattern));
         if let Some(fabric) = of(&worn.pattern).or_else(|| of(&project.pattern)) {
@@ -69,7 +70,7 @@ impl DraftedPart {
             layer: worn.layer,
             pattern: worn.pattern.clone(),
             draft: Arc::new(draft),
-            diagnostics,
+            diagnostics: Arc::new(diagnostics),
         }
     }
 
@@ -82,6 +83,17 @@ impl DraftedPart {
         };
         named.refuse_faults(&self.diagnostics)
     }
+}
+
+/// A pattern drafted for a table of measurements, with everything that is wrong with it and what
+/// its cut lines do not do as drawn.
+pub(crate) fn checked(pattern: &Pattern, measurements: &Measurements) -> (Draft, Vec<Diagnostic>) {
+    let mut found = pattern.check(measurements);
+    let (draft, _) = pattern.resolve(measurements);
+    if found.iter().all(|f| f.severity != Severity::Error) {
+        found.extend(cut_findings(pattern, &draft));
+    }
+    (draft, found)
 }
 
 /// Makes names differ: a second `Shirt` is `Shirt 2`.

@@ -1,6 +1,6 @@
 //! The pieces of drafts as they are laid: cut outlines, copies, what may be done with them.
 
-use crate::cut::{cut_outline, sewn_outline};
+use crate::cut::{cut_outline, piece_findings, sewn_outline};
 use crate::halves::{HalfPlane, are_mirror_images, fold_of, straightened};
 use crate::laying::Garments;
 use crate::matching::{match_up, resolve_marks};
@@ -13,7 +13,7 @@ use toile_interchange::{ANY_NAME, PieceSettings, Spread};
 use toile_nesting::{
     Allowed, FoldEdge, Item, Locked, MOST_PIECES, MatchPoint, Mirror, Nap, NestingError, Phase,
 };
-use toile_pattern::Piece;
+use toile_pattern::{Diagnostic, Piece};
 
 /// Length of a notch's stroke on the drawing [m].
 const NOTCH: f64 = 0.006;
@@ -39,6 +39,8 @@ pub(crate) struct Wanted {
     pub bundles: Vec<u32>,
     /// Marks on the print: number of the set, and the point [m].
     pub marks: Vec<(usize, Vec2)>,
+    /// What its cut line does not do as drawn.
+    pub notes: Vec<String>,
 }
 
 /// Everything that is to be cut, in the order of the drafts. Where pieces are matched, every
@@ -66,6 +68,10 @@ pub(crate) fn wanted_of(
                     continue;
                 };
                 let settings = options.piece(panel_name(garment, piece), &piece.name);
+                let found = match piece.id.copy {
+                    0 => piece_findings(garment.pattern, piece),
+                    _ => Vec::new(),
+                };
                 let piece = right_side_up(piece);
                 let name = match garment.label {
                     Some(label) => format!("{} {label}", piece.name),
@@ -88,6 +94,7 @@ pub(crate) fn wanted_of(
                         .collect(),
                     settings: settings.clone(),
                     piece: piece.clone(),
+                    notes: notes_of(&found, garment.label),
                 };
                 let fabric = settings.fabric.as_deref().unwrap_or(&own.name);
                 all.push(wanted(fabric, 1));
@@ -100,6 +107,13 @@ pub(crate) fn wanted_of(
         }
     }
     Ok(all)
+}
+
+/// Findings in words, with what tells their garment from others.
+fn notes_of(found: &[Diagnostic], label: Option<&str>) -> Vec<String> {
+    let of = label.map_or_else(String::new, |label| format!("{label}: "));
+    let words = |one: &Diagnostic| format!("{of}{}; {}", one.message, one.hint);
+    found.iter().map(words).collect()
 }
 
 fn panel_name<'a>(garment: &Garments<'a>, piece: &Piece) -> &'a str {
@@ -175,7 +189,13 @@ pub(crate) fn items_on(
 ) -> Result<Items, SessionError> {
     let mut items = Vec::new();
     let mut drawn = Vec::new();
-    let mut notes = Vec::new();
+    let mut notes: Vec<String> = Vec::new();
+    for note in wanted.iter().flat_map(|wanted| &wanted.notes) {
+        // Garments that are matched each in itself have the same pieces again.
+        if !notes.contains(note) {
+            notes.push(note.clone());
+        }
+    }
     let printed = plan.rolls.iter().any(|r| r.strip.stripes.is_some());
     let matched = wanted.iter().any(|w| !w.marks.is_empty());
     let each_alone = plan.rolls.iter().any(|r| r.strip.nap == Nap::PerBundle);

@@ -72,7 +72,7 @@ pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
 pub use toile_body::{Description, Figure, Fit, PrimitiveEdit, ProportionBox, Scaling};
 pub use toile_drape::Stage;
-pub use toile_interchange::{MarkerSettings, Spread, Wanted};
+pub use toile_interchange::{MarkerSettings, SizeChoice, Spread, Wanted};
 pub use toile_nesting::{Budget, Nap};
 pub use tools::{
     BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, convert, fit_mesh, make_body,

@@ -3,7 +3,8 @@
 use crate::SessionError;
 use std::path::{Path, PathBuf};
 use toile_interchange::{
-    FileError, FormatError, Wanted, read_garmentcode, read_measurements, read_pattern,
+    FileError, FormatError, SizeChoice, Wanted, read_garmentcode, read_pattern,
+    read_sized_measurements,
 };
 use toile_measure::Measurements;
 use toile_pattern::Pattern;
@@ -121,15 +122,19 @@ fn looks_like_garmentcode(text: &str) -> bool {
     }
 }
 
-/// Reads a table of body measurements, native JSON or GarmentCode YAML.
+/// Reads a table of body measurements: native JSON, GarmentCode YAML, Seamly, Valentina or
+/// FreeSewing; of a table for several sizes the one chosen. Also tells which was taken, and what
+/// was left out.
 ///
 /// # Errors
-/// The file cannot be read, or is not such a table.
-pub fn open_measurements(path: &Path) -> Result<Measurements, SessionError> {
-    read_measurements(&read_input(path, Wanted::Measurements)?).map_err(|error| {
-        SessionError::Format {
-            path: PathBuf::from(path),
-            error,
-        }
+/// The file cannot be read, is not such a table, or does not have the size.
+pub fn open_measurements(
+    path: &Path,
+    choice: SizeChoice,
+) -> Result<(Measurements, Vec<String>), SessionError> {
+    let text = read_input(path, Wanted::Measurements)?;
+    read_sized_measurements(&text, choice).map_err(|error| SessionError::Format {
+        path: PathBuf::from(path),
+        error,
     })
 }

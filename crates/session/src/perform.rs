@@ -151,16 +151,23 @@ impl Session {
     }
 
     fn set_body(&mut self, figure: Option<Figure>, measurements: Option<&Path>) -> Outcome {
+        let mut notes = Vec::new();
         let body = match (figure, measurements) {
             (None, None) => BodyChoice::OfPattern,
             (Some(figure), None) => BodyChoice::Sample(figure),
-            (figure, Some(path)) => body_of(figure, path)?,
+            (figure, Some(path)) => {
+                let (body, found) = body_of(figure, path)?;
+                notes = found;
+                body
+            }
         };
         let next = Project {
             body,
             ..self.project.clone()
         };
-        Ok(self.change(next, "Choose body", None))
+        let mut events = self.change(next, "Choose body", None);
+        events.extend(Event::warnings(&notes));
+        Ok(events)
     }
 
     fn edit_body(&mut self, edits: &[PrimitiveEdit], label: &str, drag: Option<u64>) -> Outcome {

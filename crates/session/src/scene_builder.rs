@@ -226,10 +226,14 @@ impl Builder<'_> {
         Ok(mesh.into_triangle_mesh())
     }
 
-    fn skin(&self, body: &str) -> Result<TriangleMesh, SessionError> {
+    fn skin(&mut self, body: &str) -> Result<TriangleMesh, SessionError> {
         let body = match figure_named(body) {
             Some(figure) => BodyChoice::Sample(figure),
-            None => body_of(None, &self.base.join(body))?,
+            None => {
+                let (body, notes) = body_of(None, &self.base.join(body))?;
+                self.notes.extend(notes);
+                body
+            }
         };
         let project = Project {
             body,

@@ -1,4 +1,5 @@
 //! The `toile` command as tests run it.
+#![allow(dead_code)]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
