@@ -5,7 +5,7 @@ use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use toile_lab::{ChartPlan, Check, LAWS, LabError, Outcome};
+use toile_lab::{ChartPlan, Check, HardRun, LabError, Law, Limit, Outcome};
 
 impl From<LabError> for Failure {
     fn from(error: LabError) -> Self {
@@ -19,14 +19,7 @@ impl From<LabError> for Failure {
 /// The laws.
 pub fn validate(validate: &Validate, output: &Output) -> Result<Value, Failure> {
     if validate.list {
-        for law in &LAWS {
-            output.say(format!("{:<16} {}", law.name, law.title));
-        }
-        let names: Vec<Value> = LAWS
-            .iter()
-            .map(|law| json!({ "name": law.name, "title": law.title }))
-            .collect();
-        return Ok(json!({ "laws": names }));
+        return list_laws(&toile_lab::laws_named(&validate.laws)?, output);
     }
     let checks = toile_lab::validate(&validate.laws, &mut Bar::new())?;
     output.say(toile_lab::table(&checks));
@@ -50,6 +43,21 @@ pub fn validate(validate: &Validate, output: &Output) -> Result<Value, Failure> 
         count(checks.len(), "check")
     ));
     Ok(report)
+}
+
+/// Names laws with all their tolerances, without measuring them.
+fn list_laws(laws: &[&Law], output: &Output) -> Result<Value, Failure> {
+    for law in laws {
+        output.say(format!("{:<16} {}", law.name, law.title));
+        for tolerance in law.tolerances {
+            output.say(format!("{:<18} {tolerance}", ""));
+        }
+    }
+    let listed: Vec<Value> = laws
+        .iter()
+        .map(|law| json!({ "name": law.name, "title": law.title, "tolerances": law.tolerances }))
+        .collect();
+    Ok(json!({ "laws": listed }))
 }
 
 /// Writes named texts into a folder and says so.
@@ -90,6 +98,7 @@ pub fn chart(task: &ChartTask, output: &Output) -> Result<Value, Failure> {
     } else {
         ChartPlan::FULL
     };
+    toile_lab::ready_to_write(&task.out, task.into.as_deref())?;
     let data = toile_lab::chart(&task.scenes, plan, &mut bar)?;
     let mut files = toile_lab::chart_files(&data)?;
     if !task.quick && task.scenes.is_empty() {
@@ -105,6 +114,7 @@ pub fn chart(task: &ChartTask, output: &Output) -> Result<Value, Failure> {
 
 /// Where methods fail.
 pub fn stability(task: &StabilityTask, output: &Output) -> Result<Value, Failure> {
+    toile_lab::ready_to_write(&task.out, task.into.as_deref())?;
     let mut bar = Bar::new();
     let cells = toile_lab::stability_map(&mut bar)?;
     let limits = toile_lab::limits(&mut bar)?;
@@ -116,15 +126,31 @@ pub fn stability(task: &StabilityTask, output: &Output) -> Result<Value, Failure
     let written = write_files(&task.out, &files, output)?;
     write_section(task.into.as_deref(), "stability", &table)?;
     let report = json!({ "files": written, "limits": limits, "hard_cases": hard });
+    let broken = what_does_not_hold(&limits, &hard);
+    if broken.is_empty() {
+        return Ok(report);
+    }
+    Err(Failure::failed(broken.join("\n")).with_report(report))
+}
+
+/// What the tables promise and the runs did not keep, a line each.
+fn what_does_not_hold(limits: &[Limit], hard: &[HardRun]) -> Vec<String> {
+    let missed = limits.iter().filter(|limit| !limit.holds()).map(|limit| {
+        format!(
+            "{} at {:.0e} N/m blows up at {:.3e} s, not at its limit of {:.3e} s",
+            limit.method, limit.stiffness, limit.measured, limit.theory
+        )
+    });
     let unsound = hard
         .iter()
         .filter(|run| run.outcome == Outcome::Unsound)
-        .count();
-    if unsound > 0 {
-        let message = format!("{} went on with an impossible state", count(unsound, "run"));
-        return Err(Failure::failed(message).with_report(report));
-    }
-    Ok(report)
+        .map(|run| {
+            format!(
+                "{} in the case \"{}\" went on with an impossible state: {}",
+                run.method, run.case, run.detail
+            )
+        });
+    missed.chain(unsound).collect()
 }
 
 /// Benchmarks.
@@ -137,4 +163,31 @@ pub fn bench(task: &BenchTask, output: &Output) -> Result<Value, Failure> {
     let found = toile_lab::bench(&task.names, &mut Bar::new())?;
     output.say(toile_lab::bench_table(&found));
     Ok(json!({ "benchmarks": found }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stability_holds_when_limits_are_met_and_no_run_is_unsound_and_else_names_each() {
+        let limit = |measured| Limit {
+            method: "velocity-verlet",
+            stiffness: 1e4,
+            theory: 1e-3,
+            measured,
+        };
+        let run = |outcome| HardRun {
+            case: "a body that jumps",
+            method: "bdf2",
+            outcome,
+            detail: "9 J where 1 J are possible".to_owned(),
+        };
+        let kept = [Outcome::Sound, Outcome::Stopped, Outcome::Slow].map(run);
+        assert!(what_does_not_hold(&[limit(1.001e-3)], &kept).is_empty());
+        let broken = what_does_not_hold(&[limit(2e-3)], &[run(Outcome::Unsound)]);
+        assert!(broken[0].contains("velocity-verlet") && broken[0].contains("2.000e-3"));
+        assert!(broken[1].contains("bdf2") && broken[1].contains("9 J"));
+        assert_eq!(broken.len(), 2);
+    }
 }

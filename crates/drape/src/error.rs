@@ -67,6 +67,20 @@ pub enum DrapeError {
         /// The substep [s].
         substep: f64,
     },
+    /// A step ended with far more energy than the cloth can have come by.
+    #[error(
+        "{stage}: the energy grew to {energy:.3e} J where {possible:.3e} J can have come from the start, weight and air; the fastest is vertex {vertex}; take more substeps, or a method that damps such as implicit-euler"
+    )]
+    EnergyGrew {
+        /// The method.
+        stage: &'static str,
+        /// The fastest vertex after the step.
+        vertex: usize,
+        /// Energy of motion, strain, elastics and contact after it [J].
+        energy: f64,
+        /// The most that the cloth can have come by [J].
+        possible: f64,
+    },
     /// No number of substeps that could be waited for keeps an explicit method stable.
     #[error(
         "{stage}: vertex {vertex} is so stiff for its mass that a step would take {substeps:.1e} substeps; mesh without slivers or take an implicit method"

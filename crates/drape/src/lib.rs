@@ -53,7 +53,7 @@ pub use material::Material;
 pub use measure::{LayerMeasures, Measures, measure, residual, stretch_per_triangle};
 pub use merge::merge_map;
 pub use methods::{
-    Method, MethodKind, MethodSettings, RelaxationRun, StepReport, largest_frequency,
+    Method, MethodKind, MethodSettings, RelaxationRun, StepReport, largest_frequency, whole_energy,
 };
 pub use model::{Collider, ContactSample, ContactSettings, Elastic, ElasticEnd, Grip, Model};
 pub use motion::{Motion, MotionKey, Pose};

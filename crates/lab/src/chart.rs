@@ -23,6 +23,9 @@ pub struct Point {
     pub method: &'static str,
     /// Step [s] for methods in time; net force over weight asked for by methods of rest.
     pub step: f64,
+    /// Iterations it is given in a (sub)step at the most. None for explicit methods, which do not
+    /// iterate, and for methods of rest, which go on until they are done.
+    pub iterations: Option<usize>,
     /// Wall time [ms]: a simulated second of motion, or the whole way to rest.
     pub wall_ms: f64,
     /// Processor time [ms], likewise.
@@ -120,13 +123,14 @@ struct Setting<'a> {
 }
 
 impl Setting<'_> {
-    fn point(&self, method: &'static str, step: f64) -> Point {
+    fn point(&self, kind: MethodKind, step: f64) -> Point {
         Point {
             scene: self.card.name.clone(),
             mesh: self.mesh.clone(),
             vertices: self.model.vertex_count(),
-            method,
+            method: kind.name(),
             step,
+            iterations: kind.most_iterations(),
             wall_ms: 0.0,
             cpu_ms: None,
             error_mm: None,
@@ -137,7 +141,7 @@ impl Setting<'_> {
 
     /// One run in time.
     fn run(&self, kind: MethodKind, step: f64, reference: &Reference, budget: f64) -> Point {
-        let mut point = self.point(kind.name(), step);
+        let mut point = self.point(kind, step);
         let mut state = self.start.clone();
         let mut method = MethodSettings::from(kind).build();
         let steps = (self.card.duration / step).round().max(1.0) as usize;
@@ -179,7 +183,7 @@ impl Setting<'_> {
 
     /// One way to rest.
     fn settle(&self, kind: MethodKind, residual: f64, rest: &[Vec3], budget: f64) -> Point {
-        let mut point = self.point(kind.name(), residual);
+        let mut point = self.point(kind, residual);
         let mut state = self.start.clone();
         let settings = MethodSettings {
             tolerance: Some(residual),
@@ -377,6 +381,7 @@ mod tests {
             vertices: 1,
             method: "x",
             step: 1.0,
+            iterations: None,
             wall_ms,
             cpu_ms: None,
             error_mm,

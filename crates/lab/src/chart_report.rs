@@ -20,18 +20,20 @@ pub(crate) fn field(text: &str) -> String {
 }
 
 fn csv(points: &[Point], step: &str, wall: &str) -> String {
-    let mut text =
-        format!("scene,mesh,vertices,method,{step},{wall},cpu_ms,error_mm,best,failure\n");
+    let mut text = format!(
+        "scene,mesh,vertices,method,{step},most_iterations,{wall},cpu_ms,error_mm,best,failure\n"
+    );
     for p in points {
         let number = |x: Option<f64>| x.map_or(String::new(), |x| significant(x, 5));
         let _ = writeln!(
             text,
-            "{},{},{},{},{:.4e},{},{},{},{},{}",
+            "{},{},{},{},{:.4e},{},{},{},{},{},{}",
             p.scene,
             p.mesh,
             p.vertices,
             p.method,
             p.step,
+            p.iterations.map_or(String::new(), |n| n.to_string()),
             significant(p.wall_ms, 5),
             number(p.cpu_ms),
             number(p.error_mm),
@@ -40,6 +42,19 @@ fn csv(points: &[Point], step: &str, wall: &str) -> String {
         );
     }
     text
+}
+
+/// What stands under every chart, and under those of methods that iterate.
+const CROSSES: &str = "crosses in the top row: failed or wrong; the reason stands in the CSV";
+const ITERATIONS_AND_CROSSES: &str = "in brackets: iterations a step at the most; crosses in the top row: failed or wrong; the reason stands in the CSV";
+
+/// A method's name, and the iterations it is given in a step where these are more than one: block
+/// descent is given more of them than Newton's method.
+fn named(point: &Point) -> String {
+    match point.iterations {
+        Some(most) if most > 1 => format!("{} ({most})", point.method),
+        _ => point.method.to_owned(),
+    }
 }
 
 /// A chart of the runs on one mesh.
@@ -80,7 +95,7 @@ fn mesh_chart(points: &[&Point], title: String, note: String, across: &str) -> C
         places.sort_by(|a, b| a.0.total_cmp(&b.0));
         series.push(Series::numbered(
             number,
-            name,
+            named(own[0]),
             places.iter().map(|p| p.1).collect(),
         ));
         series.push(Series {
@@ -96,15 +111,17 @@ fn mesh_chart(points: &[&Point], title: String, note: String, across: &str) -> C
                 .collect(),
         });
     }
+    let words = if points.iter().any(|p| p.iterations.is_some()) {
+        ITERATIONS_AND_CROSSES
+    } else {
+        CROSSES
+    };
     Chart {
         title,
         x: Axis::logarithmic(across),
         y: Axis::logarithmic("RMS distance to the converged end [mm]"),
         series,
-        notes: vec![
-            note,
-            "crosses in the top row: failed or wrong; the reason stands in the CSV".to_owned(),
-        ],
+        notes: vec![note, words.to_owned()],
         size: [860.0, 520.0],
     }
 }
@@ -238,7 +255,7 @@ pub fn when_to_use(data: &ChartData) -> String {
                 Some(p) => write!(
                     text,
                     " {}, step {} ms: {} ms/s |",
-                    p.method,
+                    named(p),
                     significant(1e3 * p.step, 2),
                     significant(p.cost(), 3)
                 ),
@@ -314,6 +331,35 @@ pub fn write_files(folder: &Path, files: &[(String, String)]) -> Result<Vec<Path
     Ok(files.iter().map(|(name, _)| folder.join(name)).collect())
 }
 
+/// Refuses what long work could not be written to in the end, and makes nothing: the folder, or the
+/// nearest one above it that exists, and the document, if any, that a section of is to be replaced.
+///
+/// # Errors
+/// A file stands in the place of the folder, or it is read-only; the document cannot be read.
+pub fn ready_to_write(folder: &Path, document: Option<&Path>) -> Result<(), LabError> {
+    let failed = |what: String| LabError::Files { what };
+    let here = Path::new(".");
+    let above = folder.ancestors().filter(|at| !at.as_os_str().is_empty());
+    let found = above
+        .chain([here])
+        .find_map(|at| Some((at, std::fs::metadata(at).ok()?)));
+    let fault = match &found {
+        Some((at, about)) if !about.is_dir() => Some((at, "is a file")),
+        Some((at, about)) if about.permissions().readonly() => Some((at, "is read-only")),
+        _ => None,
+    };
+    if let Some((at, fault)) = fault {
+        let (folder, at) = (folder.display(), at.display());
+        return Err(failed(format!(
+            "cannot write into {folder}: {at} {fault}; choose another folder"
+        )));
+    }
+    match document.map(read_text_file) {
+        Some(Err(error)) => Err(failed(error.to_string())),
+        _ => Ok(()),
+    }
+}
+
 /// Replaces a section of a document on the disk, see [`with_section`].
 ///
 /// # Errors
@@ -335,6 +381,57 @@ mod tests {
         assert_eq!(once, "# Title\n\n<!-- chart -->\none\n<!-- /chart -->\n");
         let twice = with_section(&once, "chart", "two\n");
         assert_eq!(twice, "# Title\n\n<!-- chart -->\ntwo\n<!-- /chart -->\n");
+    }
+
+    #[test]
+    fn rows_of_block_descent_say_that_it_is_given_more_iterations() {
+        let point = |kind: toile_drape::MethodKind, cost: f64| Point {
+            scene: "hang".to_owned(),
+            mesh: "hang-a.obj".to_owned(),
+            vertices: 169,
+            method: kind.name(),
+            step: 0.01,
+            iterations: kind.most_iterations(),
+            wall_ms: cost,
+            cpu_ms: None,
+            error_mm: Some(0.5),
+            failure: None,
+            best: false,
+        };
+        let data = ChartData {
+            motion: vec![
+                point(MethodKind::VertexBlockDescent, 1.0),
+                point(MethodKind::ImplicitEuler, 2.0),
+                point(MethodKind::VelocityVerlet, 3.0),
+            ],
+            ..ChartData::default()
+        };
+        let files = chart_files(&data).unwrap();
+        let text = |name: &str| &files.iter().find(|(n, _)| n == name).unwrap().1;
+        let rows: Vec<&str> = text("motion.csv").lines().collect();
+        assert!(rows[0].contains(",step_s,most_iterations,"), "{}", rows[0]);
+        assert!(rows[1].contains("vertex-block-descent,1.0000e-2,100,"));
+        assert!(rows[2].contains("implicit-euler,1.0000e-2,40,"));
+        assert!(rows[3].contains("velocity-verlet,1.0000e-2,,"));
+        assert!(text("motion-hang-a.svg").contains(">vertex-block-descent (100)<"));
+        assert!(when_to_use(&data).contains("| vertex-block-descent (100), step 10"));
+    }
+
+    #[test]
+    fn a_file_in_the_place_of_the_folder_is_refused_before_the_work() {
+        let folder = std::env::temp_dir().join(format!("toile-lab-{}", std::process::id()));
+        ready_to_write(&folder, None).unwrap();
+        assert!(!folder.exists());
+        std::fs::create_dir(&folder).unwrap();
+        let file = folder.join("report.md");
+        std::fs::write(&file, "kept").unwrap();
+        ready_to_write(&folder, Some(&file)).unwrap();
+        for (out, into) in [(&file, None), (&folder, Some(folder.join("gone.md")))] {
+            let error = ready_to_write(out, into.as_deref()).unwrap_err();
+            assert!(matches!(error, LabError::Files { .. }), "{error}");
+        }
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "kept");
+        std::fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]

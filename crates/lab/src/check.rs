@@ -1,6 +1,6 @@
 //! One measured number held against what it must be, and tables of them.
 
-use crate::LabError;
+use crate::{LabError, Tolerance};
 use serde::Serialize;
 use std::fmt::Write;
 use std::ops::ControlFlow;
@@ -22,7 +22,9 @@ pub struct Check {
     pub measured: Option<f64>,
     /// |measured - expected| over the scale (that of the expected value unless it is zero).
     pub error: Option<f64>,
-    /// Largest error allowed.
+    /// What that scale is.
+    pub of: &'static str,
+    /// Largest error allowed; one that the law declares, or less.
     pub tolerance: f64,
     /// Why there is no number.
     pub failure: Option<String>,
@@ -40,38 +42,45 @@ impl Check {
 /// What a case must give.
 #[derive(Clone, Copy, Debug)]
 pub struct Expected {
-    /// What is measured, with its unit.
-    pub quantity: &'static str,
+    /// The tolerance that the law declares for it.
+    tolerance: Tolerance,
     /// What the law says.
-    pub value: f64,
+    value: f64,
     /// What errors are measured by; the expected value itself, unless it is zero.
-    pub scale: f64,
-    /// Largest relative error allowed.
-    pub tolerance: f64,
+    scale: f64,
+    /// Largest error allowed, as a share of the scale: the tolerance's, or less.
+    allowed: f64,
 }
 
 impl Expected {
     /// A value, met to a share of itself.
-    pub fn value(quantity: &'static str, value: f64, tolerance: f64) -> Self {
+    pub fn value(tolerance: Tolerance, value: f64) -> Self {
         Self {
-            quantity,
+            tolerance,
             value,
             scale: value.abs(),
-            tolerance,
+            allowed: tolerance.share,
         }
     }
 
     /// Nothing, met to a share of a scale.
-    pub fn zero(quantity: &'static str, scale: f64, tolerance: f64) -> Self {
+    pub fn zero(tolerance: Tolerance, scale: f64) -> Self {
         Self {
-            quantity,
+            tolerance,
             value: 0.0,
             scale,
-            tolerance,
+            allowed: tolerance.share,
         }
     }
 
-    /// A bound: below it there is no error.
+    /// The same, met more nearly where this case allows less than the law at its widest.
+    pub fn within(self, share: f64) -> Self {
+        Self {
+            allowed: share.min(self.allowed),
+            ..self
+        }
+    }
+
     fn error(&self, measured: f64) -> f64 {
         (measured - self.value).abs() / self.scale
     }
@@ -80,6 +89,7 @@ impl Expected {
 /// Collects the cases of laws and tells how far they are.
 pub struct Cases<'a> {
     pub(crate) law: &'static str,
+    pub(crate) tolerances: &'static [Tolerance],
     pub(crate) share: [f64; 2],
     watcher: &'a mut dyn Watcher,
     found: Vec<Check>,
@@ -90,6 +100,7 @@ impl<'a> Cases<'a> {
     pub fn new(watcher: &'a mut dyn Watcher) -> Self {
         Self {
             law: "",
+            tolerances: &[],
             share: [0.0, 1.0],
             watcher,
             found: Vec::new(),
@@ -137,7 +148,9 @@ impl<'a> Cases<'a> {
         outcome: Result<f64, LabError>,
         start: Instant,
     ) -> Result<Option<f64>, LabError> {
+        let declared = self.tolerances.contains(&expected.tolerance);
         let (measured, failure) = match outcome {
+            Ok(_) if !declared => (None, Some("the law declares no such tolerance".to_owned())),
             Ok(value) if value.is_finite() => (Some(value), None),
             Ok(value) => (None, Some(format!("measured {value}"))),
             Err(LabError::Cancelled) => return Err(LabError::Cancelled),
@@ -146,11 +159,12 @@ impl<'a> Cases<'a> {
         self.found.push(Check {
             law: self.law,
             case: case.into(),
-            quantity: expected.quantity,
+            quantity: expected.tolerance.quantity,
             expected: expected.value,
             measured,
             error: measured.map(|m| expected.error(m)),
-            tolerance: expected.tolerance,
+            of: expected.tolerance.of,
+            tolerance: expected.allowed,
             failure,
             seconds: start.elapsed().as_secs_f64(),
         });
@@ -211,16 +225,19 @@ mod tests {
 
     #[test]
     fn errors_are_shares_of_the_expected_value_and_failures_are_kept() {
+        const SHARE: Tolerance = Tolerance::value("x", 0.02);
+        const NOTHING: Tolerance = Tolerance::zero("x", "ten", 0.02);
         let mut silent = Silent;
         let mut cases = Cases::new(&mut silent);
+        cases.tolerances = &[SHARE, NOTHING];
         cases
-            .measure("near", Expected::value("x", 2.0, 0.02), || Ok(2.02))
+            .measure("near", Expected::value(SHARE, 2.0), || Ok(2.02))
             .unwrap();
         cases
-            .measure("far", Expected::zero("x", 10.0, 0.02), || Ok(-1.0))
+            .measure("far", Expected::zero(NOTHING, 10.0), || Ok(-1.0))
             .unwrap();
         cases
-            .measure("none", Expected::value("x", 1.0, 0.1), || Ok(f64::NAN))
+            .measure("none", Expected::value(SHARE, 1.0), || Ok(f64::NAN))
             .unwrap();
         let checks = cases.finish();
         assert!((checks[0].error.unwrap() - 0.01).abs() < 1e-12);
@@ -229,6 +246,24 @@ mod tests {
         assert_eq!(passed, [true, false, false]);
         assert!(checks[2].failure.is_some());
         assert!(table(&checks).lines().count() == 5);
+    }
+
+    #[test]
+    fn a_check_with_a_tolerance_that_its_law_does_not_declare_fails() {
+        const DECLARED: Tolerance = Tolerance::value("x", 0.02);
+        let mut silent = Silent;
+        let mut cases = Cases::new(&mut silent);
+        cases.tolerances = &[DECLARED];
+        let wider = Tolerance::value("x", 0.2);
+        for (tolerance, share) in [(DECLARED, 0.01), (DECLARED, 0.5), (wider, 0.01)] {
+            let expected = Expected::value(tolerance, 2.0).within(share);
+            cases.measure("exact", expected, || Ok(2.0)).unwrap();
+        }
+        let checks = cases.finish();
+        let allowed: Vec<f64> = checks.iter().map(|c| c.tolerance).collect();
+        assert_eq!(allowed, [0.01, 0.02, 0.01]);
+        let passed: Vec<bool> = checks.iter().map(Check::passed).collect();
+        assert_eq!(passed, [true, true, false]);
     }
 
     #[test]

@@ -6,7 +6,9 @@ use crate::{LabError, MeshKind, freeze::ball, rectangle};
 use serde::Serialize;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use toile_drape::{Cloth, Collider, Material, MethodKind, MethodSettings, Model, State};
+use toile_drape::{
+    Cloth, Collider, Material, MethodKind, MethodSettings, Model, State, Workspace, whole_energy,
+};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 use toile_session::Watcher;
 
@@ -14,7 +16,7 @@ use toile_session::Watcher;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
-    /// It went through and stayed finite and in place.
+    /// It went through, finite, with no more energy and no farther away than it can have come.
     Sound,
     /// It stopped with an error that says what and where.
     Stopped,
@@ -212,15 +214,85 @@ fn force_field() -> Result<Case, LabError> {
     Ok(case)
 }
 
-fn run(mut case: Case, kind: MethodKind) -> (Outcome, String) {
+/// The energy that a cloth can have come by.
+struct Allowance {
+    /// Energy of motion, strain and contact [J]: that of the start, what the weight can have added
+    /// since, and what a body that jumped put into the contact.
+    energy: f64,
+    /// What the body that jumped put in [J].
+    jumped: f64,
+    workspace: Workspace,
+}
+
+/// How many times that energy the motion may have and still count as sound: the energy of a method
+/// that keeps it swings.
+const SWING: f64 = 10.0;
+
+impl Allowance {
+    fn new(case: &Case) -> Self {
+        let mut allowance = Self {
+            energy: 0.0,
+            jumped: 0.0,
+            workspace: Workspace::default(),
+        };
+        allowance.energy = allowance.energy_of(&case.model, &case.state);
+        allowance
+    }
+
+    /// Energy of motion, strain and contact [J], without that of the weight, which has no zero.
+    fn energy_of(&mut self, model: &Model, state: &State) -> f64 {
+        let places = state.positions.iter().zip(&model.mass);
+        let weight: f64 = places.map(|(x, m)| m * model.gravity.dot(x)).sum();
+        whole_energy(model, state, &mut self.workspace) + weight
+    }
+
+    /// Puts a surface in the place of the model's, with what that stores in the contact.
+    fn jump(&mut self, model: &mut Model, state: &State, jumped: Collider) {
+        let before = self.energy_of(model, state);
+        model.colliders = vec![jumped];
+        let more = (self.energy_of(model, state) - before).max(0.0);
+        self.energy += more;
+        self.jumped += more;
+    }
+
+    /// Adds what the weight can give in a step [s]: the root of the energy grows by |g| sqrt(M/2) a
+    /// second at most, as dE/dt = sum m g.v <= |g| sqrt(2 M E).
+    fn fall(&mut self, model: &Model, step: f64) {
+        let push = model.gravity.norm() * (0.5 * free_mass(model)).sqrt();
+        self.energy = (self.energy.max(0.0).sqrt() + push * step).powi(2);
+    }
+
+    /// Words for motion with more energy than it can have. Strain is left out: what a solver leaves
+    /// unsolved in stiff cloth counts as much energy there and moves nothing.
+    fn exceeded_by(&self, model: &Model, state: &State) -> Option<String> {
+        let motion = state.kinetic_energy(model);
+        let words = || {
+            let possible = self.energy;
+            format!("moves with {motion:.1e} J where {possible:.1e} J are possible")
+        };
+        (motion.is_nan() || motion > SWING * self.energy).then(words)
+    }
+}
+
+/// Mass of the vertices that are not pinned [kg].
+fn free_mass(model: &Model) -> f64 {
+    let free = model.mass.iter().zip(&model.pinned);
+    free.filter(|&(_, &pinned)| !pinned).map(|(m, _)| m).sum()
+}
+
+fn run(mut case: Case, kind: MethodKind, budget: f64) -> (Outcome, String) {
     let mut state = case.state.clone();
     let mut method = MethodSettings::from(kind).build();
+    // What is no number has no energy; every method is to refuse it.
+    let finite = state.first_not_finite().is_none();
+    let mut allowance = finite.then(|| Allowance::new(&case));
     let clock = Clock::start();
     for n in 0..STEPS {
         if n == STEPS / 3
             && let Some(jumped) = case.jump.take()
+            && let Some(allowance) = &mut allowance
         {
-            case.model.colliders = vec![jumped];
+            allowance.jump(&mut case.model, &state, jumped);
         }
         if let Err(error) = method.advance(&case.model, &mut state, case.step) {
             return (Outcome::Stopped, error.to_string());
@@ -231,18 +303,27 @@ fn run(mut case: Case, kind: MethodKind) -> (Outcome, String) {
                 format!("vertex {vertex} is not finite after step {n}"),
             );
         }
-        if clock.spent() > BUDGET {
-            return verdict(&case, &state, Some(n + 1));
+        if let Some(allowance) = &mut allowance {
+            allowance.fall(&case.model, case.step);
+            if let Some(words) = allowance.exceeded_by(&case.model, &state) {
+                return (Outcome::Unsound, format!("{words} after step {n}"));
+            }
+        }
+        let jumped = allowance.as_ref().map_or(0.0, |a| a.jumped);
+        if clock.spent() > budget {
+            return verdict(&case, &state, jumped, Some(n + 1));
         }
         if method.finished() {
             break;
         }
     }
-    verdict(&case, &state, None)
+    let jumped = allowance.as_ref().map_or(0.0, |a| a.jumped);
+    verdict(&case, &state, jumped, None)
 }
 
-/// A cloth that fell freely all the time came no farther than this [m].
-fn reach(case: &Case) -> f64 {
+/// A cloth that fell freely all the time, thrown by all the energy that a body that jumped put in,
+/// came no farther than this [m].
+fn reach(case: &Case, jumped: f64) -> f64 {
     let time = STEPS as f64 * case.step;
     let fastest = case
         .state
@@ -250,14 +331,20 @@ fn reach(case: &Case) -> f64 {
         .iter()
         .map(|v| v.norm())
         .fold(0.0, f64::max);
-    2.0 + 0.5 * 9.81 * time * time + fastest * time
+    let thrown = (2.0 * jumped / free_mass(&case.model)).sqrt();
+    2.0 + 0.5 * 9.81 * time * time + (fastest + thrown) * time
 }
 
-fn verdict(case: &Case, state: &State, stopped_at: Option<usize>) -> (Outcome, String) {
+fn verdict(
+    case: &Case,
+    state: &State,
+    jumped: f64,
+    stopped_at: Option<usize>,
+) -> (Outcome, String) {
     let places = state.positions.iter().zip(&case.state.positions);
     let moved = places.map(|(p, q)| (p - q).norm()).fold(0.0, f64::max);
     let words = format!("moved by {moved:.2} m at the most");
-    if moved > reach(case) {
+    if moved > reach(case, jumped) {
         return (Outcome::Unsound, words);
     }
     match stopped_at {
@@ -281,7 +368,7 @@ pub fn hard_cases(watcher: &mut dyn Watcher) -> Result<Vec<HardRun>, LabError> {
             if watcher.progress(name, share, method) == ControlFlow::Break(()) {
                 return Err(LabError::Cancelled);
             }
-            let (outcome, detail) = run(make()?, kind);
+            let (outcome, detail) = run(make()?, kind, BUDGET);
             runs.push(HardRun {
                 case: name,
                 method,
@@ -301,10 +388,43 @@ mod tests {
     fn every_method_refuses_what_is_no_number() {
         for make in [not_a_number, infinite] {
             for (name, kind) in MethodKind::ALL {
-                let (outcome, detail) = run(make().unwrap(), kind);
+                let (outcome, detail) = run(make().unwrap(), kind, BUDGET);
                 assert_eq!(outcome, Outcome::Stopped, "{name}: {detail}");
                 assert!(detail.contains("vertex"), "{name}: {detail}");
             }
         }
+    }
+
+    #[test]
+    fn cloth_that_a_body_jumped_into_is_thrown_by_no_more_than_that_gave() {
+        let (outcome, detail) = run(jumping_body().unwrap(), MethodKind::Bdf2, f64::INFINITY);
+        assert_eq!(outcome, Outcome::Sound, "{detail}");
+    }
+
+    #[test]
+    fn the_implicit_midpoint_rule_refuses_energy_that_nothing_gave() {
+        for make in [jumping_body, stretched] {
+            let (outcome, detail) =
+                run(make().unwrap(), MethodKind::ImplicitMidpoint, f64::INFINITY);
+            assert_eq!(outcome, Outcome::Stopped, "{detail}");
+            assert!(detail.contains("the energy grew"), "{detail}");
+        }
+    }
+
+    #[test]
+    fn a_state_with_energy_that_nothing_gave_is_impossible() {
+        let case = lying().unwrap();
+        let mut allowance = Allowance::new(&case);
+        let mut state = case.state.clone();
+        assert_eq!(allowance.exceeded_by(&case.model, &state), None);
+        for v in &mut state.velocities {
+            v.y = 2.0;
+        }
+        let words = allowance.exceeded_by(&case.model, &state);
+        assert!(words.is_some_and(|words| words.contains(" J are possible")));
+        for _ in 0..60 {
+            allowance.fall(&case.model, 1.0 / 60.0);
+        }
+        assert_eq!(allowance.exceeded_by(&case.model, &state), None);
     }
 }

@@ -24,12 +24,14 @@ mod settle;
 mod square;
 mod stability;
 mod stability_report;
+mod tolerance;
 
 pub use bench::{Timed, bench, bench_names, bench_table};
 pub use chart::{Agreement, ChartData, ChartPlan, Point, chart};
 pub use chart_contact::{Touched, contact_chart, contact_files, contact_table};
 pub use chart_report::{
-    chart_files, locking_files, when_to_use, with_section, write_files, write_section,
+    chart_files, locking_files, ready_to_write, when_to_use, with_section, write_files,
+    write_section,
 };
 pub use check::{Cases, Check, table};
 pub use elastica::{Elastica, heavy_elastica};
@@ -37,10 +39,11 @@ pub use error::LabError;
 pub use flat::{Flat, MeshKind, disc, rectangle};
 pub use freeze::{freeze, reference};
 pub use hard::{HardRun, Outcome, hard_cases};
-pub use laws::{Drape, LAWS, Law, Resolved, cusick, locking, validate};
+pub use laws::{Drape, LAWS, Law, Resolved, cusick, laws_named, locking, validate};
 pub use outline::{fold_count, shadow, shadow_area};
 pub use propped::{Propped, propped_elastica};
 pub use scenes::{Card, ClothCard, Reference, SCENES, card, subdivided};
 pub use settle::{in_time, to_rest};
 pub use stability::{Cell, Limit, Verdict, limits, stability_map};
 pub use stability_report::{stability_files, stability_table};
+pub use tolerance::Tolerance;

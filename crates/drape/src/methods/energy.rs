@@ -19,6 +19,7 @@ const STILL: f64 = 1e-3;
 pub struct EnergyWatch {
     zeros: Vec<f64>,
     before: f64,
+    after: f64,
 }
 
 impl EnergyWatch {
@@ -36,11 +37,17 @@ impl EnergyWatch {
         step: f64,
     ) -> bool {
         let bound = energy_bound(model, self.before, step);
-        self.energy(model, state, workspace) <= bound
+        self.after = self.energy(model, state, workspace);
+        self.after <= bound
+    }
+
+    /// The energy that [`Self::is_possible`] found last [J].
+    pub fn last(&self) -> f64 {
+        self.after
     }
 
     /// Energy of motion, strain, elastics and contact [J].
-    fn energy(&mut self, model: &Model, state: &State, workspace: &mut Workspace) -> f64 {
+    pub fn energy(&mut self, model: &Model, state: &State, workspace: &mut Workspace) -> f64 {
         self.zeros.resize(model.vertex_count(), 0.0);
         let nothing = Inertia {
             weight: &self.zeros,
@@ -61,6 +68,47 @@ impl EnergyWatch {
     }
 }
 
+/// The energy that a cloth can have come by since its run began: what it had then, what its weight and
+/// the air can have added, and what was done to it between steps.
+pub struct EnergyAccount {
+    /// When the last step ended [s], and with what energy [J]. A state of another time begins anew.
+    time: f64,
+    after: f64,
+    /// What the cloth can have come by until then [J].
+    possible: f64,
+}
+
+impl Default for EnergyAccount {
+    fn default() -> Self {
+        Self {
+            time: f64::NAN,
+            after: 0.0,
+            possible: 0.0,
+        }
+    }
+}
+
+impl EnergyAccount {
+    /// The energy that can be there before a step from `time` [s], when `before` [J] is: bodies and
+    /// pins that were moved since the last step may have added to it.
+    pub fn start(&self, time: f64, before: f64) -> f64 {
+        if time == self.time {
+            self.possible + (before - self.after).max(0.0)
+        } else {
+            before
+        }
+    }
+
+    /// Notes a step that ended at `time` [s] with `after` [J], where `possible` [J] were.
+    pub fn end(&mut self, time: f64, after: f64, possible: f64) {
+        *self = Self {
+            time,
+            after,
+            possible,
+        };
+    }
+}
+
 /// Energy of motion, strain, weight, elastics and contact [J]; places count from the origin.
 pub fn whole_energy(model: &Model, state: &State, workspace: &mut Workspace) -> f64 {
     let weight = |(x, m): (&toile_geometry::Vec3, &f64)| m * model.gravity.dot(x);
@@ -68,10 +116,16 @@ pub fn whole_energy(model: &Model, state: &State, workspace: &mut Workspace) -> 
     EnergyWatch::default().energy(model, state, workspace) - gravity
 }
 
-/// The most energy of motion, strain, elastics and contact [J] that a cloth with `before` [J] of it
-/// can show after `step` [s]. All potentials but gravity's are above zero, so this energy H obeys
-/// dH/dt = sum m g.v <= |g| sqrt(2 M H), and sqrt(H) grows by |g| sqrt(M/2) a second at most.
+/// The energy that a method may show after `step` [s]: [`possible_energy`], and room for the swing
+/// of symplectic methods.
 pub fn energy_bound(model: &Model, before: f64, step: f64) -> f64 {
+    SWING * possible_energy(model, before, step)
+}
+
+/// The most energy of motion, strain, elastics and contact [J] that a cloth with `before` [J] of it
+/// can have after `step` [s]. All potentials but gravity's are above zero, so this energy H obeys
+/// dH/dt = sum m g.v <= |g| sqrt(2 M H), and sqrt(H) grows by |g| sqrt(M/2) a second at most.
+pub fn possible_energy(model: &Model, before: f64, step: f64) -> f64 {
     let mass: f64 = model
         .mass
         .iter()
@@ -86,7 +140,7 @@ pub fn energy_bound(model: &Model, before: f64, step: f64) -> f64 {
         .fold(f64::INFINITY, f64::min);
     let push = model.gravity.norm() + model.air.push(lightest);
     let root = before.max(0.0).sqrt() + push * (0.5 * mass).sqrt() * step;
-    SWING * (root * root + 0.5 * mass * STILL * STILL)
+    root * root + 0.5 * mass * STILL * STILL
 }
 
 /// Whether a vertex can move at a speed [m/s].

@@ -5,7 +5,7 @@
 //! (see [`Workspace`]), and a solver that lowers Phi. A step that fails is undone and taken in
 //! two, four ... pieces.
 
-use super::energy::{EnergyWatch, fastest, runaway};
+use super::energy::{EnergyAccount, EnergyWatch, fastest, possible_energy, runaway};
 use super::{Method, MethodSettings, StepReport};
 use crate::measure::weight_norm;
 use crate::{DrapeError, Inertia, Model, NewtonReport, State, Workspace};
@@ -14,6 +14,11 @@ use toile_geometry::Vec3;
 
 /// A rule of time integration, as a minimum and what follows from it.
 pub trait TimeRule: Send {
+    /// How many times the most energy that a cloth can have it may show after a whole step: that of
+    /// the step before or of the whole run, whichever is less. None for rules that damp: they gain
+    /// no energy from step to step.
+    const MOST_ENERGY: Option<f64> = None;
+
     /// How long after the start of the step its unknown lies [s].
     fn reach(h: f64) -> f64 {
         h
@@ -100,6 +105,7 @@ pub struct Implicit<R, S> {
     before: State,
     start: State,
     watch: EnergyWatch,
+    account: EnergyAccount,
 }
 
 /// Halvings of a step before it is an error.
@@ -134,6 +140,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             before: State::default(),
             start: State::default(),
             watch: EnergyWatch::default(),
+            account: EnergyAccount::default(),
         }
     }
 
@@ -245,10 +252,27 @@ impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
         self.workspace.forget_pairs();
         let mut total = StepReport::default();
         let end = state.time + step;
+        let before = R::MOST_ENERGY.map(|_| {
+            let before = self.watch.energy(model, state, &mut self.workspace);
+            [before, self.account.start(state.time, before)]
+        });
         let automatic = || R::substeps(model, step);
         let substeps = self.substeps.unwrap_or_else(automatic).max(1);
         for _ in 0..substeps {
             self.whole(model, state, step / f64::from(substeps), &mut total)?;
+        }
+        if let (Some(times), Some(before)) = (R::MOST_ENERGY, before) {
+            let [in_step, in_run] = before.map(|before| possible_energy(model, before, step));
+            let (after, possible) = (self.watch.last(), in_step.min(in_run));
+            if after > times * possible {
+                return Err(DrapeError::EnergyGrew {
+                    stage: S::STAGE,
+                    vertex: fastest(state).0,
+                    energy: after,
+                    possible,
+                });
+            }
+            self.account.end(end, after, in_run);
         }
         state.time = end;
         Ok(total)

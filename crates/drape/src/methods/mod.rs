@@ -21,7 +21,8 @@ mod runge_kutta;
 mod symplectic_euler;
 mod velocity_verlet;
 
-pub(crate) use energy::{energy_bound, is_possible_speed, whole_energy};
+pub use energy::whole_energy;
+pub(crate) use energy::{energy_bound, is_possible_speed};
 pub(crate) use frequency::damped_contact_frequency;
 pub use frequency::largest_frequency;
 pub use relaxation::RelaxationRun;
@@ -32,7 +33,7 @@ use crate::{DrapeError, Model, State};
 use block_descent::BlockDescent;
 use explicit::Explicit;
 use guard::Guarded;
-use implicit::Implicit;
+use implicit::{Implicit, Solver};
 use lbfgs::Lbfgs;
 use newton_solver::{Newton, OneSolve};
 use projective::Projective;
@@ -52,7 +53,8 @@ pub struct StepReport {
 ///
 /// It owns its workspace; everything it must remember from step to step to go on is in the
 /// [`State`], so that a saved state continues bit for bit with a fresh method. Only `xpbd` with contact of
-/// cloth with cloth keeps where its search ended, and with it which pairs far from pressing it leaves out.
+/// cloth with cloth keeps where its search ended, and with it which pairs far from pressing it leaves out,
+/// and `implicit-midpoint` the energy that its run can have come by, which it refuses to exceed tenfold.
 pub trait Method: Send {
     /// Advances the state by `step` [s]. Equilibrium methods take one iteration; their time does
     /// not run and `step` is ignored.
@@ -165,6 +167,22 @@ impl MethodKind {
             Self::ForwardEuler => Some(0.0),
             Self::SymplecticEuler | Self::VelocityVerlet | Self::PatchVerlet => Some(2.0),
             Self::RungeKutta4 => Some(2.0 * std::f64::consts::SQRT_2),
+            _ => None,
+        }
+    }
+
+    /// Iterations in a (sub)step at the most where the settings give none; nothing for explicit
+    /// methods, which have none, and for those that look for rest, whose iterations are their steps.
+    pub fn most_iterations(self) -> Option<usize> {
+        match self {
+            Self::ImplicitEuler => Some(Newton::<false>::LIMITS.iterations),
+            Self::Bdf2 | Self::ImplicitMidpoint => Some(Newton::<true>::LIMITS.iterations),
+            Self::SemiImplicitEuler => Some(OneSolve::LIMITS.iterations),
+            Self::ProjectiveDynamics => Some(Projective::LIMITS.iterations),
+            Self::Lbfgs => Some(Lbfgs::LIMITS.iterations),
+            Self::VertexBlockDescent => Some(BlockDescent::<false>::LIMITS.iterations),
+            Self::ChebyshevBlockDescent => Some(BlockDescent::<true>::LIMITS.iterations),
+            Self::Xpbd => Some(crate::XpbdSettings::default().iterations as usize),
             _ => None,
         }
     }

@@ -54,6 +54,11 @@ pub struct Midpoint;
 const MOST_SUBSTEPS: f64 = 1000.0;
 
 impl TimeRule for Midpoint {
+    /// It keeps the energy of a vibration exactly and that of bent and stretched cloth nearly. Where
+    /// steps do not resolve the vibration it gains: twentyfold a frame in cloth that a body was put
+    /// over, a tenth a frame in cloth drawn to four times its length.
+    const MOST_ENERGY: Option<f64> = Some(10.0);
+
     fn reach(h: f64) -> f64 {
         0.5 * h
     }

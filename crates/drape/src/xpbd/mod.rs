@@ -531,11 +531,12 @@ const SUBSTEPS: u32 = 20;
 impl XpbdMethod {
     /// From settings: substeps and iterations.
     pub(crate) fn new(settings: &MethodSettings) -> Self {
-        let iterations = settings.iterations.unwrap_or(1).clamp(1, 1_000_000) as u32;
+        let usual = XpbdSettings::default();
+        let asked = settings.iterations.map(|n| n.clamp(1, 1_000_000) as u32);
         Self {
             settings: XpbdSettings {
-                iterations,
-                ..XpbdSettings::default()
+                iterations: asked.unwrap_or(usual.iterations),
+                ..usual
             },
             substeps: settings.substeps.unwrap_or(SUBSTEPS).max(1),
             solver: None,

@@ -1,10 +1,12 @@
 //! Where methods fail: each stays sound or stops with an error that names the place.
 
-use crate::fixtures::{ball, cloth, hanging_square, shake, sheet};
+use crate::fixtures::{ball, ball_mesh, cloth, hanging_square, shake, sheet};
+use std::sync::Arc;
 use toile_drape::{
-    Cloth, DrapeError, Material, MethodKind, MethodSettings, Model, State, largest_frequency,
+    Cloth, Collider, DrapeError, Material, MethodKind, MethodSettings, Model, State, Workspace,
+    largest_frequency, whole_energy,
 };
-use toile_geometry::Vec3;
+use toile_geometry::{SurfaceTree, Vec3};
 
 /// Five steps of 1/60 s with each method's own settings. Afterwards no vertex may be farther than
 /// `reach` [m] from where it was, and a failed step must leave the state alone.
@@ -20,6 +22,7 @@ fn check(case: &str, make: impl Fn() -> (Model, State), reach: f64) {
                 let named = match &error {
                     DrapeError::NotFinite { stage, vertex }
                     | DrapeError::BlownUp { stage, vertex, .. }
+                    | DrapeError::EnergyGrew { stage, vertex, .. }
                     | DrapeError::TooStiff { stage, vertex, .. } => {
                         !stage.is_empty() && *vertex < model.vertex_count()
                     }
@@ -125,6 +128,48 @@ fn a_body_that_jumps_into_the_cloth() {
     };
     // 15 mm deep at 1e6 N/m3: 112 J/m2, 34 m/s at 0.2 kg/m2.
     check("a body jumps", make, 4.0);
+}
+
+#[test]
+fn no_method_returns_a_step_with_ten_times_the_energy_that_a_body_that_jumped_gave() {
+    let mesh = sheet([10, 5], [0.2, 0.1], |u, v| {
+        Vec3::new(u - 0.1, 0.055, v - 0.05)
+    });
+    let mut jumped = ball_mesh(0.05);
+    for p in &mut jumped.positions {
+        *p += Vec3::new(0.02, 0.03, 0.0);
+    }
+    let jumped = Collider::new(Arc::new(SurfaceTree::new(jumped)));
+    for kind in [
+        MethodKind::ImplicitEuler,
+        MethodKind::Bdf2,
+        MethodKind::ImplicitMidpoint,
+    ] {
+        let (mut model, mut state) = cloth(&mesh, Material::default());
+        model.colliders = vec![ball(0.05)];
+        let mut method = MethodSettings::from(kind).build();
+        for _ in 0..5 {
+            method
+                .advance(&model, &mut state, 1.0 / 60.0)
+                .expect("sound");
+        }
+        model.colliders = vec![jumped.clone()];
+        let mut workspace = Workspace::default();
+        let given = whole_energy(&model, &state, &mut workspace);
+        for step in 0..20 {
+            let before = state.clone();
+            if let Err(error) = method.advance(&model, &mut state, 1.0 / 60.0) {
+                assert!(matches!(error, DrapeError::EnergyGrew { .. }), "{error}");
+                assert!(state == before, "{kind:?}: {error}");
+                break;
+            }
+            let has = whole_energy(&model, &state, &mut workspace);
+            assert!(
+                has <= 10.0 * given,
+                "{kind:?}, step {step}: {given} J given, {has} J"
+            );
+        }
+    }
 }
 
 #[test]

@@ -3,13 +3,17 @@
 use crate::check::{Cases, Expected};
 use crate::flat::{STRAIGHT, clamped};
 use crate::settle::to_rest;
-use crate::{LabError, MeshKind, rectangle};
+use crate::{LabError, MeshKind, Tolerance, rectangle};
 use toile_drape::{Material, Model, State};
 use toile_geometry::{Vec2, Vec3};
 
 /// q L^3 / sqrt(B C) at which a strip clamped on edge gives way sideways under its own weight
 /// (Prandtl 1899, Michell 1899).
 const PRANDTL: f64 = 12.85;
+
+/// The critical load: the strip drawn to no width is of first order in it.
+const LOAD: Tolerance = Tolerance::value("Gamma", 0.03);
+pub(super) const LATERAL: [Tolerance; 1] = [LOAD];
 
 /// Length of the strip [m], and its cells along and across: a twelfth and a 24th as wide as long.
 const LENGTH: f64 = 0.1;
@@ -21,7 +25,7 @@ const CELLS: [[usize; 2]; 2] = [[48, 4], [96, 4]];
 pub(super) fn lateral(cases: &mut Cases) -> Result<(), LabError> {
     let expected = PRANDTL * 2.0f64.sqrt();
     for (name, kind) in MeshKind::ALL {
-        cases.measure(name, Expected::value("Gamma", expected, 0.03), || {
+        cases.measure(name, Expected::value(LOAD, expected), || {
             let [wide, narrow] = CELLS.map(|cells| critical(kind, cells, expected));
             Ok(2.0 * narrow? - wide?)
         })?;

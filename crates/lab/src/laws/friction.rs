@@ -1,7 +1,7 @@
 //! Friction on an incline.
 
 use crate::check::{Cases, Expected};
-use crate::{Flat, LabError, MeshKind, rectangle};
+use crate::{Flat, LabError, MeshKind, Tolerance, rectangle};
 use std::sync::Arc;
 use toile_drape::{Collider, Material, MethodKind, Model, State};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
@@ -63,13 +63,18 @@ fn slide(angle: f64) -> Result<[f64; 2], LabError> {
     Ok([(velocity(&state) - before) / 0.2, moved.x])
 }
 
+/// How far a cloth that sticks moves, and how one that slides gathers speed.
+const STICKS: Tolerance = Tolerance::zero("moved/(g t2/2)", "the free fall", 1e-3);
+const SLIDES: Tolerance = Tolerance::value("acceleration, m/s2", 0.01);
+pub(super) const INCLINE: [Tolerance; 2] = [STICKS, SLIDES];
+
 /// A cloth on a board sticks while tan(angle) <= mu, else slides by g (sin - mu cos).
 pub(super) fn incline(cases: &mut Cases) -> Result<(), LabError> {
     for share in [0.5, 0.99] {
         let angle = (share * MU).atan();
         cases.measure(
             format!("tan(angle) {share} of mu"),
-            Expected::zero("moved/(g t2/2)", 0.5 * 9.81 * 0.04, 1e-3),
+            Expected::zero(STICKS, 0.5 * 9.81 * 0.04),
             || slide(angle).map(|[_, moved]| moved),
         )?;
     }
@@ -78,7 +83,7 @@ pub(super) fn incline(cases: &mut Cases) -> Result<(), LabError> {
         let expected = 9.81 * (angle.sin() - MU * angle.cos());
         cases.measure(
             format!("tan(angle) {share} of mu"),
-            Expected::value("acceleration, m/s2", expected, 0.01),
+            Expected::value(SLIDES, expected),
             || slide(angle).map(|[acceleration, _]| acceleration),
         )?;
     }

@@ -3,7 +3,7 @@
 use crate::check::{Cases, Expected};
 use crate::root::bisect;
 use crate::settle::{TIGHT, mean, to_rest};
-use crate::{LabError, MeshKind, rectangle};
+use crate::{LabError, MeshKind, Tolerance, rectangle};
 use toile_drape::{Material, Model, State, Workspace};
 use toile_geometry::{Vec2, Vec3};
 
@@ -37,6 +37,11 @@ pub(crate) fn lengthening(stretch: f64, length: f64) -> f64 {
         .sum()
 }
 
+/// How far the tip sinks, of second order in the cell, and what the edge carries, to the rest.
+const SINKS: Tolerance = Tolerance::value("tip sinks, m", 2e-3);
+const CARRIES: Tolerance = Tolerance::value("tension at top, N", 1e-4);
+pub(super) const ELASTIC: [Tolerance; 2] = [SINKS, CARRIES];
+
 /// A strip hung by its edge: how far its tip sinks, and what its edge carries.
 pub(super) fn elastic(cases: &mut Cases) -> Result<(), LabError> {
     for (name, kind) in MeshKind::ALL {
@@ -57,13 +62,13 @@ pub(super) fn elastic(cases: &mut Cases) -> Result<(), LabError> {
             let expected = lengthening(stretch, LENGTH);
             cases.measure(
                 format!("{name}, Y {stretch} N/m"),
-                Expected::value("tip sinks, m", expected, 2e-3),
+                Expected::value(SINKS, expected),
                 || sunk,
             )?;
             let weight = DENSITY * GRAVITY * LENGTH * WIDTH;
             cases.measure(
                 format!("{name}, Y {stretch} N/m"),
-                Expected::value("tension at top, N", weight, 1e-4),
+                Expected::value(CARRIES, weight),
                 || carried,
             )?;
         }
@@ -119,6 +124,10 @@ fn hung_with(kind: MeshKind, material: Material, elements: usize) -> Result<[f64
     Ok([-tip - LENGTH, carried])
 }
 
+/// How far the strip sags.
+const SAG: Tolerance = Tolerance::value("sag, m", 5e-3);
+pub(super) const CATENARY: [Tolerance; 1] = [SAG];
+
 /// A strip slung between two supports: y = a cosh(x/a), L = 2 a sinh(d/2a).
 pub(super) fn catenary(cases: &mut Cases) -> Result<(), LabError> {
     for (name, kind) in MeshKind::ALL {
@@ -130,7 +139,7 @@ pub(super) fn catenary(cases: &mut Cases) -> Result<(), LabError> {
             let expected = a * ((0.5 * distance / a).cosh() - 1.0);
             cases.measure(
                 format!("{name}, supports {span} L apart"),
-                Expected::value("sag, m", expected, 5e-3),
+                Expected::value(SAG, expected),
                 || sag(kind, distance),
             )?;
         }

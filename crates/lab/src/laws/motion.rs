@@ -2,7 +2,7 @@
 
 use crate::check::{Cases, Expected};
 use crate::settle::{converged, in_time, methods_in_time, sound_step, to_rest};
-use crate::{LabError, MeshKind, rectangle};
+use crate::{LabError, MeshKind, Tolerance, rectangle};
 use toile_drape::laws::air::Air;
 use toile_drape::{Material, MethodKind, MethodSettings, Model, State, largest_frequency};
 use toile_geometry::{Vec2, Vec3};
@@ -57,20 +57,39 @@ const SPINNING: [&str; 5] = [
 /// Gradient at which a step of the flight counts as solved [N].
 const SOLVED: f64 = 1e-13;
 
-/// The share of its momentum that a method may lose in 1000 steps of 2 ms.
-fn momentum_left(kind: MethodKind) -> f64 {
+/// The share of its momentum that a method may lose in 1000 steps of 2 ms. Forces of explicit methods
+/// cancel to rounding.
+const EXPLICIT: Tolerance =
+    Tolerance::zero("momentum lost, share", "the momentum", 1e-12).only("explicit methods");
+/// One linear solve a step, to the gradient asked for or to rounding.
+const ONE_SOLVE: Tolerance = Tolerance {
+    share: 1e-9,
+    ..EXPLICIT.only("semi-implicit-euler")
+};
+/// A gradient of that norm over 100 vertices sums to 1e-12 N at the most; for 2 s that is 2e-10 of
+/// 9e-3 kg m/s.
+const CONVERGED: Tolerance = Tolerance {
+    share: 2e-10,
+    ..EXPLICIT.only("other implicit methods")
+};
+/// Single precision rounds positions of 0.2 m to 2^-25 of it; over a substep of 0.1 ms that is
+/// 6e-5 m/s a vertex, of either sign: with 20000 substeps and 100 vertices 1e-3 m/s of 1.2 m/s, and
+/// contributions of each of the substep's passes.
+const SINGLE: Tolerance = Tolerance {
+    share: 5e-3,
+    ..EXPLICIT.only("xpbd")
+};
+/// Angular momentum of the methods that keep it.
+const SPIN: Tolerance = Tolerance::zero("spin lost, share", "the angular momentum", 1e-8);
+pub(super) const FLIGHT: [Tolerance; 5] = [EXPLICIT, ONE_SOLVE, CONVERGED, SINGLE, SPIN];
+
+/// Which of them is a method's.
+fn momentum_left(kind: MethodKind) -> Tolerance {
     match kind {
-        // Forces cancel to rounding.
-        _ if kind.stability_limit().is_some() => 1e-12,
-        // One linear solve a step, to the gradient asked for or to rounding.
-        MethodKind::SemiImplicitEuler => 1e-9,
-        // Single precision rounds positions of 0.2 m to 2^-25 of it; over a substep of 0.1 ms that
-        // is 6e-5 m/s a vertex, of either sign: with 20000 substeps and 100 vertices 1e-3 m/s of
-        // 1.2 m/s, and contributions of each of the substep's passes.
-        MethodKind::Xpbd => 5e-3,
-        // A gradient of that norm over 100 vertices sums to 1e-12 N at the most; for 2 s that is
-        // 2e-10 of 9e-3 kg m/s.
-        _ => 2e-10,
+        _ if kind.stability_limit().is_some() => EXPLICIT,
+        MethodKind::SemiImplicitEuler => ONE_SOLVE,
+        MethodKind::Xpbd => SINGLE,
+        _ => CONVERGED,
     }
 }
 
@@ -98,7 +117,7 @@ pub(super) fn flight(cases: &mut Cases) -> Result<(), LabError> {
         let word = failed.as_ref().map(ToString::to_string);
         cases.measure(
             format!("{name}, 1000 steps of {step:.1e} s"),
-            Expected::zero("momentum lost, share", before.norm(), momentum_left(kind)),
+            Expected::zero(momentum_left(kind), before.norm()),
             || match failed {
                 Some(error) => Err(error),
                 None => Ok((momentum(&model, &state) - before).norm()),
@@ -108,7 +127,7 @@ pub(super) fn flight(cases: &mut Cases) -> Result<(), LabError> {
             let (after, kind) = (angular_momentum(&model, &state), name);
             cases.measure(
                 format!("{kind}, 1000 steps of {step:.1e} s"),
-                Expected::zero("spin lost, share", spin.norm(), 1e-8),
+                Expected::zero(SPIN, spin.norm()),
                 || Ok((after - spin).norm()),
             )?;
         }
@@ -116,9 +135,21 @@ pub(super) fn flight(cases: &mut Cases) -> Result<(), LabError> {
     Ok(())
 }
 
+/// Time of the fall, and the longest step [s].
+const FALLING: f64 = 0.5;
+const LONGEST: f64 = 1e-3;
+
+/// A method of first order is out by half to one step of the whole.
+const fn half_step(step: f64) -> f64 {
+    1.2 * step / FALLING + 1e-6
+}
+
+const FALLEN: Tolerance = Tolerance::value("fallen, m", half_step(LONGEST));
+pub(super) const FALL: [Tolerance; 1] = [FALLEN];
+
 /// A cloth let go falls by g t^2 / 2; a method of first order is out by half a step.
 pub(super) fn fall(cases: &mut Cases) -> Result<(), LabError> {
-    let (time, wanted) = (0.5, 1e-3);
+    let (time, wanted) = (FALLING, LONGEST);
     for (name, kind) in methods_in_time() {
         let (mut model, mut state) = square(soft())?;
         let settings = kind.into();
@@ -127,7 +158,7 @@ pub(super) fn fall(cases: &mut Cases) -> Result<(), LabError> {
         let drop = 0.5 * 9.81 * time * time;
         cases.measure(
             format!("{name}, steps of {step:.1e} s"),
-            Expected::value("fallen, m", drop, 1.2 * step / time + 1e-6),
+            Expected::value(FALLEN, drop).within(half_step(step)),
             || {
                 in_time(&model, &mut state, settings, [step, time], |_| {})?;
                 let mean: f64 = state.positions.iter().map(|p| p.y).sum();
@@ -139,6 +170,10 @@ pub(super) fn fall(cases: &mut Cases) -> Result<(), LabError> {
     }
     Ok(())
 }
+
+/// The velocity at last.
+const LAST: Tolerance = Tolerance::value("velocity, m/s", 0.01);
+pub(super) const TERMINAL: [Tolerance; 1] = [LAST];
 
 /// Velocity at which a flat cloth of `mass` per area [kg/m2] falls face on through `air`:
 /// rho C_n v^2 / 2 = mass g.
@@ -178,7 +213,7 @@ fn fall_at_last(
         }
         cases.measure(
             format!("{name}, {what}"),
-            Expected::value("velocity, m/s", expected, 0.01),
+            Expected::value(LAST, expected),
             || {
                 in_time(&model, &mut state, settings, [step, 3.0], |_| {})?;
                 let total = momentum(&model, &state).y;
@@ -189,6 +224,12 @@ fn fall_at_last(
     Ok(())
 }
 
+/// The net force at rest, and the energy that is left of the fall.
+const NET_FORCE: Tolerance = Tolerance::zero("net force/weight", "the weight", 1e-5);
+const ENERGY_LEFT: Tolerance =
+    Tolerance::zero("kinetic energy/fall", "the weight times the size", 1e-6);
+pub(super) const CORNER: [Tolerance; 2] = [NET_FORCE, ENERGY_LEFT];
+
 /// A cloth held at one corner comes to rest: by the way to rest, and in time with drag.
 pub(super) fn corner(cases: &mut Cases) -> Result<(), LabError> {
     let material = Material {
@@ -198,16 +239,12 @@ pub(super) fn corner(cases: &mut Cases) -> Result<(), LabError> {
     let (mut model, start) = square(material)?;
     model.gravity = Vec3::new(0.0, -9.81, 0.0);
     model.pinned[0] = true;
-    cases.measure(
-        "way to rest",
-        Expected::zero("net force/weight", 1.0, 1e-5),
-        || {
-            let mut state = start.clone();
-            to_rest(&model, &mut state, 1e-6)?;
-            let mut workspace = toile_drape::Workspace::default();
-            Ok(toile_drape::residual(&model, &state, &mut workspace))
-        },
-    )?;
+    cases.measure("way to rest", Expected::zero(NET_FORCE, 1.0), || {
+        let mut state = start.clone();
+        to_rest(&model, &mut state, 1e-6)?;
+        let mut workspace = toile_drape::Workspace::default();
+        Ok(toile_drape::residual(&model, &state, &mut workspace))
+    })?;
     // The energy to lose: the weight times the size.
     let fall = model.mass.iter().sum::<f64>() * 9.81 * 0.2;
     model.air_drag = 3.0;
@@ -215,7 +252,7 @@ pub(super) fn corner(cases: &mut Cases) -> Result<(), LabError> {
         let settings: MethodSettings = kind.into();
         cases.measure(
             format!("{name}, 6 s with drag 3 per s"),
-            Expected::zero("kinetic energy/fall", fall, 1e-6),
+            Expected::zero(ENERGY_LEFT, fall),
             || swing_out(&model, &start, settings),
         )?;
     }

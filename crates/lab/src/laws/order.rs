@@ -2,7 +2,7 @@
 
 use crate::check::{Cases, Expected};
 use crate::settle::{in_time, methods_in_time, sound_step};
-use crate::{LabError, MeshKind, rectangle};
+use crate::{LabError, MeshKind, Tolerance, rectangle};
 use toile_drape::{Material, MethodKind, MethodSettings, Model, State};
 use toile_geometry::{Vec2, Vec3};
 
@@ -15,6 +15,10 @@ const SECOND: [&str; 5] = [
     "implicit-midpoint",
     "newmark",
 ];
+
+/// The order by steps h and h/2, of first order in h.
+const ORDER: Tolerance = Tolerance::value("order", 0.03);
+pub(super) const IN_TIME: [Tolerance; 1] = [ORDER];
 
 fn order_of(name: &str) -> f64 {
     if name.starts_with("runge") || name.starts_with("rk") {
@@ -67,7 +71,7 @@ pub(super) fn in_time_order(cases: &mut Cases) -> Result<(), LabError> {
         let coarsest = duration / (duration / sound).ceil();
         cases.measure(
             format!("{name}, steps from {coarsest:.1e} s"),
-            Expected::value("order", expected, 0.15),
+            Expected::value(ORDER, expected),
             || {
                 let mut ends = Vec::new();
                 for halvings in 0..4 {

@@ -4,7 +4,7 @@ use super::friction::board;
 use crate::check::{Cases, Expected};
 use crate::flat::{STRAIGHT, clamped};
 use crate::settle::{mean, to_rest};
-use crate::{Flat, LabError, MeshKind, propped_elastica, rectangle};
+use crate::{Flat, LabError, MeshKind, Tolerance, propped_elastica, rectangle};
 use std::sync::Arc;
 use toile_drape::{Collider, ContactSettings, Material, Model, State};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
@@ -115,6 +115,10 @@ impl Strip {
     }
 }
 
+/// The least coefficient that holds the tip.
+const LEAST: Tolerance = Tolerance::value("least mu", 0.01);
+pub(super) const STICK_SLIP: [Tolerance; 1] = [LEAST];
+
 /// How far the clamp comes down, over the length.
 const DOWN: [f64; 4] = [0.05, 0.1, 0.2, 0.3];
 
@@ -127,7 +131,7 @@ pub(super) fn stick_slip(cases: &mut Cases) -> Result<(), LabError> {
             let expected = propped_elastica(down).friction();
             cases.measure(
                 format!("clamp down by {down} L, {name}"),
-                Expected::value("least mu", expected, 0.01),
+                Expected::value(LEAST, expected),
                 || {
                     for sample in &mut strip.model.samples {
                         sample.friction = 10.0;

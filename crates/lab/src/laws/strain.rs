@@ -2,7 +2,7 @@
 
 use crate::check::{Cases, Expected};
 use crate::settle::to_rest;
-use crate::{Flat, LabError, MeshKind, rectangle};
+use crate::{Flat, LabError, MeshKind, Tolerance, rectangle};
 use nalgebra::{Matrix2, Rotation3};
 use toile_drape::{Material, Model, State, Workspace};
 use toile_geometry::{Vec2, Vec3};
@@ -12,6 +12,17 @@ const WIDTH: f64 = 0.1;
 
 /// Rounding of forces against the stiffness times the width.
 const EXACT: f64 = 1e-12;
+
+const INSIDE: Tolerance = Tolerance::zero("force/(Y w)", "stiffness times width", EXACT);
+const RESULTANT: Tolerance = Tolerance::zero("difference/(Y w)", "stiffness times width", EXACT);
+pub(super) const PATCH: [Tolerance; 2] = [INSIDE, RESULTANT];
+pub(super) const RIGID: [Tolerance; 1] = [INSIDE];
+
+/// The pull of a strip at rest, and the work of a frame to rounding.
+const PULL: Tolerance = Tolerance::value("force/width, N/m", 1e-4);
+const WORK: Tolerance = Tolerance::value("force/length, N/m", 1e-10);
+pub(super) const UNIAXIAL: [Tolerance; 1] = [PULL];
+pub(super) const PICTURE_FRAME: [Tolerance; 1] = [WORK];
 
 fn sheet(kind: MeshKind) -> Result<Flat, LabError> {
     let (from, to) = (Vec2::new(-0.1, -0.05), Vec2::new(0.1, 0.05));
@@ -91,7 +102,7 @@ pub(super) fn patch(cases: &mut Cases) -> Result<(), LabError> {
         let found = forces(&flat, weave(), place)?;
         cases.measure(
             format!("{name}, force inside"),
-            Expected::zero("force/(Y w)", scale, EXACT),
+            Expected::zero(INSIDE, scale),
             || Ok(largest(&found, &inside)),
         )?;
         // First Piola-Kirchhoff traction F S e_u on the edge, pulling inwards, but for half of
@@ -108,7 +119,7 @@ pub(super) fn patch(cases: &mut Cases) -> Result<(), LabError> {
         let expected = turned(Vec3::new(expected.x, expected.y, 0.0)) - turned(Vec3::zeros());
         cases.measure(
             format!("{name}, resultant at the edge"),
-            Expected::zero("difference/(Y w)", scale, EXACT),
+            Expected::zero(RESULTANT, scale),
             || Ok((sum + expected).norm()),
         )?;
     }
@@ -131,11 +142,9 @@ pub(super) fn rigid(cases: &mut Cases) -> Result<(), LabError> {
         let flat = sheet(kind)?;
         let all = flat.chosen(|_| true);
         let found = forces(&flat, weave(), |p| turned(Vec3::new(p.x, p.y, 0.0)))?;
-        cases.measure(
-            name,
-            Expected::zero("force/(Y w)", 600.0 * WIDTH, EXACT),
-            || Ok(largest(&found, &all)),
-        )?;
+        cases.measure(name, Expected::zero(INSIDE, 600.0 * WIDTH), || {
+            Ok(largest(&found, &all))
+        })?;
     }
     Ok(())
 }
@@ -147,7 +156,7 @@ pub(super) fn uniaxial(cases: &mut Cases) -> Result<(), LabError> {
             let expected = 600.0 * stretch * (stretch * stretch - 1.0) / 2.0;
             cases.measure(
                 format!("{name}, stretched to {stretch}"),
-                Expected::value("force/width, N/m", expected, 1e-4),
+                Expected::value(PULL, expected),
                 || pull(kind, stretch),
             )?;
         }
@@ -197,7 +206,7 @@ pub(super) fn picture_frame(cases: &mut Cases) -> Result<(), LabError> {
             let expected = shear * angle.sin() * angle.cos();
             cases.measure(
                 format!("{name}, sheared by {angle} rad"),
-                Expected::value("force/length, N/m", expected, 1e-10),
+                Expected::value(WORK, expected),
                 || {
                     let flat = sheet(kind)?;
                     let found = forces(&flat, weave(), |p| {
