@@ -354,7 +354,7 @@ pub fn ready_to_write(folder: &Path, document: Option<&Path>) -> Result<(), LabE
             "cannot write into {folder}: {at} {fault}; choose another folder"
         )));
     }
-    match document.map(read_text_file) {
+    match document.map(read_text) {
         Some(Err(error)) => Err(failed(error.to_string())),
         _ => Ok(()),
     }
