@@ -376,6 +376,14 @@ impl Model {
         }
     }
 
+    /// Mass of the cloth at each vertex [kg]: that of the model, and none for a vertex on no triangle.
+    pub(crate) fn cloth_mass(&self) -> Vec<f64> {
+        let corners = self.corner_start.windows(2);
+        let own = self.mass.iter().zip(corners);
+        own.map(|(&mass, corners)| if corners[0] < corners[1] { mass } else { 0.0 })
+            .collect()
+    }
+
     /// Whether any cloth says how it bounces.
     pub(crate) fn bounces(&self) -> bool {
         self.materials.iter().any(|m| m.restitution.is_some())
