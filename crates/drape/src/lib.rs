@@ -55,7 +55,9 @@ pub use merge::merge_map;
 pub use methods::{
     Method, MethodKind, MethodSettings, RelaxationRun, StepReport, largest_frequency,
 };
-pub use model::{Collider, ContactSample, ContactSettings, Elastic, ElasticEnd, Grip, Model};
+pub use model::{
+    Collider, ContactSample, ContactSettings, Elastic, ElasticEnd, Grip, MOST_OFFSET, Model,
+};
 pub use motion::{Motion, MotionKey, Pose};
 pub use newton::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 pub use pcg::PcgLimits;

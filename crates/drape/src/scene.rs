@@ -207,6 +207,7 @@ impl Scene {
             );
         }
         self.check_objects()?;
+        self.check_distances()?;
         self.check_layers()?;
         self.check_motions()?;
         for (index, elastic) in self.elastics.iter().enumerate() {
@@ -244,6 +245,24 @@ impl Scene {
                     }
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// The materials that an object's cloth is made of; none for a solid.
+    pub(crate) fn materials_of(object: &SceneObject) -> &[Material] {
+        match (&object.kind, &object.cloth) {
+            (ObjectKind::Deformable { .. }, Some(cloth)) => &cloth.materials,
+            (ObjectKind::Deformable { material, .. }, None) => std::slice::from_ref(material),
+            _ => &[],
+        }
+    }
+
+    fn check_distances(&self) -> Result<(), DrapeError> {
+        self.contact.check_reach("collision.offset")?;
+        for object in &self.objects {
+            let contact = self.contact.for_cloth(Self::materials_of(object));
+            contact.check_reach(&format!("thickness of \"{}\"", object.name))?;
         }
         Ok(())
     }

@@ -10,7 +10,7 @@ use crate::{
     Cloth, Collider, DrapeError, Elastic, ElasticEnd, Grip, Model, State, Workspace, merge_map,
 };
 use std::sync::Arc;
-use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
+use toile_geometry::{SurfaceTree, TriangleMesh};
 
 /// A scene on its way.
 pub struct SceneRun {
@@ -115,7 +115,7 @@ impl SceneRun {
             });
             self.model.colliders = solids.collect();
         }
-        self.model.contact = self.scene.contact;
+        self.model.contact = self.scene.contact.for_cloth(&self.cloth.materials);
         self.model.layer = self.layers();
         self.model.gravity = self.scene.gravity;
         self.model.air_drag = self.scene.air.drag + self.scene.damping.mass;
