@@ -32,6 +32,8 @@ pub struct SceneRun {
     steps: usize,
     split_steps: usize,
     refinements: usize,
+    /// What methods counted before the last merging.
+    tally: Option<Tally>,
 }
 
 /// Steps between two looks for cloth that crosses a body between its samples, and how often it may
@@ -96,6 +98,7 @@ impl SceneRun {
             steps: 0,
             split_steps: 0,
             refinements: 0,
+            tally: None,
         };
         run.state = State::at_rest(&run.model, run.cloth.positions.clone());
         run.furnish();
@@ -270,7 +273,10 @@ impl SceneRun {
 
     /// What contact of cloth with cloth found and did, where the method counts it.
     pub fn cloth_tally(&self) -> Option<Tally> {
-        self.method.cloth_tally()
+        match (self.tally, self.method.cloth_tally()) {
+            (Some(before), Some(now)) => Some(before.then(now)),
+            (before, now) => before.or(now),
+        }
     }
 
     /// Merges the ends of elastics that are close enough: [`merged_motion`] says where they meet. Two
@@ -322,6 +328,7 @@ impl SceneRun {
             *target = map[*target as usize];
         }
         self.workspace = Workspace::default();
+        self.tally = self.cloth_tally();
         self.method = self.scene.method.build();
         self.furnish();
         Ok(())
@@ -405,6 +412,12 @@ impl SceneRun {
     pub fn crossings(&self) -> usize {
         let mesh = self.model.mesh(&self.state.positions);
         SurfaceTree::new(mesh).self_intersections().len()
+    }
+
+    /// Net force over weight of a state measured, where that says how far from rest it is.
+    pub fn residual_of(&self, measures: &Measures) -> Option<f64> {
+        let balances = self.scene.method.kind.balances_forces();
+        balances.then_some(measures.residual)
     }
 
     /// Measures the present state.

@@ -6,7 +6,7 @@
 mod sheets;
 
 use sheets::{object, sheet};
-use toile_drape::{Scene, SceneElastic, SceneEnd, SceneObject, SceneRun};
+use toile_drape::{MethodKind, Scene, SceneElastic, SceneEnd, SceneObject, SceneRun};
 use toile_geometry::{TriangleMesh, Vec3};
 
 fn square(at: Vec3) -> TriangleMesh {
@@ -98,4 +98,36 @@ fn a_vertex_without_cloth_weighs_nothing_when_it_is_merged() {
     assert_eq!(run.state.positions.len(), 18);
     let place = run.meshes()[0].positions[2];
     assert!((place - Vec3::new(0.1, 0.0, 0.0)).norm() < 1e-12, "{place}");
+}
+
+#[test]
+fn crossings_found_before_a_merging_are_told_after_it() {
+    let one = object("one", square(Vec3::zeros()), vec![0]);
+    let upright = sheet([2, 2], [0.1, 0.1], |u, v| {
+        Vec3::new(0.11 + u, v - 0.04, 0.003)
+    });
+    let through = sheet([2, 2], [0.1, 0.1], |u, v| Vec3::new(u, v - 0.043, 0.03));
+    let objects = vec![
+        one,
+        object("upright", upright, vec![]),
+        object("through", through, vec![]),
+    ];
+    let mut elastic = merged([2, 3]);
+    elastic.merge_within = Some(0.05);
+    let scene = Scene {
+        gravity: Vec3::zeros(),
+        objects,
+        elastics: vec![elastic],
+        contact: toile_drape::ContactSettings {
+            cloth_offset: 1e-3,
+            ..toile_drape::ContactSettings::default()
+        },
+        method: MethodKind::Xpbd.into(),
+        ..Scene::default()
+    };
+    let mut run = SceneRun::new(scene).unwrap();
+    run.advance().unwrap();
+    assert_eq!(run.state.positions.len(), 26, "nothing was merged");
+    let tally = run.cloth_tally().unwrap();
+    assert!(tally.looks > 0 && tally.crossings[0] > 0, "{tally:?}");
 }
