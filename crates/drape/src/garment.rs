@@ -121,7 +121,7 @@ impl GarmentRun {
     ///
     /// # Errors
     /// Meshes and materials that cannot be simulated, a setup without any level.
-    pub fn new(setup: GarmentSetup) -> Result<Self, DrapeError> {
+    pub fn new(mut setup: GarmentSetup) -> Result<Self, DrapeError> {
         let Some(first) = setup.levels.first() else {
             return Err(DrapeError::Scene {
                 place: "garment".to_owned(),
@@ -129,6 +129,8 @@ impl GarmentRun {
                 remedy: "give at least one level".to_owned(),
             });
         };
+        setup.contact = setup.contact.for_cloth(&first.cloth.materials);
+        setup.contact.check_reach("thickness of the fabrics")?;
         let mut model = Model::new("garment", &first.cloth)?;
         model.colliders = setup.colliders.iter().cloned().map(Collider::new).collect();
         let mut run = Self {

@@ -9,10 +9,12 @@ mod caps;
 mod carry;
 mod cloth;
 pub mod collision;
+mod contact_settings;
 mod contacts;
 mod error;
 pub mod fabrics;
 pub mod factor;
+mod features;
 mod garment;
 mod hessian;
 pub mod kes;
@@ -42,9 +44,11 @@ mod xpbd;
 
 pub use carry::Carry;
 pub use cloth::Cloth;
+pub use contact_settings::{ContactSettings, MOST_OFFSET};
 pub use contacts::{Contact, Contacts};
 pub use error::DrapeError;
 pub use fabrics::{FabricSources, LIBRARY, LibraryFabric};
+pub use features::Feature;
 pub use garment::{GarmentLevel, GarmentRun, GarmentSetup, Progress, Stage};
 pub use kes::KesValues;
 pub use laws::air::Air;
@@ -55,7 +59,7 @@ pub use merge::merge_map;
 pub use methods::{
     Method, MethodKind, MethodSettings, RelaxationRun, StepReport, largest_frequency, whole_energy,
 };
-pub use model::{Collider, ContactSample, ContactSettings, Elastic, ElasticEnd, Grip, Model};
+pub use model::{Collider, ContactSample, Elastic, ElasticEnd, Grip, Model};
 pub use motion::{Motion, MotionKey, Pose};
 pub use newton::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 pub use pcg::PcgLimits;

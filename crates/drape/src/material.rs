@@ -9,7 +9,8 @@ use crate::laws::stretch::{Compression, MembraneLaw};
 pub struct Material {
     /// Mass per area [kg/m2].
     pub density: f64,
-    /// Thickness [m]; half of it is kept between the middle of the cloth and any surface.
+    /// Thickness [m]: at least half of it is kept between the middle of the cloth and any surface, all of
+    /// it between two cloths ([`crate::ContactSettings::for_cloth`]).
     pub thickness: f64,
     /// Stretch stiffness along warp and weft [N/m].
     pub stretch: [f64; 2],

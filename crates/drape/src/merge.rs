@@ -1,27 +1,49 @@
 //! Merging: vertices that seams have drawn together become one.
 
+use crate::State;
 use crate::collision::BETWEEN_LAYERS;
+use toile_geometry::Vec3;
 
-/// Union-find over `count` vertices joined by pairs. Gives each vertex its new index and the
-/// number of new vertices; new indices follow the order of the smallest old vertex.
-pub fn merge_map(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> (Vec<u32>, usize) {
-    let mut parent: Vec<u32> = (0..count as u32).collect();
-    fn root(parent: &mut [u32], mut v: u32) -> u32 {
+/// Union-find: sets of vertices, each known by its smallest.
+struct Sets {
+    parent: Vec<u32>,
+}
+
+impl Sets {
+    fn new(count: usize) -> Self {
+        Self {
+            parent: (0..count as u32).collect(),
+        }
+    }
+
+    fn root(&mut self, mut v: u32) -> u32 {
+        let parent = &mut self.parent;
         while parent[v as usize] != v {
             parent[v as usize] = parent[parent[v as usize] as usize];
             v = parent[v as usize];
         }
         v
     }
-    for [a, b] in pairs {
-        let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-        // The smaller index stays root, so that order does not depend on the order of pairs.
-        parent[a.max(b) as usize] = a.min(b);
+
+    /// Joins two sets, given by their roots. The smaller index stays root, so that order does not
+    /// depend on the order of pairs.
+    fn join(&mut self, [a, b]: [u32; 2]) {
+        self.parent[a.max(b) as usize] = a.min(b);
+    }
+}
+
+/// Union-find over `count` vertices joined by pairs. Gives each vertex its new index and the
+/// number of new vertices; new indices follow the order of the smallest old vertex.
+pub fn merge_map(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> (Vec<u32>, usize) {
+    let mut sets = Sets::new(count);
+    for pair in pairs {
+        let roots = pair.map(|v| sets.root(v));
+        sets.join(roots);
     }
     let mut target = vec![0; count];
     let mut next = 0;
     for v in 0..count as u32 {
-        let r = root(&mut parent, v);
+        let r = sets.root(v);
         if r == v {
             target[v as usize] = next;
             next += 1;
@@ -30,6 +52,60 @@ pub fn merge_map(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> (Ve
         }
     }
     (target, next as usize)
+}
+
+/// Keeps of some pairs, in order, those that may be joined: none that would make one vertex of two
+/// that are held, unless `together` says that these two can be one.
+pub(crate) fn joinable(
+    pairs: impl IntoIterator<Item = [u32; 2]>,
+    held: &[bool],
+    together: impl Fn(u32, u32) -> bool,
+) -> Vec<[u32; 2]> {
+    let mut sets = Sets::new(held.len());
+    // A held vertex of each set, at its root.
+    let own = held.iter().enumerate();
+    let mut holder: Vec<Option<u32>> = own.map(|(v, &held)| held.then_some(v as u32)).collect();
+    let may = |pair: &[u32; 2]| {
+        let roots = pair.map(|v| sets.root(v));
+        let [a, b] = roots.map(|root| holder[root as usize]);
+        if let (Some(a), Some(b)) = (a, b)
+            && a != b
+            && !together(a, b)
+        {
+            return false;
+        }
+        sets.join(roots);
+        holder[roots[0].min(roots[1]) as usize] = a.or(b);
+        true
+    };
+    pairs.into_iter().filter(may).collect()
+}
+
+/// Places [m] and velocities [m/s] of merged vertices, `target[v]` being the new index of old vertex
+/// `v`. One that is held stays where it is, exactly; others meet at their mean, weighted by `mass`
+/// [kg], so that momentum is kept. A vertex without cloth has no mass to draw others by.
+pub(crate) fn merged_motion(
+    state: &State,
+    mass: &[f64],
+    held: &[bool],
+    (target, count): (&[u32], usize),
+) -> (Vec<Vec3>, Vec<Vec3>) {
+    let mut of: Vec<Vec<usize>> = vec![Vec::new(); count];
+    for (v, &to) in target.iter().enumerate() {
+        of[to as usize].push(v);
+    }
+    let motion = |joined: &Vec<usize>| {
+        let kept = joined.iter().find(|&&v| held[v]);
+        if let Some(&v) = kept.or(joined.first().filter(|_| joined.len() == 1)) {
+            return (state.positions[v], state.velocities[v]);
+        }
+        let whole: f64 = joined.iter().map(|&v| mass[v]).sum();
+        let weight = |v: usize| if whole > 0.0 { mass[v] } else { 1.0 };
+        let total: f64 = joined.iter().map(|&v| weight(v)).sum();
+        let mean = |of: &[Vec3]| joined.iter().map(|&v| of[v] * weight(v)).sum::<Vec3>() / total;
+        (mean(&state.positions), mean(&state.velocities))
+    };
+    of.iter().map(motion).unzip()
 }
 
 /// Layer of each merged vertex from those that became it; [`BETWEEN_LAYERS`] where they differ, and

@@ -7,7 +7,7 @@ use crate::laws::elastic::ElasticLaw;
 use crate::laws::membrane::MembraneElement;
 use crate::laws::stretch::MembraneLaw;
 use crate::sparse::{BlockPattern, ScalarMatrix};
-use crate::{Cloth, DrapeError, Material, Motion, Pose};
+use crate::{Cloth, ContactSettings, DrapeError, Material, Motion, Pose};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 use toile_geometry::{DistanceField, SurfaceTree, TriangleMesh, Vec3};
@@ -161,39 +161,12 @@ pub struct Grip {
     pub motion: Arc<Motion>,
 }
 
-/// How cloth meets solid surfaces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactSettings {
-    /// Distance kept between the middle of the cloth and a surface [m]. It must exceed the
-    /// sagitta of an edge on the tightest curve of the body: e^2 / (8 R).
-    pub offset: f64,
-    /// Normal stiffness per area of cloth [N/m3]: pressure per depth.
-    pub stiffness: f64,
-    /// Whether friction acts.
-    pub friction: bool,
-    /// Distance kept between the middles of two cloths [m]; 0 lets cloth pass through cloth.
-    pub cloth_offset: f64,
-}
-
-impl Default for ContactSettings {
-    /// 4 mm: over the 3.1 mm sagitta of a 20 mm edge on a wrist of 16 mm radius.
-    /// 1e6 N/m3: 100 Pa (a close fit) sinks 0.1 mm. Cloth passes through cloth.
-    fn default() -> Self {
-        Self {
-            offset: 4e-3,
-            stiffness: 1e6,
-            friction: true,
-            cloth_offset: 0.0,
-        }
-    }
-}
-
 /// How much farther a triangle is kept each time it is found crossing again [m]: a quarter of the
 /// usual offset.
 const EXTRA_OFFSET: f64 = 1e-3;
 
 /// The most of that [m]: what is still found then is not cured by distance.
-const MOST_EXTRA: f64 = 8e-3;
+pub(crate) const MOST_EXTRA: f64 = 8e-3;
 
 /// A point of the cloth that is tested against surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -374,6 +347,14 @@ impl Model {
                 self.mass[v] = 1.0;
             }
         }
+    }
+
+    /// Mass of the cloth at each vertex [kg]: that of the model, and none for a vertex on no triangle.
+    pub(crate) fn cloth_mass(&self) -> Vec<f64> {
+        let corners = self.corner_start.windows(2);
+        let own = self.mass.iter().zip(corners);
+        own.map(|(&mass, corners)| if corners[0] < corners[1] { mass } else { 0.0 })
+            .collect()
     }
 
     /// Whether any cloth says how it bounces.

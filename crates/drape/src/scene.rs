@@ -1,6 +1,6 @@
 //! The scene: every object of a simulation in one form, whatever file it came from.
 
-use crate::{Air, Cloth, DrapeError, Material, MethodKind, MethodSettings, Motion};
+use crate::{Air, Cloth, DrapeError, Material, MethodSettings, Motion};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// Rayleigh damping (Rayleigh 1877): forces -(mass M + stiffness K) v. The stiffness part acts on
@@ -207,8 +207,10 @@ impl Scene {
             );
         }
         self.check_objects()?;
+        self.check_distances()?;
         self.check_layers()?;
         self.check_motions()?;
+        self.check_features()?;
         for (index, elastic) in self.elastics.iter().enumerate() {
             let place = format!("elastics[{index}]");
             if !(elastic.stiffness.is_finite() && elastic.stiffness >= 0.0) {
@@ -248,6 +250,24 @@ impl Scene {
         Ok(())
     }
 
+    /// The materials that an object's cloth is made of; none for a solid.
+    pub fn materials_of(object: &SceneObject) -> &[Material] {
+        match (&object.kind, &object.cloth) {
+            (ObjectKind::Deformable { .. }, Some(cloth)) => &cloth.materials,
+            (ObjectKind::Deformable { material, .. }, None) => std::slice::from_ref(material),
+            _ => &[],
+        }
+    }
+
+    fn check_distances(&self) -> Result<(), DrapeError> {
+        self.contact.check_reach("collision.offset")?;
+        for object in &self.objects {
+            let contact = self.contact.for_cloth(Self::materials_of(object));
+            contact.check_reach(&format!("thickness of \"{}\"", object.name))?;
+        }
+        Ok(())
+    }
+
     fn check_layers(&self) -> Result<(), DrapeError> {
         let refuse = |object: &SceneObject, what: String, remedy: &str| {
             Err(DrapeError::Scene {
@@ -277,14 +297,6 @@ impl Scene {
         if self.contact.cloth_offset <= 0.0 {
             let what = "cloth passes through cloth, so layers have no order".to_owned();
             let remedy = "give collision.cloth_offset a distance, as in 0.002";
-            return refuse(other, what, remedy);
-        }
-        if !self.method.kind.touches_cloth() {
-            let what = format!(
-                "method \"{}\" knows no contact of cloth with cloth",
-                self.method.kind.name()
-            );
-            let remedy = "use xpbd, implicit-euler, bdf2, implicit-midpoint or rest";
             return refuse(other, what, remedy);
         }
         Ok(())
@@ -336,12 +348,6 @@ impl Scene {
                 return refuse(place.clone(), what, remedy);
             }
         }
-        if let Some((place, _)) = moved.first()
-            && self.method.kind != MethodKind::Xpbd
-        {
-            let what = format!("method \"{}\" cannot follow it", self.method.kind.name());
-            return refuse(place.clone(), what, "use the method \"xpbd\"");
-        }
         Ok(())
     }
 
@@ -365,20 +371,6 @@ impl Scene {
                 continue;
             };
             material.check(&object.name)?;
-            let bounces = |m: &Material| m.restitution.is_some();
-            let own = object.cloth.iter().flat_map(|cloth| &cloth.materials);
-            if [material].into_iter().chain(own).any(bounces)
-                && self.method.kind != MethodKind::Xpbd
-            {
-                return Err(DrapeError::Scene {
-                    place: format!("restitution of \"{}\"", object.name),
-                    what: format!(
-                        "method \"{}\" knows no impacts that bounce",
-                        self.method.kind.name()
-                    ),
-                    remedy: "use the method \"xpbd\", or leave restitution out".to_owned(),
-                });
-            }
             if let Some(pin) = pins
                 .iter()
                 .find(|&&pin| pin as usize >= object.mesh.positions.len())

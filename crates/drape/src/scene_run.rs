@@ -3,14 +3,14 @@
 use crate::collision::Tally;
 use crate::laws::elastic::ElasticLaw;
 use crate::measure::{Measures, measure};
-use crate::merge::merged_layers;
+use crate::merge::{joinable, merged_layers, merged_motion};
 use crate::methods::{Method, whole_energy};
 use crate::scene::{ObjectKind, Scene, SceneEnd};
 use crate::{
     Cloth, Collider, DrapeError, Elastic, ElasticEnd, Grip, Model, State, Workspace, merge_map,
 };
 use std::sync::Arc;
-use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
+use toile_geometry::{SurfaceTree, TriangleMesh};
 
 /// A scene on its way.
 pub struct SceneRun {
@@ -32,6 +32,8 @@ pub struct SceneRun {
     steps: usize,
     split_steps: usize,
     refinements: usize,
+    /// What methods counted before the last merging.
+    tally: Option<Tally>,
 }
 
 /// Steps between two looks for cloth that crosses a body between its samples, and how often it may
@@ -96,6 +98,7 @@ impl SceneRun {
             steps: 0,
             split_steps: 0,
             refinements: 0,
+            tally: None,
         };
         run.state = State::at_rest(&run.model, run.cloth.positions.clone());
         run.furnish();
@@ -115,7 +118,7 @@ impl SceneRun {
             });
             self.model.colliders = solids.collect();
         }
-        self.model.contact = self.scene.contact;
+        self.model.contact = self.scene.contact.for_cloth(&self.cloth.materials);
         self.model.layer = self.layers();
         self.model.gravity = self.scene.gravity;
         self.model.air_drag = self.scene.air.drag + self.scene.damping.mass;
@@ -291,66 +294,54 @@ impl SceneRun {
 
     /// What contact of cloth with cloth found and did, where the method counts it.
     pub fn cloth_tally(&self) -> Option<Tally> {
-        self.method.cloth_tally()
+        match (self.tally, self.method.cloth_tally()) {
+            (Some(before), Some(now)) => Some(before.then(now)),
+            (before, now) => before.or(now),
+        }
     }
 
-    /// Merges the ends of elastics that are close enough. Positions and velocities of joined
-    /// vertices become their means, weighted by mass, so momentum is kept.
+    /// Merges the ends of elastics that are close enough: [`merged_motion`] says where they meet. Two
+    /// vertices that are held become one only where both are pinned at one place.
     fn merge_close(&mut self) -> Result<(), DrapeError> {
-        let mut pairs = Vec::new();
-        self.acting.retain(|&index| {
-            let elastic = &self.scene.elastics[index];
-            let ends = [elastic.from, elastic.to].map(|end| match end {
-                SceneEnd::Vertex { object, vertex } => {
-                    self.first[object].map(|f| self.target[(f + vertex) as usize])
-                }
-                SceneEnd::Point(_) => None,
-            });
-            let (Some(within), [Some(a), Some(b)]) = (elastic.merge_within, ends) else {
-                return true;
-            };
-            let gap = (self.state.positions[a as usize] - self.state.positions[b as usize]).norm();
-            if gap <= within {
-                pairs.push([a, b]);
-            }
-            gap > within
-        });
+        let (held, gripped) = self.held();
+        let x = &self.state.positions;
+        let ends = |index: usize| self.vertex_ends(index);
+        let close = |&index: &usize| {
+            let within = self.scene.elastics[index].merge_within?;
+            let [a, b] = ends(index)?;
+            ((x[a as usize] - x[b as usize]).norm() <= within).then_some([a, b])
+        };
+        let together = |a: u32, b: u32| {
+            let [a, b] = [a as usize, b as usize];
+            x[a] == x[b] && !gripped[a] && !gripped[b]
+        };
+        let pairs = joinable(self.acting.iter().filter_map(close), &held, together);
         if pairs.is_empty() {
             return Ok(());
         }
         let (map, count) = merge_map(self.state.positions.len(), pairs);
-        let mut mass = vec![0.0; count];
-        let mut momentum = vec![Vec3::zeros(); count];
-        let mut moment = vec![Vec3::zeros(); count];
-        for (v, &to) in map.iter().enumerate() {
-            mass[to as usize] += self.model.mass[v];
-            momentum[to as usize] += self.state.velocities[v] * self.model.mass[v];
-            moment[to as usize] += self.state.positions[v] * self.model.mass[v];
-        }
+        let one =
+            |&index: &usize| ends(index).is_some_and(|[a, b]| map[a as usize] == map[b as usize]);
+        let acting: Vec<usize> = (self.acting.iter().copied())
+            .filter(|index| !one(index))
+            .collect();
+        let mass = self.model.cloth_mass();
+        let (positions, velocities) = merged_motion(&self.state, &mass, &held, (&map, count));
         self.cloth.positions.clone_from(&self.state.positions);
         let mut merged = self.cloth.merged(&map, count);
-        for (position, (moment, mass)) in merged.positions.iter_mut().zip(moment.iter().zip(&mass))
-        {
-            *position = moment / *mass;
-        }
+        merged.positions = positions;
         let mut model = Model::new("scene", &merged)?;
         model.colliders = std::mem::take(&mut self.model.colliders);
+        self.acting = acting;
         self.model = model;
         let time = self.state.time;
         let settled = std::mem::take(&mut self.state.settled);
         self.state = State::at_rest(&self.model, merged.positions.clone());
         self.state.time = time;
+        self.state.velocities = velocities;
         // A triangle whose corners became one is gone: then nothing remembers.
         if settled.len() == self.model.triangles.len() {
             self.state.settled = settled;
-        }
-        for (velocity, (momentum, mass)) in self
-            .state
-            .velocities
-            .iter_mut()
-            .zip(momentum.iter().zip(&mass))
-        {
-            *velocity = momentum / *mass;
         }
         self.cloth = merged;
         self.refinements = 0;
@@ -358,9 +349,32 @@ impl SceneRun {
             *target = map[*target as usize];
         }
         self.workspace = Workspace::default();
+        self.tally = self.cloth_tally();
         self.method = self.scene.method.build();
         self.furnish();
         Ok(())
+    }
+
+    /// Which vertices pins or grips hold, and which of them grips.
+    fn held(&self) -> (Vec<bool>, Vec<bool>) {
+        let mut gripped = vec![false; self.state.positions.len()];
+        for grip in &self.model.grips {
+            gripped[grip.vertex as usize] = true;
+        }
+        let mut held = gripped.clone();
+        for &pin in &self.pins {
+            held[self.target[pin as usize] as usize] = true;
+        }
+        (held, gripped)
+    }
+
+    /// The present vertices that an elastic joins, where both its ends are of cloth.
+    fn vertex_ends(&self, index: usize) -> Option<[u32; 2]> {
+        let elastic = &self.scene.elastics[index];
+        match [elastic.from, elastic.to].map(|end| self.end(end)) {
+            [ElasticEnd::Vertex(a), ElasticEnd::Vertex(b)] => Some([a, b]),
+            _ => None,
+        }
     }
 
     /// Surface of every object as it lies now, in the order of the scene.
@@ -419,6 +433,12 @@ impl SceneRun {
     pub fn crossings(&self) -> usize {
         let mesh = self.model.mesh(&self.state.positions);
         SurfaceTree::new(mesh).self_intersections().len()
+    }
+
+    /// Net force over weight of a state measured, where that says how far from rest it is.
+    pub fn residual_of(&self, measures: &Measures) -> Option<f64> {
+        let balances = self.scene.method.kind.balances_forces();
+        balances.then_some(measures.residual)
     }
 
     /// Measures the present state.

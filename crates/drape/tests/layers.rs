@@ -262,7 +262,7 @@ fn layers_that_cannot_be_in_order_are_refused_by_name() {
     blind.method = MethodKind::VelocityVerlet.into();
     let said = refused(blind);
     assert!(
-        said.contains("velocity-verlet") && said.contains("use xpbd"),
+        said.contains("velocity-verlet") && said.contains("implicit-midpoint, rest, xpbd"),
         "{said}"
     );
     let mut body = two();

@@ -12,7 +12,7 @@ use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use toile_drape::collision::{ClothSurface, Ways, crossings};
-use toile_drape::{Collider, Material, MethodKind, MethodSettings, Model, State};
+use toile_drape::{Collider, Feature, Material, MethodKind, MethodSettings, Model, State};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 use toile_picture::{Axis, Chart, Series};
 use toile_session::Watcher;
@@ -139,7 +139,8 @@ fn run(
 /// The watcher asked to stop. Methods that fail are points with a reason.
 pub fn contact_chart(plan: ChartPlan, watcher: &mut dyn Watcher) -> Result<Vec<Touched>, LabError> {
     let methods = MethodKind::ALL.into_iter();
-    let methods = methods.filter(|(_, kind)| kind.touches_cloth() && !kind.is_equilibrium());
+    let methods =
+        methods.filter(|(_, kind)| kind.supports(Feature::ClothContact) && !kind.is_equilibrium());
     let mut found = Vec::new();
     for (number, (name, duration)) in SCENES.into_iter().enumerate() {
         let (mut model, start) = scene(name)?;

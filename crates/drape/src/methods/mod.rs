@@ -152,12 +152,11 @@ impl MethodKind {
             .map_or("", |(name, _)| name)
     }
 
-    /// Whether it keeps cloth from passing through cloth.
-    pub fn touches_cloth(self) -> bool {
-        matches!(
-            self,
-            Self::Xpbd | Self::ImplicitEuler | Self::Bdf2 | Self::ImplicitMidpoint | Self::Rest
-        )
+    /// Whether the states it comes to balance the forces of the model: net force over weight then says how
+    /// far from rest one is. `xpbd` leaves its constraints unsolved by some compliance of its own, and
+    /// keeps friction in no anchor, so at its rest the model's forces are far from balanced.
+    pub fn balances_forces(self) -> bool {
+        self != Self::Xpbd
     }
 
     /// Largest stable product of angular frequency and substep of an undamped vibration; nothing

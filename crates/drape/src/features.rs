@@ -1,0 +1,172 @@
+//! What a scene may ask for beyond cloth that hangs and falls, which method knows what of it, and the
+//! refusal of a scene that asks its method for more.
+
+use crate::{Compression, DrapeError, Material, MethodKind, ObjectKind, Scene, SceneObject};
+
+/// What a scene may ask for that not every method knows, or that acts only where it is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Feature {
+    /// Solid objects that move.
+    MovingObjects,
+    /// Vertices of cloth that are led.
+    Grips,
+    /// Impacts that bounce as a material says.
+    Restitution,
+    /// Cloth that does not pass through cloth.
+    ClothContact,
+    /// Cloths in order over one another.
+    Layers,
+    /// Drag of the air and damping in proportion to mass.
+    MassDrag,
+    /// Forces of the air and the wind on triangles.
+    TriangleDrag,
+    /// Viscosity, of its own or in proportion to stiffness.
+    Viscosity,
+    /// Stretch and folds that stay when held.
+    KeptStrain,
+    /// Stretch that stiffens.
+    Hardening,
+    /// Stretch that has a limit.
+    StrainLimit,
+    /// Cloth that does not resist being squeezed.
+    TensionField,
+}
+
+impl Feature {
+    /// Every feature with its name in messages and documentation.
+    pub const ALL: [(&'static str, Self); 12] = [
+        ("moving objects", Self::MovingObjects),
+        ("grips", Self::Grips),
+        ("restitution", Self::Restitution),
+        ("contact of cloth with cloth", Self::ClothContact),
+        ("layers", Self::Layers),
+        ("drag per mass", Self::MassDrag),
+        ("air and wind on triangles", Self::TriangleDrag),
+        ("viscosity", Self::Viscosity),
+        ("kept strain and folds", Self::KeptStrain),
+        ("hardening", Self::Hardening),
+        ("strain limit", Self::StrainLimit),
+        ("tension field", Self::TensionField),
+    ];
+
+    /// Its name in messages and documentation.
+    pub fn name(self) -> &'static str {
+        let found = Self::ALL.iter().find(|(_, feature)| *feature == self);
+        found.map_or("", |(name, _)| name)
+    }
+
+    /// Whether it only takes energy out of motion: rest is the same with it and without.
+    pub fn only_damps(self) -> bool {
+        matches!(self, Self::MassDrag | Self::Viscosity)
+    }
+
+    /// Where a scene asks for it, by the fields of a scene file; nothing where it does not.
+    pub fn asked_by(self, scene: &Scene) -> Option<String> {
+        match self {
+            Self::MovingObjects => {
+                let moves = |o: &&SceneObject| matches!(o.kind, ObjectKind::Animated { .. });
+                let object = scene.objects.iter().find(moves)?;
+                Some(format!("motion of \"{}\"", object.name))
+            }
+            Self::Grips => {
+                let grip = scene.grips.first()?;
+                let object = scene.objects.get(grip.object)?;
+                Some(format!("grips of \"{}\"", object.name))
+            }
+            Self::Restitution => cloth(scene, "restitution", |m| m.restitution.is_some()),
+            Self::ClothContact => {
+                let apart = scene.contact.cloth_offset > 0.0;
+                apart.then(|| "collision.cloth_offset".to_owned())
+            }
+            Self::Layers => {
+                let mut cloths = (scene.objects.iter())
+                    .filter(|o| matches!(o.kind, ObjectKind::Deformable { .. }));
+                let first = cloths.next()?.layer;
+                let other = cloths.find(|object| object.layer != first)?;
+                Some(format!("layer of \"{}\"", other.name))
+            }
+            Self::MassDrag => match (scene.air.drag > 0.0, scene.damping.mass > 0.0) {
+                (true, _) => Some("air.drag".to_owned()),
+                (false, true) => Some("damping.mass".to_owned()),
+                (false, false) => None,
+            },
+            Self::TriangleDrag => (scene.air.acts()).then(|| "air.density".to_owned()),
+            Self::Viscosity if scene.damping.stiffness > 0.0 => {
+                Some("damping.stiffness".to_owned())
+            }
+            Self::Viscosity => cloth(scene, "viscosity", |m| m.is_viscous().contains(&true)),
+            Self::KeptStrain => cloth(scene, "kept share", Material::keeps_strain),
+            Self::Hardening => cloth(scene, "hardening", |m| m.hardening.iter().any(|&k| k > 0.0)),
+            Self::StrainLimit => cloth(scene, "strain limit", |m| {
+                m.strain_limit.iter().any(|limit| limit.is_finite())
+            }),
+            Self::TensionField => cloth(scene, "compression", |m| {
+                m.compression == Compression::TensionField
+            }),
+        }
+    }
+}
+
+/// The first cloth of a material that has something, as the place of a message.
+fn cloth(scene: &Scene, what: &str, has: impl Fn(&Material) -> bool) -> Option<String> {
+    let object = scene
+        .objects
+        .iter()
+        .find(|object| Scene::materials_of(object).iter().any(&has))?;
+    Some(format!("{what} of \"{}\"", object.name))
+}
+
+impl MethodKind {
+    /// Whether it does what a feature asks for; a scene that asks for more is refused.
+    pub fn supports(self, feature: Feature) -> bool {
+        match feature {
+            Feature::MovingObjects | Feature::Grips | Feature::Restitution => self == Self::Xpbd,
+            Feature::ClothContact | Feature::Layers => matches!(
+                self,
+                Self::Xpbd | Self::ImplicitEuler | Self::Bdf2 | Self::ImplicitMidpoint | Self::Rest
+            ),
+            // Time does not run on the way to rest.
+            Feature::KeptStrain => !self.is_equilibrium() && self != Self::Xpbd,
+            Feature::Viscosity | Feature::TriangleDrag => self != Self::Xpbd,
+            Feature::MassDrag
+            | Feature::Hardening
+            | Feature::StrainLimit
+            | Feature::TensionField => true,
+        }
+    }
+}
+
+impl Scene {
+    /// Refuses what the scene asks for and its method leaves out.
+    pub(crate) fn check_features(&self) -> Result<(), DrapeError> {
+        let all = Feature::ALL.iter().map(|&(_, feature)| feature);
+        let asked = all.filter_map(|feature| Some((feature, feature.asked_by(self)?)));
+        let asked: Vec<(Feature, String)> = asked.collect();
+        let kind = self.method.kind;
+        let Some((feature, place)) = asked.iter().find(|(feature, _)| !kind.supports(*feature))
+        else {
+            return Ok(());
+        };
+        let names = |able: &dyn Fn(MethodKind) -> bool| {
+            let able = MethodKind::ALL.iter().filter(|(_, kind)| able(*kind));
+            able.map(|&(name, _)| name).collect::<Vec<_>>().join(", ")
+        };
+        let whole = names(&|kind| asked.iter().all(|(feature, _)| kind.supports(*feature)));
+        let remedy = match whole.is_empty() {
+            false => format!("leave it out, or use a method that knows it: {whole}"),
+            true => {
+                let knowing = names(&|kind| kind.supports(*feature));
+                let asked: Vec<_> = asked.iter().map(|(feature, _)| feature.name()).collect();
+                format!(
+                    "leave it out: {knowing} knows it, but no method knows all that is asked for here ({})",
+                    asked.join(", ")
+                )
+            }
+        };
+        Err(DrapeError::Scene {
+            place: place.clone(),
+            what: format!("method \"{}\" knows no {}", kind.name(), feature.name()),
+            remedy,
+        })
+    }
+}
