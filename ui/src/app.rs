@@ -198,12 +198,15 @@ impl ToileApp {
                 }
                 News::Frame(frame) => self.stage.set_frame(&frame),
                 News::Finished(events) => {
-                    self.notice = Notice::news("The garment hangs at rest");
-                    for event in events {
-                        if let Event::Warned { message } = event {
-                            self.notice = Notice::warning(message);
-                        }
-                    }
+                    let warned = events.into_iter().filter_map(|event| match event {
+                        Event::Warned { message } => Some(message),
+                        _ => None,
+                    });
+                    let warned: Vec<String> = warned.collect();
+                    self.notice = match warned.is_empty() {
+                        true => Notice::news("The garment hangs at rest"),
+                        false => Notice::warning(warned.join("; ")),
+                    };
                 }
                 News::Failed(words) => self.notice = Notice::fault(words),
             }

@@ -309,12 +309,15 @@ pub fn run(run: &Run, output: &Output) -> Result<Value, Failure> {
         output.warn(format!("note: {}", warning.as_str().unwrap_or_default()));
     }
     let number = |name: &str| report[name].as_f64().unwrap_or_default();
+    let force = report["residual"].as_f64().map_or_else(
+        || "no net force is told of this method".to_owned(),
+        |residual| format!("net force {residual:.1e} of the weight"),
+    );
     output.say(format!(
-        "simulated {:.2} s by {} in {:.0} steps: net force {:.1e} of the weight; {:.0} pairs of cloth and body triangles cross, {:.0} of cloth and cloth",
+        "simulated {:.2} s by {} in {:.0} steps: {force}; {:.0} pairs of cloth and body triangles cross, {:.0} of cloth and cloth",
         number("time_s"),
         report["method"].as_str().unwrap_or_default(),
         number("steps"),
-        number("residual"),
         number("body_intersections"),
         number("self_intersections"),
     ));

@@ -47,6 +47,7 @@ impl Drape {
             .collect();
         let mut warnings = run.warnings().to_vec();
         warnings.extend(shortcomings(&mesh, &measures, &job.parts));
+        warnings.extend(tangle(&measures, &run.cloth_tally()));
         if held {
             warnings.push("the cloth is still held; let go of it to see how it hangs".to_owned());
         }
@@ -173,6 +174,17 @@ pub(crate) fn drape(
     Ok(Drape::of(run))
 }
 
+/// What is said of a garment that ends with folds of its cloth in one another.
+fn tangle(measures: &Measures, tally: &Tally) -> Option<String> {
+    let [found, most, _] = tally.crossings;
+    (measures.self_intersections > 0).then(|| {
+        format!(
+            "it ends tangled: {} pairs of cloth triangles cross each other ({found} edges of cloth went through cloth when its seams were closed, {most} at most): folds of the cloth lie in one another; try --quality final, more ease, or panels placed farther apart",
+            measures.self_intersections
+        )
+    })
+}
+
 /// What a finished garment ought not to have, in plain words.
 fn shortcomings(mesh: &TriangleMesh, measures: &Measures, parts: &[GarmentPart]) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -186,12 +198,6 @@ fn shortcomings(mesh: &TriangleMesh, measures: &Measures, parts: &[GarmentPart])
         warnings.push(format!(
             "{} pairs of cloth and body triangles cross; the garment is too tight there, or the mesh too coarse: try a larger size or --quality final",
             measures.body_intersections
-        ));
-    }
-    if measures.self_intersections > 0 {
-        warnings.push(format!(
-            "{} pairs of cloth triangles cross each other: folds of the cloth lie in one another",
-            measures.self_intersections
         ));
     }
     for layer in &measures.layers {

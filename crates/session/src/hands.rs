@@ -64,6 +64,14 @@ impl LiveInput {
                 hint: format!("the garment has {count}, counted from 0"),
             });
         }
+        let corners = job.garment.triangles.iter().flatten();
+        if !corners.into_iter().any(|&corner| corner == vertex) {
+            return Err(SessionError::Unknown {
+                kind: "vertex",
+                name: vertex.to_string(),
+                hint: "it is in no triangle; take hold of one of the cloth".to_owned(),
+            });
+        }
         let places = match self {
             Self::Drag { to, .. } => to.as_slice(),
             Self::Release { .. } => &[],
@@ -153,7 +161,7 @@ impl HandledRun {
             return Ok(self.run.progress());
         }
         if changed || self.is_held() {
-            self.pull();
+            self.pull()?;
         }
         let progress = self.run.advance()?;
         self.steps += 1;
@@ -189,33 +197,38 @@ impl HandledRun {
     }
 
     /// Gives the model the elastics of the hands beside those of the seams, which come first.
-    fn pull(&mut self) {
+    fn pull(&mut self) -> Result<(), DrapeError> {
+        let handles = self.held.keys().map(|&vertex| self.handle(vertex));
+        let handles: Vec<u32> = handles.collect::<Result<_, _>>()?;
         let stitches = &self.job.setup.levels[self.run.level()[0]].stitches;
         let sewing = self.run.progress().stage == Stage::Sewing;
         let mut elastics = std::mem::take(&mut self.run.model.elastics);
         elastics.truncate(if sewing { stitches.len() } else { 0 });
-        elastics.extend(self.held.iter().map(|(&vertex, &place)| Elastic {
-            from: self.run.target[self.handle(vertex) as usize],
+        let held = self.held.values().zip(handles);
+        elastics.extend(held.map(|(&place, handle)| Elastic {
+            from: self.run.target[handle as usize],
             to: ElasticEnd::Point(place),
             law: HAND,
         }));
         self.run.model.set_elastics(elastics);
+        Ok(())
     }
 
     /// The vertex of the mesh in hand that stands for one of the garment: the same on the finest
     /// mesh, the nearest of its panel on a coarser one.
-    fn handle(&self, vertex: u32) -> u32 {
+    fn handle(&self, vertex: u32) -> Result<u32, DrapeError> {
         let levels = &self.job.setup.levels;
         let [level, count] = self.run.level();
         if level + 1 == count {
-            return vertex;
+            return Ok(vertex);
         }
-        let (coarse, fine) = (&levels[level].cloth, &levels[count - 1].cloth);
-        let Some((panel, at)) =
-            corners(fine).find_map(|(v, panel, at)| (v == vertex).then_some((panel, at)))
-        else {
-            return 0;
+        let unknown = || DrapeError::Scene {
+            place: format!("the hand on vertex {vertex}"),
+            what: "the mesh in hand has no cloth there".to_owned(),
+            remedy: "take hold of a vertex of a panel's cloth".to_owned(),
         };
+        let (coarse, fine) = (&levels[level].cloth, &levels[count - 1].cloth);
+        let (_, panel, at) = corners(fine).find(|c| c.0 == vertex).ok_or_else(unknown)?;
         let near = corners(coarse)
             .filter(|corner| corner.1 == panel)
             .min_by(|a, b| {
@@ -223,7 +236,7 @@ impl HandledRun {
                     .norm_squared()
                     .total_cmp(&(b.2 - at).norm_squared())
             });
-        near.map_or(0, |corner| corner.0)
+        near.map(|corner| corner.0).ok_or_else(unknown)
     }
 
     /// The garment as it lies: positions [m] and, for every vertex of the job's garment, its

@@ -8,6 +8,7 @@
 mod bodies;
 mod choice;
 mod command;
+mod crossings;
 mod cut;
 mod derived;
 mod drape;

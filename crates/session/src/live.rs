@@ -3,6 +3,8 @@
 use crate::drape::{Drape, DrapeResult};
 use crate::hands::HandledRun;
 use crate::{GarmentJob, LiveInput, SessionError, StampedInput};
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -61,15 +63,29 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// What is told of a panic, from what it was raised with.
+fn fault(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    format!(
+        "the drape ended by a fault of the program ({}); save the pattern, report it with the pattern, and try another quality or size",
+        text.unwrap_or("it left no message")
+    )
+}
+
 impl LiveRun {
-    /// Starts the thread.
+    /// Starts the thread. Should it panic, the run ends with a failure that says so.
     pub fn start(job: GarmentJob) -> Self {
         let shared = Arc::new(Shared::default());
         let (of_thread, its_job) = (shared.clone(), job.clone());
         let thread = std::thread::spawn(move || {
-            *lock(&of_thread.outcome) = run(&of_thread, its_job)
-                .map_err(|error| error.to_string())
-                .transpose();
+            // After a panic nothing is used but what the locks guard, each of it whole.
+            let work = AssertUnwindSafe(|| run(&of_thread, its_job));
+            let outcome = match catch_unwind(work) {
+                Ok(outcome) => outcome.map_err(|error| error.to_string()),
+                Err(panic) => Err(fault(&*panic)),
+            };
+            *lock(&of_thread.outcome) = outcome.transpose();
             of_thread.finished.store(true, Ordering::Release);
         });
         Self {
@@ -158,7 +174,7 @@ impl Drop for LiveRun {
     fn drop(&mut self) {
         self.stop();
         if let Some(thread) = self.thread.take() {
-            // A panic of the thread was reported when it happened; there is nothing to add here.
+            // The thread catches its panics and tells of them by `failure`.
             let _ = thread.join();
         }
     }

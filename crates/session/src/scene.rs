@@ -1,5 +1,6 @@
 //! Running a scene file: its meshes, patterns and bodies found, simulated, and written.
 
+use crate::crossings::Crossings;
 use crate::export::{cannot, file_name};
 use crate::open::read_input;
 use crate::scene_builder::Builder;
@@ -60,6 +61,7 @@ pub fn run_scene(
     let frame_step = scene.frame_step;
     check_frames(&scene).map_err(wrong)?;
     let mut run = SceneRun::new(scene)?;
+    let mut crossings = Crossings::new(&run);
     let mut written: Vec<PathBuf> = Vec::new();
     let mut write = |files: &[(String, Vec<u8>)]| {
         written.extend(files.iter().map(|(name, _)| folder.join(name)));
@@ -74,6 +76,7 @@ pub fn run_scene(
             frame += 1;
         }
         run.advance()?;
+        crossings.follow(&run);
         tell(
             watcher,
             "simulating",
@@ -84,7 +87,7 @@ pub fn run_scene(
     let mut files = state_files(&run, (&names, ""))?;
     timing.add("simulate", start);
     let start = Instant::now();
-    let report = report(&mut run, builder.notes);
+    let report = report(&mut run, builder.notes, &crossings);
     timing.add("measure", start);
     let pretty = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
     files.push(("report.json".to_owned(), pretty.into_bytes()));
@@ -156,7 +159,7 @@ fn state_files(
     Ok(files)
 }
 
-fn report(run: &mut SceneRun, notes: Vec<String>) -> serde_json::Value {
+fn report(run: &mut SceneRun, notes: Vec<String>, crossings: &Crossings) -> serde_json::Value {
     let measures = run.measure();
     let mut warnings = notes;
     warnings.extend(run.sewn_objects().iter().map(|pair| {
@@ -169,6 +172,7 @@ fn report(run: &mut SceneRun, notes: Vec<String>) -> serde_json::Value {
             run.split_steps()
         ));
     }
+    warnings.extend(crossings.warning(run.model.contact.cloth_offset));
     let layers = measures.layers.iter().map(|layer| {
         let of_layer = |o: &&SceneObject| {
             o.layer == layer.layer && matches!(o.kind, ObjectKind::Deformable { .. })
@@ -190,7 +194,7 @@ fn report(run: &mut SceneRun, notes: Vec<String>) -> serde_json::Value {
         "triangles": run.model.triangles.len(),
         "steps": run.steps(),
         "time_s": run.state.time,
-        "residual": measures.residual,
+        "residual": run.residual_of(&measures),
         "kinetic_energy_J": measures.kinetic_energy,
         "strain_max": { "warp": measures.strain_max[0], "weft": measures.strain_max[1] },
         "strain_p99": { "warp": measures.strain_p99[0], "weft": measures.strain_p99[1] },
@@ -198,6 +202,7 @@ fn report(run: &mut SceneRun, notes: Vec<String>) -> serde_json::Value {
         "body_penetration_max_m": measures.penetration_max,
         "body_intersections": measures.body_intersections,
         "self_intersections": measures.self_intersections,
+        "crossings": crossings,
         "layers": layers,
         "tangles": run.cloth_tally().map(|tally| Tangles::of(&tally)),
         "warnings": warnings,

@@ -271,6 +271,44 @@ fn inputs_that_make_no_sense_are_refused() {
 }
 
 #[test]
+fn a_hand_on_a_vertex_without_cloth_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = prepared(folder.path());
+    let mut job = session.garment_setup().unwrap();
+    let vertex = job.garment.positions.len() as u32;
+    let mut garment = (*job.garment).clone();
+    garment.positions.push(Vec3::zeros());
+    job.garment = garment.into();
+    let live = LiveRun::start(job);
+    live.pause();
+    let to = [0.0, 1.0, 0.0];
+    for input in [
+        LiveInput::Drag { vertex, to },
+        LiveInput::Release { vertex },
+    ] {
+        let error = live.give(input).map_err(|error| error.to_string());
+        let error = error.unwrap_err();
+        assert!(error.contains(&format!("{vertex}")), "{error}");
+        assert!(error.contains("no triangle"), "{error}");
+    }
+}
+
+#[test]
+fn a_run_whose_thread_panics_ends_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = prepared(folder.path());
+    let mut job = session.garment_setup().unwrap();
+    // No session makes such a stitch: the simulation takes its vertices for granted.
+    job.setup.levels[0].stitches.push([u32::MAX, 0]);
+    let live = LiveRun::start(job);
+    wait_for_end(&live);
+    assert!(live.result().is_none());
+    let failure = live.failure().unwrap();
+    assert!(failure.contains("fault of the program"), "{failure}");
+    assert!(failure.contains("index out of bounds"), "{failure}");
+}
+
+#[test]
 fn a_result_is_exported_without_draping_again_and_replayed_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = prepared(folder.path());

@@ -81,3 +81,98 @@ fn objects_that_were_sewn_together_are_named_as_two_files() {
         "{warnings}"
     );
 }
+
+/// A square of `cells` cells a side in OBJ, its vertices placed by `place` from 0 to 1.
+fn square(cells: usize, place: impl Fn(f64, f64) -> [f64; 3]) -> String {
+    use std::fmt::Write;
+    let mut text = String::new();
+    let share = |k: usize| k as f64 / cells as f64;
+    for j in 0..=cells {
+        for i in 0..=cells {
+            let [x, y, z] = place(share(i), share(j));
+            writeln!(text, "v {x} {y} {z}").unwrap();
+        }
+    }
+    for j in 0..cells {
+        for i in 0..cells {
+            let a = 1 + j * (cells + 1) + i;
+            let (b, c, d) = (a + 1, a + cells + 2, a + cells + 1);
+            writeln!(text, "f {a} {b} {c}\nf {a} {c} {d}").unwrap();
+        }
+    }
+    text
+}
+
+#[test]
+fn a_run_that_ends_tangled_says_so_with_numbers_and_remedy() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    write("flat.obj", square(8, |u, v| [0.2 * u, 1.0, 0.2 * v]));
+    write(
+        "upright.obj",
+        square(8, |u, v| [0.2 * u + 0.003, 0.9 + 0.2 * v, 0.1]),
+    );
+    write(
+        "over.obj",
+        square(8, |u, v| [0.2 * u + 0.003, 1.1, 0.2 * v]),
+    );
+    let run = |other: &str, pins: &str, collision: &str| {
+        let text = format!(
+            r#"{{ "duration": 0.05, "step": 0.01, "collision": {{ {collision} }}, "objects": [
+                {{ "name": "one", "kind": "deformable", "mesh": "flat.obj", "pins": [{pins}] }},
+                {{ "name": "other", "kind": "deformable", "mesh": "{other}", "pins": [72] }} ] }}"#
+        );
+        write("scene.json", text);
+        let path = folder.path().join("scene.json");
+        run_scene(&path, &folder.path().join("out"), &mut Silent)
+            .unwrap()
+            .report
+    };
+    let tangled = |report: &serde_json::Value| -> Vec<String> {
+        let warnings = report["warnings"].as_array().unwrap().iter();
+        let texts = warnings.map(|w| w.as_str().unwrap().to_owned());
+        texts.filter(|text| text.contains("cross")).collect()
+    };
+
+    // Through each other from the start, and cloth passes through cloth.
+    let report = run("upright.obj", "0, 8, 72, 80", "");
+    let counts = ["start", "most", "end"].map(|at| report["crossings"][at].as_u64().unwrap());
+    assert!(
+        counts[0] > 0 && counts[1] >= counts[0] && counts[2] > 0,
+        "{counts:?}"
+    );
+    assert_eq!(report["self_intersections"].as_u64(), Some(counts[2]));
+    let words = tangled(&report);
+    assert_eq!(words.len(), 1, "{words:?}");
+    for part in [
+        format!("{} at the start", counts[0]),
+        format!("{} pairs", counts[2]),
+        "collision.cloth_offset".to_owned(),
+    ] {
+        assert!(words[0].contains(&part), "{part}: {words:?}");
+    }
+
+    // Apart, and kept so.
+    let report = run("over.obj", "0, 8, 72, 80", r#""cloth_offset": 0.002"#);
+    assert_eq!(
+        report["crossings"],
+        serde_json::json!({ "start": 0, "most": 0, "end": 0 })
+    );
+    assert_eq!(tangled(&report), Vec::<String>::new());
+}
+
+#[test]
+fn no_residual_is_told_of_a_method_that_balances_other_forces() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene(folder.path(), ["one", "two"], 0.1);
+    let text = std::fs::read_to_string(&path).unwrap();
+    for (method, told) in [("xpbd", false), ("implicit-euler", true), ("rest", true)] {
+        let method = format!(r#"{{ "method": {{ "name": "{method}" }}, "#);
+        std::fs::write(&path, text.replacen('{', &method, 1)).unwrap();
+        let report = run_scene(&path, &folder.path().join("out"), &mut Silent)
+            .unwrap()
+            .report;
+        assert_eq!(report["residual"].is_number(), told, "{method}");
+        assert_eq!(report["residual"].is_null(), !told, "{method}");
+    }
+}

@@ -1,0 +1,69 @@
+//! Crossings of cloth with cloth while a scene runs, counted exactly, and what is said of them.
+
+use toile_drape::SceneRun;
+
+/// Pairs of cloth triangles that intersect and share no vertex, counted exactly: where a run begins, now
+/// and then on its way, and where it ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub(crate) struct Crossings {
+    /// Before the first step.
+    start: usize,
+    /// Most at one count.
+    most: usize,
+    /// After the last step.
+    end: usize,
+    /// Steps from one count to the next.
+    #[serde(skip)]
+    every: usize,
+}
+
+/// Counts on the way of a run whose steps are known beforehand, and steps between two counts of one that
+/// goes straight to rest: an exact count may take as long as a step.
+const COUNTS: f64 = 32.0;
+const STEPS_TO_REST: usize = 8;
+
+impl Crossings {
+    /// Counts where a run begins.
+    pub fn new(run: &SceneRun) -> Self {
+        let scene = run.scene();
+        let count = run.crossings();
+        let steps = (scene.duration / scene.step / COUNTS).ceil().max(1.0);
+        Self {
+            start: count,
+            most: count,
+            end: count,
+            every: match scene.method.kind.is_equilibrium() {
+                true => STEPS_TO_REST,
+                false => steps as usize,
+            },
+        }
+    }
+
+    /// Counts after a step when it is time, and after the last.
+    pub fn follow(&mut self, run: &SceneRun) {
+        if run.finished() || run.steps().is_multiple_of(self.every) {
+            self.end = run.crossings();
+            self.most = self.most.max(self.end);
+        }
+    }
+
+    /// What to say of a run that ends tangled, and what to do about it; nothing when nothing crosses.
+    pub fn warning(&self, cloth_offset: f64) -> Option<String> {
+        if self.end == 0 {
+            return None;
+        }
+        let remedy = match (cloth_offset > 0.0, self.start) {
+            (false, _) => {
+                "cloth passes through cloth here: give collision.cloth_offset a distance, as in 0.002, and lay the cloths so that none crosses at the start"
+            }
+            (true, 0) => {
+                "cloth went through cloth on the way: take a shorter step, a finer mesh or a larger collision.cloth_offset"
+            }
+            (true, _) => "lay the cloths so that none crosses at the start",
+        };
+        Some(format!(
+            "it ends tangled: {} pairs of cloth triangles cross each other, {} at the start, {} at most; {remedy}",
+            self.end, self.start, self.most
+        ))
+    }
+}
