@@ -507,7 +507,7 @@ fn a_scene_is_simulated_and_a_bad_one_refused() {
     std::fs::write(place("bad.json"), moving.replace("xpbd", "bdf2")).unwrap();
     let bad = run("bad.json");
     assert_eq!(bad.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&bad.stderr).contains("use the method \"xpbd\""));
+    assert!(String::from_utf8_lossy(&bad.stderr).contains("use a method that knows it: xpbd"));
     // The coat starts behind the shirt, whose triangles face the other way.
     let layered = r#"{ "duration": 0.3, "method": { "name": "xpbd" }, "collision": { "cloth_offset": 0.002 },
         "objects": [
