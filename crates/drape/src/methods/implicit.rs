@@ -240,6 +240,15 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
     }
 }
 
+impl<R: TimeRule, S: Solver> Implicit<R, S> {
+    /// Whether cloth was in cloth or on the wrong side of a layer at the last look: the pulls that
+    /// lead it out belong to no potential and may add any energy.
+    fn leads_out(&self) -> bool {
+        let tally = &self.workspace.contacts.cloth.tally;
+        tally.crossings[2] > 0 || tally.astray[2] > 0
+    }
+}
+
 impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
     fn advance(
         &mut self,
@@ -256,15 +265,19 @@ impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
             let before = self.watch.energy(model, state, &mut self.workspace);
             [before, self.account.start(state.time, before)]
         });
+        let mut led = self.leads_out();
         let automatic = || R::substeps(model, step);
         let substeps = self.substeps.unwrap_or_else(automatic).max(1);
         for _ in 0..substeps {
             self.whole(model, state, step / f64::from(substeps), &mut total)?;
+            led |= self.leads_out();
         }
         if let (Some(times), Some(before)) = (R::MOST_ENERGY, before) {
-            let [in_step, in_run] = before.map(|before| possible_energy(model, before, step));
+            let [in_step, mut in_run] = before.map(|before| possible_energy(model, before, step));
             let (after, possible) = (self.watch.last(), in_step.min(in_run));
-            if after > times * possible {
+            if led {
+                in_run = after;
+            } else if after > times * possible {
                 return Err(DrapeError::EnergyGrew {
                     stage: S::STAGE,
                     vertex: fastest(state).0,
