@@ -1,7 +1,13 @@
 //! How cloth meets surfaces and cloth: distances kept, stiffness, friction.
 
-use crate::model::{FIELD_REACH, MOST_EXTRA};
 use crate::{DrapeError, Material};
+
+/// How far outside a surface its distance field reaches [m].
+pub(crate) const FIELD_REACH: f64 = 0.03;
+
+/// The most that the samples of a triangle which goes on crossing a surface are kept farther off
+/// [m]: what is still found then is not cured by distance.
+pub(crate) const MOST_EXTRA: f64 = 8e-3;
 
 /// The most that cloth can be kept from a surface [m]: what its distance field reaches, less what a
 /// triangle that goes on crossing is kept farther off.

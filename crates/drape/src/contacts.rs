@@ -1,8 +1,8 @@
 //! Finding where the cloth touches solid surfaces: recomputed as it moves.
 
 use crate::collision::ClothContacts;
+use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{ContactLaw, ContactPlane, damped_push, gentle_push};
-use crate::model::FIELD_REACH;
 use crate::state::Memory as StateMemory;
 use crate::{Model, Pose, State};
 use nalgebra::Matrix3;

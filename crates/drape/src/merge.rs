@@ -1,6 +1,5 @@
 //! Merging: vertices that seams have drawn together become one.
 
-use crate::State;
 use crate::collision::BETWEEN_LAYERS;
 use toile_geometry::Vec3;
 
@@ -85,7 +84,7 @@ pub(crate) fn joinable(
 /// `v`. One that is held stays where it is, exactly; others meet at their mean, weighted by `mass`
 /// [kg], so that momentum is kept. A vertex without cloth has no mass to draw others by.
 pub(crate) fn merged_motion(
-    state: &State,
+    (positions, velocities): (&[Vec3], &[Vec3]),
     mass: &[f64],
     held: &[bool],
     (target, count): (&[u32], usize),
@@ -97,13 +96,13 @@ pub(crate) fn merged_motion(
     let motion = |joined: &Vec<usize>| {
         let kept = joined.iter().find(|&&v| held[v]);
         if let Some(&v) = kept.or(joined.first().filter(|_| joined.len() == 1)) {
-            return (state.positions[v], state.velocities[v]);
+            return (positions[v], velocities[v]);
         }
         let whole: f64 = joined.iter().map(|&v| mass[v]).sum();
         let weight = |v: usize| if whole > 0.0 { mass[v] } else { 1.0 };
         let total: f64 = joined.iter().map(|&v| weight(v)).sum();
         let mean = |of: &[Vec3]| joined.iter().map(|&v| of[v] * weight(v)).sum::<Vec3>() / total;
-        (mean(&state.positions), mean(&state.velocities))
+        (mean(positions), mean(velocities))
     };
     of.iter().map(motion).unzip()
 }

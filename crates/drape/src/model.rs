@@ -1,6 +1,7 @@
 //! The model: everything about a simulation that does not change while it runs.
 
 use crate::caps::without_caps;
+use crate::contact_settings::{FIELD_REACH, MOST_EXTRA};
 use crate::laws::air::Air;
 use crate::laws::bending::{BendingMatrix, BendingStencil, RestSheet};
 use crate::laws::elastic::ElasticLaw;
@@ -27,9 +28,6 @@ pub struct Collider {
 
 /// Cells of a collider's distance field [m]: a third of the sharpest crease cloth is held in.
 const FIELD_CELL: f64 = 6e-3;
-
-/// How far outside a surface its distance field reaches [m].
-pub(crate) const FIELD_REACH: f64 = 0.03;
 
 impl Collider {
     /// Lays a distance field over a surface; it is sampled where cloth comes near.
@@ -164,9 +162,6 @@ pub struct Grip {
 /// How much farther a triangle is kept each time it is found crossing again [m]: a quarter of the
 /// usual offset.
 const EXTRA_OFFSET: f64 = 1e-3;
-
-/// The most of that [m]: what is still found then is not cured by distance.
-pub(crate) const MOST_EXTRA: f64 = 8e-3;
 
 /// A point of the cloth that is tested against surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]

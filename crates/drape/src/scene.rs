@@ -206,6 +206,13 @@ impl Scene {
                 "give three finite numbers in m/s",
             );
         }
+        if self.air.wind != Vec3::zeros() && self.air.density == 0.0 {
+            return refuse(
+                "wind".to_owned(),
+                "air of density 0 carries none".to_owned(),
+                "give the air a density, 1.204 kg/m3 at sea level, or leave the wind out",
+            );
+        }
         self.check_objects()?;
         self.check_distances()?;
         self.check_layers()?;

@@ -326,7 +326,12 @@ impl SceneRun {
             .filter(|index| !one(index))
             .collect();
         let mass = self.model.cloth_mass();
-        let (positions, velocities) = merged_motion(&self.state, &mass, &held, (&map, count));
+        let (positions, velocities) = merged_motion(
+            (&self.state.positions, &self.state.velocities),
+            &mass,
+            &held,
+            (&map, count),
+        );
         self.cloth.positions.clone_from(&self.state.positions);
         let mut merged = self.cloth.merged(&map, count);
         merged.positions = positions;

@@ -419,6 +419,19 @@ impl SceneFile {
                 format!("write one of {}", known.join(", ")),
             ));
         };
+        let given = [
+            ("substeps", file.substeps.is_some()),
+            ("iterations", file.iterations.is_some()),
+            ("tolerance", file.tolerance.is_some()),
+        ];
+        let takes = kind.settings();
+        if let Some((field, _)) = given.iter().find(|(f, given)| *given && !takes.contains(f)) {
+            return Err(FormatError::new(
+                format!("method.{field}"),
+                format!("method \"{}\" has no {field}", file.name),
+                format!("leave it out; it has {}", takes.join(" and ")),
+            ));
+        }
         let counts = [
             ("substeps", file.substeps.map(|n| n as usize)),
             ("iterations", file.iterations),
@@ -568,6 +581,28 @@ mod tests {
             let file: MaterialFile = serde_json::from_str(wrong).expect("readable");
             let error = file.material("objects[0].material").expect_err("unknown");
             assert!(error.place.starts_with("objects[0].material."), "{error}");
+        }
+    }
+
+    #[test]
+    fn settings_that_a_method_has_no_use_for_are_refused_by_name() {
+        for (name, kind) in MethodKind::ALL {
+            for (field, value) in [("substeps", "3"), ("iterations", "3"), ("tolerance", "0.1")] {
+                let text = format!(
+                    r#"{{ "method": {{ "name": "{name}", "{field}": {value} }}, "objects": [] }}"#
+                );
+                let (file, _) = read_scene(&text).expect("readable");
+                let takes = kind.settings().contains(&field);
+                match file.method() {
+                    Ok(settings) => assert!(takes && settings.kind == kind, "{name}, {field}"),
+                    Err(error) => {
+                        assert!(
+                            !takes && error.place == format!("method.{field}"),
+                            "{error}"
+                        );
+                    }
+                }
+            }
         }
     }
 

@@ -1,6 +1,7 @@
-//! Crossings of cloth with cloth while a scene runs, counted exactly, and what is said of them.
+//! Crossings of cloth with cloth as reports count them, and what is said of them.
 
 use toile_drape::SceneRun;
+use toile_drape::collision::Tally;
 
 /// Pairs of cloth triangles that intersect and share no vertex, counted exactly: where a run begins, now
 /// and then on its way, and where it ends.
@@ -65,5 +66,30 @@ impl Crossings {
             "it ends tangled: {} pairs of cloth triangles cross each other, {} at the start, {} at most; {remedy}",
             self.end, self.start, self.most
         ))
+    }
+}
+
+/// Edges of cloth that crossed a face of cloth, as a report counts them.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub(crate) struct Tangles {
+    /// At the first look.
+    found: usize,
+    /// Most at one look.
+    most: usize,
+    /// At the last look.
+    left: usize,
+    /// Vertices of outer layers on the inside of inner ones: at the first look, most, at the last.
+    astray: [usize; 3],
+}
+
+impl Tangles {
+    pub(crate) fn of(tally: &Tally) -> Self {
+        let [found, most, left] = tally.crossings;
+        Self {
+            found,
+            most,
+            left,
+            astray: tally.astray,
+        }
     }
 }

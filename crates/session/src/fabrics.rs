@@ -1,7 +1,7 @@
 //! Fabrics by name: a pattern's own, then the library's, then those of files.
 
+use crate::SessionError;
 use crate::open::read_input;
-use crate::{Project, SessionError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_drape::{Compression, LIBRARY, LibraryFabric, Material};
@@ -57,15 +57,15 @@ impl FabricChoice {
 /// A name that is not there, with those that are; a file that cannot be read, or that says more
 /// than the fabric of a garment has.
 pub(crate) fn chosen(
-    project: &Project,
+    pattern: &Pattern,
     asked: &str,
 ) -> Result<(FabricChoice, Vec<String>), SessionError> {
-    if fabric_of(&project.pattern, asked).is_some() {
+    if fabric_of(pattern, asked).is_some() {
         return Ok((FabricChoice::Named(asked.to_owned()), Vec::new()));
     }
     let path = Path::new(asked);
     if !path.is_file() {
-        let names = fabric_names(project);
+        let names = fabric_names(pattern);
         return Err(SessionError::Unknown {
             kind: "fabric",
             name: asked.to_owned(),
@@ -117,8 +117,8 @@ fn fabric_of(pattern: &Pattern, name: &str) -> Option<Fabric> {
 }
 
 /// Names that [`fabric_of`] knows, in order.
-fn fabric_names(project: &Project) -> Vec<&str> {
-    let own = project.pattern.fabrics.iter().map(|f| &*f.name);
+fn fabric_names(pattern: &Pattern) -> Vec<&str> {
+    let own = pattern.fabrics.iter().map(|f| &*f.name);
     let library = LIBRARY.iter().map(|f| f.name);
     let mut names: Vec<&str> = own.chain(library).collect();
     names.sort_unstable();
@@ -209,12 +209,12 @@ mod tests {
 
     #[test]
     fn the_library_is_reached_by_name() {
-        let project = Project::default();
-        let denim = fabric_of(&project.pattern, "denim").expect("in the library");
+        let pattern = Pattern::default();
+        let denim = fabric_of(&pattern, "denim").expect("in the library");
         assert!((denim.density - 0.334).abs() < 1e-12);
-        assert!(fabric_of(&project.pattern, "unobtainium").is_none());
-        for name in fabric_names(&project) {
-            let fabric = fabric_of(&project.pattern, name).expect(name);
+        assert!(fabric_of(&pattern, "unobtainium").is_none());
+        for name in fabric_names(&pattern) {
+            let fabric = fabric_of(&pattern, name).expect(name);
             if let (Some(library), false) = (
                 LibraryFabric::named(name),
                 name == "jersey" || name == "poplin",
@@ -234,15 +234,15 @@ mod tests {
             )
         };
         std::fs::write(&path, text("")).unwrap();
-        let project = Project::default();
+        let pattern = Pattern::default();
         let asked = path.to_str().unwrap();
-        let (choice, notes) = chosen(&project, asked).unwrap();
+        let (choice, notes) = chosen(&pattern, asked).unwrap();
         assert!(notes.is_empty() && choice.name() == "ponte");
-        let fabric = choice.fabric(&project.pattern).unwrap();
+        let fabric = choice.fabric(&pattern).unwrap();
         let material = cloth_material(&fabric);
         assert_eq!((material.viscosity, material.kept), (0.02, [0.0, 0.2]));
         std::fs::write(&path, text(r#", "restitution": 0.5"#)).unwrap();
-        let error = chosen(&project, asked).unwrap_err().to_string();
+        let error = chosen(&pattern, asked).unwrap_err().to_string();
         assert!(
             error.contains("restitution") && error.contains("ponte.json"),
             "{error}"

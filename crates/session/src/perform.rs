@@ -201,7 +201,7 @@ impl Session {
     fn set_fabric(&mut self, fabric: Option<String>) -> Outcome {
         let (fabric, notes) = match &fabric {
             Some(asked) => {
-                let (choice, notes) = chosen(&self.project, asked)?;
+                let (choice, notes) = chosen(&self.project.pattern, asked)?;
                 (Some(choice), notes)
             }
             None => (None, Vec::new()),

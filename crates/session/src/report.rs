@@ -2,11 +2,11 @@
 
 use crate::Project;
 use crate::choice::figure_name;
+use crate::crossings::Tangles;
 use crate::cut::sewn_outline;
 use crate::drape::Drape;
 use crate::dressed::DraftedPart;
 use crate::laying::Laying;
-use crate::scene::Tangles;
 use serde::Serialize;
 use toile_pattern::{Draft, DraftSpan};
 

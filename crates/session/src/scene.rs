@@ -1,6 +1,6 @@
 //! Running a scene file: its meshes, patterns and bodies found, simulated, and written.
 
-use crate::crossings::Crossings;
+use crate::crossings::{Crossings, Tangles};
 use crate::export::{cannot, file_name};
 use crate::open::read_input;
 use crate::scene_builder::Builder;
@@ -9,7 +9,6 @@ use crate::watcher::tell;
 use crate::{SessionError, Watcher};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use toile_drape::collision::Tally;
 use toile_drape::{ObjectKind, Scene, SceneObject, SceneRun};
 use toile_interchange::{
     FormatError, ObjMesh, Wanted, read_scene, write_all_atomically, write_obj,
@@ -207,29 +206,4 @@ fn report(run: &mut SceneRun, notes: Vec<String>, crossings: &Crossings) -> serd
         "tangles": run.cloth_tally().map(|tally| Tangles::of(&tally)),
         "warnings": warnings,
     })
-}
-
-/// Edges of cloth that crossed a face of cloth, as a report counts them.
-#[derive(Clone, Copy, Debug, serde::Serialize)]
-pub(crate) struct Tangles {
-    /// At the first look.
-    found: usize,
-    /// Most at one look.
-    most: usize,
-    /// At the last look.
-    left: usize,
-    /// Vertices of outer layers on the inside of inner ones: at the first look, most, at the last.
-    astray: [usize; 3],
-}
-
-impl Tangles {
-    pub(crate) fn of(tally: &Tally) -> Self {
-        let [found, most, left] = tally.crossings;
-        Self {
-            found,
-            most,
-            left,
-            astray: tally.astray,
-        }
-    }
 }

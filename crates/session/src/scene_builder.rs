@@ -198,22 +198,24 @@ impl Builder<'_> {
         place: &str,
         materials: &mut [Material],
     ) -> Result<(), SessionError> {
+        let path = self.path;
         let wrong = |error| SessionError::Format {
-            path: self.path.to_owned(),
+            path: path.to_owned(),
             error,
         };
-        let own_file = file.fabric.as_ref().map(|name| self.base.join(name));
-        let own_file = own_file.filter(|path| path.is_file());
+        let fabric_file = file.fabric.as_ref().map(|name| self.base.join(name));
+        let base = match (fabric_file.filter(|path| path.is_file()), &file.fabric) {
+            (Some(path), _) => {
+                let fabric = open_fabric(&path)?;
+                self.notes.extend(fabric.notes);
+                Some(fabric.material)
+            }
+            (None, Some(_)) => Some(file.material(place).map_err(wrong)?),
+            (None, None) => None,
+        };
         for material in materials {
-            *material = match (&file.fabric, &own_file) {
-                (Some(_), Some(path)) => {
-                    let fabric = open_fabric(path)?;
-                    self.notes.extend(fabric.notes);
-                    file.over(fabric.material, place).map_err(wrong)?
-                }
-                (Some(_), None) => file.material(place).map_err(wrong)?,
-                (None, _) => file.over(material.clone(), place).map_err(wrong)?,
-            };
+            let usual = base.as_ref().unwrap_or(material).clone();
+            *material = file.over(usual, place).map_err(wrong)?;
         }
         Ok(())
     }

@@ -170,6 +170,20 @@ impl MethodKind {
         }
     }
 
+    /// The fields of [`MethodSettings`] that it has a use for, by their names.
+    pub fn settings(self) -> &'static [&'static str] {
+        match self {
+            Self::ForwardEuler
+            | Self::SymplecticEuler
+            | Self::VelocityVerlet
+            | Self::RungeKutta4
+            | Self::PatchVerlet => &["substeps"],
+            Self::Xpbd => &["substeps", "iterations"],
+            Self::Rest | Self::DynamicRelaxation => &["iterations", "tolerance"],
+            _ => &["substeps", "iterations", "tolerance"],
+        }
+    }
+
     /// Iterations in a (sub)step at the most where the settings give none; nothing for explicit
     /// methods, which have none, and for those that look for rest, whose iterations are their steps.
     pub fn most_iterations(self) -> Option<usize> {

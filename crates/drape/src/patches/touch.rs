@@ -2,8 +2,8 @@
 //! [`crate::laws::contact`] at every one.
 
 use super::Lane;
+use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{damped_push, gentle_push};
-use crate::model::FIELD_REACH;
 use crate::state::Memory;
 use crate::{Model, State};
 use rayon::prelude::*;

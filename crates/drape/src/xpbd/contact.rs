@@ -118,7 +118,7 @@ impl Touch {
         let origin = solid.origin;
         let place = origin + Vec3::from(point.map(f64::from));
         let offset = f64::from(self.offset);
-        let reach = crate::model::FIELD_REACH;
+        let reach = crate::contact_settings::FIELD_REACH;
         let mut nearest: Option<(f64, Vec3)> = None;
         let mut drift = Vec3::zeros();
         for (k, collider) in solid.model.colliders.iter().enumerate() {
