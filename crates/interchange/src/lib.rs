@@ -36,6 +36,7 @@ mod pdf;
 mod proportions;
 mod recognise;
 mod scene;
+mod scene_material;
 mod scene_motion;
 mod x3d;
 mod x3d_nodes;
@@ -77,8 +78,8 @@ pub use obj_read::read_obj;
 pub use proportions::{proportion_boxes, read_proportions};
 pub use recognise::{FileKind, Wanted};
 pub use scene::{
-    AirFile, DampingFile, ElasticFile, EndFile, MaterialFile, ObjectFile, SceneFile, TransformFile,
-    read_scene,
+    AirFile, DampingFile, ElasticFile, EndFile, ObjectFile, SceneFile, TransformFile, read_scene,
 };
+pub use scene_material::MaterialFile;
 pub use scene_motion::{GripFile, KeyFile, MotionFile};
 pub use x3d::read_x3d;

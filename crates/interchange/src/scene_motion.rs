@@ -1,9 +1,13 @@
 //! Rigid motions in the scene file.
 
-use crate::scene::Unknown;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
 use toile_drape::{Motion, MotionKey};
 use toile_geometry::Vec3;
+
+/// Fields that are not known here, by their names.
+pub(crate) type Unknown = BTreeMap<String, Value>;
 
 /// A rigid motion as written: straight from key to key, still before the first and after the last.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
