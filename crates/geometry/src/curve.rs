@@ -449,6 +449,64 @@ impl Curve {
         points
     }
 
+    /// Chords of equal parameter steps that stay within `tolerance` \[m\] of the curve, 1 to 1e5.
+    pub fn chord_count(&self, tolerance: f64) -> usize {
+        // The error of a chord is at most the second derivative over 8, times the step squared.
+        let bend = match *self {
+            Self::Line { .. } => 0.0,
+            Self::Arc { start, end, bulge } if bulge.abs() >= FLAT_BULGE => {
+                let (centre, _, sweep) = Self::arc_frame(start, end, bulge);
+                (start - centre).norm() * sweep * sweep
+            }
+            Self::Arc { .. } => 0.0,
+            Self::Quadratic {
+                start,
+                control,
+                end,
+            } => 2.0 * (start - control * 2.0 + end).norm(),
+            Self::Cubic {
+                start,
+                controls: [a, b],
+                end,
+            } => 6.0 * (start - a * 2.0 + b).norm().max((a - b * 2.0 + end).norm()),
+        };
+        (bend / (8.0 * tolerance)).sqrt().ceil().clamp(1.0, 1e5) as usize
+    }
+
+    /// Parameter in a range at which the curve comes nearest to a point, where it comes nearest
+    /// once in the range: by Newton's method, kept inside by halving.
+    pub(crate) fn nearest_between(&self, to: Vec2, range: [f64; 2]) -> f64 {
+        let slope = |t: f64| (self.point(t) - to).dot(&self.derivative(t));
+        let [mut low, mut high] = range;
+        if slope(low) >= 0.0 {
+            return low;
+        }
+        if slope(high) <= 0.0 {
+            return high;
+        }
+        let mut t = 0.5 * (low + high);
+        for _ in 0..60 {
+            let value = slope(t);
+            if value > 0.0 {
+                high = t;
+            } else {
+                low = t;
+            }
+            let step = 1e-6 * (range[1] - range[0]);
+            let rise = (slope(t + step) - slope(t - step)) / (2.0 * step);
+            let newton = t - value / rise;
+            let next = match newton > low && newton < high {
+                true => newton,
+                false => 0.5 * (low + high),
+            };
+            if (next - t).abs() < 1e-15 {
+                break;
+            }
+            t = next;
+        }
+        t
+    }
+
     /// Twice the signed area swept from the origin \[m2\]: summed over a closed outline it is
     /// twice the enclosed area, positive when counter-clockwise. Exact.
     pub fn swept_area(&self) -> f64 {

@@ -12,6 +12,7 @@ mod curve;
 mod distance_field;
 mod ellipsoid;
 mod mesh;
+mod path;
 mod polygon;
 mod polygon_boolean;
 mod polygon_contact;
@@ -20,6 +21,7 @@ mod polygon_minkowski;
 mod polygon_simple;
 mod polygon_tree;
 mod predicates;
+mod rings;
 mod section;
 mod tree;
 mod triangle;
@@ -30,6 +32,7 @@ pub use curve::Curve;
 pub use distance_field::DistanceField;
 pub use ellipsoid::Ellipsoid;
 pub use mesh::{MeshDefect, Topology, TriangleMesh};
+pub use path::{Path, PathCrossing, PathPlace};
 pub use polygon::{Bounds2, Location, Polygon, ring_area};
 pub use polygon_boolean::{
     Corner, difference, intersection, offset, total_area, union, wound_region,
@@ -42,6 +45,7 @@ pub use polygon_tree::{EdgeTree, closest_on_segment, point_segment_distance, seg
 pub use predicates::{
     orient2d, orient3d, segment_intersects_triangle, segments_cross, triangles_intersect,
 };
+pub use rings::{RingCrossings, Rings};
 pub use section::{closed_length, horizontal_section};
 pub use tree::{ClosestPoint, SurfaceTree};
 pub use triangle::{Feature, closest_point_on_triangle, tetrahedron_volume, triangle_area};

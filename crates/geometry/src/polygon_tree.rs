@@ -56,6 +56,20 @@ impl EdgeTree {
         Some((k * LEAF).min(end)..((k + 1) * LEAF).min(end))
     }
 
+    /// Calls `visit` for every edge in a leaf whose box, and those above it, `near` accepts.
+    pub fn visit(&self, near: &mut dyn FnMut(&Bounds2) -> bool, visit: &mut dyn FnMut(usize)) {
+        let mut stack = vec![0];
+        while let Some(node) = stack.pop() {
+            if !near(&self.boxes[node]) {
+                continue;
+            }
+            match self.leaf(node) {
+                Some(leaf) => leaf.for_each(&mut *visit),
+                None => stack.extend([2 * node + 2, 2 * node + 1]),
+            }
+        }
+    }
+
     /// Calls `visit` for every pair of an edge here and an edge there whose boxes, moved apart by
     /// less than `reach` \[m\], meet. Stops when `visit` breaks.
     pub fn pairs(

@@ -1,12 +1,11 @@
 //! Checks that a draft can be cut and sewn.
 
 use crate::resolve::resolve;
-use crate::segments::Segments;
 use crate::{
     Code, Diagnostic, Draft, DraftSeam, DraftSpan, EdgeOrigin, Fabric, Pattern, Piece, PieceEdge,
     PieceLine, Place, SeamOrigin,
 };
-use toile_geometry::Vec2;
+use toile_geometry::{Rings, Vec2};
 use toile_measure::Measurements;
 
 /// Ends of neighbouring edges may be this far apart [m]: rounding, not a gap.
@@ -283,9 +282,9 @@ impl PieceCheck<'_> {
             return;
         }
         let points: Vec<Vec<(Vec2, usize)>> = flattened(&loops);
-        let segments = Segments::new(&points);
+        let segments = Rings::new(&points);
         self.check_crossings(&loops, &segments);
-        let outer = Segments::new(&points[..1]);
+        let outer = Rings::new(&points[..1]);
         for (k, hole) in piece.holes.iter().enumerate() {
             self.check_hole(k, hole, outline_area, &outer);
         }
@@ -340,7 +339,7 @@ impl PieceCheck<'_> {
         closed
     }
 
-    fn check_crossings(&mut self, loops: &[&[PieceEdge]], segments: &Segments) {
+    fn check_crossings(&mut self, loops: &[&[PieceEdge]], segments: &Rings) {
         let edges: Vec<&PieceEdge> = loops.iter().flat_map(|edges| edges.iter()).collect();
         let crossings = segments.crossings(CROSSINGS);
         for ([a, b], point) in crossings.found {
@@ -379,7 +378,7 @@ impl PieceCheck<'_> {
         }
     }
 
-    fn check_hole(&mut self, k: usize, hole: &[PieceEdge], outline: f64, outer: &Segments) {
+    fn check_hole(&mut self, k: usize, hole: &[PieceEdge], outline: f64, outer: &Rings) {
         let place = Place::Hole(self.piece.id.panel, k);
         let area = swept(hole);
         if hole.is_empty() || area.abs() < 1e-10 {
@@ -400,7 +399,7 @@ impl PieceCheck<'_> {
         }
     }
 
-    fn check_line(&mut self, line: &PieceLine, segments: &Segments) {
+    fn check_line(&mut self, line: &PieceLine, segments: &Rings) {
         let place = Place::InternalLine(self.piece.id.panel, line.id);
         let panel = self.pattern.and_then(|p| p.panel(self.piece.id.panel));
         let found = panel.and_then(|p| p.internal_lines.iter().find(|l| l.id == line.id));

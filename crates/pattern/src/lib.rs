@@ -19,7 +19,6 @@ mod panel_edit;
 mod place;
 mod resolve;
 mod resolver;
-mod segments;
 mod sewing;
 mod shape;
 mod split;
