@@ -1,124 +1,120 @@
-//! Typed ids of the document's parts. An id is given once and never used again, so that seams,
-//! selections and journals keep meaning the same thing.
+//! Typed ids of the document's parts. One counter gives all of them, and none twice, so that
+//! seams, formulas, selections and journals keep meaning the same thing.
 
 use serde::{Deserialize, Serialize};
 
 macro_rules! ids {
-    ($($(#[$doc:meta])* $name:ident $prefix:literal),* $(,)?) => {$(
-        $(#[$doc])*
-        #[derive(
-            Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
-        )]
-        #[serde(transparent)]
-        pub struct $name(pub u32);
-
-        impl std::fmt::Display for $name {
-            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                write!(f, concat!($prefix, "{}"), self.0)
-            }
-        }
-    )*};
-}
-
-ids! {
-    /// A panel of the pattern.
-    PanelId "panel ",
-    /// A point of a panel.
-    PointId "point ",
-    /// An edge of a panel's outline or hole.
-    EdgeId "edge ",
-    /// A line drawn inside a panel.
-    InternalLineId "internal line ",
-    /// A dart of a panel.
-    DartId "dart ",
-    /// A notch of a panel.
-    NotchId "notch ",
-    /// A seam of the pattern.
-    SeamId "seam ",
-    /// A fabric of the pattern.
-    FabricId "fabric ",
-}
-
-/// The next free id of every kind. Counters only ever grow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-pub struct IdCounters {
-    /// Next panel.
-    pub panel: u32,
-    /// Next point.
-    pub point: u32,
-    /// Next edge.
-    pub edge: u32,
-    /// Next internal line.
-    pub internal_line: u32,
-    /// Next dart.
-    pub dart: u32,
-    /// Next notch.
-    pub notch: u32,
-    /// Next seam.
-    pub seam: u32,
-    /// Next fabric.
-    pub fabric: u32,
-}
-
-macro_rules! takers {
-    ($($(#[$doc:meta])* $method:ident $field:ident $name:ident),* $(,)?) => {
-        impl IdCounters {
-            $(
-                $(#[$doc])*
-                pub fn $method(&mut self) -> $name {
-                    let id = $name(self.$field);
-                    self.$field = self.$field.saturating_add(1);
-                    id
-                }
-            )*
-        }
-
+    ($($(#[$doc:meta])* $name:ident $variant:ident $words:literal),* $(,)?) => {
         $(
-            impl $name {
-                /// Makes sure the counters never give this id out again.
-                pub fn reserve(self, counters: &mut IdCounters) {
-                    counters.$field = counters.$field.max(self.0.saturating_add(1));
+            $(#[$doc])*
+            #[derive(
+                Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
+            )]
+            #[serde(transparent)]
+            pub struct $name(pub u32);
+
+            impl std::fmt::Display for $name {
+                fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                    write!(f, concat!($words, " {}"), self.0)
+                }
+            }
+
+            impl From<$name> for PartId {
+                fn from(id: $name) -> Self {
+                    Self::$variant(id)
                 }
             }
         )*
+
+        /// The id of a part of any kind.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum PartId {
+            $($(#[$doc])* $variant($name)),*
+        }
+
+        impl PartId {
+            /// Its number, unique among parts of all kinds.
+            pub fn number(self) -> u32 {
+                match self {
+                    $(Self::$variant(id) => id.0),*
+                }
+            }
+        }
+
+        impl std::fmt::Display for PartId {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                match self {
+                    $(Self::$variant(id) => id.fmt(f)),*
+                }
+            }
+        }
     };
 }
 
-impl IdCounters {
-    /// Raises each counter to another's where that is higher: no id that the other has given is
-    /// given again.
-    pub fn raise(&mut self, other: &Self) {
-        let pairs = [
-            (&mut self.panel, other.panel),
-            (&mut self.point, other.point),
-            (&mut self.edge, other.edge),
-            (&mut self.internal_line, other.internal_line),
-            (&mut self.dart, other.dart),
-            (&mut self.notch, other.notch),
-            (&mut self.seam, other.seam),
-            (&mut self.fabric, other.fabric),
-        ];
-        for (counter, other) in pairs {
-            *counter = (*counter).max(other);
-        }
+ids! {
+    /// A size: a named table of measurements.
+    SizeId Size "size",
+    /// A named number for formulas.
+    VariableId Variable "variable",
+    /// A fabric.
+    FabricId Fabric "fabric",
+    /// A sheet: a drafting plane.
+    SheetId Sheet "sheet",
+    /// A point of a sheet.
+    PointId Point "point",
+    /// A curve of a sheet.
+    CurveId Curve "curve",
+    /// A panel.
+    PanelId Panel "panel",
+    /// A line of a panel: its outline, a hole or an internal line.
+    LineId Line "line",
+    /// An edge: a stretch of a curve, part of a line.
+    EdgeId Edge "edge",
+    /// A notch.
+    NotchId Notch "notch",
+    /// A kept step of a panel: a dart, a fold.
+    OperationId Operation "operation",
+    /// A seam.
+    SeamId Seam "seam",
+}
+
+/// Gives ids. It only counts up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Ids {
+    /// The next number.
+    pub next: u32,
+}
+
+impl Ids {
+    /// A fresh id of the kind that is asked for.
+    pub fn take<T: From<FreshId>>(&mut self) -> T {
+        let number = self.next;
+        self.next = self.next.saturating_add(1);
+        FreshId(number).into()
+    }
+
+    /// Makes sure that a number is never given again.
+    pub fn reserve(&mut self, number: u32) {
+        self.next = self.next.max(number.saturating_add(1));
     }
 }
 
-takers! {
-    /// Takes a fresh id.
-    take_panel panel PanelId,
-    /// Takes a fresh id.
-    take_point point PointId,
-    /// Takes a fresh id.
-    take_edge edge EdgeId,
-    /// Takes a fresh id.
-    take_internal_line internal_line InternalLineId,
-    /// Takes a fresh id.
-    take_dart dart DartId,
-    /// Takes a fresh id.
-    take_notch notch NotchId,
-    /// Takes a fresh id.
-    take_seam seam SeamId,
-    /// Takes a fresh id.
-    take_fabric fabric FabricId,
+/// A number that was just given, on its way to becoming an id.
+pub struct FreshId(u32);
+
+macro_rules! fresh {
+    ($($name:ident),*) => {
+        $(impl From<FreshId> for $name {
+            fn from(id: FreshId) -> Self {
+                Self(id.0)
+            }
+        })*
+    };
 }
+
+fresh!(
+    SizeId, VariableId, FabricId, SheetId, PointId, CurveId, PanelId, LineId, EdgeId, NotchId,
+    OperationId, SeamId
+);

@@ -1,32 +1,62 @@
-//! Numbers of the document: a value or a formula.
+//! Numbers of the document: a value, a formula, a formula with something added, a value a size.
 
-use crate::formula::{Formula, FormulaError};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use crate::formula::Formula;
+use crate::SizeId;
 
 /// A number of the document. What it measures is decided by where it stands: lengths are metres,
-/// angles radians, fractions plain.
+/// angles radians, shares plain.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Number {
     /// A value [m], [rad] or plain.
     Value(f64),
-    /// A formula of measurements and variables.
+    /// A formula.
     Formula(Formula),
+    /// A formula with something added by hand [m], [rad] or plain.
+    Adjusted {
+        /// The formula.
+        formula: Formula,
+        /// What is added to it.
+        by: f64,
+    },
+    /// A value of its own in some sizes.
+    PerSize {
+        /// The number in all other sizes.
+        usual: Box<Number>,
+        /// Sizes and their values [m], [rad] or plain.
+        sizes: Vec<(SizeId, f64)>,
+    },
 }
 
 impl Number {
     /// Zero.
     pub const ZERO: Self = Self::Value(0.0);
 
-    /// Reads a formula.
-    pub fn formula(text: &str) -> Result<Self, FormulaError> {
-        Formula::parse(text).map(Self::Formula)
-    }
-
-    /// The value, if the number is not a formula [m], [rad] or plain.
+    /// The value, if it is the same whatever is measured [m], [rad] or plain.
     pub fn value(&self) -> Option<f64> {
         match self {
             Self::Value(value) => Some(*value),
-            Self::Formula(_) => None,
+            _ => None,
+        }
+    }
+
+    /// The formula in it, if there is one.
+    pub fn as_formula(&self) -> Option<&Formula> {
+        match self {
+            Self::Value(_) => None,
+            Self::Formula(formula) | Self::Adjusted { formula, .. } => Some(formula),
+            Self::PerSize { usual, .. } => usual.as_formula(),
+        }
+    }
+
+    /// Whether every value written in it is finite.
+    pub fn is_finite(&self) -> bool {
+        match self {
+            Self::Value(value) => value.is_finite(),
+            Self::Formula(_) => true,
+            Self::Adjusted { by, .. } => by.is_finite(),
+            Self::PerSize { usual, sizes } => {
+                usual.is_finite() && sizes.iter().all(|(_, value)| value.is_finite())
+            }
         }
     }
 }
@@ -43,26 +73,8 @@ impl From<f64> for Number {
     }
 }
 
-impl Serialize for Number {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Value(value) => serializer.serialize_f64(*value),
-            Self::Formula(formula) => serializer.serialize_str(formula.text()),
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Number {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(untagged)]
-        enum Raw {
-            Value(f64),
-            Text(String),
-        }
-        match Raw::deserialize(deserializer)? {
-            Raw::Value(value) => Ok(Self::Value(value)),
-            Raw::Text(text) => Self::formula(&text).map_err(serde::de::Error::custom),
-        }
+impl From<Formula> for Number {
+    fn from(formula: Formula) -> Self {
+        Self::Formula(formula)
     }
 }

@@ -1,0 +1,173 @@
+//! The document: what is edited, saved and undone.
+
+mod operation;
+mod panel;
+mod seam;
+mod sheet;
+
+pub use operation::{Apex, Operation, OperationKind};
+pub use panel::{
+    Corner, Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Source, WornRule,
+};
+pub use seam::{Seam, Span};
+pub use sheet::{Curve, CurveRule, Knot, Point, PointRule, Sheet};
+
+use crate::{
+    Fabric, FabricId, Ids, Number, PanelId, PointId, SeamId, SheetId, SizeId, VariableId,
+};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use toile_measure::Measurements;
+
+/// Longest name of a part [characters].
+pub const NAME_LENGTH: usize = 80;
+
+/// A pattern. Cloning is cheap: parts are shared until they are edited.
+///
+/// Fields are public, so a pattern may be inconsistent; drafting and `check` then say where.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pattern {
+    /// Name to show.
+    pub name: String,
+    /// Unit its author thinks in; values in memory are metres all the same.
+    pub unit: DisplayUnit,
+    /// Named tables of measurements, in the order they are offered.
+    pub sizes: Vec<Arc<Size>>,
+    /// The size used when none is asked for; else the first.
+    pub base_size: Option<SizeId>,
+    /// Named numbers for formulas.
+    pub variables: Vec<Arc<Variable>>,
+    /// The fabrics panels name.
+    pub fabrics: Vec<Arc<Fabric>>,
+    /// Drafting planes with points and curves.
+    pub sheets: Vec<Arc<Sheet>>,
+    /// The flat pieces of the garment.
+    pub panels: Vec<Arc<Panel>>,
+    /// The seams.
+    pub seams: Vec<Arc<Seam>>,
+    /// Gives the ids of new parts.
+    pub ids: Ids,
+}
+
+/// The unit lengths are shown and written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DisplayUnit {
+    /// Millimetres.
+    Millimetre,
+    /// Centimetres.
+    #[default]
+    Centimetre,
+    /// Metres.
+    Metre,
+    /// Inches.
+    Inch,
+}
+
+/// A named table of measurements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Size {
+    /// Its id.
+    pub id: SizeId,
+    /// Name, such as `M` or `42`.
+    pub name: String,
+    /// Its measurements.
+    pub measurements: Measurements,
+}
+
+/// A named number that formulas may use. A bare value is a plain number; a length is a formula
+/// with a unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variable {
+    /// Its id.
+    pub id: VariableId,
+    /// Name in formulas.
+    pub name: String,
+    /// What it stands for.
+    pub number: Number,
+}
+
+impl Pattern {
+    /// An empty pattern.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..Self::default()
+        }
+    }
+
+    /// Whether another pattern is the same, whatever ids each would give next.
+    pub fn says_the_same(&self, other: &Self) -> bool {
+        let counted_alike = Self {
+            ids: other.ids,
+            ..self.clone()
+        };
+        counted_alike == *other
+    }
+
+    /// The sheet with that id.
+    pub fn sheet(&self, id: SheetId) -> Option<&Arc<Sheet>> {
+        self.sheets.iter().find(|sheet| sheet.id == id)
+    }
+
+    /// The sheet a point is on, and the point.
+    pub fn point(&self, id: PointId) -> Option<(&Arc<Sheet>, &Arc<Point>)> {
+        let mut sheets = self.sheets.iter();
+        sheets.find_map(|sheet| Some((sheet, sheet.point(id)?)))
+    }
+
+    /// The panel with that id.
+    pub fn panel(&self, id: PanelId) -> Option<&Arc<Panel>> {
+        self.panels.iter().find(|panel| panel.id == id)
+    }
+
+    /// The panel with that name.
+    pub fn panel_named(&self, name: &str) -> Option<&Arc<Panel>> {
+        self.panels.iter().find(|panel| panel.name == name)
+    }
+
+    /// The seam with that id.
+    pub fn seam(&self, id: SeamId) -> Option<&Arc<Seam>> {
+        self.seams.iter().find(|seam| seam.id == id)
+    }
+
+    /// The fabric with that id.
+    pub fn fabric(&self, id: FabricId) -> Option<&Arc<Fabric>> {
+        self.fabrics.iter().find(|fabric| fabric.id == id)
+    }
+
+    /// The variable with that name.
+    pub fn variable_named(&self, name: &str) -> Option<&Arc<Variable>> {
+        self.variables.iter().find(|variable| variable.name == name)
+    }
+
+    /// The size with that name.
+    pub fn size_named(&self, name: &str) -> Option<&Arc<Size>> {
+        self.sizes.iter().find(|size| size.name == name)
+    }
+
+    /// The measurements of a named size.
+    pub fn size(&self, name: &str) -> Option<&Measurements> {
+        self.size_named(name).map(|size| &size.measurements)
+    }
+
+    /// The base size: the one chosen, else the first.
+    pub fn base(&self) -> Option<&Arc<Size>> {
+        let chosen = self.sizes.iter().find(|size| Some(size.id) == self.base_size);
+        chosen.or_else(|| self.sizes.first())
+    }
+
+    /// The measurements of the base size.
+    pub fn base_measurements(&self) -> Option<&Measurements> {
+        self.base().map(|size| &size.measurements)
+    }
+}
+
+/// Whether a part may have that name: 1 to 80 characters, no control characters, no single
+/// quotes (formulas use them), no space at either end.
+pub fn is_part_name(name: &str) -> bool {
+    !name.is_empty()
+        && name.trim() == name
+        && name.chars().count() <= NAME_LENGTH
+        && !name.chars().any(|c| c.is_control() || c == '\'')
+}

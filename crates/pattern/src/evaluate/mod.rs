@@ -1,0 +1,158 @@
+//! Evaluation: every value of a pattern for one set of measurements, kept up to date edit by edit.
+//!
+//! Variables, points, curves, edges, panel stages and seams are the nodes of a graph whose edges
+//! say what needs what. An update takes over definitions that changed, orders the graph anew if
+//! needs changed (strongly connected components by Tarjan 1972, on an explicit stack), and
+//! recomputes dependants in that order, stopping where a value stays the same to the bit.
+
+mod curves;
+mod graph;
+mod node;
+mod numbers;
+mod panels;
+mod points;
+mod seams;
+
+pub use node::Node;
+pub(crate) use node::{Definition, Value};
+pub(crate) use seams::SeamValue;
+
+use crate::{Diagnostic, Pattern, PointId, SheetId};
+use node::NodeState;
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+use toile_geometry::Vec2;
+use toile_measure::Measurements;
+
+/// Every value of a pattern for one set of measurements.
+#[derive(Clone, Default)]
+pub struct Evaluation {
+    pattern: Pattern,
+    given: Measurements,
+    /// The size the measurements are those of, for values a size has of its own.
+    size: Option<crate::SizeId>,
+    nodes: Vec<NodeState>,
+    index: HashMap<Node, u32>,
+    words: HashMap<Box<str>, u32>,
+    word_texts: Vec<Box<str>>,
+    /// Nodes whose needs follow from the lines of a panel.
+    watchers: HashMap<crate::PanelId, Vec<u32>>,
+    names: Arc<crate::formula::Names>,
+    /// Parts whose ids or names are taken twice.
+    duplicates: Vec<Diagnostic>,
+    revision: u64,
+}
+
+/// What an update did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Update {
+    /// Nodes that were computed.
+    pub computed: usize,
+    /// Nodes whose value changed.
+    pub changed: usize,
+}
+
+impl Evaluation {
+    /// Evaluates a pattern for a table of measurements.
+    pub fn new(pattern: &Pattern, measurements: &Measurements) -> Self {
+        let mut evaluation = Self::default();
+        evaluation.update(pattern, measurements);
+        evaluation
+    }
+
+    /// The pattern as it was last evaluated.
+    pub fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    /// The measurements it was last evaluated for.
+    pub fn measurements(&self) -> &Measurements {
+        &self.given
+    }
+
+    /// Names of the pattern's parts.
+    pub fn names(&self) -> &Arc<crate::formula::Names> {
+        &self.names
+    }
+
+    /// Everything found: faults of definitions, one a cause.
+    pub fn diagnostics(&self) -> Vec<Diagnostic> {
+        let mut order: Vec<&NodeState> = self.nodes.iter().collect();
+        order.sort_by_key(|state| state.node);
+        let own = order.iter().flat_map(|state| state.diagnostics.iter().cloned());
+        self.duplicates.iter().cloned().chain(own).collect()
+    }
+
+    /// Where a point lies [m]; nothing if it cannot be computed.
+    pub fn point(&self, id: PointId) -> Option<Vec2> {
+        match self.value(Node::Point(id))? {
+            Value::Point(place) => Some(*place),
+            _ => None,
+        }
+    }
+
+    /// Every point that can be computed [m].
+    pub fn points(&self) -> BTreeMap<(SheetId, PointId), Vec2> {
+        let sheets = self.pattern.sheets.iter();
+        sheets
+            .flat_map(|sheet| sheet.points.iter().map(|point| (sheet.id, point.id)))
+            .filter_map(|key| Some((key, self.point(key.1)?)))
+            .collect()
+    }
+
+    /// A curve as it is drawn [m]; nothing if it cannot be computed.
+    pub fn curve(&self, id: crate::CurveId) -> Option<&Arc<toile_geometry::Path>> {
+        match self.value(Node::Curve(id))? {
+            Value::Path(path) => Some(path),
+            _ => None,
+        }
+    }
+
+    /// An edge as it is drawn [m]; nothing if it cannot be computed.
+    pub fn edge(&self, id: crate::EdgeId) -> Option<&Arc<toile_geometry::Path>> {
+        match self.value(Node::Edge(id))? {
+            Value::Path(path) => Some(path),
+            _ => None,
+        }
+    }
+
+    /// A stage of a panel: as drawn, or after an operation.
+    pub fn stage(
+        &self,
+        panel: crate::PanelId,
+        after: Option<crate::OperationId>,
+    ) -> Option<&Arc<crate::Stage>> {
+        match self.value(Node::Stage(panel, after))? {
+            Value::Stage(stage) => Some(stage),
+            _ => None,
+        }
+    }
+
+    /// The last stage of a panel.
+    pub fn last_stage(&self, panel: &crate::Panel) -> Option<&Arc<crate::Stage>> {
+        self.stage(panel.id, panel.operations.last().map(|o| o.id))
+    }
+
+    /// The value of a variable, and its power of a length: 0 plain, 1 a length [m].
+    pub fn variable(&self, id: crate::VariableId) -> Option<(f64, i8)> {
+        match self.value(Node::Variable(id))? {
+            Value::Number(quantity) => Some((quantity.value, quantity.power)),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn seam_value(&self, id: crate::SeamId) -> Option<&Arc<SeamValue>> {
+        match self.value(Node::Seam(id))? {
+            Value::Seam(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    fn state(&self, node: Node) -> Option<&NodeState> {
+        self.index.get(&node).map(|&k| &self.nodes[k as usize])
+    }
+
+    fn value(&self, node: Node) -> Option<&Value> {
+        self.state(node)?.value.as_ref().ok()
+    }
+}

@@ -1,0 +1,234 @@
+//! What is evaluated, what defines it, and what it needs.
+
+use crate::formula::{Quantity, Token};
+use crate::{
+    Curve, CurveId, Diagnostic, EdgeId, Line, Name, Number, OperationId, Panel, PanelId,
+    PartReference, Pattern, Point, PointId, Seam, SeamId, Stage, Variable, VariableId,
+};
+use std::sync::Arc;
+use toile_geometry::{Path, Vec2};
+
+use super::SeamValue;
+
+/// Something that has a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Node {
+    /// A measurement or other word in formulas, by its number among the words that were met.
+    Word(u32),
+    /// A variable.
+    Variable(VariableId),
+    /// A point.
+    Point(PointId),
+    /// A curve.
+    Curve(CurveId),
+    /// An edge of a panel.
+    Edge(EdgeId),
+    /// A panel as drawn, or after an operation.
+    Stage(PanelId, Option<OperationId>),
+    /// A seam.
+    Seam(SeamId),
+}
+
+/// What a node is computed from.
+#[derive(Clone)]
+pub(crate) enum Definition {
+    /// The document has no such part.
+    Missing,
+    Word,
+    Variable(Arc<Variable>),
+    Point(Arc<Point>),
+    Curve(Arc<Curve>),
+    /// An edge: the panel, its line and the edge's place in it.
+    Edge(Arc<Panel>, usize, usize),
+    /// A stage: the panel and how many of its operations are done.
+    Stage(Arc<Panel>, usize),
+    Seam(Arc<Seam>),
+}
+
+impl Definition {
+    /// Whether two definitions are one and the same.
+    pub fn is(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Missing, Self::Missing) | (Self::Word, Self::Word) => true,
+            (Self::Variable(a), Self::Variable(b)) => Arc::ptr_eq(a, b),
+            (Self::Point(a), Self::Point(b)) => Arc::ptr_eq(a, b),
+            (Self::Curve(a), Self::Curve(b)) => Arc::ptr_eq(a, b),
+            (Self::Edge(a, i, j), Self::Edge(b, k, l)) => Arc::ptr_eq(a, b) && (i, j) == (k, l),
+            (Self::Stage(a, i), Self::Stage(b, j)) => Arc::ptr_eq(a, b) && i == j,
+            (Self::Seam(a), Self::Seam(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
+/// The value of a node.
+#[derive(Clone, Debug)]
+pub(crate) enum Value {
+    Number(Quantity),
+    Point(Vec2),
+    Path(Arc<Path>),
+    Stage(Arc<Stage>),
+    Seam(Arc<SeamValue>),
+}
+
+/// A node with its place in the graph and its value.
+#[derive(Clone)]
+pub(crate) struct NodeState {
+    pub node: Node,
+    pub definition: Definition,
+    pub needs: Vec<u32>,
+    pub needed_by: Vec<u32>,
+    /// Place in the order: larger than that of everything it needs, but in a cycle.
+    pub rank: u32,
+    /// The component of a cycle it is in, named by one of its nodes.
+    pub cycle: Option<u32>,
+    /// Its value, or the node whose fault keeps it from having one.
+    pub value: Result<Value, u32>,
+    /// Its last value, to be shown while it has none.
+    pub last_good: Option<Value>,
+    /// Update at which its value last changed.
+    pub changed: u64,
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Value {
+    /// Whether two values are the same to the bit.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
+        match (self, other) {
+            (Self::Number(a), Self::Number(b)) => a.power == b.power && same(a.value, b.value),
+            (Self::Point(a), Self::Point(b)) => same(a.x, b.x) && same(a.y, b.y),
+            (Self::Path(a), Self::Path(b)) => Arc::ptr_eq(a, b) || is_same_path(a, b),
+            (Self::Stage(a), Self::Stage(b)) => Arc::ptr_eq(a, b) || a.is_same(b),
+            (Self::Seam(a), Self::Seam(b)) => a == b,
+            _ => false,
+        }
+    }
+}
+
+fn is_same_path(a: &Path, b: &Path) -> bool {
+    let bits = |path: &Path| -> Vec<u64> {
+        let points = path.curves().iter().flat_map(|curve| curve.defining_points());
+        points.flat_map(|p| [p.x.to_bits(), p.y.to_bits()]).collect()
+    };
+    a == b && bits(a) == bits(b)
+}
+
+/// Nodes a definition needs, and panels whose lines say which.
+#[derive(Default)]
+pub(crate) struct Needs {
+    pub nodes: Vec<Node>,
+    pub words: Vec<Box<str>>,
+    pub panels: Vec<PanelId>,
+}
+
+impl Needs {
+    /// What a definition needs in a pattern.
+    pub fn of(definition: &Definition, pattern: &Pattern) -> Self {
+        let mut needs = Self::default();
+        match definition {
+            Definition::Missing | Definition::Word => {}
+            Definition::Variable(variable) => needs.number(&variable.number, pattern),
+            Definition::Point(point) => {
+                needs.nodes.extend(point.rule.points().into_iter().map(Node::Point));
+                needs.nodes.extend(point.rule.curves().into_iter().map(Node::Curve));
+                needs.numbers(point.rule.numbers(), pattern);
+            }
+            Definition::Curve(curve) => {
+                needs.nodes.extend(curve.ends.map(Node::Point));
+                needs.nodes.extend(curve.rule.points().into_iter().map(Node::Point));
+                needs.nodes.extend(curve.rule.curve().map(Node::Curve));
+                needs.numbers(curve.rule.number(), pattern);
+            }
+            Definition::Edge(panel, line, k) => {
+                let edge = &panel.lines[*line].edges[*k];
+                needs.nodes.push(Node::Curve(edge.curve));
+                needs.nodes.extend(edge.ends.map(Node::Point));
+            }
+            Definition::Stage(panel, 0) => {
+                needs.nodes.extend(panel.edges().map(|edge| Node::Edge(edge.id)));
+                needs.numbers([&panel.grain, &panel.allowance], pattern);
+                needs.numbers(panel.edges().filter_map(|e| e.allowance.as_ref()), pattern);
+                needs.numbers(panel.notches.iter().filter_map(|n| n.at.number()), pattern);
+            }
+            Definition::Stage(panel, step) => {
+                let before = step.checked_sub(2).map(|k| panel.operations[k].id);
+                needs.nodes.push(Node::Stage(panel.id, before));
+                needs.nodes.push(Node::Stage(panel.id, None));
+                let operation = &panel.operations[step - 1].kind;
+                needs.numbers(operation.numbers(), pattern);
+                needs.nodes.extend(operation.points().into_iter().map(Node::Point));
+            }
+            Definition::Seam(seam) => {
+                for span in seam.spans() {
+                    needs.last_stage(span.panel, pattern);
+                    needs.nodes.push(Node::Stage(span.panel, None));
+                }
+                needs.numbers(seam.numbers(), pattern);
+            }
+        }
+        needs.nodes.sort_unstable();
+        needs.nodes.dedup();
+        needs.panels.sort_unstable();
+        needs.panels.dedup();
+        needs
+    }
+
+    fn numbers<'a>(&mut self, numbers: impl IntoIterator<Item = &'a Number>, pattern: &Pattern) {
+        for number in numbers {
+            self.number(number, pattern);
+        }
+    }
+
+    fn number(&mut self, number: &Number, pattern: &Pattern) {
+        let Some(formula) = number.as_formula() else {
+            return;
+        };
+        let finished: Vec<&PartReference> = formula.finished_parts().collect();
+        for token in formula.tokens() {
+            match token {
+                Token::Text(_) => {}
+                Token::Variable(id) => self.nodes.push(Node::Variable(*id)),
+                Token::Word(word) => self.words.push(word.clone()),
+                Token::Part(part) => self.part(part, finished.contains(&part), pattern),
+            }
+        }
+    }
+
+    fn part(&mut self, part: &PartReference, finished: bool, pattern: &Pattern) {
+        match part {
+            PartReference::Point(id) => self.nodes.push(Node::Point(*id)),
+            PartReference::Curve(id) => self.nodes.push(Node::Curve(*id)),
+            PartReference::Seam(id) => self.nodes.push(Node::Seam(*id)),
+            PartReference::Unknown(_) => {}
+            PartReference::Stretch { panel, ends } => {
+                self.panels.push(*panel);
+                if finished {
+                    self.last_stage(*panel, pattern);
+                }
+                let lines = pattern.panel(*panel).map_or(&[][..], |panel| &panel.lines);
+                let edges = drawn_stretch(lines, *ends);
+                self.nodes.extend(edges.iter().flatten().map(|e| Node::Edge(e.id)));
+            }
+        }
+    }
+
+    fn last_stage(&mut self, panel: PanelId, pattern: &Pattern) {
+        self.panels.push(panel);
+        if let Some(found) = pattern.panel(panel) {
+            let last = found.operations.last().map(|o| o.id);
+            self.nodes.push(Node::Stage(panel, last));
+        }
+    }
+}
+
+/// The drawn edges of a stretch between corners.
+pub(crate) fn drawn_stretch(
+    lines: &[Line],
+    ends: [crate::CornerName; 2],
+) -> Option<Vec<&crate::Edge>> {
+    let [Name::Drawn(from), Name::Drawn(to)] = ends else {
+        return None;
+    };
+    lines.iter().find_map(|line| line.stretch([from, to]))
+}

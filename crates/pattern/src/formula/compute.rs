@@ -1,0 +1,343 @@
+//! Computes formulas, keeping track of lengths, so that `bust + 2` is refused and `bust + 2cm`
+//! is not.
+
+use super::{Comparison, Formula, Function, Operation};
+use crate::{Code, PartReference, VariableId};
+use toile_geometry::Vec2;
+
+/// A value with its dimension: `power` is 0 for plain numbers and angles, 1 for lengths, 2 for
+/// areas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Quantity {
+    pub value: f64,
+    pub power: i8,
+}
+
+/// Why a formula has no value.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Failure {
+    /// Something it needs has no value; that was reported where it stands.
+    Reported,
+    /// A fault of this formula, at a column if it is known.
+    Fault {
+        code: Code,
+        column: Option<usize>,
+        message: String,
+        hint: String,
+    },
+}
+
+impl Failure {
+    pub fn new(code: Code, message: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self::Fault {
+            code,
+            column: None,
+            message: message.into(),
+            hint: hint.into(),
+        }
+    }
+}
+
+/// Where formulas look up what they name.
+pub(crate) trait Environment {
+    fn variable(&self, id: VariableId) -> Result<Quantity, Failure>;
+    fn measurement(&self, name: &str) -> Result<Quantity, Failure>;
+    /// Length of a part as drawn [m].
+    fn length(&self, part: &PartReference) -> Result<f64, Failure>;
+    /// Length of a stretch after all operations [m].
+    fn finished(&self, part: &PartReference) -> Result<f64, Failure>;
+    /// Start and end of a part as drawn [m].
+    fn ends(&self, part: &PartReference) -> Result<[Vec2; 2], Failure>;
+    /// Place of a point [m].
+    fn point(&self, part: &PartReference) -> Result<Vec2, Failure>;
+}
+
+/// Highest power of a length that makes sense on the way to a result.
+const MAXIMUM_POWER: i8 = 6;
+
+/// The value of a formula.
+pub(crate) fn compute(
+    formula: &Formula,
+    environment: &impl Environment,
+) -> Result<Quantity, Failure> {
+    let mut stack: Vec<Quantity> = Vec::new();
+    let steps = formula.steps();
+    let mut at = 0;
+    while let Some(step) = steps.get(at) {
+        at += 1;
+        let fault = |(message, hint): (String, &str)| Failure::Fault {
+            code: Code::Formula,
+            column: Some(step.column),
+            message,
+            hint: hint.into(),
+        };
+        let here = |failure| match failure {
+            Failure::Fault {
+                code,
+                column: None,
+                message,
+                hint,
+            } => Failure::Fault {
+                code,
+                column: Some(step.column),
+                message,
+                hint,
+            },
+            other => other,
+        };
+        let result = match &step.operation {
+            Operation::JumpUnless(to) => {
+                let [a] = pop(&mut stack);
+                if a.value == 0.0 {
+                    at = *to;
+                }
+                continue;
+            }
+            Operation::Jump(to) => {
+                at = *to;
+                continue;
+            }
+            Operation::Constant { value, power } => Quantity {
+                value: *value,
+                power: *power,
+            },
+            Operation::Variable(id) => environment.variable(*id).map_err(here)?,
+            Operation::Word(name) => environment.measurement(name).map_err(here)?,
+            Operation::Length(part) => length(environment.length(part).map_err(here)?),
+            Operation::Finished(part) => length(environment.finished(part).map_err(here)?),
+            Operation::Angle(part) => direction(environment.ends(part).map_err(here)?),
+            Operation::AngleBetween(a, b) => direction([
+                environment.point(a).map_err(here)?,
+                environment.point(b).map_err(here)?,
+            ]),
+            Operation::Coordinate(point, axis) => {
+                length(environment.point(point).map_err(here)?[*axis])
+            }
+            Operation::Distance(a, b) => {
+                let a = environment.point(a).map_err(here)?;
+                let b = environment.point(b).map_err(here)?;
+                length((b - a).norm())
+            }
+            Operation::Negate => {
+                let [a] = pop(&mut stack);
+                Quantity {
+                    value: -a.value,
+                    power: a.power,
+                }
+            }
+            Operation::Not => {
+                let [a] = pop(&mut stack);
+                truth(a.value == 0.0)
+            }
+            Operation::And => {
+                let [a, b] = pop(&mut stack);
+                truth(a.value != 0.0 && b.value != 0.0)
+            }
+            Operation::Or => {
+                let [a, b] = pop(&mut stack);
+                truth(a.value != 0.0 || b.value != 0.0)
+            }
+            Operation::Compare(comparison) => {
+                let [a, b] = pop(&mut stack);
+                like(a, b, 0.0).map_err(fault)?;
+                truth(compare(*comparison, a.value, b.value))
+            }
+            Operation::Add => {
+                let [a, b] = pop(&mut stack);
+                like(a, b, a.value + b.value).map_err(fault)?
+            }
+            Operation::Subtract => {
+                let [a, b] = pop(&mut stack);
+                like(a, b, a.value - b.value).map_err(fault)?
+            }
+            Operation::Multiply => {
+                let [a, b] = pop(&mut stack);
+                product(a, b).map_err(fault)?
+            }
+            Operation::Divide => {
+                let [a, b] = pop(&mut stack);
+                quotient(a, b).map_err(fault)?
+            }
+            Operation::Call(function, count) => {
+                let values = stack.split_off(stack.len() - count);
+                call(*function, &values).map_err(fault)?
+            }
+        };
+        if !result.value.is_finite() {
+            return Err(fault((
+                "the result is not a finite number".into(),
+                "look at the values it is made from",
+            )));
+        }
+        stack.push(result);
+    }
+    let [result] = pop(&mut stack);
+    Ok(result)
+}
+
+fn length(value: f64) -> Quantity {
+    Quantity { value, power: 1 }
+}
+
+fn plain(value: f64) -> Quantity {
+    Quantity { value, power: 0 }
+}
+
+fn truth(holds: bool) -> Quantity {
+    plain(f64::from(u8::from(holds)))
+}
+
+fn direction([a, b]: [Vec2; 2]) -> Quantity {
+    let way = b - a;
+    plain(way.y.atan2(way.x))
+}
+
+fn compare(comparison: Comparison, a: f64, b: f64) -> bool {
+    match comparison {
+        Comparison::Less => a < b,
+        Comparison::LessOrEqual => a <= b,
+        Comparison::More => a > b,
+        Comparison::MoreOrEqual => a >= b,
+        Comparison::Equal => a == b,
+        Comparison::Unequal => a != b,
+    }
+}
+
+/// The last `N` values; the parser wrote as many as each step takes.
+fn pop<const N: usize>(stack: &mut Vec<Quantity>) -> [Quantity; N] {
+    let rest = stack.split_off(stack.len() - N);
+    std::array::from_fn(|k| rest[k])
+}
+
+type Arithmetic = Result<Quantity, (String, &'static str)>;
+
+/// The dimension two values share; zero has any.
+fn common_power(a: Quantity, b: Quantity) -> Option<i8> {
+    let any = |q: Quantity| q.value == 0.0 && q.power == 0;
+    if a.power == b.power || any(b) {
+        Some(a.power)
+    } else if any(a) {
+        Some(b.power)
+    } else {
+        None
+    }
+}
+
+fn like(a: Quantity, b: Quantity, value: f64) -> Arithmetic {
+    match common_power(a, b) {
+        Some(power) => Ok(Quantity { value, power }),
+        None => Err((
+            format!("{} is put together with {}", kind(a.power), kind(b.power)),
+            "give the plain number a unit, for example 2cm",
+        )),
+    }
+}
+
+fn product(a: Quantity, b: Quantity) -> Arithmetic {
+    let power = a.power + b.power;
+    if power.abs() > MAXIMUM_POWER {
+        return Err((
+            "too many lengths are multiplied".into(),
+            "a length may be multiplied by plain numbers only, if the result is a length",
+        ));
+    }
+    Ok(Quantity {
+        value: a.value * b.value,
+        power,
+    })
+}
+
+fn quotient(a: Quantity, b: Quantity) -> Arithmetic {
+    if b.value == 0.0 {
+        return Err((
+            "division by zero".into(),
+            "make sure the divisor is not zero for these measurements",
+        ));
+    }
+    product(
+        a,
+        Quantity {
+            value: 1.0,
+            power: -b.power,
+        },
+    )
+    .map(|q| Quantity {
+        value: a.value / b.value,
+        power: q.power,
+    })
+}
+
+fn call(function: Function, values: &[Quantity]) -> Arithmetic {
+    let angle = |name: &str| {
+        if values[0].power == 0 {
+            Ok(values[0].value)
+        } else {
+            Err((
+                format!("{name} of {}", kind(values[0].power)),
+                "give it an angle, for example shoulder_incl or 30deg",
+            ))
+        }
+    };
+    let extreme = |better: fn(f64, f64) -> f64| {
+        values[1..].iter().try_fold(values[0], |best, &next| {
+            like(best, next, better(best.value, next.value))
+        })
+    };
+    match function {
+        Function::Minimum => extreme(f64::min),
+        Function::Maximum => extreme(f64::max),
+        Function::Absolute => Ok(Quantity {
+            value: values[0].value.abs(),
+            power: values[0].power,
+        }),
+        Function::SquareRoot => square_root(values[0]),
+        Function::Sine => Ok(plain(angle("sin")?.sin())),
+        Function::Cosine => Ok(plain(angle("cos")?.cos())),
+        Function::Tangent => Ok(plain(angle("tan")?.tan())),
+        Function::ArcTangent2 => {
+            like(values[0], values[1], 0.0)?;
+            Ok(plain(values[0].value.atan2(values[1].value)))
+        }
+        Function::Hypotenuse => like(values[0], values[1], values[0].value.hypot(values[1].value)),
+        Function::Round => round(values[0], values[1]),
+    }
+}
+
+fn round(a: Quantity, step: Quantity) -> Arithmetic {
+    if step.value <= 0.0 {
+        return Err((
+            "the step that is rounded to is not above zero".into(),
+            "give a step, for example 5mm",
+        ));
+    }
+    like(a, step, (a.value / step.value).round() * step.value)
+}
+
+fn square_root(a: Quantity) -> Arithmetic {
+    if a.value < 0.0 {
+        return Err((
+            format!("the square root of a negative number ({})", a.value),
+            "make sure it is positive for these measurements, for example with max(0, ...)",
+        ));
+    }
+    if a.power % 2 != 0 {
+        return Err((
+            format!("the square root of {}", kind(a.power)),
+            "multiply two lengths under the root",
+        ));
+    }
+    Ok(Quantity {
+        value: a.value.sqrt(),
+        power: a.power / 2,
+    })
+}
+
+/// A dimension in words.
+pub(crate) fn kind(power: i8) -> &'static str {
+    match power {
+        0 => "a plain number",
+        1 => "a length",
+        2 => "an area",
+        _ => "a power of a length",
+    }
+}

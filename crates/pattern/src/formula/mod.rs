@@ -1,0 +1,237 @@
+//! Formulas: arithmetic on measurements, variables and drafted lengths.
+//!
+//! A formula holds the ids of what it names and prints their names of the day, so that renaming a
+//! part touches no formula. It is kept in postfix order with jumps, so that computing it needs no
+//! recursion whatever its length.
+
+mod compute;
+mod names;
+mod parse;
+
+pub use names::Names;
+pub(crate) use compute::{Environment, Failure, Quantity, compute, kind};
+
+use crate::{PartReference, VariableId};
+use std::fmt;
+use std::sync::Arc;
+
+/// Longest formula that is read [bytes].
+pub const FORMULA_LENGTH: usize = 2000;
+/// Deepest nesting of parentheses, signs and calls that is read.
+pub const FORMULA_DEPTH: usize = 50;
+
+/// A formula that has been read. Two are equal when they say the same of the same parts.
+#[derive(Clone)]
+pub struct Formula {
+    tokens: Arc<[Token]>,
+    steps: Arc<[Step]>,
+}
+
+/// Why a text is not a formula.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("column {column}: {message}; {hint}")]
+pub struct FormulaError {
+    /// Column of the offending character, from 1.
+    pub column: usize,
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it.
+    pub hint: String,
+}
+
+/// A stretch of the text, or a name in it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Token {
+    /// Text as it was written.
+    Text(Box<str>),
+    /// A variable.
+    Variable(VariableId),
+    /// A measurement, or a word that is neither variable nor measurement.
+    Word(Box<str>),
+    /// A part that is measured.
+    Part(PartReference),
+}
+
+/// One step of a formula in postfix order.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Step {
+    /// Where it stands in the text that was read, from 1.
+    pub column: usize,
+    pub operation: Operation,
+}
+
+/// What a step does to the stack.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Operation {
+    /// Pushes a number; `power` 1 is a length.
+    Constant { value: f64, power: i8 },
+    /// Pushes a variable.
+    Variable(VariableId),
+    /// Pushes a measurement.
+    Word(Box<str>),
+    Negate,
+    Not,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Compare(Comparison),
+    And,
+    Or,
+    /// Takes that many values and pushes one.
+    Call(Function, usize),
+    /// Pushes the length of a part.
+    Length(PartReference),
+    /// Pushes the length of a stretch after all operations, dart legs left out.
+    Finished(PartReference),
+    /// Pushes the direction of a part from start to end, from +x counter-clockwise.
+    Angle(PartReference),
+    /// Pushes the direction from a point to another.
+    AngleBetween(PartReference, PartReference),
+    /// Pushes a coordinate of a point: 0 is x, 1 is y.
+    Coordinate(PartReference, usize),
+    /// Pushes the distance between two points.
+    Distance(PartReference, PartReference),
+    /// Takes a value; goes on at the step of that number if it is 0.
+    JumpUnless(usize),
+    /// Goes on at the step of that number.
+    Jump(usize),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Comparison {
+    Less,
+    LessOrEqual,
+    More,
+    MoreOrEqual,
+    Equal,
+    Unequal,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Function {
+    Minimum,
+    Maximum,
+    Absolute,
+    SquareRoot,
+    Sine,
+    Cosine,
+    Tangent,
+    ArcTangent2,
+    Hypotenuse,
+    Round,
+}
+
+impl Formula {
+    /// Reads a formula, its names looked up in a document.
+    ///
+    /// Numbers may carry a unit (`mm cm m in deg rad`, and `1 5/8in`); names are variables or
+    /// measurements; `length(front.armhole)`, `length(front.side..front.hem)`, `angle`, `distance`,
+    /// `x`, `y` speak of parts as they are drawn, `finished` of an edge after all operations;
+    /// `length('side seam')` of a seam. `if(a < b, c, d)` chooses, `round(x, 5mm)` rounds. Names
+    /// that are not plain words stand in single quotes.
+    ///
+    /// # Errors
+    /// The text is no formula. A name that is not known is no error: it is kept, and the formula
+    /// has no value until something has that name.
+    pub fn parse(text: &str, names: &Names) -> Result<Self, FormulaError> {
+        parse::parse(text, names)
+    }
+
+    /// Reads a formula that speaks of no part: measurements and numbers alone.
+    ///
+    /// # Errors
+    /// The text is no formula.
+    pub fn of_measurements(text: &str) -> Result<Self, FormulaError> {
+        parse::parse(text, &Names::default())
+    }
+
+    /// The formula with names of the day.
+    pub fn text(&self, names: &Names) -> String {
+        self.tokens.iter().map(|token| names.print(token)).collect()
+    }
+
+    pub(crate) fn steps(&self) -> &[Step] {
+        &self.steps
+    }
+
+    /// Everything the formula names, in the order of its text.
+    pub fn tokens(&self) -> &[Token] {
+        &self.tokens
+    }
+
+    /// Parts the formula measures.
+    pub fn parts(&self) -> impl Iterator<Item = &PartReference> {
+        self.tokens.iter().filter_map(|token| match token {
+            Token::Part(part) => Some(part),
+            _ => None,
+        })
+    }
+
+    /// Whether its length is measured after operations: by `finished`, or of a seam.
+    pub(crate) fn finished_parts(&self) -> impl Iterator<Item = &PartReference> {
+        self.steps.iter().filter_map(|step| match &step.operation {
+            Operation::Finished(part) => Some(part),
+            _ => None,
+        })
+    }
+
+    /// The formula with every reference put through a map, as pasting does.
+    #[must_use]
+    pub fn mapped(&self, map: &mut impl FnMut(&Token) -> Token) -> Self {
+        let tokens: Arc<[Token]> = self.tokens.iter().map(&mut *map).collect();
+        let mut part = |reference: &PartReference| match map(&Token::Part(reference.clone())) {
+            Token::Part(part) => part,
+            other => PartReference::Unknown(format!("{other:?}").into()),
+        };
+        let mut steps: Vec<Step> = self.steps.to_vec();
+        for step in &mut steps {
+            match &mut step.operation {
+                Operation::Length(r)
+                | Operation::Finished(r)
+                | Operation::Angle(r)
+                | Operation::Coordinate(r, _) => *r = part(r),
+                Operation::Distance(a, b) | Operation::AngleBetween(a, b) => {
+                    *a = part(a);
+                    *b = part(b);
+                }
+                _ => {}
+            }
+        }
+        for step in &mut steps {
+            if let Operation::Variable(id) = step.operation
+                && let Token::Variable(new) = map(&Token::Variable(id))
+            {
+                step.operation = Operation::Variable(new);
+            }
+        }
+        Self {
+            tokens,
+            steps: steps.into(),
+        }
+    }
+}
+
+/// A name as a formula writes it: in quotes unless it is a plain word.
+pub(crate) fn quoted(name: &str) -> String {
+    let plain = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+        && !parse::RESERVED.contains(&name);
+    if plain {
+        name.to_owned()
+    } else {
+        format!("'{name}'")
+    }
+}
+
+impl PartialEq for Formula {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.tokens, &other.tokens) || self.tokens == other.tokens
+    }
+}
+
+impl fmt::Debug for Formula {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Formula({:?})", self.tokens)
+    }
+}

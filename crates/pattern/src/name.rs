@@ -1,0 +1,119 @@
+//! Names of places that survive edits: corners and lines by the part that was drawn, or by the
+//! operation that made them; places along a line by these.
+
+use crate::{CurveId, EdgeId, LineId, Number, OperationId, PanelId, PointId};
+use serde::{Deserialize, Serialize};
+
+/// A corner, edge or line of a panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Name<Id> {
+    /// Drawn: a point, an edge or a line of the document.
+    Drawn(Id),
+    /// Made by an operation.
+    Made {
+        /// The operation.
+        by: OperationId,
+        /// What it is in that operation.
+        role: Role,
+        /// Which of several, from 0 in the order of the outline.
+        index: u16,
+    },
+}
+
+/// A corner of a panel.
+pub type CornerName = Name<PointId>;
+/// An edge of a panel.
+pub type EdgeName = Name<EdgeId>;
+/// A line of a panel.
+pub type LineName = Name<LineId>;
+
+/// What a made corner, edge or line is in its operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// A leg of a dart: 0 before the apex along the outline, 1 after it; of a diamond 0 to 3.
+    Leg,
+    /// The apex of a dart.
+    Apex,
+    /// An end of a dart's mouth: 0 before the apex, 1 after it.
+    Mouth,
+    /// The hole of a diamond dart.
+    Diamond,
+}
+
+/// A place on a line of a panel.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mark {
+    /// A corner.
+    Corner(CornerName),
+    /// Where a notch of the panel is.
+    Notch(crate::NotchId),
+    /// At a distance from a corner along the line, against it if negative [m].
+    Along {
+        /// The corner.
+        from: CornerName,
+        /// How far [m].
+        distance: Number,
+    },
+    /// A share of the way along the line from a corner to one that follows.
+    Between {
+        /// The corners.
+        ends: [CornerName; 2],
+        /// Plain share of the arc length.
+        share: Number,
+    },
+}
+
+impl Mark {
+    /// At a drawn point.
+    pub fn corner(point: PointId) -> Self {
+        Self::Corner(Name::Drawn(point))
+    }
+
+    /// A share of the way between two drawn points.
+    pub fn between(ends: [PointId; 2], share: impl Into<Number>) -> Self {
+        Self::Between {
+            ends: ends.map(Name::Drawn),
+            share: share.into(),
+        }
+    }
+
+    /// The corners it is placed by.
+    pub fn corners(&self) -> Vec<CornerName> {
+        match self {
+            Self::Corner(corner) | Self::Along { from: corner, .. } => vec![*corner],
+            Self::Between { ends, .. } => ends.to_vec(),
+            Self::Notch(_) => Vec::new(),
+        }
+    }
+
+    /// Its number, if it has one.
+    pub fn number(&self) -> Option<&Number> {
+        match self {
+            Self::Along { distance, .. } => Some(distance),
+            Self::Between { share, .. } => Some(share),
+            Self::Corner(_) | Self::Notch(_) => None,
+        }
+    }
+}
+
+/// A part that a formula measures.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PartReference {
+    /// A point of a sheet.
+    Point(PointId),
+    /// A curve of a sheet.
+    Curve(CurveId),
+    /// The stretch of a panel's line from a corner to one that follows it.
+    Stretch {
+        /// The panel.
+        panel: PanelId,
+        /// Its corners.
+        ends: [CornerName; 2],
+    },
+    /// A seam.
+    Seam(crate::SeamId),
+    /// A text that names nothing.
+    Unknown(Box<str>),
+}

@@ -1,0 +1,178 @@
+//! Darts taken out of a line.
+
+use super::{PlaceError, Spot, Stage, StageDart, StageEdge, with_ends};
+use crate::{Corner, LineKind, LineName, Name, OperationId, Role};
+use toile_geometry::{Curve, Vec2};
+
+/// A dart whose numbers are known.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DartMouth {
+    pub by: OperationId,
+    pub line: LineName,
+    /// Middle of the mouth.
+    pub middle: Spot,
+    /// Width of the mouth along the line [m].
+    pub intake: f64,
+    pub apex: DartApex,
+}
+
+/// Where a dart ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum DartApex {
+    /// So far from the middle of the mouth, square to it [m].
+    Depth(f64),
+    /// At a place [m].
+    Point(Vec2),
+}
+
+/// Why a dart cannot be taken out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum DartError {
+    /// Its line is not there.
+    Place(PlaceError),
+    /// It has no width, or does not fit on its edge.
+    TooWide,
+    /// Another dart is there.
+    Overlaps,
+}
+
+/// Takes a dart out of a stage.
+pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartError> {
+    let turn = stage.turn();
+    let mut result = stage.clone();
+    let found = result.lines.iter_mut().find(|line| {
+        line.name == dart.line && line.half == 0 && line.kind == LineKind::Outline
+    });
+    let line = found.ok_or(DartError::Place(PlaceError::NoLine))?;
+    let pieces: Vec<usize> = (0..line.edges.len())
+        .filter(|&k| line.edges[k].name == dart.middle.edge)
+        .collect();
+    // The named edge's length, mouths of other darts included.
+    let measured = pieces.iter().find_map(|&k| {
+        let edge = &line.edges[k];
+        let covered = (edge.to - edge.from).abs();
+        (covered > 1e-12).then(|| edge.curve.length() / covered)
+    });
+    let length = measured.ok_or(DartError::Place(PlaceError::Beyond))?;
+    let half = 0.5 * dart.intake / length.max(1e-12);
+    let (from, to) = (dart.middle.share - half, dart.middle.share + half);
+    if dart.intake <= 0.0 || from < -1e-9 || to > 1.0 + 1e-9 {
+        return Err(DartError::TooWide);
+    }
+    let (from, to) = (from.clamp(0.0, 1.0), to.clamp(0.0, 1.0));
+    let covered: f64 = pieces
+        .iter()
+        .map(|&k| {
+            let edge = &line.edges[k];
+            (edge.to.min(to) - edge.from.max(from)).max(0.0)
+        })
+        .sum();
+    if (covered - (to - from)).abs() > 1e-9 {
+        return Err(DartError::Overlaps);
+    }
+    let (open, close) = (
+        point_at(&line.edges, &pieces, from),
+        point_at(&line.edges, &pieces, to),
+    );
+    let (Some(open), Some(close)) = (open, close) else {
+        return Err(DartError::Overlaps);
+    };
+    let apex = match dart.apex {
+        DartApex::Point(apex) => apex,
+        DartApex::Depth(depth) => {
+            let chord = close - open;
+            let left = Vec2::new(-chord.y, chord.x) * turn;
+            let inward = left.try_normalize(1e-15).unwrap_or_else(Vec2::zeros);
+            (open + close) * 0.5 + inward * depth
+        }
+    };
+    let mut edges: Vec<StageEdge> = Vec::with_capacity(line.edges.len() + 3);
+    let mut legs = Some(legs(dart.by, [open, close], apex));
+    for edge in &line.edges {
+        let outside = edge.name != dart.middle.edge || edge.to <= from + 1e-12 || edge.from >= to - 1e-12;
+        if outside {
+            let is_after = edge.name == dart.middle.edge && edge.from >= to - 1e-12;
+            if is_after {
+                edges.extend(legs.take().into_iter().flatten());
+            }
+            edges.push(edge.clone());
+            continue;
+        }
+        if (from - edge.from) * length > 1e-9 {
+            edges.push(part(edge, edge.from, from, [edge.curve.start(), open]));
+        }
+        edges.extend(legs.take().into_iter().flatten());
+        if (edge.to - to) * length > 1e-9 {
+            let after = part(edge, to, edge.to, [close, edge.curve.end()]);
+            edges.push(StageEdge {
+                start: Some(mouth(dart.by, 1)),
+                corner: Corner::Mitre,
+                ..after
+            });
+        }
+    }
+    line.edges = edges;
+    result.darts.push(StageDart {
+        by: dart.by,
+        half: 0,
+        mouth: [open, close],
+        apex,
+    });
+    Ok(result)
+}
+
+fn mouth(by: OperationId, index: u16) -> crate::CornerName {
+    Name::Made {
+        by,
+        role: Role::Mouth,
+        index,
+    }
+}
+
+fn legs(by: OperationId, [open, close]: [Vec2; 2], apex: Vec2) -> [StageEdge; 2] {
+    let made = |role, index| Name::Made { by, role, index };
+    let ends = [(open, apex), (apex, close)];
+    [0, 1].map(|k: u16| {
+        let (start, end) = ends[usize::from(k)];
+        StageEdge {
+            name: made(Role::Leg, k),
+            half: 0,
+            start: Some(match k {
+                0 => mouth(by, 0),
+                _ => Name::Made {
+                    by,
+                    role: Role::Apex,
+                    index: 0,
+                },
+            }),
+            from: 0.0,
+            to: 1.0,
+            curve: Curve::Line { start, end },
+            allowance: 0.0,
+            corner: Corner::Mitre,
+        }
+    })
+}
+
+/// The part of an edge between two shares of its named edge.
+fn part(edge: &StageEdge, from: f64, to: f64, [start, end]: [Vec2; 2]) -> StageEdge {
+    let parameter = |share: f64| parameter(edge, share);
+    let curve = edge.curve.between(parameter(from), parameter(to));
+    StageEdge {
+        from,
+        to,
+        curve: with_ends(curve, start, end),
+        ..edge.clone()
+    }
+}
+
+fn parameter(edge: &StageEdge, share: f64) -> f64 {
+    let local = (share - edge.from) / (edge.to - edge.from);
+    edge.curve.parameter_at_length(local * edge.curve.length())
+}
+
+fn point_at(edges: &[StageEdge], pieces: &[usize], share: f64) -> Option<Vec2> {
+    let mut found = pieces.iter().map(|&k| &edges[k]);
+    let edge = found.find(|edge| (edge.from - 1e-9..=edge.to + 1e-9).contains(&share))?;
+    Some(edge.curve.point(parameter(edge, share.clamp(edge.from, edge.to))))
+}

@@ -1,0 +1,64 @@
+//! Darts inside a panel, pointed at both ends.
+
+use super::{Stage, StageDart, StageEdge, StageLine};
+use crate::{Corner, LineKind, Name, OperationId, Role};
+use toile_geometry::{Curve, Vec2};
+
+/// Takes a diamond out of a stage as a hole: legs 0 and 1 from the first end to the second on one
+/// side, 2 and 3 back on the other. Nothing if it has no width or length.
+pub(crate) fn cut_diamond(
+    stage: &Stage,
+    by: OperationId,
+    [a, b]: [Vec2; 2],
+    widest: f64,
+    intake: f64,
+) -> Option<Stage> {
+    let way = b - a;
+    if intake <= 0.0 || !(0.0..=1.0).contains(&widest) || way.norm() <= 1e-9 {
+        return None;
+    }
+    let side = Vec2::new(-way.y, way.x).normalize() * (0.5 * intake * stage.turn());
+    let middle = a + way * widest;
+    let corners = [a, middle + side, b, middle - side];
+    let made = |role, index| Name::Made { by, role, index };
+    let edges = (0..4_u16)
+        .map(|leg| StageEdge {
+            name: made(Role::Leg, leg),
+            half: 0,
+            start: Some(Name::Made {
+                by,
+                role: Role::Mouth,
+                index: leg,
+            }),
+            from: 0.0,
+            to: 1.0,
+            curve: Curve::Line {
+                start: corners[usize::from(leg)],
+                end: corners[usize::from(leg + 1) % 4],
+            },
+            allowance: 0.0,
+            corner: Corner::Mitre,
+        })
+        .collect();
+    let mut result = stage.clone();
+    let internal = result.lines.iter().position(|line| line.kind == LineKind::Internal);
+    let hole = StageLine {
+        name: Name::Made {
+            by,
+            role: Role::Diamond,
+            index: 0,
+        },
+        half: 0,
+        kind: LineKind::Hole,
+        edges,
+        end: None,
+    };
+    result.lines.insert(internal.unwrap_or(result.lines.len()), hole);
+    result.darts.push(StageDart {
+        by,
+        half: 0,
+        mouth: [middle + side, middle - side],
+        apex: a,
+    });
+    Some(result)
+}

@@ -1,0 +1,118 @@
+//! The other half of a panel that lies on the fold of the cloth.
+
+use super::{MarkValue, PlaceError, Stage, StageDart, StageEdge, StageNotch, mirrored_edges, with_ends};
+use crate::{LineKind, LineName, NotchId};
+use toile_geometry::{Curve, Vec2};
+
+/// Why a stage cannot be unfolded.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum FoldError {
+    /// The stretch is not on the outline.
+    Place(PlaceError),
+    /// The stretch is not straight, has no length, or is all there is.
+    NotStraight,
+}
+
+/// A stage and its mirror image in a straight stretch of its outline, and the notches that lay on
+/// the stretch and are gone with it.
+pub(crate) fn unfold(
+    stage: &Stage,
+    line: LineName,
+    ends: [MarkValue; 2],
+) -> Result<(Stage, Vec<NotchId>), FoldError> {
+    let stretch = stage.stretch(line, ends, false).map_err(FoldError::Place)?;
+    let outline = stage.lines.iter().find(|l| {
+        l.name == line && l.half == 0 && l.kind == LineKind::Outline
+    });
+    let outline = outline.ok_or(FoldError::Place(PlaceError::NoLine))?;
+    let on_fold = |edge: &StageEdge| {
+        stretch.iter().any(|&(name, from, to)| {
+            name == edge.name && edge.from >= from - 1e-9 && edge.to <= to + 1e-9
+        })
+    };
+    let mut edges = outline.edges.clone();
+    let first = (0..edges.len()).find(|&k| {
+        on_fold(&edges[k]) && !on_fold(&edges[(k + edges.len() - 1) % edges.len()])
+    });
+    let Some(first) = first else {
+        return Err(FoldError::NotStraight);
+    };
+    edges.rotate_left(first);
+    let count = edges.iter().take_while(|edge| on_fold(edge)).count();
+    let folded: Vec<StageEdge> = edges.drain(..count).collect();
+    let (start, end) = (folded[0].curve.start(), folded[count - 1].curve.end());
+    let way = end - start;
+    let is_straight = way.norm() > 1e-9
+        && folded.iter().all(|edge| {
+            let away = way.perp(&(edge.curve.end() - start)) / way.norm();
+            matches!(edge.curve, Curve::Line { .. }) && away.abs() < 1e-7
+        });
+    if !is_straight || edges.is_empty() {
+        return Err(FoldError::NotStraight);
+    }
+    let lost = stage.notches.iter().filter(|notch| {
+        notch.half == 0 && folded.iter().any(|edge| edge.name == notch.edge)
+    });
+    let lost: Vec<NotchId> = lost.map(|notch| notch.id).collect();
+    Ok((unfolded(stage, edges, (start, end), &lost), lost))
+}
+
+fn unfolded(
+    stage: &Stage,
+    edges: Vec<StageEdge>,
+    (start, end): (Vec2, Vec2),
+    lost: &[NotchId],
+) -> Stage {
+    let bit = 1 << stage.folds.len().min(7);
+    let mirror = (start, end - start);
+    let unit = mirror.1.normalize();
+    let flip = |v: Vec2| unit * (2.0 * v.dot(&unit)) - v;
+    let reflect = |p: Vec2| start + flip(p - start);
+    let mut other = mirrored_edges(&edges, mirror, bit, false);
+    if let Some(first) = other.first_mut() {
+        first.curve = with_ends(first.curve, start, first.curve.end());
+    }
+    if let Some(last) = other.last_mut() {
+        last.curve = with_ends(last.curve, last.curve.start(), end);
+    }
+    let mut result = stage.clone();
+    result.folds.push((start, unit));
+    let mut lines = Vec::with_capacity(2 * result.lines.len());
+    for kind in [LineKind::Outline, LineKind::Hole, LineKind::Internal] {
+        let own: Vec<_> = result.lines.iter().filter(|l| l.kind == kind).cloned().collect();
+        if kind == LineKind::Outline {
+            let mut outline = own.into_iter().next().expect("the fold is on the outline");
+            outline.edges = edges.iter().cloned().chain(other.drain(..)).collect();
+            lines.push(outline);
+            continue;
+        }
+        let mirrored: Vec<_> = own.iter().map(|line| line.mirrored(mirror, bit)).collect();
+        lines.extend(own);
+        lines.extend(mirrored);
+    }
+    result.lines = lines;
+    result.notches.retain(|notch| !lost.contains(&notch.id));
+    let notches: Vec<StageNotch> = result
+        .notches
+        .iter()
+        .map(|notch| StageNotch {
+            half: notch.half | bit,
+            point: reflect(notch.point),
+            inward: flip(notch.inward),
+            ..*notch
+        })
+        .collect();
+    result.notches.extend(notches);
+    let darts: Vec<StageDart> = result
+        .darts
+        .iter()
+        .map(|dart| StageDart {
+            half: dart.half | bit,
+            mouth: [reflect(dart.mouth[1]), reflect(dart.mouth[0])],
+            apex: reflect(dart.apex),
+            ..*dart
+        })
+        .collect();
+    result.darts.extend(darts);
+    result
+}

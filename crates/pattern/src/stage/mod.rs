@@ -1,0 +1,241 @@
+//! Stages: a panel as it is drawn, and after each of its operations. Plain numbers.
+
+mod dart;
+mod diamond;
+mod fold;
+mod place;
+
+pub(crate) use dart::{DartApex, DartError, DartMouth, cut_dart};
+pub(crate) use diamond::cut_diamond;
+pub(crate) use fold::{FoldError, unfold};
+pub(crate) use place::{MarkValue, PlaceError, Spot, Stretch};
+
+use crate::{Corner, CornerName, EdgeName, LineId, LineKind, LineName, NotchId, NotchKind, OperationId};
+use toile_geometry::{Curve, Vec2};
+
+/// A panel after some of its operations.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stage {
+    /// Its lines: the outline first, then holes, then internal lines.
+    pub lines: Vec<StageLine>,
+    /// Its notches.
+    pub notches: Vec<StageNotch>,
+    /// Direction of the warp [rad], from +x counter-clockwise.
+    pub grain: f64,
+    /// Darts that were taken out, for their caps.
+    pub darts: Vec<StageDart>,
+    /// Fold lines the stage was unfolded in: a point on each and its direction.
+    pub folds: Vec<(Vec2, Vec2)>,
+}
+
+/// A line of a stage.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageLine {
+    /// Its name.
+    pub name: LineName,
+    /// Which half it is on: a bit a fold.
+    pub half: u8,
+    /// What it is.
+    pub kind: LineKind,
+    /// Its edges, in order. An edge that is a spline is several.
+    pub edges: Vec<StageEdge>,
+    /// The corner an open line ends at.
+    pub end: Option<CornerName>,
+}
+
+/// An edge of a stage: one curve, and the stretch of its named edge that it covers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageEdge {
+    /// The edge of the document or of an operation.
+    pub name: EdgeName,
+    /// Which half it is on: a bit a fold.
+    pub half: u8,
+    /// The corner it starts at; nothing between two curves of one edge.
+    pub start: Option<CornerName>,
+    /// Share of the named edge's arc length where it starts.
+    pub from: f64,
+    /// Share where it ends; less than `from` if it runs against the named edge.
+    pub to: f64,
+    /// Its curve, in the direction of the line [m].
+    pub curve: Curve,
+    /// Width of cloth outside it [m].
+    pub allowance: f64,
+    /// How the cut line turns the corner at its start.
+    pub corner: Corner,
+}
+
+/// A notch of a stage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StageNotch {
+    /// Which notch of the panel it is.
+    pub id: NotchId,
+    /// The edge it is on.
+    pub edge: EdgeName,
+    /// Which half it is on.
+    pub half: u8,
+    /// How it is cut.
+    pub kind: NotchKind,
+    /// Where [m].
+    pub point: Vec2,
+    /// Unit direction into the piece.
+    pub inward: Vec2,
+}
+
+/// A dart of a stage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StageDart {
+    /// The operation that took it out.
+    pub by: OperationId,
+    /// Which half it is on.
+    pub half: u8,
+    /// Start and end of the mouth along the outline [m].
+    pub mouth: [Vec2; 2],
+    /// Its point [m].
+    pub apex: Vec2,
+}
+
+impl Stage {
+    /// The outline's edges; none if there is no outline.
+    pub fn outline(&self) -> &[StageEdge] {
+        let found = self.lines.iter().find(|line| line.kind == LineKind::Outline);
+        found.map_or(&[], |line| &line.edges)
+    }
+
+    /// Each hole's edges.
+    pub fn holes(&self) -> impl Iterator<Item = &[StageEdge]> {
+        let holes = self.lines.iter().filter(|line| line.kind == LineKind::Hole);
+        holes.map(|line| line.edges.as_slice())
+    }
+
+    /// 1 if the outline runs counter-clockwise, else -1.
+    pub fn turn(&self) -> f64 {
+        let swept: f64 = self.outline().iter().map(|e| e.curve.swept_area()).sum();
+        if swept < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// Every number of the stage, for comparing to the bit.
+    fn bits(&self) -> Vec<u64> {
+        let mut numbers = vec![self.grain];
+        let mut points: Vec<Vec2> = Vec::new();
+        for edge in self.lines.iter().flat_map(|line| &line.edges) {
+            numbers.extend([edge.from, edge.to, edge.allowance]);
+            if let Curve::Arc { bulge, .. } = edge.curve {
+                numbers.push(bulge);
+            }
+            points.extend(edge.curve.defining_points());
+        }
+        points.extend(self.notches.iter().flat_map(|n| [n.point, n.inward]));
+        points.extend(self.darts.iter().flat_map(|d| [d.mouth[0], d.mouth[1], d.apex]));
+        points.extend(self.folds.iter().flat_map(|f| [f.0, f.1]));
+        numbers.extend(points.iter().flat_map(|p| [p.x, p.y]));
+        numbers.into_iter().map(f64::to_bits).collect()
+    }
+
+    /// Whether another stage is the same to the bit.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self == other && self.bits() == other.bits()
+    }
+
+    /// The mirror image in the y axis: the other piece of a pair.
+    #[must_use]
+    pub fn mirror_image(&self) -> Self {
+        let mirror = (Vec2::zeros(), Vec2::y());
+        let flip = |v: Vec2| Vec2::new(-v.x, v.y);
+        Self {
+            lines: self.lines.iter().map(|line| line.mirrored(mirror, 0)).collect(),
+            notches: self
+                .notches
+                .iter()
+                .map(|notch| StageNotch {
+                    point: flip(notch.point),
+                    inward: flip(notch.inward),
+                    ..*notch
+                })
+                .collect(),
+            grain: std::f64::consts::PI - self.grain,
+            darts: self
+                .darts
+                .iter()
+                .map(|dart| StageDart {
+                    mouth: [flip(dart.mouth[1]), flip(dart.mouth[0])],
+                    apex: flip(dart.apex),
+                    ..*dart
+                })
+                .collect(),
+            folds: self.folds.iter().map(|f| (flip(f.0), flip(f.1))).collect(),
+        }
+    }
+}
+
+impl StageLine {
+    /// The mirror image in a line, wound as before if it is closed; `half` is added to its halves.
+    pub(crate) fn mirrored(&self, mirror: (Vec2, Vec2), half: u8) -> Self {
+        let mut edges: Vec<StageEdge> = self.edges.clone();
+        if self.kind == LineKind::Internal {
+            for edge in &mut edges {
+                edge.curve = edge.curve.reflected(mirror.0, mirror.1);
+                edge.half |= half;
+            }
+        } else {
+            edges = mirrored_edges(&edges, mirror, half, true);
+        }
+        Self {
+            half: self.half | half,
+            edges,
+            ..self.clone()
+        }
+    }
+}
+
+/// Edges mirrored in a line and walked the other way, so that a closed line is wound as before.
+/// Corners stay with their places: the corner at an edge's end becomes that at its start.
+pub(crate) fn mirrored_edges(
+    edges: &[StageEdge],
+    mirror: (Vec2, Vec2),
+    half: u8,
+    closed: bool,
+) -> Vec<StageEdge> {
+    let count = edges.len();
+    (0..count)
+        .rev()
+        .map(|k| {
+            let edge = &edges[k];
+            let next = match closed || k + 1 < count {
+                true => Some(&edges[(k + 1) % count]),
+                false => None,
+            };
+            StageEdge {
+                half: edge.half | half,
+                start: next.and_then(|next| next.start),
+                corner: next.map_or(Corner::Mitre, |next| next.corner),
+                from: edge.to,
+                to: edge.from,
+                curve: edge.curve.reflected(mirror.0, mirror.1).reversed(),
+                ..edge.clone()
+            }
+        })
+        .collect()
+}
+
+/// The curve with its ends put exactly where they belong.
+pub(crate) fn with_ends(curve: Curve, start: Vec2, end: Vec2) -> Curve {
+    match curve {
+        Curve::Line { .. } => Curve::Line { start, end },
+        Curve::Arc { bulge, .. } => Curve::Arc { start, end, bulge },
+        Curve::Quadratic { control, .. } => Curve::Quadratic {
+            start,
+            control,
+            end,
+        },
+        Curve::Cubic { controls, .. } => Curve::Cubic {
+            start,
+            controls,
+            end,
+        },
+    }
+}
+
+/// Whether a drawn line has that name.
+pub(crate) fn is_drawn(name: LineName, id: LineId) -> bool {
+    name == LineName::Drawn(id)
+}

@@ -1,0 +1,217 @@
+//! Places and stretches on the lines of a stage.
+
+use super::{Stage, StageEdge, StageLine};
+use crate::{CornerName, EdgeName, LineName};
+use toile_geometry::Vec2;
+
+/// A mark whose number is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum MarkValue {
+    Corner(CornerName),
+    /// At a distance along the line from a corner [m].
+    Along(CornerName, f64),
+    /// A share of the way between corners.
+    Between([CornerName; 2], f64),
+}
+
+/// A place on a named edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Spot {
+    pub edge: EdgeName,
+    /// Share of the named edge's arc length.
+    pub share: f64,
+    /// Arc length from the start of the line [m].
+    pub along: f64,
+}
+
+/// Named edges in walking order, each with the shares between which it is walked.
+pub(crate) type Stretch = Vec<(EdgeName, f64, f64)>;
+
+/// Why a mark has no place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum PlaceError {
+    /// The stage has no such line.
+    NoLine,
+    /// The line has no such corner.
+    NoCorner(CornerName),
+    /// The place lies beyond the line, or the share is not from 0 to 1.
+    Beyond,
+}
+
+/// How far a share or a distance may be beyond [1] or [m]: rounding.
+const SLACK: f64 = 1e-9;
+
+impl Stage {
+    fn line(&self, name: LineName) -> Result<&StageLine, PlaceError> {
+        let mut lines = self.lines.iter();
+        let found = lines.find(|line| line.name == name && line.half == 0);
+        found.ok_or(PlaceError::NoLine)
+    }
+
+    /// Where a mark is on a line.
+    pub fn spot(&self, line: LineName, mark: MarkValue) -> Result<Spot, PlaceError> {
+        let line = self.line(line)?;
+        let along = line.along(mark)?;
+        Ok(line.at(along, mark))
+    }
+
+    /// Place and direction of travel at a spot.
+    pub fn at_spot(&self, line: LineName, spot: Spot) -> Option<(Vec2, Vec2)> {
+        let line = self.line(line).ok()?;
+        let edges = line.edges.iter().filter(|edge| edge.name == spot.edge);
+        let found = edges.clone().find(|edge| {
+            let (low, high) = (edge.from.min(edge.to), edge.from.max(edge.to));
+            (low - SLACK..=high + SLACK).contains(&spot.share)
+        });
+        let edge = found?;
+        let local = ((spot.share - edge.from) / (edge.to - edge.from)).clamp(0.0, 1.0);
+        let t = edge.curve.parameter_at_length(edge.curve.length() * local);
+        let direction = edge.curve.derivative(t).try_normalize(1e-15)?;
+        Some((edge.curve.point(t), direction))
+    }
+
+    /// The edges between two marks of a line.
+    pub fn stretch(
+        &self,
+        line: LineName,
+        [from, to]: [MarkValue; 2],
+        backwards: bool,
+    ) -> Result<Stretch, PlaceError> {
+        if backwards {
+            let forwards = self.stretch(line, [to, from], false)?;
+            return Ok(forwards.into_iter().rev().map(|(e, a, b)| (e, b, a)).collect());
+        }
+        let line = self.line(line)?;
+        let (start, end) = (line.along(from)?, line.along(to)?);
+        Ok(line.between(start, end))
+    }
+}
+
+impl StageLine {
+    fn length(&self) -> f64 {
+        self.edges.iter().map(|edge| edge.curve.length()).sum()
+    }
+
+    fn is_closed(&self) -> bool {
+        self.kind != crate::LineKind::Internal
+    }
+
+    /// Arc length from the start of the line to a corner [m].
+    fn corner(&self, corner: CornerName) -> Result<f64, PlaceError> {
+        let mut along = 0.0;
+        for edge in &self.edges {
+            if edge.start == Some(corner) {
+                return Ok(along);
+            }
+            along += edge.curve.length();
+        }
+        let ends_there = !self.is_closed() && self.end == Some(corner);
+        match ends_there {
+            true => Ok(along),
+            false => Err(PlaceError::NoCorner(corner)),
+        }
+    }
+
+    /// Arc length from the start of the line to a mark [m].
+    fn along(&self, mark: MarkValue) -> Result<f64, PlaceError> {
+        let length = self.length();
+        match mark {
+            MarkValue::Corner(corner) => self.corner(corner),
+            MarkValue::Along(corner, distance) => {
+                let along = self.corner(corner)? + distance;
+                match self.is_closed() {
+                    true if distance.abs() <= length => Ok(along.rem_euclid(length)),
+                    false if (-SLACK..=length + SLACK).contains(&along) => {
+                        Ok(along.clamp(0.0, length))
+                    }
+                    _ => Err(PlaceError::Beyond),
+                }
+            }
+            MarkValue::Between([from, to], share) => {
+                if !(-SLACK..=1.0 + SLACK).contains(&share) {
+                    return Err(PlaceError::Beyond);
+                }
+                let (start, end) = (self.corner(from)?, self.corner(to)?);
+                let way = match end > start {
+                    true => end - start,
+                    false if self.is_closed() => end + length - start,
+                    false => return Err(PlaceError::NoCorner(to)),
+                };
+                Ok(start + way * share.clamp(0.0, 1.0))
+            }
+        }
+    }
+
+    /// The spot at an arc length. A mark given as a share of one edge keeps that edge, so that a
+    /// share of 1 is its end and not the start of the next.
+    fn at(&self, along: f64, mark: MarkValue) -> Spot {
+        let length = self.length();
+        let wrapped = match self.is_closed() && along > length {
+            true => along - length,
+            false => along,
+        };
+        let wanted = match mark {
+            MarkValue::Between([from, _], _) => self.named_from(from),
+            _ => None,
+        };
+        let mut before = 0.0;
+        let mut best: Option<Spot> = None;
+        for edge in &self.edges {
+            let own = edge.curve.length();
+            let inside = wrapped >= before - SLACK && wrapped <= before + own + SLACK;
+            if inside && own > 0.0 {
+                let local = ((wrapped - before) / own).clamp(0.0, 1.0);
+                let spot = Spot {
+                    edge: edge.name,
+                    share: edge.from + (edge.to - edge.from) * local,
+                    along: wrapped,
+                };
+                if best.is_none() || wanted == Some(edge.name) || wanted.is_none() {
+                    best = Some(spot);
+                }
+            }
+            before += own;
+        }
+        best.unwrap_or(Spot {
+            edge: self.edges[0].name,
+            share: self.edges[0].from,
+            along: wrapped,
+        })
+    }
+
+    /// The edge that starts at a corner.
+    fn named_from(&self, corner: CornerName) -> Option<EdgeName> {
+        let found = self.edges.iter().find(|edge| edge.start == Some(corner));
+        found.map(|edge| edge.name)
+    }
+
+    /// The stretch from an arc length forwards to another; round the line where it is not beyond.
+    fn between(&self, start: f64, end: f64) -> Stretch {
+        let length = self.length();
+        let end = match self.is_closed() && end <= start + SLACK {
+            true => end + length,
+            false => end,
+        };
+        let rounds = if self.is_closed() { 2 } else { 1 };
+        let mut stretch: Stretch = Vec::new();
+        let mut before = 0.0;
+        for edge in (0..rounds).flat_map(|_| &self.edges) {
+            let own = edge.curve.length();
+            let (low, high) = (start.max(before), end.min(before + own));
+            if high - low > SLACK {
+                let share = |along: f64| share_of(edge, (along - before) / own);
+                let (a, b) = (share(low), share(high));
+                match stretch.last_mut() {
+                    Some(last) if last.0 == edge.name && (last.2 - a).abs() < SLACK => last.2 = b,
+                    _ => stretch.push((edge.name, a, b)),
+                }
+            }
+            before += own;
+        }
+        stretch
+    }
+}
+
+fn share_of(edge: &StageEdge, local: f64) -> f64 {
+    edge.from + (edge.to - edge.from) * local.clamp(0.0, 1.0)
+}
