@@ -1,9 +1,9 @@
 //! Checks that a draft can be cut and sewn.
 
-use crate::resolve::resolve;
+use crate::evaluate::Evaluation;
 use crate::{
-    Code, Diagnostic, Draft, DraftSeam, DraftSpan, EdgeOrigin, Fabric, Pattern, Piece, PieceEdge,
-    PieceLine, Place, SeamOrigin,
+    Code, Diagnostic, Draft, DraftSeam, DraftSpan, Fabric, LineKind, Name, Pattern, Piece,
+    PieceEdge, PieceLine, Place, SeamOrigin,
 };
 use toile_geometry::{Rings, Vec2};
 use toile_measure::Measurements;
@@ -27,11 +27,18 @@ impl Pattern {
     /// Everything that is wrong with the pattern for a table of measurements: what keeps it from
     /// being drafted, then what keeps the draft from being cut and sewn.
     pub fn check(&self, measurements: &Measurements) -> Vec<Diagnostic> {
-        let resolution = resolve(self, measurements);
-        let mut diagnostics = resolution.diagnostics;
-        check_pieces(&resolution.draft, Some(self), &mut diagnostics);
-        for (seam, ease) in resolution.draft.seams.iter().zip(&resolution.eases) {
-            check_seam(&resolution.draft, seam, *ease, &mut diagnostics);
+        Evaluation::new(self, measurements).check()
+    }
+}
+
+impl Evaluation {
+    /// Everything that is wrong with the pattern as it was last evaluated.
+    pub fn check(&self) -> Vec<Diagnostic> {
+        let drafting = self.drafting();
+        let mut diagnostics = drafting.diagnostics;
+        check_pieces(&drafting.draft, Some(self.pattern()), &mut diagnostics);
+        for (seam, ease) in drafting.draft.seams.iter().zip(&drafting.eases) {
+            check_seam(&drafting.draft, seam, *ease, &mut diagnostics);
         }
         diagnostics
     }
@@ -96,7 +103,7 @@ fn seam_place(seam: &DraftSeam, draft: &Draft) -> Place {
         SeamOrigin::Dart { dart, .. } => {
             let span = seam.sides.iter().flatten().next();
             match span.and_then(|span| draft.pieces.get(span.piece)) {
-                Some(piece) => Place::Dart(piece.id.panel, dart),
+                Some(piece) => Place::Operation(piece.id.panel, dart),
                 None => Place::Pattern,
             }
         }
@@ -221,33 +228,30 @@ impl PieceCheck<'_> {
 
     fn edge_place(&self, edge: &PieceEdge) -> Place {
         let panel = self.piece.id.panel;
-        match edge.origin {
-            EdgeOrigin::Edge { edge, .. } => Place::Edge(panel, edge),
-            EdgeOrigin::DartLeg { dart, .. } => Place::Dart(panel, dart),
+        match edge.origin.name {
+            Name::Drawn(edge) => Place::Edge(panel, edge),
+            Name::Made { by, .. } => Place::Operation(panel, by),
         }
     }
 
     /// An edge in words.
     fn edge_words(&self, edge: &PieceEdge) -> String {
         let panel = self.pattern.and_then(|p| p.panel(self.piece.id.panel));
-        let (words, reflected) = match edge.origin {
-            EdgeOrigin::Edge { edge, reflected } => {
-                let name = panel.and_then(|panel| panel.edge(edge));
-                let words = name.map_or_else(|| edge.to_string(), |e| format!("{:?}", e.name));
-                (format!("edge {words}"), reflected)
+        let words = match edge.origin.name {
+            Name::Drawn(id) => {
+                let name = panel.and_then(|panel| panel.edge(id));
+                let words = name.map_or_else(|| id.to_string(), |e| format!("{:?}", e.name));
+                format!("edge {words}")
             }
-            EdgeOrigin::DartLeg {
-                dart, reflected, ..
-            } => {
-                let found = panel.and_then(|panel| panel.darts.iter().find(|d| d.id == dart));
-                let words = found.map_or_else(|| dart.to_string(), |d| format!("{:?}", d.name));
-                (format!("dart {words}"), reflected)
+            Name::Made { by, .. } => {
+                let found = panel.and_then(|panel| panel.operations.iter().find(|o| o.id == by));
+                let words = found.map_or_else(|| by.to_string(), |o| format!("{:?}", o.name));
+                format!("{} {words}", found.map_or("operation", |o| o.kind.word()))
             }
         };
-        if reflected {
-            format!("{words} (mirrored)")
-        } else {
-            words
+        match edge.origin.half {
+            0 => words,
+            _ => format!("{words} (mirrored)"),
         }
     }
 
@@ -343,7 +347,7 @@ impl PieceCheck<'_> {
         let edges: Vec<&PieceEdge> = loops.iter().flat_map(|edges| edges.iter()).collect();
         let crossings = segments.crossings(CROSSINGS);
         for ([a, b], point) in crossings.found {
-            let is_dart = |k: usize| matches!(edges[k].origin, EdgeOrigin::DartLeg { .. });
+            let is_dart = |k: usize| edges[k].origin.leg().is_some();
             let (code, hint) = if is_dart(a) || is_dart(b) {
                 (
                     Code::DartOutside,
@@ -379,7 +383,7 @@ impl PieceCheck<'_> {
     }
 
     fn check_hole(&mut self, k: usize, hole: &[PieceEdge], outline: f64, outer: &Rings) {
-        let place = Place::Hole(self.piece.id.panel, k);
+        let place = self.hole_place(k);
         let area = swept(hole);
         if hole.is_empty() || area.abs() < 1e-10 {
             let words = format!("hole {} encloses nothing", k + 1);
@@ -399,10 +403,24 @@ impl PieceCheck<'_> {
         }
     }
 
+    /// The place of a hole of the piece.
+    fn hole_place(&self, k: usize) -> Place {
+        let id = self.piece.id.panel;
+        let lines = self
+            .pattern
+            .and_then(|p| p.panel(id))
+            .into_iter()
+            .flat_map(|p| &p.lines);
+        let mut holes = lines.filter(|line| line.kind == LineKind::Hole);
+        holes
+            .nth(k)
+            .map_or(Place::Panel(id), |line| Place::Line(id, line.id))
+    }
+
     fn check_line(&mut self, line: &PieceLine, segments: &Rings) {
-        let place = Place::InternalLine(self.piece.id.panel, line.id);
+        let place = Place::Line(self.piece.id.panel, line.id);
         let panel = self.pattern.and_then(|p| p.panel(self.piece.id.panel));
-        let found = panel.and_then(|p| p.internal_lines.iter().find(|l| l.id == line.id));
+        let found = panel.and_then(|p| p.line(line.id));
         let name = found.map_or_else(|| line.id.to_string(), |l| format!("{:?}", l.name));
         if !line.curves.iter().all(|curve| curve.is_finite()) {
             let words = format!("internal line {name} has a number that is not finite");

@@ -1,6 +1,6 @@
-//! Places in words.
+//! Places in words, and the places of parts.
 
-use crate::{PanelId, Pattern, Place};
+use crate::{PanelId, PartId, Pattern, Place};
 
 impl Pattern {
     /// A place in words, with the names of the parts.
@@ -9,51 +9,115 @@ impl Pattern {
             Some(panel) => format!("panel {:?}", panel.name),
             None => id.to_string(),
         };
-        let part = |id: PanelId, kind: &str, name: Option<&str>, number: String| match name {
-            Some(name) => format!("{}, {kind} {name:?}", panel(id)),
-            None => format!("{}, {number}", panel(id)),
+        let named = |kind: &str, name: Option<&str>, number: String| match name {
+            Some(name) => format!("{kind} {name:?}"),
+            None => number,
         };
-        let owner = |id: PanelId| self.panel(id);
+        let part = |id: PanelId, kind: &str, name: Option<&str>, number: String| {
+            format!("{}, {}", panel(id), named(kind, name, number))
+        };
         match place {
             Place::Pattern => format!("pattern {:?}", self.name),
-            Place::Size(name) => format!("size {name:?}"),
-            Place::Variable(name) => format!("variable {name:?}"),
+            Place::Size(id) => {
+                let found = self.sizes.iter().find(|size| size.id == *id);
+                named("size", found.map(|s| &*s.name), id.to_string())
+            }
+            Place::Variable(id) => {
+                let found = self.variables.iter().find(|variable| variable.id == *id);
+                named("variable", found.map(|v| &*v.name), id.to_string())
+            }
+            Place::Sheet(id) => {
+                let found = self.sheet(*id);
+                named("sheet", found.map(|s| &*s.name), id.to_string())
+            }
+            Place::Point(id) => match self.point(*id) {
+                Some((sheet, point)) => format!("sheet {:?}, point {:?}", sheet.name, point.name),
+                None => id.to_string(),
+            },
+            Place::Curve(id) => {
+                let mut sheets = self.sheets.iter();
+                match sheets.find_map(|sheet| Some((sheet, sheet.curve(*id)?))) {
+                    Some((sheet, c)) => format!("sheet {:?}, curve {:?}", sheet.name, c.name),
+                    None => id.to_string(),
+                }
+            }
             Place::Panel(id) => panel(*id),
-            Place::Point(id, point) => {
-                let name = owner(*id).and_then(|p| p.point(*point));
-                part(*id, "point", name.map(|p| &*p.name), point.to_string())
+            Place::Line(id, line) => {
+                let found = self.panel(*id).and_then(|p| p.line(*line));
+                part(*id, "line", found.map(|l| &*l.name), line.to_string())
             }
             Place::Edge(id, edge) => {
-                let name = owner(*id).and_then(|p| p.edge(*edge));
-                part(*id, "edge", name.map(|e| &*e.name), edge.to_string())
+                let found = self.panel(*id).and_then(|p| p.edge(*edge));
+                part(*id, "edge", found.map(|e| &*e.name), edge.to_string())
             }
-            Place::Hole(id, k) => format!("{}, hole {}", panel(*id), k + 1),
-            Place::InternalLine(id, line) => {
-                let mut lines = owner(*id).into_iter().flat_map(|p| &p.internal_lines);
-                let name = lines.find(|l| l.id == *line).map(|l| &*l.name);
-                part(*id, "internal line", name, line.to_string())
-            }
-            Place::Dart(id, dart) => {
-                let mut darts = owner(*id).into_iter().flat_map(|p| &p.darts);
-                let name = darts.find(|d| d.id == *dart).map(|d| &*d.name);
-                part(*id, "dart", name, dart.to_string())
+            Place::Operation(id, operation) => {
+                let mut all = self.panel(*id).into_iter().flat_map(|p| &p.operations);
+                let found = all.find(|o| o.id == *operation);
+                let kind = found.map_or("operation", |o| o.kind.word());
+                part(*id, kind, found.map(|o| &*o.name), operation.to_string())
             }
             Place::Notch(id, notch) => {
-                let mut notches = owner(*id).into_iter().flat_map(|p| &p.notches);
-                let name = notches.find(|n| n.id == *notch).map(|n| &*n.name);
-                part(*id, "notch", name, notch.to_string())
+                let mut all = self.panel(*id).into_iter().flat_map(|p| &p.notches);
+                let found = all.find(|n| n.id == *notch);
+                part(*id, "notch", found.map(|n| &*n.name), notch.to_string())
             }
-            Place::Seam(id) => match self.seam(*id) {
-                Some(seam) => format!("seam {:?}", seam.name),
-                None => id.to_string(),
-            },
-            Place::Fabric(id) => match self.fabric(*id) {
-                Some(fabric) => format!("fabric {:?}", fabric.name),
-                None => id.to_string(),
-            },
+            Place::Seam(id) => named("seam", self.seam(*id).map(|s| &*s.name), id.to_string()),
+            Place::Fabric(id) => {
+                named("fabric", self.fabric(*id).map(|f| &*f.name), id.to_string())
+            }
             Place::File { path, line, column } => {
                 format!("line {line}, column {column}, {path}")
             }
         }
+    }
+
+    /// Every part of the document with its id and place.
+    pub fn parts(&self) -> Vec<(PartId, Place)> {
+        let mut parts: Vec<(PartId, Place)> = Vec::new();
+        parts.extend(self.sizes.iter().map(|s| (s.id.into(), Place::Size(s.id))));
+        let variables = self.variables.iter();
+        parts.extend(variables.map(|v| (v.id.into(), Place::Variable(v.id))));
+        parts.extend(
+            self.fabrics
+                .iter()
+                .map(|f| (f.id.into(), Place::Fabric(f.id))),
+        );
+        for sheet in &self.sheets {
+            parts.push((sheet.id.into(), Place::Sheet(sheet.id)));
+            parts.extend(
+                sheet
+                    .points
+                    .iter()
+                    .map(|p| (p.id.into(), Place::Point(p.id))),
+            );
+            parts.extend(
+                sheet
+                    .curves
+                    .iter()
+                    .map(|c| (c.id.into(), Place::Curve(c.id))),
+            );
+        }
+        for panel in &self.panels {
+            let id = panel.id;
+            parts.push((id.into(), Place::Panel(id)));
+            for line in &panel.lines {
+                parts.push((line.id.into(), Place::Line(id, line.id)));
+                parts.extend(
+                    line.edges
+                        .iter()
+                        .map(|e| (e.id.into(), Place::Edge(id, e.id))),
+                );
+            }
+            parts.extend(
+                panel
+                    .notches
+                    .iter()
+                    .map(|n| (n.id.into(), Place::Notch(id, n.id))),
+            );
+            let operations = panel.operations.iter();
+            parts.extend(operations.map(|o| (o.id.into(), Place::Operation(id, o.id))));
+        }
+        parts.extend(self.seams.iter().map(|s| (s.id.into(), Place::Seam(s.id))));
+        parts
     }
 }

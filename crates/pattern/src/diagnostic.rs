@@ -1,6 +1,9 @@
 //! What is wrong with a pattern: what, where, how bad, and what to do.
 
-use crate::{DartId, EdgeId, FabricId, InternalLineId, NotchId, PanelId, PointId, SeamId};
+use crate::{
+    CurveId, EdgeId, FabricId, LineId, NotchId, OperationId, PanelId, PointId, SeamId, SheetId,
+    SizeId, VariableId,
+};
 use std::fmt;
 
 /// How bad it is.
@@ -21,6 +24,8 @@ pub enum Code {
     Formula,
     /// Formulas or points need each other.
     Cycle,
+    /// A spline cannot be drawn to the length it is to have.
+    OutOfReach,
     /// A measurement was not given and is taken from the pattern's base size.
     BorrowedMeasurement,
     /// Something refers to a part that is not there.
@@ -84,22 +89,24 @@ pub enum Code {
 pub enum Place {
     /// The pattern as a whole.
     Pattern,
-    /// A named size.
-    Size(String),
+    /// A size.
+    Size(SizeId),
     /// A variable.
-    Variable(String),
+    Variable(VariableId),
+    /// A sheet.
+    Sheet(SheetId),
+    /// A point of a sheet.
+    Point(PointId),
+    /// A curve of a sheet.
+    Curve(CurveId),
     /// A panel.
     Panel(PanelId),
-    /// A point of a panel.
-    Point(PanelId, PointId),
-    /// An edge of a panel's outline or hole.
+    /// A line of a panel: its outline, a hole or a line inside.
+    Line(PanelId, LineId),
+    /// An edge of a panel.
     Edge(PanelId, EdgeId),
-    /// A hole of a panel, by its index.
-    Hole(PanelId, usize),
-    /// A line inside a panel.
-    InternalLine(PanelId, InternalLineId),
-    /// A dart of a panel.
-    Dart(PanelId, DartId),
+    /// An operation of a panel.
+    Operation(PanelId, OperationId),
     /// A notch of a panel.
     Notch(PanelId, NotchId),
     /// A seam.

@@ -1,6 +1,9 @@
 //! The draft: a pattern with every formula resolved for one set of measurements. Plain numbers.
 
-use crate::{DartId, EdgeId, FabricId, InternalLineId, NotchId, PanelId, SeamId};
+use crate::{
+    Corner, EdgeName, FabricId, LineId, Name, NotchId, NotchKind, OperationId, PanelId, Role,
+    SeamId,
+};
 use serde::{Deserialize, Serialize};
 use toile_geometry::{Curve, Rigid, Vec2};
 
@@ -54,26 +57,36 @@ pub struct Piece {
     pub sewn: bool,
 }
 
-/// What edge of the document an edge of a piece came from.
+/// What an edge of a piece came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum EdgeOrigin {
-    /// An edge of the panel, or its reflection in the fold line.
-    Edge {
-        /// The edge.
-        edge: EdgeId,
-        /// Whether it is the reflected half of a folded panel.
-        reflected: bool,
-    },
-    /// A leg of a dart: 0 before the apex and 1 after it along the outline; round the hole of a
-    /// diamond dart 0 to 3.
-    DartLeg {
-        /// The dart.
-        dart: DartId,
-        /// Whether it is the reflected half of a folded panel.
-        reflected: bool,
-        /// 0 or 1; 0 to 3 of a diamond.
-        leg: u8,
-    },
+pub struct EdgeOrigin {
+    /// The edge of the panel, or what an operation made.
+    pub name: EdgeName,
+    /// Which half of a folded panel: 0 as drawn; a bit a fold, set beyond it.
+    pub half: u8,
+}
+
+impl EdgeOrigin {
+    /// An edge as drawn.
+    pub fn drawn(edge: crate::EdgeId) -> Self {
+        Self {
+            name: Name::Drawn(edge),
+            half: 0,
+        }
+    }
+
+    /// The dart it is a leg of, and which: 0 before the apex along the outline and 1 after it;
+    /// round a diamond 0 to 3.
+    pub fn leg(&self) -> Option<(OperationId, u16)> {
+        match self.name {
+            Name::Made {
+                by,
+                role: Role::Leg,
+                index,
+            } => Some((by, index)),
+            _ => None,
+        }
+    }
 }
 
 /// One edge of a piece.
@@ -85,13 +98,15 @@ pub struct PieceEdge {
     pub curve: Curve,
     /// Width of cloth left outside it for the seam [m].
     pub seam_allowance: f64,
+    /// How the cut line turns the corner at its start.
+    pub corner: Corner,
 }
 
 /// A line inside a piece.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PieceLine {
     /// Which internal line of the panel it is.
-    pub id: InternalLineId,
+    pub id: LineId,
     /// Joined curves [m].
     pub curves: Vec<Curve>,
 }
@@ -101,6 +116,8 @@ pub struct PieceLine {
 pub struct PieceNotch {
     /// Which notch of the panel it is.
     pub id: NotchId,
+    /// How it is cut.
+    pub kind: NotchKind,
     /// Where on the outline [m].
     pub point: Vec2,
     /// Unit direction into the piece.
@@ -144,12 +161,12 @@ pub enum SeamOrigin {
     Seam(SeamId),
     /// The closing of a dart on a copy of a panel.
     Dart {
-        /// The dart.
-        dart: DartId,
+        /// The operation that takes the dart out.
+        dart: OperationId,
         /// The copy of the panel.
         copy: u32,
-        /// Whether it is the reflected half of a folded panel.
-        reflected: bool,
+        /// Which half of a folded panel.
+        half: u8,
     },
 }
 

@@ -115,6 +115,16 @@ macro_rules! fresh {
 }
 
 fresh!(
-    SizeId, VariableId, FabricId, SheetId, PointId, CurveId, PanelId, LineId, EdgeId, NotchId,
-    OperationId, SeamId
+    SizeId,
+    VariableId,
+    FabricId,
+    SheetId,
+    PointId,
+    CurveId,
+    PanelId,
+    LineId,
+    EdgeId,
+    NotchId,
+    OperationId,
+    SeamId
 );

@@ -1,7 +1,7 @@
 //! Numbers of the document: a value, a formula, a formula with something added, a value a size.
 
-use crate::formula::Formula;
 use crate::SizeId;
+use crate::formula::Formula;
 
 /// A number of the document. What it measures is decided by where it stands: lengths are metres,
 /// angles radians, shares plain.

@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use toile_geometry::{Curve, Vec2, Vec3};
 use toile_pattern::{
-    Edge, EdgeCurve, EdgeId, Fabric, NAME_LENGTH, Panel, Pattern, Point, PointId, PointPlace,
-    Rheology, Seam, Span, WornRule,
+    CurveRule, Drawing, Edge, EdgeId, Fabric, FabricId, LineKind, NAME_LENGTH, Pattern, PointId,
+    PointRule, Rheology, Seam, SeamId, Span, WornRule,
 };
 
 /// A seam whose sides differ by more than this ratio is gathered on purpose.
@@ -41,7 +41,7 @@ pub fn read_garmentcode(text: &str) -> Result<GarmentCodeReading, FormatError> {
     let specification = specification::read(text)?;
     let mut builder = Builder::default();
     builder.notes.clone_from(&specification.notes);
-    let fabric = builder.pattern.ids.take_fabric();
+    let fabric: FabricId = builder.pattern.ids.take();
     builder.pattern.fabrics.push(Arc::new(Fabric {
         id: fabric,
         name: "cotton weave".to_owned(),
@@ -107,10 +107,10 @@ impl Builder {
                 "names have 1 to 80 characters and no quotes",
             ));
         }
-        let id = self.pattern.ids.take_panel();
-        let mut panel = Panel::new(id, name, fabric);
+        let mut ids = self.pattern.ids;
+        let mut drawing = Drawing::new(&mut ids, &name, fabric);
         let translation = source.place.translation.vector;
-        panel.worn = WornRule::Placed {
+        drawing.panel.worn = WornRule::Placed {
             translation: translation.into(),
             rotation: source.place.rotation.coords.into(),
         };
@@ -129,7 +129,7 @@ impl Builder {
             let mut contour = Vec::with_capacity(walk.len());
             for (index, backwards) in walk {
                 let edge = self.add_edge(
-                    &mut panel,
+                    &mut drawing,
                     source,
                     (index, backwards),
                     &mut corners,
@@ -138,26 +138,27 @@ impl Builder {
                 places[index] = Some((edge.id, backwards));
                 contour.push(edge);
             }
-            if k == 0 {
-                panel.outline = contour;
-            } else {
-                panel.holes.push(contour);
-            }
+            let (name, kind) = match k {
+                0 => ("outline".to_owned(), LineKind::Outline),
+                _ => (format!("hole {k}"), LineKind::Hole),
+            };
+            drawing.line(name, kind, contour);
         }
+        let drawn = drawing.done();
+        self.pattern.ids = ids;
         self.edges.push(places);
-        self.pattern.panels.push(Arc::new(panel));
+        self.pattern.add(drawn);
     }
 
     fn add_edge(
         &mut self,
-        panel: &mut Panel,
+        drawing: &mut Drawing<'_>,
         source: &SpecPanel,
         (index, backwards): (usize, bool),
         corners: &mut BTreeMap<usize, PointId>,
         labels: &mut BTreeMap<String, usize>,
     ) -> Edge {
         let spec = &source.edges[index];
-        let ids = &mut self.pattern.ids;
         let mut ends = [PointId::default(); 2];
         for (k, end) in ends.iter_mut().enumerate() {
             let vertex = spec.ends[k];
@@ -166,41 +167,34 @@ impl Builder {
             } else {
                 spec.curve.end()
             };
-            *end = *corners.entry(vertex).or_insert_with(|| {
-                let id = ids.take_point();
-                panel.points.push(Point {
-                    id,
-                    name: format!("p{vertex}"),
-                    place: PointPlace::at(at.x, at.y),
-                });
-                id
-            });
+            *end = *corners
+                .entry(vertex)
+                .or_insert_with(|| drawing.point(format!("p{vertex}"), PointRule::at(at.x, at.y)));
         }
-        let mut control = |number: usize, p: Vec2| {
-            let id = ids.take_point();
-            panel.points.push(Point {
-                id,
-                name: format!("e{index}c{number}"),
-                place: PointPlace::at(p.x, p.y),
-            });
-            id
+        let mut handle = |number: usize, p: Vec2| {
+            drawing.point(format!("e{index}c{number}"), PointRule::at(p.x, p.y))
         };
-        let mut curve = match spec.curve {
-            Curve::Line { .. } => EdgeCurve::Line,
-            Curve::Arc { bulge, .. } => EdgeCurve::Arc {
+        let mut rule = match spec.curve {
+            Curve::Line { .. } => CurveRule::Line,
+            Curve::Arc { bulge, .. } => CurveRule::Arc {
                 bulge: (if backwards { -bulge } else { bulge }).into(),
             },
-            Curve::Quadratic { control: p, .. } => EdgeCurve::Quadratic {
-                control: control(1, p),
-            },
-            Curve::Cubic { controls, .. } => EdgeCurve::Cubic {
-                controls: [control(1, controls[0]), control(2, controls[1])],
-            },
+            Curve::Quadratic {
+                start,
+                control,
+                end,
+            } => {
+                let third = |from: Vec2| from + (control - from) * (2.0 / 3.0);
+                CurveRule::cubic([handle(1, third(start)), handle(2, third(end))])
+            }
+            Curve::Cubic { controls, .. } => {
+                CurveRule::cubic([handle(1, controls[0]), handle(2, controls[1])])
+            }
         };
         if backwards {
             ends.reverse();
-            if let EdgeCurve::Cubic { controls } = &mut curve {
-                controls.reverse();
+            if let CurveRule::Spline { handles, .. } = &mut rule {
+                handles.reverse();
             }
         }
         let plain = format!("e{index}");
@@ -216,13 +210,7 @@ impl Builder {
             }
             None => plain,
         };
-        Edge {
-            id: ids.take_edge(),
-            name,
-            ends,
-            curve,
-            seam_allowance: None,
-        }
+        drawing.edge(name, ends, rule)
     }
 
     fn add_seams(&mut self, specification: &Specification) {
@@ -240,7 +228,9 @@ impl Builder {
                 let Some((id, backwards)) = self.edges[panel][edge] else {
                     continue;
                 };
-                let span = Span::whole(self.pattern.panels[panel].id, id);
+                let Some(span) = self.pattern.panels[panel].span(id) else {
+                    continue;
+                };
                 let flip = backwards != (spans.len() == 1 && against);
                 spans.push(if flip { span.reversed() } else { span });
             }
@@ -258,7 +248,7 @@ impl Builder {
             let name = part_name(&name, &mut names);
             let (longer, shorter) = (lengths[0].max(lengths[1]), lengths[0].min(lengths[1]));
             let mut seam = Seam::new(
-                self.pattern.ids.take_seam(),
+                self.pattern.ids.take::<SeamId>(),
                 name,
                 [vec![first], vec![second]],
             );

@@ -4,7 +4,7 @@ use super::json::{Node, Value};
 use super::units;
 use crate::FormatError;
 use toile_pattern::{
-    Code, Diagnostic, DisplayUnit, Number, Place, Severity, is_part_name, nearest,
+    Code, Diagnostic, DisplayUnit, Formula, Place, Severity, is_part_name, nearest,
 };
 
 /// A value and its path from the root.
@@ -12,6 +12,13 @@ use toile_pattern::{
 pub struct Item<'a> {
     pub node: &'a Node,
     pub path: String,
+}
+
+/// A number as it is written: a value [m], [rad] or plain, or the text of a formula.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Written<'a> {
+    Value(f64),
+    Formula(&'a str),
 }
 
 /// The fields of an object.
@@ -160,6 +167,17 @@ impl<'a> Item<'a> {
         })
     }
 
+    /// The fields, whatever they are called.
+    pub fn fields(&self) -> Result<Object<'a>, FormatError> {
+        match &self.node.value {
+            Value::Object(fields) => Ok(Object {
+                item: self.clone(),
+                fields,
+            }),
+            _ => Err(self.wrong_kind("an object", "write it in { }")),
+        }
+    }
+
     fn not_finite(&self) -> FormatError {
         self.error(
             "the number is too large to be finite",
@@ -172,21 +190,24 @@ impl<'a> Item<'a> {
         wanted: &str,
         exact_unit: Option<&str>,
         read: impl Fn(&str) -> Option<f64>,
-    ) -> Result<Number, FormatError> {
+    ) -> Result<Written<'a>, FormatError> {
         match &self.node.value {
             Value::Number(raw) => read(raw)
-                .map(Number::Value)
+                .map(Written::Value)
                 .ok_or_else(|| self.not_finite()),
-            Value::Text(text) => Number::formula(text).map_err(|error| {
-                let what = format!(
-                    "the formula {text:?}, column {}: {}",
-                    error.column, error.message
-                );
-                self.error(what, error.hint)
-            }),
+            Value::Text(text) => match Formula::of_measurements(text) {
+                Ok(_) => Ok(Written::Formula(text)),
+                Err(error) => {
+                    let what = format!(
+                        "the formula {text:?}, column {}: {}",
+                        error.column, error.message
+                    );
+                    Err(self.error(what, error.hint))
+                }
+            },
             Value::Object(fields) => match (&fields[..], exact_unit) {
                 ([(name, node)], Some(unit)) if name == unit => {
-                    self.child(node, name).plain_value().map(Number::Value)
+                    self.child(node, name).plain_value().map(Written::Value)
                 }
                 _ => Err(self.wrong_kind(wanted, "write a number, or a formula in quotes")),
             },
@@ -194,15 +215,15 @@ impl<'a> Item<'a> {
         }
     }
 
-    pub fn length(&self, unit: DisplayUnit) -> Result<Number, FormatError> {
+    pub fn length(&self, unit: DisplayUnit) -> Result<Written<'a>, FormatError> {
         self.read_number("a length", Some("m"), |raw| units::read_length(raw, unit))
     }
 
-    pub fn angle(&self) -> Result<Number, FormatError> {
+    pub fn angle(&self) -> Result<Written<'a>, FormatError> {
         self.read_number("an angle in degrees", Some("rad"), units::read_degrees)
     }
 
-    pub fn plain(&self) -> Result<Number, FormatError> {
+    pub fn plain(&self) -> Result<Written<'a>, FormatError> {
         self.read_number("a number", None, units::read_plain)
     }
 
@@ -215,13 +236,14 @@ impl<'a> Item<'a> {
     }
 
     /// A length or angle that may not be a formula [m] or [rad].
-    pub fn fixed(&self, number: Number) -> Result<f64, FormatError> {
-        number.value().ok_or_else(|| {
-            self.error(
+    pub fn fixed(&self, number: &Written<'_>) -> Result<f64, FormatError> {
+        match number {
+            Written::Value(value) => Ok(*value),
+            Written::Formula(_) => Err(self.error(
                 "a formula stands where a number is expected",
                 "write the number; formulas belong in variables and panels",
-            )
-        })
+            )),
+        }
     }
 
     pub fn count(&self) -> Result<u32, FormatError> {

@@ -1,16 +1,60 @@
 //! The native formats: readable, versioned JSON.
 //!
 //! A pattern file (`*.toile.json`) names its unit once; bare numbers in it are lengths in that
-//! unit and angles in degrees, texts are formulas. Ids are left out where counting gives them.
+//! unit and angles in degrees, texts are formulas. Parts are referred to by id, in formulas by name.
 
 mod item;
 mod json;
-mod read;
-mod read_panel;
+mod migrate;
 mod units;
+mod values;
 mod words;
-mod write;
-mod write_panel;
 
-pub use read::read_pattern;
-pub use write::write_pattern;
+use crate::FormatError;
+use item::Item;
+use toile_pattern::{Diagnostic, Pattern};
+use words::VERSION;
+
+/// Reads a pattern in the native format (`*.toile.json`), of this version or an earlier one.
+///
+/// Fields this version does not know are named in the diagnostics; everything else that is not
+/// understood is refused with its line, column, path and remedy.
+///
+/// # Errors
+/// The text is not JSON, not a pattern of a known version, or refers to parts it does not have.
+pub fn read_pattern(text: &str) -> Result<(Pattern, Vec<Diagnostic>), FormatError> {
+    let node = json::parse(text)?;
+    let root = Item::root(&node);
+    let mut notes = Vec::new();
+    let pattern = match version(&root)? {
+        1 => migrate::read_version_1(&root, &mut notes)?,
+        _ => Pattern::default(),
+    };
+    Ok((pattern, notes))
+}
+
+/// The version of a file that holds a pattern.
+fn version(root: &Item<'_>) -> Result<u32, FormatError> {
+    let object = root.fields()?;
+    let Some(version) = object.get("toile") else {
+        return Err(root.error(
+            "the file does not say that it is one of Toile's",
+            "its first field is \"toile\": 2; for other formats name the format",
+        ));
+    };
+    let number = version.count()?;
+    if number == 0 || number > VERSION {
+        return Err(version.error(
+            format!("the file is of version {number}, this program reads up to {VERSION}"),
+            "use a newer program, or save the file for this version",
+        ));
+    }
+    let kind = object.need("kind")?;
+    if kind.text()? != "pattern" {
+        return Err(kind.error(
+            format!("the file holds a {:?}", kind.text()?),
+            "give a file of kind \"pattern\"",
+        ));
+    }
+    Ok(number)
+}

@@ -3,7 +3,7 @@
 use toile_pattern::{BodyPart, Facing};
 
 /// Version of the format this program writes.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Names of body parts.
 pub const PARTS: &[(&str, BodyPart)] = &[

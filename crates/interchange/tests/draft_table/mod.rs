@@ -5,7 +5,7 @@ use std::fmt::Write;
 use toile_interchange::read_pattern;
 use toile_measure::Measurements;
 use toile_pattern::{
-    Diagnostic, Draft, DraftSpan, EdgeOrigin, Pattern, Piece, PieceEdge, SeamOrigin, Severity,
+    Diagnostic, Draft, DraftSpan, Evaluation, Name, Pattern, Piece, PieceEdge, SeamOrigin, Severity,
 };
 
 /// The table of one file: a line a fact, words first, then numbers [m] or [rad].
@@ -60,7 +60,7 @@ fn write_size(table: &mut String, pattern: &Pattern, name: &str, body: &Measurem
         }
         for inside in &piece.internal_lines {
             let panel = pattern.panel(piece.id.panel);
-            let named = panel.and_then(|p| p.internal_lines.iter().find(|l| l.id == inside.id));
+            let named = panel.and_then(|p| p.line(inside.id));
             let words = format!("line {:?}", named.map_or("", |l| &l.name));
             let places = inside
                 .curves
@@ -87,12 +87,16 @@ fn write_size(table: &mut String, pattern: &Pattern, name: &str, body: &Measurem
         let words = format!("{kind} {:?}", seam.name);
         line(table, with_numbers(words, &[a, b, c.x, c.y, d.x, d.y]));
     }
-    for ((panel, point), place) in pattern.point_places(body) {
-        let Some(panel) = pattern.panel(panel) else {
+    for ((sheet, point), place) in Evaluation::new(pattern, body).points() {
+        let Some(sheet) = pattern.sheet(sheet) else {
             continue;
         };
-        let name = panel.point(point).map_or("", |p| &p.name);
-        let words = format!("point {:?} of {:?}", name, panel.name);
+        let name = sheet.point(point).map_or("", |p| &p.name);
+        // Handles that version 1 did not have.
+        if name.contains(" handle ") {
+            continue;
+        }
+        let words = format!("point {:?} of {:?}", name, sheet.name);
         line(table, with_numbers(words, &[place.x, place.y]));
     }
 }
@@ -115,7 +119,9 @@ fn with_numbers(mut words: String, numbers: &[f64]) -> String {
 fn said(pattern: &Pattern, found: &[Diagnostic]) -> Vec<String> {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for diagnostic in found {
-        let place = pattern.describe(&diagnostic.place);
+        // Points and edges of version 1 were those of a panel.
+        let place = pattern.describe(&diagnostic.place).replace("sheet ", "panel ");
+        let place = place.replace(", curve ", ", edge ");
         let (severity, code) = (diagnostic.severity, diagnostic.code);
         *counts
             .entry(format!("{severity} {code:?} at {place}"))
@@ -129,22 +135,18 @@ fn said(pattern: &Pattern, found: &[Diagnostic]) -> Vec<String> {
 
 fn edge_line(pattern: &Pattern, piece: &Piece, edge: &PieceEdge) -> String {
     let panel = pattern.panel(piece.id.panel);
-    let (name, reflected) = match edge.origin {
-        EdgeOrigin::Edge { edge, reflected } => {
+    let name = match (edge.origin.name, edge.origin.leg()) {
+        (_, Some((dart, leg))) => {
+            let found = panel.and_then(|p| p.operations.iter().find(|d| d.id == dart));
+            format!("leg {leg} of {:?}", found.map_or("", |d| &d.name))
+        }
+        (Name::Drawn(edge), _) => {
             let found = panel.and_then(|p| p.edge(edge));
-            let name = found.map_or("", |e| &e.name);
-            (format!("edge {name:?}"), reflected)
+            format!("edge {:?}", found.map_or("", |e| &e.name))
         }
-        EdgeOrigin::DartLeg {
-            dart,
-            reflected,
-            leg,
-        } => {
-            let found = panel.and_then(|p| p.darts.iter().find(|d| d.id == dart));
-            let name = found.map_or("", |d| &d.name);
-            (format!("leg {leg} of {name:?}"), reflected)
-        }
+        (other, _) => format!("{other:?}"),
     };
+    let reflected = edge.origin.half > 0;
     let half = if reflected { "other half" } else { "half" };
     let curve = &edge.curve;
     let (third, end) = (curve.point(0.3), curve.end());

@@ -1,20 +1,18 @@
 //! The document: what is edited, saved and undone.
 
+mod drawing;
 mod operation;
 mod panel;
 mod seam;
 mod sheet;
 
+pub use drawing::Drawing;
 pub use operation::{Apex, Operation, OperationKind};
-pub use panel::{
-    Corner, Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Source, WornRule,
-};
+pub use panel::{Corner, Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Source, WornRule};
 pub use seam::{Seam, Span};
 pub use sheet::{Curve, CurveRule, Knot, Point, PointRule, Sheet};
 
-use crate::{
-    Fabric, FabricId, Ids, Number, PanelId, PointId, SeamId, SheetId, SizeId, VariableId,
-};
+use crate::{Fabric, FabricId, Ids, Number, PanelId, PointId, SeamId, SheetId, SizeId, VariableId};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toile_measure::Measurements;
@@ -153,7 +151,10 @@ impl Pattern {
 
     /// The base size: the one chosen, else the first.
     pub fn base(&self) -> Option<&Arc<Size>> {
-        let chosen = self.sizes.iter().find(|size| Some(size.id) == self.base_size);
+        let chosen = self
+            .sizes
+            .iter()
+            .find(|size| Some(size.id) == self.base_size);
         chosen.or_else(|| self.sizes.first())
     }
 

@@ -69,7 +69,12 @@ impl OperationKind {
                     Apex::Depth(depth) => Some(depth),
                     Apex::Point(_) => None,
                 };
-                mouth.number().into_iter().chain([intake]).chain(depth).collect()
+                mouth
+                    .number()
+                    .into_iter()
+                    .chain([intake])
+                    .chain(depth)
+                    .collect()
             }
             Self::Diamond { widest, intake, .. } => vec![widest, intake],
             Self::Fold { ends, .. } => ends.iter().filter_map(Mark::number).collect(),
@@ -85,6 +90,16 @@ impl OperationKind {
             } => vec![*point],
             Self::Diamond { ends, .. } => ends.to_vec(),
             _ => Vec::new(),
+        }
+    }
+}
+
+impl OperationKind {
+    /// What it is called.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Dart { .. } | Self::Diamond { .. } => "dart",
+            Self::Fold { .. } => "fold",
         }
     }
 }

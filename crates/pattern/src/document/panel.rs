@@ -260,7 +260,11 @@ impl Line {
     pub fn stretch(&self, [from, to]: [PointId; 2]) -> Option<Vec<&Edge>> {
         let first = self.edges.iter().position(|edge| edge.ends[0] == from)?;
         let count = self.edges.len();
-        let reach = if self.is_closed() { count } else { count - first };
+        let reach = if self.is_closed() {
+            count
+        } else {
+            count - first
+        };
         let mut edges = Vec::new();
         for k in 0..reach {
             let edge = &self.edges[(first + k) % count];

@@ -14,7 +14,10 @@ impl Evaluation {
     pub fn update(&mut self, pattern: &Pattern, measurements: &Measurements) -> Update {
         self.revision += 1;
         let before = std::mem::replace(&mut self.pattern, pattern.clone());
-        let size = pattern.sizes.iter().find(|size| size.measurements == *measurements);
+        let size = pattern
+            .sizes
+            .iter()
+            .find(|size| size.measurements == *measurements);
         let size = size.map(|size| size.id);
         let remeasured = self.given != *measurements
             || before.base_measurements() != pattern.base_measurements();
@@ -33,7 +36,11 @@ impl Evaluation {
             }));
         }
         if remeasured {
-            dirty.extend(self.words.values().filter_map(|&w| self.index.get(&Node::Word(w))));
+            dirty.extend(
+                self.words
+                    .values()
+                    .filter_map(|&w| self.index.get(&Node::Word(w))),
+            );
         }
         if resized {
             dirty.extend(0..self.nodes.len() as u32);
@@ -56,30 +63,58 @@ impl Evaluation {
                 &mut changed,
             );
             for variable in &pattern.variables {
-                self.define(Node::Variable(variable.id), Definition::Variable(variable.clone()), &mut changed);
+                self.define(
+                    Node::Variable(variable.id),
+                    Definition::Variable(variable.clone()),
+                    &mut changed,
+                );
             }
         }
         if !same(pattern.sheets.len(), before.sheets.len(), &|k| {
             Arc::ptr_eq(&pattern.sheets[k], &before.sheets[k])
         }) {
             let nodes = |sheets: &[Arc<Sheet>]| -> Vec<Node> {
-                let points = sheets.iter().flat_map(|s| s.points.iter().map(|p| Node::Point(p.id)));
-                let curves = sheets.iter().flat_map(|s| s.curves.iter().map(|c| Node::Curve(c.id)));
+                let points = sheets
+                    .iter()
+                    .flat_map(|s| s.points.iter().map(|p| Node::Point(p.id)));
+                let curves = sheets
+                    .iter()
+                    .flat_map(|s| s.curves.iter().map(|c| Node::Curve(c.id)));
                 points.chain(curves).collect()
             };
             let old: HashSet<*const Sheet> = before.sheets.iter().map(Arc::as_ptr).collect();
             let new: HashSet<*const Sheet> = pattern.sheets.iter().map(Arc::as_ptr).collect();
-            let gone: Vec<Arc<Sheet>> =
-                before.sheets.iter().filter(|s| !new.contains(&Arc::as_ptr(s))).cloned().collect();
-            let come: Vec<Arc<Sheet>> =
-                pattern.sheets.iter().filter(|s| !old.contains(&Arc::as_ptr(s))).cloned().collect();
-            renamed |= self.remove_missing(nodes(&gone).into_iter(), nodes(&come).into_iter(), &mut changed);
+            let gone: Vec<Arc<Sheet>> = before
+                .sheets
+                .iter()
+                .filter(|s| !new.contains(&Arc::as_ptr(s)))
+                .cloned()
+                .collect();
+            let come: Vec<Arc<Sheet>> = pattern
+                .sheets
+                .iter()
+                .filter(|s| !old.contains(&Arc::as_ptr(s)))
+                .cloned()
+                .collect();
+            renamed |= self.remove_missing(
+                nodes(&gone).into_iter(),
+                nodes(&come).into_iter(),
+                &mut changed,
+            );
             for sheet in &come {
                 for point in &sheet.points {
-                    self.define(Node::Point(point.id), Definition::Point(point.clone()), &mut changed);
+                    self.define(
+                        Node::Point(point.id),
+                        Definition::Point(point.clone()),
+                        &mut changed,
+                    );
                 }
                 for curve in &sheet.curves {
-                    self.define(Node::Curve(curve.id), Definition::Curve(curve.clone()), &mut changed);
+                    self.define(
+                        Node::Curve(curve.id),
+                        Definition::Curve(curve.clone()),
+                        &mut changed,
+                    );
                 }
             }
         }
@@ -88,8 +123,16 @@ impl Evaluation {
         }) {
             let old: HashSet<*const Panel> = before.panels.iter().map(Arc::as_ptr).collect();
             let new: HashSet<*const Panel> = pattern.panels.iter().map(Arc::as_ptr).collect();
-            let gone = before.panels.iter().filter(|p| !new.contains(&Arc::as_ptr(p)));
-            let come: Vec<_> = pattern.panels.iter().filter(|p| !old.contains(&Arc::as_ptr(p))).cloned().collect();
+            let gone = before
+                .panels
+                .iter()
+                .filter(|p| !new.contains(&Arc::as_ptr(p)));
+            let come: Vec<_> = pattern
+                .panels
+                .iter()
+                .filter(|p| !old.contains(&Arc::as_ptr(p)))
+                .cloned()
+                .collect();
             let gone: Vec<_> = gone.cloned().collect();
             renamed |= self.remove_missing(
                 gone.iter().flat_map(|panel| panel_nodes(panel)),
@@ -113,7 +156,11 @@ impl Evaluation {
                 &mut changed,
             );
             for seam in &pattern.seams {
-                self.define(Node::Seam(seam.id), Definition::Seam(seam.clone()), &mut changed);
+                self.define(
+                    Node::Seam(seam.id),
+                    Definition::Seam(seam.clone()),
+                    &mut changed,
+                );
             }
         }
         let mut structural = renamed || self.revision == 1;
@@ -271,7 +318,10 @@ impl Evaluation {
                 let start = stack.iter().rposition(|&w| w == v).unwrap_or(0);
                 let component: Vec<u32> = stack.drain(start..).collect();
                 let is_cycle = component.len() > 1 || self.nodes[at].needs.contains(&v);
-                let named = component.iter().copied().min_by_key(|&w| self.nodes[w as usize].node);
+                let named = component
+                    .iter()
+                    .copied()
+                    .min_by_key(|&w| self.nodes[w as usize].node);
                 for w in component {
                     on_stack[w as usize] = false;
                     let state = &mut self.nodes[w as usize];
@@ -292,8 +342,10 @@ impl Evaluation {
     fn recompute(&mut self, dirty: HashSet<u32>) -> Update {
         let mut update = Update::default();
         let mut waiting: HashSet<u32> = dirty.clone();
-        let mut queue: BinaryHeap<Reverse<(u32, u32)>> =
-            dirty.iter().map(|&k| Reverse((self.nodes[k as usize].rank, k))).collect();
+        let mut queue: BinaryHeap<Reverse<(u32, u32)>> = dirty
+            .iter()
+            .map(|&k| Reverse((self.nodes[k as usize].rank, k)))
+            .collect();
         while let Some(Reverse((_, k))) = queue.pop() {
             waiting.remove(&k);
             update.computed += 1;
@@ -382,5 +434,7 @@ fn panel_nodes(panel: &Panel) -> Vec<Node> {
     let edges = panel.edges().map(|edge| Node::Edge(edge.id));
     let after = panel.operations.iter().map(|o| Some(o.id));
     let stages = std::iter::once(None).chain(after);
-    edges.chain(stages.map(|after| Node::Stage(panel.id, after))).collect()
+    edges
+        .chain(stages.map(|after| Node::Stage(panel.id, after)))
+        .collect()
 }

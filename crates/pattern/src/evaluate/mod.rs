@@ -14,7 +14,7 @@ mod points;
 mod seams;
 
 pub use node::Node;
-pub(crate) use node::{Definition, Value};
+pub(crate) use node::Value;
 pub(crate) use seams::SeamValue;
 
 use crate::{Diagnostic, Pattern, PointId, SheetId};
@@ -79,7 +79,9 @@ impl Evaluation {
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
         let mut order: Vec<&NodeState> = self.nodes.iter().collect();
         order.sort_by_key(|state| state.node);
-        let own = order.iter().flat_map(|state| state.diagnostics.iter().cloned());
+        let own = order
+            .iter()
+            .flat_map(|state| state.diagnostics.iter().cloned());
         self.duplicates.iter().cloned().chain(own).collect()
     }
 

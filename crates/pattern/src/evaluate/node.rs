@@ -108,8 +108,13 @@ impl Value {
 
 fn is_same_path(a: &Path, b: &Path) -> bool {
     let bits = |path: &Path| -> Vec<u64> {
-        let points = path.curves().iter().flat_map(|curve| curve.defining_points());
-        points.flat_map(|p| [p.x.to_bits(), p.y.to_bits()]).collect()
+        let points = path
+            .curves()
+            .iter()
+            .flat_map(|curve| curve.defining_points());
+        points
+            .flat_map(|p| [p.x.to_bits(), p.y.to_bits()])
+            .collect()
     };
     a == b && bits(a) == bits(b)
 }
@@ -130,13 +135,19 @@ impl Needs {
             Definition::Missing | Definition::Word => {}
             Definition::Variable(variable) => needs.number(&variable.number, pattern),
             Definition::Point(point) => {
-                needs.nodes.extend(point.rule.points().into_iter().map(Node::Point));
-                needs.nodes.extend(point.rule.curves().into_iter().map(Node::Curve));
+                needs
+                    .nodes
+                    .extend(point.rule.points().into_iter().map(Node::Point));
+                needs
+                    .nodes
+                    .extend(point.rule.curves().into_iter().map(Node::Curve));
                 needs.numbers(point.rule.numbers(), pattern);
             }
             Definition::Curve(curve) => {
                 needs.nodes.extend(curve.ends.map(Node::Point));
-                needs.nodes.extend(curve.rule.points().into_iter().map(Node::Point));
+                needs
+                    .nodes
+                    .extend(curve.rule.points().into_iter().map(Node::Point));
                 needs.nodes.extend(curve.rule.curve().map(Node::Curve));
                 needs.numbers(curve.rule.number(), pattern);
             }
@@ -146,7 +157,9 @@ impl Needs {
                 needs.nodes.extend(edge.ends.map(Node::Point));
             }
             Definition::Stage(panel, 0) => {
-                needs.nodes.extend(panel.edges().map(|edge| Node::Edge(edge.id)));
+                needs
+                    .nodes
+                    .extend(panel.edges().map(|edge| Node::Edge(edge.id)));
                 needs.numbers([&panel.grain, &panel.allowance], pattern);
                 needs.numbers(panel.edges().filter_map(|e| e.allowance.as_ref()), pattern);
                 needs.numbers(panel.notches.iter().filter_map(|n| n.at.number()), pattern);
@@ -157,7 +170,9 @@ impl Needs {
                 needs.nodes.push(Node::Stage(panel.id, None));
                 let operation = &panel.operations[step - 1].kind;
                 needs.numbers(operation.numbers(), pattern);
-                needs.nodes.extend(operation.points().into_iter().map(Node::Point));
+                needs
+                    .nodes
+                    .extend(operation.points().into_iter().map(Node::Point));
             }
             Definition::Seam(seam) => {
                 for span in seam.spans() {
@@ -208,7 +223,8 @@ impl Needs {
                 }
                 let lines = pattern.panel(*panel).map_or(&[][..], |panel| &panel.lines);
                 let edges = drawn_stretch(lines, *ends);
-                self.nodes.extend(edges.iter().flatten().map(|e| Node::Edge(e.id)));
+                self.nodes
+                    .extend(edges.iter().flatten().map(|e| Node::Edge(e.id)));
             }
         }
     }

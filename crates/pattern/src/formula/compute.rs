@@ -16,8 +16,8 @@ pub(crate) struct Quantity {
 /// Why a formula has no value.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Failure {
-    /// Something it needs has no value; that was reported where it stands.
-    Reported,
+    /// Something it needs has no value; that was reported at the node of that number.
+    Reported(u32),
     /// A fault of this formula, at a column if it is known.
     Fault {
         code: Code,

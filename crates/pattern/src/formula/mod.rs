@@ -8,8 +8,8 @@ mod compute;
 mod names;
 mod parse;
 
-pub use names::Names;
 pub(crate) use compute::{Environment, Failure, Quantity, compute, kind};
+pub use names::Names;
 
 use crate::{PartReference, VariableId};
 use std::fmt;
@@ -64,7 +64,10 @@ pub(crate) struct Step {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Operation {
     /// Pushes a number; `power` 1 is a length.
-    Constant { value: f64, power: i8 },
+    Constant {
+        value: f64,
+        power: i8,
+    },
     /// Pushes a variable.
     Variable(VariableId),
     /// Pushes a measurement.

@@ -31,14 +31,24 @@ impl Names {
     pub fn new(pattern: &Pattern) -> Self {
         let mut names = Self::default();
         for variable in &pattern.variables {
-            names.variables.entry(variable.name.clone()).or_insert(variable.id);
-            names.variable_names.insert(variable.id, variable.name.clone());
+            names
+                .variables
+                .entry(variable.name.clone())
+                .or_insert(variable.id);
+            names
+                .variable_names
+                .insert(variable.id, variable.name.clone());
         }
         for sheet in &pattern.sheets {
             names.sheets.insert(sheet.id, sheet.clone());
-            names.sheets_named.entry(sheet.name.clone()).or_insert(sheet.id);
+            names
+                .sheets_named
+                .entry(sheet.name.clone())
+                .or_insert(sheet.id);
             for point in &sheet.points {
-                names.points.insert(point.id, (sheet.id, point.name.clone()));
+                names
+                    .points
+                    .insert(point.id, (sheet.id, point.name.clone()));
                 let key = (sheet.id, point.name.clone());
                 names.points_named.entry(key).or_insert(point.id);
             }
@@ -48,12 +58,18 @@ impl Names {
         }
         for panel in &pattern.panels {
             names.panels.insert(panel.id, panel.clone());
-            names.panels_named.entry(panel.name.clone()).or_insert(panel.id);
+            names
+                .panels_named
+                .entry(panel.name.clone())
+                .or_insert(panel.id);
             names.traced.entry(panel.sheet()).or_insert(panel.id);
         }
         for seam in &pattern.seams {
             names.seams.insert(seam.id, seam.clone());
-            names.seams_named.entry(seam.name.clone()).or_insert(seam.id);
+            names
+                .seams_named
+                .entry(seam.name.clone())
+                .or_insert(seam.id);
         }
         names
     }
@@ -70,7 +86,10 @@ impl Names {
 
     /// The sheet a name leads to: of the panel called so, else the sheet called so.
     fn sheet(&self, name: &str) -> Option<&Arc<Sheet>> {
-        let traced = self.panels_named.get(name).map(|id| self.panels[id].sheet());
+        let traced = self
+            .panels_named
+            .get(name)
+            .map(|id| self.panels[id].sheet());
         let id = traced.or_else(|| self.sheets_named.get(name).copied())?;
         self.sheets.get(&id)
     }
@@ -130,7 +149,9 @@ impl Names {
             nearest(part, sheet.points.iter().map(|p| &*p.name))
         } else {
             let edges = self.panels_named.get(owner).map(|id| &self.panels[id]);
-            let edges = edges.into_iter().flat_map(|panel| panel.edges().map(|e| &*e.name));
+            let edges = edges
+                .into_iter()
+                .flat_map(|panel| panel.edges().map(|e| &*e.name));
             nearest(part, edges.chain(sheet.curves.iter().map(|c| &*c.name)))
         };
         let hint = suggestion(near, &format!("name a {kind} of that panel"));
@@ -168,7 +189,10 @@ impl Names {
             },
             PartReference::Curve(id) => match self.curves.get(id) {
                 Some((sheet, curve)) => {
-                    let name = self.sheets.get(sheet).map_or_else(String::new, |s| quoted(&s.name));
+                    let name = self
+                        .sheets
+                        .get(sheet)
+                        .map_or_else(String::new, |s| quoted(&s.name));
                     format!("{name}.{}", quoted(&curve.name))
                 }
                 None => format!("?{}", id.0),
@@ -206,7 +230,9 @@ fn whole_edge(lines: &[Line], ends: [CornerName; 2]) -> Option<&str> {
         return None;
     };
     let mut edges = lines.iter().flat_map(|line| &line.edges);
-    edges.find(|edge| edge.ends == [from, to]).map(|edge| &*edge.name)
+    edges
+        .find(|edge| edge.ends == [from, to])
+        .map(|edge| &*edge.name)
 }
 
 fn unquoted(name: &str) -> &str {

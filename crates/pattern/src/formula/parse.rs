@@ -545,12 +545,15 @@ impl Parser<'_> {
         let start = self.at;
         let (owner, _) = self.word()?;
         if !self.take('.') {
-            if kind == Kind::Stretch && self.peek() == Some(')') && self.names.seam(&owner).is_some() {
-                let id = self.names.seam(&owner).unwrap_or_default();
+            if kind == Kind::Stretch && self.peek() == Some(')') {
                 self.at = start;
                 self.word()?;
-                self.name_token(start, Token::Part(PartReference::Seam(id)));
-                return Ok(PartReference::Seam(id));
+                let part = match self.names.seam(&owner) {
+                    Some(id) => PartReference::Seam(id),
+                    None => PartReference::Unknown(self.text[start..self.at].into()),
+                };
+                self.name_token(start, Token::Part(part.clone()));
+                return Ok(part);
             }
             return Err(self.error_here("stands where a dot is missing", HINT));
         }

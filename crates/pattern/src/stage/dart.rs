@@ -40,9 +40,10 @@ pub(crate) enum DartError {
 pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartError> {
     let turn = stage.turn();
     let mut result = stage.clone();
-    let found = result.lines.iter_mut().find(|line| {
-        line.name == dart.line && line.half == 0 && line.kind == LineKind::Outline
-    });
+    let found = result
+        .lines
+        .iter_mut()
+        .find(|line| line.name == dart.line && line.half == 0 && line.kind == LineKind::Outline);
     let line = found.ok_or(DartError::Place(PlaceError::NoLine))?;
     let pieces: Vec<usize> = (0..line.edges.len())
         .filter(|&k| line.edges[k].name == dart.middle.edge)
@@ -89,7 +90,8 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
     let mut edges: Vec<StageEdge> = Vec::with_capacity(line.edges.len() + 3);
     let mut legs = Some(legs(dart.by, [open, close], apex));
     for edge in &line.edges {
-        let outside = edge.name != dart.middle.edge || edge.to <= from + 1e-12 || edge.from >= to - 1e-12;
+        let outside =
+            edge.name != dart.middle.edge || edge.to <= from + 1e-12 || edge.from >= to - 1e-12;
         if outside {
             let is_after = edge.name == dart.middle.edge && edge.from >= to - 1e-12;
             if is_after {
@@ -174,5 +176,8 @@ fn parameter(edge: &StageEdge, share: f64) -> f64 {
 fn point_at(edges: &[StageEdge], pieces: &[usize], share: f64) -> Option<Vec2> {
     let mut found = pieces.iter().map(|&k| &edges[k]);
     let edge = found.find(|edge| (edge.from - 1e-9..=edge.to + 1e-9).contains(&share))?;
-    Some(edge.curve.point(parameter(edge, share.clamp(edge.from, edge.to))))
+    Some(
+        edge.curve
+            .point(parameter(edge, share.clamp(edge.from, edge.to))),
+    )
 }

@@ -41,7 +41,10 @@ pub(crate) fn cut_diamond(
         })
         .collect();
     let mut result = stage.clone();
-    let internal = result.lines.iter().position(|line| line.kind == LineKind::Internal);
+    let internal = result
+        .lines
+        .iter()
+        .position(|line| line.kind == LineKind::Internal);
     let hole = StageLine {
         name: Name::Made {
             by,
@@ -53,7 +56,9 @@ pub(crate) fn cut_diamond(
         edges,
         end: None,
     };
-    result.lines.insert(internal.unwrap_or(result.lines.len()), hole);
+    result
+        .lines
+        .insert(internal.unwrap_or(result.lines.len()), hole);
     result.darts.push(StageDart {
         by,
         half: 0,

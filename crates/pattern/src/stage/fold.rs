@@ -1,6 +1,8 @@
 //! The other half of a panel that lies on the fold of the cloth.
 
-use super::{MarkValue, PlaceError, Stage, StageDart, StageEdge, StageNotch, mirrored_edges, with_ends};
+use super::{
+    MarkValue, PlaceError, Stage, StageDart, StageEdge, StageNotch, mirrored_edges, with_ends,
+};
 use crate::{LineKind, LineName, NotchId};
 use toile_geometry::{Curve, Vec2};
 
@@ -21,9 +23,10 @@ pub(crate) fn unfold(
     ends: [MarkValue; 2],
 ) -> Result<(Stage, Vec<NotchId>), FoldError> {
     let stretch = stage.stretch(line, ends, false).map_err(FoldError::Place)?;
-    let outline = stage.lines.iter().find(|l| {
-        l.name == line && l.half == 0 && l.kind == LineKind::Outline
-    });
+    let outline = stage
+        .lines
+        .iter()
+        .find(|l| l.name == line && l.half == 0 && l.kind == LineKind::Outline);
     let outline = outline.ok_or(FoldError::Place(PlaceError::NoLine))?;
     let on_fold = |edge: &StageEdge| {
         stretch.iter().any(|&(name, from, to)| {
@@ -31,9 +34,8 @@ pub(crate) fn unfold(
         })
     };
     let mut edges = outline.edges.clone();
-    let first = (0..edges.len()).find(|&k| {
-        on_fold(&edges[k]) && !on_fold(&edges[(k + edges.len() - 1) % edges.len()])
-    });
+    let first = (0..edges.len())
+        .find(|&k| on_fold(&edges[k]) && !on_fold(&edges[(k + edges.len() - 1) % edges.len()]));
     let Some(first) = first else {
         return Err(FoldError::NotStraight);
     };
@@ -50,9 +52,10 @@ pub(crate) fn unfold(
     if !is_straight || edges.is_empty() {
         return Err(FoldError::NotStraight);
     }
-    let lost = stage.notches.iter().filter(|notch| {
-        notch.half == 0 && folded.iter().any(|edge| edge.name == notch.edge)
-    });
+    let lost = stage
+        .notches
+        .iter()
+        .filter(|notch| notch.half == 0 && folded.iter().any(|edge| edge.name == notch.edge));
     let lost: Vec<NotchId> = lost.map(|notch| notch.id).collect();
     Ok((unfolded(stage, edges, (start, end), &lost), lost))
 }
@@ -79,7 +82,12 @@ fn unfolded(
     result.folds.push((start, unit));
     let mut lines = Vec::with_capacity(2 * result.lines.len());
     for kind in [LineKind::Outline, LineKind::Hole, LineKind::Internal] {
-        let own: Vec<_> = result.lines.iter().filter(|l| l.kind == kind).cloned().collect();
+        let own: Vec<_> = result
+            .lines
+            .iter()
+            .filter(|l| l.kind == kind)
+            .cloned()
+            .collect();
         if kind == LineKind::Outline {
             let mut outline = own.into_iter().next().expect("the fold is on the outline");
             outline.edges = edges.iter().cloned().chain(other.drain(..)).collect();

@@ -10,7 +10,9 @@ pub(crate) use diamond::cut_diamond;
 pub(crate) use fold::{FoldError, unfold};
 pub(crate) use place::{MarkValue, PlaceError, Spot, Stretch};
 
-use crate::{Corner, CornerName, EdgeName, LineId, LineKind, LineName, NotchId, NotchKind, OperationId};
+use crate::{
+    Corner, CornerName, EdgeName, LineId, LineKind, LineName, NotchId, NotchKind, OperationId,
+};
 use toile_geometry::{Curve, Vec2};
 
 /// A panel after some of its operations.
@@ -97,7 +99,10 @@ pub struct StageDart {
 impl Stage {
     /// The outline's edges; none if there is no outline.
     pub fn outline(&self) -> &[StageEdge] {
-        let found = self.lines.iter().find(|line| line.kind == LineKind::Outline);
+        let found = self
+            .lines
+            .iter()
+            .find(|line| line.kind == LineKind::Outline);
         found.map_or(&[], |line| &line.edges)
     }
 
@@ -125,7 +130,11 @@ impl Stage {
             points.extend(edge.curve.defining_points());
         }
         points.extend(self.notches.iter().flat_map(|n| [n.point, n.inward]));
-        points.extend(self.darts.iter().flat_map(|d| [d.mouth[0], d.mouth[1], d.apex]));
+        points.extend(
+            self.darts
+                .iter()
+                .flat_map(|d| [d.mouth[0], d.mouth[1], d.apex]),
+        );
         points.extend(self.folds.iter().flat_map(|f| [f.0, f.1]));
         numbers.extend(points.iter().flat_map(|p| [p.x, p.y]));
         numbers.into_iter().map(f64::to_bits).collect()
@@ -142,7 +151,11 @@ impl Stage {
         let mirror = (Vec2::zeros(), Vec2::y());
         let flip = |v: Vec2| Vec2::new(-v.x, v.y);
         Self {
-            lines: self.lines.iter().map(|line| line.mirrored(mirror, 0)).collect(),
+            lines: self
+                .lines
+                .iter()
+                .map(|line| line.mirrored(mirror, 0))
+                .collect(),
             notches: self
                 .notches
                 .iter()

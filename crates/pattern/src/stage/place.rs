@@ -49,14 +49,14 @@ impl Stage {
     }
 
     /// Where a mark is on a line.
-    pub fn spot(&self, line: LineName, mark: MarkValue) -> Result<Spot, PlaceError> {
+    pub(crate) fn spot(&self, line: LineName, mark: MarkValue) -> Result<Spot, PlaceError> {
         let line = self.line(line)?;
         let along = line.along(mark)?;
         Ok(line.at(along, mark))
     }
 
     /// Place and direction of travel at a spot.
-    pub fn at_spot(&self, line: LineName, spot: Spot) -> Option<(Vec2, Vec2)> {
+    pub(crate) fn at_spot(&self, line: LineName, spot: Spot) -> Option<(Vec2, Vec2)> {
         let line = self.line(line).ok()?;
         let edges = line.edges.iter().filter(|edge| edge.name == spot.edge);
         let found = edges.clone().find(|edge| {
@@ -71,7 +71,7 @@ impl Stage {
     }
 
     /// The edges between two marks of a line.
-    pub fn stretch(
+    pub(crate) fn stretch(
         &self,
         line: LineName,
         [from, to]: [MarkValue; 2],
@@ -79,7 +79,11 @@ impl Stage {
     ) -> Result<Stretch, PlaceError> {
         if backwards {
             let forwards = self.stretch(line, [to, from], false)?;
-            return Ok(forwards.into_iter().rev().map(|(e, a, b)| (e, b, a)).collect());
+            return Ok(forwards
+                .into_iter()
+                .rev()
+                .map(|(e, a, b)| (e, b, a))
+                .collect());
         }
         let line = self.line(line)?;
         let (start, end) = (line.along(from)?, line.along(to)?);

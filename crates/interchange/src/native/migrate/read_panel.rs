@@ -1,15 +1,16 @@
 //! Reads one panel of a pattern file.
 
-use super::item::{Item, Object};
-use super::json::Value;
-use super::read::{Reader, unknown};
-use super::words::{FACINGS, PARTS};
+use super::super::item::{Item, Object};
+use super::super::json::Value;
+use super::super::words::{FACINGS, PARTS};
+use super::document::{
+    Along, Dart, DartShape, DartTip, Edge, EdgeCurve, InternalLine, LineSegment, Notch, Number,
+    Panel, Pattern, Point, PointPlace, WornRule,
+};
+use super::read::{Kind, Reader, unknown};
 use crate::FormatError;
 use std::collections::BTreeMap;
-use toile_pattern::{
-    Along, Cut, Dart, DartShape, DartTip, Edge, EdgeCurve, EdgeId, InternalLine, LineSegment,
-    Notch, Panel, Pattern, Point, PointId, PointPlace, WornRule, nearest,
-};
+use toile_pattern::{Cut, nearest};
 
 const FIELDS: &[&str] = &[
     "id",
@@ -30,16 +31,16 @@ const FIELDS: &[&str] = &[
 /// Names of one panel's parts.
 struct Names<'a> {
     panel: &'a str,
-    points: BTreeMap<&'a str, PointId>,
-    edges: BTreeMap<&'a str, EdgeId>,
+    points: BTreeMap<&'a str, u32>,
+    edges: BTreeMap<&'a str, u32>,
 }
 
 impl Names<'_> {
-    fn point(&self, item: &Item<'_>) -> Result<PointId, FormatError> {
+    fn point(&self, item: &Item<'_>) -> Result<u32, FormatError> {
         self.find(&self.points, "point", item)
     }
 
-    fn edge(&self, item: &Item<'_>) -> Result<EdgeId, FormatError> {
+    fn edge(&self, item: &Item<'_>) -> Result<u32, FormatError> {
         self.find(&self.edges, "edge", item)
     }
 
@@ -57,9 +58,9 @@ impl Names<'_> {
         })
     }
 
-    fn points<const N: usize>(&self, item: &Item<'_>) -> Result<[PointId; N], FormatError> {
+    fn points<const N: usize>(&self, item: &Item<'_>) -> Result<[u32; N], FormatError> {
         let items: [Item<'_>; N] = item.exactly()?;
-        let mut ids = [PointId::default(); N];
+        let mut ids = [0; N];
         for (id, item) in ids.iter_mut().zip(&items) {
             *id = self.point(item)?;
         }
@@ -83,8 +84,8 @@ pub fn panel(
         let near = nearest(cloth, pattern.fabrics.iter().map(|known| &*known.name));
         unknown(&fabric, "fabric", cloth, near)
     })?;
-    let id = reader.ids.panel(fields.get("id"), item)?;
-    let mut panel = Panel::new(id, name, found.id);
+    let id = reader.ids.take(Kind::Panel, fields.get("id"), item)?;
+    let mut panel = Panel::new(id, name, found.id.0);
     let mut names = Names {
         panel: name,
         points: BTreeMap::new(),
@@ -97,7 +98,8 @@ pub fn panel(
             Value::Object(_) => written_id(item),
             _ => None,
         };
-        names.points.insert(name, reader.ids.point(written, item)?);
+        let id = reader.ids.take(Kind::Point, written, item)?;
+        names.points.insert(name, id);
     }
     let outline = fields.need("outline")?;
     let holes = match fields.get("holes") {
@@ -143,10 +145,10 @@ fn details(
         panel.fold = Some(names.edge(&fold)?);
     }
     if let Some(grain) = fields.get("grain") {
-        panel.grain = grain.angle()?;
+        panel.grain = grain.angle()?.into();
     }
     if let Some(allowance) = fields.get("seam_allowance") {
-        panel.seam_allowance = allowance.length(reader.unit)?;
+        panel.seam_allowance = allowance.length(reader.unit)?.into();
     }
     if let Some(worn) = fields.get("worn") {
         panel.worn = read_worn(reader, &worn)?;
@@ -207,7 +209,7 @@ fn read_worn(reader: &mut Reader, item: &Item<'_>) -> Result<WornRule, FormatErr
         part: fields.need("part")?.choice(PARTS)?,
         facing: fields.need("facing")?.choice(FACINGS)?,
         level: match fields.get("level") {
-            Some(level) => Some(level.length(reader.unit)?),
+            Some(level) => Some(level.length(reader.unit)?.into()),
             None => None,
         },
     })
@@ -222,7 +224,7 @@ fn place(
     let unit = reader.unit;
     let pair = |item: &Item<'_>| -> Result<_, FormatError> {
         let [x, y]: [Item<'_>; 2] = item.exactly()?;
-        Ok((x.length(unit)?, y.length(unit)?))
+        Ok((x.length(unit)?.into(), y.length(unit)?.into()))
     };
     if let Value::List(_) = item.node.value {
         let (x, y) = pair(item)?;
@@ -238,7 +240,7 @@ fn place(
     if let Some(edge) = fields.get("edge") {
         return Ok(PointPlace::OnEdge {
             edge: names.edge(&edge)?,
-            at: fields.need("at")?.plain()?,
+            at: fields.need("at")?.plain()?.into(),
         });
     }
     if let Some(at) = fields.get("at") {
@@ -272,22 +274,24 @@ fn place(
     if let Some(angle) = fields.get("angle") {
         return Ok(PointPlace::Polar {
             base,
-            angle: angle.angle()?,
-            distance: fields.need("distance")?.length(unit)?,
+            angle: angle.angle()?.into(),
+            distance: fields.need("distance")?.length(unit)?.into(),
         });
     }
     if let Some(toward) = fields.get("toward") {
         return Ok(PointPlace::Toward {
             base,
             tip: names.point(&toward)?,
-            distance: fields.need("distance")?.length(unit)?,
+            distance: fields.need("distance")?.length(unit)?.into(),
         });
     }
     Ok(PointPlace::Between {
         base,
         tip: names.point(&fields.need("to")?)?,
-        along: fields.need("along")?.plain()?,
-        aside: fields.get("aside").map_or(Ok(0.0.into()), |a| a.plain())?,
+        along: fields.need("along")?.plain()?.into(),
+        aside: fields
+            .get("aside")
+            .map_or(Ok(0.0.into()), |a| a.plain().map(Number::from))?,
     })
 }
 
@@ -311,7 +315,7 @@ fn edge_names<'a>(
     for item in list.list()? {
         let fields = item.object(EDGE_FIELDS, &mut reader.notes)?;
         let name = fields.need("edge")?;
-        let id = reader.ids.edge(fields.get("id"), &item)?;
+        let id = reader.ids.take(Kind::Edge, fields.get("id"), &item)?;
         if names.edges.insert(name.name()?, id).is_some() {
             return Err(name.error(
                 format!("two edges of panel {:?} are called so", names.panel),
@@ -345,7 +349,7 @@ fn edges(
             ends: [names.point(&fields.need("from")?)?, names.point(&end)?],
             curve: curve(&fields, names)?,
             seam_allowance: match fields.get("seam_allowance") {
-                Some(allowance) => Some(allowance.length(reader.unit)?),
+                Some(allowance) => Some(allowance.length(reader.unit)?.into()),
                 None => None,
             },
         });
@@ -360,7 +364,7 @@ fn curve(fields: &Object<'_>, names: &Names<'_>) -> Result<EdgeCurve, FormatErro
     match (bulge, quadratic, cubic) {
         (None, None, None) => Ok(EdgeCurve::Line),
         (Some(bulge), None, None) => Ok(EdgeCurve::Arc {
-            bulge: bulge.plain()?,
+            bulge: bulge.plain()?.into(),
         }),
         (None, Some(control), None) => Ok(EdgeCurve::Quadratic {
             control: names.point(&control)?,
@@ -395,12 +399,12 @@ fn lists(
         item.check_name(name)?;
         let fields = item.object(&["id", "edge", "at", "distance"], &mut reader.notes)?;
         panel.notches.push(Notch {
-            id: reader.ids.notch(fields.get("id"), &item)?,
+            id: reader.ids.take(Kind::Notch, fields.get("id"), &item)?,
             name: name.to_owned(),
             edge: names.edge(&fields.need("edge")?)?,
             at: match fields.get("distance") {
-                Some(distance) => Along::Distance(distance.length(reader.unit)?),
-                None => Along::Fraction(fields.need("at")?.plain()?),
+                Some(distance) => Along::Distance(distance.length(reader.unit)?.into()),
+                None => Along::Fraction(fields.need("at")?.plain()?.into()),
             },
         });
     }
@@ -421,7 +425,7 @@ fn line(
     names: &Names<'_>,
 ) -> Result<InternalLine, FormatError> {
     let fields = item.object(&["id", "path", "segments"], &mut reader.notes)?;
-    let id = reader.ids.internal_line(fields.get("id"), item)?;
+    let id = reader.ids.take(Kind::Line, fields.get("id"), item)?;
     let mut segments = Vec::new();
     if let Some(path) = fields.get("path") {
         let items = path.list()?;
@@ -462,8 +466,8 @@ fn dart(
 ) -> Result<Dart, FormatError> {
     let known = &["id", "edge", "ends", "at", "width", "depth", "apex"];
     let fields = item.object(known, &mut reader.notes)?;
-    let at = fields.need("at")?.plain()?;
-    let width = fields.need("width")?.length(reader.unit)?;
+    let at = fields.need("at")?.plain()?.into();
+    let width = fields.need("width")?.length(reader.unit)?.into();
     let shape = match fields.get("ends") {
         Some(ends) => DartShape::Diamond {
             ends: names.points(&ends)?,
@@ -476,12 +480,12 @@ fn dart(
             width,
             tip: match fields.get("apex") {
                 Some(apex) => DartTip::Apex(names.point(&apex)?),
-                None => DartTip::Depth(fields.need("depth")?.length(reader.unit)?),
+                None => DartTip::Depth(fields.need("depth")?.length(reader.unit)?.into()),
             },
         },
     };
     Ok(Dart {
-        id: reader.ids.dart(fields.get("id"), item)?,
+        id: reader.ids.take(Kind::Dart, fields.get("id"), item)?,
         name: name.to_owned(),
         shape,
     })

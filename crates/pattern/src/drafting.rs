@@ -1,0 +1,479 @@
+//! From an evaluation to a draft: pieces of cloth, and seams between them.
+
+use crate::evaluate::{Evaluation, SeamValue};
+use crate::stage::StageEdge;
+use crate::{
+    BodyPart, Code, Diagnostic, Draft, DraftSeam, DraftSpan, EdgeName, EdgeOrigin, Facing,
+    LineKind, Name, Number, OperationKind, Panel, PanelId, Pattern, Piece, PieceEdge, PieceId,
+    PieceLine, PieceNotch, Place, Role, SeamOrigin, Severity, Stage, Worn, WornRule,
+};
+use std::collections::{BTreeMap, BTreeSet};
+use toile_geometry::{Rigid, Vec3};
+use toile_measure::Measurements;
+
+/// Most pieces a draft may have.
+const MOST_PIECES: usize = 2000;
+
+/// A draft with what only its checks need.
+pub(crate) struct Drafting {
+    pub draft: Draft,
+    pub diagnostics: Vec<Diagnostic>,
+    /// How much longer one side of each draft seam may be [m].
+    pub eases: Vec<f64>,
+}
+
+impl Pattern {
+    /// The draft for a table of measurements, and everything that kept parts out of it.
+    ///
+    /// Measurements that are not given are taken from the base size, with a note. Panels that
+    /// cannot be drawn and seams that cannot be walked are left out, with an error each.
+    pub fn resolve(&self, measurements: &Measurements) -> (Draft, Vec<Diagnostic>) {
+        Evaluation::new(self, measurements).draft()
+    }
+}
+
+impl Evaluation {
+    /// The draft of the pattern as it was last evaluated, and everything that kept parts out of it.
+    pub fn draft(&self) -> (Draft, Vec<Diagnostic>) {
+        let drafting = self.drafting();
+        (drafting.draft, drafting.diagnostics)
+    }
+
+    pub(crate) fn drafting(&self) -> Drafting {
+        let pattern = self.pattern();
+        let mut drafter = Drafter {
+            evaluation: self,
+            drafting: Drafting {
+                draft: Draft {
+                    name: pattern.name.clone(),
+                    fabrics: pattern.fabrics.iter().map(|f| (**f).clone()).collect(),
+                    ..Draft::default()
+                },
+                diagnostics: self.diagnostics(),
+                eases: Vec::new(),
+            },
+            tracks: BTreeMap::new(),
+        };
+        for panel in &pattern.panels {
+            drafter.panel(panel);
+        }
+        drafter.darts();
+        for seam in &pattern.seams {
+            if let Some(value) = self.seam_value(seam.id) {
+                drafter.seam(seam, value);
+            }
+        }
+        drafter.mark_sewn();
+        drafter.drafting
+    }
+}
+
+/// A stretch of an origin on a piece: index of the piece's edge and the shares it covers.
+#[derive(Clone, Copy)]
+struct Track {
+    edge: usize,
+    from: f64,
+    to: f64,
+}
+
+type Tracks = BTreeMap<EdgeOrigin, Vec<Track>>;
+
+struct Drafter<'a> {
+    evaluation: &'a Evaluation,
+    drafting: Drafting,
+    /// Of each piece of cloth: its index in the draft, and where every named edge went.
+    tracks: BTreeMap<PieceId, (usize, Tracks)>,
+}
+
+impl Drafter<'_> {
+    fn report(&mut self, severity: Severity, code: Code, place: Place, what: String, hint: &str) {
+        let found = Diagnostic::new(severity, code, place, what, hint);
+        self.drafting.diagnostics.push(found);
+    }
+
+    fn panel(&mut self, panel: &Panel) {
+        let place = Place::Panel(panel.id);
+        let stage = self.evaluation.last_stage(panel).cloned();
+        let worn = self.worn(panel);
+        let fabrics = &self.evaluation.pattern().fabrics;
+        let fabric = fabrics.iter().position(|f| f.id == panel.fabric);
+        if fabric.is_none() {
+            self.report(
+                Severity::Error,
+                Code::MissingReference,
+                place.clone(),
+                format!(
+                    "panel {:?} is cut from a fabric that is not there",
+                    panel.name
+                ),
+                "choose a fabric of this pattern",
+            );
+        }
+        let (Some(stage), Some(fabric)) = (stage, fabric) else {
+            return;
+        };
+        let room = MOST_PIECES - self.drafting.draft.pieces.len();
+        if panel.cut.quantity as usize > room {
+            self.report(
+                Severity::Error,
+                Code::TooMany,
+                place,
+                format!(
+                    "panel {:?} is cut {} times, which makes more than {MOST_PIECES} pieces",
+                    panel.name, panel.cut.quantity
+                ),
+                "cut it less often",
+            );
+            return;
+        }
+        if panel.cut.mirrored && panel.cut.quantity % 2 == 1 {
+            self.report(
+                Severity::Warning,
+                Code::OddPair,
+                place,
+                format!(
+                    "panel {:?} is cut in mirrored pairs, but {} times",
+                    panel.name, panel.cut.quantity
+                ),
+                "cut it an even number of times, or not mirrored",
+            );
+        }
+        for copy in 0..panel.cut.quantity {
+            let flipped = panel.cut.mirrored && copy % 2 == 1;
+            let (stage, worn) = if flipped {
+                (&stage.mirror_image(), mirrored_worn(worn))
+            } else {
+                (&*stage, worn)
+            };
+            let name = self.piece_name(panel, copy, flipped);
+            let id = PieceId {
+                panel: panel.id,
+                copy,
+            };
+            let pieces = &mut self.drafting.draft.pieces;
+            self.tracks.insert(id, (pieces.len(), tracks(stage)));
+            pieces.push(piece(id, name, stage, (fabric, worn)));
+        }
+    }
+
+    /// A name for a copy that no other piece has.
+    fn piece_name(&self, panel: &Panel, copy: u32, flipped: bool) -> String {
+        let base = match (copy, flipped) {
+            (0, _) => panel.name.clone(),
+            (1, true) => format!("{} mirrored", panel.name),
+            _ => format!("{} {}", panel.name, copy + 1),
+        };
+        let pieces = &self.drafting.draft.pieces;
+        let taken = |name: &str| pieces.iter().any(|piece| piece.name == name);
+        let mut name = base.clone();
+        let mut number = 2;
+        while taken(&name) {
+            name = format!("{base} ({number})");
+            number += 1;
+        }
+        name
+    }
+
+    fn worn(&mut self, panel: &Panel) -> Worn {
+        match &panel.worn {
+            WornRule::Automatic => Worn::Automatic,
+            WornRule::Wrapped {
+                part,
+                facing,
+                level,
+            } => Worn::Wrapped {
+                part: *part,
+                facing: *facing,
+                level: level.as_ref().and_then(|level| self.level(panel, level)),
+            },
+            WornRule::Placed {
+                translation,
+                rotation,
+            } => {
+                let [x, y, z, w] = *rotation;
+                let quaternion = nalgebra::Quaternion::new(w, x, y, z);
+                let near = translation.iter().all(|v| v.abs() <= 1000.0);
+                let turned = nalgebra::Unit::try_new(quaternion, 1e-6);
+                match turned.filter(|q| near && q.coords.iter().all(|v| v.is_finite())) {
+                    Some(rotation) => {
+                        Worn::Placed(Rigid::from_parts(Vec3::from(*translation).into(), rotation))
+                    }
+                    None => {
+                        self.report(
+                            Severity::Error,
+                            Code::NotFinite,
+                            Place::Panel(panel.id),
+                            format!("panel {:?} is placed nowhere", panel.name),
+                            "give a place within 1 km and a rotation that is a unit quaternion",
+                        );
+                        Worn::Automatic
+                    }
+                }
+            }
+        }
+    }
+
+    fn level(&mut self, panel: &Panel, level: &Number) -> Option<f64> {
+        let what = format!("panel {:?}, level it is worn at", panel.name);
+        let place = Place::Panel(panel.id);
+        let (value, found) = self.evaluation.length_of(level, &place, &what);
+        self.drafting.diagnostics.extend(found);
+        value
+    }
+
+    /// Seams that close darts, in the order of pieces.
+    fn darts(&mut self) {
+        let pattern = self.evaluation.pattern();
+        let mut seams = Vec::new();
+        for (id, (piece, tracks)) in &self.tracks {
+            let Some(panel) = pattern.panel(id.panel) else {
+                continue;
+            };
+            let halves = 1_u8 << folds(panel);
+            for operation in &panel.operations {
+                for half in 0..halves {
+                    let leg = |leg: u16, reverse: bool| -> Option<DraftSpan> {
+                        let name = Name::Made {
+                            by: operation.id,
+                            role: Role::Leg,
+                            index: leg,
+                        };
+                        let track = tracks.get(&EdgeOrigin { name, half })?.first()?;
+                        let backwards = (track.from > track.to) != reverse;
+                        Some(DraftSpan {
+                            piece: *piece,
+                            edge: track.edge,
+                            from: f64::from(u8::from(backwards)),
+                            to: f64::from(u8::from(!backwards)),
+                        })
+                    };
+                    let sides = match operation.kind {
+                        OperationKind::Dart { .. } => [vec![leg(0, false)], vec![leg(1, true)]],
+                        OperationKind::Diamond { .. } => [
+                            vec![leg(0, false), leg(1, false)],
+                            vec![leg(3, true), leg(2, true)],
+                        ],
+                        OperationKind::Fold { .. } => continue,
+                    };
+                    let sides = sides.map(|s| s.into_iter().collect::<Option<Vec<_>>>());
+                    if let [Some(first), Some(second)] = sides {
+                        let owner = &self.drafting.draft.pieces[*piece].name;
+                        seams.push(DraftSeam {
+                            id: SeamOrigin::Dart {
+                                dart: operation.id,
+                                copy: id.copy,
+                                half,
+                            },
+                            name: format!("{} of {owner}", operation.name),
+                            sides: [first, second],
+                            gathered: false,
+                            right_sides_together: true,
+                            multi_ply: false,
+                        });
+                    }
+                }
+            }
+        }
+        self.drafting.eases.resize(seams.len(), 0.0);
+        self.drafting.draft.seams = seams;
+    }
+
+    fn seam(&mut self, seam: &crate::Seam, value: &SeamValue) {
+        let mut sides = [Vec::new(), Vec::new()];
+        for (side, spans) in value.sides.iter().enumerate() {
+            for span in spans {
+                let id = PieceId {
+                    panel: span.panel,
+                    copy: span.copy,
+                };
+                let Some((piece, tracks)) = self.tracks.get(&id) else {
+                    return;
+                };
+                for &(name, from, to) in &span.stretch {
+                    let origin = EdgeOrigin {
+                        name,
+                        half: span.half,
+                    };
+                    let found = tracks.get(&origin).into_iter().flatten();
+                    sides[side].extend(spans_on(*piece, found, from, to));
+                }
+            }
+        }
+        self.drafting.eases.push(value.ease);
+        self.drafting.draft.seams.push(DraftSeam {
+            id: SeamOrigin::Seam(seam.id),
+            name: seam.name.clone(),
+            sides,
+            gathered: seam.gathered,
+            right_sides_together: seam.right_sides_together,
+            multi_ply: seam.multi_ply,
+        });
+    }
+
+    /// A piece is sewn if a seam names it, or if it is all there is.
+    fn mark_sewn(&mut self) {
+        let draft = &mut self.drafting.draft;
+        for seam in &draft.seams {
+            if matches!(seam.id, SeamOrigin::Seam(_)) {
+                for span in seam.sides.iter().flatten() {
+                    draft.pieces[span.piece].sewn = true;
+                }
+            }
+        }
+        let panels: BTreeSet<PanelId> = draft.pieces.iter().map(|p| p.id.panel).collect();
+        if panels.len() == 1 && !draft.pieces.iter().any(|piece| piece.sewn) {
+            draft.pieces[0].sewn = true;
+        }
+    }
+}
+
+/// How many folds a panel is unfolded in.
+fn folds(panel: &Panel) -> u32 {
+    let folds = panel
+        .operations
+        .iter()
+        .filter(|o| matches!(o.kind, OperationKind::Fold { .. }));
+    (folds.count() as u32).min(7)
+}
+
+/// The parts of a named edge between two shares, in walking order.
+fn spans_on<'t>(
+    piece: usize,
+    tracks: impl Iterator<Item = &'t Track>,
+    from: f64,
+    to: f64,
+) -> Vec<DraftSpan> {
+    let (low, high) = (from.min(to), from.max(to));
+    let mut parts: Vec<(f64, DraftSpan)> = Vec::new();
+    for track in tracks {
+        let cut_low = track.from.min(track.to).max(low);
+        let cut_high = track.from.max(track.to).min(high);
+        if cut_high - cut_low < 1e-9 {
+            continue;
+        }
+        let local = |f: f64| ((f - track.from) / (track.to - track.from)).clamp(0.0, 1.0);
+        let (start, end) = match from < to {
+            true => (cut_low, cut_high),
+            false => (cut_high, cut_low),
+        };
+        parts.push((
+            start,
+            DraftSpan {
+                piece,
+                edge: track.edge,
+                from: local(start),
+                to: local(end),
+            },
+        ));
+    }
+    parts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if from > to {
+        parts.reverse();
+    }
+    parts.into_iter().map(|(_, span)| span).collect()
+}
+
+fn piece(id: PieceId, name: String, stage: &Stage, (fabric, worn): (usize, Worn)) -> Piece {
+    let edges = |edges: &[StageEdge]| edges.iter().map(piece_edge).collect();
+    let inside = stage
+        .lines
+        .iter()
+        .filter(|line| line.kind == LineKind::Internal);
+    Piece {
+        id,
+        name,
+        outline: edges(stage.outline()),
+        holes: stage.holes().map(edges).collect(),
+        internal_lines: inside
+            .filter_map(|line| match line.name {
+                Name::Drawn(id) => Some(PieceLine {
+                    id,
+                    curves: line.edges.iter().map(|edge| edge.curve).collect(),
+                }),
+                Name::Made { .. } => None,
+            })
+            .filter(|line| !line.curves.is_empty())
+            .collect(),
+        notches: stage
+            .notches
+            .iter()
+            .map(|notch| PieceNotch {
+                id: notch.id,
+                kind: notch.kind,
+                point: notch.point,
+                inward: notch.inward,
+            })
+            .collect(),
+        grain: stage.grain,
+        fabric,
+        worn,
+        sewn: false,
+    }
+}
+
+fn piece_edge(edge: &StageEdge) -> PieceEdge {
+    PieceEdge {
+        origin: origin(edge.name, edge.half),
+        curve: edge.curve,
+        seam_allowance: edge.allowance,
+        corner: edge.corner,
+    }
+}
+
+fn origin(name: EdgeName, half: u8) -> EdgeOrigin {
+    EdgeOrigin { name, half }
+}
+
+fn tracks(stage: &Stage) -> Tracks {
+    let mut tracks: Tracks = BTreeMap::new();
+    let edges = stage.outline().iter().chain(stage.holes().flatten());
+    for (edge, piece) in edges.enumerate() {
+        let key = origin(piece.name, piece.half);
+        tracks.entry(key).or_default().push(Track {
+            edge,
+            from: piece.from,
+            to: piece.to,
+        });
+    }
+    tracks
+}
+
+/// The place of a mirror image: the other side of the body.
+fn mirrored_worn(worn: Worn) -> Worn {
+    match worn {
+        Worn::Automatic => Worn::Automatic,
+        Worn::Wrapped {
+            part,
+            facing,
+            level,
+        } => Worn::Wrapped {
+            part: match part {
+                BodyPart::LeftArm => BodyPart::RightArm,
+                BodyPart::RightArm => BodyPart::LeftArm,
+                BodyPart::LeftLeg => BodyPart::RightLeg,
+                BodyPart::RightLeg => BodyPart::LeftLeg,
+                middle => middle,
+            },
+            facing: match facing {
+                Facing::Left if is_middle(part) => Facing::Right,
+                Facing::Right if is_middle(part) => Facing::Left,
+                other => other,
+            },
+            level,
+        },
+        Worn::Placed(rigid) => {
+            let t = rigid.translation.vector;
+            let q = rigid.rotation.into_inner();
+            let mirrored = nalgebra::Quaternion::new(q.w, q.i, -q.j, -q.k);
+            Worn::Placed(Rigid::from_parts(
+                Vec3::new(-t.x, t.y, t.z).into(),
+                nalgebra::Unit::new_normalize(mirrored),
+            ))
+        }
+    }
+}
+
+/// Whether left and right of that part are the wearer's own. Of an arm they are above and below.
+fn is_middle(part: BodyPart) -> bool {
+    !matches!(part, BodyPart::LeftArm | BodyPart::RightArm)
+}

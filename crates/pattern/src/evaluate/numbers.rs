@@ -1,0 +1,518 @@
+//! Numbers of a document as values, and what formulas look up.
+
+use super::node::{Definition, Node, Value, drawn_stretch};
+use super::{Evaluation, curves, panels, points, seams};
+use crate::formula::{Environment, Failure, Quantity, compute, kind};
+use crate::{
+    Code, Diagnostic, EdgeName, Name, Number, PartReference, Place, Severity, VariableId, nearest,
+};
+use toile_geometry::{Path, Vec2};
+
+/// No length of a garment is as long as this [m].
+const LONGEST: f64 = 1000.0;
+/// No plain number of a pattern is as large as this.
+const LARGEST: f64 = 1e6;
+/// Names of a cycle that are told.
+const CYCLE_NAMES: usize = 12;
+
+/// What a number must be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Want {
+    /// A length [m].
+    Length,
+    /// A plain number or an angle [rad].
+    Plain,
+}
+
+/// The computation of one node: reads values, collects what is wrong.
+pub(crate) struct Computation<'e> {
+    pub evaluation: &'e Evaluation,
+    /// The node.
+    pub k: u32,
+    pub diagnostics: Vec<Diagnostic>,
+    /// The node whose fault keeps this one from having a value.
+    pub cause: u32,
+}
+
+impl Evaluation {
+    /// The value of a node from those of the nodes it needs.
+    pub(super) fn compute(&self, k: u32) -> (Result<Value, u32>, Vec<Diagnostic>) {
+        let state = &self.nodes[k as usize];
+        if let Some(named) = state.cycle {
+            let told = match named == k {
+                true => vec![self.cycle(k)],
+                false => Vec::new(),
+            };
+            return (Err(named), told);
+        }
+        let mut computation = Computation {
+            evaluation: self,
+            k,
+            diagnostics: Vec::new(),
+            cause: k,
+        };
+        let value = computation.value(&state.definition);
+        let cause = computation.cause;
+        (value.ok_or(cause), computation.diagnostics)
+    }
+
+    /// The value of a plain number or an angle [rad]; nothing if it has none.
+    pub fn plain(&self, number: &Number) -> Option<f64> {
+        self.number_of_kind(number, Want::Plain, &Place::Pattern, "")
+            .0
+    }
+
+    /// The value of a length that is no node's own [m], and what is wrong with it.
+    pub(crate) fn length_of(
+        &self,
+        number: &Number,
+        place: &Place,
+        what: &str,
+    ) -> (Option<f64>, Vec<Diagnostic>) {
+        self.number_of_kind(number, Want::Length, place, what)
+    }
+
+    pub(crate) fn number_of_kind(
+        &self,
+        number: &Number,
+        want: Want,
+        place: &Place,
+        what: &str,
+    ) -> (Option<f64>, Vec<Diagnostic>) {
+        let mut computation = Computation {
+            evaluation: self,
+            k: 0,
+            diagnostics: Vec::new(),
+            cause: 0,
+        };
+        let value = computation.number(number, want, place, what);
+        (value, computation.diagnostics)
+    }
+
+    /// Says that a number needs itself.
+    fn cycle(&self, k: u32) -> Diagnostic {
+        let mut names: Vec<String> = Vec::new();
+        let mut at = k;
+        let component = self.nodes[k as usize].cycle;
+        let mut seen = std::collections::HashSet::new();
+        // A walk along needs inside the component comes back to where it was.
+        while seen.insert(at) {
+            if names.len() < CYCLE_NAMES {
+                names.push(self.node_words(at));
+            }
+            let needs = &self.nodes[at as usize].needs;
+            let Some(&next) = needs
+                .iter()
+                .find(|&&n| self.nodes[n as usize].cycle == component)
+            else {
+                break;
+            };
+            at = next;
+        }
+        let more = if seen.len() > CYCLE_NAMES {
+            " -> ..."
+        } else {
+            ""
+        };
+        let first = names[0].clone();
+        let last = if more.is_empty() {
+            self.node_words(at)
+        } else {
+            first.clone()
+        };
+        Diagnostic::error(
+            Code::Cycle,
+            self.place(k),
+            format!(
+                "{first} needs itself: {}{more} -> {last}",
+                names.join(" -> ")
+            ),
+            "give one of them a value that does not need the others",
+        )
+    }
+
+    fn node_words(&self, k: u32) -> String {
+        let names = &self.names;
+        match &self.nodes[k as usize].definition {
+            Definition::Variable(variable) => variable.name.clone(),
+            Definition::Point(point) => names.print_part(&PartReference::Point(point.id)),
+            Definition::Curve(curve) => names.print_part(&PartReference::Curve(curve.id)),
+            Definition::Edge(panel, line, edge) => {
+                format!("{}.{}", panel.name, panel.lines[*line].edges[*edge].name)
+            }
+            Definition::Stage(panel, 0) => panel.name.clone(),
+            Definition::Stage(panel, step) => {
+                format!("{}.{}", panel.name, panel.operations[step - 1].name)
+            }
+            Definition::Seam(seam) => seam.name.clone(),
+            Definition::Missing | Definition::Word => format!("?{k}"),
+        }
+    }
+
+    fn place(&self, k: u32) -> Place {
+        match &self.nodes[k as usize].definition {
+            Definition::Missing | Definition::Word => Place::Pattern,
+            Definition::Variable(variable) => Place::Variable(variable.id),
+            Definition::Point(point) => Place::Point(point.id),
+            Definition::Curve(curve) => Place::Curve(curve.id),
+            Definition::Edge(panel, line, edge) => {
+                Place::Edge(panel.id, panel.lines[*line].edges[*edge].id)
+            }
+            Definition::Stage(panel, 0) => Place::Panel(panel.id),
+            Definition::Stage(panel, step) => {
+                Place::Operation(panel.id, panel.operations[step - 1].id)
+            }
+            Definition::Seam(seam) => Place::Seam(seam.id),
+        }
+    }
+}
+
+impl Computation<'_> {
+    fn value(&mut self, definition: &Definition) -> Option<Value> {
+        match definition {
+            Definition::Missing => None,
+            Definition::Word => self.word(),
+            Definition::Variable(variable) => {
+                let place = Place::Variable(variable.id);
+                let what = format!("variable {:?}", variable.name);
+                let result = self.quantity(&variable.number, Want::Plain);
+                self.reported(result, &place, &what).map(Value::Number)
+            }
+            Definition::Point(point) => points::point(self, point).map(Value::Point),
+            Definition::Curve(curve) => curves::curve(self, curve).map(Value::Path),
+            Definition::Edge(panel, line, edge) => {
+                curves::edge(self, panel, &panel.lines[*line].edges[*edge]).map(Value::Path)
+            }
+            Definition::Stage(panel, step) => panels::stage(self, panel, *step).map(Value::Stage),
+            Definition::Seam(seam) => seams::seam(self, seam).map(Value::Seam),
+        }
+    }
+
+    /// A measurement; nothing for a word that is none.
+    fn word(&mut self) -> Option<Value> {
+        let Node::Word(number) = self.evaluation.nodes[self.k as usize].node else {
+            return None;
+        };
+        let name = &*self.evaluation.word_texts[number as usize];
+        let is_angle = toile_measure::definition(name)
+            .is_some_and(|known| known.kind == toile_measure::UnitKind::Angle);
+        let power = i8::from(!is_angle);
+        if let Some(value) = self.evaluation.given.get(name) {
+            return Some(Value::Number(Quantity { value, power }));
+        }
+        let base = self.evaluation.pattern.base_measurements()?;
+        let value = base.get(name)?;
+        self.diagnostics.push(Diagnostic::new(
+            Severity::Note,
+            Code::BorrowedMeasurement,
+            Place::Pattern,
+            format!("measurement {name:?} was not given; the pattern's base size has it"),
+            "measure it, if the base size does not fit",
+        ));
+        Some(Value::Number(Quantity { value, power }))
+    }
+
+    /// The value of a number; a fault is reported at `place`, `what` names the number in words.
+    pub fn number(
+        &mut self,
+        number: &Number,
+        want: Want,
+        place: &Place,
+        what: &str,
+    ) -> Option<f64> {
+        let result = self.measure(number, want);
+        self.reported(result, place, what)
+    }
+
+    /// The value of a number within the bounds of a garment.
+    pub fn measure(&mut self, number: &Number, want: Want) -> Result<f64, Failure> {
+        self.quantity(number, want).and_then(|q| bounded(q, want))
+    }
+
+    fn quantity(&mut self, number: &Number, want: Want) -> Result<Quantity, Failure> {
+        let plain = |value: f64| Quantity {
+            value,
+            power: i8::from(want == Want::Length),
+        };
+        match number {
+            Number::Value(value) => Ok(plain(*value)),
+            Number::Formula(formula) => compute(formula, &Reading(self)),
+            Number::Adjusted { formula, by } => {
+                let found = compute(formula, &Reading(self))?;
+                Ok(Quantity {
+                    value: found.value + by,
+                    ..found
+                })
+            }
+            Number::PerSize { usual, sizes } => {
+                let own = sizes.iter().find(|own| Some(own.0) == self.evaluation.size);
+                match own {
+                    Some((_, value)) => Ok(plain(*value)),
+                    None => self.quantity(usual, want),
+                }
+            }
+        }
+    }
+
+    /// Turns a failure into a diagnostic, unless that was done where it began.
+    pub fn reported<T>(
+        &mut self,
+        result: Result<T, Failure>,
+        place: &Place,
+        what: &str,
+    ) -> Option<T> {
+        match result {
+            Ok(value) => return Some(value),
+            Err(Failure::Reported(cause)) => self.cause = cause,
+            Err(Failure::Fault {
+                code,
+                column,
+                message,
+                hint,
+            }) => {
+                let message = match column {
+                    Some(column) => format!("{what}: column {column}: {message}"),
+                    None => format!("{what}: {message}"),
+                };
+                self.diagnostics
+                    .push(Diagnostic::error(code, place.clone(), message, hint));
+            }
+        }
+        None
+    }
+
+    /// The value of a node that is needed.
+    fn needed(&self, node: Node) -> Result<&Value, Failure> {
+        let evaluation = self.evaluation;
+        let Some(state) = evaluation.state(node) else {
+            return Err(missing(node));
+        };
+        match (&state.value, &state.definition) {
+            (Ok(value), _) => Ok(value),
+            (Err(_), Definition::Missing) => Err(missing(node)),
+            (Err(cause), _) => Err(Failure::Reported(*cause)),
+        }
+    }
+
+    /// What defines a node.
+    pub fn definition(&self, node: Node) -> Option<&Definition> {
+        self.evaluation.state(node).map(|state| &state.definition)
+    }
+
+    /// Where a point lies [m].
+    pub fn point_at(&self, id: crate::PointId) -> Result<Vec2, Failure> {
+        match self.needed(Node::Point(id))? {
+            Value::Point(place) => Ok(*place),
+            _ => Err(missing(Node::Point(id))),
+        }
+    }
+
+    /// The pieces of a curve or an edge [m].
+    pub fn path(&self, node: Node) -> Result<&std::sync::Arc<Path>, Failure> {
+        match self.needed(node)? {
+            Value::Path(path) => Ok(path),
+            _ => Err(missing(node)),
+        }
+    }
+
+    /// A stage of a panel.
+    pub fn stage(&self, node: Node) -> Result<&std::sync::Arc<crate::Stage>, Failure> {
+        match self.needed(node)? {
+            Value::Stage(stage) => Ok(stage),
+            _ => Err(missing(node)),
+        }
+    }
+}
+
+fn missing(node: Node) -> Failure {
+    let what = match node {
+        Node::Word(_) => "measurement".to_owned(),
+        Node::Variable(id) => id.to_string(),
+        Node::Point(id) => id.to_string(),
+        Node::Curve(id) => id.to_string(),
+        Node::Edge(id) => id.to_string(),
+        Node::Stage(id, _) => id.to_string(),
+        Node::Seam(id) => id.to_string(),
+    };
+    Failure::new(
+        Code::MissingReference,
+        format!("{what} is not there any more"),
+        "name another part, remove what uses it, or undo its removal",
+    )
+}
+
+/// What formulas look up while a node is computed.
+struct Reading<'c, 'e>(&'c Computation<'e>);
+
+impl Reading<'_, '_> {
+    fn unknown(&self, text: &str, kind: &str) -> Failure {
+        if text.starts_with('?') {
+            return Failure::new(
+                Code::MissingReference,
+                format!("{text} is not there any more"),
+                "name another part, or undo its removal",
+            );
+        }
+        let (message, hint) = self.0.evaluation.names.missing(text, kind);
+        Failure::new(Code::MissingReference, message, hint)
+    }
+
+    fn edges(&self, part: &PartReference) -> Result<Vec<&Path>, Failure> {
+        let evaluation = self.0.evaluation;
+        match part {
+            PartReference::Curve(id) => Ok(vec![&**self.0.path(Node::Curve(*id))?]),
+            PartReference::Stretch { panel, ends } => {
+                let lines = evaluation
+                    .pattern
+                    .panel(*panel)
+                    .map_or(&[][..], |p| &p.lines);
+                let Some(edges) = drawn_stretch(lines, *ends) else {
+                    let text = evaluation.names.print_part(part);
+                    return Err(Failure::new(
+                        Code::MissingReference,
+                        format!("{text} is no stretch of a line any more"),
+                        "name an edge or two corners of one line, or undo the removal",
+                    ));
+                };
+                edges
+                    .iter()
+                    .map(|edge| Ok(&**self.0.path(Node::Edge(edge.id))?))
+                    .collect()
+            }
+            PartReference::Unknown(text) => Err(self.unknown(text, "edge")),
+            PartReference::Point(_) | PartReference::Seam(_) => Err(Failure::new(
+                Code::Formula,
+                "it has no edge",
+                "name an edge or a curve",
+            )),
+        }
+    }
+}
+
+impl Environment for Reading<'_, '_> {
+    fn variable(&self, id: VariableId) -> Result<Quantity, Failure> {
+        match self.0.needed(Node::Variable(id))? {
+            Value::Number(quantity) => Ok(*quantity),
+            _ => Err(missing(Node::Variable(id))),
+        }
+    }
+
+    fn measurement(&self, name: &str) -> Result<Quantity, Failure> {
+        let evaluation = self.0.evaluation;
+        let node = evaluation.words.get(name).map(|&k| Node::Word(k));
+        if let Some(Value::Number(quantity)) = node.and_then(|node| evaluation.value(node)) {
+            return Ok(*quantity);
+        }
+        if name.starts_with('?') {
+            return Err(self.unknown(name, "variable"));
+        }
+        let base = evaluation.pattern.base_measurements();
+        let known = evaluation
+            .names
+            .variable_names()
+            .chain(evaluation.given.iter().map(|m| m.0))
+            .chain(base.into_iter().flat_map(|base| base.iter().map(|m| m.0)));
+        let hint = match nearest(name, known) {
+            Some(near) => format!("did you mean {near:?}?"),
+            None => "define a variable of that name, or measure it in every size".to_owned(),
+        };
+        let message = format!("there is no variable or measurement {name:?}");
+        Err(Failure::new(Code::MissingReference, message, hint))
+    }
+
+    fn length(&self, part: &PartReference) -> Result<f64, Failure> {
+        if let PartReference::Seam(id) = part {
+            return match self.0.needed(Node::Seam(*id))? {
+                Value::Seam(seam) => Ok(seam.lengths[0]),
+                _ => Err(missing(Node::Seam(*id))),
+            };
+        }
+        Ok(self.edges(part)?.iter().map(|path| path.length()).sum())
+    }
+
+    fn finished(&self, part: &PartReference) -> Result<f64, Failure> {
+        let PartReference::Stretch { panel, ends } = part else {
+            return self.length(part);
+        };
+        let pattern = &self.0.evaluation.pattern;
+        let Some(found) = pattern.panel(*panel) else {
+            return self.length(part);
+        };
+        let last = found.operations.last().map(|o| o.id);
+        let stage = self.0.stage(Node::Stage(*panel, last))?;
+        let Some(edges) = drawn_stretch(&found.lines, *ends) else {
+            return self.length(part);
+        };
+        let names: Vec<EdgeName> = edges.iter().map(|edge| Name::Drawn(edge.id)).collect();
+        let all = stage.lines.iter().flat_map(|line| &line.edges);
+        let own = all.filter(|edge| edge.half == 0 && names.contains(&edge.name));
+        Ok(own.map(|edge| edge.curve.length()).sum())
+    }
+
+    fn ends(&self, part: &PartReference) -> Result<[Vec2; 2], Failure> {
+        let edges = self.edges(part)?;
+        let first = edges.first().and_then(|path| path.curves().first());
+        let last = edges.last().and_then(|path| path.curves().last());
+        match (first, last) {
+            (Some(first), Some(last)) => Ok([first.start(), last.end()]),
+            _ => Err(Failure::new(
+                Code::Formula,
+                "it has no length",
+                "name another edge",
+            )),
+        }
+    }
+
+    fn point(&self, part: &PartReference) -> Result<Vec2, Failure> {
+        match part {
+            PartReference::Point(id) => self.0.point_at(*id),
+            PartReference::Unknown(text) => Err(self.unknown(text, "point")),
+            _ => Err(Failure::new(
+                Code::Formula,
+                "it is no point",
+                "name a point",
+            )),
+        }
+    }
+}
+
+/// Refuses wrong dimensions and numbers beyond any garment.
+pub(crate) fn bounded(quantity: Quantity, want: Want) -> Result<f64, Failure> {
+    let Quantity { value, power } = quantity;
+    let (wanted, limit, unit) = match want {
+        Want::Length => (1, LONGEST, " m"),
+        Want::Plain => (0, LARGEST, ""),
+    };
+    if !value.is_finite() {
+        return Err(Failure::new(
+            Code::NotFinite,
+            format!("the number is {value}"),
+            "give a finite number",
+        ));
+    }
+    if power != wanted && !(value == 0.0 && power == 0) {
+        let hint = match want {
+            Want::Length => "give a unit, for example 2cm",
+            Want::Plain => "divide by a length, or leave the unit out",
+        };
+        let (found, wanted) = (kind(power), kind(wanted));
+        let message = format!("the result is {found} and should be {wanted}");
+        return Err(Failure::new(Code::Formula, message, hint));
+    }
+    if value.abs() > limit {
+        return Err(Failure::new(
+            Code::TooLarge,
+            format!("the result is {value:.3e}{unit}, beyond {limit}{unit}"),
+            "look at the values and units it is made from",
+        ));
+    }
+    Ok(value)
+}
+
+/// A place within the bounds of a garment.
+pub(crate) fn bounded_place(place: Vec2) -> Result<Vec2, Failure> {
+    for value in [place.x, place.y] {
+        bounded(Quantity { value, power: 1 }, Want::Length)?;
+    }
+    Ok(place)
+}

@@ -1,0 +1,167 @@
+//! Where points lie.
+
+use super::node::Node;
+use super::numbers::{Computation, Want, bounded_place};
+use crate::formula::Failure;
+use crate::{Code, Number, Place, Point, PointId, PointRule};
+use std::sync::Arc;
+use toile_geometry::{Curve, Path, Vec2};
+
+/// The place of a point [m].
+pub(super) fn point(computation: &mut Computation<'_>, point: &Arc<Point>) -> Option<Vec2> {
+    let result = construct(computation, &point.rule).and_then(bounded_place);
+    if result.is_ok() {
+        return result.ok();
+    }
+    let what = computation.point_words(point);
+    computation.reported(result, &Place::Point(point.id), &what)
+}
+
+impl Computation<'_> {
+    fn point_words(&self, point: &Point) -> String {
+        let pattern = &self.evaluation.pattern;
+        match pattern.point(point.id) {
+            Some((sheet, _)) => format!("sheet {:?}, point {:?}", sheet.name, point.name),
+            None => format!("point {:?}", point.name),
+        }
+    }
+
+    fn vector(&mut self, x: &Number, y: &Number) -> Result<Vec2, Failure> {
+        Ok(Vec2::new(
+            self.measure(x, Want::Length)?,
+            self.measure(y, Want::Length)?,
+        ))
+    }
+
+    /// Start and direction of the line through two points.
+    fn line(&self, [a, b]: [PointId; 2]) -> Result<(Vec2, Vec2), Failure> {
+        let start = self.point_at(a)?;
+        Ok((start, self.point_at(b)? - start))
+    }
+}
+
+fn construct(c: &mut Computation<'_>, rule: &PointRule) -> Result<Vec2, Failure> {
+    match rule {
+        PointRule::At { x, y } => c.vector(x, y),
+        PointRule::Offset { base, x, y } => Ok(c.point_at(*base)? + c.vector(x, y)?),
+        PointRule::Polar {
+            base,
+            angle,
+            distance,
+        } => {
+            let angle = c.measure(angle, Want::Plain)?;
+            let direction = Vec2::new(angle.cos(), angle.sin());
+            Ok(c.point_at(*base)? + direction * c.measure(distance, Want::Length)?)
+        }
+        PointRule::Between {
+            base,
+            tip,
+            along,
+            aside,
+        } => {
+            let (start, way) = c.line([*base, *tip])?;
+            let left = Vec2::new(-way.y, way.x);
+            let along = c.measure(along, Want::Plain)?;
+            Ok(start + way * along + left * c.measure(aside, Want::Plain)?)
+        }
+        PointRule::Toward {
+            base,
+            tip,
+            distance,
+        } => {
+            let (start, way) = c.line([*base, *tip])?;
+            let unit = way.try_normalize(1e-12).ok_or_else(same_place)?;
+            Ok(start + unit * c.measure(distance, Want::Length)?)
+        }
+        PointRule::OnCurve { curve, share } => {
+            let share = c.measure(share, Want::Plain)?;
+            let path = c.path(Node::Curve(*curve))?;
+            on_path(path, path.length() * share)
+        }
+        PointRule::AlongCurve { curve, distance } => {
+            let distance = c.measure(distance, Want::Length)?;
+            let path = c.path(Node::Curve(*curve))?;
+            let from_end = if distance < 0.0 { path.length() } else { 0.0 };
+            on_path(path, from_end + distance)
+        }
+        PointRule::Crossing { first, second } => {
+            let (a, along) = c.line(*first)?;
+            let (b, other) = c.line(*second)?;
+            let turn = along.perp(&other);
+            if turn.abs() <= 1e-12 * along.norm() * other.norm() {
+                return Err(Failure::new(
+                    Code::Formula,
+                    "the two lines are parallel",
+                    "choose lines that meet",
+                ));
+            }
+            Ok(a + along * ((b - a).perp(&other) / turn))
+        }
+        PointRule::CurveCrossing { curves, index } => {
+            let [first, second] = curves.map(Node::Curve);
+            let found = c.path(first)?.crossings(c.path(second)?);
+            let points: Vec<Vec2> = found.iter().map(|crossing| crossing.point).collect();
+            chosen(&points, *index)
+        }
+        PointRule::LineCrossing { line, curve, index } => {
+            let (start, way) = c.line(*line)?;
+            let unit = way.try_normalize(1e-12).ok_or_else(same_place)?;
+            let path = c.path(Node::Curve(*curve))?;
+            let reach = path
+                .curves()
+                .iter()
+                .flat_map(Curve::defining_points)
+                .map(|p| (p - start).norm())
+                .fold(0.0, f64::max);
+            let ray = Path::new(vec![Curve::Line {
+                start: start - unit * (2.0 * reach),
+                end: start + unit * (2.0 * reach),
+            }]);
+            let points: Vec<Vec2> = path.crossings(&ray).iter().map(|p| p.point).collect();
+            chosen(&points, *index)
+        }
+        PointRule::Foot { base, line } => {
+            let (start, way) = c.line(*line)?;
+            let unit = way.try_normalize(1e-12).ok_or_else(same_place)?;
+            Ok(start + unit * (c.point_at(*base)? - start).dot(&unit))
+        }
+        PointRule::Mirrored { base, line } => {
+            let (start, way) = c.line(*line)?;
+            let unit = way.try_normalize(1e-12).ok_or_else(same_place)?;
+            let offset = c.point_at(*base)? - start;
+            Ok(start + unit * (2.0 * offset.dot(&unit)) - offset)
+        }
+    }
+}
+
+fn on_path(path: &Path, along: f64) -> Result<Vec2, Failure> {
+    let place = path
+        .at_length(along)
+        .ok_or_else(|| Failure::new(Code::Formula, "the curve has no length", "draw it longer"))?;
+    Ok(path.point(place))
+}
+
+fn chosen(points: &[Vec2], index: u16) -> Result<Vec2, Failure> {
+    points.get(usize::from(index)).copied().ok_or_else(|| {
+        let message = match points.len() {
+            0 => "they do not cross".to_owned(),
+            count => format!(
+                "they cross {count} times, and crossing {} is asked for",
+                index + 1
+            ),
+        };
+        Failure::new(
+            Code::Formula,
+            message,
+            "move them, or choose another crossing",
+        )
+    })
+}
+
+fn same_place() -> Failure {
+    Failure::new(
+        Code::Formula,
+        "the two points it is constructed from are in the same place",
+        "choose two points that are apart",
+    )
+}

@@ -1,0 +1,221 @@
+//! Seams: where their spans lie, and how long both sides are when all operations are done.
+
+use super::node::Node;
+use super::numbers::{Computation, Want};
+use crate::stage::{MarkValue, PlaceError, Stretch};
+use crate::{Code, Diagnostic, EdgeName, Mark, Name, Place, Seam, Span, Stage};
+use std::sync::Arc;
+
+/// A seam for one set of measurements.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SeamValue {
+    /// How much longer one side may be [m].
+    pub ease: f64,
+    /// Of each side, its spans in walking order; nothing where one has no place.
+    pub sides: [Vec<SpanValue>; 2],
+    /// Length of each side, dart legs left out [m].
+    pub lengths: [f64; 2],
+}
+
+/// A span: a copy and half of a panel, and named edges between shares.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SpanValue {
+    pub panel: crate::PanelId,
+    pub copy: u32,
+    pub half: u8,
+    pub stretch: Stretch,
+}
+
+/// The value of a seam; nothing if a span has no place.
+pub(super) fn seam(c: &mut Computation<'_>, seam: &Seam) -> Option<Arc<SeamValue>> {
+    let place = Place::Seam(seam.id);
+    let what = format!("seam {:?}, ease", seam.name);
+    let ease = c
+        .number(&seam.ease, Want::Length, &place, &what)
+        .unwrap_or(0.0);
+    let mut sides = [Vec::new(), Vec::new()];
+    let mut lengths = [0.0; 2];
+    let mut complete = true;
+    for (side, spans) in seam.sides.iter().enumerate() {
+        let mut whole = true;
+        for span in spans {
+            match locate(c, seam, span) {
+                Some((found, length)) => {
+                    lengths[side] += length;
+                    sides[side].push(found);
+                }
+                None => whole = false,
+            }
+        }
+        complete &= whole;
+        if complete && sides[side].is_empty() {
+            complete = false;
+            c.diagnostics.push(Diagnostic::error(
+                Code::MissingSpan,
+                place.clone(),
+                format!("seam {:?} has an empty side", seam.name),
+                "name at least one edge on each side",
+            ));
+        }
+    }
+    complete.then(|| {
+        Arc::new(SeamValue {
+            ease,
+            sides,
+            lengths,
+        })
+    })
+}
+
+fn missing(c: &mut Computation<'_>, seam: &Seam, (message, hint): (String, &str)) {
+    c.diagnostics.push(Diagnostic::error(
+        Code::MissingSpan,
+        Place::Seam(seam.id),
+        message,
+        hint,
+    ));
+}
+
+/// Where a span lies, and its length [m].
+fn locate(c: &mut Computation<'_>, seam: &Seam, span: &Span) -> Option<(SpanValue, f64)> {
+    let name = &seam.name;
+    let from = mark(c, seam, span, &span.from)?;
+    let to = mark(c, seam, span, &span.to)?;
+    let Some(panel) = c.evaluation.pattern.panel(span.panel).cloned() else {
+        let message = format!("seam {name:?} names {}, which is not there", span.panel);
+        missing(
+            c,
+            seam,
+            (message, "name a panel of this pattern, or remove the seam"),
+        );
+        return None;
+    };
+    if span.copy >= panel.cut.quantity {
+        let message = format!(
+            "seam {name:?} names copy {} of panel {:?}, which is cut {} times",
+            span.copy, panel.name, panel.cut.quantity
+        );
+        let hint = "cut the panel more often, or name another copy (they count from 0)";
+        missing(c, seam, (message, hint));
+        return None;
+    }
+    let drawn = c.stage(Node::Stage(panel.id, None)).cloned();
+    let last = panel.operations.last().map(|o| o.id);
+    let finished = c.stage(Node::Stage(panel.id, last)).cloned();
+    let (Ok(drawn), Ok(finished)) = (drawn, finished) else {
+        let message = format!(
+            "seam {name:?} names panel {:?}, which could not be drawn",
+            panel.name
+        );
+        missing(c, seam, (message, "mend the panel first"));
+        return None;
+    };
+    if from == to && !matches!(from, MarkValue::Corner(_)) {
+        c.diagnostics.push(bad_span(seam));
+        return None;
+    }
+    let stretch = match drawn.stretch(span.line, [from, to], span.backwards) {
+        Ok(stretch) if !stretch.is_empty() => stretch,
+        Err(PlaceError::Beyond) | Ok(_) => {
+            c.diagnostics.push(bad_span(seam));
+            return None;
+        }
+        Err(PlaceError::NoLine | PlaceError::NoCorner(_)) => {
+            let message = format!(
+                "seam {name:?} names a place of panel {:?} that is not there",
+                panel.name
+            );
+            let hint = "name an edge of that panel, or remove the seam";
+            missing(c, seam, (message, hint));
+            return None;
+        }
+    };
+    if usize::from(span.half) >= 1 << finished.folds.len().min(8) {
+        let message = format!(
+            "seam {name:?} names the other half of panel {:?}, which has no fold",
+            panel.name
+        );
+        let hint = "put the panel on the fold, or name the half as drawn";
+        missing(c, seam, (message, hint));
+        return None;
+    }
+    let length = length(&finished, span.half, &stretch);
+    if length <= 0.0 {
+        let message = format!("seam {name:?} names the fold of panel {:?}", panel.name);
+        let hint = "sew another edge, or cut the panel without a fold";
+        missing(c, seam, (message, hint));
+        return None;
+    }
+    let value = SpanValue {
+        panel: panel.id,
+        copy: span.copy,
+        half: span.half,
+        stretch,
+    };
+    Some((value, length))
+}
+
+fn bad_span(seam: &Seam) -> Diagnostic {
+    Diagnostic::error(
+        Code::BadSpan,
+        Place::Seam(seam.id),
+        format!(
+            "seam {:?}: a span has no length or reaches beyond its line",
+            seam.name
+        ),
+        "use two different places, shares from 0 to 1",
+    )
+}
+
+fn mark(c: &mut Computation<'_>, seam: &Seam, span: &Span, mark: &Mark) -> Option<MarkValue> {
+    let place = Place::Seam(seam.id);
+    let what = format!("seam {:?}, span", seam.name);
+    Some(match mark {
+        Mark::Corner(corner) => MarkValue::Corner(*corner),
+        Mark::Along { from, distance } => {
+            MarkValue::Along(*from, c.number(distance, Want::Length, &place, &what)?)
+        }
+        Mark::Between { ends, share } => {
+            MarkValue::Between(*ends, c.number(share, Want::Plain, &place, &what)?)
+        }
+        Mark::Notch(id) => {
+            let panel = c.evaluation.pattern.panel(span.panel).cloned();
+            let notch = panel.and_then(|p| p.notches.iter().find(|n| n.id == *id).cloned());
+            match notch {
+                Some(notch) if !matches!(notch.at, Mark::Notch(_)) => {
+                    self::mark(c, seam, span, &notch.at)?
+                }
+                _ => {
+                    let message = format!("seam {:?} names {id}, which is not there", seam.name);
+                    missing(
+                        c,
+                        seam,
+                        (message, "name another place, or undo its removal"),
+                    );
+                    return None;
+                }
+            }
+        }
+    })
+}
+
+/// Length of a stretch on a stage [m].
+fn length(stage: &Stage, half: u8, stretch: &Stretch) -> f64 {
+    let parts = stretch.iter().map(|&(name, from, to)| {
+        let (low, high) = (from.min(to), from.max(to));
+        let edges = stage.lines.iter().flat_map(|line| &line.edges);
+        let own = edges.filter(|edge| edge.name == name && edge.half == half);
+        own.map(|edge| {
+            let (a, b) = (edge.from.min(edge.to), edge.from.max(edge.to));
+            let covered = (b.min(high) - a.max(low)).max(0.0);
+            edge.curve.length() * covered / (b - a).max(1e-300)
+        })
+        .sum::<f64>()
+    });
+    parts.sum()
+}
+
+/// Whether a name is that of a drawn edge.
+pub(crate) fn is_drawn(name: EdgeName) -> bool {
+    matches!(name, Name::Drawn(_))
+}
