@@ -5,6 +5,7 @@
 mod draft_table;
 
 use draft_table::draft_table;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Coordinates and lengths may differ by this [m].
@@ -27,6 +28,29 @@ fn agrees(line: &str, recorded: &str) -> bool {
     }
 }
 
+/// What is said of a pattern that does not draft. A cycle is told once today, at any of its
+/// members; spans that are not there and spans without length are one fault.
+fn findings(table: &str) -> BTreeSet<String> {
+    let found = table.lines().filter(|line| !line.starts_with("size"));
+    let plain = found.map(|line| {
+        let line = line.rsplit_once(", ").map_or(line, |(text, _)| text);
+        match line {
+            _ if line.contains(" Cycle ") => "error Cycle".to_owned(),
+            _ => line
+                .replace("BadSpan", "MissingSpan")
+                .replace("line \"hole 1\"", "hole 1"),
+        }
+    });
+    plain.collect()
+}
+
+/// The panel a finding is about, in words.
+fn panel_of(line: &str) -> Option<&str> {
+    let start = line.find("panel \"")?;
+    let length = line[start + 7..].find('"')?;
+    Some(&line[start..start + 8 + length])
+}
+
 #[test]
 fn files_of_earlier_versions_draft_as_recorded() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/drafts");
@@ -38,6 +62,33 @@ fn files_of_earlier_versions_draft_as_recorded() {
         let text = std::fs::read_to_string(folder.join(format!("{name}.json"))).unwrap();
         let now = draft_table(&text);
         files += 1;
+        if name.starts_with("unsound") {
+            let (now, recorded) = (findings(&now), findings(recorded));
+            // What only follows from another fault of the panel is not told again today.
+            let follows = |line: &str| {
+                let words = [", dart ", "TooMany", "EmptyOutline"];
+                words.iter().any(|word| line.contains(word))
+                    && panel_of(line).is_some_and(|panel| {
+                        now.iter()
+                            .any(|other| other != line && other.contains(panel))
+                    })
+            };
+            let lost: Vec<_> = recorded
+                .difference(&now)
+                .filter(|line| !follows(line))
+                .collect();
+            // Points that nothing uses are computed too today, and the measurements they name.
+            let unused =
+                |line: &str| line.contains(", point ") || line.starts_with("note Borrowed");
+            let more: Vec<_> = now
+                .difference(&recorded)
+                .filter(|line| !unused(line))
+                .collect();
+            if !(lost.is_empty() && more.is_empty()) {
+                faults.push(format!("{name}: {more:?}\n     was {lost:?}"));
+            }
+            continue;
+        }
         if now.lines().count() != recorded.lines().count() {
             faults.push(format!("{name}: another number of lines"));
         }

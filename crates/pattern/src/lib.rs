@@ -20,7 +20,7 @@ pub use check::check_draft;
 pub use diagnostic::{Code, Diagnostic, Place, Severity};
 pub use document::*;
 pub use draft::*;
-pub use evaluate::{Evaluation, Node, Update};
+pub use evaluate::{Evaluation, Node, Update, Want};
 pub use formula::{FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Names, Token};
 pub use ids::*;
 pub use name::*;

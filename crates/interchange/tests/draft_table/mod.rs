@@ -120,7 +120,9 @@ fn said(pattern: &Pattern, found: &[Diagnostic]) -> Vec<String> {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for diagnostic in found {
         // Points and edges of version 1 were those of a panel.
-        let place = pattern.describe(&diagnostic.place).replace("sheet ", "panel ");
+        let place = pattern
+            .describe(&diagnostic.place)
+            .replace("sheet ", "panel ");
         let place = place.replace(", curve ", ", edge ");
         let (severity, code) = (diagnostic.severity, diagnostic.code);
         *counts

@@ -15,6 +15,7 @@ mod seams;
 
 pub use node::Node;
 pub(crate) use node::Value;
+pub use numbers::Want;
 pub(crate) use seams::SeamValue;
 
 use crate::{Diagnostic, Pattern, PointId, SheetId};

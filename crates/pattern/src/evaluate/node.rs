@@ -3,7 +3,7 @@
 use crate::formula::{Quantity, Token};
 use crate::{
     Curve, CurveId, Diagnostic, EdgeId, Line, Name, Number, OperationId, Panel, PanelId,
-    PartReference, Pattern, Point, PointId, Seam, SeamId, Stage, Variable, VariableId,
+    PartReference, Pattern, Point, PointId, Seam, SeamId, Stage, Variable, VariableId, WornRule,
 };
 use std::sync::Arc;
 use toile_geometry::{Path, Vec2};
@@ -163,6 +163,12 @@ impl Needs {
                 needs.numbers([&panel.grain, &panel.allowance], pattern);
                 needs.numbers(panel.edges().filter_map(|e| e.allowance.as_ref()), pattern);
                 needs.numbers(panel.notches.iter().filter_map(|n| n.at.number()), pattern);
+                if let WornRule::Wrapped {
+                    level: Some(level), ..
+                } = &panel.worn
+                {
+                    needs.number(level, pattern);
+                }
             }
             Definition::Stage(panel, step) => {
                 let before = step.checked_sub(2).map(|k| panel.operations[k].id);

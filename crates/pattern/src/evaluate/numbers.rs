@@ -17,7 +17,7 @@ const CYCLE_NAMES: usize = 12;
 
 /// What a number must be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Want {
+pub enum Want {
     /// A length [m].
     Length,
     /// A plain number or an angle [rad].
@@ -56,10 +56,10 @@ impl Evaluation {
         (value.ok_or(cause), computation.diagnostics)
     }
 
-    /// The value of a plain number or an angle [rad]; nothing if it has none.
-    pub fn plain(&self, number: &Number) -> Option<f64> {
-        self.number_of_kind(number, Want::Plain, &Place::Pattern, "")
-            .0
+    /// The value of a number that is no node's own: [m] if a length is wanted, else plain or
+    /// [rad]; nothing if it has none.
+    pub fn number(&self, number: &Number, want: Want) -> Option<f64> {
+        self.number_of_kind(number, want, &Place::Pattern, "").0
     }
 
     /// The value of a length that is no node's own [m], and what is wrong with it.

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use toile_measure::Measurements;
 use toile_pattern::{
     CurveId, Diagnostic, EdgeId, Evaluation, FabricId, Formula, LineId, Names, Number, PanelId,
-    Pattern, PointId, Size, SizeId, Variable, VariableId,
+    Pattern, PointId, Size, SizeId, Variable, VariableId, Want,
 };
 
 /// Reads a document of version 1.
@@ -26,13 +26,13 @@ pub fn read_version_1(
     let old = read::read(root, notes)?;
     // Formulas name parts, so the parts come first: names are bound in a second round, which
     // gives the same ids. Directions of spans that formulas decide need values: a third.
-    let unbound = Migration::new(&old, Names::default()).run(&|_| None);
+    let unbound = Migration::new(&old, Names::default()).run(&|_, _| None);
     let names = Names::new(&unbound);
-    let bound = Migration::new(&old, names.clone()).run(&|_| None);
+    let bound = Migration::new(&old, names.clone()).run(&|_, _| None);
     let adult = Measurements::adult();
     let body = bound.base_measurements().unwrap_or(&adult).clone();
     let evaluation = Evaluation::new(&bound, &body);
-    Ok(Migration::new(&old, names).run(&|number| evaluation.plain(number)))
+    Ok(Migration::new(&old, names).run(&|number, want| evaluation.number(number, want)))
 }
 
 /// What is known of an edge of version 1.
@@ -44,6 +44,9 @@ struct EdgePlace {
     curve: CurveId,
     ends: [PointId; 2],
 }
+
+/// Values of today's numbers in the base size.
+type Values<'v> = &'v dyn Fn(&Number, Want) -> Option<f64>;
 
 /// A document of version 1 on its way to today's.
 struct Migration<'o> {
@@ -84,8 +87,8 @@ impl<'o> Migration<'o> {
         }
     }
 
-    /// Builds the document; `value` gives the value of a plain number where one is known.
-    fn run(mut self, value: &dyn Fn(&Number) -> Option<f64>) -> Pattern {
+    /// Builds the document; `values` gives the values of numbers where they are known.
+    fn run(mut self, values: Values<'_>) -> Pattern {
         for size in &self.old.sizes {
             let id: SizeId = self.new.ids.take();
             if self.old.base_size.as_ref() == Some(&size.name) {
@@ -114,10 +117,10 @@ impl<'o> Migration<'o> {
             self.new.fabrics.push(Arc::new(fabric));
         }
         for panel in &self.old.panels {
-            self.panel(panel);
+            self.panel(panel, values);
         }
         for seam in &self.old.seams {
-            self.seam(seam, value);
+            self.seam(seam, values);
         }
         self.new
     }

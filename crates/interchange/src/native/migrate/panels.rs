@@ -4,12 +4,12 @@ use super::document::{
     Along, Dart, DartShape, DartTip, Edge as OldEdge, EdgeCurve, Panel as OldPanel, PointPlace,
     WornRule as OldWornRule,
 };
-use super::{EdgePlace, Migration};
+use super::{EdgePlace, Migration, Values};
 use std::sync::Arc;
 use toile_pattern::{
     Apex, Curve, CurveId, CurveRule, Edge, EdgeId, FabricId, Line, LineId, LineKind, Mark, Name,
     Notch, NotchId, NotchKind, Number, Operation, OperationId, OperationKind, Panel, PanelId,
-    Point, PointId, PointRule, Sheet, SheetId, WornRule,
+    Point, PointId, PointRule, Sheet, SheetId, Want, WornRule,
 };
 
 /// A sheet and panel in the making.
@@ -53,7 +53,7 @@ impl Migration<'_> {
         self.points.get(&old).copied().unwrap_or_default()
     }
 
-    pub(super) fn panel(&mut self, old: &OldPanel) {
+    pub(super) fn panel(&mut self, old: &OldPanel, values: Values<'_>) {
         let sheet = Sheet {
             id: self.new.ids.take::<SheetId>(),
             name: old.name.clone(),
@@ -98,7 +98,7 @@ impl Migration<'_> {
             });
         }
         self.internal_lines(&mut making, old);
-        self.notches(&mut making, old);
+        self.notches(&mut making, old, values);
         for dart in &old.darts {
             let operation = self.dart(dart);
             making.panel.operations.extend(operation.map(Arc::new));
@@ -318,7 +318,7 @@ impl Migration<'_> {
         }
     }
 
-    fn notches(&mut self, making: &mut Making, old: &OldPanel) {
+    fn notches(&mut self, making: &mut Making, old: &OldPanel, values: Values<'_>) {
         for notch in &old.notches {
             let Some(place) = self.edges.get(&notch.edge).copied() else {
                 continue;
@@ -326,10 +326,12 @@ impl Migration<'_> {
             let at = match &notch.at {
                 Along::Fraction(share) => Mark::between(place.ends, self.number(share)),
                 Along::Distance(distance) => {
-                    let from_end = distance.value().is_some_and(|value| value < 0.0);
+                    let distance = self.number(distance);
+                    let known = distance.value().or_else(|| values(&distance, Want::Length));
+                    let from_end = known.is_some_and(|value| value < 0.0);
                     Mark::Along {
                         from: Name::Drawn(place.ends[usize::from(from_end)]),
-                        distance: self.number(distance),
+                        distance,
                     }
                 }
             };

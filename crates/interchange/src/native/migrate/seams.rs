@@ -1,17 +1,17 @@
 //! Seams of version 1: shares of edges become marks on lines.
 
-use super::Migration;
 use super::document::{Number as OldNumber, Seam as OldSeam, Span as OldSpan};
+use super::{Migration, Values};
 use std::sync::Arc;
-use toile_pattern::{LineId, Mark, Name, Number, PanelId, Seam, SeamId, Span};
+use toile_pattern::{LineId, Mark, Name, Number, PanelId, Seam, SeamId, Span, Want};
 
 impl Migration<'_> {
-    pub(super) fn seam(&mut self, old: &OldSeam, value: &dyn Fn(&Number) -> Option<f64>) {
+    pub(super) fn seam(&mut self, old: &OldSeam, values: Values<'_>) {
         let id: SeamId = self.new.ids.take();
         let mut sides = [Vec::new(), Vec::new()];
         for (side, spans) in sides.iter_mut().zip(&old.sides) {
             for span in spans {
-                side.push(self.span(span, value));
+                side.push(self.span(span, values));
             }
         }
         let mut seam = Seam::new(id, old.name.clone(), sides);
@@ -22,7 +22,7 @@ impl Migration<'_> {
         self.new.seams.push(Arc::new(seam));
     }
 
-    fn span(&mut self, old: &OldSpan, value: &dyn Fn(&Number) -> Option<f64>) -> Span {
+    fn span(&mut self, old: &OldSpan, values: Values<'_>) -> Span {
         let half = u8::from(old.reflected);
         let Some(place) = self.edges.get(&old.edge).copied() else {
             // Named by a number that no edge has: kept, and told when it is drafted.
@@ -39,7 +39,7 @@ impl Migration<'_> {
             };
         };
         let (from, to) = (self.number(&old.from), self.number(&old.to));
-        let known = |number: &Number| number.value().or_else(|| value(number));
+        let known = |number: &Number| number.value().or_else(|| values(number, Want::Plain));
         let (low, high) = (known(&from), known(&to));
         let backwards = matches!((low, high), (Some(low), Some(high)) if low > high);
         let same = old.from == old.to;
