@@ -72,7 +72,7 @@ pub use measurements::read_body_yaml;
 pub use measurements_foreign::read_freesewing;
 pub use measurements_json::{read_measurements, read_sized_measurements, write_measurements};
 pub use measurements_seamly::{SizeChoice, read_seamly};
-pub use native::read_pattern;
+pub use native::{read_pattern, write_pattern};
 pub use obj::{ObjGroup, ObjMesh, write_obj};
 pub use obj_read::read_obj;
 pub use proportions::{proportion_boxes, read_proportions};

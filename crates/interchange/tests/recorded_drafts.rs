@@ -38,7 +38,9 @@ fn findings(table: &str) -> BTreeSet<String> {
             _ if line.contains(" Cycle ") => "error Cycle".to_owned(),
             _ => line
                 .replace("BadSpan", "MissingSpan")
-                .replace("line \"hole 1\"", "hole 1"),
+                .replace("line \"hole 1\"", "hole 1")
+                .replace("internal line", "line")
+                .replace("edge \"line", "line \"line"),
         }
     });
     plain.collect()

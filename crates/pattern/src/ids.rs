@@ -19,6 +19,12 @@ macro_rules! ids {
                 }
             }
 
+            impl From<u32> for $name {
+                fn from(number: u32) -> Self {
+                    Self(number)
+                }
+            }
+
             impl From<$name> for PartId {
                 fn from(id: $name) -> Self {
                     Self::$variant(id)

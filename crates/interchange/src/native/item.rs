@@ -289,6 +289,11 @@ impl<'a> Object<'a> {
         })
     }
 
+    /// The items of a list; none if it is not there.
+    pub fn items(&self, name: &str) -> Result<Vec<Item<'a>>, FormatError> {
+        self.get(name).map_or(Ok(Vec::new()), |item| item.list())
+    }
+
     /// A flag that is off unless it is there.
     pub fn flag_or(&self, name: &str, default: bool) -> Result<bool, FormatError> {
         self.get(name).map_or(Ok(default), |item| item.flag())

@@ -6,9 +6,16 @@
 mod item;
 mod json;
 mod migrate;
+mod read;
+mod read_panel;
+mod read_seam;
 mod units;
 mod values;
 mod words;
+mod write;
+mod write_panel;
+
+pub use write::write_pattern;
 
 use crate::FormatError;
 use item::Item;
@@ -28,7 +35,7 @@ pub fn read_pattern(text: &str) -> Result<(Pattern, Vec<Diagnostic>), FormatErro
     let mut notes = Vec::new();
     let pattern = match version(&root)? {
         1 => migrate::read_version_1(&root, &mut notes)?,
-        _ => Pattern::default(),
+        _ => read::read(&root, &mut notes)?,
     };
     Ok((pattern, notes))
 }

@@ -1,6 +1,6 @@
 //! Words of the format that are fixed.
 
-use toile_pattern::{BodyPart, Facing};
+use toile_pattern::{BodyPart, Corner, Facing, LineKind, NotchKind, Role};
 
 /// Version of the format this program writes.
 pub const VERSION: u32 = 2;
@@ -32,3 +32,36 @@ pub fn word<T: PartialEq>(choices: &[(&'static str, T)], choice: &T) -> &'static
         .find(|(_, known)| known == choice)
         .map_or("", |(word, _)| word)
 }
+
+/// Names of line kinds.
+pub const LINES: &[(&str, LineKind)] = &[
+    ("outline", LineKind::Outline),
+    ("hole", LineKind::Hole),
+    ("internal", LineKind::Internal),
+];
+
+/// Names of corner kinds of cut lines.
+pub const CORNERS: &[(&str, Corner)] = &[
+    ("mitre", Corner::Mitre),
+    ("bevel", Corner::Bevel),
+    ("square", Corner::Square),
+    ("extended", Corner::Extended),
+    ("mirrored", Corner::Mirrored),
+];
+
+/// Names of notch kinds.
+pub const NOTCHES: &[(&str, NotchKind)] = &[
+    ("slit", NotchKind::Slit),
+    ("v", NotchKind::V),
+    ("castle", NotchKind::Castle),
+    ("t", NotchKind::T),
+    ("check", NotchKind::Check),
+];
+
+/// Names of what operations make.
+pub const ROLES: &[(&str, Role)] = &[
+    ("leg", Role::Leg),
+    ("apex", Role::Apex),
+    ("mouth", Role::Mouth),
+    ("diamond", Role::Diamond),
+];

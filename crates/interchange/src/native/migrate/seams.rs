@@ -33,8 +33,8 @@ impl Migration<'_> {
                 copy: old.copy,
                 half,
                 line: Name::Drawn(line),
-                from: Mark::corner(Default::default()),
-                to: Mark::corner(Default::default()),
+                from: Mark::corner(self.new.ids.take()),
+                to: Mark::corner(self.new.ids.take()),
                 backwards: false,
             };
         };

@@ -1,0 +1,204 @@
+//! Reads panels: lines, notches, operations.
+
+use super::item::{Item, Object};
+use super::json::Value;
+use super::read::{Measure, Reader};
+use super::read_seam::{mark, name};
+use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS};
+use crate::FormatError;
+use std::sync::Arc;
+use toile_pattern::{
+    Apex, Cut, Edge, Line, Notch, NotchKind, Number, Operation, OperationKind, Panel, WornRule,
+};
+
+/// Reads a panel.
+pub fn panel<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Panel, FormatError> {
+    let known = &[
+        "id",
+        "name",
+        "sheet",
+        "fabric",
+        "cut",
+        "grain",
+        "allowance",
+        "worn",
+        "table",
+        "lines",
+        "notches",
+        "operations",
+    ];
+    let fields = item.object(known, &mut reader.notes)?;
+    let id = reader.own(&fields.need("id")?)?;
+    let sheet = reader.reference(&fields.need("sheet")?)?;
+    let fabric = reader.reference(&fields.need("fabric")?)?;
+    let mut panel = Panel::new(id, fields.need("name")?.name()?, sheet, fabric);
+    if let Some(item) = fields.get("cut") {
+        panel.cut = cut(reader, &item)?;
+    }
+    if let Some(grain) = fields.get("grain") {
+        panel.grain = reader.number(&grain, Measure::Angle)?;
+    }
+    if let Some(allowance) = fields.get("allowance") {
+        panel.allowance = reader.number(&allowance, Measure::Length)?;
+    }
+    if let Some(item) = fields.get("worn") {
+        panel.worn = worn(reader, &item)?;
+    }
+    if let Some(table) = fields.get("table") {
+        panel.on_table = Some(reader.place(&table)?);
+    }
+    for item in fields.items("lines")? {
+        let line = line(reader, &item)?;
+        panel.lines.push(line);
+    }
+    for item in fields.items("notches")? {
+        let known = &["id", "name", "line", "at", "kind"];
+        let fields = item.object(known, &mut reader.notes)?;
+        panel.notches.push(Notch {
+            id: reader.own(&fields.need("id")?)?,
+            name: fields.need("name")?.name()?.to_owned(),
+            line: reader.reference(&fields.need("line")?)?,
+            at: mark(reader, &fields.need("at")?)?,
+            kind: match fields.get("kind") {
+                Some(kind) => kind.choice(NOTCHES)?,
+                None => NotchKind::Slit,
+            },
+        });
+    }
+    for item in fields.items("operations")? {
+        let operation = operation(reader, &item)?;
+        panel.operations.push(Arc::new(operation));
+    }
+    Ok(panel)
+}
+
+/// `3`, `"pair"`, or an object.
+fn cut(reader: &mut Reader<'_>, item: &Item<'_>) -> Result<Cut, FormatError> {
+    match &item.node.value {
+        Value::Number(_) => Ok(Cut {
+            quantity: item.count()?,
+            mirrored: false,
+        }),
+        Value::Text(_) => item.choice(&[(
+            "pair",
+            Cut {
+                quantity: 2,
+                mirrored: true,
+            },
+        )]),
+        _ => {
+            let fields = item.object(&["quantity", "mirrored"], &mut reader.notes)?;
+            Ok(Cut {
+                quantity: fields.need("quantity")?.count()?,
+                mirrored: fields.flag_or("mirrored", false)?,
+            })
+        }
+    }
+}
+
+fn worn<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<WornRule, FormatError> {
+    let known = &["part", "facing", "level", "translation_m", "rotation_xyzw"];
+    let fields = item.object(known, &mut reader.notes)?;
+    if let Some(translation) = fields.get("translation_m") {
+        return Ok(WornRule::Placed {
+            translation: super::values::values(&translation)?,
+            rotation: super::values::values(&fields.need("rotation_xyzw")?)?,
+        });
+    }
+    Ok(WornRule::Wrapped {
+        part: fields.need("part")?.choice(PARTS)?,
+        facing: fields.need("facing")?.choice(FACINGS)?,
+        level: optional(reader, &fields, "level")?,
+    })
+}
+
+/// A length that may be left out.
+fn optional<'a>(
+    reader: &mut Reader<'a>,
+    fields: &Object<'a>,
+    name: &str,
+) -> Result<Option<Number>, FormatError> {
+    match fields.get(name) {
+        Some(item) => reader.number(&item, Measure::Length).map(Some),
+        None => Ok(None),
+    }
+}
+
+fn line<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Line, FormatError> {
+    let fields = item.object(&["id", "name", "kind", "edges"], &mut reader.notes)?;
+    let mut line = Line {
+        id: reader.own(&fields.need("id")?)?,
+        name: fields.need("name")?.name()?.to_owned(),
+        kind: fields.need("kind")?.choice(LINES)?,
+        edges: Vec::new(),
+    };
+    for item in fields.items("edges")? {
+        let known = &["id", "name", "curve", "from", "to", "allowance", "corner"];
+        let fields = item.object(known, &mut reader.notes)?;
+        line.edges.push(Edge {
+            id: reader.own(&fields.need("id")?)?,
+            name: fields.need("name")?.name()?.to_owned(),
+            curve: reader.reference(&fields.need("curve")?)?,
+            ends: [
+                reader.reference(&fields.need("from")?)?,
+                reader.reference(&fields.need("to")?)?,
+            ],
+            allowance: optional(reader, &fields, "allowance")?,
+            corner: match fields.get("corner") {
+                Some(corner) => Some(corner.choice(CORNERS)?),
+                None => None,
+            },
+        });
+    }
+    Ok(line)
+}
+
+fn operation<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Operation, FormatError> {
+    let fields = item.object(
+        &["id", "name", "dart", "diamond", "fold"],
+        &mut reader.notes,
+    )?;
+    let kind = if let Some(item) = fields.get("dart") {
+        dart(reader, &item)?
+    } else if let Some(item) = fields.get("diamond") {
+        let fields = item.object(&["ends", "widest", "intake"], &mut reader.notes)?;
+        OperationKind::Diamond {
+            ends: reader.references(&fields.need("ends")?)?,
+            widest: reader.number(&fields.need("widest")?, Measure::Plain)?,
+            intake: reader.number(&fields.need("intake")?, Measure::Length)?,
+        }
+    } else if let Some(item) = fields.get("fold") {
+        let fields = item.object(&["line", "from", "to"], &mut reader.notes)?;
+        OperationKind::Fold {
+            line: name(reader, &fields.need("line")?)?,
+            ends: [
+                mark(reader, &fields.need("from")?)?,
+                mark(reader, &fields.need("to")?)?,
+            ],
+        }
+    } else {
+        return Err(item.error(
+            "the operation is none that this version knows",
+            "give it dart, diamond or fold, or use a newer version",
+        ));
+    };
+    Ok(Operation {
+        id: reader.own(&fields.need("id")?)?,
+        name: fields.need("name")?.name()?.to_owned(),
+        kind,
+    })
+}
+
+fn dart<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
+    let known = &["line", "mouth", "intake", "depth", "apex"];
+    let fields = item.object(known, &mut reader.notes)?;
+    Ok(OperationKind::Dart {
+        line: name(reader, &fields.need("line")?)?,
+        mouth: mark(reader, &fields.need("mouth")?)?,
+        intake: reader.number(&fields.need("intake")?, Measure::Length)?,
+        apex: match fields.get("apex") {
+            Some(apex) => Apex::Point(reader.reference(&apex)?),
+            None => Apex::Depth(reader.number(&fields.need("depth")?, Measure::Length)?),
+        },
+    })
+}
