@@ -1,6 +1,6 @@
 //! Places in words, and the places of parts.
 
-use crate::{PanelId, PartId, Pattern, Place};
+use crate::{Panel, PanelId, PartId, Pattern, Place};
 
 impl Pattern {
     /// A place in words, with the names of the parts.
@@ -98,26 +98,34 @@ impl Pattern {
             );
         }
         for panel in &self.panels {
-            let id = panel.id;
-            parts.push((id.into(), Place::Panel(id)));
-            for line in &panel.lines {
-                parts.push((line.id.into(), Place::Line(id, line.id)));
-                parts.extend(
-                    line.edges
-                        .iter()
-                        .map(|e| (e.id.into(), Place::Edge(id, e.id))),
-                );
-            }
-            parts.extend(
-                panel
-                    .notches
-                    .iter()
-                    .map(|n| (n.id.into(), Place::Notch(id, n.id))),
-            );
-            let operations = panel.operations.iter();
-            parts.extend(operations.map(|o| (o.id.into(), Place::Operation(id, o.id))));
+            parts.push((panel.id.into(), Place::Panel(panel.id)));
+            parts.extend(panel.own_parts());
         }
         parts.extend(self.seams.iter().map(|s| (s.id.into(), Place::Seam(s.id))));
+        parts
+    }
+}
+
+impl Panel {
+    /// Every part inside the panel with its id and place.
+    pub fn own_parts(&self) -> Vec<(PartId, Place)> {
+        let id = self.id;
+        let mut parts: Vec<(PartId, Place)> = Vec::new();
+        for line in &self.lines {
+            parts.push((line.id.into(), Place::Line(id, line.id)));
+            parts.extend(
+                line.edges
+                    .iter()
+                    .map(|e| (e.id.into(), Place::Edge(id, e.id))),
+            );
+        }
+        parts.extend(
+            self.notches
+                .iter()
+                .map(|n| (n.id.into(), Place::Notch(id, n.id))),
+        );
+        let operations = self.operations.iter();
+        parts.extend(operations.map(|o| (o.id.into(), Place::Operation(id, o.id))));
         parts
     }
 }

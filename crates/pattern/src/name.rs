@@ -42,8 +42,29 @@ pub enum Role {
     Diamond,
 }
 
+impl Role {
+    const WORDS: [(Self, &'static str); 4] = [
+        (Self::Leg, "leg"),
+        (Self::Apex, "apex"),
+        (Self::Mouth, "mouth"),
+        (Self::Diamond, "diamond"),
+    ];
+
+    /// What it is called.
+    pub fn word(self) -> &'static str {
+        let found = Self::WORDS.iter().find(|(role, _)| *role == self);
+        found.map_or("", |(_, word)| word)
+    }
+
+    /// The role that is called so.
+    pub fn of_word(word: &str) -> Option<Self> {
+        let found = Self::WORDS.iter().find(|(_, known)| *known == word);
+        found.map(|(role, _)| *role)
+    }
+}
+
 /// A place on a line of a panel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Mark {
     /// A corner.
     Corner(CornerName),
@@ -99,7 +120,7 @@ impl Mark {
 }
 
 /// A part that a formula measures.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum PartReference {
     /// A point of a sheet.
     Point(PointId),

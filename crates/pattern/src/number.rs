@@ -2,10 +2,11 @@
 
 use crate::SizeId;
 use crate::formula::Formula;
+use serde::{Deserialize, Serialize};
 
 /// A number of the document. What it measures is decided by where it stands: lengths are metres,
 /// angles radians, shares plain.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Number {
     /// A value [m], [rad] or plain.
     Value(f64),

@@ -23,7 +23,7 @@ pub const NAME_LENGTH: usize = 80;
 /// A pattern. Cloning is cheap: parts are shared until they are edited.
 ///
 /// Fields are public, so a pattern may be inconsistent; drafting and `check` then say where.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pattern {
     /// Name to show.
     pub name: String,
@@ -63,7 +63,7 @@ pub enum DisplayUnit {
 }
 
 /// A named table of measurements.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Size {
     /// Its id.
     pub id: SizeId,
@@ -75,7 +75,7 @@ pub struct Size {
 
 /// A named number that formulas may use. A bare value is a plain number; a length is a formula
 /// with a unit.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Variable {
     /// Its id.
     pub id: VariableId,

@@ -1,9 +1,10 @@
 //! Operations: kept steps of a panel.
 
 use crate::{LineName, Mark, Number, OperationId, PointId};
+use serde::{Deserialize, Serialize};
 
 /// A kept step of a panel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Operation {
     /// Its id.
     pub id: OperationId,
@@ -14,7 +15,7 @@ pub struct Operation {
 }
 
 /// What an operation does.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum OperationKind {
     /// A dart taken out of a line, which is drawn with the dart's mouth in it.
     Dart {
@@ -47,7 +48,7 @@ pub enum OperationKind {
 }
 
 /// Where a dart ends.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Apex {
     /// So far from the middle of the mouth, square to it [m].
     Depth(Number),

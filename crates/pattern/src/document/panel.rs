@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// One flat piece of the pattern.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
     /// Its id.
     pub id: PanelId,
@@ -38,14 +38,14 @@ pub struct Panel {
 }
 
 /// Where the shape of a panel comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Source {
     /// Its lines follow curves of a sheet.
     Traced(SheetId),
 }
 
 /// A closed or open line of a panel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
     /// Its id.
     pub id: LineId,
@@ -70,7 +70,7 @@ pub enum LineKind {
 }
 
 /// A stretch of a curve, from a point on it to another.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Edge {
     /// Its id.
     pub id: EdgeId,
@@ -103,7 +103,7 @@ pub enum Corner {
 }
 
 /// A notch of a panel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Notch {
     /// Its id.
     pub id: NotchId,
@@ -136,6 +136,7 @@ pub enum NotchKind {
 
 /// How often a panel is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+
 pub struct Cut {
     /// Number of pieces, copies 0 to `quantity - 1`.
     pub quantity: u32,
@@ -153,7 +154,7 @@ impl Default for Cut {
 }
 
 /// Where a panel goes before it is sewn.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub enum WornRule {
     /// Nothing is known: the program decides from the seams.
     #[default]

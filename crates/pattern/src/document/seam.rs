@@ -1,9 +1,10 @@
 //! Seams: what turns flat panels into a garment.
 
 use crate::{LineName, Mark, Number, PanelId, SeamId};
+use serde::{Deserialize, Serialize};
 
 /// Two chains of spans that are sewn together, start to start.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Seam {
     /// Its id.
     pub id: SeamId,
@@ -50,7 +51,7 @@ impl Seam {
 }
 
 /// A stretch of a line on one copy of a panel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Span {
     /// The panel.
     pub panel: PanelId,

@@ -1,10 +1,11 @@
 //! Sheets: drafting planes with points and curves.
 
 use crate::{CurveId, Number, OperationId, PanelId, PointId, SheetId};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// A drafting plane.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Sheet {
     /// Its id.
     pub id: SheetId,
@@ -43,7 +44,7 @@ impl Sheet {
 }
 
 /// A point of a sheet.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Its id.
     pub id: PointId,
@@ -54,7 +55,7 @@ pub struct Point {
 }
 
 /// Where a point is: its coordinates, or how it is constructed from other parts of its sheet.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum PointRule {
     /// At coordinates of the sheet.
     At {
@@ -207,7 +208,7 @@ impl PointRule {
 }
 
 /// A curve of a sheet.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     /// Its id.
     pub id: CurveId,
@@ -220,7 +221,7 @@ pub struct Curve {
 }
 
 /// How a curve runs between its ends.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub enum CurveRule {
     /// Straight.
     #[default]
@@ -256,7 +257,7 @@ pub enum CurveRule {
 }
 
 /// A point a spline goes through, with its handles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Knot {
     /// Handle before the point.
     pub before: PointId,

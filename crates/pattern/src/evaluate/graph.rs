@@ -134,7 +134,7 @@ impl Evaluation {
                 .cloned()
                 .collect();
             let gone: Vec<_> = gone.cloned().collect();
-            renamed |= self.remove_missing(
+            self.remove_missing(
                 gone.iter().flat_map(|panel| panel_nodes(panel)),
                 come.iter().flat_map(|panel| panel_nodes(panel)),
                 &mut changed,

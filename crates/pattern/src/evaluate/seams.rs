@@ -3,7 +3,7 @@
 use super::node::Node;
 use super::numbers::{Computation, Want};
 use crate::stage::{MarkValue, PlaceError, Stretch};
-use crate::{Code, Diagnostic, EdgeName, Mark, Name, Place, Seam, Span, Stage};
+use crate::{Code, Diagnostic, Mark, Place, Seam, Span, Stage};
 use std::sync::Arc;
 
 /// A seam for one set of measurements.
@@ -213,9 +213,4 @@ fn length(stage: &Stage, half: u8, stretch: &Stretch) -> f64 {
         .sum::<f64>()
     });
     parts.sum()
-}
-
-/// Whether a name is that of a drawn edge.
-pub(crate) fn is_drawn(name: EdgeName) -> bool {
-    matches!(name, Name::Drawn(_))
 }

@@ -238,3 +238,16 @@ impl fmt::Debug for Formula {
         write!(f, "Formula({:?})", self.tokens)
     }
 }
+
+impl serde::Serialize for Formula {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.text(&Names::by_id()))
+    }
+}
+
+impl<'de> serde::Deserialize<'de> for Formula {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        Self::parse(&text, &Names::by_id()).map_err(serde::de::Error::custom)
+    }
+}

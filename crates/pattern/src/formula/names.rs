@@ -2,8 +2,8 @@
 
 use super::{Token, quoted};
 use crate::{
-    CornerName, Curve, CurveId, Line, Name, Panel, PanelId, PartReference, Pattern, PointId, Seam,
-    SeamId, Sheet, SheetId, VariableId, nearest,
+    CornerName, Curve, CurveId, Line, Name, Panel, PanelId, PartReference, Pattern, PointId, Role,
+    Seam, SeamId, Sheet, SheetId, VariableId, nearest,
 };
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -24,6 +24,8 @@ pub struct Names {
     curves: HashMap<CurveId, (SheetId, Arc<Curve>)>,
     /// The first panel traced from each sheet.
     traced: HashMap<SheetId, PanelId>,
+    /// Whether parts are written as `@` and their ids, which no renaming changes.
+    by_id: bool,
 }
 
 impl Names {
@@ -72,6 +74,19 @@ impl Names {
                 .or_insert(seam.id);
         }
         names
+    }
+
+    /// Parts written as `@` and their ids: for journals, which outlive names.
+    pub(crate) fn by_id() -> Self {
+        Self {
+            by_id: true,
+            ..Self::default()
+        }
+    }
+
+    /// Whether parts are written as `@` and their ids.
+    pub(crate) fn are_ids(&self) -> bool {
+        self.by_id
     }
 
     /// The variable of that name.
@@ -161,6 +176,8 @@ impl Names {
     /// A token with the names of the day; what is gone prints its number, as in `?47`.
     pub fn print(&self, token: &Token) -> String {
         match token {
+            Token::Variable(id) if self.by_id => format!("@{}", id.0),
+            Token::Part(part) if self.by_id => ids_of(part),
             Token::Text(text) => text.to_string(),
             Token::Word(word) => quoted(word),
             Token::Variable(id) => match self.variable_names.get(id) {
@@ -222,6 +239,55 @@ impl Names {
         let name = quoted(&panel.name);
         format!("{name}.{}..{name}.{}", corner(ends[0]), corner(ends[1]))
     }
+}
+
+/// A part by its ids: `@p47` a point, `@c12` a curve, `@s9` a seam, `@e33:47:48` a stretch.
+fn ids_of(part: &PartReference) -> String {
+    let corner = |corner: CornerName| match corner {
+        Name::Drawn(point) => point.0.to_string(),
+        Name::Made { by, role, index } => format!("{}.{}.{index}", by.0, role.word()),
+    };
+    match part {
+        PartReference::Point(id) => format!("@p{}", id.0),
+        PartReference::Curve(id) => format!("@c{}", id.0),
+        PartReference::Seam(id) => format!("@s{}", id.0),
+        PartReference::Unknown(text) => text.to_string(),
+        PartReference::Stretch { panel, ends } => {
+            format!("@e{}:{}:{}", panel.0, corner(ends[0]), corner(ends[1]))
+        }
+    }
+}
+
+/// The part that [`ids_of`] wrote.
+pub(super) fn part_of_ids(text: &str) -> Option<PartReference> {
+    let (kind, rest) = text.split_at_checked(1)?;
+    let corner = |text: &str| -> Option<CornerName> {
+        let mut parts = text.split('.');
+        let number: u32 = parts.next()?.parse().ok()?;
+        Some(match (parts.next(), parts.next()) {
+            (Some(role), Some(index)) => Name::Made {
+                by: number.into(),
+                role: Role::of_word(role)?,
+                index: index.parse().ok()?,
+            },
+            _ => Name::Drawn(number.into()),
+        })
+    };
+    let number = || rest.parse::<u32>().ok();
+    Some(match kind {
+        "p" => PartReference::Point(number()?.into()),
+        "c" => PartReference::Curve(number()?.into()),
+        "s" => PartReference::Seam(number()?.into()),
+        "e" => {
+            let mut parts = rest.split(':');
+            let panel: u32 = parts.next()?.parse().ok()?;
+            PartReference::Stretch {
+                panel: panel.into(),
+                ends: [corner(parts.next()?)?, corner(parts.next()?)?],
+            }
+        }
+        _ => return None,
+    })
 }
 
 /// Name of the edge that spans a stretch alone.

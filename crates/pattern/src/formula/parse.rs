@@ -1,5 +1,6 @@
 //! Reads formulas: a recursive-descent parser of bounded depth that writes postfix steps.
 
+use super::names::part_of_ids;
 use super::{
     Comparison, FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Function, Names, Operation,
     Step, Token,
@@ -277,6 +278,7 @@ impl Parser<'_> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.constant(),
             Some('?') => self.lost(),
+            Some('@') if self.names.are_ids() => self.variable_by_id(),
             Some(c) if c.is_ascii_alphabetic() || c == '_' || c == '\'' => self.name_or_call(),
             _ => Err(self.error_here(
                 "is not a value",
@@ -414,6 +416,18 @@ impl Parser<'_> {
         Ok(())
     }
 
+    /// `@12`: a variable by its id.
+    fn variable_by_id(&mut self) -> Result<(), FormulaError> {
+        let (column, start) = (self.column(), self.at);
+        let length = self.digits(1);
+        let number: Option<u32> = self.rest()[1..1 + length].parse().ok();
+        let number = number.ok_or_else(|| self.error_here("is no id", "write @ and a number"))?;
+        self.at += 1 + length;
+        self.name_token(start, Token::Variable(number.into()));
+        self.push(column, Operation::Variable(number.into()));
+        Ok(())
+    }
+
     fn name_or_call(&mut self) -> Result<(), FormulaError> {
         self.skip_space();
         let (column, start) = (self.column(), self.at);
@@ -538,6 +552,18 @@ impl Parser<'_> {
             let start = self.at;
             self.at += 1 + self.digits(1);
             let part = PartReference::Unknown(self.text[start..self.at].into());
+            self.name_token(start, Token::Part(part.clone()));
+            return Ok(part);
+        }
+        if self.peek() == Some('@') && self.names.are_ids() {
+            let start = self.at;
+            let rest = &self.text[start + 1..];
+            let length = rest
+                .find(|c: char| !(c.is_ascii_alphanumeric() || matches!(c, ':' | '.' | '_')))
+                .unwrap_or(rest.len());
+            let part = part_of_ids(&rest[..length])
+                .ok_or_else(|| self.error_here("is no id", "write @ and an id"))?;
+            self.at = start + 1 + length;
             self.name_token(start, Token::Part(part.clone()));
             return Ok(part);
         }

@@ -11,7 +11,7 @@ pub(crate) use fold::{FoldError, unfold};
 pub(crate) use place::{MarkValue, PlaceError, Spot, Stretch};
 
 use crate::{
-    Corner, CornerName, EdgeName, LineId, LineKind, LineName, NotchId, NotchKind, OperationId,
+    Corner, CornerName, EdgeName, LineKind, LineName, NotchId, NotchKind, OperationId,
 };
 use toile_geometry::{Curve, Vec2};
 
@@ -246,9 +246,4 @@ pub(crate) fn with_ends(curve: Curve, start: Vec2, end: Vec2) -> Curve {
             end,
         },
     }
-}
-
-/// Whether a drawn line has that name.
-pub(crate) fn is_drawn(name: LineName, id: LineId) -> bool {
-    name == LineName::Drawn(id)
 }

@@ -1,0 +1,146 @@
+//! Edits: every change of a document is a part put in, a part removed, or a part's place in its
+//! list. All that is clever is a planner that gives these.
+
+mod apply;
+mod references;
+
+use crate::{
+    Curve, DisplayUnit, Fabric, OperationId, Panel, PanelId, PartId, Point, Seam, SheetId, Size,
+    SizeId, Variable,
+};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// One change of a pattern, in absolute values: it means the same whenever it is applied.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Edit {
+    /// Adds a part at the end of its list, or replaces the one with the same id.
+    Put(Entity),
+    /// Removes a part. What refers to it waits for its return.
+    Remove(PartId),
+    /// Moves a part to another place of its list, counted from 0 and clamped.
+    Order {
+        /// The part.
+        part: PartId,
+        /// Its new place.
+        at: usize,
+    },
+}
+
+/// A part of a document as edits carry it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Entity {
+    /// Name, unit and base size of the pattern.
+    Head(Head),
+    /// A size.
+    Size(Arc<Size>),
+    /// A variable.
+    Variable(Arc<Variable>),
+    /// A fabric.
+    Fabric(Arc<Fabric>),
+    /// A sheet without its points and curves.
+    Sheet(SheetHead),
+    /// A point of a sheet.
+    Point(SheetId, Arc<Point>),
+    /// A curve of a sheet.
+    Curve(SheetId, Arc<Curve>),
+    /// A panel.
+    Panel(Arc<Panel>),
+    /// A seam.
+    Seam(Arc<Seam>),
+}
+
+/// What a pattern has besides its parts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Head {
+    /// Name to show.
+    pub name: String,
+    /// Unit lengths are shown in.
+    pub unit: DisplayUnit,
+    /// The size used when none is asked for.
+    pub base_size: Option<SizeId>,
+}
+
+/// A sheet without its points and curves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SheetHead {
+    /// Its id.
+    pub id: SheetId,
+    /// Name to show and for formulas.
+    pub name: String,
+    /// The panel stage it lies on.
+    pub on: Option<(PanelId, Option<OperationId>)>,
+    /// Where its origin lies on the table [m].
+    pub on_table: [f64; 2],
+}
+
+/// Why edits were refused. The document is unchanged.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EditError {
+    /// A part it names is not there.
+    #[error("{0} is not there: choose one that is")]
+    Missing(String),
+    /// A name cannot be used.
+    #[error(
+        "{0:?} cannot be a name: use 1 to 80 characters without quotes, control characters or spaces at the ends"
+    )]
+    Name(String),
+    /// A name or id is taken.
+    #[error("{0} is taken: choose another")]
+    Taken(String),
+    /// A number is not finite.
+    #[error("{0} has a number that is not finite: give a finite one")]
+    NotFinite(String),
+    /// It refers to what never was, or is of another kind.
+    #[error("{what} refers to {to}, which {why}: refer to a part of the document")]
+    Reference {
+        /// The part that refers.
+        what: String,
+        /// What it refers to.
+        to: String,
+        /// What is wrong with that.
+        why: &'static str,
+    },
+    /// The edit makes no sense here.
+    #[error("{message}: {hint}")]
+    Impossible {
+        /// What is wrong.
+        message: String,
+        /// What to do.
+        hint: String,
+    },
+}
+
+impl Entity {
+    /// Its id; nothing for the head.
+    pub fn id(&self) -> Option<PartId> {
+        Some(match self {
+            Self::Head(_) => return None,
+            Self::Size(size) => size.id.into(),
+            Self::Variable(variable) => variable.id.into(),
+            Self::Fabric(fabric) => fabric.id.into(),
+            Self::Sheet(sheet) => sheet.id.into(),
+            Self::Point(_, point) => point.id.into(),
+            Self::Curve(_, curve) => curve.id.into(),
+            Self::Panel(panel) => panel.id.into(),
+            Self::Seam(seam) => seam.id.into(),
+        })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Head(head) => &head.name,
+            Self::Size(size) => &size.name,
+            Self::Variable(variable) => &variable.name,
+            Self::Fabric(fabric) => &fabric.name,
+            Self::Sheet(sheet) => &sheet.name,
+            Self::Point(_, point) => &point.name,
+            Self::Curve(_, curve) => &curve.name,
+            Self::Panel(panel) => &panel.name,
+            Self::Seam(seam) => &seam.name,
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! What parts refer to.
+
+use super::Entity;
+use crate::formula::Token;
+use crate::{
+    CornerName, LineName, Mark, Name, Number, OperationKind, Panel, PartId, PartReference, Pattern,
+    Place, Span,
+};
+
+impl Entity {
+    /// Every part it refers to.
+    pub fn references(&self) -> Vec<PartId> {
+        let mut found = Vec::new();
+        match self {
+            Self::Head(head) => found.extend(head.base_size.map(PartId::from)),
+            Self::Size(_) | Self::Fabric(_) => {}
+            Self::Variable(variable) => number(&variable.number, &mut found),
+            Self::Sheet(sheet) => {
+                if let Some((panel, after)) = sheet.on {
+                    found.push(panel.into());
+                    found.extend(after.map(PartId::from));
+                }
+            }
+            Self::Point(sheet, point) => {
+                found.push((*sheet).into());
+                found.extend(point.rule.points().into_iter().map(PartId::from));
+                found.extend(point.rule.curves().into_iter().map(PartId::from));
+                point
+                    .rule
+                    .numbers()
+                    .into_iter()
+                    .for_each(|n| number(n, &mut found));
+            }
+            Self::Curve(sheet, curve) => {
+                found.push((*sheet).into());
+                found.extend(curve.ends.map(PartId::from));
+                found.extend(curve.rule.points().into_iter().map(PartId::from));
+                found.extend(curve.rule.curve().map(PartId::from));
+                curve
+                    .rule
+                    .number()
+                    .into_iter()
+                    .for_each(|n| number(n, &mut found));
+            }
+            Self::Panel(panel) => panel_references(panel, &mut found),
+            Self::Seam(seam) => {
+                number(&seam.ease, &mut found);
+                for span in seam.spans() {
+                    span_references(span, &mut found);
+                }
+            }
+        }
+        found
+    }
+
+    /// Every number it has.
+    pub(crate) fn numbers(&self) -> Vec<&Number> {
+        match self {
+            Self::Head(_) | Self::Size(_) | Self::Fabric(_) | Self::Sheet(_) => Vec::new(),
+            Self::Variable(variable) => vec![&variable.number],
+            Self::Point(_, point) => point.rule.numbers(),
+            Self::Curve(_, curve) => curve.rule.number().into_iter().collect(),
+            Self::Panel(panel) => panel.numbers(),
+            Self::Seam(seam) => seam.numbers(),
+        }
+    }
+}
+
+fn number(number: &Number, found: &mut Vec<PartId>) {
+    if let Number::PerSize { sizes, .. } = number {
+        found.extend(sizes.iter().map(|(size, _)| PartId::from(*size)));
+    }
+    let Some(formula) = number.as_formula() else {
+        return;
+    };
+    for token in formula.tokens() {
+        match token {
+            Token::Text(_) | Token::Word(_) => {}
+            Token::Variable(id) => found.push((*id).into()),
+            Token::Part(part) => match part {
+                PartReference::Point(id) => found.push((*id).into()),
+                PartReference::Curve(id) => found.push((*id).into()),
+                PartReference::Seam(id) => found.push((*id).into()),
+                PartReference::Unknown(_) => {}
+                PartReference::Stretch { panel, ends } => {
+                    found.push((*panel).into());
+                    ends.iter().for_each(|end| corner(*end, found));
+                }
+            },
+        }
+    }
+}
+
+fn corner(name: CornerName, found: &mut Vec<PartId>) {
+    found.push(match name {
+        Name::Drawn(id) => id.into(),
+        Name::Made { by, .. } => by.into(),
+    });
+}
+
+fn line(name: LineName, found: &mut Vec<PartId>) {
+    found.push(match name {
+        Name::Drawn(id) => id.into(),
+        Name::Made { by, .. } => by.into(),
+    });
+}
+
+fn mark(mark: &Mark, found: &mut Vec<PartId>) {
+    mark.corners().into_iter().for_each(|c| corner(c, found));
+    if let Mark::Notch(id) = mark {
+        found.push((*id).into());
+    }
+    mark.number().into_iter().for_each(|n| number(n, found));
+}
+
+fn span_references(span: &Span, found: &mut Vec<PartId>) {
+    found.push(span.panel.into());
+    line(span.line, found);
+    mark(&span.from, found);
+    mark(&span.to, found);
+}
+
+fn panel_references(panel: &Panel, found: &mut Vec<PartId>) {
+    found.push(panel.sheet().into());
+    found.push(panel.fabric.into());
+    for edge in panel.edges() {
+        found.push(edge.curve.into());
+        found.extend(edge.ends.map(PartId::from));
+    }
+    for notch in &panel.notches {
+        found.push(notch.line.into());
+        mark(&notch.at, found);
+    }
+    for operation in &panel.operations {
+        found.extend(operation.kind.points().into_iter().map(PartId::from));
+        match &operation.kind {
+            OperationKind::Dart {
+                line: on, mouth, ..
+            } => {
+                line(*on, found);
+                mark(mouth, found);
+            }
+            OperationKind::Diamond { .. } => {}
+            OperationKind::Fold { line: on, ends } => {
+                line(*on, found);
+                ends.iter().for_each(|end| mark(end, found));
+            }
+        }
+    }
+    panel.numbers().into_iter().for_each(|n| number(n, found));
+}
+
+impl Pattern {
+    /// Every part as an entity, with its place.
+    pub fn entities(&self) -> Vec<(Entity, Place)> {
+        let mut all: Vec<(Entity, Place)> = Vec::new();
+        let mut put = |entity: Entity, place: Place| all.push((entity, place));
+        for variable in &self.variables {
+            put(
+                Entity::Variable(variable.clone()),
+                Place::Variable(variable.id),
+            );
+        }
+        for sheet in &self.sheets {
+            for point in &sheet.points {
+                put(
+                    Entity::Point(sheet.id, point.clone()),
+                    Place::Point(point.id),
+                );
+            }
+            for curve in &sheet.curves {
+                put(
+                    Entity::Curve(sheet.id, curve.clone()),
+                    Place::Curve(curve.id),
+                );
+            }
+        }
+        for panel in &self.panels {
+            put(Entity::Panel(panel.clone()), Place::Panel(panel.id));
+        }
+        for seam in &self.seams {
+            put(Entity::Seam(seam.clone()), Place::Seam(seam.id));
+        }
+        all
+    }
+
+    /// The places of all parts that refer to a part.
+    pub fn users(&self, part: PartId) -> Vec<Place> {
+        let all = self.entities().into_iter();
+        let using = all.filter(|(entity, _)| entity.references().contains(&part));
+        using.map(|(_, place)| place).collect()
+    }
+}

@@ -1,0 +1,208 @@
+//! Divides an edge at a new corner on its curve, and joins two edges at an old one: exact inverses
+//! in every size, since the curve stays.
+
+use super::impossible;
+use crate::{
+    Curve, CurveId, CurveRule, Edge, EdgeId, Edit, EditError, Entity, Evaluation, NAME_LENGTH,
+    Number, Panel, PanelId, PartId, Place, Point, PointId, PointRule, Sheet,
+};
+use std::sync::Arc;
+use toile_geometry::Vec2;
+
+/// The edits that put a corner on an edge at its place nearest to a point [m], or in its middle;
+/// and the corner.
+///
+/// # Errors
+/// The edge is not there or cannot be drawn, or the place is one of its ends.
+pub fn divide_edge(
+    evaluation: &Evaluation,
+    (panel, edge): (PanelId, EdgeId),
+    near: Option<Vec2>,
+) -> Result<(Vec<Edit>, PointId), EditError> {
+    let pattern = evaluation.pattern();
+    let missing = |part: &dyn std::fmt::Display| EditError::Missing(part.to_string());
+    let owner = pattern.panel(panel).ok_or_else(|| missing(&panel))?;
+    let old = owner.edge(edge).ok_or_else(|| missing(&edge))?;
+    let sheet = pattern
+        .sheet(owner.sheet())
+        .ok_or_else(|| missing(&owner.sheet()))?;
+    let undrawn = || impossible("the edge cannot be drawn", "mend its formulas first");
+    let path = evaluation.edge(edge).ok_or_else(undrawn)?;
+    let curve = evaluation.curve(old.curve).ok_or_else(undrawn)?;
+    let middle = path.at_length(0.5 * path.length()).ok_or_else(undrawn)?;
+    let place = match near {
+        Some(near) => path.nearest(near).ok_or_else(undrawn)?,
+        None => middle,
+    };
+    if place.along < 1e-9 * path.length() || place.along > (1.0 - 1e-9) * path.length() {
+        return Err(impossible(
+            "an edge is divided at one of its ends",
+            "choose a place between its ends",
+        ));
+    }
+    let on_curve = curve.nearest(path.point(place)).ok_or_else(undrawn)?;
+    let mut ids = pattern.ids;
+    let corner: PointId = ids.take();
+    let point = Point {
+        id: corner,
+        name: free_name(&format!("p{}", corner.0), |name| {
+            sheet.point_named(name).is_some()
+        }),
+        rule: PointRule::OnCurve {
+            curve: old.curve,
+            share: Number::Value(on_curve.along / curve.length()),
+        },
+    };
+    let mut changed = (**owner).clone();
+    let name = free_name(&format!("{} 2", old.name), |name| {
+        owner.edge_named(name).is_some()
+    });
+    let second = Edge {
+        id: ids.take(),
+        name,
+        ends: [corner, old.ends[1]],
+        corner: None,
+        ..old.clone()
+    };
+    for line in &mut changed.lines {
+        if let Some(k) = line.edges.iter().position(|known| known.id == edge) {
+            line.edges[k].ends[1] = corner;
+            line.edges.insert(k + 1, second.clone());
+        }
+    }
+    let edits = vec![
+        Edit::Put(Entity::Point(sheet.id, Arc::new(point))),
+        Edit::Put(Entity::Panel(Arc::new(changed))),
+    ];
+    Ok((edits, corner))
+}
+
+/// The edits that take a corner away: the edges before and after it become one. Both lie on the
+/// joined curve if they followed one curve; else it is a straight line.
+///
+/// # Errors
+/// The panel has no such corner, or its line would lose too many.
+pub fn join_edges(
+    evaluation: &Evaluation,
+    (panel, corner): (PanelId, PointId),
+) -> Result<Vec<Edit>, EditError> {
+    let pattern = evaluation.pattern();
+    let missing = |part: &dyn std::fmt::Display| EditError::Missing(part.to_string());
+    let owner = pattern.panel(panel).ok_or_else(|| missing(&panel))?;
+    let sheet = pattern
+        .sheet(owner.sheet())
+        .ok_or_else(|| missing(&owner.sheet()))?;
+    let mut changed = (**owner).clone();
+    let line = changed
+        .lines
+        .iter_mut()
+        .find(|line| line.edges.iter().any(|edge| edge.ends[1] == corner))
+        .ok_or_else(|| EditError::Missing(format!("a corner at {corner}")))?;
+    if line.is_closed() && line.edges.len() < 3 {
+        return Err(impossible(
+            "an outline of two edges would lose one",
+            "remove the panel or the hole instead",
+        ));
+    }
+    let count = line.edges.len();
+    let k = line
+        .edges
+        .iter()
+        .position(|edge| edge.ends[1] == corner)
+        .unwrap_or(0);
+    let next = (k + 1) % count;
+    if line.edges[next].ends[0] != corner || next == k {
+        return Err(impossible(
+            "the line ends at this corner or is open there",
+            "choose a corner between two edges",
+        ));
+    }
+    let gone = line.edges[next].clone();
+    let kept = line.edges[k].clone();
+    let ends = [kept.ends[0], gone.ends[1]];
+    let mut ids = pattern.ids;
+    let mut edits = Vec::new();
+    line.edges[k].ends = ends;
+    if kept.curve != gone.curve {
+        let id: CurveId = ids.take();
+        let name = free_name(&kept.name, |name| sheet.curve_named(name).is_some());
+        line.edges[k].curve = id;
+        edits.push(Edit::Put(Entity::Curve(
+            sheet.id,
+            Arc::new(Curve {
+                id,
+                name,
+                ends,
+                rule: CurveRule::Line,
+            }),
+        )));
+    }
+    line.edges.remove(next);
+    edits.push(Edit::Put(Entity::Panel(Arc::new(changed))));
+    edits.extend(unused(
+        evaluation,
+        owner,
+        sheet,
+        corner,
+        [kept.curve, gone.curve],
+    ));
+    Ok(edits)
+}
+
+/// Removals of the corner and of curves that nothing else uses.
+fn unused(
+    evaluation: &Evaluation,
+    panel: &Panel,
+    sheet: &Sheet,
+    corner: PointId,
+    curves: [CurveId; 2],
+) -> Vec<Edit> {
+    let pattern = evaluation.pattern();
+    let mut edits = Vec::new();
+    let only = |part: PartId, allowed: &[Place]| {
+        pattern
+            .users(part)
+            .iter()
+            .all(|place| allowed.contains(place))
+    };
+    let own = Place::Panel(panel.id);
+    let mut allowed = vec![own.clone()];
+    if curves[0] != curves[1] {
+        for curve in curves {
+            let still = panel.edges().filter(|edge| edge.curve == curve).count() > 1;
+            if !still && only(curve.into(), std::slice::from_ref(&own)) {
+                edits.push(Edit::Remove(curve.into()));
+                allowed.push(Place::Curve(curve));
+            }
+        }
+    }
+    let named = panel.notches.iter().any(|notch| marks(&notch.at, corner));
+    let by_operations = panel
+        .operations
+        .iter()
+        .any(|operation| operation.kind.points().contains(&corner));
+    let is_made_for_it = matches!(
+        sheet.point(corner).map(|point| &point.rule),
+        Some(PointRule::OnCurve { .. })
+    );
+    if is_made_for_it && !named && !by_operations && only(corner.into(), &allowed) {
+        edits.push(Edit::Remove(corner.into()));
+    }
+    edits
+}
+
+fn marks(mark: &crate::Mark, corner: PointId) -> bool {
+    mark.corners().contains(&crate::Name::Drawn(corner))
+}
+
+/// A name that is not taken, made from one that is wanted.
+pub(super) fn free_name(wanted: &str, taken: impl Fn(&str) -> bool) -> String {
+    let mut name: String = wanted.chars().take(NAME_LENGTH - 4).collect();
+    let mut number = 2;
+    while taken(&name) {
+        let base: String = wanted.chars().take(NAME_LENGTH - 8).collect();
+        name = format!("{base} {number}");
+        number += 1;
+    }
+    name
+}

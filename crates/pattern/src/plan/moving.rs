@@ -1,0 +1,187 @@
+//! Moves a point without losing how it is made: formulas stay and get something added, constructed
+//! points keep their construction.
+
+use super::impossible;
+use crate::{Edit, EditError, Entity, Evaluation, Number, Point, PointId, PointRule};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use toile_geometry::Vec2;
+
+/// The edits that move a point to `to` [m] as it is drawn now.
+///
+/// A value is set; a formula keeps its text and gets something added. A point constructed from
+/// others keeps its construction with new numbers, so a point on a curve or a line goes to the
+/// nearest place on it.
+///
+/// # Errors
+/// The point is not there, cannot be drawn, or follows from others alone.
+pub fn move_point(
+    evaluation: &Evaluation,
+    point: PointId,
+    to: Vec2,
+) -> Result<Vec<Edit>, EditError> {
+    if !(to.x.is_finite() && to.y.is_finite()) {
+        return Err(EditError::NotFinite("the new place".into()));
+    }
+    let found = evaluation.pattern().point(point);
+    let (sheet, found) = found.ok_or_else(|| EditError::Missing(point.to_string()))?;
+    let now = at(evaluation, point)?;
+    let rule = moved(evaluation, &found.rule, now, to)?;
+    let moved = Point {
+        rule,
+        ..(**found).clone()
+    };
+    Ok(vec![Edit::Put(Entity::Point(sheet.id, Arc::new(moved)))])
+}
+
+fn at(evaluation: &Evaluation, point: PointId) -> Result<Vec2, EditError> {
+    let place = evaluation.point(point);
+    place.ok_or_else(|| impossible("the point cannot be drawn", "mend its formulas first"))
+}
+
+fn way(evaluation: &Evaluation, [base, tip]: [PointId; 2]) -> Result<Vec2, EditError> {
+    let way = at(evaluation, tip)? - at(evaluation, base)?;
+    if way.norm() > 1e-12 {
+        return Ok(way);
+    }
+    Err(impossible(
+        "the two points it is constructed from are in the same place",
+        "move them apart",
+    ))
+}
+
+fn moved(
+    evaluation: &Evaluation,
+    old: &PointRule,
+    now: Vec2,
+    to: Vec2,
+) -> Result<PointRule, EditError> {
+    let shift = to - now;
+    Ok(match old {
+        PointRule::At { x, y } => PointRule::At {
+            x: added(x, shift.x),
+            y: added(y, shift.y),
+        },
+        PointRule::Offset { base, x, y } => PointRule::Offset {
+            base: *base,
+            x: added(x, shift.x),
+            y: added(y, shift.y),
+        },
+        PointRule::Polar {
+            base,
+            angle,
+            distance,
+        } => {
+            let centre = at(evaluation, *base)?;
+            let (before, after) = (now - centre, to - centre);
+            let turn = after.y.atan2(after.x) - before.y.atan2(before.x);
+            PointRule::Polar {
+                base: *base,
+                angle: added(angle, turn - TAU * (turn / TAU).round()),
+                distance: added(distance, after.norm() - before.norm()),
+            }
+        }
+        PointRule::Between {
+            base,
+            tip,
+            along,
+            aside,
+        } => {
+            let way = way(evaluation, [*base, *tip])?;
+            let left = Vec2::new(-way.y, way.x);
+            let square = way.norm_squared();
+            PointRule::Between {
+                base: *base,
+                tip: *tip,
+                along: added(along, shift.dot(&way) / square),
+                aside: added(aside, shift.dot(&left) / square),
+            }
+        }
+        PointRule::Toward {
+            base,
+            tip,
+            distance,
+        } => {
+            let unit = way(evaluation, [*base, *tip])?.normalize();
+            PointRule::Toward {
+                base: *base,
+                tip: *tip,
+                distance: added(distance, shift.dot(&unit)),
+            }
+        }
+        PointRule::OnCurve { curve, share } => {
+            let (shift, length) = along_curve(evaluation, *curve, now, to)?;
+            PointRule::OnCurve {
+                curve: *curve,
+                share: added(share, shift / length),
+            }
+        }
+        PointRule::AlongCurve { curve, distance } => {
+            let (shift, _) = along_curve(evaluation, *curve, now, to)?;
+            PointRule::AlongCurve {
+                curve: *curve,
+                distance: added(distance, shift),
+            }
+        }
+        PointRule::Crossing { .. }
+        | PointRule::CurveCrossing { .. }
+        | PointRule::LineCrossing { .. } => {
+            return Err(impossible(
+                "the point lies where two lines cross",
+                "move the points that the lines go through",
+            ));
+        }
+        PointRule::Foot { .. } => {
+            return Err(impossible(
+                "the point is the foot of a perpendicular",
+                "move the points it is made from",
+            ));
+        }
+        PointRule::Mirrored { .. } => {
+            return Err(impossible(
+                "the point is the mirror image of another",
+                "move the other point",
+            ));
+        }
+    })
+}
+
+/// How much farther along a curve the place nearest to `to` is than that nearest to `now` [m], and
+/// the curve's length [m].
+fn along_curve(
+    evaluation: &Evaluation,
+    curve: crate::CurveId,
+    now: Vec2,
+    to: Vec2,
+) -> Result<(f64, f64), EditError> {
+    let path = evaluation.curve(curve);
+    let path = path.ok_or_else(|| impossible("its curve cannot be drawn", "mend it first"))?;
+    let place = |p: Vec2| path.nearest(p).map_or(0.0, |place| place.along);
+    Ok((place(to) - place(now), path.length().max(1e-12)))
+}
+
+/// The number with something added [m], [rad] or plain.
+pub(super) fn added(number: &Number, shift: f64) -> Number {
+    match number {
+        Number::Value(value) => Number::Value(value + shift),
+        Number::Formula(_) if shift == 0.0 => number.clone(),
+        Number::Formula(formula) => Number::Adjusted {
+            formula: formula.clone(),
+            by: shift,
+        },
+        Number::Adjusted { formula, by } if (by + shift).abs() < 1e-12 => {
+            Number::Formula(formula.clone())
+        }
+        Number::Adjusted { formula, by } => Number::Adjusted {
+            formula: formula.clone(),
+            by: by + shift,
+        },
+        Number::PerSize { usual, sizes } => Number::PerSize {
+            usual: Box::new(added(usual, shift)),
+            sizes: sizes
+                .iter()
+                .map(|(size, value)| (*size, value + shift))
+                .collect(),
+        },
+    }
+}
