@@ -2,7 +2,6 @@
 
 use crate::app::ToileApp;
 use crate::command::UiCommand;
-use crate::drawing::PointRole;
 use crate::notice::Notice;
 use crate::selection::Selection;
 use crate::space::PanelPoint;
@@ -11,7 +10,7 @@ use egui::{Key, Modifiers};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::PathBuf;
 use toile_geometry::Vec2;
-use toile_pattern::{EdgeId, Edit, EditError, PanelEdit, PanelId, PointId};
+use toile_pattern::{EdgeId, Edit, EditError, PanelId, PointId, plan};
 use toile_session::Command;
 
 /// How far an arrow key moves a point, alone and with Shift [m].
@@ -77,29 +76,21 @@ impl ToileApp {
     /// Moves a point to a place of its panel. Moves with one number are one step of the history.
     pub(crate) fn move_point(
         &mut self,
-        (panel, point): (PanelId, PointId),
+        (_, point): (PanelId, PointId),
         to: PanelPoint,
         drag: Option<u64>,
     ) {
-        let project = self.session.project();
-        let measurements = project.drafted_to();
-        let edit = project
-            .pattern
-            .move_edit(&measurements, (panel, point), to.0);
-        self.edit(edit, "Move point", drag);
+        let evaluation = self.session.evaluation();
+        let edits = plan::move_point(&evaluation, point, to.0);
+        self.edit(edits, "Move point", drag);
     }
 
     /// Divides an edge at the place nearest to a point, or in its middle, and selects the corner.
     pub(crate) fn split(&mut self, (panel, edge): (PanelId, EdgeId), near: Option<PanelPoint>) {
-        let project = self.session.project();
-        let measurements = project.drafted_to();
-        let pattern = &project.pattern;
-        let edit = match near {
-            Some(near) => pattern.split_edit_near(&measurements, (panel, edge), near.0),
-            None => pattern.split_edit(&measurements, (panel, edge), 0.5),
-        };
-        let corner = edit.as_ref().ok().and_then(new_corner);
-        if self.edit(edit, "Add point", None)
+        let evaluation = self.session.evaluation();
+        let planned = plan::divide_edge(&evaluation, (panel, edge), near.map(|near| near.0));
+        let corner = planned.as_ref().ok().map(|(_, corner)| *corner);
+        if self.edit(planned.map(|(edits, _)| edits), "Add point", None)
             && let Some(corner) = corner
         {
             self.table.selection = Selection::Point(panel, corner);
@@ -107,25 +98,20 @@ impl ToileApp {
     }
 
     fn delete(&mut self, (panel, point): (PanelId, PointId)) {
-        let drawn = self.drawing.panel(panel);
-        let role = drawn.and_then(|panel| panel.point(point)).map(|p| p.role);
-        let project = self.session.project();
-        let edit = match role {
-            Some(PointRole::Corner) => project
-                .pattern
-                .join_edit(&project.drafted_to(), (panel, point)),
-            _ => Ok(Edit::InPanel {
-                panel,
-                edit: PanelEdit::RemovePoint(point),
-            }),
-        };
-        self.edit(edit, "Delete point", None);
+        let evaluation = self.session.evaluation();
+        let edits = plan::remove_point(&evaluation, (panel, point));
+        self.edit(edits, "Delete point", None);
     }
 
-    fn edit(&mut self, edit: Result<Edit, EditError>, label: &str, drag: Option<u64>) -> bool {
-        match edit {
-            Ok(edit) => self.execute(Command::Edit {
-                edits: vec![edit],
+    fn edit(
+        &mut self,
+        edits: Result<Vec<Edit>, EditError>,
+        label: &str,
+        drag: Option<u64>,
+    ) -> bool {
+        match edits {
+            Ok(edits) => self.execute(Command::Edit {
+                edits,
                 label: label.to_owned(),
                 drag,
             }),
@@ -194,16 +180,5 @@ impl ToileApp {
             }
             _ => PathBuf::from(format!("{}{ENDING}", project.pattern.name)),
         }
-    }
-}
-
-/// The corner an edit puts in.
-fn new_corner(edit: &Edit) -> Option<PointId> {
-    match edit {
-        Edit::InPanel {
-            edit: PanelEdit::SplitEdge { points, .. },
-            ..
-        } => points.first().map(|point| point.id),
-        _ => None,
     }
 }

@@ -152,9 +152,8 @@ impl ToileApp {
         if self.revision != Some(self.session.revision()) {
             self.revision = Some(self.session.revision());
             let draft = self.session.draft();
-            let project = self.session.project();
-            let places = project.pattern.point_places(&project.drafted_to());
-            self.drawing = Arc::new(Drawing::new(&project.pattern, &draft, &places));
+            let evaluation = self.session.evaluation();
+            self.drawing = Arc::new(Drawing::new(&evaluation, &draft));
             self.table.changed(&self.drawing);
             self.follow_body();
         }

@@ -75,7 +75,7 @@ impl ToileApp {
             .iter()
             .map(|s| s.name.clone())
             .collect();
-        let base = project.pattern.base_size.clone();
+        let base = project.pattern.base().map(|size| size.name.clone());
         let mut chosen = project
             .size
             .clone()
@@ -368,7 +368,11 @@ impl ToileApp {
     /// The part of the drawing that a finding is about.
     fn part_at(&self, place: &Place) -> Option<Selection> {
         match *place {
-            Place::Point(panel, point) => Some(Selection::Point(panel, point)),
+            Place::Point(point) => {
+                let mut panels = self.drawing.panels.iter();
+                let owner = panels.find(|panel| panel.point(point).is_some())?;
+                Some(Selection::Point(owner.id, point))
+            }
             Place::Edge(panel, edge) => Some(Selection::Edge(panel, edge)),
             Place::Seam(id) => {
                 let seam = self.drawing.seams.iter().find(|seam| seam.id == id)?;

@@ -4,11 +4,11 @@
 use crate::fill::{Fill, fill};
 use crate::inside::{chord, roomiest};
 use crate::space::PanelPoint;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use toile_geometry::{Bounds2, Curve, Vec2, ring_area};
 use toile_pattern::{
-    Draft, EdgeId, EdgeOrigin, Panel, PanelId, Pattern, Piece, PieceEdge, PointId, SeamId,
-    SeamOrigin,
+    CurveId, CurveRule, Draft, EdgeId, EdgeOrigin, Evaluation, Mark, Name, OperationKind, Panel,
+    PanelId, Pattern, Piece, PieceEdge, PointId, SeamId, SeamOrigin, Sheet,
 };
 
 /// Largest distance of a drawn curve from the true one [m]: a tenth of a millimetre, below a
@@ -133,20 +133,17 @@ pub struct SeamStretch {
 }
 
 impl Drawing {
-    /// Draws a pattern and its draft. `places` are the pattern's points [m].
-    pub fn new(
-        pattern: &Pattern,
-        draft: &Draft,
-        places: &BTreeMap<(PanelId, PointId), Vec2>,
-    ) -> Self {
+    /// Draws an evaluated pattern and its draft.
+    pub fn new(evaluation: &Evaluation, draft: &Draft) -> Self {
+        let pattern: &Pattern = evaluation.pattern();
         let mut panels = Vec::new();
         for panel in &pattern.panels {
             let piece = draft
                 .pieces
                 .iter()
                 .find(|piece| piece.id.panel == panel.id && piece.id.copy == 0);
-            if let Some(piece) = piece {
-                panels.push(draw_panel(panel, piece, places));
+            if let (Some(piece), Some(sheet)) = (piece, pattern.sheet(panel.sheet())) {
+                panels.push(draw_panel((panel, sheet), piece, evaluation));
             }
         }
         Self {
@@ -204,9 +201,7 @@ pub fn along(line: &[Vec2], share: f64) -> Option<(Vec2, Vec2)> {
 }
 
 fn reflected(edge: &PieceEdge) -> bool {
-    match edge.origin {
-        EdgeOrigin::Edge { reflected, .. } | EdgeOrigin::DartLeg { reflected, .. } => reflected,
-    }
+    edge.origin.half != 0
 }
 
 fn polyline(curve: &Curve) -> Vec<Vec2> {
@@ -230,9 +225,9 @@ fn half_ring(ring: &[PieceEdge], of_mirrored: bool) -> Vec<Vec2> {
 }
 
 fn draw_panel(
-    panel: &Panel,
+    (panel, sheet): (&Panel, &Sheet),
     piece: &Piece,
-    places: &BTreeMap<(PanelId, PointId), Vec2>,
+    evaluation: &Evaluation,
 ) -> PanelDrawing {
     let rings = || std::iter::once(&piece.outline).chain(&piece.holes);
     let half = |mirrored| -> Vec<Vec<Vec2>> {
@@ -244,7 +239,7 @@ fn draw_panel(
     let drawn_bounds = Bounds2::of(drawn.iter().flatten().copied());
     let middle = roomiest(&drawn, &drawn_bounds);
     let direction = Vec2::new(piece.grain.cos(), piece.grain.sin());
-    let place = |id: PointId| places.get(&(panel.id, id)).copied();
+    let place = |id: PointId| evaluation.point(id);
     let mut drawing = PanelDrawing {
         id: panel.id,
         name: panel.name.clone(),
@@ -260,10 +255,7 @@ fn draw_panel(
         edges: Vec::new(),
         mirrored: Vec::new(),
         darts: Vec::new(),
-        fold: panel
-            .fold
-            .and_then(|id| panel.edge(id))
-            .and_then(|edge| Some([place(edge.ends[0])?, place(edge.ends[1])?])),
+        fold: fold(panel).and_then(|[a, b]| Some([place(a)?, place(b)?])),
         internal_lines: piece
             .internal_lines
             .iter()
@@ -272,27 +264,54 @@ fn draw_panel(
         notches: piece.notches.iter().map(|n| (n.point, n.inward)).collect(),
         grainline: chord(&drawn, middle, direction, GRAINLINE_SHARE),
         middle,
-        points: draw_points(panel, &place),
+        points: draw_points(panel, sheet, &place),
     };
     for edge in rings().flatten() {
-        draw_edge(&mut drawing, panel, edge, &place);
+        draw_edge(&mut drawing, (panel, sheet), edge, &place);
     }
     drawing
 }
 
+/// Both corners of the stretch that lies on the fold.
+fn fold(panel: &Panel) -> Option<[PointId; 2]> {
+    panel
+        .operations
+        .iter()
+        .find_map(|operation| match &operation.kind {
+            OperationKind::Fold {
+                ends: [Mark::Corner(Name::Drawn(a)), Mark::Corner(Name::Drawn(b))],
+                ..
+            } => Some([*a, *b]),
+            _ => None,
+        })
+}
+
+/// Handles of a curve with the points they shape.
+fn handles(sheet: &Sheet, curve: CurveId) -> Vec<[PointId; 2]> {
+    let Some(curve) = sheet.curve(curve) else {
+        return Vec::new();
+    };
+    let CurveRule::Spline { handles, knots, .. } = &curve.rule else {
+        return Vec::new();
+    };
+    let inner = knots
+        .iter()
+        .flat_map(|knot| [[knot.point, knot.before], [knot.point, knot.after]]);
+    let ends = [[curve.ends[0], handles[0]], [curve.ends[1], handles[1]]];
+    ends.into_iter().chain(inner).collect()
+}
+
 fn draw_edge(
     drawing: &mut PanelDrawing,
-    panel: &Panel,
+    (panel, sheet): (&Panel, &Sheet),
     edge: &PieceEdge,
     place: &impl Fn(PointId) -> Option<Vec2>,
 ) {
     let line = polyline(&edge.curve);
-    let id = match edge.origin {
-        EdgeOrigin::DartLeg { .. } => return drawing.darts.push(line),
-        EdgeOrigin::Edge {
-            reflected: true, ..
-        } => return drawing.mirrored.push(line),
-        EdgeOrigin::Edge { edge, .. } => edge,
+    let id = match edge.origin.name {
+        Name::Made { .. } => return drawing.darts.push(line),
+        Name::Drawn(_) if edge.origin.half != 0 => return drawing.mirrored.push(line),
+        Name::Drawn(edge) => edge,
     };
     if let Some(known) = drawing.edges.iter_mut().find(|known| known.id == id) {
         known.length += edge.curve.length();
@@ -302,35 +321,31 @@ fn draw_edge(
     let Some(of_panel) = panel.edge(id) else {
         return;
     };
-    let controls = of_panel.curve.controls();
-    let ends = of_panel.ends;
-    let mut pairs = Vec::new();
-    match *controls {
-        [control] => pairs.extend([[ends[0], control], [ends[1], control]]),
-        [first, second] => pairs.extend([[ends[0], first], [ends[1], second]]),
-        _ => {}
-    }
     drawing.edges.push(EdgeDrawing {
         id,
         name: of_panel.name.clone(),
         length: edge.curve.length(),
         lines: vec![line],
-        handles: pairs
+        handles: handles(sheet, of_panel.curve)
             .into_iter()
             .filter_map(|[end, control]| Some([place(end)?, place(control)?]))
             .collect(),
     });
 }
 
-fn draw_points(panel: &Panel, place: &impl Fn(PointId) -> Option<Vec2>) -> Vec<PointDrawing> {
+fn draw_points(
+    panel: &Panel,
+    sheet: &Sheet,
+    place: &impl Fn(PointId) -> Option<Vec2>,
+) -> Vec<PointDrawing> {
     let mut corners = BTreeSet::new();
     let mut controls: BTreeSet<PointId> = BTreeSet::new();
     for edge in panel.edges() {
         corners.extend(edge.ends);
-        controls.extend(edge.curve.controls());
+        controls.extend(handles(sheet, edge.curve).iter().map(|pair| pair[1]));
     }
     let mut points = Vec::new();
-    for point in &panel.points {
+    for point in &sheet.points {
         let role = if corners.contains(&point.id) {
             PointRole::Corner
         } else if controls.contains(&point.id) {
@@ -351,7 +366,7 @@ fn draw_points(panel: &Panel, place: &impl Fn(PointId) -> Option<Vec2>) -> Vec<P
 }
 
 fn cut_words(panel: &Panel) -> String {
-    match (panel.cut.quantity, panel.cut.mirrored, panel.fold) {
+    match (panel.cut.quantity, panel.cut.mirrored, fold(panel)) {
         (0, ..) => "not cut".into(),
         (1, _, None) => String::new(),
         (1, _, Some(_)) => "cut on the fold".into(),
@@ -388,9 +403,9 @@ fn draw_seams(draft: &Draft) -> Vec<SeamDrawing> {
                     drawing.stretches.push(SeamStretch {
                         panel: piece.id.panel,
                         edge: match edge.origin {
-                            EdgeOrigin::Edge {
-                                edge,
-                                reflected: false,
+                            EdgeOrigin {
+                                name: Name::Drawn(edge),
+                                half: 0,
                             } => Some(edge),
                             _ => None,
                         },

@@ -2,7 +2,8 @@
 
 use toile_geometry::{Curve, Polygon, Vec2, wound_region};
 use toile_pattern::{
-    Code, DartId, Diagnostic, Draft, EdgeOrigin, Panel, Pattern, Piece, PieceEdge, Place, Severity,
+    Code, Diagnostic, Draft, EdgeOrigin, LineKind, Name, OperationId, Panel, Pattern, Piece,
+    PieceEdge, Place, Severity,
 };
 
 /// Flattened curves stay this near to the drawn ones [m].
@@ -82,13 +83,9 @@ fn with_closed_darts(edges: &[PieceEdge]) -> Vec<PieceEdge> {
 }
 
 /// The dart an edge is a leg of, and on which half of a folded panel.
-fn dart_of(edge: &PieceEdge) -> Option<(DartId, bool)> {
-    match edge.origin {
-        EdgeOrigin::DartLeg {
-            dart, reflected, ..
-        } => Some((dart, reflected)),
-        EdgeOrigin::Edge { .. } => None,
-    }
+fn dart_of(edge: &PieceEdge) -> Option<(OperationId, u8)> {
+    let (dart, _) = edge.origin.leg()?;
+    Some((dart, edge.origin.half))
 }
 
 /// The sewn outline with closed darts, as it is drawn.
@@ -258,9 +255,9 @@ fn sharp_corners(pattern: &Pattern, piece: &Piece) -> Vec<Diagnostic> {
         found.push(Diagnostic::new(
             Severity::Warning,
             Code::SharpCorner,
-            match origins[1] {
-                EdgeOrigin::Edge { edge, .. } => Place::Edge(id, edge),
-                EdgeOrigin::DartLeg { dart, .. } => Place::Dart(id, dart),
+            match origins[1].name {
+                Name::Drawn(edge) => Place::Edge(id, edge),
+                Name::Made { by, .. } => Place::Operation(id, by),
             },
             format!(
                 "panel {:?}: {corner_words} is too sharp for its seam allowance of {:.0} mm, which would reach {:.0} mm beyond it: it is cut off there",
@@ -275,14 +272,14 @@ fn sharp_corners(pattern: &Pattern, piece: &Piece) -> Vec<Diagnostic> {
 }
 
 fn edge_words(panel: &Panel, origin: EdgeOrigin) -> String {
-    match origin {
-        EdgeOrigin::Edge { edge, .. } => match panel.edge(edge) {
+    match origin.name {
+        Name::Drawn(edge) => match panel.edge(edge) {
             Some(edge) => format!("edge {:?}", edge.name),
             None => edge.to_string(),
         },
-        EdgeOrigin::DartLeg { dart, .. } => match panel.darts.iter().find(|d| d.id == dart) {
-            Some(dart) => format!("dart {:?}", dart.name),
-            None => dart.to_string(),
+        Name::Made { by, .. } => match panel.operations.iter().find(|o| o.id == by) {
+            Some(operation) => format!("{} {:?}", operation.kind.word(), operation.name),
+            None => by.to_string(),
         },
     }
 }
@@ -290,15 +287,21 @@ fn edge_words(panel: &Panel, origin: EdgeOrigin) -> String {
 fn bare_holes(pattern: &Pattern, piece: &Piece) -> Vec<Diagnostic> {
     let id = piece.id.panel;
     let as_drawn =
-        |edge: &&PieceEdge| matches!(edge.origin, EdgeOrigin::Edge { reflected, .. } if !reflected);
+        |edge: &&PieceEdge| matches!(edge.origin.name, Name::Drawn(_)) && edge.origin.half == 0;
+    let panel = pattern.panel(id);
+    let mut holes = panel
+        .into_iter()
+        .flat_map(|panel| &panel.lines)
+        .filter(|line| line.kind == LineKind::Hole);
     let mut found = Vec::new();
-    for (k, hole) in piece.holes.iter().enumerate() {
+    for hole in &piece.holes {
+        let line = holes.next();
         let widths = hole.iter().filter(as_drawn).map(|edge| edge.seam_allowance);
         let widest = widths.fold(0.0, f64::max);
         if widest <= 0.0 {
             continue;
         }
-        let place = Place::Hole(id, k);
+        let place = line.map_or(Place::Panel(id), |line| Place::Line(id, line.id));
         let words = pattern.describe(&place);
         found.push(Diagnostic::new(
             Severity::Warning,
@@ -329,15 +332,13 @@ mod tests {
             name: "piece".into(),
             outline: (0..corners.len())
                 .map(|k| PieceEdge {
-                    origin: EdgeOrigin::Edge {
-                        edge: EdgeId(k as u32),
-                        reflected: false,
-                    },
+                    origin: EdgeOrigin::drawn(EdgeId(k as u32)),
                     curve: Curve::Line {
                         start: point(k),
                         end: point(k + 1),
                     },
                     seam_allowance: allowances[k],
+                    corner: toile_pattern::Corner::Mitre,
                 })
                 .collect(),
             holes: Vec::new(),
@@ -409,10 +410,13 @@ mod tests {
         ];
         let mut piece = piece(&mouth, &[0.02, 0.0, 0.0, 0.02, 0.02, 0.02, 0.02]);
         for leg in 0..2 {
-            piece.outline[1 + leg].origin = EdgeOrigin::DartLeg {
-                dart: DartId(0),
-                reflected: false,
-                leg: leg as u8,
+            piece.outline[1 + leg].origin = EdgeOrigin {
+                name: Name::Made {
+                    by: OperationId(0),
+                    role: toile_pattern::Role::Leg,
+                    index: leg as u16,
+                },
+                half: 0,
             };
         }
         let whole = 0.44 * 0.34;

@@ -14,7 +14,7 @@ use toile_body::{BodyError, Description, Figure, Mannequin};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
 use toile_measure::Measurements;
-use toile_pattern::{Diagnostic, Draft};
+use toile_pattern::{Diagnostic, Draft, Evaluation, Pattern};
 
 /// What a mannequin is made from.
 #[derive(Clone, PartialEq)]
@@ -52,6 +52,9 @@ struct KeptMannequin {
 /// Products of one project.
 #[derive(Clone, Default)]
 pub(crate) struct Derived {
+    evaluation: Option<Arc<Evaluation>>,
+    /// The pattern and measurements it was last brought up to date with.
+    evaluated: Option<(Arc<Pattern>, Measurements)>,
     drafted: Option<(Arc<Draft>, Arc<Vec<Diagnostic>>)>,
     mannequin: Option<KeptMannequin>,
     /// The markers, if they were made.
@@ -109,11 +112,25 @@ impl Derived {
         self.mannequin = other.mannequin.or(self.mannequin.take());
     }
 
+    /// Every value of the pattern, brought up to date.
+    pub fn evaluation(&mut self, project: &Project) -> Arc<Evaluation> {
+        let measurements = project.drafted_to();
+        let kept = self.evaluation.get_or_insert_with(Arc::default);
+        let is_new = self.evaluated.as_ref().is_none_or(|(pattern, known)| {
+            !Arc::ptr_eq(pattern, &project.pattern) || *known != measurements
+        });
+        if is_new {
+            Arc::make_mut(kept).update(&project.pattern, &measurements);
+            self.evaluated = Some((project.pattern.clone(), measurements));
+        }
+        kept.clone()
+    }
+
     /// The draft with the fabric chosen, and everything found wrong with the pattern.
     pub fn drafted(&mut self, project: &Project) -> (Arc<Draft>, Arc<Vec<Diagnostic>>) {
+        let evaluation = self.evaluation(project);
         let (draft, diagnostics) = self.drafted.get_or_insert_with(|| {
-            let measurements = project.drafted_to();
-            let (mut draft, diagnostics) = checked(&project.pattern, &measurements);
+            let (mut draft, diagnostics) = checked(&evaluation);
             let chosen = project.fabric.as_ref();
             if let Some(fabric) = chosen.and_then(|choice| choice.fabric(&project.pattern)) {
                 FabricChoice::cut(fabric, &mut draft);

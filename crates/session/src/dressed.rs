@@ -11,8 +11,7 @@ use std::sync::Arc;
 use toile_assembly::Garment;
 use toile_geometry::TriangleMesh;
 use toile_interchange::ObjMesh;
-use toile_measure::Measurements;
-use toile_pattern::{Diagnostic, Draft, Pattern, Severity};
+use toile_pattern::{Diagnostic, Draft, Evaluation, Pattern, Severity};
 
 /// One of the garments worn: what of the whole is its own.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +57,7 @@ impl DraftedPart {
     /// A garment worn with it, in the project's size and fabric.
     pub fn other(project: &Project, worn: &WornGarment) -> Self {
         let measurements = project.drafted_for(&worn.pattern);
-        let (mut draft, diagnostics) = checked(&worn.pattern, &measurements);
+        let (mut draft, diagnostics) = checked(&Evaluation::new(&worn.pattern, &measurements));
         let chosen = project.fabric.as_ref();
         let of = |pattern| chosen.and_then(|choice| choice.fabric(pattern));
         if let Some(fabric) = of(&worn.pattern).or_else(|| of(&project.pattern)) {
@@ -85,11 +84,12 @@ impl DraftedPart {
     }
 }
 
-/// A pattern drafted for a table of measurements, with everything that is wrong with it and what
-/// its cut lines do not do as drawn.
-pub(crate) fn checked(pattern: &Pattern, measurements: &Measurements) -> (Draft, Vec<Diagnostic>) {
-    let mut found = pattern.check(measurements);
-    let (draft, _) = pattern.resolve(measurements);
+/// The draft of an evaluated pattern, with everything that is wrong with it and what its cut lines
+/// do not do as drawn.
+pub(crate) fn checked(evaluation: &Evaluation) -> (Draft, Vec<Diagnostic>) {
+    let pattern = evaluation.pattern();
+    let mut found = evaluation.check();
+    let (draft, _) = evaluation.draft();
     if found.iter().all(|f| f.severity != Severity::Error) {
         found.extend(cut_findings(pattern, &draft));
     }

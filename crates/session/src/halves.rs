@@ -1,7 +1,7 @@
 //! Mirror images among pieces, and pieces halved along their fold.
 
 use toile_geometry::{Bounds2, Polygon, Vec2, intersection, total_area};
-use toile_pattern::{EdgeOrigin, Piece};
+use toile_pattern::{EdgeOrigin, Name, Piece};
 
 /// Outlines that differ by less than this part of their area are the same.
 const SAME_SHAPE: f64 = 1e-4;
@@ -21,20 +21,17 @@ pub(crate) struct HalfPlane {
 pub(crate) fn fold_of(piece: &Piece) -> Option<HalfPlane> {
     let mut best: Option<(f64, HalfPlane)> = None;
     for one in &piece.outline {
-        let EdgeOrigin::Edge {
-            edge,
-            reflected: false,
+        let EdgeOrigin {
+            name: name @ Name::Drawn(_),
+            half: 0,
         } = one.origin
         else {
             continue;
         };
-        let twin = piece.outline.iter().find(|other| {
-            other.origin
-                == EdgeOrigin::Edge {
-                    edge,
-                    reflected: true,
-                }
-        });
+        let twin = piece
+            .outline
+            .iter()
+            .find(|other| other.origin == EdgeOrigin { name, half: 1 });
         let Some(twin) = twin else { continue };
         let ends = [
             (one.curve.start(), twin.curve.end()),

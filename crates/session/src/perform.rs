@@ -88,7 +88,7 @@ impl Session {
         // Ids are never given twice, not even those of what was undone.
         let given = self.project.pattern.ids;
         let mut ids = next.pattern.ids;
-        ids.raise(&given);
+        ids.next = ids.next.max(given.next);
         if ids != next.pattern.ids {
             Arc::make_mut(&mut next.pattern).ids = ids;
         }
@@ -129,9 +129,7 @@ impl Session {
 
     fn edit(&mut self, edits: &[Edit], label: &str, drag: Option<u64>) -> Outcome {
         let mut pattern = (*self.project.pattern).clone();
-        for edit in edits {
-            pattern.apply(edit.clone())?;
-        }
+        pattern.apply(edits)?;
         let mut next = Project {
             pattern: Arc::new(pattern),
             ..self.project.clone()

@@ -57,10 +57,7 @@ impl Project {
     pub fn size_name(&self) -> Option<&str> {
         match (&self.size, &self.body) {
             (Some(size), _) => Some(size),
-            (None, BodyChoice::OfPattern) => {
-                let base = self.pattern.base_size.as_deref();
-                base.or_else(|| self.pattern.sizes.first().map(|size| &*size.name))
-            }
+            (None, BodyChoice::OfPattern) => self.pattern.base().map(|size| &*size.name),
             (None, _) => None,
         }
     }

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 use toile_body::Mannequin;
-use toile_pattern::{Diagnostic, Draft};
+use toile_pattern::{Diagnostic, Draft, Evaluation};
 
 /// The application without a window.
 #[derive(Default)]
@@ -51,6 +51,11 @@ impl Session {
     /// Every command that was done, in order.
     pub fn journal(&self) -> &[Command] {
         &self.journal
+    }
+
+    /// Every value of the pattern in the project's size.
+    pub fn evaluation(&mut self) -> Arc<Evaluation> {
+        self.derived.evaluation(&self.project)
     }
 
     /// The pattern drafted to the project's size, in its fabric.

@@ -10,9 +10,7 @@ pub(crate) use diamond::cut_diamond;
 pub(crate) use fold::{FoldError, unfold};
 pub(crate) use place::{MarkValue, PlaceError, Spot, Stretch};
 
-use crate::{
-    Corner, CornerName, EdgeName, LineKind, LineName, NotchId, NotchKind, OperationId,
-};
+use crate::{Corner, CornerName, EdgeName, LineKind, LineName, NotchId, NotchKind, OperationId};
 use toile_geometry::{Curve, Vec2};
 
 /// A panel after some of its operations.

@@ -16,14 +16,6 @@ pub enum Number {
 impl Number {
     /// Zero.
     pub const ZERO: Self = Self::Value(0.0);
-
-    /// The value, if it is no formula.
-    pub fn value(&self) -> Option<f64> {
-        match self {
-            Self::Value(value) => Some(*value),
-            Self::Formula(_) => None,
-        }
-    }
 }
 
 impl From<f64> for Number {
@@ -401,11 +393,6 @@ impl Panel {
     /// Every edge: the outline's, then each hole's.
     pub fn edges(&self) -> impl Iterator<Item = &Edge> {
         self.outline.iter().chain(self.holes.iter().flatten())
-    }
-
-    /// The edge with that number.
-    pub fn edge(&self, id: u32) -> Option<&Edge> {
-        self.edges().find(|edge| edge.id == id)
     }
 
     /// The edge with that name.

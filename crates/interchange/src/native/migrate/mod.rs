@@ -14,8 +14,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use toile_measure::Measurements;
 use toile_pattern::{
-    CurveId, Diagnostic, EdgeId, Evaluation, FabricId, Formula, LineId, Names, Number, PanelId,
-    Pattern, PointId, Size, SizeId, Variable, VariableId, Want,
+    CurveId, Diagnostic, Evaluation, FabricId, Formula, LineId, Names, Number, PanelId, Pattern,
+    PointId, Size, SizeId, Variable, VariableId, Want,
 };
 
 /// Reads a document of version 1.
@@ -40,7 +40,6 @@ pub fn read_version_1(
 struct EdgePlace {
     panel: PanelId,
     line: LineId,
-    edge: EdgeId,
     curve: CurveId,
     ends: [PointId; 2],
 }

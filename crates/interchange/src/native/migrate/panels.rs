@@ -152,7 +152,6 @@ impl Migration<'_> {
                 EdgePlace {
                     panel: making.panel.id,
                     line,
-                    edge,
                     curve,
                     ends,
                 },
