@@ -34,12 +34,13 @@ fn close(a: Vec2, b: (f64, f64)) -> bool {
 #[test]
 fn constructions_put_points_where_geometry_says() {
     let mut pattern = sample();
-    let id = |k: u32| PointId(k);
+    let p = [0, 1, 2, 3].map(|k| point(&pattern, "front", &format!("p{k}")));
+    let right = pattern.sheets[0].curve_named("right").unwrap().id;
     for (name, place, expected) in [
         (
             "offset",
-            PointPlace::Offset {
-                base: id(1),
+            PointRule::Offset {
+                base: p[1],
                 x: 0.1.into(),
                 y: formula("-5cm"),
             },
@@ -47,8 +48,8 @@ fn constructions_put_points_where_geometry_says() {
         ),
         (
             "polar",
-            PointPlace::Polar {
-                base: id(0),
+            PointRule::Polar {
+                base: p[0],
                 angle: formula("90deg"),
                 distance: formula("bust / 4"),
             },
@@ -56,9 +57,9 @@ fn constructions_put_points_where_geometry_says() {
         ),
         (
             "between",
-            PointPlace::Between {
-                base: id(0),
-                tip: id(1),
+            PointRule::Between {
+                base: p[0],
+                tip: p[1],
                 along: 0.25.into(),
                 aside: 0.5.into(),
             },
@@ -66,41 +67,65 @@ fn constructions_put_points_where_geometry_says() {
         ),
         (
             "toward",
-            PointPlace::Toward {
-                base: id(0),
-                tip: id(3),
+            PointRule::Toward {
+                base: p[0],
+                tip: p[3],
                 distance: 0.7.into(),
             },
             (0.0, 0.7),
         ),
         (
             "on edge",
-            PointPlace::OnEdge {
-                edge: EdgeId(1),
-                at: 0.5.into(),
+            PointRule::OnCurve {
+                curve: right,
+                share: 0.5.into(),
             },
             (0.4, 0.3),
         ),
         (
             "crossing",
-            PointPlace::Crossing {
-                first: [id(0), id(2)],
-                second: [id(1), id(3)],
+            PointRule::Crossing {
+                first: [p[0], p[2]],
+                second: [p[1], p[3]],
             },
             (0.2, 0.3),
         ),
         (
             "mirrored",
-            PointPlace::Mirrored {
-                base: id(0),
-                line: [id(1), id(2)],
+            PointRule::Mirrored {
+                base: p[0],
+                line: [p[1], p[2]],
             },
             (0.8, 0.0),
         ),
+        (
+            "along curve",
+            PointRule::AlongCurve {
+                curve: right,
+                distance: formula("-10cm"),
+            },
+            (0.4, 0.5),
+        ),
+        (
+            "foot",
+            PointRule::Foot {
+                base: p[2],
+                line: [p[0], p[1]],
+            },
+            (0.4, 0.0),
+        ),
+        (
+            "line crossing",
+            PointRule::LineCrossing {
+                line: [p[0], p[2]],
+                curve: right,
+                index: 0,
+            },
+            (0.4, 0.6),
+        ),
     ] {
         let id = put_point(&mut pattern, 0, name, place);
-        let places = pattern.point_places(&Measurements::adult());
-        let got = places[&(FRONT, id)];
+        let got = at(&pattern, id);
         assert!(close(got, expected), "{name}: {got:?}");
     }
 }
@@ -108,20 +133,22 @@ fn constructions_put_points_where_geometry_says() {
 #[test]
 fn formulas_follow_the_body_and_the_draft() {
     let mut pattern = sample();
-    pattern.variables.push(Variable {
-        name: "width".into(),
-        number: formula("hips / 4 + 2cm"),
-    });
-    alter(&mut pattern, 0, |panel| {
-        panel.points[1].place = PointPlace::At {
-            x: formula("width"),
-            y: Number::ZERO,
-        };
-        panel.points[2].place = PointPlace::At {
-            x: formula("width"),
-            y: formula("length(back.right) + distance(back.p0, back.p1) / 4"),
-        };
-    });
+    put_variable(&mut pattern, "width", formula("hips / 4 + 2cm"));
+    let width = formula_in(&pattern, "width");
+    let height = formula_in(
+        &pattern,
+        "length(back.right) + distance(back.p0, back.p1) / 4",
+    );
+    let low = PointRule::At {
+        x: width.clone(),
+        y: Number::ZERO,
+    };
+    let high = PointRule::At {
+        x: width,
+        y: height,
+    };
+    place(&mut pattern, 0, "p1", low);
+    place(&mut pattern, 0, "p2", high);
     for body in [Measurements::adult_woman(), Measurements::adult_man()] {
         let (draft, _) = pattern.resolve(&body);
         let corner = draft.pieces[0].outline[1].curve.end();
@@ -133,23 +160,25 @@ fn formulas_follow_the_body_and_the_draft() {
 #[test]
 fn a_folded_panel_is_unfolded() {
     let mut pattern = sample();
-    let left = edge(&pattern, "front", "left").1;
-    alter(&mut pattern, 0, |panel| {
-        panel.fold = Some(left);
-        panel.outline[1].curve = EdgeCurve::Arc { bulge: 0.2.into() };
-        panel.notches.push(Notch {
-            id: NotchId(0),
-            name: "notch".into(),
-            edge: panel.outline[2].id,
-            at: Along::Fraction(0.25.into()),
-        });
-    });
+    let kind = fold(&pattern, "left");
+    put_operation(&mut pattern, 0, "fold", kind);
+    bend(
+        &mut pattern,
+        0,
+        "right",
+        CurveRule::Arc { bulge: 0.2.into() },
+    );
+    let notch = Notch {
+        id: pattern.ids.take(),
+        name: "notch".into(),
+        line: outline(&pattern, "front"),
+        at: Mark::between(ends(&pattern, "front", "top"), 0.25),
+        kind: NotchKind::Slit,
+    };
+    alter(&mut pattern, 0, |panel| panel.notches.push(notch));
     alter_seam(&mut pattern, 0, |seam| {
         let half = seam.sides[0][0].clone();
-        seam.sides[0] = vec![Span {
-            reflected: true,
-            ..half
-        }];
+        seam.sides[0] = vec![Span { half: 1, ..half }];
     });
     pattern.seams.remove(1);
     let draft = resolved(&pattern);
@@ -238,25 +267,15 @@ fn a_placed_pair_stands_at_mirror_places() {
 #[test]
 fn darts_open_the_outline_and_seams_skip_their_mouths() {
     let mut pattern = sample();
-    let top = edge(&pattern, "front", "top").1;
-    for (id, at) in [(0, 0.25), (1, 0.75)] {
-        let dart = Dart {
-            id: DartId(id),
-            name: format!("dart {id}"),
-            shape: DartShape::Edge {
-                edge: top,
-                at: at.into(),
-                width: 0.04.into(),
-                tip: DartTip::Depth(0.1.into()),
-            },
-        };
-        alter(&mut pattern, 0, |panel| panel.darts.push(dart));
+    for share in [0.25, 0.75] {
+        let kind = dart(&pattern, "top", share, 0.04, Apex::Depth(0.1.into()));
+        put_operation(&mut pattern, 0, "dart", kind);
     }
     let sides = [
         vec![span(&pattern, "front", "top").reversed()],
         vec![span(&pattern, "back", "top")],
     ];
-    let mut seam = Seam::new(SeamId(9), "top", sides);
+    let mut seam = Seam::new(pattern.ids.take(), "top", sides);
     seam.ease = formula("8cm");
     pattern.seams.push(std::sync::Arc::new(seam));
     assert!(pattern.check(&Measurements::adult()).is_empty());
@@ -289,19 +308,14 @@ fn darts_open_the_outline_and_seams_skip_their_mouths() {
 #[test]
 fn a_diamond_dart_is_a_hole_sewn_shut() {
     let mut pattern = sample();
-    let low = put_point(&mut pattern, 0, "low", PointPlace::at(0.2, 0.2));
-    let high = put_point(&mut pattern, 0, "high", PointPlace::at(0.2, 0.4));
-    alter(&mut pattern, 0, |panel| {
-        panel.darts.push(Dart {
-            id: DartId(0),
-            name: "waist".into(),
-            shape: DartShape::Diamond {
-                ends: [low, high],
-                at: 0.4.into(),
-                width: 0.03.into(),
-            },
-        });
-    });
+    let low = put_point(&mut pattern, 0, "low", PointRule::at(0.2, 0.2));
+    let high = put_point(&mut pattern, 0, "high", PointRule::at(0.2, 0.4));
+    let kind = OperationKind::Diamond {
+        ends: [low, high],
+        widest: 0.4.into(),
+        intake: 0.03.into(),
+    };
+    put_operation(&mut pattern, 0, "waist", kind);
     assert!(pattern.check(&Measurements::adult()).is_empty());
     let draft = resolved(&pattern);
     let piece = &draft.pieces[0];
@@ -341,4 +355,62 @@ fn grain_defaults_to_upright() {
             .iter()
             .all(|p| p.grain == FRAC_PI_2)
     );
+}
+
+#[test]
+fn a_spline_is_drawn_to_a_length() {
+    let mut pattern = sample();
+    let low = put_point(&mut pattern, 0, "low", PointRule::at(0.5, 0.2));
+    let high = put_point(&mut pattern, 0, "high", PointRule::at(0.5, 0.4));
+    let spline = |length: Option<Number>| CurveRule::Spline {
+        handles: [low, high],
+        knots: Vec::new(),
+        to_length: length,
+    };
+    bend(&mut pattern, 0, "right", spline(Some(formula("64.5cm"))));
+    let draft = resolved_to(&pattern, 0.645);
+    assert!((draft - 0.645).abs() < 1e-12, "{draft}");
+    bend(&mut pattern, 0, "right", spline(Some(formula("59cm"))));
+    let found = pattern.check(&Measurements::adult());
+    assert_eq!(found[0].code, Code::OutOfReach, "{found:?}");
+}
+
+/// Length of the front's right edge.
+fn resolved_to(pattern: &Pattern, _: f64) -> f64 {
+    let evaluation = Evaluation::new(pattern, &Measurements::adult());
+    let edge = edge(pattern, "front", "right");
+    evaluation.edge(edge).unwrap().length()
+}
+
+#[test]
+fn formulas_choose_compare_and_round() {
+    for (text, expected) in [
+        ("if(bust > 90cm, 2cm, 3cm)", 0.02),
+        ("if(not (bust > 90cm) or bust < 1cm, 2cm, 3cm)", 0.03),
+        ("if(1 < 2 and 2 <= 2, 4cm, 1cm / 0)", 0.04),
+        ("round(12.3cm, 5mm)", 0.125),
+        ("1 5/8in", 1.625 * 0.0254),
+        ("5/8in", 0.625 * 0.0254),
+        ("angle(front.right) / 90deg * 1cm", 0.01),
+        ("angle(front.p0, front.p1) * 1cm + 3cm", 0.03),
+        ("length(front.bottom..front.top)", 1.0),
+        ("length(front.p0..front.p2)", 1.0),
+        ("length('one side')", 0.6),
+        ("finished(front.top)", 0.4),
+    ] {
+        let mut pattern = sample();
+        let number = formula_in(&pattern, text);
+        let Ok(Number::Formula(known)) = Ok::<_, ()>(number.clone()) else {
+            panic!("a formula");
+        };
+        put_variable(&mut pattern, "v", number);
+        let evaluation = Evaluation::new(&pattern, &Measurements::adult());
+        let value = evaluation.variable(pattern.variables[0].id);
+        match value {
+            Some((value, 1)) if (value - expected).abs() < 1e-12 => {}
+            other if text.contains("bottom..front.top") => assert_eq!(other, None),
+            other => panic!("{text}: {other:?} {:?}", evaluation.diagnostics()),
+        }
+        assert_eq!(known.text(&Names::new(&pattern)), text);
+    }
 }

@@ -2,58 +2,82 @@
 #![allow(dead_code)]
 
 use std::sync::Arc;
+use toile_geometry::Vec2;
+use toile_measure::Measurements;
 use toile_pattern::*;
 
-pub const FRONT: PanelId = PanelId(0);
-pub const BACK: PanelId = PanelId(1);
-
+/// A formula that speaks of measurements alone.
 pub fn formula(text: &str) -> Number {
-    Number::formula(text).unwrap()
+    Number::Formula(Formula::of_measurements(text).unwrap())
+}
+
+/// A formula that speaks of parts of a pattern.
+pub fn formula_in(pattern: &Pattern, text: &str) -> Number {
+    Number::Formula(Formula::parse(text, &Names::new(pattern)).unwrap())
 }
 
 /// A rectangle with its lower left corner at the origin; edges are bottom, right, top, left and
 /// points p0 to p3, counter-clockwise.
-pub fn rectangle(ids: &mut IdCounters, name: &str, [width, height]: [f64; 2]) -> Panel {
-    let mut panel = Panel::new(ids.take_panel(), name, FabricId(0));
+pub fn rectangle(
+    ids: &mut Ids,
+    name: &str,
+    fabric: FabricId,
+    [width, height]: [f64; 2],
+) -> (Arc<Sheet>, Arc<Panel>) {
+    let mut drawing = Drawing::new(ids, name, fabric);
     let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
-    for (k, (x, y)) in corners.into_iter().enumerate() {
-        panel.points.push(Point {
-            id: ids.take_point(),
-            name: format!("p{k}"),
-            place: PointPlace::at(x, y),
-        });
-    }
-    for (k, name) in ["bottom", "right", "top", "left"].into_iter().enumerate() {
-        panel.outline.push(Edge {
-            id: ids.take_edge(),
-            name: name.into(),
-            ends: [panel.points[k].id, panel.points[(k + 1) % 4].id],
-            curve: EdgeCurve::Line,
-            seam_allowance: None,
-        });
-    }
-    panel
+    let mut k = 0;
+    let points = corners.map(|(x, y)| {
+        k += 1;
+        drawing.point(format!("p{}", k - 1), PointRule::at(x, y))
+    });
+    let names = ["bottom", "right", "top", "left"];
+    let edges = (0..4)
+        .map(|k| drawing.edge(names[k], [points[k], points[(k + 1) % 4]], CurveRule::Line))
+        .collect();
+    drawing.line("outline", LineKind::Outline, edges);
+    drawing.done()
 }
 
-pub fn edge(pattern: &Pattern, panel: &str, name: &str) -> (PanelId, EdgeId) {
+pub fn panel_id(pattern: &Pattern, name: &str) -> PanelId {
+    pattern.panel_named(name).unwrap().id
+}
+
+pub fn edge(pattern: &Pattern, panel: &str, name: &str) -> EdgeId {
     let panel = pattern.panel_named(panel).unwrap();
-    (panel.id, panel.edge_named(name).unwrap().id)
+    panel.edge_named(name).unwrap().id
+}
+
+/// The outline of a panel.
+pub fn outline(pattern: &Pattern, panel: &str) -> LineId {
+    pattern.panel_named(panel).unwrap().outline().unwrap().id
+}
+
+/// Both corners of an edge.
+pub fn ends(pattern: &Pattern, panel: &str, name: &str) -> [PointId; 2] {
+    let panel = pattern.panel_named(panel).unwrap();
+    panel.edge_named(name).unwrap().ends
+}
+
+/// A point of the sheet a panel is traced from.
+pub fn point(pattern: &Pattern, panel: &str, name: &str) -> PointId {
+    let panel = pattern.panel_named(panel).unwrap();
+    let sheet = pattern.sheet(panel.sheet()).unwrap();
+    sheet.point_named(name).unwrap().id
 }
 
 pub fn span(pattern: &Pattern, panel: &str, name: &str) -> Span {
-    let (panel, edge) = edge(pattern, panel, name);
-    Span::whole(panel, edge)
+    let panel = pattern.panel_named(panel).unwrap();
+    panel.span(panel.edge_named(name).unwrap().id).unwrap()
 }
 
 pub fn sample() -> Pattern {
     let mut pattern = Pattern::new("sample");
-    let mut ids = IdCounters::default();
-    pattern
-        .fabrics
-        .push(Arc::new(Fabric::poplin(ids.take_fabric())));
+    let mut ids = Ids::default();
+    let fabric: FabricId = ids.take();
+    pattern.fabrics.push(Arc::new(Fabric::poplin(fabric)));
     for name in ["front", "back"] {
-        let panel = rectangle(&mut ids, name, [0.4, 0.6]);
-        pattern.panels.push(Arc::new(panel));
+        pattern.add(rectangle(&mut ids, name, fabric, [0.4, 0.6]));
     }
     for (name, one, other) in [
         ("one side", "right", "left"),
@@ -63,7 +87,7 @@ pub fn sample() -> Pattern {
             vec![span(&pattern, "front", one)],
             vec![span(&pattern, "back", other).reversed()],
         ];
-        let seam = Seam::new(ids.take_seam(), name, sides);
+        let seam = Seam::new(ids.take(), name, sides);
         pattern.seams.push(Arc::new(seam));
     }
     pattern.ids = ids;
@@ -80,11 +104,119 @@ pub fn alter_seam(pattern: &mut Pattern, k: usize, change: impl FnOnce(&mut Seam
     change(Arc::make_mut(&mut pattern.seams[k]));
 }
 
-pub fn put_point(pattern: &mut Pattern, k: usize, name: &str, place: PointPlace) -> PointId {
-    let id = pattern.ids.take_point();
+/// Sets where a point of the k-th sheet is.
+pub fn place(pattern: &mut Pattern, k: usize, name: &str, rule: PointRule) {
+    let sheet = Arc::make_mut(&mut pattern.sheets[k]);
+    let found = sheet.points.iter_mut().find(|p| p.name == name).unwrap();
+    Arc::make_mut(found).rule = rule;
+}
+
+/// Sets how the curve of an edge runs.
+pub fn bend(pattern: &mut Pattern, k: usize, name: &str, rule: CurveRule) {
+    let sheet = Arc::make_mut(&mut pattern.sheets[k]);
+    let found = sheet.curves.iter_mut().find(|c| c.name == name).unwrap();
+    Arc::make_mut(found).rule = rule;
+}
+
+/// Adds a point to the k-th sheet.
+pub fn put_point(pattern: &mut Pattern, k: usize, name: &str, rule: PointRule) -> PointId {
+    let id = pattern.ids.take();
+    let name = name.to_owned();
+    let sheet = Arc::make_mut(&mut pattern.sheets[k]);
+    sheet.points.push(Arc::new(Point { id, name, rule }));
+    id
+}
+
+/// Adds a line of straight edges through points to the k-th panel and its sheet.
+pub fn put_line(
+    pattern: &mut Pattern,
+    k: usize,
+    (name, kind): (&str, LineKind),
+    points: &[PointId],
+) -> LineId {
+    let line: LineId = pattern.ids.take();
+    let closed = usize::from(kind != LineKind::Internal);
+    let mut edges = Vec::new();
+    for j in 0..points.len() - 1 + closed {
+        let ends = [points[j], points[(j + 1) % points.len()]];
+        let curve: CurveId = pattern.ids.take();
+        let name = format!("{name} {j}");
+        Arc::make_mut(&mut pattern.sheets[k])
+            .curves
+            .push(Arc::new(Curve {
+                id: curve,
+                name: name.clone(),
+                ends,
+                rule: CurveRule::Line,
+            }));
+        edges.push(Edge {
+            id: pattern.ids.take(),
+            name,
+            curve,
+            ends,
+            allowance: None,
+            corner: None,
+        });
+    }
     let name = name.to_owned();
     alter(pattern, k, |panel| {
-        panel.points.push(Point { id, name, place })
+        panel.lines.push(Line {
+            id: line,
+            name,
+            kind,
+            edges,
+        });
+    });
+    line
+}
+
+/// Adds an operation to the k-th panel.
+pub fn put_operation(
+    pattern: &mut Pattern,
+    k: usize,
+    name: &str,
+    kind: OperationKind,
+) -> OperationId {
+    let id = pattern.ids.take();
+    let name = name.to_owned();
+    alter(pattern, k, |panel| {
+        panel
+            .operations
+            .push(Arc::new(Operation { id, name, kind }));
     });
     id
+}
+
+/// A dart in an edge of the front.
+pub fn dart(pattern: &Pattern, name: &str, share: f64, intake: f64, apex: Apex) -> OperationKind {
+    OperationKind::Dart {
+        line: Name::Drawn(outline(pattern, "front")),
+        mouth: Mark::between(ends(pattern, "front", name), share),
+        intake: intake.into(),
+        apex,
+    }
+}
+
+/// A fold of the front on an edge.
+pub fn fold(pattern: &Pattern, name: &str) -> OperationKind {
+    OperationKind::Fold {
+        line: Name::Drawn(outline(pattern, "front")),
+        ends: ends(pattern, "front", name).map(Mark::corner),
+    }
+}
+
+/// Adds a variable.
+pub fn put_variable(pattern: &mut Pattern, name: &str, number: Number) -> VariableId {
+    let id = pattern.ids.take();
+    let name = name.to_owned();
+    pattern
+        .variables
+        .push(Arc::new(Variable { id, name, number }));
+    id
+}
+
+/// Where a point lies for an adult.
+pub fn at(pattern: &Pattern, point: PointId) -> Vec2 {
+    let evaluation = Evaluation::new(pattern, &Measurements::adult());
+    evaluation.point(point).unwrap()
 }
