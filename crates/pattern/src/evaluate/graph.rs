@@ -207,6 +207,7 @@ impl Evaluation {
             value: Err(k),
             last_good: None,
             changed: 0,
+            missing: false,
             diagnostics: Vec::new(),
         });
         k
@@ -353,7 +354,11 @@ impl Evaluation {
             let revision = self.revision;
             let state = &mut self.nodes[k as usize];
             state.diagnostics = diagnostics;
+            // What needs a part tells its absence itself, but not its fault.
+            let is_missing = matches!(state.definition, Definition::Missing);
+            let was_missing = std::mem::replace(&mut state.missing, is_missing);
             let same = state.changed > 0
+                && was_missing == is_missing
                 && match (&state.value, &value) {
                     (Ok(a), Ok(b)) => a.is_same(b),
                     (Err(a), Err(b)) => a == b,

@@ -88,6 +88,8 @@ pub(crate) struct NodeState {
     pub last_good: Option<Value>,
     /// Update at which its value last changed.
     pub changed: u64,
+    /// Whether the document had no such part when it was last computed.
+    pub missing: bool,
     pub diagnostics: Vec<Diagnostic>,
 }
 
