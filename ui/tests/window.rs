@@ -165,11 +165,17 @@ fn shift_keeps_a_drag_level() {
     assert_eq!(new.y, old.y);
 }
 
+/// How many corners the outline of the front has.
+fn corners(pattern: &Pattern) -> usize {
+    let front = pattern.panel_named("front").unwrap();
+    front.outline().unwrap().edges.len()
+}
+
 #[test]
 fn a_point_is_added_in_the_middle_of_an_edge_and_deleted() {
     let mut window = window(&t_shirt());
     let before = pattern(&window);
-    let points = |window: &Window| pattern(window).panel_named("front").unwrap().outline.len();
+    let points = |window: &Window| corners(&pattern(window));
     let count = points(&window);
     let middle = place(&window, "Edge side of front");
     click(&mut window, middle + vec2(0.0, 30.0));
@@ -181,11 +187,11 @@ fn a_point_is_added_in_the_middle_of_an_edge_and_deleted() {
 
     press(&mut window, "Add point");
     assert_eq!(points(&window), count + 1);
-    let Selection::Point(panel, point) = window.state().table().selection else {
+    let Selection::Point(_, point) = window.state().table().selection else {
         panic!("the new point is selected");
     };
     let project = window.state().session().project();
-    let name = project.pattern.panel(panel).unwrap().point(point).unwrap();
+    let (_, name) = project.pattern.point(point).unwrap();
     let label = format!("Point {} of front", name.name);
     assert!((place(&window, &label) - middle).length() < 1.0);
 
@@ -201,7 +207,7 @@ fn a_point_is_added_in_the_middle_of_an_edge_and_deleted() {
 #[test]
 fn a_double_click_divides_an_edge_there() {
     let mut window = window(&t_shirt());
-    let count = pattern(&window).panel_named("front").unwrap().outline.len();
+    let count = corners(&pattern(&window));
     let at = place(&window, "Edge side of front") + vec2(0.0, 45.0);
     window.hover_at(at);
     for _ in 0..2 {
@@ -210,21 +216,13 @@ fn a_double_click_divides_an_edge_there() {
         window.hover_at(at);
     }
     window.run();
-    let outline = pattern(&window)
-        .panel_named("front")
-        .unwrap()
-        .outline
-        .clone();
-    assert_eq!(outline.len(), count + 1);
+    assert_eq!(corners(&pattern(&window)), count + 1);
     let Selection::Point(..) = window.state().table().selection else {
         panic!("the new point is selected");
     };
     window.key_press(Key::Delete);
     window.run();
-    assert_eq!(
-        pattern(&window).panel_named("front").unwrap().outline.len(),
-        count
-    );
+    assert_eq!(corners(&pattern(&window)), count);
 }
 
 #[test]

@@ -6,7 +6,7 @@ mod support;
 use support::{draft, piece, polygon, poncho, skirt, tee, trousers};
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_geometry::Curve;
-use toile_pattern::{Draft, InternalLineId, PieceLine, Worn};
+use toile_pattern::{Draft, LineId, PieceLine, Worn};
 
 fn quality(draft: &Draft, edge_length: f64) -> MeshQuality {
     let meshes = mesh_pieces(draft, edge_length).unwrap();
@@ -112,7 +112,7 @@ fn internal_lines_are_edges_of_the_mesh() {
     let outline = polygon(&[[0.0, 0.0], [0.3, 0.0], [0.3, 0.3], [0.0, 0.3]]);
     let mut cloth = piece(0, "lined", outline, Worn::Automatic);
     cloth.internal_lines.push(PieceLine {
-        id: InternalLineId(0),
+        id: LineId(0),
         curves: vec![Curve::Line {
             start: [0.05, 0.1].into(),
             end: [0.25, 0.2].into(),

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use std::sync::Arc;
 use support::{BAND, band};
 use toile_body::Figure;
-use toile_pattern::{Edit, PanelEdit, PointId, PointPlace};
+use toile_pattern::{Edit, Entity, Point, PointId, PointRule, SizeId, plan};
 use toile_session::{
     BodyChoice, Command, Event, Project, Quality, Session, SessionError, Silent, journal_lines,
     read_journal,
@@ -24,14 +24,19 @@ fn opened() -> (Session, tempfile::TempDir) {
 }
 
 fn move_point(session: &Session, which: usize, to: [f64; 2]) -> Edit {
-    let panel = &session.project().pattern.panels[which % 2];
-    Edit::InPanel {
-        panel: panel.id,
-        edit: PanelEdit::MovePoint {
-            point: panel.points[which / 2 % panel.points.len()].id,
-            place: PointPlace::at(to[0], to[1]),
-        },
-    }
+    let sheet = &session.project().pattern.sheets[which % 2];
+    let point = &sheet.points[which / 2 % sheet.points.len()];
+    let moved = Point {
+        rule: PointRule::at(to[0], to[1]),
+        ..(**point).clone()
+    };
+    Edit::Put(Entity::Point(sheet.id, Arc::new(moved)))
+}
+
+/// The edit that removes a size.
+fn remove_size(session: &Session, name: &str) -> Edit {
+    let id = session.project().pattern.size_named(name).unwrap().id;
+    Edit::Remove(id.into())
 }
 
 fn edit(edits: Vec<Edit>, drag: Option<u64>) -> Command {
@@ -68,7 +73,7 @@ fn a_drag_is_one_step() {
 fn refused_commands_change_nothing() {
     let (mut session, folder) = opened();
     let good = move_point(&session, 0, [-0.25, -0.04]);
-    let bad = Edit::RemoveSize("XS".into());
+    let bad = Edit::Remove(SizeId(9999).into());
     let missing = folder.path().join("nobody.yaml");
     let refused = [
         edit(vec![good, bad], None),
@@ -158,7 +163,8 @@ fn a_size_that_is_edited_away_is_no_longer_chosen() {
     let (mut session, _folder) = opened();
     let size = Some("L".to_owned());
     run(&mut session, Command::SetSize { size }).unwrap();
-    run(&mut session, edit(vec![Edit::RemoveSize("L".into())], None)).unwrap();
+    let gone = remove_size(&session, "L");
+    run(&mut session, edit(vec![gone], None)).unwrap();
     assert_eq!(session.project().size, None);
     run(&mut session, Command::Undo).unwrap();
     assert_eq!(session.project().size.as_deref(), Some("L"));
@@ -168,31 +174,29 @@ fn a_size_that_is_edited_away_is_no_longer_chosen() {
 fn ids_are_never_given_twice() {
     let (mut session, folder) = opened();
     let path = folder.path().join("saved.toile.json");
-    let split = |session: &Session| {
-        let project = session.project();
-        let panel = &project.pattern.panels[0];
-        let edge = panel.outline[0].id;
-        let measurements = project.drafted_to();
-        project
-            .pattern
-            .split_edit(&measurements, (panel.id, edge), 0.5)
+    let split = |session: &mut Session| {
+        let evaluation = session.evaluation();
+        let panel = &evaluation.pattern().panels[0];
+        let edge = panel.lines[0].edges[0].id;
+        plan::divide_edge(&evaluation, (panel.id, edge), None)
             .unwrap()
+            .0
     };
     let points = |session: &Session| -> Vec<PointId> {
-        let panels = &session.project().pattern.panels;
-        panels
+        let sheets = &session.project().pattern.sheets;
+        sheets
             .iter()
-            .flat_map(|panel| panel.points.iter().map(|p| p.id))
+            .flat_map(|sheet| sheet.points.iter().map(|p| p.id))
             .collect()
     };
     let start = session.project().pattern.clone();
     let mut given = points(&session);
     for round in 0..5 {
-        let step = split(&session);
-        run(&mut session, edit(vec![step], None)).unwrap();
+        let step = split(&mut session);
+        run(&mut session, edit(step, None)).unwrap();
         let new: Vec<PointId> = points(&session)
             .into_iter()
-            .filter(|id| !start.panels.iter().any(|panel| panel.point(*id).is_some()))
+            .filter(|id| start.point(*id).is_none())
             .collect();
         assert!(!new.is_empty());
         assert!(
@@ -298,12 +302,11 @@ fn command_of(
         7 => Command::SetQuality {
             quality: [Quality::Preview, Quality::Fit, Quality::Final][which % 3],
         },
-        // Refused as a whole: the second edit names a panel that is not there.
+        // Refused as a whole: the second edit names a size that is not there.
         _ => edit(
             vec![
                 move_point(session, which, place),
-                Edit::SetBaseSize(Some("nobody".into())),
-                Edit::RemoveSize("nobody".into()),
+                Edit::Remove(SizeId(9999).into()),
             ],
             drag,
         ),

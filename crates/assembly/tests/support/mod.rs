@@ -4,8 +4,8 @@
 use toile_assembly::{Levels, Limb, Wearer};
 use toile_geometry::{Curve, SurfaceTree, TriangleMesh, Vec2, Vec3};
 use toile_pattern::{
-    BodyPart, Draft, DraftSeam, DraftSpan, EdgeId, EdgeOrigin, Facing, PanelId, Piece, PieceEdge,
-    PieceId, SeamId, SeamOrigin, Worn,
+    BodyPart, Corner, Draft, DraftSeam, DraftSpan, EdgeId, EdgeOrigin, Facing, PanelId, Piece,
+    PieceEdge, PieceId, SeamId, SeamOrigin, Worn,
 };
 
 /// Edges along corners [m], closed.
@@ -24,12 +24,10 @@ pub fn edges(curves: &[Curve]) -> Vec<PieceEdge> {
         .iter()
         .enumerate()
         .map(|(k, &curve)| PieceEdge {
-            origin: EdgeOrigin::Edge {
-                edge: EdgeId(k as u32),
-                reflected: false,
-            },
+            origin: EdgeOrigin::drawn(EdgeId(k as u32)),
             curve,
             seam_allowance: 0.0,
+            corner: Corner::Mitre,
         })
         .collect()
 }

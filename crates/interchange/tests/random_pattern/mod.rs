@@ -53,25 +53,37 @@ impl Dice {
             "bust / 4 + 2cm",
             "waist",
             "ease",
-            "loop_b",
+            "loop",
             "-hips * 0.3",
             "1 / (bust - bust)",
             "sqrt(waist * waist)",
             "length(panel0.e0)",
             "length('panel 1'.e1) / 2",
-            "distance(panel0.p0, panel0.p1)",
+            "if(bust > 90cm, 1 5/8in, round(waist, 5mm))",
             "x(panel0.p2)",
             "tan(shoulder_incl) * 10cm",
             "elephant",
             "0.5",
             "90deg",
-            "max(1cm, ease, bust - waist)",
+            "max(1cm, bust - waist)",
         ];
         if self.chance(70) {
-            Number::Value(self.finite())
-        } else {
-            let text = FORMULAS[self.below(FORMULAS.len())];
-            Number::formula(text).unwrap_or(Number::Value(0.1))
+            return Number::Value(self.finite());
+        }
+        let text = FORMULAS[self.below(FORMULAS.len())];
+        let Ok(formula) = Formula::of_measurements(text) else {
+            return Number::Value(0.1);
+        };
+        match self.below(8) {
+            0 => Number::Adjusted {
+                formula,
+                by: self.finite(),
+            },
+            1 => Number::PerSize {
+                usual: Box::new(Number::Formula(formula)),
+                sizes: vec![(SizeId(0), self.finite())],
+            },
+            _ => Number::Formula(formula),
         }
     }
 
@@ -93,51 +105,63 @@ pub fn random_pattern(dice: &mut Dice) -> Pattern {
         DisplayUnit::Metre,
         DisplayUnit::Inch,
     ][dice.below(4)];
-    for k in 0..dice.below(3) {
-        pattern.sizes.push(Size {
+    let mut ids = Ids::default();
+    for k in 0..1 + dice.below(2) {
+        pattern.sizes.push(Arc::new(Size {
+            id: ids.take(),
             name: format!("size {k}"),
             measurements: measurements(dice),
-        });
+        }));
     }
-    if !pattern.sizes.is_empty() && dice.chance(50) {
-        pattern.base_size = Some("size 0".into());
+    if dice.chance(50) {
+        pattern.base_size = Some(pattern.sizes[0].id);
     }
-    for (name, formula) in [("ease", "4cm"), ("loop", "loop_b"), ("loop_b", "loop + 1")] {
+    for name in ["ease", "loop", "loop_b"] {
         if dice.chance(60) {
-            pattern.variables.push(Variable {
+            pattern.variables.push(Arc::new(Variable {
+                id: ids.take(),
                 name: name.into(),
-                number: Number::formula(formula).expect("the formula is right"),
-            });
+                number: Number::ZERO,
+            }));
         }
     }
-    let mut ids = IdCounters {
-        panel: dice.below(3) as u32,
-        point: dice.below(20) as u32,
-        ..IdCounters::default()
-    };
     for k in 0..=dice.below(3) {
-        let fabric = fabric(dice, ids.take_fabric(), k);
+        let id = ids.take();
+        let fabric = fabric(dice, id, k);
         pattern.fabrics.push(Arc::new(fabric));
     }
     for k in 0..dice.below(4) {
-        let panel = panel(dice, &mut ids, k, &pattern);
-        pattern.panels.push(Arc::new(panel));
+        let drawn = panel(dice, &mut ids, k, &pattern);
+        pattern.add(drawn);
     }
     for k in 0..dice.below(6) {
         let sides = [spans(dice, &pattern), spans(dice, &pattern)];
-        let mut seam = Seam::new(ids.take_seam(), format!("seam {k}"), sides);
+        let mut seam = Seam::new(ids.take(), format!("seam {k}"), sides);
         seam.ease = dice.number();
         seam.gathered = dice.chance(20);
         seam.right_sides_together = dice.chance(80);
         seam.multi_ply = dice.chance(20);
         pattern.seams.push(Arc::new(seam));
-        if dice.chance(10) {
-            ids.take_seam();
-        }
     }
-    ids.notch += dice.below(3) as u32;
+    ids.next += dice.below(3) as u32;
     pattern.ids = ids;
-    pattern
+    bind(&pattern)
+}
+
+/// The pattern with variables that need each other and formulas that know its parts.
+fn bind(pattern: &Pattern) -> Pattern {
+    let mut bound = pattern.clone();
+    let names = Names::new(pattern);
+    for variable in &mut bound.variables {
+        let text = match &*variable.name {
+            "ease" => "4cm",
+            "loop" => "loop_b",
+            _ => "loop + length(panel0.e1) / 1m",
+        };
+        let formula = Formula::parse(text, &names).expect("the formula is right");
+        Arc::make_mut(variable).number = Number::Formula(formula);
+    }
+    bound
 }
 
 fn measurements(dice: &mut Dice) -> Measurements {
@@ -178,116 +202,161 @@ fn fabric(dice: &mut Dice, id: FabricId, k: usize) -> Fabric {
     fabric
 }
 
-fn panel(dice: &mut Dice, ids: &mut IdCounters, k: usize, pattern: &Pattern) -> Panel {
-    let name = ["panel0", "panel 1", "panel.2", "Größe"][k].to_owned();
+fn panel(dice: &mut Dice, ids: &mut Ids, k: usize, pattern: &Pattern) -> (Arc<Sheet>, Arc<Panel>) {
+    let name = ["panel0", "panel 1", "panel.2", "Größe"][k];
     let fabric = pattern.fabrics[dice.below(pattern.fabrics.len())].id;
-    let mut panel = Panel::new(ids.take_panel(), name, fabric);
+    let mut drawing = Drawing::new(ids, name, fabric);
     let corners = dice.below(9);
+    let mut points: Vec<PointId> = Vec::new();
     for j in 0..corners + 4 {
-        let id = ids.take_point();
-        if dice.chance(10) {
-            ids.take_point();
+        let curves: Vec<CurveId> = drawing.sheet.curves.iter().map(|c| c.id).collect();
+        let rule = rule(dice, &points, &curves, (j, corners));
+        points.push(drawing.point(format!("p{j}"), rule));
+        if j > 1 && dice.chance(20) {
+            let rule = curve(dice, &points);
+            drawing.edge(format!("c{j}"), [points[j - 1], points[j]], rule);
         }
-        let place = place(dice, &panel, j, corners);
-        panel.points.push(Point {
-            id,
-            name: format!("p{j}"),
-            place,
-        });
     }
-    let loose: Vec<PointId> = panel.points.iter().map(|p| p.id).collect();
-    for j in 0..corners {
-        let edge = edge(dice, ids, &loose, [j, (j + 1) % corners]);
-        panel.outline.push(edge);
-    }
+    let line = |dice: &mut Dice, drawing: &mut Drawing<'_>, name: &str, ends: usize| {
+        let mut edges = Vec::new();
+        for j in 0..ends {
+            let mut at = [j, (j + 1) % ends].map(|k| points[k % points.len()]);
+            if dice.chance(3) {
+                at[1] = points[dice.below(points.len())];
+            }
+            let rule = curve(dice, &points);
+            let mut edge = drawing.edge(format!("{name}{j}"), at, rule);
+            edge.allowance = dice.chance(20).then(|| dice.number());
+            edge.corner = dice.chance(20).then_some(Corner::Mirrored);
+            edges.push(edge);
+        }
+        edges
+    };
+    let edges = line(dice, &mut drawing, "e", corners);
+    drawing.line("outline", LineKind::Outline, edges);
     if dice.chance(15) {
-        let hole: Vec<_> = (0..dice.below(4))
-            .map(|j| edge(dice, ids, &loose, [j, j + 1]))
-            .collect();
-        panel.holes.push(hole);
+        let count = dice.below(4);
+        let edges = line(dice, &mut drawing, "h", count);
+        drawing.line("hole", LineKind::Hole, edges);
     }
-    panel.grain = dice.number();
-    panel.seam_allowance = dice.number();
-    panel.cut = Cut {
+    for k in 0..dice.below(3) {
+        let count = dice.below(4);
+        let edges = line(dice, &mut drawing, &format!("i{k}"), count);
+        drawing.line(format!("line {k}"), LineKind::Internal, edges);
+    }
+    drawing.panel.grain = dice.number();
+    drawing.panel.allowance = dice.number();
+    drawing.panel.cut = Cut {
         quantity: [0, 1, 1, 2, 2, 3, 5000][dice.below(7)],
         mirrored: dice.chance(50),
     };
-    panel.worn = worn(dice);
-    details(dice, ids, &mut panel, &loose);
-    panel
+    drawing.panel.worn = worn(dice);
+    details(dice, &mut drawing, &points);
+    drawing.done()
 }
 
-fn place(dice: &mut Dice, panel: &Panel, j: usize, corners: usize) -> PointPlace {
-    let earlier = |dice: &mut Dice| panel.points[dice.below(panel.points.len())].id;
-    if dice.chance(60) || panel.points.is_empty() {
+fn rule(
+    dice: &mut Dice,
+    points: &[PointId],
+    curves: &[CurveId],
+    (j, corners): (usize, usize),
+) -> PointRule {
+    let any = |dice: &mut Dice| points[dice.below(points.len())];
+    if dice.chance(60) || points.is_empty() {
         let angle = std::f64::consts::TAU * j as f64 / corners.max(1) as f64;
         if dice.chance(60) {
-            return PointPlace::at(angle.cos() * 0.4, angle.sin() * 0.3);
+            return PointRule::at(angle.cos() * 0.4, angle.sin() * 0.3);
         }
-        return PointPlace::At {
+        return PointRule::At {
             x: dice.number(),
             y: dice.number(),
         };
     }
-    match dice.below(6) {
-        0 => PointPlace::Offset {
-            base: earlier(dice),
+    let curve = curves.get(dice.below(curves.len())).copied();
+    match (dice.below(11), curve) {
+        (0, _) => PointRule::Offset {
+            base: any(dice),
             x: dice.number(),
             y: dice.number(),
         },
-        1 => PointPlace::Polar {
-            base: earlier(dice),
+        (1, _) => PointRule::Polar {
+            base: any(dice),
             angle: dice.number(),
             distance: dice.number(),
         },
-        2 => PointPlace::Between {
-            base: earlier(dice),
-            tip: earlier(dice),
+        (2, _) => PointRule::Between {
+            base: any(dice),
+            tip: any(dice),
             along: dice.share(),
             aside: dice.share(),
         },
-        3 => PointPlace::Toward {
-            base: earlier(dice),
-            tip: earlier(dice),
+        (3, _) => PointRule::Toward {
+            base: any(dice),
+            tip: any(dice),
             distance: dice.number(),
         },
-        4 => PointPlace::Crossing {
-            first: [earlier(dice), earlier(dice)],
-            second: [earlier(dice), earlier(dice)],
+        (4, _) => PointRule::Crossing {
+            first: [any(dice), any(dice)],
+            second: [any(dice), any(dice)],
         },
-        _ => PointPlace::Mirrored {
-            base: earlier(dice),
-            line: [earlier(dice), earlier(dice)],
+        (5, Some(curve)) => PointRule::OnCurve {
+            curve,
+            share: dice.share(),
+        },
+        (6, Some(curve)) => PointRule::AlongCurve {
+            curve,
+            distance: dice.number(),
+        },
+        (7, Some(curve)) => PointRule::LineCrossing {
+            line: [any(dice), any(dice)],
+            curve,
+            index: dice.below(2) as u16,
+        },
+        (8, Some(curve)) => PointRule::CurveCrossing {
+            curves: [curve, curves[0]],
+            index: 0,
+        },
+        (9, _) => PointRule::Foot {
+            base: any(dice),
+            line: [any(dice), any(dice)],
+        },
+        _ => PointRule::Mirrored {
+            base: any(dice),
+            line: [any(dice), any(dice)],
         },
     }
 }
 
-fn curve(dice: &mut Dice, points: &[PointId]) -> EdgeCurve {
+fn curve(dice: &mut Dice, points: &[PointId]) -> CurveRule {
     let any = |dice: &mut Dice| points[dice.below(points.len())];
     match dice.below(8) {
-        0 => EdgeCurve::Arc {
+        0 => CurveRule::Arc {
             bulge: dice.number(),
         },
-        1 => EdgeCurve::Quadratic { control: any(dice) },
-        2 => EdgeCurve::Cubic {
-            controls: [any(dice), any(dice)],
+        1 => CurveRule::cubic([any(dice), any(dice)]),
+        2 => CurveRule::Spline {
+            handles: [any(dice), any(dice)],
+            knots: vec![Knot {
+                before: any(dice),
+                point: any(dice),
+                after: any(dice),
+            }],
+            to_length: dice.chance(30).then(|| dice.number()),
         },
-        _ => EdgeCurve::Line,
+        _ => CurveRule::Line,
     }
 }
 
-fn edge(dice: &mut Dice, ids: &mut IdCounters, points: &[PointId], ends: [usize; 2]) -> Edge {
-    let id = ids.take_edge();
-    let mut ends = ends.map(|k| points[k % points.len()]);
-    if dice.chance(3) {
-        ends[1] = points[dice.below(points.len())];
-    }
-    Edge {
-        id,
-        name: format!("e{}", id.0),
-        ends,
-        curve: curve(dice, points),
-        seam_allowance: dice.chance(20).then(|| dice.number()),
+/// A mark on a line by its edges' corners.
+fn mark(dice: &mut Dice, edges: &[Edge]) -> Mark {
+    let edge = &edges[dice.below(edges.len())];
+    match dice.below(4) {
+        0 => Mark::corner(edge.ends[0]),
+        1 => Mark::Along {
+            from: Name::Drawn(edge.ends[0]),
+            distance: dice.number(),
+        },
+        _ => Mark::between(edge.ends, dice.share()),
     }
 }
 
@@ -306,87 +375,77 @@ fn worn(dice: &mut Dice) -> WornRule {
     }
 }
 
-fn details(dice: &mut Dice, ids: &mut IdCounters, panel: &mut Panel, points: &[PointId]) {
-    let edges: Vec<EdgeId> = panel.edges().map(|e| e.id).collect();
+fn details(dice: &mut Dice, drawing: &mut Drawing<'_>, points: &[PointId]) {
     let any = |dice: &mut Dice| points[dice.below(points.len())];
-    for k in 0..dice.below(3) {
-        let segments = (0..dice.below(4))
-            .map(|_| LineSegment {
-                ends: [any(dice), any(dice)],
-                curve: curve(dice, points),
-            })
-            .collect();
-        panel.internal_lines.push(InternalLine {
-            id: ids.take_internal_line(),
-            name: format!("line {k}"),
-            segments,
-        });
-    }
-    if edges.is_empty() {
+    let lines = drawing.panel.lines.clone();
+    let lines: Vec<&Line> = lines.iter().filter(|line| !line.edges.is_empty()).collect();
+    if lines.is_empty() {
         return;
     }
-    if dice.chance(25) {
-        panel.fold = Some(edges[dice.below(edges.len())]);
-    }
     for k in 0..dice.below(3) {
-        let shape = if dice.chance(70) {
-            DartShape::Edge {
-                edge: edges[dice.below(edges.len())],
-                at: dice.share(),
-                width: Number::Value(dice.fraction() * 0.05),
-                tip: if dice.chance(50) {
-                    DartTip::Depth(dice.share())
-                } else {
-                    DartTip::Apex(any(dice))
-                },
-            }
-        } else {
-            DartShape::Diamond {
-                ends: [any(dice), any(dice)],
-                at: dice.share(),
-                width: dice.number(),
-            }
-        };
-        panel.darts.push(Dart {
-            id: ids.take_dart(),
-            name: format!("dart {k}"),
-            shape,
-        });
-    }
-    for k in 0..dice.below(3) {
-        panel.notches.push(Notch {
-            id: ids.take_notch(),
+        let line = lines[dice.below(lines.len())];
+        let notch = Notch {
+            id: drawing.id(),
             name: format!("notch {k}"),
-            edge: edges[dice.below(edges.len())],
-            at: if dice.chance(50) {
-                Along::Fraction(dice.share())
-            } else {
-                Along::Distance(dice.number())
+            line: line.id,
+            at: mark(dice, &line.edges),
+            kind: NotchKind::Castle,
+        };
+        drawing.panel.notches.push(notch);
+    }
+    for k in 0..dice.below(4) {
+        let line = lines[dice.below(lines.len())];
+        let kind = match dice.below(4) {
+            0 => OperationKind::Diamond {
+                ends: [any(dice), any(dice)],
+                widest: dice.share(),
+                intake: dice.number(),
             },
-        });
+            1 => {
+                let edge = &line.edges[dice.below(line.edges.len())];
+                OperationKind::Fold {
+                    line: Name::Drawn(line.id),
+                    ends: edge.ends.map(Mark::corner),
+                }
+            }
+            _ => OperationKind::Dart {
+                line: Name::Drawn(line.id),
+                mouth: mark(dice, &line.edges),
+                intake: Number::Value(dice.fraction() * 0.05),
+                apex: match dice.chance(50) {
+                    true => Apex::Depth(dice.share()),
+                    false => Apex::Point(any(dice)),
+                },
+            },
+        };
+        let operation = Operation {
+            id: drawing.id(),
+            name: format!("operation {k}"),
+            kind,
+        };
+        drawing.panel.operations.push(Arc::new(operation));
     }
 }
 
 fn spans(dice: &mut Dice, pattern: &Pattern) -> Vec<Span> {
     let mut spans = Vec::new();
     for _ in 0..dice.below(4) {
-        let panel = match pattern.panels.get(dice.below(pattern.panels.len())) {
-            Some(panel) if dice.chance(95) => panel,
-            _ => {
-                spans.push(Span::whole(PanelId(900), EdgeId(900)));
-                continue;
-            }
+        let Some(panel) = pattern.panels.get(dice.below(pattern.panels.len())) else {
+            continue;
         };
-        let edges: Vec<EdgeId> = panel.edges().map(|e| e.id).collect();
-        let edge = edges.get(dice.below(edges.len())).copied();
-        let mut span = Span::whole(panel.id, edge.unwrap_or(EdgeId(901)));
-        span.copy = dice.below(3) as u32;
-        span.reflected = dice.chance(20);
-        if dice.chance(40) {
-            span.from = dice.share();
-            span.to = dice.share();
-        }
-        spans.push(span);
+        let lines: Vec<&Line> = panel.lines.iter().filter(|l| !l.edges.is_empty()).collect();
+        let Some(line) = lines.get(dice.below(lines.len())) else {
+            continue;
+        };
+        spans.push(Span {
+            panel: panel.id,
+            copy: dice.below(3) as u32,
+            half: u8::from(dice.chance(20)),
+            line: Name::Drawn(line.id),
+            from: mark(dice, &line.edges),
+            to: mark(dice, &line.edges),
+            backwards: dice.chance(40),
+        });
     }
     spans
 }
