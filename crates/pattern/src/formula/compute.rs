@@ -341,3 +341,111 @@ pub(crate) fn kind(power: i8) -> &'static str {
         _ => "a power of a length",
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formula::Names;
+
+    struct Body;
+
+    impl Environment for Body {
+        fn variable(&self, _: VariableId) -> Result<Quantity, Failure> {
+            Ok(plain(1.0))
+        }
+        fn measurement(&self, name: &str) -> Result<Quantity, Failure> {
+            match name {
+                "bust" => Ok(length(0.96)),
+                "slope" => Ok(plain(0.5)),
+                _ => Err(Failure::new(Code::MissingReference, "unknown", "define it")),
+            }
+        }
+        fn length(&self, _: &PartReference) -> Result<f64, Failure> {
+            Ok(0.25)
+        }
+        fn finished(&self, _: &PartReference) -> Result<f64, Failure> {
+            Ok(0.2)
+        }
+        fn ends(&self, _: &PartReference) -> Result<[Vec2; 2], Failure> {
+            Ok([Vec2::zeros(), Vec2::new(0.0, 0.3)])
+        }
+        fn point(&self, part: &PartReference) -> Result<Vec2, Failure> {
+            Ok(match part {
+                PartReference::Unknown(text) if text.ends_with('a') => Vec2::new(0.1, 0.2),
+                _ => Vec2::new(0.4, 0.6),
+            })
+        }
+    }
+
+    fn value(text: &str) -> Result<Quantity, Failure> {
+        compute(&Formula::parse(text, &Names::default()).unwrap(), &Body)
+    }
+
+    #[test]
+    fn arithmetic_has_its_usual_precedence_and_units() {
+        for (text, expected, power) in [
+            ("1 + 2 * 3 - 4 / 2", 5.0, 0),
+            ("-(2 - 5) * -2", -6.0, 0),
+            ("10 - 4 - 3", 3.0, 0),
+            ("8 / 4 / 2", 1.0, 0),
+            ("bust / 4 + 2.5cm", 0.265, 1),
+            ("2cm + 5mm + 1m + 1in", 1.0504, 1),
+            ("max(1cm, 2cm, 0)", 0.02, 1),
+            ("min(bust, 1m)", 0.96, 1),
+            ("sqrt(bust * bust)", 0.96, 1),
+            ("hypot(3cm, 4cm)", 0.05, 1),
+            ("tan(slope) * 1m", 0.5_f64.tan(), 1),
+            ("sin(30deg)", 0.5, 0),
+            ("atan2(bust, bust)", std::f64::consts::FRAC_PI_4, 0),
+            ("length(f.e) / bust", 0.25 / 0.96, 0),
+            ("finished(f.e)", 0.2, 1),
+            ("angle(f.e)", std::f64::consts::FRAC_PI_2, 0),
+            ("distance(f.a, f.b)", 0.5, 1),
+            ("y(f.a) - x(f.a)", 0.1, 1),
+            ("bust + 0", 0.96, 1),
+            ("1e2 mm", 0.1, 1),
+            ("1 1/2in + 1/4in", 1.75 * 0.0254, 1),
+            (
+                "if(bust > 1m, 1, 2) + if(bust <= 1m and 1, 10, 20)",
+                12.0,
+                0,
+            ),
+            ("if(0, 1 / 0, 3)", 3.0, 0),
+            ("not 0 or 1 / 2", 1.0, 0),
+            ("round(bust, 10cm)", 1.0, 1),
+            ("1 + (2 = 2)", 2.0, 0),
+        ] {
+            let got = value(text).unwrap();
+            assert!((got.value - expected).abs() < 1e-12, "{text}: {got:?}");
+            assert_eq!(got.power, power, "{text}");
+        }
+    }
+
+    #[test]
+    fn mixing_lengths_with_plain_numbers_is_refused_where_it_happens() {
+        for (text, at, says) in [
+            ("bust + 2", 6, "put together"),
+            ("bust < 2", 6, "put together"),
+            ("1 / (bust - bust)", 3, "division by zero"),
+            ("sqrt(bust)", 1, "square root"),
+            ("sqrt(1 - 2)", 1, "negative"),
+            ("sin(bust)", 1, "sin of a length"),
+            ("round(bust, 0)", 1, "not above zero"),
+            ("waist", 1, "unknown"),
+            ("1e300 * 1e300", 7, "finite"),
+            ("bust*bust*bust*bust*bust*bust*bust", 30, "too many lengths"),
+        ] {
+            match value(text) {
+                Err(Failure::Fault {
+                    column: Some(column),
+                    message,
+                    ..
+                }) => {
+                    assert_eq!(column, at, "{text}");
+                    assert!(message.contains(says), "{text}: {message}");
+                }
+                other => panic!("{text}: {other:?}"),
+            }
+        }
+    }
+}
