@@ -10,7 +10,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use toile_pattern::Pattern;
+use toile_pattern::{Evaluation, Pattern};
 use toile_session::{Command, Session, Silent};
 use toile_ui::{Selection, ToileApp};
 
@@ -77,8 +77,10 @@ fn drag(window: &mut Window, from: Pos2, way: egui::Vec2) {
 fn point_at(window: &Window, panel: &str, point: &str) -> toile_geometry::Vec2 {
     let project = window.state().session().project();
     let panel = project.pattern.panel_named(panel).unwrap();
-    let id = panel.point_named(point).unwrap().id;
-    project.pattern.point_places(&project.drafted_to())[&(panel.id, id)]
+    let sheet = project.pattern.sheet(panel.sheet()).unwrap();
+    let id = sheet.point_named(point).unwrap().id;
+    let evaluation = Evaluation::new(&project.pattern, &project.drafted_to());
+    evaluation.point(id).unwrap()
 }
 
 #[test]
