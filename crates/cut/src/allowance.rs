@@ -90,7 +90,7 @@ impl Corners {
                 }
                 corner_cloth(
                     ring.edges[edge].corner,
-                    [ring.last(before).normal, ring.first(edge).normal],
+                    [ring.edges[before].ends[1], ring.edges[edge].ends[0]],
                     [ring.edges[before].width, ring.edges[edge].width],
                 )
             })
@@ -140,17 +140,24 @@ enum Joint {
     Meet(Vec2),
 }
 
-fn joint(ring: &Ring, k: usize, trimmed: &[Vec<Trim>]) -> Joint {
+fn joint(ring: &Ring, k: usize, trimmed: &[Vec<Trim>], is_leg: &[bool]) -> Joint {
     let chord = &ring.chords[k];
     let before_index = (k + ring.chords.len() - 1) % ring.chords.len();
     let before = &ring.chords[before_index];
     let same_edge = k != ring.edges[chord.edge].chords.start;
-    let (sin, cos) = (
-        before.normal.perp(&chord.normal),
-        before.normal.dot(&chord.normal),
-    );
+    let normals = match same_edge {
+        true => [before.normal, chord.normal],
+        false => [
+            ring.edges[before.edge].ends[1],
+            ring.edges[chord.edge].ends[0],
+        ],
+    };
+    let (sin, cos) = (normals[0].perp(&normals[1]), normals[0].dot(&normals[1]));
     let widths = [before, chord].map(|chord| ring.edges[chord.edge].width);
-    let plain = trimmed[k].is_empty() && trimmed[before_index].is_empty();
+    let plain = trimmed[k].is_empty()
+        && trimmed[before_index].is_empty()
+        && !is_leg[chord.edge]
+        && !is_leg[before.edge];
     if plain && sin.abs() <= STRAIGHT && cos > 0.0 && widths[0].min(widths[1]) > 0.0 {
         return Joint::Flat;
     }
@@ -202,7 +209,10 @@ pub(crate) fn cloth(ring: &Ring, caps: &[Cap]) -> Cloth {
             continue;
         }
         let next = (k + 1) % ring.chords.len();
-        let joints = [joint(ring, k, &trims), joint(ring, next, &trims)];
+        let joints = [
+            joint(ring, k, &trims, &is_leg),
+            joint(ring, next, &trims, &is_leg),
+        ];
         push_chord(&mut chain, ring, k, joints, &trims[k]);
         chains.extend(trimmed_wedge(ring, k, [&trims[k], &trims[next]]));
     }
@@ -261,7 +271,6 @@ fn corner_finding(ring: &Ring, edge: usize, outcome: Outcome) -> Option<Finding>
 fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trims: &[Trim]) {
     let chord = &ring.chords[k];
     let width = ring.edges[chord.edge].width;
-    let out = chord.normal * width;
     let tag = |span: [f64; 2]| Tag {
         edge: chord.edge,
         kind: SegmentKind::Edge,
@@ -276,7 +285,7 @@ fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trim
     }
     let start = match joints[0] {
         Joint::Meet(p) => p,
-        _ => chord.from + out,
+        _ => chord.from + ring.out(k, 0),
     };
     let last = k + 1 == ring.edges[chord.edge].chords.end;
     let end_tag = corner_tag(
@@ -295,7 +304,9 @@ fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trim
     match joints[1] {
         // The next chord starts at the meeting point.
         Joint::Meet(_) => {}
-        Joint::Spike | Joint::Flat if trims.is_empty() => chain.side(chord.to + out, end_tag),
+        Joint::Spike | Joint::Flat if trims.is_empty() => {
+            chain.side(chord.to + ring.out(k, 1), end_tag)
+        }
         Joint::Spike | Joint::Flat => {}
         Joint::Wedge => {
             let next = &ring.chords[(k + 1) % ring.chords.len()];
@@ -303,7 +314,7 @@ fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trim
                 beside: None,
                 ..tag([0.0; 2])
             };
-            chain.side(chord.to + out, round);
+            chain.side(chord.to + ring.out(k, 1), round);
             for tip in wedge([chord.normal, next.normal], width) {
                 chain.side(chord.to + tip, round);
             }
@@ -314,10 +325,9 @@ fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trim
 /// The outer way round what the corners leave of a chord's rectangle.
 fn push_trimmed(chain: &mut Chain, ring: &Ring, k: usize, trims: &[Trim]) {
     let chord = &ring.chords[k];
-    let width = ring.edges[chord.edge].width;
-    let out = chord.normal * width;
+    let outer = [chord.from + ring.out(k, 0), chord.to + ring.out(k, 1)];
     // Clockwise from the chord's start: clipping keeps whatever order it is given.
-    let mut cloth = vec![chord.from, chord.from + out, chord.to + out, chord.to];
+    let mut cloth = vec![chord.from, outer[0], outer[1], chord.to];
     for trim in trims {
         cloth = trim.plane.clip(&cloth);
     }
@@ -326,8 +336,9 @@ fn push_trimmed(chain: &mut Chain, ring: &Ring, k: usize, trims: &[Trim]) {
         return;
     };
     cloth.rotate_left(start);
-    let share = |p: Vec2| ((p - chord.from).dot(&chord.along()) / chord.length).clamp(0.0, 1.0);
-    let is_out = |p: &Vec2| ((p - chord.from).dot(&chord.normal) - width).abs() < 1e-9;
+    let way = outer[1] - outer[0];
+    let share = |p: Vec2| ((p - outer[0]).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
+    let is_out = |p: &Vec2| way.perp(&(p - outer[0])).abs() < 1e-9 * way.norm();
     let is_cut = |trim: &&Trim, p: &Vec2| {
         let plane = &trim.plane;
         (plane.normal.dot(p) - plane.limit).abs() < 1e-9

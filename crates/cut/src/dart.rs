@@ -5,7 +5,7 @@
 //! that leg is cut along the mirror image in it of the neighbour's cut line, and the other half
 //! along the mirror image of the first in the fold line.
 
-use crate::allowance::{Chain, Tag};
+use crate::allowance::{Chain, Tag, corner_tag};
 use crate::ring::{Chord, Ring};
 use crate::{CapFault, CutError, Dart, MITRE_LIMIT, SegmentKind};
 use toile_geometry::{Polygon, Vec2};
@@ -47,6 +47,11 @@ impl Axis {
     }
 }
 
+/// The direction of a ring with this outward normal.
+fn along(normal: Vec2) -> Vec2 {
+    Vec2::new(-normal.y, normal.x)
+}
+
 /// One side of a dart's mouth: the end of a leg and the edge beside it, walked away from the dart.
 struct Flank {
     /// Edge of the ring that is the leg.
@@ -68,8 +73,8 @@ impl Flank {
             _ => (legs[1], ring.after(legs[1])),
         };
         let (mouth, out) = match which {
-            0 => (ring.first(leg).from, -ring.first(leg).along()),
-            _ => (ring.last(leg).to, ring.last(leg).along()),
+            0 => (ring.first(leg).from, -along(ring.edges[leg].ends[0])),
+            _ => (ring.last(leg).to, along(ring.edges[leg].ends[1])),
         };
         let edge = &ring.edges[neighbour];
         let mut chords: Vec<&Chord> = ring.chords[edge.chords.clone()].iter().collect();
@@ -80,11 +85,13 @@ impl Flank {
             0 => [chord.to, chord.from],
             _ => [chord.from, chord.to],
         };
+        let near = edge.ends[1 - which];
         let mut offset = Vec::with_capacity(chords.len() + 1);
         for (k, chord) in chords.iter().enumerate() {
-            let before = if k == 0 { chord } else { chords[k - 1] };
-            let middle = before.normal + chord.normal;
-            let scale = edge.width / (1.0 + before.normal.dot(&chord.normal));
+            let before = if k == 0 { near } else { chords[k - 1].normal };
+            let normal = if k == 0 { near } else { chord.normal };
+            let middle = before + normal;
+            let scale = edge.width / (1.0 + before.dot(&normal));
             offset.push(ends(chord)[0] + middle * scale);
         }
         if let Some(chord) = chords.last() {
@@ -185,7 +192,10 @@ fn cap(ring: &Ring, legs: [usize; 2], pressed: usize, all: &[usize]) -> Cap {
         patches: patches
             .into_iter()
             .filter(|(k, _)| !all.contains(&neighbours[*k]))
-            .map(|(k, patch)| patch_chain(patch, flanks[k].leg))
+            .map(|(k, patch)| {
+                let corner = [legs[0], ring.after(legs[1])][k];
+                patch_chain(patch, corner_tag(ring, corner))
+            })
             .collect(),
         fault,
     }
@@ -199,14 +209,14 @@ fn cap_tag(leg: usize) -> Tag {
     }
 }
 
-fn patch_chain(patch: [Vec2; 3], leg: usize) -> Chain {
+fn patch_chain(patch: [Vec2; 3], tag: Tag) -> Chain {
     let mut points = patch.to_vec();
     if toile_geometry::ring_area(&points) < 0.0 {
         points.reverse();
     }
     Chain {
         points,
-        tags: vec![cap_tag(leg); 3],
+        tags: vec![tag; 3],
     }
 }
 

@@ -28,7 +28,8 @@ pub enum Finding {
         edge: EdgeIndex,
         /// The stretch, from and to \[m\].
         stretch: [f64; 2],
-        /// Whether it starts or ends at an inner corner, where two allowances always overlap.
+        /// Whether it starts or ends at an inner corner or a dart, where allowances always
+        /// overlap.
         inner_corner: bool,
     },
     /// Along a stretch of an edge the allowance, measured square to the seam line, is narrower

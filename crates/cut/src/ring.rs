@@ -1,7 +1,7 @@
 //! A loop of edges as straight chords with the cloth at their left.
 
 use crate::{Corner, EdgeIndex, SeamEdge};
-use toile_geometry::{Vec2, orient2d, ring_area};
+use toile_geometry::{Curve, Vec2, orient2d, ring_area};
 
 /// Chords stay this near to the curves \[m\]: a tenth of what a cutter resolves.
 pub const FLATNESS: f64 = 5e-6;
@@ -41,6 +41,32 @@ pub(crate) struct RingEdge {
     pub chords: std::ops::Range<usize>,
     /// Length of its chords [m].
     pub length: f64,
+    /// Outward normals of the curve at its start and end: those of the chords there are turned
+    /// by up to some hundredths, half a millimetre at the end of a wide allowance.
+    pub ends: [Vec2; 2],
+}
+
+impl RingEdge {
+    /// Takes the curve's normals at its ends, where they turn the end of the allowance by less
+    /// than half a chord and the curve has a tangent.
+    fn set_ends(&mut self, chords: &[Chord], curve: &Curve, reversed: bool) {
+        let sign = if reversed { -1.0 } else { 1.0 };
+        for end in 0..2 {
+            let at = if (end == 1) == reversed { 0.0 } else { 1.0 };
+            let chord = match end {
+                0 => &chords[self.chords.start],
+                _ => &chords[self.chords.end - 1],
+            };
+            let along = curve.derivative(at) * sign;
+            let Some(normal) = Vec2::new(along.y, -along.x).try_normalize(0.0) else {
+                continue;
+            };
+            let shift = normal.dot(&chord.along()).abs() * self.width;
+            if normal.dot(&chord.normal) > 0.95 && shift < 0.5 * chord.length {
+                self.ends[end] = normal;
+            }
+        }
+    }
 }
 
 /// A loop of chords that has the cloth at its left: the outline runs counter-clockwise, a hole
@@ -86,6 +112,9 @@ impl Ring {
                 edges[source].corner
             };
             ring.push(&flat[source], source, edges[source].width, corner);
+            if let Some(edge) = ring.edges.last_mut().filter(|edge| edge.source == source) {
+                edge.set_ends(&ring.chords, &edges[source].curve, reversed);
+            }
         }
         ring
     }
@@ -116,6 +145,7 @@ impl Ring {
                 corner,
                 chords: start..self.chords.len(),
                 length: at,
+                ends: [self.chords[start], self.chords[self.chords.len() - 1]].map(|c| c.normal),
             });
         }
     }
@@ -151,6 +181,19 @@ impl Ring {
     /// Last chord of an edge.
     pub fn last(&self, edge: usize) -> &Chord {
         &self.chords[self.edges[edge].chords.end - 1]
+    }
+
+    /// From a chord's start (0) or end (1) to the end of its allowance [m].
+    pub fn out(&self, k: usize, end: usize) -> Vec2 {
+        let edge = &self.edges[self.chords[k].edge];
+        let at_end = match end {
+            0 => k == edge.chords.start,
+            _ => k + 1 == edge.chords.end,
+        };
+        match at_end {
+            true => edge.ends[end] * edge.width,
+            false => self.chords[k].normal * edge.width,
+        }
     }
 
     /// A place on an edge, counted in the given direction [m], from one in the ring's direction.

@@ -1,6 +1,7 @@
 //! Stretches of the seam line whose own cut line is missing, and slits that are shut.
 
 use crate::allowance::Cloth;
+use crate::corner::STRAIGHT;
 use crate::ring::Ring;
 use crate::trace::{Sides, Traced};
 use crate::{CutRing, Finding};
@@ -53,7 +54,7 @@ pub(crate) fn stretches(
         }
     }
     gaps.retain(|gap| gap.to - gap.from > SHORTEST);
-    let mut findings: Vec<Finding> = gaps.iter().map(|gap| finding(ring, gap)).collect();
+    let mut findings: Vec<Finding> = gaps.iter().map(|gap| finding(ring, cloth, gap)).collect();
     findings.extend(slits(&piece, &gaps));
     findings
 }
@@ -87,7 +88,7 @@ fn uncovered(covered: &[[f64; 2]], length: f64) -> Vec<[f64; 2]> {
     left
 }
 
-fn finding(ring: &Ring, gap: &Gap) -> Finding {
+fn finding(ring: &Ring, cloth: &Cloth, gap: &Gap) -> Finding {
     let edge = ring.index(gap.edge);
     let mut stretch = [gap.from, gap.to].map(|at| ring.given_place(gap.edge, at));
     if ring.reversed {
@@ -101,9 +102,11 @@ fn finding(ring: &Ring, gap: &Gap) -> Finding {
             least,
         };
     }
-    let starts = gap.from < SHORTEST && is_inner(ring, gap.edge);
+    let overlaps = |edge: usize, leg: usize| is_inner(ring, edge) || cloth.is_leg[leg];
+    let (before, after) = (ring.before(gap.edge), ring.after(gap.edge));
+    let starts = gap.from < SHORTEST && overlaps(gap.edge, before);
     let length = ring.edges[gap.edge].length;
-    let ends = gap.to > length - SHORTEST && is_inner(ring, ring.after(gap.edge));
+    let ends = gap.to > length - SHORTEST && overlaps(after, after);
     Finding::Swallowed {
         edge,
         stretch,
@@ -113,8 +116,8 @@ fn finding(ring: &Ring, gap: &Gap) -> Finding {
 
 /// Whether the ring turns away from the cloth at an edge's start.
 fn is_inner(ring: &Ring, edge: usize) -> bool {
-    let before = ring.last(ring.before(edge)).normal;
-    before.perp(&ring.first(edge).normal) < 0.0
+    let before = ring.edges[ring.before(edge)].ends[1];
+    before.perp(&ring.edges[edge].ends[0]) < -STRAIGHT
 }
 
 /// The seam line and what was cut outside it.
@@ -222,10 +225,10 @@ fn slits(piece: &Piece, gaps: &[Gap]) -> Vec<Finding> {
 fn slit(piece: &Piece, run: &[&Gap]) -> Option<Finding> {
     let ring = piece.ring;
     let (first, last) = (run.first()?, run.last()?);
-    let widest = run
-        .iter()
-        .map(|gap| ring.edges[gap.edge].width)
-        .fold(0.0, f64::max);
+    // With the edges beside the run, whose allowances may be what covers it.
+    let beside = [ring.before(first.edge), ring.after(last.edge)];
+    let edges = run.iter().map(|gap| gap.edge).chain(beside);
+    let widest = edges.map(|k| ring.edges[k].width).fold(0.0, f64::max);
     let inside = |gap: &Gap, chord: &crate::ring::Chord| {
         chord.edge == gap.edge && chord.at >= gap.from - SHORTEST && chord.at <= gap.to
     };
