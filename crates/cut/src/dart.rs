@@ -274,6 +274,11 @@ fn folded(
         cap_tag(flank.leg)
     });
     let mut tags: Vec<Tag> = tags.collect();
+    // The sides on the extended legs are steps to the neighbours' allowances.
+    let corner = |which: usize| corner_tag(ring, [legs[0], ring.after(legs[1])][which]);
+    if let [first, .., last] = &mut tags[..] {
+        (*first, *last) = (corner(pressed), corner(1 - pressed));
+    }
     if pressed == 1 {
         points.reverse();
         tags.reverse();
