@@ -99,7 +99,8 @@ impl Corners {
     }
 
     /// What is cut away beside a chord by the corners at its edge's ends.
-    fn trims(&self, ring: &Ring, chord: &Chord) -> Vec<Trim> {
+    fn trims(&self, ring: &Ring, k: usize) -> Vec<Trim> {
+        let chord = &ring.chords[k];
         let edge = &ring.edges[chord.edge];
         let after = ring.after(chord.edge);
         let reach = |other: usize| MITRE_LIMIT * edge.width.max(ring.edges[other].width);
@@ -117,11 +118,13 @@ impl Corners {
         if edge.length - chord.at - chord.length < reach(after) {
             trims.extend(trim(after, 0));
         }
-        // A curved edge may bend back over the line; its seam line is not cut.
+        // A curved edge may bend back over the line: its seam line is not cut.
+        let outer = [chord.from + ring.out(k, 0), chord.to + ring.out(k, 1)];
+        let beyond = |p: &Vec2, plane: &HalfPlane| plane.normal.dot(p) - plane.limit;
         trims.retain(|Trim { plane, .. }| {
             let ends = [chord.from, chord.to];
-            ends.iter()
-                .all(|p| plane.normal.dot(p) <= plane.limit + 1e-9)
+            ends.iter().all(|p| beyond(p, plane) <= 1e-9)
+                && outer.iter().any(|p| beyond(p, plane) > 0.0)
         });
         trims
     }
@@ -136,9 +139,12 @@ enum Joint {
     Flat,
     /// Round an outer bend.
     Wedge,
-    /// Both offset lines meet here: beyond a slight outer bend, or within an inner one.
+    /// At a slight bend: both allowances end here, on the line half-way between their normals.
     Meet(Vec2),
 }
+
+/// Inner bends with a greater cosine are a curve's, and its normals are taken to turn evenly there.
+const SLIGHT: f64 = 0.9;
 
 fn joint(ring: &Ring, k: usize, trimmed: &[Vec<Trim>], is_leg: &[bool]) -> Joint {
     let chord = &ring.chords[k];
@@ -158,27 +164,25 @@ fn joint(ring: &Ring, k: usize, trimmed: &[Vec<Trim>], is_leg: &[bool]) -> Joint
         && trimmed[before_index].is_empty()
         && !is_leg[chord.edge]
         && !is_leg[before.edge];
-    if plain && sin.abs() <= STRAIGHT && cos > 0.0 && widths[0].min(widths[1]) > 0.0 {
-        return Joint::Flat;
-    }
-    if !same_edge || !plain {
-        return Joint::Spike;
-    }
-    let width = widths[1];
-    let middle = (before.normal + chord.normal) * (width / (1.0 + cos));
-    if sin >= 0.0 {
-        return match sin.atan2(cos) <= wedge_step(width) {
-            true => Joint::Meet(chord.from + middle),
-            false => Joint::Wedge,
+    if !same_edge || is_leg[chord.edge] {
+        let step = widths[0].min(widths[1]) > 0.0;
+        return match plain && sin.abs() <= STRAIGHT && cos > 0.0 && step {
+            true => Joint::Flat,
+            false => Joint::Spike,
         };
     }
-    // The rectangles overlap in a kite of this length along both; within half of each it is held
-    // by both, whatever the bends at their other ends.
-    let tangent = width * -sin / (1.0 + cos);
-    if tangent < 0.5 * before.length.min(chord.length) {
-        return Joint::Meet(chord.from + middle);
+    let width = widths[1];
+    let middle = before.normal + chord.normal;
+    if sin >= 0.0 && cos > 0.0 && sin <= wedge_step(width) {
+        return Joint::Meet(chord.from + middle * (width / (1.0 + cos)));
     }
-    Joint::Spike
+    if sin < 0.0 && cos > SLIGHT {
+        return Joint::Meet(chord.from + middle.normalize() * width);
+    }
+    match sin >= 0.0 && plain {
+        true => Joint::Wedge,
+        false => Joint::Spike,
+    }
 }
 
 /// The cloth along a ring with its allowances. `caps` replace the legs of darts.
@@ -188,10 +192,8 @@ pub(crate) fn cloth(ring: &Ring, caps: &[Cap]) -> Cloth {
         cap.legs.iter().for_each(|&leg| is_leg[leg] = true);
     }
     let corners = Corners::new(ring, &is_leg);
-    let trims: Vec<Vec<Trim>> = ring
-        .chords
-        .iter()
-        .map(|chord| corners.trims(ring, chord))
+    let trims: Vec<Vec<Trim>> = (0..ring.chords.len())
+        .map(|k| corners.trims(ring, k))
         .collect();
     let mut chain = Chain::default();
     let mut chains = Vec::new();
@@ -213,7 +215,7 @@ pub(crate) fn cloth(ring: &Ring, caps: &[Cap]) -> Cloth {
             joint(ring, k, &trims, &is_leg),
             joint(ring, next, &trims, &is_leg),
         ];
-        push_chord(&mut chain, ring, k, joints, &trims[k]);
+        push_chord(&mut chain, ring, k, joints, [&trims[k], &trims[next]]);
         chains.extend(trimmed_wedge(ring, k, [&trims[k], &trims[next]]));
     }
     chains.push(chain);
@@ -268,64 +270,88 @@ fn corner_finding(ring: &Ring, edge: usize, outcome: Outcome) -> Option<Finding>
 }
 
 /// The way of the chain beside chord `k`, up to the joint with the next.
-fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trims: &[Trim]) {
+fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trims: [&[Trim]; 2]) {
     let chord = &ring.chords[k];
     let width = ring.edges[chord.edge].width;
-    let tag = |span: [f64; 2]| Tag {
+    let edge_tag = |beside: Option<(usize, [f64; 2])>| Tag {
         edge: chord.edge,
         kind: SegmentKind::Edge,
-        beside: Some((k, span)),
+        beside,
     };
     if width == 0.0 {
-        chain.side(chord.from, tag([0.0, 1.0]));
+        chain.side(chord.from, edge_tag(Some((k, [0.0, 1.0]))));
+        return;
+    }
+    let last = k + 1 == ring.edges[chord.edge].chords.end;
+    let after = ring.after(chord.edge);
+    let end_tag = corner_tag(ring, if last { after } else { chord.edge });
+    let [is_trimmed, next_trimmed] = trims.map(|trims| !trims.is_empty());
+    let outer = outer_ends(ring, k, joints);
+    if is_trimmed {
+        push_trimmed(chain, ring, k, (outer, trims[0]));
+        if matches!(joints[1], Joint::Meet(_)) && !next_trimmed {
+            chain.side(chord.to, end_tag);
+        }
         return;
     }
     if joints[0] == Joint::Spike {
         chain.side(chord.from, corner_tag(ring, chord.edge));
     }
-    let start = match joints[0] {
-        Joint::Meet(p) => p,
-        _ => chord.from + ring.out(k, 0),
-    };
-    let last = k + 1 == ring.edges[chord.edge].chords.end;
-    let end_tag = corner_tag(
-        ring,
-        if last {
-            ring.after(chord.edge)
-        } else {
-            chord.edge
-        },
-    );
-    if trims.is_empty() {
-        chain.side(start, tag([0.0, 1.0]));
+    let crossing = crossed(chord, outer);
+    if let Some(x) = crossing {
+        // Normals that cross: cloth up to the crossing, and beyond it the other way round, where
+        // the cut line is not this chord's but the end of a swallowed stretch.
+        chain.side(outer[0], end_tag);
+        chain.side(x, end_tag);
+        chain.side(outer[1], edge_tag(None));
+        chain.side(outer[0], end_tag);
+        chain.side(x, end_tag);
     } else {
-        push_trimmed(chain, ring, k, trims);
+        chain.side(outer[0], edge_tag(Some((k, [0.0, 1.0]))));
     }
     match joints[1] {
-        // The next chord starts at the meeting point.
-        Joint::Meet(_) => {}
-        Joint::Spike | Joint::Flat if trims.is_empty() => {
-            chain.side(chord.to + ring.out(k, 1), end_tag)
-        }
-        Joint::Spike | Joint::Flat => {}
+        // The next chord starts there.
+        Joint::Meet(_) if !next_trimmed => {}
+        Joint::Meet(_) | Joint::Spike | Joint::Flat => chain.side(outer[1], end_tag),
         Joint::Wedge => {
             let next = &ring.chords[(k + 1) % ring.chords.len()];
-            let round = Tag {
-                beside: None,
-                ..tag([0.0; 2])
-            };
-            chain.side(chord.to + ring.out(k, 1), round);
+            chain.side(outer[1], edge_tag(None));
             for tip in wedge([chord.normal, next.normal], width) {
-                chain.side(chord.to + tip, round);
+                chain.side(chord.to + tip, edge_tag(None));
             }
         }
     }
 }
 
-/// The outer way round what the corners leave of a chord's rectangle.
-fn push_trimmed(chain: &mut Chain, ring: &Ring, k: usize, trims: &[Trim]) {
+/// Where the allowance beside a chord ends, at its start and its end.
+fn outer_ends(ring: &Ring, k: usize, joints: [Joint; 2]) -> [Vec2; 2] {
     let chord = &ring.chords[k];
-    let outer = [chord.from + ring.out(k, 0), chord.to + ring.out(k, 1)];
+    let end = |end: usize, p: Vec2| match joints[end] {
+        Joint::Meet(meet) => meet,
+        _ => p + ring.out(k, end),
+    };
+    [end(0, chord.from), end(1, chord.to)]
+}
+
+/// Where the ends of an allowance cross, if they do: the curve is tighter than the allowance.
+fn crossed(chord: &Chord, [start, end]: [Vec2; 2]) -> Option<Vec2> {
+    if (end - start).dot(&chord.along()) >= 0.0 {
+        return None;
+    }
+    let (a, b) = (start - chord.from, end - chord.to);
+    let share = (chord.to - chord.from).perp(&b) / a.perp(&b);
+    (share > 0.0 && share < 1.0).then(|| chord.from + a * share)
+}
+
+/// The outer way round what the corners leave of a chord's rectangle.
+fn push_trimmed(chain: &mut Chain, ring: &Ring, k: usize, (ends, trims): ([Vec2; 2], &[Trim])) {
+    let chord = &ring.chords[k];
+    let out = chord.normal * ring.edges[chord.edge].width;
+    let outer = match crossed(chord, ends) {
+        None => ends,
+        Some(_) => [chord.from + out, chord.to + out],
+    };
+    chain.side(chord.from, corner_tag(ring, chord.edge));
     // Clockwise from the chord's start: clipping keeps whatever order it is given.
     let mut cloth = vec![chord.from, outer[0], outer[1], chord.to];
     for trim in trims {
@@ -366,7 +392,12 @@ fn trimmed_wedge(ring: &Ring, k: usize, trims: [&Vec<Trim>; 2]) -> Option<Chain>
     let width = ring.edges[chord.edge].width;
     let inside = k + 1 != ring.edges[chord.edge].chords.end;
     let plain = trims.iter().all(|trims| trims.is_empty());
-    if !inside || plain || width == 0.0 || chord.normal.perp(&next.normal) < 0.0 {
+    let (sin, cos) = (
+        chord.normal.perp(&next.normal),
+        chord.normal.dot(&next.normal),
+    );
+    let slight = cos > 0.0 && sin <= wedge_step(width);
+    if !inside || plain || width == 0.0 || sin < 0.0 || slight {
         return None;
     }
     let mut cloth = vec![Vec2::zeros(), chord.normal * width];
@@ -375,11 +406,21 @@ fn trimmed_wedge(ring: &Ring, k: usize, trims: [&Vec<Trim>; 2]) -> Option<Chain>
     for trim in trims[0].iter().chain(trims[1]) {
         cloth = trim.plane.translated(-chord.to).clip(&cloth);
     }
-    let tag = Tag {
-        edge: chord.edge,
-        kind: SegmentKind::Edge,
-        beside: None,
-    };
-    let points: Vec<Vec2> = cloth.into_iter().map(|x| x + chord.to).collect();
-    (points.len() > 2).then(|| Chain::patch(points, tag))
+    let corner = trims[0].first().or(trims[1].first())?.corner;
+    let is_round = |p: &Vec2| p.norm() > width * (1.0 - 1e-9);
+    let count = cloth.len();
+    let tags = (0..count).map(
+        |k| match is_round(&cloth[k]) && is_round(&cloth[(k + 1) % count]) {
+            true => Tag {
+                edge: chord.edge,
+                kind: SegmentKind::Edge,
+                beside: None,
+            },
+            false => corner_tag(ring, corner),
+        },
+    );
+    (count > 2).then(|| Chain {
+        tags: tags.collect(),
+        points: cloth.iter().map(|x| x + chord.to).collect(),
+    })
 }

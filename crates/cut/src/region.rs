@@ -59,8 +59,9 @@ fn is_real(ring: &[Vec2], tolerance: f64) -> bool {
     ring_area(ring).abs() > tolerance * length
 }
 
-/// A ring without hairlines, which rounding leaves between sides in one line that end in different
-/// points: the ring runs back there along where it came from.
+/// A ring without segments shorter than the grid's error, and without hairlines, which rounding
+/// leaves between sides in one line that end in different points: the ring runs back there along
+/// where it came from.
 fn without_hairlines(mut ring: Vec<Vec2>, tolerance: f64) -> Vec<Vec2> {
     let mut k = 0;
     // Steps without a removal; a whole round of them ends it.
@@ -78,7 +79,7 @@ fn without_hairlines(mut ring: Vec<Vec2>, tolerance: f64) -> Vec<Vec2> {
             point_segment_distance(r, [p, q]) <= tolerance
                 || point_segment_distance(p, [q, r]) <= tolerance
         };
-        if p == q || (back && hair()) {
+        if (q - p).norm() <= tolerance || (back && hair()) {
             ring.remove(k);
             k = (k + ring.len() - 1) % ring.len();
             steady = 0;

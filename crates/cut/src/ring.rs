@@ -6,6 +6,9 @@ use toile_geometry::{Curve, Vec2, orient2d, ring_area};
 /// Chords stay this near to the curves \[m\]: a tenth of what a cutter resolves.
 pub const FLATNESS: f64 = 5e-6;
 
+/// Tight edges are flattened finer by this.
+const FINER: f64 = 8.0;
+
 /// A straight piece of an edge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chord {
@@ -46,9 +49,23 @@ pub(crate) struct RingEdge {
     pub ends: [Vec2; 2],
 }
 
+/// Points along an edge. Where it bends as tightly as its allowance is wide, the cut line moves by
+/// more than the chords: it is flattened finer there.
+fn flattened(edge: &SeamEdge) -> Vec<Vec2> {
+    let points = edge.curve.flatten(FLATNESS);
+    let is_tight = |p: &[Vec2]| {
+        let (a, b) = (p[1] - p[0], p[2] - p[1]);
+        let turn = a.perp(&b).atan2(a.dot(&b)).abs();
+        turn * edge.width > a.norm().min(b.norm())
+    };
+    match points.windows(3).any(is_tight) {
+        true => edge.curve.flatten(FLATNESS / FINER),
+        false => points,
+    }
+}
+
 impl RingEdge {
-    /// Takes the curve's normals at its ends, where they turn the end of the allowance by less
-    /// than half a chord and the curve has a tangent.
+    /// Takes the curve's normals at its ends, where it has a tangent that is the chord's nearly.
     fn set_ends(&mut self, chords: &[Chord], curve: &Curve, reversed: bool) {
         let sign = if reversed { -1.0 } else { 1.0 };
         for end in 0..2 {
@@ -61,8 +78,11 @@ impl RingEdge {
             let Some(normal) = Vec2::new(along.y, -along.x).try_normalize(0.0) else {
                 continue;
             };
-            let shift = normal.dot(&chord.along()).abs() * self.width;
-            if normal.dot(&chord.normal) > 0.95 && shift < 0.5 * chord.length {
+            let (sin, cos) = (normal.perp(&chord.normal), normal.dot(&chord.normal));
+            let outer = (sin < 0.0) == (end == 1);
+            // Outside a tight bend the end of the allowance would come nearer to the chord.
+            let exact = self.width * (1.0 - cos) < FLATNESS;
+            if exact || (!outer && cos > 0.95) {
                 self.ends[end] = normal;
             }
         }
@@ -86,7 +106,7 @@ impl Ring {
         let count = edges.len();
         let mut flat: Vec<Vec<Vec2>> = (0..count)
             .map(|k| {
-                let mut points = edges[k].curve.flatten(FLATNESS);
+                let mut points = flattened(&edges[k]);
                 if let Some(last) = points.last_mut() {
                     *last = edges[(k + 1) % count].curve.start();
                 }

@@ -2,13 +2,15 @@
 
 use crate::allowance::Cloth;
 use crate::corner::STRAIGHT;
-use crate::ring::Ring;
+use crate::ring::{FLATNESS, Ring};
 use crate::trace::{Sides, Traced};
 use crate::{CutRing, Finding};
 use toile_geometry::{Polygon, Vec2, point_segment_distance};
 
-/// Shorter stretches are rounding \[m\].
-const SHORTEST: f64 = 1e-5;
+/// Shorter stretches are nobody's concern, and come of flattening at bends of tight curves \[m\].
+const SHORTEST: f64 = 1e-4;
+/// Shorter gaps between stretches are rounding \[m\].
+const ROUNDING: f64 = 1e-7;
 /// A slit counts as shut where the cut line is this many widths from its end: an inner corner of
 /// 60 degrees between equal allowances.
 const SLIT_DEPTH: f64 = 2.0;
@@ -39,17 +41,8 @@ pub(crate) fn stretches(
             continue;
         }
         for [from, to] in uncovered(&covered[k], chord.length) {
-            let gap = piece.gap(k, [from, to]);
-            match gaps.last_mut() {
-                Some(last)
-                    if last.edge == gap.edge
-                        && last.swallowed == gap.swallowed
-                        && gap.from - last.to < SHORTEST =>
-                {
-                    last.to = gap.to;
-                    last.least = last.least.min(gap.least);
-                }
-                _ => gaps.push(gap),
+            for part in piece.divided(k, [from, to]).windows(2) {
+                add(&mut gaps, piece.gap(k, [part[0], part[1]]));
             }
         }
     }
@@ -57,6 +50,21 @@ pub(crate) fn stretches(
     let mut findings: Vec<Finding> = gaps.iter().map(|gap| finding(ring, cloth, gap)).collect();
     findings.extend(slits(&piece, &gaps));
     findings
+}
+
+/// Adds a stretch to those before it, as one with the last if it continues that.
+fn add(gaps: &mut Vec<Gap>, gap: Gap) {
+    match gaps.last_mut() {
+        Some(last)
+            if last.edge == gap.edge
+                && last.swallowed == gap.swallowed
+                && gap.from - last.to < 10.0 * ROUNDING =>
+        {
+            last.to = gap.to;
+            last.least = last.least.min(gap.least);
+        }
+        _ => gaps.push(gap),
+    }
 }
 
 /// The shares of each chord that have their own cut line, sorted.
@@ -75,12 +83,12 @@ pub(crate) fn covered(ring: &Ring, sides: &Sides, traced: &[Traced]) -> Vec<Vec<
     covered
 }
 
-/// What sorted shares leave of a chord [m]; less than a hundredth of [`SHORTEST`] is rounding.
+/// What sorted shares leave of a chord [m].
 fn uncovered(covered: &[[f64; 2]], length: f64) -> Vec<[f64; 2]> {
     let mut left = Vec::new();
     let mut at = 0.0;
     for &[from, to] in covered.iter().chain([&[1.0, 1.0]]) {
-        if (from - at) * length > 0.01 * SHORTEST {
+        if (from - at) * length > ROUNDING {
             left.push([at * length, from * length]);
         }
         at = f64::max(at, to);
@@ -162,11 +170,29 @@ impl<'a> Piece<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
+    /// A stretch of a chord [m], divided where its own cut line would cross the border.
+    fn divided(&self, k: usize, [from, to]: [f64; 2]) -> Vec<f64> {
+        let chord = &self.ring.chords[k];
+        let width = self.ring.edges[chord.edge].width;
+        let start = chord.from + chord.normal * width;
+        let along = chord.along();
+        let mut parts = vec![from, to];
+        parts.extend(self.segments.iter().filter_map(|&[a, b]| {
+            let (p, q) = (along.perp(&(a - start)), along.perp(&(b - start)));
+            let at = (a + (b - a) * (p / (p - q)) - start).dot(&along);
+            ((p <= 0.0) != (q <= 0.0) && at > from && at < to).then_some(at)
+        }));
+        parts.sort_by(f64::total_cmp);
+        parts
+    }
+
     fn gap(&self, k: usize, span: [f64; 2]) -> Gap {
         let chord = &self.ring.chords[k];
         let width = self.ring.edges[chord.edge].width;
         let at = |t: f64| chord.from + chord.along() * t;
-        let swallowed = self.is_cloth(at(0.5 * (span[0] + span[1])) + chord.normal * width);
+        let own = at(0.5 * (span[0] + span[1])) + chord.normal * width;
+        // Beyond the centre of a tight curve it may come to lie on the border by chance.
+        let swallowed = self.is_cloth(own) || self.depth(own) < 2.0 * FLATNESS;
         let least = match swallowed {
             true => width,
             false => span

@@ -7,6 +7,9 @@ use crate::{CutRing, Origin, SegmentKind};
 use std::ops::ControlFlow;
 use toile_geometry::{EdgeTree, Vec2, point_segment_distance};
 
+/// A corner turns if its height is more than this of its shorter side.
+const TURN: f64 = 1e-4;
+
 /// All sides of all chains, as given and in the frame.
 pub(crate) struct Sides {
     frame: Frame,
@@ -194,8 +197,12 @@ impl Traced {
             let before = (k + points.len() - 1) % points.len();
             let after = points[(k + 1) % points.len()];
             let off = point_segment_distance(points[k], [points[before], after]);
+            let shorter = (points[k] - points[before])
+                .norm()
+                .min((after - points[k]).norm());
+            let straight = off <= sides.frame.tolerance && off <= TURN * shorter;
             let one = joined(ring, [&tags[before], &tags[k]]);
-            match one.filter(|_| off <= sides.frame.tolerance) {
+            match one.filter(|_| straight) {
                 Some(tag) => {
                     tags[before] = tag;
                     points.remove(k);

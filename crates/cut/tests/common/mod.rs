@@ -1,6 +1,8 @@
 //! Seam lines for tests, and small geometry of their own.
 #![allow(dead_code)]
 
+pub mod random;
+
 use toile_cut::{Corner, Dart, SeamEdge, SeamLine};
 use toile_geometry::{Curve, Vec2};
 
@@ -45,7 +47,7 @@ pub fn vertex_near(points: &[Vec2], p: Vec2, tolerance: f64) -> Option<usize> {
     points.iter().position(|q| (q - p).norm() < tolerance)
 }
 
-fn other_way(corner: Corner) -> Corner {
+pub fn other_way(corner: Corner) -> Corner {
     match corner {
         Corner::SquareToPrevious => Corner::SquareToNext,
         Corner::SquareToNext => Corner::SquareToPrevious,
