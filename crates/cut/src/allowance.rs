@@ -177,7 +177,9 @@ fn joint(ring: &Ring, k: usize, trimmed: &[Vec<Trim>], is_leg: &[bool]) -> Joint
         return Joint::Meet(chord.from + middle * (width / (1.0 + cos)));
     }
     if sin < 0.0 && cos > SLIGHT {
-        return Joint::Meet(chord.from + middle.normalize() * width);
+        // The normal of the parabola through three points: the nearer point weighs more.
+        let normal = before.normal * chord.length + chord.normal * before.length;
+        return Joint::Meet(chord.from + normal.normalize() * width);
     }
     match sin >= 0.0 && plain {
         true => Joint::Wedge,
@@ -216,6 +218,8 @@ pub(crate) fn cloth(ring: &Ring, caps: &[Cap]) -> Cloth {
             joint(ring, next, &trims, &is_leg),
         ];
         push_chord(&mut chain, ring, k, joints, [&trims[k], &trims[next]]);
+        let ends = outer_ends(ring, k, joints);
+        chains.extend(trimmed_beyond(ring, k, ends, &trims[k]));
         chains.extend(trimmed_wedge(ring, k, [&trims[k], &trims[next]]));
     }
     chains.push(chain);
@@ -346,14 +350,13 @@ fn crossed(chord: &Chord, [start, end]: [Vec2; 2]) -> Option<Vec2> {
 /// The outer way round what the corners leave of a chord's rectangle.
 fn push_trimmed(chain: &mut Chain, ring: &Ring, k: usize, (ends, trims): ([Vec2; 2], &[Trim])) {
     let chord = &ring.chords[k];
-    let out = chord.normal * ring.edges[chord.edge].width;
-    let outer = match crossed(chord, ends) {
-        None => ends,
-        Some(_) => [chord.from + out, chord.to + out],
-    };
+    let outer = ends;
     chain.side(chord.from, corner_tag(ring, chord.edge));
     // Clockwise from the chord's start: clipping keeps whatever order it is given.
-    let mut cloth = vec![chord.from, outer[0], outer[1], chord.to];
+    let mut cloth = match crossed(chord, ends) {
+        None => vec![chord.from, outer[0], outer[1], chord.to],
+        Some(x) => vec![chord.from, x, chord.to],
+    };
     for trim in trims {
         cloth = trim.plane.clip(&cloth);
     }
@@ -384,6 +387,17 @@ fn push_trimmed(chain: &mut Chain, ring: &Ring, k: usize, (ends, trims): ([Vec2;
         };
         chain.side(pair[0], tag);
     }
+}
+
+/// The cloth beyond crossing normals, where a corner cuts some of it away.
+fn trimmed_beyond(ring: &Ring, k: usize, ends: [Vec2; 2], trims: &[Trim]) -> Option<Chain> {
+    let x = crossed(&ring.chords[k], ends)?;
+    let corner = trims.first()?.corner;
+    let mut cloth = vec![x, ends[1], ends[0]];
+    for trim in trims {
+        cloth = trim.plane.clip(&cloth);
+    }
+    (cloth.len() > 2).then(|| Chain::patch(cloth, corner_tag(ring, corner)))
 }
 
 /// The wedge at the outer bend at chord `k`'s end, where a corner cuts some of it away.
