@@ -1,0 +1,93 @@
+//! What a cut line does not do as asked.
+
+use crate::EdgeIndex;
+use toile_geometry::Vec2;
+
+/// Why a dart has a straight cap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CapFault {
+    /// The edge it is pressed towards is a leg of a dart too.
+    NoNeighbour,
+    /// The leg runs along the neighbour's cut line or nearly so, or the mouth has no width.
+    NoMeeting,
+    /// The neighbour is too short, or the dart too wide: the mirror image of the cut line does
+    /// not come to the fold line.
+    TooShort,
+    /// The cap would cross the dart's legs or itself.
+    Crossing,
+}
+
+/// Something a cut line does not do as asked. Places along edges are counted from the start of
+/// the edge as given.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// Along a stretch of an edge its own cut line is missing, for other cloth or allowance lies
+    /// there: the piece is cut farther out.
+    Swallowed {
+        /// The edge.
+        edge: EdgeIndex,
+        /// The stretch, from and to \[m\].
+        stretch: [f64; 2],
+        /// Whether it starts or ends at an inner corner or a dart, where allowances always
+        /// overlap.
+        inner_corner: bool,
+    },
+    /// Along a stretch of an edge the allowance, measured square to the seam line, is narrower
+    /// than asked: a corner takes some of it.
+    Narrow {
+        /// The edge.
+        edge: EdgeIndex,
+        /// The stretch, from and to \[m\].
+        stretch: [f64; 2],
+        /// Least width \[m\].
+        least: f64,
+    },
+    /// A corner is too sharp for its allowance and cut off.
+    CutOff {
+        /// The edge that starts at the corner.
+        corner: EdgeIndex,
+        /// How far from the seam line's corner it would reach \[m\].
+        asked: f64,
+        /// How far it reaches \[m\].
+        kept: f64,
+    },
+    /// A corner is too blunt for its kind, which would reach too far, and is mitred.
+    Mitred {
+        /// The edge that starts at the corner.
+        corner: EdgeIndex,
+        /// How far from the seam line's corner it would reach \[m\].
+        asked: f64,
+    },
+    /// The allowances of a slit's sides meet: it is not cut open.
+    SlitShut {
+        /// The edges with the slit's mouth, in the cloth's order.
+        edges: [EdgeIndex; 2],
+        /// Middle of the mouth on the seam line \[m\].
+        mouth: Vec2,
+        /// Greatest distance of the shut seam line from the cut line \[m\].
+        depth: f64,
+        /// Length of seam line shut in \[m\].
+        length: f64,
+    },
+    /// The allowances round a bay meet at its mouth and leave a hole in the piece.
+    BayShut {
+        /// Its number in [`crate::CutLine::holes`].
+        hole: usize,
+        /// Area of the hole \[m2\].
+        area: f64,
+    },
+    /// A hole is filled by its allowance, or falls into parts.
+    HoleShut {
+        /// Number of the hole as given.
+        hole: usize,
+        /// Number of parts that remain: 0, or more than 1.
+        parts: usize,
+    },
+    /// A dart's mouth is cut straight across.
+    StraightCap {
+        /// Number of the dart.
+        dart: usize,
+        /// Why.
+        fault: CapFault,
+    },
+}

@@ -1,0 +1,164 @@
+//! The cut line of a piece.
+
+use crate::allowance::{Cloth, cloth};
+use crate::dart::caps;
+use crate::region::{Frame, hole_region, outline_region};
+use crate::ring::Ring;
+use crate::stretch::{covered, stretches};
+use crate::trace::{Sides, Traced};
+use crate::{CutError, EdgeIndex, Finding, SeamLine};
+use toile_geometry::{CrossingKind, Polygon, Vec2};
+
+/// What a segment of a cut line is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum SegmentKind {
+    /// A piece of an edge's cut line, in the edge's width beside it; of width 0 the edge itself.
+    Edge,
+    /// Cloth at a dart's mouth; the edge is the leg it lies beside.
+    DartCap,
+    /// A side of a corner, or the end of an allowance at a wider one; the edge is the one that
+    /// starts at the corner.
+    Corner,
+}
+
+/// Where a segment of a cut line comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Origin {
+    /// The edge of the seam line.
+    pub edge: EdgeIndex,
+    /// What the segment is.
+    pub kind: SegmentKind,
+}
+
+/// A closed line to cut along.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CutRing {
+    /// Its corners \[m\]; the first is not repeated.
+    pub points: Vec<Vec2>,
+    /// Where the segment from each corner to the next comes from, one each.
+    pub origins: Vec<Origin>,
+}
+
+/// Where a piece is cut, the cloth at the left: the outline runs counter-clockwise, holes run
+/// clockwise. No ring crosses itself or another (exact signs); they may touch in a point.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CutLine {
+    /// Round the piece.
+    pub outline: CutRing,
+    /// Inside it: what remains of the holes, in their order, and bays that have grown shut.
+    pub holes: Vec<CutRing>,
+    /// What could not be done as asked.
+    pub findings: Vec<Finding>,
+}
+
+impl CutLine {
+    /// The piece as cut, without what its segments are.
+    pub fn polygon(&self) -> Polygon {
+        Polygon {
+            outer: self.outline.points.clone(),
+            holes: self.holes.iter().map(|ring| ring.points.clone()).collect(),
+        }
+    }
+}
+
+/// The cut line of a piece: its seam line, darts capped, grown by the allowance of each edge.
+///
+/// Curves are flattened to [`crate::FLATNESS`]; corners of the result are right to about 4e-9 of
+/// the piece's extent. Where no edge of a loop has a width the loop is returned as flattened, and
+/// everywhere the corners that the union leaves in place keep their coordinates to the bit.
+///
+/// # Errors
+/// [`CutError`] for a seam line that bounds no region: open, crossing itself, not finite; for
+/// widths below 0; and for darts that are none.
+pub fn cut_line(seam: &SeamLine) -> Result<CutLine, CutError> {
+    let rings = seam.rings()?;
+    let mut line = CutLine::default();
+    for ring in &rings {
+        let caps = match ring.number {
+            0 => caps(ring, &seam.darts)?,
+            _ => Vec::new(),
+        };
+        for (dart, cap) in caps.iter().enumerate() {
+            let fault = cap.fault.map(|fault| Finding::StraightCap { dart, fault });
+            line.findings.extend(fault);
+        }
+        let cloth = cloth(ring, &caps);
+        line.findings.extend(cloth.findings.iter().cloned());
+        line.add(ring, &cloth);
+    }
+    Ok(line)
+}
+
+impl CutLine {
+    fn add(&mut self, ring: &Ring, cloth: &Cloth) {
+        let frame = Frame::of(ring, &cloth.chains);
+        let sides = Sides::new(&cloth.chains, frame);
+        let mut edges = ring.edges.iter().zip(&cloth.is_leg);
+        let bare = edges.all(|(edge, &is_leg)| edge.width == 0.0 && !is_leg);
+        let rings = match (ring.number, bare) {
+            // A single chain: no corner has cloth.
+            (_, true) => vec![
+                cloth.chains[0]
+                    .points
+                    .iter()
+                    .map(|&p| frame.snap(p))
+                    .collect(),
+            ],
+            (0, false) => outline_region(&cloth.chains, frame),
+            (_, false) => hole_region(ring, &cloth.chains, frame),
+        };
+        let (traced, cut) = traced(ring, &sides, &rings);
+        if ring.number == 0 {
+            for (k, bay) in cut.iter().enumerate().skip(1) {
+                self.findings.push(Finding::BayShut {
+                    hole: k - 1,
+                    area: toile_geometry::ring_area(&bay.points).abs(),
+                });
+            }
+        } else if cut.len() != 1 {
+            self.findings.push(Finding::HoleShut {
+                hole: ring.number - 1,
+                parts: cut.len(),
+            });
+        }
+        if !cut.is_empty() {
+            let covered = covered(ring, &sides, &traced);
+            self.findings.extend(stretches(ring, cloth, &covered, &cut));
+        }
+        let mut cut = cut.into_iter();
+        if ring.number == 0 {
+            self.outline = cut.next().unwrap_or_default();
+        }
+        self.holes.extend(cut);
+    }
+}
+
+/// The rings with their corners moved back from the grid to where they came from and needless ones
+/// left out, unless they then cross, which takes two corners within a grid step of each other.
+fn traced(ring: &Ring, sides: &Sides, rings: &[Vec<Vec2>]) -> (Vec<Traced>, Vec<CutRing>) {
+    let attempt = |exact: bool, merged: bool| {
+        let traced: Vec<Traced> = rings.iter().map(|r| sides.trace(r, exact)).collect();
+        let cut = traced.iter().map(|t| t.ring(ring, sides, merged));
+        let cut: Vec<CutRing> = cut.collect();
+        (traced, cut)
+    };
+    for (exact, merged) in [(true, true), (true, false)] {
+        let (traced, cut) = attempt(exact, merged);
+        if !crosses(&cut) {
+            return (traced, cut);
+        }
+    }
+    attempt(false, false)
+}
+
+fn crosses(rings: &[CutRing]) -> bool {
+    let mut points = rings.iter().map(|ring| ring.points.clone());
+    let polygon = Polygon {
+        outer: points.next().unwrap_or_default(),
+        holes: points.collect(),
+    };
+    let crossings = polygon.crossings(8);
+    crossings
+        .iter()
+        .any(|found| found.kind != CrossingKind::Touch)
+}

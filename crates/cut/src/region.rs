@@ -1,0 +1,129 @@
+//! The union of all cloth, on a grid on which every sum is exact.
+
+use crate::allowance::Chain;
+use crate::ring::Ring;
+use toile_geometry::{Bounds2, Polygon, Vec2, point_segment_distance, ring_area, wound_region};
+
+/// Points given to the union are multiples of this [m], a hundredth of its own grid, and its
+/// result then is too: no rounding comes between the grid, where rings do not cross, and us.
+const STEP: f64 = 1.0 / (1u64 << 36) as f64;
+/// The origin is a multiple of this [m], so that moving back is exact up to 8 km from there.
+const ORIGIN_STEP: f64 = 1.0 / (1u64 << 20) as f64;
+/// Grid steps of the union over half its extent: 2^28 to 2^29.
+const GRID: f64 = 1.0 / (1u64 << 28) as f64;
+
+/// Coordinates near the origin, rounded to [`STEP`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    pub origin: Vec2,
+    /// Distance up to which the union moves a point [m]: some of its grid steps.
+    pub tolerance: f64,
+}
+
+impl Frame {
+    pub fn of(ring: &Ring, chains: &[Chain]) -> Self {
+        let cloth = chains.iter().flat_map(|chain| &chain.points);
+        let seam = ring.chords.iter().map(|chord| &chord.from);
+        let bounds = Bounds2::of(cloth.chain(seam).copied());
+        Self {
+            origin: bounds
+                .centre()
+                .map(|x| (x / ORIGIN_STEP).round() * ORIGIN_STEP),
+            tolerance: 16.0 * GRID * bounds.size().amax() + 2.0 * STEP,
+        }
+    }
+
+    pub fn snap(&self, p: Vec2) -> Vec2 {
+        (p - self.origin).map(|x| (x / STEP).round() * STEP)
+    }
+
+    fn loops(&self, chains: &[Chain]) -> Vec<Vec<Vec2>> {
+        let one = |chain: &Chain| {
+            let mut points: Vec<Vec2> = chain.points.iter().map(|&p| self.snap(p)).collect();
+            points.dedup();
+            points
+        };
+        chains.iter().map(one).collect()
+    }
+}
+
+fn largest(polygons: Vec<Polygon>) -> Option<Polygon> {
+    polygons
+        .into_iter()
+        .max_by(|a, b| a.area().total_cmp(&b.area()))
+}
+
+/// Slivers narrower than the grid are none [m2].
+fn is_real(ring: &[Vec2], tolerance: f64) -> bool {
+    let length: f64 = Bounds2::of(ring.iter().copied()).size().sum();
+    ring_area(ring).abs() > tolerance * length
+}
+
+/// A ring without segments shorter than the grid's error, and without hairlines, which rounding
+/// leaves between sides in one line that end in different points: the ring runs back there along
+/// where it came from.
+fn without_hairlines(mut ring: Vec<Vec2>, tolerance: f64) -> Vec<Vec2> {
+    let mut k = 0;
+    // Steps without a removal; a whole round of them ends it.
+    let mut steady = 0;
+    while ring.len() > 3 && steady < ring.len() {
+        let count = ring.len();
+        k %= count;
+        let (p, q, r) = (
+            ring[(k + count - 1) % count],
+            ring[k],
+            ring[(k + 1) % count],
+        );
+        let back = (q - p).dot(&(r - q)) < 0.0;
+        let hair = || {
+            point_segment_distance(r, [p, q]) <= tolerance
+                || point_segment_distance(p, [q, r]) <= tolerance
+        };
+        if (q - p).norm() <= tolerance || (back && hair()) {
+            ring.remove(k);
+            k = (k + ring.len() - 1) % ring.len();
+            steady = 0;
+        } else {
+            k += 1;
+            steady += 1;
+        }
+    }
+    ring
+}
+
+/// The piece's outline and the bays its allowances close, in the frame.
+pub(crate) fn outline_region(chains: &[Chain], frame: Frame) -> Vec<Vec<Vec2>> {
+    let Some(whole) = largest(wound_region(&frame.loops(chains))) else {
+        return Vec::new();
+    };
+    let whole = whole.oriented();
+    let bays = whole.holes.into_iter();
+    std::iter::once(whole.outer)
+        .chain(bays.filter(|bay| is_real(bay, frame.tolerance)))
+        .map(|ring| without_hairlines(ring, frame.tolerance))
+        .collect()
+}
+
+/// What remains of a hole beyond its allowances, clockwise, in the frame: the holes of a sheet of
+/// cloth round the hole, with the hole cut out and its allowances added.
+pub(crate) fn hole_region(ring: &Ring, chains: &[Chain], frame: Frame) -> Vec<Vec<Vec2>> {
+    let mut loops = frame.loops(chains);
+    let seam = ring.chords.iter().map(|chord| frame.snap(chord.from));
+    let bounds = Bounds2::of(loops.iter().flatten().copied().chain(seam));
+    let sheet = bounds.grown(bounds.size().amax() * 0.125);
+    let corners = Polygon::rectangle(sheet).outer;
+    loops.push(
+        corners
+            .into_iter()
+            .map(|p| frame.snap(p + frame.origin))
+            .collect(),
+    );
+    let Some(whole) = largest(wound_region(&loops)) else {
+        return Vec::new();
+    };
+    let parts = whole.oriented().holes.into_iter();
+    parts
+        .filter(|part| is_real(part, frame.tolerance))
+        .map(|ring| without_hairlines(ring, frame.tolerance))
+        .collect()
+}

@@ -1,0 +1,159 @@
+//! What is given: the line a piece is sewn along, and what is wanted outside it.
+
+use crate::Corner;
+use crate::ring::Ring;
+use toile_geometry::{Curve, Polygon, PolygonDefect, Vec2};
+
+/// An edge of a seam line and the cloth wanted beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeamEdge {
+    /// Where it is sewn \[m\]; it ends where the next edge of its loop starts.
+    pub curve: Curve,
+    /// Width of the allowance \[m\], measured square to the curve; 0 for none.
+    pub width: f64,
+    /// How the cut line turns at the edge's start.
+    pub corner: Corner,
+}
+
+/// A dart that is sewn shut and pressed to one side, drawn as two edges of the outline that meet
+/// in its apex. Their own widths and corners are not used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dart {
+    /// Numbers of the outline's edges: the leg before the apex and the leg after it.
+    pub legs: [usize; 2],
+    /// Which of the legs the cloth inside the dart is pressed towards: 0 or 1.
+    pub pressed: usize,
+}
+
+/// The line a piece is sewn along, unfolded. Loops may run either way.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SeamLine {
+    /// The edges round the piece; the allowance lies outside.
+    pub outline: Vec<SeamEdge>,
+    /// The edges round each hole; the allowance lies inside the hole.
+    pub holes: Vec<Vec<SeamEdge>>,
+    /// The darts in the outline.
+    pub darts: Vec<Dart>,
+}
+
+/// Number of an edge in a [`SeamLine`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EdgeIndex {
+    /// The loop: 0 is the outline, `k + 1` is hole `k`.
+    pub ring: usize,
+    /// The edge in the loop.
+    pub edge: usize,
+}
+
+/// Why a seam line has no cut line.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum CutError {
+    /// A coordinate is not a finite number.
+    #[error("{0:?} has a coordinate that is not a finite number")]
+    NotFinite(EdgeIndex),
+    /// A width is negative or not a finite number.
+    #[error("{0:?} has an allowance that is negative or not a finite number")]
+    Width(EdgeIndex),
+    /// An edge does not end where the next one starts.
+    #[error("{0:?} ends {1} m from where the next edge starts")]
+    Open(EdgeIndex, f64),
+    /// A loop encloses nothing.
+    #[error("loop {0} encloses nothing")]
+    NoArea(usize),
+    /// Two edges meet where they should not.
+    #[error("{0:?} and {1:?} meet at {2:?}")]
+    Crossing(EdgeIndex, EdgeIndex, Vec2),
+    /// A hole lies outside the outline or in another hole.
+    #[error("hole {0} lies outside the outline or in another hole")]
+    StrayHole(usize),
+    /// The legs of a dart do not follow each other, belong to two darts, or point outwards.
+    #[error("dart {0} has legs that do not follow each other, are another dart's, or point out")]
+    Dart(usize),
+}
+
+/// Ends of edges may lie this far apart \[m\]: rounding of formulas and files, and far below what
+/// can be cut.
+const CLOSED: f64 = 1e-6;
+
+impl SeamLine {
+    /// The edges of a loop: 0 is the outline, `k + 1` is hole `k`.
+    pub fn edges(&self, ring: usize) -> Option<&[SeamEdge]> {
+        match ring.checked_sub(1) {
+            None => Some(&self.outline),
+            Some(hole) => self.holes.get(hole).map(Vec::as_slice),
+        }
+    }
+
+    /// The loops flattened, outline first, once nothing is found wrong with them.
+    pub(crate) fn rings(&self) -> Result<Vec<Ring>, CutError> {
+        let mut rings = Vec::with_capacity(1 + self.holes.len());
+        for ring in 0..=self.holes.len() {
+            let edges = self.edges(ring).unwrap_or_default();
+            check_edges(edges, ring)?;
+            rings.push(Ring::new(edges, ring));
+        }
+        check_shape(&rings)?;
+        self.check_darts(&rings)?;
+        Ok(rings)
+    }
+
+    fn check_darts(&self, rings: &[Ring]) -> Result<(), CutError> {
+        let count = self.outline.len();
+        for (k, dart) in self.darts.iter().enumerate() {
+            let [before, after] = dart.legs;
+            let follow = before < count && after == (before + 1) % count && dart.pressed < 2;
+            let taken = self.darts[..k]
+                .iter()
+                .any(|other| other.legs.iter().any(|leg| dart.legs.contains(leg)));
+            let inward = || rings.first().is_some_and(|ring| ring.is_notch(dart.legs));
+            if !follow || taken || !inward() {
+                return Err(CutError::Dart(k));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn check_edges(edges: &[SeamEdge], ring: usize) -> Result<(), CutError> {
+    for (k, edge) in edges.iter().enumerate() {
+        let index = EdgeIndex { ring, edge: k };
+        if !edge.curve.is_finite() {
+            return Err(CutError::NotFinite(index));
+        }
+        if !(edge.width >= 0.0 && edge.width.is_finite()) {
+            return Err(CutError::Width(index));
+        }
+        let gap = (edge.curve.end() - edges[(k + 1) % edges.len()].curve.start()).norm();
+        if gap > CLOSED {
+            return Err(CutError::Open(index, gap));
+        }
+    }
+    Ok(())
+}
+
+fn check_shape(rings: &[Ring]) -> Result<(), CutError> {
+    let points = |ring: &Ring| ring.chords.iter().map(|chord| chord.from).collect();
+    let polygon = Polygon {
+        outer: rings.first().map(points).unwrap_or_default(),
+        holes: rings.iter().skip(1).map(points).collect(),
+    };
+    let index = |[ring, point]: [usize; 2]| EdgeIndex {
+        ring,
+        edge: rings[ring].source_of(point),
+    };
+    match polygon.defects().first() {
+        None => Ok(()),
+        Some(PolygonDefect::NotFinite { ring, point }) => {
+            Err(CutError::NotFinite(index([*ring, *point])))
+        }
+        Some(PolygonDefect::TooFewPoints { ring } | PolygonDefect::NoArea { ring }) => {
+            Err(CutError::NoArea(*ring))
+        }
+        Some(PolygonDefect::Crossing(found)) => Err(CutError::Crossing(
+            index(found.first),
+            index(found.second),
+            found.point,
+        )),
+        Some(PolygonDefect::StrayHole { hole }) => Err(CutError::StrayHole(*hole)),
+    }
+}
