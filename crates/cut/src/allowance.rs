@@ -5,40 +5,12 @@
 //! boundaries is a single chain. Its winding number at a point is the number of pieces that hold
 //! the point, so its non-zero region is the union of them all, from a third of the segments.
 
+use crate::chain::{Chain, Tag, corner_edge, corner_tag};
 use crate::corner::{CornerCloth, HalfPlane, Outcome, STRAIGHT, corner_cloth};
 use crate::dart::Cap;
 use crate::ring::{Chord, FLATNESS, Ring};
 use crate::{Finding, MITRE_LIMIT, SegmentKind};
 use toile_geometry::Vec2;
-
-/// What a side of the chain is a part of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Tag {
-    /// Edge of the ring.
-    pub edge: usize,
-    pub kind: SegmentKind,
-    /// The chord it runs along, and where on it the side starts and ends (shares of its length).
-    pub beside: Option<(usize, [f64; 2])>,
-}
-
-/// A closed loop of tagged sides: side k runs from point k to the next.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Chain {
-    pub points: Vec<Vec2>,
-    pub tags: Vec<Tag>,
-}
-
-impl Chain {
-    pub fn side(&mut self, from: Vec2, tag: Tag) {
-        self.points.push(from);
-        self.tags.push(tag);
-    }
-
-    fn patch(points: Vec<Vec2>, tag: Tag) -> Self {
-        let tags = vec![tag; points.len()];
-        Self { points, tags }
-    }
-}
 
 /// The cloth of one ring: its chain with the loops of its corners, and what was found on the way.
 pub(crate) struct Cloth {
@@ -238,24 +210,6 @@ pub(crate) fn cloth(ring: &Ring, caps: &[Cap]) -> Cloth {
         chains,
         is_leg,
         findings,
-    }
-}
-
-/// Tag of what belongs to the corner at an edge's start. In a ring walked backwards the corner is
-/// named after the edge before, which starts there as given.
-pub(crate) fn corner_tag(ring: &Ring, edge: usize) -> Tag {
-    Tag {
-        edge: corner_edge(ring, edge),
-        kind: SegmentKind::Corner,
-        beside: None,
-    }
-}
-
-fn corner_edge(ring: &Ring, edge: usize) -> usize {
-    if ring.reversed {
-        ring.before(edge)
-    } else {
-        edge
     }
 }
 

@@ -5,7 +5,7 @@
 //! that leg is cut along the mirror image in it of the neighbour's cut line, and the other half
 //! along the mirror image of the first in the fold line.
 
-use crate::allowance::{Chain, Tag, corner_tag};
+use crate::chain::{Chain, Tag, corner_tag};
 use crate::ring::{Chord, Ring};
 use crate::{CapFault, CutError, Dart, MITRE_LIMIT, SegmentKind};
 use toile_geometry::{Polygon, Vec2};

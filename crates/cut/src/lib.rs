@@ -9,7 +9,10 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod allowance;
+mod chain;
+mod check;
 mod corner;
+mod cut_line;
 mod dart;
 mod finding;
 mod outline;
@@ -20,7 +23,8 @@ mod stretch;
 mod trace;
 
 pub use corner::{Corner, MITRE_LIMIT};
+pub use cut_line::{CutLine, CutRing, Origin, SegmentKind};
 pub use finding::{CapFault, Finding};
-pub use outline::{CutLine, CutRing, Origin, SegmentKind, cut_line};
+pub use outline::cut_line;
 pub use ring::FLATNESS;
 pub use seam_line::{CutError, Dart, EdgeIndex, SeamEdge, SeamLine};

@@ -1,6 +1,6 @@
 //! The union of all cloth, on a grid on which every sum is exact.
 
-use crate::allowance::Chain;
+use crate::chain::Chain;
 use crate::ring::Ring;
 use toile_geometry::{Bounds2, Polygon, Vec2, point_segment_distance, ring_area, wound_region};
 

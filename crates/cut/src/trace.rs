@@ -1,6 +1,6 @@
 //! Which side of the cloth every segment of the cleaned outline comes from.
 
-use crate::allowance::{Chain, Tag};
+use crate::chain::{Chain, Tag};
 use crate::region::Frame;
 use crate::ring::Ring;
 use crate::{CutRing, Origin, SegmentKind};
