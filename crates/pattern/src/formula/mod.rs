@@ -5,6 +5,7 @@
 //! recursion whatever its length.
 
 mod compute;
+mod cursor;
 mod names;
 mod parse;
 

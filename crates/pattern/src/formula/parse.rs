@@ -1,5 +1,6 @@
 //! Reads formulas: a recursive-descent parser of bounded depth that writes postfix steps.
 
+use super::cursor::Cursor;
 use super::names::part_of_ids;
 use super::{
     Comparison, FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Function, Names, Operation,
@@ -37,9 +38,8 @@ const COMPARISONS: &[(&str, Comparison)] = &[
 ];
 
 struct Parser<'a> {
-    text: &'a str,
+    cursor: Cursor<'a>,
     names: &'a Names,
-    at: usize,
     depth: usize,
     steps: Vec<Step>,
     tokens: Vec<Token>,
@@ -64,18 +64,17 @@ pub(super) fn parse(text: &str, names: &Names) -> Result<Formula, FormulaError> 
         });
     }
     let mut parser = Parser {
-        text,
+        cursor: Cursor { text, at: 0 },
         names,
-        at: 0,
         depth: 0,
         steps: Vec::new(),
         tokens: Vec::new(),
         pending: 0,
     };
     parser.either()?;
-    parser.skip_space();
-    if parser.at < text.len() {
-        return Err(parser.error_here(
+    parser.cursor.skip_space();
+    if parser.cursor.at < text.len() {
+        return Err(parser.cursor.error_here(
             "is not expected here",
             "put an operator between values, or remove it",
         ));
@@ -88,55 +87,6 @@ pub(super) fn parse(text: &str, names: &Names) -> Result<Formula, FormulaError> 
 }
 
 impl Parser<'_> {
-    fn rest(&self) -> &str {
-        &self.text[self.at..]
-    }
-
-    fn skip_space(&mut self) {
-        self.at = self.text.len() - self.rest().trim_start().len();
-    }
-
-    fn peek(&mut self) -> Option<char> {
-        self.skip_space();
-        self.rest().chars().next()
-    }
-
-    fn take(&mut self, wanted: char) -> bool {
-        let found = self.peek() == Some(wanted);
-        if found {
-            self.at += wanted.len_utf8();
-        }
-        found
-    }
-
-    fn take_word(&mut self, wanted: &str) -> bool {
-        self.skip_space();
-        let found = &self.rest()[..word_length(self.rest())] == wanted;
-        if found {
-            self.at += wanted.len();
-        }
-        found
-    }
-
-    fn column(&self) -> usize {
-        self.text[..self.at].chars().count() + 1
-    }
-
-    fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> FormulaError {
-        FormulaError {
-            column: self.column(),
-            message: message.into(),
-            hint: hint.into(),
-        }
-    }
-
-    fn error_here(&self, message: &str, hint: &str) -> FormulaError {
-        match self.rest().chars().next() {
-            Some(c) => self.error(format!("{:?} {message}", c.to_string()), hint),
-            None => self.error("the formula ends too early", hint),
-        }
-    }
-
     fn push(&mut self, column: usize, operation: Operation) {
         self.steps.push(Step { column, operation });
     }
@@ -144,7 +94,7 @@ impl Parser<'_> {
     /// Puts the text up to a place into a token.
     fn flush(&mut self, end: usize) {
         if self.pending < end {
-            let text = &self.text[self.pending..end];
+            let text = &self.cursor.text[self.pending..end];
             self.tokens.push(Token::Text(text.into()));
         }
         self.pending = end;
@@ -154,13 +104,13 @@ impl Parser<'_> {
     fn name_token(&mut self, start: usize, token: Token) {
         self.flush(start);
         self.tokens.push(token);
-        self.pending = self.at;
+        self.pending = self.cursor.at;
     }
 
     fn enter(&mut self) -> Result<(), FormulaError> {
         self.depth += 1;
         if self.depth > FORMULA_DEPTH {
-            return Err(self.error(
+            return Err(self.cursor.error(
                 format!("nested deeper than {FORMULA_DEPTH} levels"),
                 "split it with variables",
             ));
@@ -171,9 +121,9 @@ impl Parser<'_> {
     fn either(&mut self) -> Result<(), FormulaError> {
         self.both()?;
         loop {
-            self.skip_space();
-            let column = self.column();
-            if !self.take_word("or") {
+            self.cursor.skip_space();
+            let column = self.cursor.column();
+            if !self.cursor.take_word("or") {
                 return Ok(());
             }
             self.both()?;
@@ -184,9 +134,9 @@ impl Parser<'_> {
     fn both(&mut self) -> Result<(), FormulaError> {
         self.negated()?;
         loop {
-            self.skip_space();
-            let column = self.column();
-            if !self.take_word("and") {
+            self.cursor.skip_space();
+            let column = self.cursor.column();
+            if !self.cursor.take_word("and") {
                 return Ok(());
             }
             self.negated()?;
@@ -195,9 +145,9 @@ impl Parser<'_> {
     }
 
     fn negated(&mut self) -> Result<(), FormulaError> {
-        self.skip_space();
-        let column = self.column();
-        if !self.take_word("not") {
+        self.cursor.skip_space();
+        let column = self.cursor.column();
+        if !self.cursor.take_word("not") {
             return self.comparison();
         }
         self.enter()?;
@@ -209,11 +159,13 @@ impl Parser<'_> {
 
     fn comparison(&mut self) -> Result<(), FormulaError> {
         self.sum()?;
-        self.skip_space();
-        let column = self.column();
-        let found = COMPARISONS.iter().find(|c| self.rest().starts_with(c.0));
+        self.cursor.skip_space();
+        let column = self.cursor.column();
+        let found = COMPARISONS
+            .iter()
+            .find(|c| self.cursor.rest().starts_with(c.0));
         if let Some(&(text, comparison)) = found {
-            self.at += text.len();
+            self.cursor.at += text.len();
             self.sum()?;
             self.push(column, Operation::Compare(comparison));
         }
@@ -222,9 +174,9 @@ impl Parser<'_> {
 
     fn sum(&mut self) -> Result<(), FormulaError> {
         self.product()?;
-        while let Some(sign @ ('+' | '-')) = self.peek() {
-            let column = self.column();
-            self.at += 1;
+        while let Some(sign @ ('+' | '-')) = self.cursor.peek() {
+            let column = self.cursor.column();
+            self.cursor.at += 1;
             self.product()?;
             let operation = match sign {
                 '+' => Operation::Add,
@@ -237,9 +189,9 @@ impl Parser<'_> {
 
     fn product(&mut self) -> Result<(), FormulaError> {
         self.unary()?;
-        while let Some(sign @ ('*' | '/')) = self.peek() {
-            let column = self.column();
-            self.at += 1;
+        while let Some(sign @ ('*' | '/')) = self.cursor.peek() {
+            let column = self.cursor.column();
+            self.cursor.at += 1;
             self.unary()?;
             let operation = match sign {
                 '*' => Operation::Multiply,
@@ -252,15 +204,15 @@ impl Parser<'_> {
 
     fn unary(&mut self) -> Result<(), FormulaError> {
         self.enter()?;
-        match self.peek() {
+        match self.cursor.peek() {
             Some('-') => {
-                let column = self.column();
-                self.at += 1;
+                let column = self.cursor.column();
+                self.cursor.at += 1;
                 self.unary()?;
                 self.push(column, Operation::Negate);
             }
             Some('+') => {
-                self.at += 1;
+                self.cursor.at += 1;
                 self.unary()?;
             }
             _ => self.primary()?,
@@ -270,17 +222,22 @@ impl Parser<'_> {
     }
 
     fn primary(&mut self) -> Result<(), FormulaError> {
-        match self.peek() {
+        match self.cursor.peek() {
             Some('(') => {
-                self.at += 1;
+                self.cursor.at += 1;
                 self.either()?;
                 self.close()
             }
-            Some(c) if c.is_ascii_digit() || c == '.' => self.constant(),
+            Some(c) if c.is_ascii_digit() || c == '.' => {
+                let column = self.cursor.column();
+                let (value, power) = self.cursor.constant()?;
+                self.push(column, Operation::Constant { value, power });
+                Ok(())
+            }
             Some('?') => self.lost(),
             Some('@') if self.names.are_ids() => self.variable_by_id(),
             Some(c) if c.is_ascii_alphabetic() || c == '_' || c == '\'' => self.name_or_call(),
-            _ => Err(self.error_here(
+            _ => Err(self.cursor.error_here(
                 "is not a value",
                 "write a number, a measurement, a variable or ( here",
             )),
@@ -288,129 +245,21 @@ impl Parser<'_> {
     }
 
     fn close(&mut self) -> Result<(), FormulaError> {
-        if self.take(')') {
+        if self.cursor.take(')') {
             Ok(())
         } else {
-            Err(self.error_here("stands where ) is missing", "close the parenthesis"))
+            Err(self
+                .cursor
+                .error_here("stands where ) is missing", "close the parenthesis"))
         }
-    }
-
-    fn digits(&self, from: usize) -> usize {
-        let bytes = self.rest().as_bytes();
-        let rest = bytes.get(from..).unwrap_or_default();
-        rest.iter().take_while(|b| b.is_ascii_digit()).count()
-    }
-
-    fn constant(&mut self) -> Result<(), FormulaError> {
-        let column = self.column();
-        if let Some((value, end)) = self.inch_fraction() {
-            self.at += end;
-            let value = value * 0.0254;
-            self.push(column, Operation::Constant { value, power: 1 });
-            return Ok(());
-        }
-        let bytes = self.rest().as_bytes();
-        let mut end = self.digits(0);
-        if bytes.get(end) == Some(&b'.') {
-            end += 1 + self.digits(end + 1);
-        }
-        if matches!(bytes.get(end), Some(b'e' | b'E')) {
-            let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
-            let exponent = self.digits(end + 1 + sign);
-            if exponent > 0 {
-                end += 1 + sign + exponent;
-            }
-        }
-        let number: f64 = self.rest()[..end]
-            .parse()
-            .map_err(|_| self.error_here("is not a number", "write digits, for example 2.5cm"))?;
-        self.at += end;
-        let (value, power) = self.unit(number)?;
-        if !value.is_finite() {
-            return Err(self.error("the number is too large", "write a smaller one"));
-        }
-        self.push(column, Operation::Constant { value, power });
-        Ok(())
-    }
-
-    /// `5/8in` or `1 5/8in`: inches, and the bytes it takes. Anything else is no such number.
-    fn inch_fraction(&self) -> Option<(f64, usize)> {
-        let text = self.rest();
-        let number = |from: usize, length: usize| text.get(from..from + length)?.parse().ok();
-        let first = self.digits(0);
-        let mut whole = 0.0;
-        let (mut start, mut length) = (0, first);
-        if text.as_bytes().get(first) == Some(&b' ') {
-            whole = number(0, first)?;
-            start = first + 1;
-            length = self.digits(start);
-        }
-        let above: f64 = number(start, length)?;
-        let slash = start + length;
-        if text.as_bytes().get(slash) != Some(&b'/') {
-            return None;
-        }
-        let below_length = self.digits(slash + 1);
-        let below: f64 = number(slash + 1, below_length)?;
-        let end = slash + 1 + below_length;
-        let unit = &text[end..];
-        let is_inch = word_length(unit) == 2 && unit.starts_with("in");
-        (is_inch && below > 0.0).then_some((whole + above / below, end + 2))
-    }
-
-    /// Applies the unit that follows a number, if one does.
-    fn unit(&mut self, number: f64) -> Result<(f64, i8), FormulaError> {
-        let before = self.at;
-        self.skip_space();
-        let end = word_length(self.rest());
-        let (value, power) = match &self.rest()[..end] {
-            "" | "and" | "or" => {
-                self.at = before;
-                return Ok((number, 0));
-            }
-            "m" => (number, 1),
-            "cm" => (number / 100.0, 1),
-            "mm" => (number / 1000.0, 1),
-            "in" => (number * 0.0254, 1),
-            "deg" => (number.to_radians(), 0),
-            "rad" => (number, 0),
-            other => {
-                let message = format!("{other:?} is not a unit");
-                return Err(
-                    self.error(message, "use mm, cm, m, in, deg or rad, or write * between")
-                );
-            }
-        };
-        self.at += end;
-        Ok((value, power))
-    }
-
-    /// A name, plain or quoted, and whether it was quoted.
-    fn word(&mut self) -> Result<(Box<str>, bool), FormulaError> {
-        let first = self.peek();
-        let start = self.at;
-        if first == Some('\'') {
-            let inner = &self.text[start + 1..];
-            let Some(length) = inner.find('\'') else {
-                return Err(self.error("the quoted name does not end", "close it with '"));
-            };
-            self.at = start + length + 2;
-            return Ok((inner[..length].into(), true));
-        }
-        let length = word_length(self.rest());
-        if length == 0 {
-            return Err(self.error_here("is not a name", "write a name here"));
-        }
-        self.at += length;
-        Ok((self.text[start..self.at].into(), false))
     }
 
     /// `?47`: a part that was removed.
     fn lost(&mut self) -> Result<(), FormulaError> {
-        let (column, start) = (self.column(), self.at);
-        let length = self.digits(1);
-        self.at += 1 + length;
-        let word: Box<str> = self.text[start..self.at].into();
+        let (column, start) = (self.cursor.column(), self.cursor.at);
+        let length = self.cursor.digits(1);
+        self.cursor.at += 1 + length;
+        let word: Box<str> = self.cursor.text[start..self.cursor.at].into();
         self.name_token(start, Token::Text(word.clone()));
         self.push(column, Operation::Word(word));
         Ok(())
@@ -418,23 +267,24 @@ impl Parser<'_> {
 
     /// `@12`: a variable by its id.
     fn variable_by_id(&mut self) -> Result<(), FormulaError> {
-        let (column, start) = (self.column(), self.at);
-        let length = self.digits(1);
-        let number: Option<u32> = self.rest()[1..1 + length].parse().ok();
-        let number = number.ok_or_else(|| self.error_here("is no id", "write @ and a number"))?;
-        self.at += 1 + length;
+        let (column, start) = (self.cursor.column(), self.cursor.at);
+        let length = self.cursor.digits(1);
+        let number: Option<u32> = self.cursor.rest()[1..1 + length].parse().ok();
+        let number =
+            number.ok_or_else(|| self.cursor.error_here("is no id", "write @ and a number"))?;
+        self.cursor.at += 1 + length;
         self.name_token(start, Token::Variable(number.into()));
         self.push(column, Operation::Variable(number.into()));
         Ok(())
     }
 
     fn name_or_call(&mut self) -> Result<(), FormulaError> {
-        self.skip_space();
-        let (column, start) = (self.column(), self.at);
-        let (name, is_quoted) = self.word()?;
-        let end = self.at;
-        if self.peek() != Some('(') || is_quoted {
-            self.at = end;
+        self.cursor.skip_space();
+        let (column, start) = (self.cursor.column(), self.cursor.at);
+        let (name, is_quoted) = self.cursor.word()?;
+        let end = self.cursor.at;
+        if self.cursor.peek() != Some('(') || is_quoted {
+            self.cursor.at = end;
             let (token, operation) = match self.names.variable(&name) {
                 Some(id) => (Token::Variable(id), Operation::Variable(id)),
                 None => (Token::Word(name.clone()), Operation::Word(name)),
@@ -448,7 +298,7 @@ impl Parser<'_> {
         }
         let operation = match &*name {
             "length" | "finished" => {
-                self.at += 1;
+                self.cursor.at += 1;
                 let part = self.part(Kind::Stretch)?;
                 match &*name {
                     "length" => Operation::Length(part),
@@ -456,11 +306,11 @@ impl Parser<'_> {
                 }
             }
             "x" | "y" => {
-                self.at += 1;
+                self.cursor.at += 1;
                 Operation::Coordinate(self.part(Kind::Point)?, usize::from(&*name == "y"))
             }
             "distance" => {
-                self.at += 1;
+                self.cursor.at += 1;
                 let first = self.part(Kind::Point)?;
                 self.comma("write distance(panel.point, panel.point)")?;
                 Operation::Distance(first, self.part(Kind::Point)?)
@@ -475,32 +325,34 @@ impl Parser<'_> {
 
     /// The direction of an edge, or from a point to another.
     fn angle(&mut self) -> Result<Operation, FormulaError> {
-        self.at += 1;
-        let start = self.at;
+        self.cursor.at += 1;
+        let start = self.cursor.at;
         let state = (self.tokens.len(), self.pending);
         let first = self.part(Kind::Point)?;
-        if self.peek() == Some(',') {
-            self.at += 1;
+        if self.cursor.peek() == Some(',') {
+            self.cursor.at += 1;
             return Ok(Operation::AngleBetween(first, self.part(Kind::Point)?));
         }
-        self.at = start;
+        self.cursor.at = start;
         self.tokens.truncate(state.0);
         self.pending = state.1;
         Ok(Operation::Angle(self.part(Kind::Stretch)?))
     }
 
     fn comma(&mut self, hint: &str) -> Result<(), FormulaError> {
-        if self.take(',') {
+        if self.cursor.take(',') {
             return Ok(());
         }
-        Err(self.error_here("stands where a comma is missing", hint))
+        Err(self
+            .cursor
+            .error_here("stands where a comma is missing", hint))
     }
 
     /// `if(condition, value, otherwise)`: only the value that is chosen is computed.
     fn condition(&mut self, column: usize) -> Result<(), FormulaError> {
         const HINT: &str = "write if(condition, value, otherwise)";
         self.enter()?;
-        self.at += 1;
+        self.cursor.at += 1;
         self.either()?;
         self.comma(HINT)?;
         let unless = self.steps.len();
@@ -519,27 +371,29 @@ impl Parser<'_> {
     fn call(&mut self, name: &str, start: usize, column: usize) -> Result<(), FormulaError> {
         let Some(&(_, function, least, most)) = FUNCTIONS.iter().find(|known| known.0 == name)
         else {
-            self.at = start;
+            self.cursor.at = start;
             let message = format!("{name:?} is not a function");
-            return Err(self.error(message, format!("use one of {FUNCTION_NAMES}")));
+            return Err(self
+                .cursor
+                .error(message, format!("use one of {FUNCTION_NAMES}")));
         };
-        self.at += 1;
+        self.cursor.at += 1;
         let mut count = 1;
         self.either()?;
-        while self.take(',') {
+        while self.cursor.take(',') {
             self.either()?;
             count += 1;
         }
         self.close()?;
         if count < least || count > most {
-            self.at = start;
+            self.cursor.at = start;
             let message = format!("{name} is given {count} values");
             let hint = if least == most {
                 format!("give it {least}")
             } else {
                 format!("give it {least} to {most}")
             };
-            return Err(self.error(message, hint));
+            return Err(self.cursor.error(message, hint));
         }
         self.push(column, Operation::Call(function, count));
         Ok(())
@@ -548,68 +402,64 @@ impl Parser<'_> {
     /// `panel.part`, `panel.from..panel.to`, or the name of a seam; plain words or quoted.
     fn part(&mut self, kind: Kind) -> Result<PartReference, FormulaError> {
         const HINT: &str = "write panel.name, for example front.armhole";
-        if self.peek() == Some('?') {
-            let start = self.at;
-            self.at += 1 + self.digits(1);
-            let part = PartReference::Unknown(self.text[start..self.at].into());
+        if self.cursor.peek() == Some('?') {
+            let start = self.cursor.at;
+            self.cursor.at += 1 + self.cursor.digits(1);
+            let part = PartReference::Unknown(self.cursor.text[start..self.cursor.at].into());
             self.name_token(start, Token::Part(part.clone()));
             return Ok(part);
         }
-        if self.peek() == Some('@') && self.names.are_ids() {
-            let start = self.at;
-            let rest = &self.text[start + 1..];
+        if self.cursor.peek() == Some('@') && self.names.are_ids() {
+            let start = self.cursor.at;
+            let rest = &self.cursor.text[start + 1..];
             let length = rest
                 .find(|c: char| !(c.is_ascii_alphanumeric() || matches!(c, ':' | '.' | '_')))
                 .unwrap_or(rest.len());
             let part = part_of_ids(&rest[..length])
-                .ok_or_else(|| self.error_here("is no id", "write @ and an id"))?;
-            self.at = start + 1 + length;
+                .ok_or_else(|| self.cursor.error_here("is no id", "write @ and an id"))?;
+            self.cursor.at = start + 1 + length;
             self.name_token(start, Token::Part(part.clone()));
             return Ok(part);
         }
-        self.skip_space();
-        let start = self.at;
-        let (owner, _) = self.word()?;
-        if !self.take('.') {
-            if kind == Kind::Stretch && self.peek() == Some(')') {
-                self.at = start;
-                self.word()?;
+        self.cursor.skip_space();
+        let start = self.cursor.at;
+        let (owner, _) = self.cursor.word()?;
+        if !self.cursor.take('.') {
+            if kind == Kind::Stretch && self.cursor.peek() == Some(')') {
+                self.cursor.at = start;
+                self.cursor.word()?;
                 let part = match self.names.seam(&owner) {
                     Some(id) => PartReference::Seam(id),
-                    None => PartReference::Unknown(self.text[start..self.at].into()),
+                    None => PartReference::Unknown(self.cursor.text[start..self.cursor.at].into()),
                 };
                 self.name_token(start, Token::Part(part.clone()));
                 return Ok(part);
             }
-            return Err(self.error_here("stands where a dot is missing", HINT));
+            return Err(self
+                .cursor
+                .error_here("stands where a dot is missing", HINT));
         }
-        let (part, _) = self.word()?;
-        let found = if self.rest().starts_with("..") && kind == Kind::Stretch {
-            self.at += 2;
-            self.word()?;
-            if !self.take('.') {
-                return Err(self.error_here("stands where a dot is missing", HINT));
+        let (part, _) = self.cursor.word()?;
+        let found = if self.cursor.rest().starts_with("..") && kind == Kind::Stretch {
+            self.cursor.at += 2;
+            self.cursor.word()?;
+            if !self.cursor.take('.') {
+                return Err(self
+                    .cursor
+                    .error_here("stands where a dot is missing", HINT));
             }
-            let (to, _) = self.word()?;
+            let (to, _) = self.cursor.word()?;
             self.names.between(&owner, [&part, &to])
         } else if kind == Kind::Point {
             self.names.point(&owner, &part).map(PartReference::Point)
         } else {
             self.names.stretch(&owner, &part)
         };
-        let text = &self.text[start..self.at];
+        let text = &self.cursor.text[start..self.cursor.at];
         let found = found.unwrap_or_else(|| PartReference::Unknown(text.into()));
         self.name_token(start, Token::Part(found.clone()));
         Ok(found)
     }
-}
-
-fn word_length(text: &str) -> usize {
-    if !text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
-        return 0;
-    }
-    text.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
-        .unwrap_or(text.len())
 }
 
 #[cfg(test)]
