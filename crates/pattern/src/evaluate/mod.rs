@@ -5,6 +5,7 @@
 //! needs changed (strongly connected components by Tarjan 1972, on an explicit stack), and
 //! recomputes dependants in that order, stopping where a value stays the same to the bit.
 
+mod compute;
 mod curves;
 mod graph;
 mod node;
@@ -14,9 +15,8 @@ mod points;
 mod seams;
 
 pub use node::Node;
-pub(crate) use node::Value;
+pub(crate) use node::{SeamValue, Value};
 pub use numbers::Want;
-pub(crate) use seams::SeamValue;
 
 use crate::{Diagnostic, Pattern, PointId, SheetId};
 use node::NodeState;

@@ -1,14 +1,13 @@
 //! What is evaluated, what defines it, and what it needs.
 
 use crate::formula::{Quantity, Token};
+use crate::stage::Stretch;
 use crate::{
     Curve, CurveId, Diagnostic, EdgeId, Line, Name, Number, OperationId, Panel, PanelId,
     PartReference, Pattern, Point, PointId, Seam, SeamId, Stage, Variable, VariableId, WornRule,
 };
 use std::sync::Arc;
 use toile_geometry::{Path, Vec2};
-
-use super::SeamValue;
 
 /// Something that has a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -69,6 +68,26 @@ pub(crate) enum Value {
     Path(Arc<Path>),
     Stage(Arc<Stage>),
     Seam(Arc<SeamValue>),
+}
+
+/// A seam for one set of measurements.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SeamValue {
+    /// How much longer one side may be [m].
+    pub ease: f64,
+    /// Of each side, its spans in walking order; nothing where one has no place.
+    pub sides: [Vec<SpanValue>; 2],
+    /// Length of each side, dart legs left out [m].
+    pub lengths: [f64; 2],
+}
+
+/// A span: a copy and half of a panel, and named edges between shares.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SpanValue {
+    pub panel: crate::PanelId,
+    pub copy: u32,
+    pub half: u8,
+    pub stretch: Stretch,
 }
 
 /// A node with its place in the graph and its value.

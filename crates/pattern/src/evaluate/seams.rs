@@ -1,30 +1,10 @@
 //! Seams: where their spans lie, and how long both sides are when all operations are done.
 
-use super::node::Node;
+use super::node::{Node, SeamValue, SpanValue};
 use super::numbers::{Computation, Want};
 use crate::stage::{MarkValue, PlaceError, Stretch};
 use crate::{Code, Diagnostic, Mark, Place, Seam, Span, Stage};
 use std::sync::Arc;
-
-/// A seam for one set of measurements.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct SeamValue {
-    /// How much longer one side may be [m].
-    pub ease: f64,
-    /// Of each side, its spans in walking order; nothing where one has no place.
-    pub sides: [Vec<SpanValue>; 2],
-    /// Length of each side, dart legs left out [m].
-    pub lengths: [f64; 2],
-}
-
-/// A span: a copy and half of a panel, and named edges between shares.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct SpanValue {
-    pub panel: crate::PanelId,
-    pub copy: u32,
-    pub half: u8,
-    pub stretch: Stretch,
-}
 
 /// The value of a seam; nothing if a span has no place.
 pub(super) fn seam(c: &mut Computation<'_>, seam: &Seam) -> Option<Arc<SeamValue>> {
