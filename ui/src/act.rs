@@ -73,16 +73,33 @@ impl ToileApp {
         }
     }
 
-    /// Moves a point to a place of its panel. Moves with one number are one step of the history.
-    pub(crate) fn move_point(
-        &mut self,
-        (_, point): (PanelId, PointId),
-        to: PanelPoint,
-        drag: Option<u64>,
-    ) {
+    /// Moves a point to a place of its panel.
+    pub(crate) fn move_point(&mut self, point: (PanelId, PointId), to: PanelPoint) {
+        self.show_moved(point, to);
+        self.commit("Move point");
+    }
+
+    /// Shows a point at a place of its panel until the gesture is committed.
+    pub(crate) fn show_moved(&mut self, (_, point): (PanelId, PointId), to: PanelPoint) {
         let evaluation = self.session.evaluation();
-        let edits = plan::move_point(&evaluation, point, to.0);
-        self.edit(edits, "Move point", drag);
+        let shown = plan::move_point(&evaluation, point, to.0)
+            .map_err(|error| error.to_string())
+            .and_then(|edits| {
+                let shown = self.session.preview(&edits);
+                shown.map_err(|error| error.to_string())
+            });
+        match shown {
+            Ok(()) => self.refresh(),
+            Err(words) => self.notice = Notice::fault(words),
+        }
+    }
+
+    /// Takes over what is shown, as one step of the history.
+    pub(crate) fn commit(&mut self, label: &str) {
+        match self.session.commit(label) {
+            Ok(events) => self.hear(&events),
+            Err(error) => self.notice = Notice::fault(error.to_string()),
+        }
     }
 
     /// Divides an edge at the place nearest to a point, or in its middle, and selects the corner.
@@ -90,7 +107,7 @@ impl ToileApp {
         let evaluation = self.session.evaluation();
         let planned = plan::divide_edge(&evaluation, (panel, edge), near.map(|near| near.0));
         let corner = planned.as_ref().ok().map(|(_, corner)| *corner);
-        if self.edit(planned.map(|(edits, _)| edits), "Add point", None)
+        if self.edit(planned.map(|(edits, _)| edits), "Add point")
             && let Some(corner) = corner
         {
             self.table.selection = Selection::Point(panel, corner);
@@ -100,20 +117,14 @@ impl ToileApp {
     fn delete(&mut self, (panel, point): (PanelId, PointId)) {
         let evaluation = self.session.evaluation();
         let edits = plan::remove_point(&evaluation, (panel, point));
-        self.edit(edits, "Delete point", None);
+        self.edit(edits, "Delete point");
     }
 
-    fn edit(
-        &mut self,
-        edits: Result<Vec<Edit>, EditError>,
-        label: &str,
-        drag: Option<u64>,
-    ) -> bool {
+    fn edit(&mut self, edits: Result<Vec<Edit>, EditError>, label: &str) -> bool {
         match edits {
             Ok(edits) => self.execute(Command::Edit {
                 edits,
                 label: label.to_owned(),
-                drag,
             }),
             Err(error) => {
                 self.notice = Notice::fault(error.to_string());
@@ -152,7 +163,7 @@ impl ToileApp {
         if let Some(at) = at.map(|point| point.at.0)
             && way != Vec2::zeros()
         {
-            self.move_point((panel, point), PanelPoint(at + way), None);
+            self.move_point((panel, point), PanelPoint(at + way));
         }
     }
 

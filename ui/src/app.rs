@@ -13,7 +13,7 @@ use egui::{Panel, Ui};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
-use toile_pattern::{Diagnostic, Pattern};
+use toile_pattern::Diagnostic;
 use toile_session::{Command, Event, Project, Session, Silent};
 
 /// Time between frames while something runs by itself.
@@ -37,9 +37,6 @@ pub struct ToileApp {
     pub(crate) shows_findings: bool,
     pub(crate) asks_to_close: bool,
     pub(crate) closes: bool,
-    /// Number of the drag of a coordinate's field.
-    pub(crate) field_drag: Option<u64>,
-    saved: Arc<Pattern>,
     revision: Option<u64>,
     checked: Option<u64>,
     body_of: Option<Project>,
@@ -63,8 +60,6 @@ impl ToileApp {
             shows_findings: false,
             asks_to_close: false,
             closes: false,
-            field_drag: None,
-            saved: Arc::default(),
             revision: None,
             checked: None,
             body_of: None,
@@ -121,7 +116,7 @@ impl ToileApp {
         }
     }
 
-    fn hear(&mut self, events: &[Event]) {
+    pub(crate) fn hear(&mut self, events: &[Event]) {
         let opened = events.contains(&Event::PatternOpened);
         if !events.is_empty() {
             self.notice = Notice::default();
@@ -129,7 +124,6 @@ impl ToileApp {
         self.refresh();
         if opened {
             self.refusal = None;
-            self.saved = self.session.project().pattern.clone();
             self.table.opened(&self.drawing);
             self.making.clear();
             self.stage.clear_garment();
@@ -138,7 +132,6 @@ impl ToileApp {
             match event {
                 Event::Warned { message } => self.notice = Notice::warning(message),
                 Event::FilesWritten { paths } => {
-                    self.saved = self.session.project().pattern.clone();
                     let names: Vec<_> = paths.iter().map(|p| p.display().to_string()).collect();
                     self.notice = Notice::news(format!("Saved {}", names.join(", ")));
                 }
@@ -148,7 +141,7 @@ impl ToileApp {
     }
 
     /// Follows the session to its present revision.
-    fn refresh(&mut self) {
+    pub(crate) fn refresh(&mut self) {
         if self.revision != Some(self.session.revision()) {
             self.revision = Some(self.session.revision());
             let draft = self.session.draft();
@@ -158,7 +151,7 @@ impl ToileApp {
             self.follow_body();
         }
         // Checks may take longer than a frame: they wait until a drag is over.
-        if self.checked != self.revision && !self.table.dragging() {
+        if self.checked != self.revision && !self.session.is_previewing() {
             self.checked = self.revision;
             self.findings = self.session.diagnostics();
         }
@@ -179,8 +172,7 @@ impl ToileApp {
 
     /// Whether the pattern has changes that are in no file.
     pub fn is_unsaved(&self) -> bool {
-        let pattern = &self.session.project().pattern;
-        !Arc::ptr_eq(&self.saved, pattern) && !self.saved.says_the_same(pattern)
+        self.session.is_unsaved()
     }
 
     fn take_news(&mut self) {
@@ -325,12 +317,8 @@ impl ToileApp {
 
     fn act(&mut self, action: TableAction) {
         match action {
-            TableAction::Move {
-                panel,
-                point,
-                to,
-                drag,
-            } => self.move_point((panel, point), to, Some(drag)),
+            TableAction::Move { panel, point, to } => self.show_moved((panel, point), to),
+            TableAction::Drop => self.commit("Move point"),
             TableAction::Split { panel, edge, near } => self.split((panel, edge), Some(near)),
         }
     }

@@ -143,7 +143,7 @@ impl ToileApp {
         ui.label(RichText::new(self.table.selection.words(&self.drawing)).strong());
         ui.add_space(8.0);
         let mut wanted = at;
-        let mut dragged = false;
+        let (mut dragged, mut dropped) = (false, false);
         for (name, value) in ["x", "y"].into_iter().zip(wanted.iter_mut()) {
             let label = ui.label(name).id;
             let mut shown = *value * 100.0;
@@ -157,14 +157,14 @@ impl ToileApp {
             if response.changed() {
                 *value = shown / 100.0;
             }
-            if response.drag_started() {
-                self.field_drag = Some(self.table.next_drag());
-            }
-            dragged |= response.dragged() || response.drag_stopped();
+            dragged |= response.dragged();
+            dropped |= response.drag_stopped();
         }
         if wanted != at {
-            let drag = self.field_drag.filter(|_| dragged);
-            self.move_point((panel, point), PanelPoint(wanted), drag);
+            self.show_moved((panel, point), PanelPoint(wanted));
+        }
+        if dropped || wanted != at && !dragged {
+            self.commit("Move point");
         }
     }
 

@@ -19,7 +19,7 @@ pub const ZOOM_STEP: f64 = 1.25;
 /// Something asked for in the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TableAction {
-    /// Put a point somewhere else. Moves with one number are one drag.
+    /// Show a point somewhere else while it is dragged.
     Move {
         /// The panel.
         panel: PanelId,
@@ -27,9 +27,9 @@ pub enum TableAction {
         point: PointId,
         /// Where to.
         to: PanelPoint,
-        /// Number of the drag.
-        drag: u64,
     },
+    /// Leave the dragged point where it is shown.
+    Drop,
     /// Divide an edge at the place nearest to a point.
     Split {
         /// The panel.
@@ -52,7 +52,6 @@ struct PointDrag {
     origin: PanelPoint,
     /// Where it was last asked to go.
     asked: PanelPoint,
-    number: u64,
 }
 
 /// The pattern view and its state.
@@ -69,7 +68,6 @@ pub struct TableView {
     /// Where the pointer is, in the panel it is over or that is selected.
     pub pointer: Option<PanelPoint>,
     held: Option<PointDrag>,
-    drags: u64,
     wants_fit: bool,
     /// Size of the view that everything was fitted into, until it is panned or zoomed.
     fitted: Option<egui::Vec2>,
@@ -104,12 +102,6 @@ impl TableView {
             self.selection = Selection::Nothing;
             self.held = None;
         }
-    }
-
-    /// A number no drag has had.
-    pub fn next_drag(&mut self) -> u64 {
-        self.drags += 1;
-        self.drags
     }
 
     /// Whether a point is being dragged.
@@ -237,17 +229,17 @@ impl TableView {
                     panel: held.panel,
                     point: held.point,
                     to,
-                    drag: held.number,
                 });
             }
         }
         self.held = Some(held);
         if response.drag_stopped() || !ui.input(|input| input.pointer.primary_down()) {
             self.held = None;
+            actions.push(TableAction::Drop);
         }
     }
 
-    fn take_hold(&mut self, drawing: &Drawing, hit: Selection, at: Pos2) -> Option<PointDrag> {
+    fn take_hold(&self, drawing: &Drawing, hit: Selection, at: Pos2) -> Option<PointDrag> {
         let Selection::Point(panel, point) = hit else {
             return None;
         };
@@ -258,7 +250,6 @@ impl TableView {
             pressed: ScreenPoint(at),
             origin,
             asked: origin,
-            number: self.next_drag(),
         })
     }
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use toile_geometry::{Curve, Rigid, Vec2};
 
 /// A pattern resolved: pieces of cloth to cut, and how they are sewn.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Draft {
     /// Name of the pattern.
     pub name: String,
@@ -31,7 +31,7 @@ pub struct PieceId {
 }
 
 /// One flat piece of cloth as it is cut and sewn, without seam allowance.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
     /// Which panel and copy this is.
     pub id: PieceId,

@@ -15,6 +15,19 @@ pub enum Command {
         /// The file.
         path: PathBuf,
     },
+    /// Replaces the project by an empty pattern.
+    NewPattern {
+        /// Its name.
+        name: String,
+    },
+    /// Replaces the project by a pattern in the native format that is in no file, as one that was
+    /// recovered.
+    RestorePattern {
+        /// The pattern, as its file would be.
+        text: String,
+        /// The file it was last saved to.
+        source: Option<PathBuf>,
+    },
     /// Writes the pattern in the native format.
     SavePattern {
         /// The file.
@@ -26,9 +39,6 @@ pub enum Command {
         edits: Vec<Edit>,
         /// The step's name in the history, as in "Move point".
         label: String,
-        /// Edits of the same drag, one after another, are one step of the history.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        drag: Option<u64>,
     },
     /// Takes the last step of the history back.
     Undo,
@@ -49,9 +59,6 @@ pub enum Command {
         edits: Vec<PrimitiveEdit>,
         /// The step's name in the history, as in "Move primitive".
         label: String,
-        /// Edits of the same drag, one after another, are one step of the history.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        drag: Option<u64>,
     },
     /// Writes the body as a mannequin file.
     SaveBody {
@@ -125,6 +132,8 @@ impl Command {
         matches!(
             self,
             Self::OpenPattern { .. }
+                | Self::NewPattern { .. }
+                | Self::RestorePattern { .. }
                 | Self::Edit { .. }
                 | Self::Undo
                 | Self::Redo

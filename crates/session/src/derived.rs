@@ -14,7 +14,7 @@ use toile_body::{BodyError, Description, Figure, Mannequin};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
 use toile_measure::Measurements;
-use toile_pattern::{Diagnostic, Draft, Evaluation, Pattern};
+use toile_pattern::{Diagnostic, Draft, Evaluation, Panel, Pattern};
 
 /// What a mannequin is made from.
 #[derive(Clone, PartialEq)]
@@ -55,7 +55,8 @@ pub(crate) struct Derived {
     evaluation: Option<Arc<Evaluation>>,
     /// The pattern and measurements it was last brought up to date with.
     evaluated: Option<(Arc<Pattern>, Measurements)>,
-    drafted: Option<(Arc<Draft>, Arc<Vec<Diagnostic>>)>,
+    draft: Option<Arc<Draft>>,
+    diagnostics: Option<Arc<Vec<Diagnostic>>>,
     mannequin: Option<KeptMannequin>,
     /// The markers, if they were made.
     pub layings: Option<Arc<Vec<Laying>>>,
@@ -70,16 +71,25 @@ pub(crate) struct Derived {
 
 impl Derived {
     /// Forgets what a change of the project may have changed. The mannequin knows by itself what
-    /// it was made from.
+    /// it was made from. What was made from a draft stays where the new draft is the same, as when
+    /// a panel was moved on the table or a construction line was drawn.
     pub fn follow(&mut self, before: &Project, after: &Project) {
-        let same_draft = Arc::ptr_eq(&before.pattern, &after.pattern)
-            && before.body == after.body
-            && before.size == after.size
-            && before.fabric == after.fabric;
-        let same_parts = same_draft && before.layer == after.layer && before.others == after.others;
+        let same_choices =
+            before.body == after.body && before.size == after.size && before.fabric == after.fabric;
+        let mut same_draft = same_choices && Arc::ptr_eq(&before.pattern, &after.pattern);
         if !same_draft {
-            self.drafted = None;
+            self.diagnostics = None;
+            let old = self.draft.take();
+            let makes = self.layings.is_some() || self.dressed.is_some() || self.drape.is_some();
+            if let Some(old) = old.filter(|_| makes && same_choices)
+                && has_same_panels(&before.pattern, &after.pattern)
+                && *self.draft(after) == *old
+            {
+                self.draft = Some(old);
+                same_draft = true;
+            }
         }
+        let same_parts = same_draft && before.layer == after.layer && before.others == after.others;
         if !same_parts {
             self.parts = None;
         }
@@ -96,7 +106,8 @@ impl Derived {
     /// Takes over everything that another, derived from the same project, has and this one has
     /// not.
     pub fn adopt(&mut self, other: Self) {
-        self.drafted = self.drafted.take().or(other.drafted);
+        self.draft = self.draft.take().or(other.draft);
+        self.diagnostics = self.diagnostics.take().or(other.diagnostics);
         self.mannequin = other.mannequin.or(self.mannequin.take());
         self.layings = self.layings.take().or(other.layings);
         self.parts = self.parts.take().or(other.parts);
@@ -126,18 +137,42 @@ impl Derived {
         kept.clone()
     }
 
-    /// The draft with the fabric chosen, and everything found wrong with the pattern.
-    pub fn drafted(&mut self, project: &Project) -> (Arc<Draft>, Arc<Vec<Diagnostic>>) {
-        let evaluation = self.evaluation(project);
-        let (draft, diagnostics) = self.drafted.get_or_insert_with(|| {
-            let (mut draft, diagnostics) = checked(&evaluation);
-            let chosen = project.fabric.as_ref();
-            if let Some(fabric) = chosen.and_then(|choice| choice.fabric(&project.pattern)) {
-                FabricChoice::cut(fabric, &mut draft);
-            }
-            (Arc::new(draft), Arc::new(diagnostics))
-        });
-        (draft.clone(), diagnostics.clone())
+    /// Forgets the draft and what is wrong with it, while a gesture is shown.
+    pub fn forget_draft(&mut self) {
+        self.draft = None;
+        self.diagnostics = None;
+    }
+
+    /// The same with another's evaluation, which is brought up to date from where it is.
+    #[must_use]
+    pub fn with_evaluation_of(self, other: &Self) -> Self {
+        Self {
+            evaluation: other.evaluation.clone(),
+            evaluated: other.evaluated.clone(),
+            ..self
+        }
+    }
+
+    /// The draft with the fabric chosen.
+    pub fn draft(&mut self, project: &Project) -> Arc<Draft> {
+        if let Some(draft) = &self.draft {
+            return draft.clone();
+        }
+        let (mut draft, _) = self.evaluation(project).draft();
+        let chosen = project.fabric.as_ref();
+        if let Some(fabric) = chosen.and_then(|choice| choice.fabric(&project.pattern)) {
+            FabricChoice::cut(fabric, &mut draft);
+        }
+        self.draft.insert(Arc::new(draft)).clone()
+    }
+
+    /// Everything found wrong with the pattern.
+    pub fn diagnostics(&mut self, project: &Project) -> Arc<Vec<Diagnostic>> {
+        if let Some(diagnostics) = &self.diagnostics {
+            return diagnostics.clone();
+        }
+        let (_, diagnostics) = checked(&self.evaluation(project));
+        self.diagnostics.insert(Arc::new(diagnostics)).clone()
     }
 
     /// Every garment that is worn, the project's own first, drafted, with what is wrong with it.
@@ -145,7 +180,8 @@ impl Derived {
         if let Some(parts) = &self.parts {
             return parts.clone();
         }
-        let (draft, diagnostics) = self.drafted(project);
+        let draft = self.draft(project);
+        let diagnostics = self.diagnostics(project);
         let mut parts = vec![DraftedPart::own(project, draft, diagnostics)];
         let others = project.others.iter();
         parts.extend(others.map(|worn| DraftedPart::other(project, worn)));
@@ -260,6 +296,21 @@ impl Derived {
         self.drape = Some(made.clone());
         Ok(made)
     }
+}
+
+/// Whether the panels of two patterns are the same but for where they lie on the table.
+fn has_same_panels(a: &Pattern, b: &Pattern) -> bool {
+    let same = |a: &Panel, b: &Panel| {
+        let moved = Panel {
+            on_table: b.on_table,
+            ..a.clone()
+        };
+        moved == *b
+    };
+    let mut pairs = a.panels.iter().zip(&b.panels);
+    a.unit == b.unit
+        && a.panels.len() == b.panels.len()
+        && pairs.all(|(a, b)| Arc::ptr_eq(a, b) || same(a, b))
 }
 
 /// The parts meshed with edges of a length [m] and placed round a mannequin, and what is worth

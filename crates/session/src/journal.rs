@@ -1,6 +1,38 @@
-//! The journal: one command a line as JSON.
+//! The journal: what was done, in order; in a file one command a line as JSON.
 
 use crate::{Command, SessionError};
+use std::collections::VecDeque;
+
+/// Most commands that are kept.
+pub(crate) const MOST_COMMANDS: usize = 1000;
+
+/// The commands that were done: all of them, or the latest if there were too many.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Journal {
+    commands: VecDeque<Command>,
+    dropped: usize,
+}
+
+impl Journal {
+    /// Notes a command that was done.
+    pub fn push(&mut self, command: Command) {
+        if self.commands.len() == MOST_COMMANDS {
+            self.commands.pop_front();
+            self.dropped += 1;
+        }
+        self.commands.push_back(command);
+    }
+
+    /// Whether every command is kept, so that doing them again gives the same project.
+    pub fn is_whole(&self) -> bool {
+        self.dropped == 0
+    }
+
+    /// The commands that are kept, the oldest first.
+    pub fn commands(&self) -> Vec<Command> {
+        self.commands.iter().cloned().collect()
+    }
+}
 
 /// The commands as text, one JSON object a line.
 ///

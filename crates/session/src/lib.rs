@@ -18,6 +18,7 @@ mod event;
 mod export;
 mod fabrics;
 mod flaws;
+mod gesture;
 mod going_on;
 mod halves;
 mod hands;

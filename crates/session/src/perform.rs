@@ -4,7 +4,8 @@ use crate::bodies::{body_of, description_of, shaped};
 use crate::export::{cannot, files, portable};
 use crate::fabrics::chosen;
 use crate::history::History;
-use crate::open::open_pattern;
+use crate::journal::MOST_COMMANDS;
+use crate::open::{open_pattern, read_pattern_text};
 use crate::watcher::{Part, tell};
 use crate::{
     Assembled, BodyChoice, Command, Event, OtherGarment, Project, Session, SessionError,
@@ -16,7 +17,7 @@ use std::time::Instant;
 use toile_body::{Figure, PrimitiveEdit};
 use toile_drape::MOST_LAYER;
 use toile_interchange::{write_all_atomically, write_atomically, write_mannequin, write_pattern};
-use toile_pattern::{Edit, Severity};
+use toile_pattern::{Edit, EditError, Pattern, Severity, is_part_name};
 
 type Outcome = Result<Vec<Event>, SessionError>;
 
@@ -25,7 +26,9 @@ impl Session {
         match command {
             Command::OpenPattern { path } => self.open(path, watcher),
             Command::SavePattern { path } => self.save(path, watcher),
-            Command::Edit { edits, label, drag } => self.edit(edits, label, *drag),
+            Command::NewPattern { name } => self.start(name),
+            Command::RestorePattern { text, source } => self.restore(text, source.as_deref()),
+            Command::Edit { edits, label } => self.edit(edits, label),
             Command::Undo => self.travel(History::undo, "undo", "nothing was changed yet"),
             Command::Redo => self.travel(
                 History::redo,
@@ -36,7 +39,7 @@ impl Session {
                 figure,
                 measurements,
             } => self.set_body(*figure, measurements.as_deref()),
-            Command::EditBody { edits, label, drag } => self.edit_body(edits, label, *drag),
+            Command::EditBody { edits, label } => self.edit_body(edits, label),
             Command::SaveBody { path } => self.save_body(path, watcher),
             Command::SetSize { size } => self.set_size(size.clone()),
             Command::SetFabric { fabric } => self.set_fabric(fabric.clone()),
@@ -46,7 +49,7 @@ impl Session {
                     quality: *quality,
                     ..self.project.clone()
                 };
-                Ok(self.change(next, "Choose quality", None))
+                Ok(self.change(next, "Choose quality"))
             }
             Command::SetLayers { layer, others } => self.set_layers(*layer, others),
             Command::Check => self.check(watcher),
@@ -58,11 +61,11 @@ impl Session {
     }
 
     /// Puts another project in place of the present one, as a step of the history.
-    fn change(&mut self, next: Project, label: &str, drag: Option<u64>) -> Vec<Event> {
+    fn change(&mut self, next: Project, label: &str) -> Vec<Event> {
         if next == self.project {
             return Vec::new();
         }
-        self.history.record(self.project.clone(), label, drag);
+        self.history.record(self.project.clone(), label);
         self.replace(next)
     }
 
@@ -98,19 +101,46 @@ impl Session {
     fn open(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
         tell(watcher, "reading", 0.0, &path.display().to_string())?;
         let opened = open_pattern(path)?;
+        let mut events = self.begin(opened.pattern, Some(path));
+        self.saved = self.project.pattern.clone();
+        events.extend(opened.notes.iter().map(|note| Event::Warned {
+            message: format!("{}: {note}", path.display()),
+        }));
+        Ok(events)
+    }
+
+    /// An empty pattern with a sheet to draw on and a fabric to cut from.
+    fn start(&mut self, name: &str) -> Outcome {
+        if !is_part_name(name) {
+            return Err(EditError::Name(name.to_owned()).into());
+        }
+        let events = self.begin(Pattern::blank(name), None);
+        self.saved = self.project.pattern.clone();
+        Ok(events)
+    }
+
+    fn restore(&mut self, text: &str, source: Option<&Path>) -> Outcome {
+        let opened = read_pattern_text(text).map_err(|error| SessionError::Format {
+            path: source.unwrap_or(Path::new("recovered pattern")).to_owned(),
+            error,
+        })?;
+        let events = self.begin(opened.pattern, source);
+        self.saved = Arc::default();
+        Ok(events)
+    }
+
+    /// Puts another pattern in place of the project, with a history of its own.
+    fn begin(&mut self, pattern: Pattern, source: Option<&Path>) -> Vec<Event> {
         let next = Project {
-            pattern: Arc::new(opened.pattern),
-            source: Some(path.to_owned()),
+            pattern: Arc::new(pattern),
+            source: source.map(Path::to_owned),
             quality: self.project.quality,
             ..Project::default()
         };
         self.history = History::default();
         let mut events = vec![Event::PatternOpened];
         events.extend(self.replace(next));
-        events.extend(opened.notes.iter().map(|note| Event::Warned {
-            message: format!("{}: {note}", path.display()),
-        }));
-        Ok(events)
+        events
     }
 
     fn save(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
@@ -122,30 +152,15 @@ impl Session {
         write_atomically(path, text.as_bytes())?;
         // Where a pattern is kept is not part of what it is: no step of the history.
         self.project.source = Some(path.to_owned());
+        self.saved = self.project.pattern.clone();
         Ok(vec![Event::FilesWritten {
             paths: vec![path.to_owned()],
         }])
     }
 
-    fn edit(&mut self, edits: &[Edit], label: &str, drag: Option<u64>) -> Outcome {
-        let mut pattern = (*self.project.pattern).clone();
-        pattern.apply(edits)?;
-        let mut next = Project {
-            pattern: Arc::new(pattern),
-            ..self.project.clone()
-        };
-        // A choice of something that is gone would mean nothing.
-        if next.check_size().is_err() {
-            next.size = None;
-        }
-        if next
-            .fabric
-            .as_ref()
-            .is_some_and(|choice| choice.fabric(&next.pattern).is_none())
-        {
-            next.fabric = None;
-        }
-        Ok(self.change(next, label, drag))
+    fn edit(&mut self, edits: &[Edit], label: &str) -> Outcome {
+        let next = self.project.edited(edits)?;
+        Ok(self.change(next, label))
     }
 
     fn set_body(&mut self, figure: Option<Figure>, measurements: Option<&Path>) -> Outcome {
@@ -163,18 +178,18 @@ impl Session {
             body,
             ..self.project.clone()
         };
-        let mut events = self.change(next, "Choose body", None);
+        let mut events = self.change(next, "Choose body");
         events.extend(Event::warnings(&notes));
         Ok(events)
     }
 
-    fn edit_body(&mut self, edits: &[PrimitiveEdit], label: &str, drag: Option<u64>) -> Outcome {
+    fn edit_body(&mut self, edits: &[PrimitiveEdit], label: &str) -> Outcome {
         let edited = description_of(&self.project).edited(edits)?;
         let next = Project {
             body: shaped(edited, None)?,
             ..self.project.clone()
         };
-        Ok(self.change(next, label, drag))
+        Ok(self.change(next, label))
     }
 
     fn save_body(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
@@ -193,7 +208,7 @@ impl Session {
             ..self.project.clone()
         };
         next.check_size()?;
-        Ok(self.change(next, "Choose size", None))
+        Ok(self.change(next, "Choose size"))
     }
 
     fn set_fabric(&mut self, fabric: Option<String>) -> Outcome {
@@ -210,7 +225,7 @@ impl Session {
         };
         let warned = notes.into_iter().map(|message| Event::Warned { message });
         let mut events: Vec<Event> = warned.collect();
-        events.extend(self.change(next, "Choose fabric", None));
+        events.extend(self.change(next, "Choose fabric"));
         Ok(events)
     }
 
@@ -228,7 +243,7 @@ impl Session {
             width,
             ..self.project.clone()
         };
-        Ok(self.change(next, "Choose fabric width", None))
+        Ok(self.change(next, "Choose fabric width"))
     }
 
     fn set_layers(&mut self, layer: u16, others: &[OtherGarment]) -> Outcome {
@@ -258,7 +273,7 @@ impl Session {
             ..self.project.clone()
         };
         next.check_size()?;
-        let mut events = self.change(next, "Choose layers", None);
+        let mut events = self.change(next, "Choose layers");
         events.extend(Event::warnings(&notes));
         Ok(events)
     }
@@ -334,22 +349,34 @@ impl Session {
     fn export(&mut self, dir: &Path, watcher: &mut dyn Watcher) -> Outcome {
         let start = Instant::now();
         let mut files = files(&self.project, &mut self.derived, watcher)?;
-        let mut commands = portable(&self.journal);
-        commands.extend(portable(&[Command::Export {
-            dir: dir.to_owned(),
-        }]));
-        files.push((
-            "journal.jsonl".into(),
-            journal_lines(&commands)?.into_bytes(),
-        ));
+        if self.journal.is_whole() {
+            let mut commands = portable(&self.journal.commands());
+            commands.extend(portable(&[Command::Export {
+                dir: dir.to_owned(),
+            }]));
+            files.push((
+                "journal.jsonl".into(),
+                journal_lines(&commands)?.into_bytes(),
+            ));
+        }
         let mut timing = self.timing.clone();
         timing.add("export", start);
         files.push(("timing.json".into(), timing.to_json().into_bytes()));
         write_all_atomically(dir, &files)?;
         // The files are on the disk: the wish to stop comes too late.
         let _ = tell(watcher, "writing", 1.0, "");
-        Ok(vec![Event::FilesWritten {
+        let mut events = vec![Event::FilesWritten {
             paths: files.iter().map(|(name, _)| dir.join(name)).collect(),
-        }])
+        }];
+        if !self.journal.is_whole() {
+            events.push(Event::Warned {
+                message: format!(
+                    "journal.jsonl was left out: it would need the first of more than \
+                     {MOST_COMMANDS} commands, which are no longer kept; save the pattern, open it \
+                     and export from there"
+                ),
+            });
+        }
+        Ok(events)
     }
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use toile_body::Figure;
 use toile_measure::Measurements;
-use toile_pattern::{Diagnostic, Pattern, Severity};
+use toile_pattern::{Diagnostic, Edit, EditError, Pattern, Severity};
 
 /// Everything a person decides. Cloning is cheap.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,6 +43,25 @@ pub struct WornGarment {
 }
 
 impl Project {
+    /// The project with edits made in its pattern, all or none.
+    pub(crate) fn edited(&self, edits: &[Edit]) -> Result<Self, EditError> {
+        let mut pattern = (*self.pattern).clone();
+        pattern.apply(edits)?;
+        let mut next = Self {
+            pattern: Arc::new(pattern),
+            ..self.clone()
+        };
+        // A choice of something that is gone would mean nothing.
+        if next.check_size().is_err() {
+            next.size = None;
+        }
+        let chosen = next.fabric.as_ref();
+        if chosen.is_some_and(|choice| choice.fabric(&next.pattern).is_none()) {
+            next.fabric = None;
+        }
+        Ok(next)
+    }
+
     /// The figure the mannequin is grown from.
     pub fn figure(&self) -> Figure {
         match &self.body {

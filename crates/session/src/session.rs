@@ -1,7 +1,9 @@
 //! The session: the project, what is derived from it, its history and its journal.
 
 use crate::derived::Derived;
+use crate::gesture::Gesture;
 use crate::history::History;
+use crate::journal::Journal;
 use crate::timing::Timing;
 use crate::watcher::Part;
 use crate::{Command, DrapeResult, Draped, Event, GarmentJob, Project, SessionError, Watcher};
@@ -9,7 +11,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 use toile_body::Mannequin;
-use toile_pattern::{Diagnostic, Draft, Evaluation};
+use toile_pattern::{Diagnostic, Draft, Evaluation, Pattern};
 
 /// The application without a window.
 #[derive(Default)]
@@ -17,8 +19,11 @@ pub struct Session {
     pub(crate) project: Project,
     pub(crate) revision: u64,
     pub(crate) history: History,
-    pub(crate) journal: Vec<Command>,
+    pub(crate) journal: Journal,
     pub(crate) derived: Derived,
+    pub(crate) gesture: Option<Gesture>,
+    /// The pattern as it is in its file.
+    pub(crate) saved: Arc<Pattern>,
     pub(crate) timing: Timing,
 }
 
@@ -48,9 +53,25 @@ impl Session {
         self.history.can_redo()
     }
 
-    /// Every command that was done, in order.
-    pub fn journal(&self) -> &[Command] {
-        &self.journal
+    /// Labels of the steps that can be taken back, the oldest first.
+    pub fn past(&self) -> Vec<&str> {
+        self.history.past().collect()
+    }
+
+    /// Labels of the steps that can be done again, the next first.
+    pub fn future(&self) -> Vec<&str> {
+        self.history.future().collect()
+    }
+
+    /// The commands that were done, in order: all, or the latest thousand.
+    pub fn journal(&self) -> Vec<Command> {
+        self.journal.commands()
+    }
+
+    /// Whether the pattern has changes that are in no file.
+    pub fn is_unsaved(&self) -> bool {
+        let pattern = &self.project.pattern;
+        !Arc::ptr_eq(&self.saved, pattern) && !self.saved.says_the_same(pattern)
     }
 
     /// Every value of the pattern in the project's size.
@@ -60,12 +81,12 @@ impl Session {
 
     /// The pattern drafted to the project's size, in its fabric.
     pub fn draft(&mut self) -> Arc<Draft> {
-        self.derived.drafted(&self.project).0
+        self.derived.draft(&self.project)
     }
 
     /// Everything found wrong with the pattern.
     pub fn diagnostics(&mut self) -> Arc<Vec<Diagnostic>> {
-        self.derived.drafted(&self.project).1
+        self.derived.diagnostics(&self.project)
     }
 
     /// The mannequin of the project's wearer.
@@ -97,7 +118,7 @@ impl Session {
     /// journal, and what is exported from now on is this. The result of another revision comes
     /// too late and is dropped; nothing is told then.
     pub fn adopt_drape(&mut self, result: DrapeResult) -> Option<Vec<Event>> {
-        if result.revision() != self.revision {
+        if self.gesture.is_some() || result.revision() != self.revision {
             return None;
         }
         self.journal.push(Command::Drape {
@@ -109,7 +130,8 @@ impl Session {
         Some(events)
     }
 
-    /// Does one command and notes it in the journal.
+    /// Does one command and notes it in the journal. A gesture that is being previewed ends, and
+    /// nothing of it stays.
     ///
     /// # Errors
     /// Why it was not done; the project is then unchanged.
@@ -118,6 +140,7 @@ impl Session {
         command: Command,
         watcher: &mut dyn Watcher,
     ) -> Result<Vec<Event>, SessionError> {
+        self.cancel();
         let start = Instant::now();
         if matches!(command, Command::OpenPattern { .. }) {
             self.timing.restart();

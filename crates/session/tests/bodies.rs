@@ -17,7 +17,6 @@ fn edit(edit: PrimitiveEdit) -> Command {
     Command::EditBody {
         edits: vec![edit],
         label: "Edit primitive".into(),
-        drag: None,
     }
 }
 
@@ -54,19 +53,16 @@ fn a_mannequin_file_is_worn_edited_and_undone() {
     let waist = |s: &Session| s.project().wearer().get("waist").unwrap();
     let before = waist(&session);
     assert_eq!(saved(&mut session, folder.path()), grown);
-    // One drag is one step; the body then stands by no file.
-    for step in 0..3 {
-        let scale = PrimitiveEdit::Weigh {
-            primitive: 2,
-            weight: 1.0 + 0.05 * f64::from(step),
-        };
-        let command = Command::EditBody {
-            edits: vec![scale],
-            label: "Weigh primitive".into(),
-            drag: Some(7),
-        };
-        run(&mut session, command).unwrap();
-    }
+    // Several edits are one step; the body then stands by no file.
+    let scale = |step: f64| PrimitiveEdit::Weigh {
+        primitive: 2,
+        weight: 1.0 + 0.05 * step,
+    };
+    let command = Command::EditBody {
+        edits: [0.0, 1.0, 2.0].map(scale).to_vec(),
+        label: "Weigh primitive".into(),
+    };
+    run(&mut session, command).unwrap();
     assert!(matches!(
         &session.project().body,
         BodyChoice::Shaped { path: None, .. }
@@ -101,7 +97,7 @@ fn the_garment_is_made_on_the_edited_body() {
     assert!(matches!(project.body, BodyChoice::Shaped { .. }));
     assert!(project.wearer().get("height").is_some());
     // What is written in the journal makes the same body again.
-    let lines = toile_session::journal_lines(session.journal()).unwrap();
+    let lines = toile_session::journal_lines(&session.journal()).unwrap();
     let mut again = Session::new();
     for command in read_journal(&lines).unwrap() {
         run(&mut again, command).unwrap();

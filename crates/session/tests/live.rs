@@ -358,7 +358,7 @@ fn a_late_result_of_an_older_revision_is_dropped() {
     session
         .execute(Command::SetSize { size }, &mut Silent)
         .unwrap();
-    let journal = session.journal().to_vec();
+    let journal = session.journal();
     assert_eq!(session.adopt_drape(result), None);
     assert_eq!(session.draped(), None);
     assert_eq!(session.journal(), journal);

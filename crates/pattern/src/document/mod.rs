@@ -94,6 +94,20 @@ impl Pattern {
         }
     }
 
+    /// A pattern to begin drafting with: one empty sheet, and poplin to cut from.
+    pub fn blank(name: impl Into<String>) -> Self {
+        let mut pattern = Self::new(name);
+        let sheet = Sheet {
+            id: pattern.ids.take(),
+            name: "draft".into(),
+            ..Sheet::default()
+        };
+        let fabric = Fabric::poplin(pattern.ids.take());
+        pattern.sheets.push(Arc::new(sheet));
+        pattern.fabrics.push(Arc::new(fabric));
+        pattern
+    }
+
     /// Whether another pattern is the same, whatever ids each would give next.
     pub fn says_the_same(&self, other: &Self) -> bool {
         let counted_alike = Self {

@@ -1,0 +1,71 @@
+//! Gestures: edits that are shown while a drag or a tool goes on, and taken over when it ends.
+
+use crate::derived::Derived;
+use crate::{Command, Event, Project, Session, SessionError, Silent};
+use toile_pattern::Edit;
+
+/// Edits that are shown and not taken over yet.
+#[derive(Clone)]
+pub(crate) struct Gesture {
+    /// The project before it.
+    base: Project,
+    /// What was derived from that.
+    derived: Derived,
+    edits: Vec<Edit>,
+}
+
+impl Session {
+    /// Shows what edits of the project's pattern would give. They replace what the present gesture
+    /// showed before; nothing goes to the history until [`Session::commit`].
+    ///
+    /// # Errors
+    /// The edits cannot be made; what was shown before is still shown.
+    pub fn preview(&mut self, edits: &[Edit]) -> Result<(), SessionError> {
+        let base = self.gesture.as_ref().map_or(&self.project, |g| &g.base);
+        let next = base.edited(edits)?;
+        let base = self.project.clone();
+        let derived = &self.derived;
+        let gesture = self.gesture.get_or_insert_with(|| Gesture {
+            base,
+            derived: derived.clone(),
+            edits: Vec::new(),
+        });
+        gesture.edits = edits.to_vec();
+        self.show(next);
+        Ok(())
+    }
+
+    /// Whether a gesture is being previewed.
+    pub fn is_previewing(&self) -> bool {
+        self.gesture.is_some()
+    }
+
+    /// Takes the present gesture over: one step of the history, one command of the journal. Without
+    /// one nothing happens.
+    ///
+    /// # Errors
+    /// The edits cannot be made, which [`Session::preview`] would have said.
+    pub fn commit(&mut self, label: &str) -> Result<Vec<Event>, SessionError> {
+        let Some(edits) = self.cancel() else {
+            return Ok(Vec::new());
+        };
+        let label = label.to_owned();
+        self.execute(Command::Edit { edits, label }, &mut Silent)
+    }
+
+    /// Ends the present gesture without taking anything over, and tells its edits.
+    pub fn cancel(&mut self) -> Option<Vec<Edit>> {
+        let gesture = self.gesture.take()?;
+        // The evaluation goes back by what changed; all else is as it was kept.
+        self.derived = gesture.derived.with_evaluation_of(&self.derived);
+        self.project = gesture.base;
+        self.revision += 1;
+        Some(gesture.edits)
+    }
+
+    fn show(&mut self, next: Project) {
+        self.derived.forget_draft();
+        self.project = next;
+        self.revision += 1;
+    }
+}
