@@ -36,6 +36,7 @@ mod perform;
 mod pictures;
 mod product;
 mod project;
+mod recovery;
 mod report;
 mod scene;
 mod scene_builder;
@@ -66,6 +67,7 @@ pub use open::{
     Opened, PatternFormat, SAMPLE, open_measurements, open_pattern, read_input, read_pattern_text,
 };
 pub use project::{Project, WornGarment};
+pub use recovery::{Abandoned, Recovery, abandoned, recovery_folder};
 pub use scene::{SceneOutcome, run_scene};
 pub use session::Session;
 pub use setup::{GarmentJob, JobPanel};

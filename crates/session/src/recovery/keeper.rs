@@ -1,0 +1,203 @@
+//! Keeps the state of a document on a thread of its own.
+
+use super::state_file::{DocumentState, Head};
+use super::{BEFORE, LOCK, NEWEST, file_of};
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant, SystemTime};
+use toile_interchange::write_pattern;
+use toile_pattern::Pattern;
+
+/// Least time from one write to the next. With the write itself it stays under a second.
+const PERIOD: Duration = Duration::from_millis(500);
+
+/// Keeps what is unsaved. Dropping it writes what is still to be written.
+pub struct Recovery {
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+    /// Locked as long as this lives.
+    lock: Option<File>,
+    files: Files,
+}
+
+#[derive(Default)]
+struct Shared {
+    state: Mutex<State>,
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct State {
+    wish: Option<Wish>,
+    ends: bool,
+    failure: Option<String>,
+}
+
+enum Wish {
+    Keep(Arc<Pattern>, Option<PathBuf>),
+    Clear,
+}
+
+#[derive(Clone)]
+struct Files {
+    folder: PathBuf,
+    id: String,
+}
+
+impl Recovery {
+    /// Begins to keep states in a folder, which is made if need be.
+    ///
+    /// # Errors
+    /// The folder or the file that is locked cannot be made.
+    pub fn start(folder: &Path) -> io::Result<Self> {
+        fs::create_dir_all(folder)?;
+        let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+        let nanoseconds = since.map_or(0, |time| time.as_nanos());
+        let files = Files {
+            folder: folder.to_owned(),
+            id: format!("{nanoseconds}-{}", std::process::id()),
+        };
+        let lock = File::create_new(files.path(LOCK))?;
+        lock.try_lock()?;
+        let shared = Arc::new(Shared::default());
+        let (of_thread, to) = (shared.clone(), files.clone());
+        let thread = std::thread::Builder::new()
+            .name("recovery".into())
+            .spawn(move || of_thread.run(&to))?;
+        Ok(Self {
+            shared,
+            thread: Some(thread),
+            lock: Some(lock),
+            files,
+        })
+    }
+
+    /// Keeps a state of the document, within a second. It takes the place of one that is not
+    /// written yet.
+    pub fn keep(&self, pattern: &Arc<Pattern>, source: Option<&Path>) {
+        self.wish(Wish::Keep(pattern.clone(), source.map(Path::to_owned)));
+    }
+
+    /// Forgets the states: the document is saved, or its changes are not wanted.
+    pub fn clear(&self) {
+        self.wish(Wish::Clear);
+    }
+
+    /// Why the last state could not be kept, if it could not.
+    pub fn failure(&self) -> Option<String> {
+        self.shared.lock().failure.clone()
+    }
+
+    fn wish(&self, wish: Wish) {
+        self.shared.lock().wish = Some(wish);
+        self.shared.changed.notify_all();
+    }
+}
+
+impl Drop for Recovery {
+    fn drop(&mut self) {
+        self.shared.lock().ends = true;
+        self.shared.changed.notify_all();
+        if let Some(thread) = self.thread.take() {
+            // A panic there was told on standard error; nothing can be done here.
+            let _ = thread.join();
+        }
+        self.lock = None;
+        let kept = self.files.path(NEWEST).exists() || self.files.path(BEFORE).exists();
+        if !kept {
+            // A lock file that stays is removed when the folder is next looked through.
+            let _ = fs::remove_file(self.files.path(LOCK));
+        }
+    }
+}
+
+impl Shared {
+    /// The state, whatever a thread that panicked left of it: every field holds by itself.
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn run(&self, files: &Files) {
+        while let Some(wish) = self.next() {
+            let begun = Instant::now();
+            let done = match wish {
+                Wish::Keep(pattern, source) => files.keep(&pattern, source),
+                Wish::Clear => files.clear().map_err(|error| error.to_string()),
+            };
+            self.lock().failure = done.err();
+            self.rest(begun);
+        }
+    }
+
+    /// Waits for the next wish; nothing at the end.
+    fn next(&self) -> Option<Wish> {
+        let mut state = self.lock();
+        loop {
+            if let Some(wish) = state.wish.take() {
+                return Some(wish);
+            }
+            if state.ends {
+                return None;
+            }
+            let woken = self.changed.wait(state);
+            state = woken.unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Waits until a period is over since `begun`, or until the end.
+    fn rest(&self, begun: Instant) {
+        let mut state = self.lock();
+        while !state.ends {
+            let left = PERIOD.saturating_sub(begun.elapsed());
+            if left.is_zero() {
+                return;
+            }
+            let woken = self.changed.wait_timeout(state, left);
+            state = woken.unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+}
+
+impl Files {
+    fn path(&self, ending: &str) -> PathBuf {
+        file_of(&self.folder, &self.id, ending)
+    }
+
+    fn keep(&self, pattern: &Pattern, source: Option<PathBuf>) -> Result<(), String> {
+        let state = DocumentState {
+            head: Head {
+                name: pattern.name.clone(),
+                source,
+            },
+            text: write_pattern(pattern).map_err(|error| error.to_string())?,
+        };
+        let bytes = state.to_bytes().map_err(|error| error.to_string())?;
+        self.put(&bytes).map_err(|error| error.to_string())
+    }
+
+    /// Whenever the process ends, one of the two states is whole.
+    fn put(&self, bytes: &[u8]) -> io::Result<()> {
+        let written = self.path("writing");
+        let mut file = File::create(&written)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        let newest = self.path(NEWEST);
+        if newest.exists() {
+            fs::rename(&newest, self.path(BEFORE))?;
+        }
+        fs::rename(&written, &newest)
+    }
+
+    fn clear(&self) -> io::Result<()> {
+        for ending in [BEFORE, NEWEST, "writing"] {
+            match fs::remove_file(self.path(ending)) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,35 @@
+//! Recovery: while a document has changes that are in no file, all of it is kept in a folder of
+//! the user's, so that a crash loses a second's work at most.
+//!
+//! Every process has its own three files there: `ID.lock`, which it holds locked as long as it
+//! lives, and the last two states of its document, `ID.newest` and `ID.before`. A state whose lock
+//! nobody holds was left by a crash.
+
+mod abandoned;
+mod keeper;
+mod state_file;
+
+pub use abandoned::{Abandoned, abandoned};
+pub use keeper::Recovery;
+
+use std::path::{Path, PathBuf};
+
+/// How the names of the files of one process end.
+const LOCK: &str = "lock";
+const NEWEST: &str = "newest";
+const BEFORE: &str = "before";
+
+/// The user's folder for states of programs, with a folder of ours in it; nothing where the
+/// system has none.
+pub fn recovery_folder() -> Option<PathBuf> {
+    let folders = directories::ProjectDirs::from("", "", "toile")?;
+    let folder = folders
+        .state_dir()
+        .unwrap_or_else(|| folders.data_local_dir());
+    Some(folder.join("recovery"))
+}
+
+/// A file of one process.
+fn file_of(folder: &Path, id: &str, ending: &str) -> PathBuf {
+    folder.join(format!("{id}.{ending}"))
+}
