@@ -6,7 +6,7 @@ mod support;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command as Process, Stdio};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use support::{BAND, band};
 use toile_pattern::{Edit, Entity, Pattern, Variable};
@@ -14,6 +14,10 @@ use toile_session::{Abandoned, Command, Recovery, Session, Silent, abandoned, re
 
 /// Names the folder to the process that is killed.
 const FOLDER: &str = "TOILE_TEST_RECOVERY_FOLDER";
+
+/// A process that is begun has, for a moment, every file of this one, locked ones too: none is begun
+/// while locks are looked at.
+static LOCKS: Mutex<()> = Mutex::new(());
 
 fn opened(folder: &Path) -> Session {
     let mut session = Session::new();
@@ -82,6 +86,7 @@ fn a_killed_process_loses_a_second_at_most() {
     }
     for round in 0..10_u64 {
         let folder = tempfile::tempdir().unwrap();
+        let beginning = LOCKS.lock();
         let mut process = Process::new(std::env::current_exe().unwrap())
             .args(["--exact", "a_killed_process_loses_a_second_at_most"])
             .env(FOLDER, folder.path())
@@ -89,6 +94,7 @@ fn a_killed_process_loses_a_second_at_most() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
+        drop(beginning);
         let start = Instant::now();
         let wanted = 1100 + 97 * round;
         while noted(folder.path())
@@ -124,6 +130,7 @@ fn a_killed_process_loses_a_second_at_most() {
 
 #[test]
 fn a_damaged_state_is_never_taken_for_whole() {
+    let _looking = LOCKS.lock();
     let folder = tempfile::tempdir().unwrap();
     let states = folder.path().join("states");
     let mut session = opened(folder.path());
