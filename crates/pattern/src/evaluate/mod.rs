@@ -136,6 +136,16 @@ impl Evaluation {
         self.stage(panel.id, panel.operations.last().map(|o| o.id))
     }
 
+    /// The last stage of a panel as it was when that could last be drawn. To be shown, never to be
+    /// exported.
+    pub fn last_good_stage(&self, panel: &crate::Panel) -> Option<&Arc<crate::Stage>> {
+        let node = Node::Stage(panel.id, panel.operations.last().map(|o| o.id));
+        match self.state(node)?.last_good.as_ref()? {
+            Value::Stage(stage) => Some(stage),
+            _ => None,
+        }
+    }
+
     /// The value of a variable, and its power of a length: 0 plain, 1 a length [m].
     pub fn variable(&self, id: crate::VariableId) -> Option<(f64, i8)> {
         match self.value(Node::Variable(id))? {

@@ -37,6 +37,19 @@ impl Evaluation {
         self.number_of_kind(number, want, &Place::Pattern, "").0
     }
 
+    /// The same, or what is wrong with it in words.
+    ///
+    /// # Errors
+    /// The formula has no value; with what to do.
+    pub fn number_or_fault(&self, number: &Number, want: Want) -> Result<f64, String> {
+        let (value, found) = self.number_of_kind(number, want, &Place::Pattern, "");
+        let fault = found.first().map(|found| {
+            let words = found.message.trim_start_matches(": ");
+            format!("{words}: {}", found.hint)
+        });
+        value.ok_or_else(|| fault.unwrap_or_else(|| "it has no value yet".into()))
+    }
+
     /// The value of a length that is no node's own [m], and what is wrong with it.
     pub(crate) fn length_of(
         &self,

@@ -1,12 +1,7 @@
-//! The three planes of the pattern view, as three types: a panel's own plane, the table all
-//! panels lie on, and the screen. View state only: nothing here is in the document.
+//! How the table is seen: from its plane to the screen and back. View state: not in the document.
 
 use egui::{Pos2, Rect, Vec2 as ScreenVector};
 use toile_geometry::{Bounds2, Vec2};
-
-/// A point of a panel's own plane [m], Y up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PanelPoint(pub Vec2);
 
 /// A point of the table [m], Y up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,25 +10,6 @@ pub struct TablePoint(pub Vec2);
 /// A point of the screen [logical pixels], Y down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenPoint(pub Pos2);
-
-/// Where a panel lies on the table: only moved, never turned, so that up stays up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PanelPlace {
-    /// Table point of the panel's origin [m].
-    pub offset: Vec2,
-}
-
-impl PanelPlace {
-    /// From the panel to the table.
-    pub fn table(self, point: PanelPoint) -> TablePoint {
-        TablePoint(point.0 + self.offset)
-    }
-
-    /// From the table to the panel.
-    pub fn panel(self, point: TablePoint) -> PanelPoint {
-        PanelPoint(point.0 - self.offset)
-    }
-}
 
 /// Smallest and largest enlargement [logical pixels per metre]: from a whole marker on the screen
 /// to a millimetre as wide as a finger.
@@ -87,6 +63,12 @@ impl TableCamera {
         self.scale = (self.scale * factor).clamp(SCALES[0], SCALES[1]);
         let after = self.table(view, fixed);
         self.centre += before.0 - after.0;
+    }
+
+    /// How finely curves are drawn at this enlargement: a power of two [pixels per metre] that the
+    /// enlargement does not reach.
+    pub fn octave(&self) -> i32 {
+        self.scale.log2().floor() as i32 + 1
     }
 
     /// Shows all of a part of the table.

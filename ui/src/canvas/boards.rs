@@ -1,0 +1,149 @@
+//! Where sheets and panels lie on the table. A sheet lies where the document says; sheets that all
+//! lie at one place, as in files that say nothing of it, are laid side by side.
+
+use super::scene::{PanelScene, Scene, SheetScene};
+use std::collections::BTreeMap;
+use toile_geometry::{Bounds2, Vec2};
+use toile_pattern::{PanelId, Pattern, SheetId};
+
+/// Room between sheets [m]: enough for seam numbers and names beside narrow panels.
+const GAP: f64 = 0.06;
+/// Width of the whole over its height that rows are broken for: about that of the view.
+const ASPECT: f64 = 1.15;
+
+/// Table places of the origins of sheets and panels.
+#[derive(Clone, Debug, Default)]
+pub struct Boards {
+    /// How far sheets were moved so that none covers another. It stays while a pattern is edited,
+    /// so that nothing jumps.
+    moved: BTreeMap<SheetId, Vec2>,
+    sheets: BTreeMap<SheetId, Vec2>,
+    panels: BTreeMap<PanelId, Vec2>,
+}
+
+impl Boards {
+    /// Lays the sheets of a pattern that was just opened.
+    pub fn open(&mut self, pattern: &Pattern, scene: &Scene) {
+        self.moved.clear();
+        let first = pattern.sheets.first().map(|sheet| sheet.on_table);
+        let at_one_place = pattern
+            .sheets
+            .iter()
+            .all(|sheet| Some(sheet.on_table) == first);
+        if pattern.sheets.len() > 1 && at_one_place {
+            let boxes: Vec<(SheetId, Bounds2)> = scene
+                .sheets
+                .iter()
+                .filter_map(|sheet| Some((sheet.id, bounds(sheet, scene)?)))
+                .collect();
+            self.moved = rows(&boxes);
+        }
+        self.follow(pattern);
+    }
+
+    /// Follows a change of the pattern.
+    pub fn follow(&mut self, pattern: &Pattern) {
+        let moved = |id: &SheetId| self.moved.get(id).copied().unwrap_or_default();
+        let sheets = pattern.sheets.iter();
+        self.sheets = sheets
+            .map(|sheet| (sheet.id, Vec2::from(sheet.on_table) + moved(&sheet.id)))
+            .collect();
+        let panels = pattern.panels.iter();
+        self.panels = panels
+            .filter_map(|panel| {
+                let sheet = self.sheets.get(&panel.sheet())?;
+                let own = panel.on_table.map_or_else(Vec2::zeros, Vec2::from);
+                Some((panel.id, sheet + own))
+            })
+            .collect();
+    }
+
+    /// The table place of a sheet's origin [m].
+    pub fn sheet(&self, id: SheetId) -> Vec2 {
+        self.sheets.get(&id).copied().unwrap_or_default()
+    }
+
+    /// The table place of a panel's origin [m].
+    pub fn panel(&self, id: PanelId) -> Vec2 {
+        self.panels.get(&id).copied().unwrap_or_default()
+    }
+
+    /// Whether a panel lies apart from its sheet.
+    pub fn is_apart(&self, panel: &PanelScene) -> bool {
+        self.panel(panel.id) != self.sheet(panel.sheet)
+    }
+
+    /// Least rectangle round everything on the table [m].
+    pub fn bounds(&self, scene: &Scene) -> Option<Bounds2> {
+        let moved = |bounds: &Bounds2, by: Vec2| Bounds2 {
+            min: bounds.min + by,
+            max: bounds.max + by,
+        };
+        let sheets = scene
+            .sheets
+            .iter()
+            .filter_map(|sheet| Some(moved(&sheet.bounds()?, self.sheet(sheet.id))));
+        let panels = scene.panels.iter();
+        sheets
+            .chain(panels.map(|panel| moved(panel.bounds(), self.panel(panel.id))))
+            .reduce(|a, b| a.union(&b))
+    }
+}
+
+/// Least rectangle round a sheet and its panels [m].
+fn bounds(sheet: &SheetScene, scene: &Scene) -> Option<Bounds2> {
+    let panels = scene.panels.iter().filter(|panel| panel.sheet == sheet.id);
+    let drawn = panels
+        .map(PanelScene::bounds)
+        .copied()
+        .reduce(|a, b| a.union(&b));
+    // Construction far outside the panel would push its neighbours away for nothing.
+    drawn.or_else(|| sheet.bounds())
+}
+
+/// Puts boxes in rows, in order.
+fn rows(boxes: &[(SheetId, Bounds2)]) -> BTreeMap<SheetId, Vec2> {
+    let sizes: Vec<Vec2> = boxes
+        .iter()
+        .map(|(_, bounds)| bounds.max - bounds.min + Vec2::new(GAP, GAP))
+        .collect();
+    let width = best_width(&sizes);
+    let mut places = BTreeMap::new();
+    let mut pen = Vec2::zeros();
+    let mut row = 0.0_f64;
+    for ((id, bounds), size) in boxes.iter().zip(&sizes) {
+        if pen.x > 0.0 && pen.x + size.x > width {
+            pen = Vec2::new(0.0, pen.y - row);
+            row = 0.0;
+        }
+        places.insert(*id, pen - Vec2::new(bounds.min.x, bounds.max.y));
+        pen.x += size.x;
+        row = row.max(size.y);
+    }
+    places
+}
+/// The row width whose rows come nearest to the wanted aspect: every sum of neighbours is tried.
+fn best_width(sizes: &[Vec2]) -> f64 {
+    let widest = sizes.iter().map(|s| s.x).fold(0.0, f64::max);
+    let total: f64 = sizes.iter().map(|s| s.x).sum();
+    let steps = 24;
+    (0..=steps)
+        .map(|k| widest + (total - widest) * f64::from(k) / f64::from(steps))
+        .min_by(|a, b| misfit(sizes, *a).total_cmp(&misfit(sizes, *b)))
+        .unwrap_or(widest)
+}
+
+/// How small the whole is seen in a view of the wanted aspect [m].
+fn misfit(sizes: &[Vec2], width: f64) -> f64 {
+    let (mut x, mut row, mut used, mut height) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0);
+    for size in sizes {
+        if x > 0.0 && x + size.x > width + 1e-12 {
+            height += row;
+            (x, row) = (0.0, 0.0);
+        }
+        x += size.x;
+        used = used.max(x);
+        row = row.max(size.y);
+    }
+    (used / ASPECT).max(height + row)
+}

@@ -1,0 +1,242 @@
+//! What is at a place of the table, the most wanted first: handle, point, notch, edge, inner line,
+//! curve, panel.
+
+use super::boards::Boards;
+use super::scene::{PanelScene, PointRole, Scene};
+use super::selection::{Item, Selection};
+use toile_geometry::{Vec2, closest_on_segment};
+use toile_pattern::{PanelId, PointId, SheetId};
+
+/// How near the pointer must be to a point to take hold of it [pixels].
+const POINT_REACH: f64 = 9.0;
+/// How near it must be to a line [pixels].
+const LINE_REACH: f64 = 7.0;
+
+/// A part at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The part.
+    pub item: Item,
+    /// The sheet it is on.
+    pub sheet: SheetId,
+    /// The nearest place of it, on its sheet [m].
+    pub at: Vec2,
+    /// Table place of the origin of the sheet or panel it is seen on [m].
+    pub origin: Vec2,
+    /// How far it is [m].
+    pub away: f64,
+}
+
+/// A point that is shown, and where it is seen.
+#[derive(Clone, Copy, Debug)]
+pub struct ShownPoint<'s> {
+    /// The point.
+    pub point: &'s super::scene::PointScene,
+    /// Its sheet.
+    pub sheet: SheetId,
+    /// Table place of the origin it is seen from [m].
+    pub origin: Vec2,
+}
+
+/// Points that are shown: corners always, the others where nothing is traced yet or while something
+/// of their sheet is selected.
+pub fn shown_points<'s>(
+    scene: &'s Scene,
+    boards: &Boards,
+    open: &[SheetId],
+) -> Vec<ShownPoint<'s>> {
+    let mut shown = Vec::new();
+    for sheet in &scene.sheets {
+        let is_open = sheet.is_bare || open.contains(&sheet.id);
+        let origin = boards.sheet(sheet.id);
+        let apart: Vec<&PanelScene> = scene
+            .panels
+            .iter()
+            .filter(|panel| panel.sheet == sheet.id && boards.is_apart(panel))
+            .collect();
+        for point in &sheet.points {
+            if is_open || point.role == PointRole::Corner {
+                shown.push(ShownPoint {
+                    point,
+                    sheet: sheet.id,
+                    origin,
+                });
+            }
+            for panel in &apart {
+                let is_own = panel.corners.contains(&point.id);
+                if is_own {
+                    shown.push(ShownPoint {
+                        point,
+                        sheet: sheet.id,
+                        origin: boards.panel(panel.id),
+                    });
+                }
+            }
+        }
+    }
+    shown
+}
+
+/// Sheets that something selected is on.
+pub fn open_sheets(scene: &Scene, selection: &Selection) -> Vec<SheetId> {
+    let mut sheets: Vec<SheetId> = selection
+        .items()
+        .iter()
+        .filter_map(|item| sheet_of(scene, *item))
+        .collect();
+    sheets.sort_unstable();
+    sheets.dedup();
+    sheets
+}
+
+/// The sheet a part is on.
+pub fn sheet_of(scene: &Scene, item: Item) -> Option<SheetId> {
+    match item {
+        Item::Point(id) => Some(scene.point(id)?.0.id),
+        Item::Curve(id) => Some(scene.curve(id)?.0.id),
+        _ => Some(scene.panel_scene(item.panel()?)?.sheet),
+    }
+}
+
+/// What is at a place of the table [m], seen with so many pixels a metre; the most wanted first.
+pub fn hits(
+    (scene, boards): (&Scene, &Boards),
+    open: &[SheetId],
+    at: Vec2,
+    scale: f64,
+) -> Vec<Hit> {
+    let mut ranked: Vec<(u8, Hit)> = Vec::new();
+    let [point_reach, line_reach] = [POINT_REACH, LINE_REACH].map(|reach| reach / scale);
+    for shown in shown_points(scene, boards, open) {
+        let away = (at - shown.origin - shown.point.at).norm();
+        if away <= point_reach {
+            let rank = match shown.point.role {
+                PointRole::Handle => 0,
+                PointRole::Corner => 1,
+                PointRole::Construction => 2,
+            };
+            ranked.push((
+                rank,
+                Hit {
+                    item: Item::Point(shown.point.id),
+                    sheet: shown.sheet,
+                    at: shown.point.at,
+                    origin: shown.origin,
+                    away,
+                },
+            ));
+        }
+    }
+    for panel in &scene.panels {
+        panel_hits(panel, boards.panel(panel.id), at, line_reach, &mut ranked);
+    }
+    for sheet in &scene.sheets {
+        let origin = boards.sheet(sheet.id);
+        for curve in &sheet.curves {
+            let hit = nearest(&curve.line, at - origin);
+            if let Some((place, away)) = hit.filter(|(_, away)| *away <= line_reach) {
+                let item = Item::Curve(curve.id);
+                let hit = Hit {
+                    item,
+                    sheet: sheet.id,
+                    at: place,
+                    origin,
+                    away,
+                };
+                ranked.push((6, hit));
+            }
+        }
+    }
+    ranked.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.away.total_cmp(&b.1.away)));
+    ranked.into_iter().map(|(_, hit)| hit).collect()
+}
+
+fn panel_hits(
+    panel: &PanelScene,
+    origin: Vec2,
+    at: Vec2,
+    reach: f64,
+    ranked: &mut Vec<(u8, Hit)>,
+) {
+    let there = at - origin;
+    let bounds = panel.bounds();
+    let margin = Vec2::new(reach, reach);
+    let (low, high) = (bounds.min - margin, bounds.max + margin);
+    if there.x < low.x || there.y < low.y || there.x > high.x || there.y > high.y {
+        return;
+    }
+    let mut found = |rank: u8, item: Item, (place, away): (Vec2, f64)| {
+        if away <= reach {
+            let hit = Hit {
+                item,
+                sheet: panel.sheet,
+                at: place,
+                origin,
+                away,
+            };
+            ranked.push((rank, hit));
+        }
+    };
+    let shape = &panel.shape;
+    for (id, place, _) in &shape.notches {
+        let away = (there - place).norm();
+        found(3, Item::Notch(panel.id, *id), (*place, away));
+    }
+    for (id, mirrored, line) in &shape.darts {
+        if let Some(near) = nearest(line, there).filter(|_| !mirrored) {
+            found(4, Item::Operation(panel.id, *id), near);
+        }
+    }
+    for edge in &shape.edges {
+        let near = edge.lines.iter().filter_map(|line| nearest(line, there));
+        if let Some(near) = near.min_by(|a, b| a.1.total_cmp(&b.1)) {
+            found(4, Item::Edge(panel.id, edge.id), near);
+        }
+    }
+    for (id, line) in &shape.internal_lines {
+        if let Some(near) = nearest(line, there) {
+            found(5, Item::Line(panel.id, *id), near);
+        }
+    }
+    if super::inside::contains(&shape.rings, there) {
+        found(7, Item::Panel(panel.id), (there, 0.0));
+    }
+}
+
+/// The place of a polyline nearest to another, and how far it is [m].
+fn nearest(line: &[Vec2], to: Vec2) -> Option<(Vec2, f64)> {
+    line.windows(2)
+        .map(|side| {
+            let place = closest_on_segment(to, [side[0], side[1]]);
+            (place, (place - to).norm())
+        })
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Everything of a panel or sheet that lies inside a rectangle of the table [m].
+pub fn inside_box(
+    (scene, boards): (&Scene, &Boards),
+    open: &[SheetId],
+    [from, to]: [Vec2; 2],
+) -> Vec<Item> {
+    let (low, high) = (from.inf(&to), from.sup(&to));
+    let within = |p: Vec2| p.x >= low.x && p.y >= low.y && p.x <= high.x && p.y <= high.y;
+    let panels: Vec<PanelId> = scene
+        .panels
+        .iter()
+        .filter(|panel| {
+            let origin = boards.panel(panel.id);
+            within(panel.bounds().min + origin) && within(panel.bounds().max + origin)
+        })
+        .map(|panel| panel.id)
+        .collect();
+    if !panels.is_empty() {
+        return panels.into_iter().map(Item::Panel).collect();
+    }
+    let points: Vec<PointId> = shown_points(scene, boards, open)
+        .into_iter()
+        .filter(|shown| within(shown.point.at + shown.origin))
+        .map(|shown| shown.point.id)
+        .collect();
+    points.into_iter().map(Item::Point).collect()
+}

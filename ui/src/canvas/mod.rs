@@ -1,0 +1,16 @@
+//! The canvas: how a pattern is seen on the table, what is at a place of it, what a place means.
+
+pub mod boards;
+pub mod camera;
+mod fill;
+pub mod hit;
+mod inside;
+pub mod paint;
+mod panel_shape;
+pub mod scene;
+mod seams;
+pub mod selection;
+pub mod snap;
+
+pub use panel_shape::{PanelShape, along};
+pub use seams::SeamDrawing;

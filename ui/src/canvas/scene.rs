@@ -1,0 +1,363 @@
+//! What the canvas draws of a pattern. Parts are kept by the values they were made from: after an
+//! edit only those are made anew whose value changed.
+
+use super::panel_shape::PanelShape;
+use super::seams::{SeamDrawing, draw_seams};
+use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
+use toile_geometry::{Bounds2, Path, Vec2};
+use toile_pattern::{
+    Curve, CurveId, CurveRule, Draft, Evaluation, Mark, Name, OperationKind, Panel, PanelId,
+    PointId, Sheet, SheetId, Stage,
+};
+
+/// Largest distance of a drawn curve from the true one [pixels].
+const CURVE_TOLERANCE: f64 = 0.15;
+
+/// Everything the canvas draws of a pattern.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// The sheets, in the pattern's order.
+    pub sheets: Vec<SheetScene>,
+    /// The panels, in the pattern's order; those that never could be drawn are left out.
+    pub panels: Vec<PanelScene>,
+    /// The seams, numbered from 1 in this order.
+    pub seams: Vec<SeamDrawing>,
+    /// The finest enlargement it is drawn for: a power of two [pixels per metre].
+    octave: i32,
+    lines: HashMap<*const Path, KeptLine>,
+    shapes: HashMap<*const Stage, KeptShape>,
+    /// Lines and shapes that were made, ever.
+    made: u64,
+}
+
+/// A polyline and the path it was made from, which lives as long so that its address is its own.
+#[derive(Clone, Debug)]
+struct KeptLine {
+    _path: Arc<Path>,
+    line: Arc<[Vec2]>,
+}
+
+#[derive(Clone, Debug)]
+struct KeptShape {
+    _stage: Arc<Stage>,
+    shape: Arc<PanelShape>,
+}
+
+/// A sheet as drawn.
+#[derive(Clone, Debug)]
+pub struct SheetScene {
+    /// Which sheet.
+    pub id: SheetId,
+    /// Its name.
+    pub name: String,
+    /// Its points that can be drawn.
+    pub points: Vec<PointScene>,
+    /// Its curves that can be drawn.
+    pub curves: Vec<CurveScene>,
+    /// Whether no panel is traced from it.
+    pub is_bare: bool,
+}
+
+/// What a point is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointRole {
+    /// An end of curves or edges.
+    Corner,
+    /// Shapes a curve.
+    Handle,
+    /// Others are constructed from it.
+    Construction,
+}
+
+/// A point as drawn.
+#[derive(Clone, Debug)]
+pub struct PointScene {
+    /// Which point.
+    pub id: PointId,
+    /// Its name.
+    pub name: String,
+    /// Where it is on its sheet [m].
+    pub at: Vec2,
+    /// What it is for.
+    pub role: PointRole,
+}
+
+/// A curve as drawn.
+#[derive(Clone, Debug)]
+pub struct CurveScene {
+    /// Which curve.
+    pub id: CurveId,
+    /// Its name.
+    pub name: String,
+    /// Its course on its sheet [m].
+    pub line: Arc<[Vec2]>,
+    /// Its exact course.
+    pub path: Arc<Path>,
+    /// Whether edges of panels follow it.
+    pub is_traced: bool,
+    /// Its handles with the points they belong to.
+    pub handles: Vec<[PointId; 2]>,
+}
+
+/// A panel as drawn.
+#[derive(Clone, Debug)]
+pub struct PanelScene {
+    /// Which panel.
+    pub id: PanelId,
+    /// The sheet it is traced from.
+    pub sheet: SheetId,
+    /// Its name.
+    pub name: String,
+    /// How often it is cut, in words; empty for once.
+    pub cut: String,
+    /// How it is drawn.
+    pub shape: Arc<PanelShape>,
+    /// Points its edges end at.
+    pub corners: BTreeSet<PointId>,
+    /// Both ends of the fold line.
+    pub fold: Option<[Vec2; 2]>,
+    /// Whether it cannot be drawn now, and this is how it last was.
+    pub is_stale: bool,
+}
+
+impl Scene {
+    /// Follows an evaluated pattern and its draft; curves are fine enough for an enlargement of
+    /// two to the power of `octave` [pixels per metre].
+    pub fn update(&mut self, evaluation: &Evaluation, draft: &Draft, octave: i32) {
+        if octave != self.octave {
+            self.octave = octave;
+            self.lines.clear();
+            self.shapes.clear();
+        }
+        let pattern = evaluation.pattern();
+        let traced: BTreeSet<CurveId> = pattern
+            .panels
+            .iter()
+            .flat_map(|panel| panel.edges().map(|edge| edge.curve))
+            .collect();
+        let (mut lines, mut shapes) = (HashMap::new(), HashMap::new());
+        self.sheets = pattern
+            .sheets
+            .iter()
+            .map(|sheet| self.sheet(sheet, evaluation, &traced, &mut lines))
+            .collect();
+        self.panels = pattern
+            .panels
+            .iter()
+            .filter_map(|panel| self.panel(panel, evaluation, &mut shapes))
+            .collect();
+        // What is drawn no more is forgotten.
+        self.lines = lines;
+        self.shapes = shapes;
+        self.seams = draw_seams(draft, self.tolerance());
+    }
+
+    /// Whether there is nothing to see.
+    pub fn is_empty(&self) -> bool {
+        self.panels.is_empty() && self.sheets.iter().all(|sheet| sheet.points.is_empty())
+    }
+
+    /// Lines and shapes that were made, ever: panning makes none.
+    pub fn made(&self) -> u64 {
+        self.made
+    }
+
+    /// The enlargement it is drawn for.
+    pub fn octave(&self) -> i32 {
+        self.octave
+    }
+
+    /// The panel with that id.
+    pub fn panel_scene(&self, id: PanelId) -> Option<&PanelScene> {
+        self.panels.iter().find(|panel| panel.id == id)
+    }
+
+    /// The sheet with that id.
+    pub fn sheet_scene(&self, id: SheetId) -> Option<&SheetScene> {
+        self.sheets.iter().find(|sheet| sheet.id == id)
+    }
+
+    /// The sheet a point is on, and the point.
+    pub fn point(&self, id: PointId) -> Option<(&SheetScene, &PointScene)> {
+        let mut sheets = self.sheets.iter();
+        sheets.find_map(|sheet| {
+            let found = sheet.points.iter().find(|point| point.id == id)?;
+            Some((sheet, found))
+        })
+    }
+
+    /// The sheet a curve is on, and the curve.
+    pub fn curve(&self, id: CurveId) -> Option<(&SheetScene, &CurveScene)> {
+        let mut sheets = self.sheets.iter();
+        sheets.find_map(|sheet| {
+            let found = sheet.curves.iter().find(|curve| curve.id == id)?;
+            Some((sheet, found))
+        })
+    }
+
+    fn tolerance(&self) -> f64 {
+        CURVE_TOLERANCE / f64::from(self.octave).exp2()
+    }
+
+    fn sheet(
+        &mut self,
+        sheet: &Sheet,
+        evaluation: &Evaluation,
+        traced: &BTreeSet<CurveId>,
+        lines: &mut HashMap<*const Path, KeptLine>,
+    ) -> SheetScene {
+        let mut corners = BTreeSet::new();
+        let mut shaping = BTreeSet::new();
+        for curve in &sheet.curves {
+            corners.extend(curve.ends);
+            shaping.extend(handles(curve).iter().map(|pair| pair[1]));
+        }
+        let panels = &evaluation.pattern().panels;
+        let own = panels.iter().filter(|panel| panel.sheet() == sheet.id);
+        corners.extend(own.clone().flat_map(|p| p.edges().flat_map(|e| e.ends)));
+        let points = sheet.points.iter().filter_map(|point| {
+            Some(PointScene {
+                id: point.id,
+                name: point.name.clone(),
+                at: evaluation.point(point.id)?,
+                role: match point.id {
+                    id if corners.contains(&id) => PointRole::Corner,
+                    id if shaping.contains(&id) => PointRole::Handle,
+                    _ => PointRole::Construction,
+                },
+            })
+        });
+        let is_bare = own.count() == 0;
+        SheetScene {
+            id: sheet.id,
+            name: sheet.name.clone(),
+            points: points.collect(),
+            curves: sheet
+                .curves
+                .iter()
+                .filter_map(|curve| {
+                    let path = evaluation.curve(curve.id)?;
+                    Some(CurveScene {
+                        id: curve.id,
+                        name: curve.name.clone(),
+                        line: self.line(path, lines),
+                        path: path.clone(),
+                        is_traced: traced.contains(&curve.id),
+                        handles: handles(curve),
+                    })
+                })
+                .collect(),
+            is_bare,
+        }
+    }
+
+    fn line(
+        &mut self,
+        path: &Arc<Path>,
+        lines: &mut HashMap<*const Path, KeptLine>,
+    ) -> Arc<[Vec2]> {
+        let key = Arc::as_ptr(path);
+        let kept = match self.lines.remove(&key) {
+            Some(kept) => kept,
+            None => {
+                self.made += 1;
+                KeptLine {
+                    _path: path.clone(),
+                    line: path.flatten(self.tolerance()).into(),
+                }
+            }
+        };
+        let line = kept.line.clone();
+        lines.insert(key, kept);
+        line
+    }
+
+    fn panel(
+        &mut self,
+        panel: &Panel,
+        evaluation: &Evaluation,
+        shapes: &mut HashMap<*const Stage, KeptShape>,
+    ) -> Option<PanelScene> {
+        let now = evaluation.last_stage(panel);
+        let stage = now.or_else(|| evaluation.last_good_stage(panel))?;
+        let key = Arc::as_ptr(stage);
+        let kept = match self.shapes.remove(&key).or_else(|| shapes.remove(&key)) {
+            Some(kept) => kept,
+            None => {
+                self.made += 1;
+                KeptShape {
+                    _stage: stage.clone(),
+                    shape: Arc::new(PanelShape::new(stage, self.tolerance())),
+                }
+            }
+        };
+        let shape = kept.shape.clone();
+        shapes.insert(key, kept);
+        let place = |id: PointId| evaluation.point(id);
+        Some(PanelScene {
+            id: panel.id,
+            sheet: panel.sheet(),
+            name: panel.name.clone(),
+            cut: cut_words(panel),
+            corners: panel.edges().flat_map(|edge| edge.ends).collect(),
+            shape,
+            fold: fold(panel).and_then(|[a, b]| Some([place(a)?, place(b)?])),
+            is_stale: now.is_none(),
+        })
+    }
+}
+
+impl PanelScene {
+    /// Least rectangle round it on its sheet [m].
+    pub fn bounds(&self) -> &Bounds2 {
+        &self.shape.bounds
+    }
+}
+
+impl SheetScene {
+    /// Least rectangle round what is on it [m]; nothing if nothing is.
+    pub fn bounds(&self) -> Option<Bounds2> {
+        let points = self.points.iter().map(|point| point.at);
+        let lines = self.curves.iter().flat_map(|curve| curve.line.iter());
+        let all: Vec<Vec2> = points.chain(lines.copied()).collect();
+        (!all.is_empty()).then(|| Bounds2::of(all))
+    }
+}
+
+/// Handles of a curve with the points they shape.
+fn handles(curve: &Curve) -> Vec<[PointId; 2]> {
+    let CurveRule::Spline { handles, knots, .. } = &curve.rule else {
+        return Vec::new();
+    };
+    let inner = knots
+        .iter()
+        .flat_map(|knot| [[knot.point, knot.before], [knot.point, knot.after]]);
+    let ends = [[curve.ends[0], handles[0]], [curve.ends[1], handles[1]]];
+    ends.into_iter().chain(inner).collect()
+}
+
+/// Both corners of the stretch that lies on the fold.
+fn fold(panel: &Panel) -> Option<[PointId; 2]> {
+    panel
+        .operations
+        .iter()
+        .find_map(|operation| match &operation.kind {
+            OperationKind::Fold {
+                ends: [Mark::Corner(Name::Drawn(a)), Mark::Corner(Name::Drawn(b))],
+                ..
+            } => Some([*a, *b]),
+            _ => None,
+        })
+}
+
+fn cut_words(panel: &Panel) -> String {
+    match (panel.cut.quantity, panel.cut.mirrored, fold(panel)) {
+        (0, ..) => "not cut".into(),
+        (1, _, None) => String::new(),
+        (1, _, Some(_)) => "cut on the fold".into(),
+        (n, true, _) => format!("cut {n}, mirrored"),
+        (n, false, Some(_)) => format!("cut {n} on the fold"),
+        (n, false, None) => format!("cut {n}"),
+    }
+}

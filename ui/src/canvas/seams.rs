@@ -1,0 +1,85 @@
+//! Seams as drawn: coloured stretches beside the outlines they join.
+
+use toile_geometry::{Curve, Vec2};
+use toile_pattern::{Draft, EdgeId, EdgeOrigin, Name, PanelId, SeamId, SeamOrigin};
+
+/// One seam as drawn.
+#[derive(Clone, Debug)]
+pub struct SeamDrawing {
+    /// Which seam.
+    pub id: SeamId,
+    /// Its name.
+    pub name: String,
+    /// Number that both sides carry.
+    pub number: usize,
+    /// Length of each side [m].
+    pub lengths: [f64; 2],
+    /// Stretches on the panels as drawn.
+    pub stretches: Vec<SeamStretch>,
+}
+
+/// A stretch of one panel's outline that a seam joins.
+#[derive(Clone, Debug)]
+pub struct SeamStretch {
+    /// The panel.
+    pub panel: PanelId,
+    /// The edge, unless it lies on the mirrored half.
+    pub edge: Option<EdgeId>,
+    /// 0 or 1.
+    pub side: usize,
+    /// Its course, in the direction of the outline.
+    pub line: Vec<Vec2>,
+}
+
+/// The seams of a draft, curves to within a tolerance [m].
+pub fn draw_seams(draft: &Draft, tolerance: f64) -> Vec<SeamDrawing> {
+    let mut seams: Vec<SeamDrawing> = Vec::new();
+    for seam in &draft.seams {
+        let SeamOrigin::Seam(id) = seam.id else {
+            continue;
+        };
+        let mut drawing = SeamDrawing {
+            id,
+            name: seam.name.clone(),
+            number: seams.len() + 1,
+            lengths: [0.0; 2],
+            stretches: Vec::new(),
+        };
+        for (side, spans) in seam.sides.iter().enumerate() {
+            for span in spans {
+                let Some(piece) = draft.pieces.get(span.piece) else {
+                    continue;
+                };
+                let all = piece.outline.iter().chain(piece.holes.iter().flatten());
+                let Some(edge) = all.into_iter().nth(span.edge) else {
+                    continue;
+                };
+                drawing.lengths[side] += edge.curve.length() * (span.to - span.from).abs();
+                if piece.id.copy == 0 {
+                    drawing.stretches.push(SeamStretch {
+                        panel: piece.id.panel,
+                        edge: match edge.origin {
+                            EdgeOrigin {
+                                name: Name::Drawn(edge),
+                                half: 0,
+                            } => Some(edge),
+                            _ => None,
+                        },
+                        side,
+                        line: stretch(&edge.curve, span.from, span.to, tolerance),
+                    });
+                }
+            }
+        }
+        seams.push(drawing);
+    }
+    seams
+}
+
+/// The part of a curve between two shares of its length, always in the curve's own direction.
+fn stretch(curve: &Curve, from: f64, to: f64, tolerance: f64) -> Vec<Vec2> {
+    let length = curve.length();
+    let at = |share: f64| curve.parameter_at_length(length * share.clamp(0.0, 1.0));
+    let part = curve.between(at(from.min(to)), at(from.max(to)));
+    part.flatten(tolerance)
+}

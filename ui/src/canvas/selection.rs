@@ -1,0 +1,180 @@
+//! What is selected or under the pointer. View state: not in the document, not undone.
+
+use toile_pattern::{
+    CurveId, EdgeId, LineId, NotchId, OperationId, PanelId, PartId, Pattern, PointId, SeamId,
+};
+
+/// A part of the pattern that can be selected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Item {
+    /// A point of a sheet.
+    Point(PointId),
+    /// A curve of a sheet.
+    Curve(CurveId),
+    /// An edge of a panel.
+    Edge(PanelId, EdgeId),
+    /// A hole or a line inside a panel.
+    Line(PanelId, LineId),
+    /// A notch of a panel.
+    Notch(PanelId, NotchId),
+    /// A dart, a fold or another kept step of a panel.
+    Operation(PanelId, OperationId),
+    /// A whole panel.
+    Panel(PanelId),
+    /// A seam.
+    Seam(SeamId),
+}
+
+impl Item {
+    /// The part of the document.
+    pub fn part(self) -> PartId {
+        match self {
+            Self::Point(id) => id.into(),
+            Self::Curve(id) => id.into(),
+            Self::Edge(_, id) => id.into(),
+            Self::Line(_, id) => id.into(),
+            Self::Notch(_, id) => id.into(),
+            Self::Operation(_, id) => id.into(),
+            Self::Panel(id) => id.into(),
+            Self::Seam(id) => id.into(),
+        }
+    }
+
+    /// The panel it is, or is of.
+    pub fn panel(self) -> Option<PanelId> {
+        match self {
+            Self::Edge(panel, _)
+            | Self::Line(panel, _)
+            | Self::Notch(panel, _)
+            | Self::Operation(panel, _)
+            | Self::Panel(panel) => Some(panel),
+            Self::Point(_) | Self::Curve(_) | Self::Seam(_) => None,
+        }
+    }
+
+    /// What it is, in words; nothing if the pattern does not have it.
+    pub fn words(self, pattern: &Pattern) -> Option<String> {
+        let panel = |id| pattern.panel(id);
+        let mut sheets = pattern.sheets.iter();
+        Some(match self {
+            Self::Point(id) => {
+                let (sheet, point) = pattern.point(id)?;
+                format!("Point {} of {}", point.name, sheet.name)
+            }
+            Self::Curve(id) => {
+                let sheet = sheets.find(|sheet| sheet.curve(id).is_some())?;
+                format!("Curve {} of {}", sheet.curve(id)?.name, sheet.name)
+            }
+            Self::Edge(of, id) => {
+                let panel = panel(of)?;
+                format!("Edge {} of {}", panel.edge(id)?.name, panel.name)
+            }
+            Self::Line(of, id) => {
+                let panel = panel(of)?;
+                let line = panel.lines.iter().find(|line| line.id == id)?;
+                format!("Line {} of {}", line.name, panel.name)
+            }
+            Self::Notch(of, id) => {
+                let panel = panel(of)?;
+                let number = panel.notches.iter().position(|notch| notch.id == id)? + 1;
+                format!("Notch {number} of {}", panel.name)
+            }
+            Self::Operation(of, id) => {
+                let panel = panel(of)?;
+                let found = panel.operations.iter().find(|step| step.id == id)?;
+                let kind = found.kind.word();
+                let kind = kind[..1].to_uppercase() + &kind[1..];
+                match found.name.eq_ignore_ascii_case(&kind) {
+                    true => format!("{kind} of {}", panel.name),
+                    false => format!("{kind} {} of {}", found.name, panel.name),
+                }
+            }
+            Self::Panel(id) => format!("Panel {}", panel(id)?.name),
+            Self::Seam(id) => format!("Seam {}", pattern.seam(id)?.name),
+        })
+    }
+}
+
+/// What is selected, in the order it was chosen.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Selection {
+    items: Vec<Item>,
+}
+
+impl Selection {
+    /// One part alone.
+    pub fn one(item: Item) -> Self {
+        Self { items: vec![item] }
+    }
+
+    /// The parts.
+    pub fn items(&self) -> &[Item] {
+        &self.items
+    }
+
+    /// Whether nothing is selected.
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    /// Whether a part is selected.
+    pub fn contains(&self, item: Item) -> bool {
+        self.items.contains(&item)
+    }
+
+    /// The part, if one alone is selected.
+    pub fn single(&self) -> Option<Item> {
+        match self.items[..] {
+            [item] => Some(item),
+            _ => None,
+        }
+    }
+
+    /// The points.
+    pub fn points(&self) -> Vec<PointId> {
+        let points = self.items.iter().filter_map(|item| match item {
+            Item::Point(id) => Some(*id),
+            _ => None,
+        });
+        points.collect()
+    }
+
+    /// The panels that are selected whole.
+    pub fn panels(&self) -> Vec<PanelId> {
+        let panels = self.items.iter().filter_map(|item| match item {
+            Item::Panel(id) => Some(*id),
+            _ => None,
+        });
+        panels.collect()
+    }
+
+    /// Adds a part, or takes it away if it is there.
+    pub fn toggle(&mut self, item: Item) {
+        match self.items.iter().position(|known| *known == item) {
+            Some(k) => {
+                self.items.remove(k);
+            }
+            None => self.items.push(item),
+        }
+    }
+
+    /// Adds a part if it is not there.
+    pub fn add(&mut self, item: Item) {
+        if !self.contains(item) {
+            self.items.push(item);
+        }
+    }
+
+    /// Leaves out what the pattern does not have.
+    pub fn follow(&mut self, pattern: &Pattern) {
+        self.items.retain(|item| item.words(pattern).is_some());
+    }
+}
+
+impl FromIterator<Item> for Selection {
+    fn from_iter<Items: IntoIterator<Item = Item>>(items: Items) -> Self {
+        let mut selection = Self::default();
+        items.into_iter().for_each(|item| selection.add(item));
+        selection
+    }
+}

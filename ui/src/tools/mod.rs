@@ -1,0 +1,240 @@
+//! Tools: small state machines from what is done at the canvas to edits. They know the document's
+//! reading side and edits, never the toolkit of the window.
+
+pub mod number;
+mod select;
+pub mod slots;
+
+pub use select::SelectState;
+
+use crate::canvas::hit::Hit;
+use crate::canvas::scene::Scene;
+use crate::canvas::selection::{Item, Selection};
+use crate::canvas::snap::Placed;
+use slots::{SlotState, SlotTool};
+use toile_geometry::Vec2;
+use toile_pattern::{Edit, Evaluation, SheetId};
+
+/// Where the pointer is and what is there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pointer {
+    /// Its place on the table [m].
+    pub table: Vec2,
+    /// The sheet that is drawn on there.
+    pub sheet: SheetId,
+    /// Its place on that sheet [m].
+    pub at: Vec2,
+    /// Parts there, the most wanted first.
+    pub hits: Vec<Hit>,
+    /// Places a point could have there, the best first; never empty.
+    pub snaps: Vec<Placed>,
+    /// Width of a pixel [m].
+    pub pixel: f64,
+    /// Keys that are held.
+    pub held: Held,
+}
+
+/// Keys that change what a tool does while they are held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Held {
+    /// Keeps level, upright or at 15 degrees; adds to the selection.
+    pub shift: bool,
+    /// Turns snapping off.
+    pub command: bool,
+}
+
+impl Pointer {
+    /// The best place, or any other that was asked for by its number; anywhere while snapping is
+    /// off.
+    pub fn placed(&self, number: usize) -> Placed {
+        match self.held.command {
+            true => Placed::free(self.sheet, self.at),
+            false => self.snaps[number % self.snaps.len()].clone(),
+        }
+    }
+
+    /// The most wanted part there.
+    pub fn hit(&self) -> Option<Hit> {
+        self.hits.first().copied()
+    }
+}
+
+/// Something that is done at the canvas.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Event {
+    /// The pointer is somewhere, no button held.
+    Hover(Pointer),
+    /// The pointer has left.
+    Leave,
+    /// The button is pressed and moved: where it was pressed, and where it is.
+    Drag(Pointer, Pointer),
+    /// It is let go of after a drag.
+    Drop,
+    /// A click.
+    Click(Pointer),
+    /// A double click.
+    DoubleClick(Pointer),
+    /// Typed text.
+    Text(String),
+    /// The last typed character is taken back.
+    Backspace,
+    /// What stands is taken.
+    Enter,
+    /// One step back.
+    Escape,
+    /// The next number, or the next snap.
+    Tab,
+}
+
+/// What a tool sees of the pattern.
+#[derive(Clone, Copy)]
+pub struct Reading<'a> {
+    /// Every value, as before the gesture.
+    pub evaluation: &'a Evaluation,
+    /// How it is seen.
+    pub scene: &'a Scene,
+    /// What is selected.
+    pub selection: &'a Selection,
+    /// What lies inside a rectangle of the table [m].
+    pub inside: &'a dyn Fn([Vec2; 2]) -> Vec<Item>,
+}
+
+/// Something drawn over the pattern by a tool.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Overlay {
+    /// A line on a sheet.
+    Line(SheetId, Vec<Vec2>),
+    /// A place on a sheet.
+    Dot(SheetId, Vec2),
+    /// Words beside a place on a sheet.
+    Words(SheetId, Vec2, String),
+    /// A rectangle of the table.
+    Box([Vec2; 2]),
+}
+
+/// What is shown of edits that are not made yet.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Shown {
+    /// As before.
+    #[default]
+    Same,
+    /// The document as it is.
+    Nothing,
+    /// The document with these edits.
+    Edits(Vec<Edit>),
+}
+
+/// What comes of an event.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// What is shown.
+    pub shown: Shown,
+    /// Edits to make as one step of the history, and its name.
+    pub commit: Option<(Vec<Edit>, String)>,
+    /// What is shown is made a step of the history of this name.
+    pub commit_shown: Option<String>,
+    /// What is selected from now on.
+    pub select: Option<Selection>,
+    /// Why something was not done.
+    pub refusal: Option<String>,
+    /// The tool is put down.
+    pub done: bool,
+}
+
+/// A tool in hand.
+#[derive(Clone, Copy, Debug)]
+pub enum Tool {
+    /// Selects, moves, divides.
+    Select,
+    /// Is given one thing after another, then does its work.
+    Slots(&'static SlotTool),
+}
+
+/// How far a tool has come.
+#[derive(Clone, Debug, PartialEq)]
+pub enum State {
+    /// Of [`Tool::Select`].
+    Select(SelectState),
+    /// Of [`Tool::Slots`].
+    Slots(SlotState),
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self::Select(SelectState::default())
+    }
+}
+
+impl Tool {
+    /// The state it begins with.
+    pub fn begin(self) -> State {
+        match self {
+            Self::Select => State::default(),
+            Self::Slots(_) => State::Slots(SlotState::default()),
+        }
+    }
+
+    /// Its key in the table of commands.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Select => "select",
+            Self::Slots(tool) => tool.key,
+        }
+    }
+
+    /// The state after an event, and what comes of it.
+    pub fn step(self, state: &State, event: &Event, reading: &Reading<'_>) -> (State, Outcome) {
+        match (self, state) {
+            (Self::Select, State::Select(state)) => {
+                let (state, outcome) = select::step(state, event, reading);
+                (State::Select(state), outcome)
+            }
+            (Self::Slots(tool), State::Slots(state)) => {
+                let (state, outcome) = slots::step(tool, state, event, reading);
+                (State::Slots(state), outcome)
+            }
+            // A state of another tool: begin anew.
+            _ => self.step(&self.begin(), event, reading),
+        }
+    }
+
+    /// What is drawn over the pattern.
+    pub fn overlay(self, state: &State, reading: &Reading<'_>) -> Vec<Overlay> {
+        match (self, state) {
+            (Self::Select, State::Select(state)) => select::overlay(state),
+            (Self::Slots(tool), State::Slots(state)) => slots::overlay(tool, state, reading),
+            _ => Vec::new(),
+        }
+    }
+
+    /// What a click does now, and which keys change it.
+    pub fn hint(self, state: &State, reading: &Reading<'_>) -> String {
+        match (self, state) {
+            (Self::Select, State::Select(state)) => select::hint(state, reading),
+            (Self::Slots(tool), State::Slots(state)) => slots::hint(tool, state),
+            _ => String::new(),
+        }
+    }
+
+    /// Whether it has begun, so that Escape goes a step back and does not put it down.
+    pub fn is_under_way(self, state: &State) -> bool {
+        match state {
+            State::Select(state) => *state != SelectState::default(),
+            State::Slots(state) => !state.is_empty(),
+        }
+    }
+}
+
+/// A part that a click chooses: with Shift it is added or taken away.
+fn chosen(selection: &Selection, item: Option<Item>, adds: bool) -> Selection {
+    match (item, adds) {
+        (Some(item), true) => {
+            let mut selection = selection.clone();
+            selection.toggle(item);
+            selection
+        }
+        (Some(item), false) => Selection::one(item),
+        (None, true) => selection.clone(),
+        (None, false) => Selection::default(),
+    }
+}

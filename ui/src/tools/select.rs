@@ -1,0 +1,268 @@
+//! Selects by click and by box; drags points and whole panels; divides an edge by a double click.
+
+use super::{Event, Outcome, Overlay, Pointer, Reading, Shown, chosen};
+use crate::canvas::hit::Hit;
+use crate::canvas::selection::{Item, Selection};
+use std::sync::Arc;
+use toile_geometry::Vec2;
+use toile_pattern::{Edit, EditError, Entity, Panel, PanelId, PointId, plan};
+
+/// What is going on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum SelectState {
+    /// Nothing.
+    #[default]
+    Idle,
+    /// Something is dragged.
+    Dragging(Dragged),
+    /// A box is drawn from a place of the table to another [m].
+    Boxing([Vec2; 2], bool),
+}
+
+/// What is dragged.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Dragged {
+    /// Points, from where the one in hand was.
+    Points(Vec<PointId>, PointId, Vec2),
+    /// Panels on the table.
+    Panels(Vec<PanelId>),
+    /// Something that is not moved by dragging, and why.
+    Fixed(String),
+}
+
+pub(super) fn step(
+    state: &SelectState,
+    event: &Event,
+    reading: &Reading<'_>,
+) -> (SelectState, Outcome) {
+    let idle = SelectState::Idle;
+    match event {
+        Event::Click(pointer) => {
+            let item = clicked(pointer, reading.selection);
+            let select = chosen(reading.selection, item, pointer.held.shift);
+            (idle, selecting(select))
+        }
+        Event::DoubleClick(pointer) => (idle, double_click(pointer, reading)),
+        Event::Drag(from, to) => drag(state, from, to, reading),
+        Event::Drop => dropped(state, reading),
+        Event::Escape => match state {
+            SelectState::Idle => (idle, selecting(Selection::default())),
+            _ => (idle, nothing_shown()),
+        },
+        _ => (state.clone(), Outcome::default()),
+    }
+}
+
+fn selecting(select: Selection) -> Outcome {
+    Outcome {
+        select: Some(select),
+        ..Outcome::default()
+    }
+}
+
+fn nothing_shown() -> Outcome {
+    Outcome {
+        shown: Shown::Nothing,
+        ..Outcome::default()
+    }
+}
+
+/// Repeated clicks at one place go through what lies there.
+fn clicked(pointer: &Pointer, selection: &Selection) -> Option<Item> {
+    let current = selection.single();
+    let at = current.and_then(|item| pointer.hits.iter().position(|hit| hit.item == item));
+    let next = at.map_or(0, |k| (k + 1) % pointer.hits.len());
+    pointer.hits.get(next).map(|hit| hit.item)
+}
+
+fn double_click(pointer: &Pointer, reading: &Reading<'_>) -> Outcome {
+    let edge = pointer.hits.iter().find_map(|hit| match hit.item {
+        Item::Edge(panel, edge) => Some((panel, edge, hit.at)),
+        _ => None,
+    });
+    let Some((panel, edge, at)) = edge else {
+        return Outcome::default();
+    };
+    match plan::divide_edge(reading.evaluation, (panel, edge), Some(at)) {
+        Ok((edits, corner)) => Outcome {
+            commit: Some((edits, "Add point".into())),
+            select: Some(Selection::one(Item::Point(corner))),
+            ..Outcome::default()
+        },
+        Err(error) => Outcome {
+            refusal: Some(error.to_string()),
+            ..Outcome::default()
+        },
+    }
+}
+
+fn drag(
+    state: &SelectState,
+    from: &Pointer,
+    to: &Pointer,
+    reading: &Reading<'_>,
+) -> (SelectState, Outcome) {
+    let mut outcome = Outcome::default();
+    let dragged = match state {
+        SelectState::Boxing(..) => {
+            let state = SelectState::Boxing([from.table, to.table], to.held.shift);
+            return (state, outcome);
+        }
+        SelectState::Dragging(dragged) => dragged.clone(),
+        SelectState::Idle => match from.hit() {
+            None => {
+                let state = SelectState::Boxing([from.table, to.table], to.held.shift);
+                return (state, outcome);
+            }
+            Some(hit) => {
+                let (dragged, select) = take_hold(hit, reading);
+                outcome.select = select;
+                dragged
+            }
+        },
+    };
+    match moved(&dragged, from, to, reading) {
+        Ok(edits) => outcome.shown = Shown::Edits(edits),
+        Err(error) => outcome.refusal = Some(error.to_string()),
+    }
+    (SelectState::Dragging(dragged), outcome)
+}
+
+/// What a drag from a part moves: all of the selection if the part is in it, else the part, which
+/// is then selected.
+fn take_hold(hit: Hit, reading: &Reading<'_>) -> (Dragged, Option<Selection>) {
+    let is_selected = reading.selection.contains(hit.item);
+    let select = (!is_selected).then(|| Selection::one(hit.item));
+    let dragged = match hit.item {
+        Item::Point(id) => {
+            let points = match is_selected {
+                true => reading.selection.points(),
+                false => vec![id],
+            };
+            Dragged::Points(points, id, hit.at)
+        }
+        Item::Panel(id) => Dragged::Panels(match is_selected {
+            true => reading.selection.panels(),
+            false => vec![id],
+        }),
+        Item::Edge(panel, id) => {
+            let edge = reading.evaluation.pattern().panel(panel);
+            match edge.and_then(|panel| panel.edge(id)) {
+                Some(edge) => Dragged::Points(edge.ends.to_vec(), edge.ends[0], hit.at),
+                None => Dragged::Fixed("the edge is not there".into()),
+            }
+        }
+        Item::Curve(id) => {
+            let mut sheets = reading.evaluation.pattern().sheets.iter();
+            match sheets.find_map(|sheet| sheet.curve(id)) {
+                Some(curve) => Dragged::Points(curve.ends.to_vec(), curve.ends[0], hit.at),
+                None => Dragged::Fixed("the curve is not there".into()),
+            }
+        }
+        Item::Line(..) | Item::Notch(..) | Item::Operation(..) | Item::Seam(_) => {
+            Dragged::Fixed("it is moved by its numbers, beside the view".into())
+        }
+    };
+    (dragged, select)
+}
+
+fn moved(
+    dragged: &Dragged,
+    from: &Pointer,
+    to: &Pointer,
+    reading: &Reading<'_>,
+) -> Result<Vec<Edit>, EditError> {
+    let mut way = to.table - from.table;
+    if to.held.shift {
+        way = straight(way);
+    }
+    match dragged {
+        Dragged::Points(points, held, _) => {
+            let mut edits = Vec::new();
+            for point in points {
+                let Some(now) = reading.evaluation.point(*point) else {
+                    continue;
+                };
+                match plan::move_point(reading.evaluation, *point, now + way) {
+                    Ok(found) => edits.extend(found),
+                    // The others move all the same; the one in hand says why it does not.
+                    Err(error) if point == held || points.len() == 1 => return Err(error),
+                    Err(_) => {}
+                }
+            }
+            Ok(edits)
+        }
+        Dragged::Panels(panels) => {
+            let pattern = reading.evaluation.pattern();
+            let moved = panels.iter().filter_map(|id| {
+                let panel = pattern.panel(*id)?;
+                let old = panel.on_table.map_or_else(Vec2::zeros, Vec2::from);
+                Some(Edit::Put(Entity::Panel(Arc::new(Panel {
+                    on_table: Some((old + way).into()),
+                    ..(**panel).clone()
+                }))))
+            });
+            Ok(moved.collect())
+        }
+        Dragged::Fixed(words) => Err(EditError::Impossible {
+            message: "it cannot be dragged".into(),
+            hint: words.clone(),
+        }),
+    }
+}
+
+fn dropped(state: &SelectState, reading: &Reading<'_>) -> (SelectState, Outcome) {
+    let mut outcome = Outcome::default();
+    match state {
+        SelectState::Idle => {}
+        SelectState::Boxing(corners, adds) => {
+            let mut select = match adds {
+                true => reading.selection.clone(),
+                false => Selection::default(),
+            };
+            for item in (reading.inside)(*corners) {
+                select.add(item);
+            }
+            outcome.select = Some(select);
+        }
+        SelectState::Dragging(dragged) => {
+            let label = match dragged {
+                Dragged::Points(points, ..) if points.len() == 1 => "Move point",
+                Dragged::Points(..) => "Move points",
+                Dragged::Panels(panels) if panels.len() == 1 => "Move panel",
+                Dragged::Panels(_) => "Move panels",
+                Dragged::Fixed(_) => return (SelectState::Idle, nothing_shown()),
+            };
+            outcome.commit_shown = Some(label.into());
+        }
+    }
+    (SelectState::Idle, outcome)
+}
+
+/// The way across or up only, whichever is longer.
+fn straight(way: Vec2) -> Vec2 {
+    match way.x.abs() >= way.y.abs() {
+        true => Vec2::new(way.x, 0.0),
+        false => Vec2::new(0.0, way.y),
+    }
+}
+
+pub(super) fn overlay(state: &SelectState) -> Vec<Overlay> {
+    match state {
+        SelectState::Boxing(corners, _) => vec![Overlay::Box(*corners)],
+        _ => Vec::new(),
+    }
+}
+
+pub(super) fn hint(state: &SelectState, reading: &Reading<'_>) -> String {
+    match state {
+        SelectState::Idle if reading.scene.is_empty() => {
+            "Choose a tool to draw with, or open a pattern".into()
+        }
+        SelectState::Idle => "Click to select, Shift-click to add, drag to move or to draw a box; \
+                              double-click an edge to add a point"
+            .into(),
+        SelectState::Dragging(_) => "Shift keeps it level or upright; Esc leaves it".into(),
+        SelectState::Boxing(..) => "Everything inside is selected; Shift adds".into(),
+    }
+}

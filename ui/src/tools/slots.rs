@@ -1,0 +1,568 @@
+//! Tools that are given one thing after another: a list of slots and a planner. One machine gives
+//! all of them hovering, typed numbers, snapping, steps back and hints.
+
+use super::number::{self, Kind};
+use super::{Event, Outcome, Overlay, Pointer, Reading, Shown};
+use crate::canvas::selection::{Item, Selection};
+use crate::canvas::snap::{Placed, Spec};
+use toile_geometry::Vec2;
+use toile_pattern::{CurveId, Edit, EditError, EdgeId, Number, PanelId, SheetId};
+
+/// Steps of an angle while Shift is held [degrees].
+const TURN: f64 = 15.0;
+
+/// A tool of slots.
+#[derive(Debug)]
+pub struct SlotTool {
+    /// Its key in the table of commands.
+    pub key: &'static str,
+    /// What it is given, in order.
+    pub slots: &'static [Slot],
+    /// From what it was given to edits.
+    pub plan: fn(&[Answer], &Reading<'_>) -> Result<Plan, EditError>,
+}
+
+/// One thing a tool is given.
+#[derive(Debug)]
+pub struct Slot {
+    /// What to do to give it.
+    pub hint: &'static str,
+    /// What it is.
+    pub kind: SlotKind,
+}
+
+/// What a slot takes.
+#[derive(Clone, Copy, Debug)]
+pub enum SlotKind {
+    /// A place of a sheet, with numbers that may be typed for it.
+    Place(Fields),
+    /// Several places; Enter or a click on the first ends them.
+    Places,
+    /// A place on an outline, hole or inner line of a panel.
+    OnLine,
+    /// An edge of a panel.
+    Edge,
+    /// A curve of a sheet.
+    Curve,
+    /// A panel.
+    Panel,
+    /// A place inside something, which need not be drawn to anything.
+    Inside,
+    /// A number: typed, or given by the pointer.
+    Number {
+        /// What it is called.
+        label: &'static str,
+        /// What it measures.
+        kind: Kind,
+        /// What it is as long as nothing is typed, if the pointer does not say [m], [rad].
+        usual: f64,
+        /// What the pointer says, from what was given before [m], [rad].
+        live: Option<fn(&[Answer], &Pointer) -> f64>,
+    },
+}
+
+/// Numbers that may be typed for a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fields {
+    /// None.
+    None,
+    /// Coordinates on the sheet.
+    Coordinates,
+    /// Length and angle from the place before.
+    FromLast,
+    /// Width and height from the place before.
+    Size,
+}
+
+impl Fields {
+    fn labels(self) -> &'static [(&'static str, Kind)] {
+        match self {
+            Self::None => &[],
+            Self::Coordinates => &[("x", Kind::Length), ("y", Kind::Length)],
+            Self::FromLast => &[("length", Kind::Length), ("angle", Kind::Angle)],
+            Self::Size => &[("width", Kind::Length), ("height", Kind::Length)],
+        }
+    }
+}
+
+/// What was given.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Answer {
+    /// A place.
+    Place(Placed),
+    /// Places, and whether the last joins the first.
+    Places(Vec<Placed>, bool),
+    /// A place of a panel's line, on its sheet [m].
+    OnLine(PanelId, Item, Vec2),
+    /// An edge, and the place it was taken at [m].
+    Edge(PanelId, EdgeId, Vec2),
+    /// A curve, and the place it was taken at [m].
+    Curve(SheetId, CurveId, Vec2),
+    /// A panel.
+    Panel(PanelId),
+    /// A place inside something of a sheet [m].
+    Inside(SheetId, Vec2),
+    /// A number.
+    Number(Number),
+}
+
+/// What a tool does when it has been given everything.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The edits.
+    pub edits: Vec<Edit>,
+    /// The step's name in the history.
+    pub label: String,
+    /// What is selected then.
+    pub select: Selection,
+    /// What the tool has been given already when it begins again.
+    pub again: Vec<Answer>,
+}
+
+/// How far a tool has come.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SlotState {
+    answers: Vec<Answer>,
+    /// Places of a slot that takes several.
+    places: Vec<Placed>,
+    typed: [String; 2],
+    /// The number that is typed.
+    field: usize,
+    /// The snap that is taken, counted from the best.
+    snap: usize,
+    pointer: Option<Pointer>,
+    /// Why what was asked last was not done.
+    refusal: Option<String>,
+}
+
+impl SlotState {
+    /// Whether nothing was given yet.
+    pub fn is_empty(&self) -> bool {
+        self.answers.is_empty() && self.places.is_empty() && !self.is_typing()
+    }
+
+    /// Whether a number is being typed.
+    pub fn is_typing(&self) -> bool {
+        self.typed.iter().any(|text| !text.is_empty())
+    }
+
+    /// The place given last [m].
+    fn last_place(&self) -> Option<&Placed> {
+        let given = self.answers.iter().rev().find_map(|answer| match answer {
+            Answer::Place(placed) => Some(placed),
+            _ => None,
+        });
+        self.places.last().or(given)
+    }
+
+    fn clear_typed(&mut self) {
+        self.typed = Default::default();
+        self.field = 0;
+        self.snap = 0;
+    }
+}
+
+fn slot<'t>(tool: &'t SlotTool, state: &SlotState) -> &'t Slot {
+    let last = tool.slots.len() - 1;
+    &tool.slots[state.answers.len().min(last)]
+}
+
+pub(super) fn step(
+    tool: &'static SlotTool,
+    state: &SlotState,
+    event: &Event,
+    reading: &Reading<'_>,
+) -> (SlotState, Outcome) {
+    let mut next = state.clone();
+    next.refusal = None;
+    let kind = slot(tool, state).kind;
+    let mut outcome = Outcome::default();
+    match event {
+        Event::Hover(pointer) | Event::Drag(_, pointer) => {
+            if next.pointer.as_ref().is_none_or(|old| old.at != pointer.at) {
+                next.snap = 0;
+            }
+            next.pointer = Some(pointer.clone());
+        }
+        Event::Leave => next.pointer = None,
+        Event::Click(pointer) | Event::DoubleClick(pointer) => {
+            next.pointer = Some(pointer.clone());
+            outcome = accept(tool, &mut next, reading, false);
+        }
+        Event::Enter => outcome = accept(tool, &mut next, reading, true),
+        Event::Text(text) => {
+            let fields = fields(kind).len();
+            if fields > 0 {
+                let field = next.field.min(fields - 1);
+                next.typed[field].push_str(text);
+            }
+        }
+        Event::Backspace => {
+            let field = next.field;
+            next.typed[field].pop();
+        }
+        Event::Tab => match next.is_typing() {
+            true => next.field = (next.field + 1) % fields(kind).len().max(1),
+            false => next.snap += 1,
+        },
+        Event::Escape => {
+            if next.is_typing() {
+                next.clear_typed();
+            } else if next.places.pop().is_none() && next.answers.pop().is_none() {
+                outcome.done = true;
+            }
+        }
+        Event::Drop => {}
+    }
+    if outcome.commit.is_none() {
+        outcome.shown = shown(tool, &next, reading);
+    }
+    next.refusal = outcome.refusal.clone();
+    (next, outcome)
+}
+
+/// Numbers that may be typed in a slot.
+fn fields(kind: SlotKind) -> Vec<(&'static str, Kind)> {
+    match kind {
+        SlotKind::Place(fields) => fields.labels().to_vec(),
+        SlotKind::Places => Fields::FromLast.labels().to_vec(),
+        SlotKind::Number { label, kind, .. } => vec![(label, kind)],
+        _ => Vec::new(),
+    }
+}
+
+/// What is given now, if the slot can be answered so.
+fn answer(kind: SlotKind, state: &SlotState, reading: &Reading<'_>) -> Result<Answer, String> {
+    let pointer = state.pointer.as_ref();
+    let here = || pointer.ok_or_else(|| "point at a place of the pattern".to_owned());
+    let hit = |wanted: &dyn Fn(Item) -> bool, words: &str| {
+        let found = here()?.hits.iter().find(|hit| wanted(hit.item)).copied();
+        found.ok_or_else(|| format!("there is no {words} here: click on one"))
+    };
+    match kind {
+        SlotKind::Place(fields) => Ok(Answer::Place(placed(fields, state, reading)?)),
+        SlotKind::Places => Ok(Answer::Place(placed(Fields::FromLast, state, reading)?)),
+        SlotKind::OnLine => {
+            let wanted = |item| matches!(item, Item::Edge(..) | Item::Line(..));
+            let hit = hit(&wanted, "line of a panel")?;
+            let panel = hit.item.panel().ok_or("there is no panel here")?;
+            Ok(Answer::OnLine(panel, hit.item, hit.at))
+        }
+        SlotKind::Edge => {
+            let found = hit(&|item| matches!(item, Item::Edge(..)), "edge of a panel")?;
+            match found.item {
+                Item::Edge(panel, edge) => Ok(Answer::Edge(panel, edge, found.at)),
+                _ => Err("there is no edge here: click on one".into()),
+            }
+        }
+        SlotKind::Curve => {
+            let found = hit(&|item| matches!(item, Item::Curve(_)), "curve")?;
+            match found.item {
+                Item::Curve(curve) => Ok(Answer::Curve(found.sheet, curve, found.at)),
+                _ => Err("there is no curve here: click on one".into()),
+            }
+        }
+        SlotKind::Panel => {
+            let found = hit(&|item| item.panel().is_some(), "panel")?;
+            let panel = found.item.panel().ok_or("there is no panel here")?;
+            Ok(Answer::Panel(panel))
+        }
+        SlotKind::Inside => {
+            let pointer = here()?;
+            Ok(Answer::Inside(pointer.sheet, pointer.at))
+        }
+        SlotKind::Number {
+            kind, usual, live, ..
+        } => {
+            let typed = state.typed[0].trim();
+            if !typed.is_empty() {
+                return Ok(Answer::Number(number::parse(typed, kind, reading.evaluation)?));
+            }
+            let said = live.zip(pointer);
+            let value = said.map_or(usual, |(live, pointer)| live(&state.answers, pointer));
+            Ok(Answer::Number(Number::Value(value)))
+        }
+    }
+}
+
+/// The place that is given now: where the pointer is, or where typed numbers say.
+fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Placed, String> {
+    let mut numbers = [None, None];
+    for (k, (_, kind)) in fields.labels().iter().enumerate() {
+        let text = state.typed[k].trim();
+        if !text.is_empty() {
+            numbers[k] = Some(number::parse(text, *kind, reading.evaluation)?);
+        }
+    }
+    let pointer = state.pointer.as_ref();
+    let last = state.last_place();
+    if numbers == [None, None] {
+        let pointer = pointer.ok_or("point at a place, or type numbers")?;
+        let free = pointer.placed(state.snap);
+        let level = pointer.held.shift && fields != Fields::None;
+        return Ok(match last.filter(|_| level) {
+            Some(last) => turned(last, pointer, free),
+            None => free,
+        });
+    }
+    let value = |number: &Number, kind: Kind| {
+        let value = reading.evaluation.number(number, kind.want());
+        value.ok_or_else(|| "the formula has no value".to_owned())
+    };
+    let pointed = pointer.map(|pointer| pointer.placed(state.snap).at);
+    let sheet = last.map(|last| last.sheet);
+    let sheet = sheet.or(pointer.map(|pointer| pointer.sheet));
+    let sheet = sheet.ok_or("point at a sheet first")?;
+    let origin = last.map_or_else(Vec2::zeros, |last| last.at);
+    let way = pointed.map_or_else(Vec2::zeros, |at| at - origin);
+    let [first, second] = numbers;
+    let missing = "type the other number too (Tab), or point at a place".to_owned();
+    let or_pointed = |number: Option<Number>, value: f64| match number {
+        Some(number) => Ok(number),
+        None if pointed.is_some() => Ok(Number::Value(value)),
+        None => Err(missing.clone()),
+    };
+    match fields {
+        Fields::FromLast if last.is_some() => {
+            let distance = or_pointed(first, way.norm())?;
+            let angle = or_pointed(second, way.y.atan2(way.x))?;
+            let (far, turn) = (
+                value(&distance, Kind::Length)?,
+                value(&angle, Kind::Angle)?,
+            );
+            Ok(Placed {
+                sheet,
+                at: origin + Vec2::new(turn.cos(), turn.sin()) * far,
+                spec: Spec::FromLast { distance, angle },
+                words: String::new(),
+            })
+        }
+        Fields::Size if last.is_some() => {
+            // A rectangle grows to the side the pointer is on.
+            let signed = |number: Option<Number>, way: f64| or_pointed(number, way);
+            let (x, y) = (signed(first, way.x)?, signed(second, way.y)?);
+            let to = Vec2::new(value(&x, Kind::Length)?, value(&y, Kind::Length)?);
+            Ok(Placed {
+                sheet,
+                at: origin + to,
+                spec: Spec::BesideLast { x, y },
+                words: String::new(),
+            })
+        }
+        _ => {
+            let at = pointed.unwrap_or_default();
+            let (x, y) = (or_pointed(first, at.x)?, or_pointed(second, at.y)?);
+            let at = Vec2::new(value(&x, Kind::Length)?, value(&y, Kind::Length)?);
+            Ok(Placed {
+                sheet,
+                at,
+                spec: Spec::New(toile_pattern::PointRule::At { x, y }),
+                words: String::new(),
+            })
+        }
+    }
+}
+
+/// The place at the pointer's distance from the last, in a direction of whole steps.
+fn turned(last: &Placed, pointer: &Pointer, free: Placed) -> Placed {
+    let way = free.at - last.at;
+    let step = TURN.to_radians();
+    let angle = (way.y.atan2(way.x) / step).round() * step;
+    let unit = Vec2::new(angle.cos(), angle.sin());
+    let far = way.dot(&unit);
+    let far = match pointer.held.command {
+        true => far,
+        false => crate::canvas::snap::rounded(far, 0.001),
+    };
+    Placed {
+        sheet: last.sheet,
+        at: last.at + unit * far,
+        spec: Spec::FromLast {
+            distance: Number::Value(far),
+            angle: Number::Value(angle),
+        },
+        words: format!("at {:.0}\u{b0}", angle.to_degrees()),
+    }
+}
+
+/// Takes what is given now, and does the work when that was the last.
+fn accept(
+    tool: &'static SlotTool,
+    state: &mut SlotState,
+    reading: &Reading<'_>,
+    by_key: bool,
+) -> Outcome {
+    let kind = slot(tool, state).kind;
+    let refused = |words: String| Outcome {
+        refusal: Some(words),
+        ..Outcome::default()
+    };
+    if let SlotKind::Places = kind {
+        let ends = by_key && !state.is_typing();
+        let given = match ends {
+            true => None,
+            false => match answer(kind, state, reading) {
+                Ok(Answer::Place(placed)) => Some(placed),
+                Ok(_) => None,
+                Err(words) => return refused(words),
+            },
+        };
+        let near = state.pointer.as_ref().map_or(0.0, |pointer| 9.0 * pointer.pixel);
+        let first = state.places.first();
+        let closes = given
+            .as_ref()
+            .zip(first)
+            .is_some_and(|(given, first)| {
+                state.places.len() > 2 && (given.at - first.at).norm() <= near
+            });
+        if let Some(placed) = given.filter(|_| !closes) {
+            state.places.push(placed);
+            state.clear_typed();
+            return Outcome::default();
+        }
+        if state.places.len() < 2 {
+            return refused("click at least two places first".into());
+        }
+        let places = std::mem::take(&mut state.places);
+        state.answers.push(Answer::Places(places, closes));
+    } else {
+        match answer(kind, state, reading) {
+            Ok(answer) => state.answers.push(answer),
+            Err(words) => return refused(words),
+        }
+    }
+    state.clear_typed();
+    if state.answers.len() < tool.slots.len() {
+        return Outcome::default();
+    }
+    match (tool.plan)(&state.answers, reading) {
+        Ok(plan) => {
+            state.answers = plan.again;
+            Outcome {
+                commit: Some((plan.edits, plan.label)),
+                select: Some(plan.select),
+                ..Outcome::default()
+            }
+        }
+        Err(error) => {
+            // What was given last is asked for again.
+            if let Some(Answer::Places(places, _)) = state.answers.pop() {
+                state.places = places;
+            }
+            refused(error.to_string())
+        }
+    }
+}
+
+/// What the tool would do if it were given this now.
+fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Shown {
+    let kind = slot(tool, state).kind;
+    let is_last = state.answers.len() + 1 == tool.slots.len();
+    if !is_last || matches!(kind, SlotKind::Places) {
+        return Shown::Nothing;
+    }
+    let Ok(answer) = answer(kind, state, reading) else {
+        return Shown::Nothing;
+    };
+    let mut answers = state.answers.clone();
+    answers.push(answer);
+    match (tool.plan)(&answers, reading) {
+        Ok(plan) => Shown::Edits(plan.edits),
+        Err(_) => Shown::Nothing,
+    }
+}
+
+pub(super) fn overlay(
+    tool: &SlotTool,
+    state: &SlotState,
+    reading: &Reading<'_>,
+) -> Vec<Overlay> {
+    let kind = slot(tool, state).kind;
+    let mut marks = Vec::new();
+    for answer in &state.answers {
+        match answer {
+            Answer::Place(placed) => marks.push(Overlay::Dot(placed.sheet, placed.at)),
+            Answer::Places(places, _) => {
+                marks.extend(places.iter().map(|p| Overlay::Dot(p.sheet, p.at)));
+            }
+            _ => {}
+        }
+    }
+    for places in state.places.windows(2) {
+        let line = places.iter().map(|placed| placed.at).collect();
+        marks.push(Overlay::Line(places[0].sheet, line));
+    }
+    marks.extend(state.places.iter().map(|p| Overlay::Dot(p.sheet, p.at)));
+    let unit = reading.evaluation.pattern().unit;
+    let typed = typed_words(kind, state);
+    match answer(kind, state, reading) {
+        Ok(Answer::Place(placed)) => {
+            let mut words = vec![placed.words.clone()];
+            if let Some(last) = state.last_place() {
+                marks.push(Overlay::Line(placed.sheet, vec![last.at, placed.at]));
+                let way = placed.at - last.at;
+                words.push(number::show(way.norm(), Kind::Length, unit));
+                words.push(number::show(way.y.atan2(way.x), Kind::Angle, unit));
+            }
+            words.push(typed);
+            words.retain(|word| !word.is_empty());
+            marks.push(Overlay::Dot(placed.sheet, placed.at));
+            marks.push(Overlay::Words(placed.sheet, placed.at, words.join("  ")));
+        }
+        Ok(Answer::Number(given)) => {
+            if let (Some(pointer), SlotKind::Number { label, kind, .. }) = (&state.pointer, kind) {
+                let value = reading.evaluation.number(&given, kind.want());
+                let value = value.map_or_else(String::new, |v| number::show(v, kind, unit));
+                let words = format!("{label} {value}  {typed}");
+                marks.push(Overlay::Words(pointer.sheet, pointer.at, words.trim().into()));
+            }
+        }
+        Ok(Answer::OnLine(_, _, at) | Answer::Edge(_, _, at) | Answer::Curve(_, _, at)) => {
+            if let Some(pointer) = &state.pointer {
+                marks.push(Overlay::Dot(pointer.sheet, at));
+            }
+        }
+        Ok(_) => {}
+        Err(words) => {
+            if let Some(pointer) = state.pointer.as_ref().filter(|_| state.is_typing()) {
+                let words = format!("{typed}  {words}");
+                marks.push(Overlay::Words(pointer.sheet, pointer.at, words));
+            }
+        }
+    }
+    marks
+}
+
+/// Numbers as they are typed, the one in hand with a bar.
+fn typed_words(kind: SlotKind, state: &SlotState) -> String {
+    if !state.is_typing() {
+        return String::new();
+    }
+    let labels = fields(kind);
+    let words = labels.iter().enumerate().map(|(k, (label, _))| {
+        let bar = if k == state.field { "|" } else { "" };
+        format!("{label} {}{bar}", state.typed[k])
+    });
+    words.collect::<Vec<_>>().join("   ")
+}
+
+pub(super) fn hint(tool: &SlotTool, state: &SlotState) -> String {
+    if let Some(words) = &state.refusal {
+        return words.clone();
+    }
+    let slot = slot(tool, state);
+    let labels: Vec<&str> = fields(slot.kind).iter().map(|(label, _)| *label).collect();
+    let keys = match slot.kind {
+        SlotKind::Number { .. } => ", or type it; Enter takes it; Esc goes a step back".to_owned(),
+        SlotKind::Places => {
+            "; type length or =formula, Tab angle; Enter ends; Esc goes a step back".to_owned()
+        }
+        _ if labels.is_empty() => "; Esc goes a step back".to_owned(),
+        _ => format!(
+            "; or type {} (a formula begins with =), Enter; Tab next snap, Shift level, {} free",
+            labels.join(", Tab, "),
+            if cfg!(target_os = "macos") { "Cmd" } else { "Ctrl" }
+        ),
+    };
+    format!("{}{keys}", slot.hint)
+}
