@@ -12,7 +12,9 @@ pub use panel::{Corner, Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Sour
 pub use seam::{Seam, Span};
 pub use sheet::{Curve, CurveRule, Knot, Point, PointRule, Sheet};
 
-use crate::{Fabric, FabricId, Ids, Number, PanelId, PointId, SeamId, SheetId, SizeId, VariableId};
+use crate::{
+    CurveId, Fabric, FabricId, Ids, Number, PanelId, PointId, SeamId, SheetId, SizeId, VariableId,
+};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toile_measure::Measurements;
@@ -126,6 +128,12 @@ impl Pattern {
     pub fn point(&self, id: PointId) -> Option<(&Arc<Sheet>, &Arc<Point>)> {
         let mut sheets = self.sheets.iter();
         sheets.find_map(|sheet| Some((sheet, sheet.point(id)?)))
+    }
+
+    /// The sheet a curve is on, and the curve.
+    pub fn curve(&self, id: CurveId) -> Option<(&Arc<Sheet>, &Arc<Curve>)> {
+        let mut sheets = self.sheets.iter();
+        sheets.find_map(|sheet| Some((sheet, sheet.curve(id)?)))
     }
 
     /// The panel with that id.

@@ -193,7 +193,7 @@ impl Pattern {
             PartId::Point(id) => self.point(id).is_some(),
             PartId::Panel(id) => self.panel(id).is_some(),
             PartId::Fabric(id) => self.fabric(id).is_some(),
-            PartId::Curve(id) => self.sheets.iter().any(|s| s.curve(id).is_some()),
+            PartId::Curve(id) => self.curve(id).is_some(),
             _ => false,
         }
     }

@@ -2,9 +2,10 @@
 //! in every size, since the curve stays.
 
 use super::impossible;
+use super::names::free_name;
 use crate::{
-    Curve, CurveId, CurveRule, Edge, EdgeId, Edit, EditError, Entity, Evaluation, NAME_LENGTH,
-    Number, Panel, PanelId, PartId, Place, Point, PointId, PointRule, Sheet,
+    Curve, CurveId, CurveRule, Edge, EdgeId, Edit, EditError, Entity, Evaluation, Number, Panel,
+    PanelId, PartId, Place, Point, PointId, PointRule, Sheet,
 };
 use std::sync::Arc;
 use toile_geometry::Vec2;
@@ -193,16 +194,4 @@ fn unused(
 
 fn marks(mark: &crate::Mark, corner: PointId) -> bool {
     mark.corners().contains(&crate::Name::Drawn(corner))
-}
-
-/// A name that is not taken, made from one that is wanted.
-pub(super) fn free_name(wanted: &str, taken: impl Fn(&str) -> bool) -> String {
-    let mut name: String = wanted.chars().take(NAME_LENGTH - 4).collect();
-    let mut number = 2;
-    while taken(&name) {
-        let base: String = wanted.chars().take(NAME_LENGTH - 8).collect();
-        name = format!("{base} {number}");
-        number += 1;
-    }
-    name
 }

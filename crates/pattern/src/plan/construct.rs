@@ -1,0 +1,174 @@
+//! Adds sheets, points and curves.
+
+use super::additions::Additions;
+use super::impossible;
+use super::lookup::{after, finite, place, refuse_faults};
+use super::names::{free_name, numbered_name, sheet_owner, wished};
+use crate::{
+    CurveId, CurveRule, Edit, EditError, Entity, Evaluation, Knot, Number, Place, PointId,
+    PointRule, SheetHead, SheetId,
+};
+use toile_geometry::Vec2;
+
+/// How a new curve is to run between its ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CurveShape {
+    /// A circular arc through a place [m].
+    ArcThrough(Vec2),
+    /// A spline with handles at places [m]; handle points are added to the sheet, each beside the
+    /// point it belongs to, so that it follows it.
+    Spline {
+        /// Handles at the start and at the end [m].
+        handles: [Vec2; 2],
+        /// Knots in order: the handle before each, the knot, the handle after it [m].
+        knots: Vec<[Vec2; 3]>,
+    },
+    /// By a rule that needs no new points: a line, an arc by its bulge, a mirror image, a copy.
+    Rule(CurveRule),
+}
+
+/// The edits that add an empty sheet whose origin lies at a place of the table [m]; and the sheet.
+/// Without a name it is called `sheet`, `sheet 2`, ...
+///
+/// # Errors
+/// The name is taken or can be none; the place is not finite.
+pub fn add_sheet(
+    evaluation: &Evaluation,
+    name: Option<&str>,
+    on_table: [f64; 2],
+) -> Result<(Vec<Edit>, SheetId), EditError> {
+    let pattern = evaluation.pattern();
+    let owner = |name: &str| sheet_owner(pattern, None, name);
+    let name = match name {
+        Some(name) => wished(name, owner)?,
+        None => free_name("sheet", |name| owner(name).is_some()),
+    };
+    finite("the place of the sheet", &[on_table.into()])?;
+    let mut ids = pattern.ids;
+    let id: SheetId = ids.take();
+    let head = SheetHead {
+        id,
+        name,
+        on: None,
+        on_table,
+    };
+    Ok((vec![Edit::Put(Entity::Sheet(head))], id))
+}
+
+/// The edits that add a point to a sheet; and the point. Without a name it is called by the next
+/// free letter: A, B, ... Z, A1, ...
+///
+/// # Errors
+/// The name is taken or can be none; the rule names parts of other sheets, or leads to no place.
+pub fn add_point(
+    evaluation: &Evaluation,
+    sheet: SheetId,
+    name: Option<&str>,
+    rule: PointRule,
+) -> Result<(Vec<Edit>, PointId), EditError> {
+    let mut additions = Additions::new(evaluation.pattern(), sheet)?;
+    let id = additions.point(name, rule)?;
+    let after = after(evaluation, &additions.edits)?;
+    refuse_faults(evaluation, &after, &[Place::Point(id)])?;
+    place(&after, id)?;
+    Ok((additions.edits, id))
+}
+
+/// The edits that add a curve between two points of a sheet; and the curve. Without a name it is
+/// called by its ends, as in `AB`.
+///
+/// # Errors
+/// The name is taken or can be none; the ends are not on the sheet; the shape has no place.
+pub fn add_curve(
+    evaluation: &Evaluation,
+    (sheet, name): (SheetId, Option<&str>),
+    ends: [PointId; 2],
+    shape: CurveShape,
+) -> Result<(Vec<Edit>, CurveId), EditError> {
+    let mut additions = Additions::new(evaluation.pattern(), sheet)?;
+    let rule = match shape {
+        CurveShape::Rule(rule) => rule,
+        CurveShape::ArcThrough(through) => {
+            let bulge = bulge_through(evaluation, ends, through)?;
+            CurveRule::Arc {
+                bulge: Number::Value(bulge),
+            }
+        }
+        CurveShape::Spline { handles, knots } => {
+            spline(evaluation, &mut additions, ends, (handles, &knots))?
+        }
+    };
+    let is_loop = matches!(&rule, CurveRule::Spline { .. } | CurveRule::Mirrored { .. });
+    if ends[0] == ends[1] && !is_loop {
+        return Err(impossible(
+            "the curve would end where it starts",
+            "choose two points, or draw a spline",
+        ));
+    }
+    let id = additions.curve(name, ends, rule)?;
+    let after = after(evaluation, &additions.edits)?;
+    refuse_faults(evaluation, &after, &[Place::Curve(id)])?;
+    super::lookup::path(&after, id)?;
+    Ok((additions.edits, id))
+}
+
+/// The bulge of the arc between two points through a place. The chords to the place turn there by
+/// half the swept angle (inscribed angle theorem), and the bulge is the tangent of a quarter of it.
+fn bulge_through(
+    evaluation: &Evaluation,
+    ends: [PointId; 2],
+    through: Vec2,
+) -> Result<f64, EditError> {
+    finite("the place on the arc", &[through])?;
+    let start = place(evaluation, ends[0])?;
+    let end = place(evaluation, ends[1])?;
+    let (before, behind) = (through - start, end - through);
+    let turn = before.perp(&behind).atan2(before.dot(&behind));
+    let bulge = (0.5 * turn).tan();
+    let is_apart = before.norm() > 1e-9 && behind.norm() > 1e-9;
+    if is_apart && bulge.abs() < 1e6 {
+        return Ok(bulge);
+    }
+    Err(impossible(
+        "no arc leads from one end through that place to the other",
+        "choose a place apart from both ends and not on the line beyond them",
+    ))
+}
+
+/// A spline rule, its handles and knots added to the sheet.
+fn spline(
+    evaluation: &Evaluation,
+    additions: &mut Additions,
+    ends: [PointId; 2],
+    (handles, knots): ([Vec2; 2], &[[Vec2; 3]]),
+) -> Result<CurveRule, EditError> {
+    finite("the handles", &handles)?;
+    finite("the knots", &knots.concat())?;
+    let handle = |additions: &mut Additions, base: PointId, from: Vec2, to: Vec2| {
+        let name = numbered_name("h", |name| additions.sheet.point_named(name).is_some());
+        let rule = PointRule::Offset {
+            base,
+            x: (to.x - from.x).into(),
+            y: (to.y - from.y).into(),
+        };
+        additions.point(Some(&name), rule)
+    };
+    let start = place(evaluation, ends[0])?;
+    let end = place(evaluation, ends[1])?;
+    let first = handle(additions, ends[0], start, handles[0])?;
+    let mut made = Vec::new();
+    for &[before, at, after] in knots {
+        let point = additions.point(None, PointRule::at(at.x, at.y))?;
+        made.push(Knot {
+            before: handle(additions, point, at, before)?,
+            point,
+            after: handle(additions, point, at, after)?,
+        });
+    }
+    let last = handle(additions, ends[1], end, handles[1])?;
+    Ok(CurveRule::Spline {
+        handles: [first, last],
+        knots: made,
+        to_length: None,
+    })
+}

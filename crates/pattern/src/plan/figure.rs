@@ -1,0 +1,149 @@
+//! Whole figures on a sheet: rectangles and polygons, as panels too if that is wished.
+
+use super::additions::Additions;
+use super::chain::Chain;
+use super::impossible;
+use super::lookup::{after, finite};
+use super::names::free_name;
+use super::trace::{NewPanel, trace_panel};
+use crate::{
+    CurveId, CurveRule, Edit, EditError, Evaluation, Number, PanelId, PointId, PointRule, SheetId,
+    Want,
+};
+use toile_geometry::Vec2;
+
+/// Where a rectangle begins.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FirstCorner {
+    /// At coordinates of the sheet [m].
+    At([Number; 2]),
+    /// At a point of the sheet.
+    Point(PointId),
+}
+
+/// The parts of a figure that was drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Its corners, in order.
+    pub points: Vec<PointId>,
+    /// Its sides: each from its corner to the next.
+    pub curves: Vec<CurveId>,
+    /// The panel traced round it.
+    pub panel: Option<PanelId>,
+}
+
+/// The edits that draw a rectangle from a corner to the right and upward, by `[width, height]` [m];
+/// and its parts. The other corners lie beside the first, so that formulas stay formulas. Its sides
+/// are called bottom, right, top and left.
+///
+/// # Errors
+/// The sheet or the corner is not there; a side has no length or no value; the panel is refused.
+pub fn add_rectangle(
+    evaluation: &Evaluation,
+    sheet: SheetId,
+    (corner, [width, height]): (FirstCorner, [Number; 2]),
+    panel: Option<NewPanel<'_>>,
+) -> Result<(Vec<Edit>, Figure), EditError> {
+    let mut additions = Additions::new(evaluation.pattern(), sheet)?;
+    let first = match corner {
+        FirstCorner::At([x, y]) => additions.point(None, PointRule::At { x, y })?,
+        FirstCorner::Point(point) => {
+            super::lookup::place(evaluation, point)?;
+            point
+        }
+    };
+    let mut beside = |x: &Number, y: &Number| {
+        let rule = PointRule::Offset {
+            base: first,
+            x: x.clone(),
+            y: y.clone(),
+        };
+        additions.point(None, rule)
+    };
+    let points = vec![
+        first,
+        beside(&width, &Number::ZERO)?,
+        beside(&width, &height)?,
+        beside(&Number::ZERO, &height)?,
+    ];
+    let names = ["bottom", "right", "top", "left"];
+    let mut curves = Vec::new();
+    for k in 0..4 {
+        let ends = [points[k], points[(k + 1) % 4]];
+        let name = free_name(names[k], |name| additions.sheet.curve_named(name).is_some());
+        curves.push(additions.curve(Some(&name), ends, CurveRule::Line)?);
+    }
+    let drawn = after(evaluation, &additions.edits)?;
+    for (what, number) in [("width", &width), ("height", &height)] {
+        let value = drawn.number(number, Want::Length);
+        if value.is_none_or(|value| value.abs() < 1e-9) {
+            return Err(impossible(
+                format!("the rectangle has no {what}"),
+                "give it a length more than nothing, with a unit",
+            ));
+        }
+    }
+    let figure = Figure {
+        points,
+        curves,
+        panel: None,
+    };
+    finished(&drawn, additions, figure, panel)
+}
+
+/// The edits that draw a polygon through places of a sheet [m], each a point of its own; and its
+/// parts.
+///
+/// # Errors
+/// There are fewer than three places, or two that follow each other are the same; the panel is
+/// refused.
+pub fn add_polygon(
+    evaluation: &Evaluation,
+    sheet: SheetId,
+    places: &[Vec2],
+    panel: Option<NewPanel<'_>>,
+) -> Result<(Vec<Edit>, Figure), EditError> {
+    finite("the corners", places)?;
+    let count = places.len();
+    let is_apart = (0..count).all(|k| (places[k] - places[(k + 1) % count]).norm() > 1e-9);
+    if count < 3 || !is_apart {
+        return Err(impossible(
+            "the polygon has fewer than three corners, or two in one place",
+            "choose at least three places that are apart",
+        ));
+    }
+    let mut additions = Additions::new(evaluation.pattern(), sheet)?;
+    let mut points = Vec::new();
+    for place in places {
+        points.push(additions.point(None, PointRule::at(place.x, place.y))?);
+    }
+    let mut curves = Vec::new();
+    for k in 0..count {
+        let ends = [points[k], points[(k + 1) % count]];
+        curves.push(additions.curve(None, ends, CurveRule::Line)?);
+    }
+    let drawn = after(evaluation, &additions.edits)?;
+    let figure = Figure {
+        points,
+        curves,
+        panel: None,
+    };
+    finished(&drawn, additions, figure, panel)
+}
+
+/// The figure with a panel round it, if one is wished.
+fn finished(
+    drawn: &Evaluation,
+    additions: Additions,
+    mut figure: Figure,
+    panel: Option<NewPanel<'_>>,
+) -> Result<(Vec<Edit>, Figure), EditError> {
+    let mut edits = additions.edits;
+    if let Some(new) = panel {
+        let chain = Chain::Curves(&figure.curves);
+        let (more, panel) = trace_panel(drawn, additions.sheet.id, chain, new)?;
+        edits.extend(more);
+        figure.panel = Some(panel);
+    }
+    Ok((edits, figure))
+}

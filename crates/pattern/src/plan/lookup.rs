@@ -1,0 +1,102 @@
+//! The parts a planner is asked about, or a refusal that names them; and what edits would lead to.
+
+use super::impossible;
+use crate::{
+    Curve, CurveId, Diagnostic, Edit, EditError, Evaluation, Line, LineId, Panel, PanelId, Pattern,
+    Place, Point, PointId, Seam, SeamId, Severity, Sheet, SheetId,
+};
+use std::sync::Arc;
+use toile_geometry::{Path, Vec2};
+
+fn missing(part: &dyn std::fmt::Display) -> EditError {
+    EditError::Missing(part.to_string())
+}
+
+pub(super) fn sheet(pattern: &Pattern, id: SheetId) -> Result<&Arc<Sheet>, EditError> {
+    pattern.sheet(id).ok_or_else(|| missing(&id))
+}
+
+pub(super) fn point(
+    pattern: &Pattern,
+    id: PointId,
+) -> Result<(&Arc<Sheet>, &Arc<Point>), EditError> {
+    pattern.point(id).ok_or_else(|| missing(&id))
+}
+
+pub(super) fn curve(
+    pattern: &Pattern,
+    id: CurveId,
+) -> Result<(&Arc<Sheet>, &Arc<Curve>), EditError> {
+    pattern.curve(id).ok_or_else(|| missing(&id))
+}
+
+pub(super) fn panel(pattern: &Pattern, id: PanelId) -> Result<&Arc<Panel>, EditError> {
+    pattern.panel(id).ok_or_else(|| missing(&id))
+}
+
+pub(super) fn line(panel: &Panel, id: LineId) -> Result<&Line, EditError> {
+    panel.line(id).ok_or_else(|| missing(&id))
+}
+
+pub(super) fn seam(pattern: &Pattern, id: SeamId) -> Result<&Arc<Seam>, EditError> {
+    pattern.seam(id).ok_or_else(|| missing(&id))
+}
+
+/// Where a point lies [m], or a refusal that names it.
+pub(super) fn place(evaluation: &Evaluation, id: PointId) -> Result<Vec2, EditError> {
+    let (_, found) = point(evaluation.pattern(), id)?;
+    evaluation.point(id).ok_or_else(|| {
+        impossible(
+            format!("point {:?} cannot be drawn", found.name),
+            "mend its formulas first",
+        )
+    })
+}
+
+/// How a curve runs [m], or a refusal that names it.
+pub(super) fn path(evaluation: &Evaluation, id: CurveId) -> Result<&Arc<Path>, EditError> {
+    let (_, found) = curve(evaluation.pattern(), id)?;
+    evaluation.curve(id).ok_or_else(|| {
+        impossible(
+            format!("curve {:?} cannot be drawn", found.name),
+            "mend its points and formulas first",
+        )
+    })
+}
+
+/// Refuses places that are not finite; `what` names them.
+pub(super) fn finite(what: &str, places: &[Vec2]) -> Result<(), EditError> {
+    match places.iter().all(|p| p.x.is_finite() && p.y.is_finite()) {
+        true => Ok(()),
+        false => Err(EditError::NotFinite(what.to_owned())),
+    }
+}
+
+/// The evaluation after edits. What is asked for stays unchanged.
+///
+/// # Errors
+/// The document does not take the edits.
+pub(super) fn after(evaluation: &Evaluation, edits: &[Edit]) -> Result<Evaluation, EditError> {
+    let mut pattern = evaluation.pattern().clone();
+    pattern.apply(edits)?;
+    let mut after = evaluation.clone();
+    after.update(&pattern, evaluation.measurements());
+    Ok(after)
+}
+
+/// Refuses edits after which one of the places has a fault it has not now, in the words of that
+/// fault.
+pub(super) fn refuse_faults(
+    before: &Evaluation,
+    after: &Evaluation,
+    places: &[Place],
+) -> Result<(), EditError> {
+    let old = before.diagnostics();
+    let is_new = |found: &Diagnostic| {
+        found.severity != Severity::Note && places.contains(&found.place) && !old.contains(found)
+    };
+    match after.diagnostics().into_iter().find(is_new) {
+        Some(found) => Err(impossible(found.message, found.hint)),
+        None => Ok(()),
+    }
+}

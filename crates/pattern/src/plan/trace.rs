@@ -1,0 +1,221 @@
+//! Panels and their lines traced from the curves of a sheet.
+
+use super::chain::{Chain, Stretch, edges, stretches, wound};
+use super::face::face;
+use super::impossible;
+use super::lookup::{self, after, finite, refuse_faults};
+use super::names::{free_name, panel_owner, wished};
+use crate::{
+    Edit, EditError, Entity, Evaluation, Fabric, FabricId, Ids, Line, LineId, LineKind, Panel,
+    PanelId, Pattern, Place, Sheet, SheetId,
+};
+use std::sync::Arc;
+use toile_geometry::Vec2;
+
+/// What a new panel is to be called and cut from.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct NewPanel<'a> {
+    /// Its name; nothing proposes that of its sheet.
+    pub name: Option<&'a str>,
+    /// Its fabric; nothing is the first of the pattern, or poplin if it has none.
+    pub fabric: Option<FabricId>,
+}
+
+/// What becomes of closed lines inside a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Holes {
+    /// They are cut out.
+    #[default]
+    Cut,
+    /// They are left out.
+    Ignored,
+}
+
+/// The edits that trace a panel round a closed chain of a sheet; and the panel. Its outline runs
+/// counter-clockwise whatever the chain does; its edges are called after their curves.
+///
+/// # Errors
+/// The chain is not there, is open, follows two curves at once or encloses nothing; the name is
+/// taken or can be none; the fabric is not there.
+pub fn trace_panel(
+    evaluation: &Evaluation,
+    sheet: SheetId,
+    chain: Chain<'_>,
+    new: NewPanel<'_>,
+) -> Result<(Vec<Edit>, PanelId), EditError> {
+    let outline = stretches(evaluation, sheet, chain, LineKind::Outline)?;
+    let outline = wound(outline, LineKind::Outline)?;
+    traced(evaluation, sheet, &[outline], new)
+}
+
+/// The edits that trace the panel round a place of a sheet [m]: the smallest closed line of curves
+/// about it, cut at the points that lie on them; and the panel.
+///
+/// # Errors
+/// Nothing goes round the place, or it lies on a curve; two curves cross there where no point is;
+/// the name is taken or can be none; the fabric is not there.
+pub fn trace_face(
+    evaluation: &Evaluation,
+    sheet: SheetId,
+    (place, holes): (Vec2, Holes),
+    new: NewPanel<'_>,
+) -> Result<(Vec<Edit>, PanelId), EditError> {
+    finite("the place", &[place])?;
+    let drawn = lookup::sheet(evaluation.pattern(), sheet)?;
+    let face = face(evaluation, drawn, place)?;
+    let mut lines = vec![face.outline];
+    if holes == Holes::Cut {
+        lines.extend(face.holes);
+    }
+    traced(evaluation, sheet, &lines, new)
+}
+
+/// The edits that add a hole or an internal line to a panel, along a chain of its sheet; and the
+/// line. Holes run clockwise whatever the chain does. Without a name it is called by what it is.
+///
+/// # Errors
+/// The chain is not there or follows two curves at once; a hole is open or encloses nothing; an
+/// outline is asked for; the name is taken or can be none.
+pub fn add_line(
+    evaluation: &Evaluation,
+    panel: PanelId,
+    (kind, name): (LineKind, Option<&str>),
+    chain: Chain<'_>,
+) -> Result<(Vec<Edit>, LineId), EditError> {
+    let pattern = evaluation.pattern();
+    let mut changed = (**lookup::panel(pattern, panel)?).clone();
+    if kind == LineKind::Outline && changed.outline().is_some() {
+        return Err(impossible(
+            format!("panel {:?} has an outline", changed.name),
+            "add a hole or an internal line, or trace another panel",
+        ));
+    }
+    let sheet = lookup::sheet(pattern, changed.sheet())?;
+    let found = wound(stretches(evaluation, sheet.id, chain, kind)?, kind)?;
+    let mut ids = pattern.ids;
+    let line = line(sheet, &found, (&changed, kind, name), &mut ids)?;
+    let id = line.id;
+    changed.lines.push(line);
+    let edits = vec![Edit::Put(Entity::Panel(Arc::new(changed)))];
+    refuse_undrawn(evaluation, &edits, panel)?;
+    Ok((edits, id))
+}
+
+/// The edits that take a hole or an internal line off a panel; curves and points stay on the sheet.
+/// What is marked on the line waits for its return.
+///
+/// # Errors
+/// The line is not there, or is the outline.
+pub fn remove_line(
+    evaluation: &Evaluation,
+    (panel, line): (PanelId, LineId),
+) -> Result<Vec<Edit>, EditError> {
+    let mut changed = (**lookup::panel(evaluation.pattern(), panel)?).clone();
+    if lookup::line(&changed, line)?.kind == LineKind::Outline {
+        return Err(impossible(
+            format!("panel {:?} would have no outline", changed.name),
+            "remove the panel instead",
+        ));
+    }
+    changed.lines.retain(|known| known.id != line);
+    Ok(vec![Edit::Put(Entity::Panel(Arc::new(changed)))])
+}
+
+/// A panel with an outline and holes.
+fn traced(
+    evaluation: &Evaluation,
+    sheet: SheetId,
+    lines: &[Vec<Stretch>],
+    new: NewPanel<'_>,
+) -> Result<(Vec<Edit>, PanelId), EditError> {
+    let pattern = evaluation.pattern();
+    let sheet = lookup::sheet(pattern, sheet)?;
+    let mut ids = pattern.ids;
+    let (mut edits, fabric) = fabric(pattern, new.fabric, &mut ids)?;
+    let mut panel = Panel::new(ids.take(), "", sheet.id, fabric);
+    panel.name = panel_name(pattern, sheet, &panel, new.name)?;
+    for (k, stretches) in lines.iter().enumerate() {
+        let kind = match k {
+            0 => LineKind::Outline,
+            _ => LineKind::Hole,
+        };
+        let line = line(sheet, stretches, (&panel, kind, None), &mut ids)?;
+        panel.lines.push(line);
+    }
+    let id = panel.id;
+    edits.push(Edit::Put(Entity::Panel(Arc::new(panel))));
+    refuse_undrawn(evaluation, &edits, id)?;
+    Ok((edits, id))
+}
+
+fn panel_name(
+    pattern: &Pattern,
+    sheet: &Sheet,
+    panel: &Panel,
+    name: Option<&str>,
+) -> Result<String, EditError> {
+    let owner = |name: &str| panel_owner(pattern, panel, name);
+    match name {
+        Some(name) => wished(name, owner),
+        None => Ok(free_name(&sheet.name, |name| owner(name).is_some())),
+    }
+}
+
+/// The fabric a panel is cut from, and what adds it if there is none yet.
+fn fabric(
+    pattern: &Pattern,
+    wish: Option<FabricId>,
+    ids: &mut Ids,
+) -> Result<(Vec<Edit>, FabricId), EditError> {
+    if let Some(id) = wish {
+        let found = pattern.fabric(id);
+        let found = found.ok_or_else(|| EditError::Missing(id.to_string()))?;
+        return Ok((Vec::new(), found.id));
+    }
+    if let Some(first) = pattern.fabrics.first() {
+        return Ok((Vec::new(), first.id));
+    }
+    let id = ids.take();
+    let poplin = Entity::Fabric(Arc::new(Fabric::poplin(id)));
+    Ok((vec![Edit::Put(poplin)], id))
+}
+
+fn line(
+    sheet: &Sheet,
+    stretches: &[Stretch],
+    (panel, kind, name): (&Panel, LineKind, Option<&str>),
+    ids: &mut Ids,
+) -> Result<Line, EditError> {
+    let owner = |name: &str| {
+        let found = panel.lines.iter().find(|line| line.name == name)?;
+        Some(format!("line {:?} of panel {:?}", found.name, panel.name))
+    };
+    let word = match kind {
+        LineKind::Outline => "outline",
+        LineKind::Hole => "hole",
+        LineKind::Internal => "line",
+    };
+    let name = match name {
+        Some(name) => wished(name, owner)?,
+        None => free_name(word, |name| owner(name).is_some()),
+    };
+    Ok(Line {
+        id: ids.take(),
+        name,
+        kind,
+        edges: edges(sheet, stretches, panel, ids)?,
+    })
+}
+
+/// Refuses edits after which a panel has faults it has not now.
+fn refuse_undrawn(
+    evaluation: &Evaluation,
+    edits: &[Edit],
+    panel: PanelId,
+) -> Result<(), EditError> {
+    let after = after(evaluation, edits)?;
+    let own = lookup::panel(after.pattern(), panel)?.own_parts();
+    let mut places: Vec<Place> = own.into_iter().map(|(_, place)| place).collect();
+    places.push(Place::Panel(panel));
+    refuse_faults(evaluation, &after, &places)
+}
