@@ -151,6 +151,11 @@ impl Evaluation {
         }
     }
 
+    /// Place of a node in the order of computation: after everything it needs, but in a cycle.
+    pub(crate) fn rank(&self, node: Node) -> Option<u32> {
+        self.state(node).map(|state| state.rank)
+    }
+
     fn state(&self, node: Node) -> Option<&NodeState> {
         self.index.get(&node).map(|&k| &self.nodes[k as usize])
     }

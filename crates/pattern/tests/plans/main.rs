@@ -6,6 +6,7 @@ mod sample;
 
 mod construct;
 mod trace;
+mod transform;
 
 use std::collections::HashSet;
 use toile_geometry::Vec2;
