@@ -71,6 +71,11 @@ impl Evaluation {
         &self.given
     }
 
+    /// The size whose measurements they are, if they are those of one.
+    pub fn size(&self) -> Option<crate::SizeId> {
+        self.size
+    }
+
     /// Names of the pattern's parts.
     pub fn names(&self) -> &Arc<crate::formula::Names> {
         &self.names

@@ -5,6 +5,13 @@
 mod sample;
 
 mod construct;
+mod notch;
+mod numbers;
+mod operations;
+mod remove;
+mod rename;
+mod seam;
+mod sizes;
 mod trace;
 mod transform;
 
