@@ -1,5 +1,6 @@
 //! Where the numbers of a document stand: paths that inspectors show and set numbers by.
 
+use super::remap::Remap;
 use super::seam::SeamSide;
 use crate::{
     Apex, CurveId, CurveRule, EdgeId, Entity, Mark, NotchId, Number, OperationId, OperationKind,
@@ -173,6 +174,26 @@ impl NumberPlace {
             Self::Notch(_, id, _) => id.into(),
             Self::Operation(_, id, _) => id.into(),
             Self::Ease(id) | Self::Span(id, ..) => id.into(),
+        }
+    }
+
+    /// The same place of the part that stands for its part.
+    pub(super) fn remapped(self, map: &Remap) -> Self {
+        match self {
+            Self::Variable(id) => Self::Variable(map.id(id)),
+            Self::Point(id, number) => Self::Point(map.id(id), number),
+            Self::Bulge(id) => Self::Bulge(map.id(id)),
+            Self::ToLength(id) => Self::ToLength(map.id(id)),
+            Self::Grain(id) => Self::Grain(map.id(id)),
+            Self::Allowance(id) => Self::Allowance(map.id(id)),
+            Self::Level(id) => Self::Level(map.id(id)),
+            Self::EdgeAllowance(panel, id) => Self::EdgeAllowance(map.id(panel), map.id(id)),
+            Self::Notch(panel, id, number) => Self::Notch(map.id(panel), map.id(id), number),
+            Self::Operation(panel, id, number) => {
+                Self::Operation(map.id(panel), map.id(id), number)
+            }
+            Self::Ease(id) => Self::Ease(map.id(id)),
+            Self::Span(id, side, k, end, number) => Self::Span(map.id(id), side, k, end, number),
         }
     }
 

@@ -5,6 +5,7 @@
 mod sample;
 
 mod construct;
+mod copy;
 mod notch;
 mod numbers;
 mod operations;
