@@ -71,6 +71,11 @@ impl Evaluation {
         &self.given
     }
 
+    /// The size whose measurements they are, if they are those of one.
+    pub fn size(&self) -> Option<crate::SizeId> {
+        self.size
+    }
+
     /// Names of the pattern's parts.
     pub fn names(&self) -> &Arc<crate::formula::Names> {
         &self.names
@@ -159,6 +164,11 @@ impl Evaluation {
             Value::Seam(value) => Some(value),
             _ => None,
         }
+    }
+
+    /// Place of a node in the order of computation: after everything it needs, but in a cycle.
+    pub(crate) fn rank(&self, node: Node) -> Option<u32> {
+        self.state(node).map(|state| state.rank)
     }
 
     fn state(&self, node: Node) -> Option<&NodeState> {

@@ -16,8 +16,10 @@ const LARGEST: f64 = 1e6;
 pub enum Want {
     /// A length [m].
     Length,
-    /// A plain number or an angle [rad].
+    /// A plain number.
     Plain,
+    /// An angle [rad]: computed as a plain number, typed and shown in degrees.
+    Angle,
 }
 
 /// The computation of one node: reads values, collects what is wrong.
@@ -348,7 +350,7 @@ pub(crate) fn bounded(quantity: Quantity, want: Want) -> Result<f64, Failure> {
     let Quantity { value, power } = quantity;
     let (wanted, limit, unit) = match want {
         Want::Length => (1, LONGEST, " m"),
-        Want::Plain => (0, LARGEST, ""),
+        Want::Plain | Want::Angle => (0, LARGEST, ""),
     };
     if !value.is_finite() {
         return Err(Failure::new(
@@ -361,6 +363,7 @@ pub(crate) fn bounded(quantity: Quantity, want: Want) -> Result<f64, Failure> {
         let hint = match want {
             Want::Length => "give a unit, for example 2cm",
             Want::Plain => "divide by a length, or leave the unit out",
+            Want::Angle => "give an angle, for example 45deg",
         };
         let (found, wanted) = (kind(power), kind(wanted));
         let message = format!("the result is {found} and should be {wanted}");

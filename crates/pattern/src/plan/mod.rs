@@ -1,24 +1,55 @@
 //! Planners: from a wish to the edits that grant it.
 
 mod additions;
+mod align;
 mod chain;
 mod construct;
 mod divide;
 mod face;
 mod figure;
+mod fragment;
 mod lookup;
+mod marks;
 mod moving;
 mod names;
+mod notch;
+mod number_place;
+mod numbers;
+mod operations;
+mod paste;
+mod remap;
 mod remove;
+mod rename;
+mod seam;
+mod select;
+mod sizes;
 mod trace;
+mod transform;
+mod typed;
 
+pub use align::{Alignment, Axis, align, distribute};
 pub use chain::Chain;
 pub use construct::{CurveShape, add_curve, add_point, add_sheet};
 pub use divide::{divide_edge, join_edges};
 pub use figure::{Figure, FirstCorner, add_polygon, add_rectangle};
+pub use fragment::{Fragment, FragmentKind, Outside, OutsideValue, copy};
+pub use marks::{NearMark, nearest_mark};
 pub use moving::move_point;
-pub use remove::remove_point;
+pub use notch::{NotchRow, add_notch, add_notches, move_notch, remove_notch, set_notch_kind};
+pub use number_place::{MarkNumber, NumberPlace, OperationNumber, PointNumber, SpanEnd};
+pub use numbers::{NumberEntry, clear_number, number_at, numbers_of, set_number};
+pub use operations::{add_operation, move_operation, remove_operation, set_operation};
+pub use paste::{PasteTarget, Pasted, duplicate, insert_pattern, paste};
+pub use remove::{remove_parts, remove_point};
+pub use rename::rename;
+pub use seam::{SeamSide, SewnEdge, flip_side, remove_seam, sew};
+pub use select::points_of;
+pub use sizes::{
+    add_size, add_variable, remove_size, rename_pattern, set_base_size, set_measurement, set_unit,
+};
 pub use trace::{Holes, NewPanel, add_line, remove_line, trace_face, trace_panel};
+pub use transform::{Affine, Moved, move_points, transform_points};
+pub use typed::{number_text, read_number};
 
 use crate::EditError;
 

@@ -50,7 +50,8 @@ fn way(evaluation: &Evaluation, [base, tip]: [PointId; 2]) -> Result<Vec2, EditE
     ))
 }
 
-fn moved(
+/// The rule with which a point that lies at `now` comes to `to` [m], or as near as it lets it.
+pub(super) fn moved(
     evaluation: &Evaluation,
     old: &PointRule,
     now: Vec2,

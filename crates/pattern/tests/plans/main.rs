@@ -5,7 +5,16 @@
 mod sample;
 
 mod construct;
+mod copy;
+mod notch;
+mod numbers;
+mod operations;
+mod remove;
+mod rename;
+mod seam;
+mod sizes;
 mod trace;
+mod transform;
 
 use std::collections::HashSet;
 use toile_geometry::Vec2;

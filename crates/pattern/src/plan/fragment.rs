@@ -1,0 +1,317 @@
+//! Fragments: parts of a pattern as data, to be pasted into the same pattern or another.
+
+use super::impossible;
+use super::number_place::NumberPlace;
+use super::numbers::numbers_of;
+use crate::{
+    EditError, Entity, Evaluation, Fabric, Ids, Number, Panel, PartId, Pattern, Seam, Sheet,
+    SheetHead, Variable, Want,
+};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// Says that data is a fragment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FragmentKind {
+    /// It is.
+    #[default]
+    Fragment,
+}
+
+/// Parts of a pattern, whole in themselves but for what their formulas speak of.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct Fragment {
+    /// Says that it is a fragment.
+    pub kind: FragmentKind,
+    /// Name of the pattern it was copied from.
+    pub pattern: String,
+    /// Sheets with those of their points and curves that were copied.
+    pub sheets: Vec<Arc<Sheet>>,
+    /// Panels.
+    pub panels: Vec<Arc<Panel>>,
+    /// Seams between these panels.
+    pub seams: Vec<Arc<Seam>>,
+    /// Variables.
+    pub variables: Vec<Arc<Variable>>,
+    /// Fabrics of the panels.
+    pub fabrics: Vec<Arc<Fabric>>,
+    /// Parts that formulas speak of and that were not copied.
+    pub outside: Vec<Outside>,
+    /// What numbers that speak of such parts come to.
+    pub values: Vec<OutsideValue>,
+}
+
+/// A part that was not copied.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outside {
+    /// The part.
+    pub part: PartId,
+    /// What it is called, in words; nothing if it was not there.
+    pub words: Option<String>,
+    /// Its own name, where that says it alone: of a size.
+    pub name: Option<String>,
+}
+
+/// What a number that speaks of parts outside comes to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OutsideValue {
+    /// Where it stands in the fragment.
+    pub place: NumberPlace,
+    /// Its value [m], [rad] or plain; nothing if it had none.
+    pub value: Option<f64>,
+    /// Its power of a length.
+    pub power: i8,
+}
+
+/// Everything a number refers to.
+pub(super) fn references(number: &Number) -> Vec<PartId> {
+    let speaks = Variable {
+        id: 0.into(),
+        name: String::new(),
+        number: number.clone(),
+    };
+    Entity::Variable(Arc::new(speaks)).references()
+}
+
+/// A copy of parts: points and curves with all that they are constructed from in their sheet,
+/// panels with the curves they follow, whole sheets, variables, and seams whose panels are all
+/// copied.
+///
+/// # Errors
+/// Nothing is chosen, a part is not there, or is copied only with its panel.
+pub fn copy(evaluation: &Evaluation, parts: &[PartId]) -> Result<Fragment, EditError> {
+    let pattern = evaluation.pattern();
+    let chosen = closure(pattern, parts)?;
+    if chosen.is_empty() {
+        return Err(impossible(
+            "there is nothing to copy",
+            "choose points, curves or panels",
+        ));
+    }
+    let mut fragment = Fragment {
+        pattern: pattern.name.clone(),
+        ..Fragment::default()
+    };
+    for sheet in &pattern.sheets {
+        let mut copied = (**sheet).clone();
+        copied
+            .points
+            .retain(|point| chosen.contains(&point.id.into()));
+        copied
+            .curves
+            .retain(|curve| chosen.contains(&curve.id.into()));
+        let is_empty = copied.points.is_empty() && copied.curves.is_empty();
+        if !is_empty || chosen.contains(&sheet.id.into()) {
+            copied.on = copied.on.filter(|on| chosen.contains(&on.0.into()));
+            fragment.sheets.push(Arc::new(copied));
+        }
+    }
+    let panels = pattern.panels.iter();
+    fragment.panels = panels
+        .filter(|panel| chosen.contains(&panel.id.into()))
+        .cloned()
+        .collect();
+    let is_whole = |seam: &&Arc<Seam>| {
+        let mut spans = seam.spans();
+        chosen.contains(&seam.id.into()) && spans.all(|s| chosen.contains(&s.panel.into()))
+    };
+    fragment.seams = pattern.seams.iter().filter(is_whole).cloned().collect();
+    let variables = pattern.variables.iter();
+    fragment.variables = variables
+        .filter(|variable| chosen.contains(&variable.id.into()))
+        .cloned()
+        .collect();
+    let is_used = |fabric: &&Arc<Fabric>| fragment.panels.iter().any(|p| p.fabric == fabric.id);
+    fragment.fabrics = pattern.fabrics.iter().filter(is_used).cloned().collect();
+    look_outside(evaluation, &mut fragment);
+    Ok(fragment)
+}
+
+/// A copy of all that a pattern has but its sizes.
+///
+/// # Errors
+/// It has nothing to copy.
+pub(super) fn copy_all(evaluation: &Evaluation) -> Result<Fragment, EditError> {
+    let pattern = evaluation.pattern();
+    let mut parts: Vec<PartId> = pattern.sheets.iter().map(|s| s.id.into()).collect();
+    parts.extend(pattern.panels.iter().map(|panel| PartId::from(panel.id)));
+    parts.extend(pattern.seams.iter().map(|seam| PartId::from(seam.id)));
+    parts.extend(pattern.variables.iter().map(|v| PartId::from(v.id)));
+    copy(evaluation, &parts)
+}
+
+/// The parts chosen, with what they need inside their sheets.
+fn closure(pattern: &Pattern, parts: &[PartId]) -> Result<BTreeSet<PartId>, EditError> {
+    let known: BTreeSet<PartId> = pattern.parts().into_iter().map(|(id, _)| id).collect();
+    let mut chosen: BTreeSet<PartId> = BTreeSet::new();
+    let mut open: Vec<PartId> = Vec::new();
+    for &part in parts {
+        if !known.contains(&part) {
+            return Err(EditError::Missing(part.to_string()));
+        }
+        open.extend(seeds(pattern, part)?);
+    }
+    let sheets = |part: PartId| match part {
+        PartId::Point(id) => pattern.point(id).map(|found| found.0.id),
+        PartId::Curve(id) => pattern.curve(id).map(|found| found.0.id),
+        PartId::Panel(id) => pattern.panel(id).map(|panel| panel.sheet()),
+        _ => None,
+    };
+    while let Some(part) = open.pop() {
+        if !chosen.insert(part) {
+            continue;
+        }
+        let (Some(sheet), Some(entity)) = (sheets(part), entity(pattern, part)) else {
+            continue;
+        };
+        let is_drawn = |other: &PartId| matches!(other, PartId::Point(_) | PartId::Curve(_));
+        let needs = entity.references().into_iter().filter(is_drawn);
+        open.extend(needs.filter(|&other| sheets(other) == Some(sheet)));
+    }
+    // A panel brings its sheet, even one that has lost all its points.
+    let own = chosen
+        .iter()
+        .filter(|part| matches!(part, PartId::Panel(_)));
+    let own: Vec<PartId> = own
+        .filter_map(|&panel| sheets(panel))
+        .map(PartId::from)
+        .collect();
+    chosen.extend(own.into_iter().filter(|sheet| known.contains(sheet)));
+    Ok(chosen)
+}
+
+/// What a chosen part stands for.
+fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
+    Ok(match part {
+        PartId::Point(_)
+        | PartId::Curve(_)
+        | PartId::Panel(_)
+        | PartId::Seam(_)
+        | PartId::Variable(_) => vec![part],
+        PartId::Sheet(id) => {
+            let sheet = pattern.sheet(id);
+            let mut all = vec![part];
+            for sheet in sheet.into_iter() {
+                all.extend(sheet.points.iter().map(|point| PartId::from(point.id)));
+                all.extend(sheet.curves.iter().map(|curve| PartId::from(curve.id)));
+            }
+            all
+        }
+        PartId::Line(_) | PartId::Edge(_) => {
+            let lines = pattern.panels.iter().flat_map(|panel| &panel.lines);
+            let edges = lines.flat_map(|line| line.edges.iter().map(move |edge| (line.id, edge)));
+            let own = edges.filter(|(line, edge)| [(*line).into(), edge.id.into()].contains(&part));
+            own.map(|(_, edge)| edge.curve.into()).collect()
+        }
+        PartId::Notch(_) | PartId::Operation(_) | PartId::Size(_) | PartId::Fabric(_) => {
+            return Err(impossible(
+                format!("{part} is not copied by itself"),
+                "copy its panel, or points and curves",
+            ));
+        }
+    })
+}
+
+/// A part that stands in a list of its own, as an entity.
+fn entity(pattern: &Pattern, part: PartId) -> Option<Entity> {
+    Some(match part {
+        PartId::Point(id) => {
+            let (sheet, point) = pattern.point(id)?;
+            Entity::Point(sheet.id, point.clone())
+        }
+        PartId::Curve(id) => {
+            let (sheet, curve) = pattern.curve(id)?;
+            Entity::Curve(sheet.id, curve.clone())
+        }
+        PartId::Panel(id) => Entity::Panel(pattern.panel(id)?.clone()),
+        _ => return None,
+    })
+}
+
+/// Notes what the numbers of a fragment speak of that it does not have, and what they come to.
+fn look_outside(evaluation: &Evaluation, fragment: &mut Fragment) {
+    let pattern = evaluation.pattern();
+    let places = pattern.parts();
+    let own = fragment.as_pattern();
+    let mine: BTreeSet<PartId> = own.parts().into_iter().map(|(id, _)| id).collect();
+    let mut outside: BTreeSet<PartId> = BTreeSet::new();
+    for &part in &mine {
+        for entry in numbers_of(evaluation, part) {
+            let Some(number) = entry.number else { continue };
+            let found = references(&number).into_iter();
+            let found: Vec<PartId> = found.filter(|id| !mine.contains(id)).collect();
+            let only_sizes = found.iter().all(|id| matches!(id, PartId::Size(_)));
+            outside.extend(found);
+            if only_sizes {
+                continue;
+            }
+            let (value, power) = match entry.place {
+                NumberPlace::Variable(id) => match evaluation.variable(id) {
+                    Some((value, power)) => (Some(value), power),
+                    None => (None, 0),
+                },
+                _ => (
+                    evaluation.number(&number, entry.want),
+                    i8::from(entry.want == Want::Length),
+                ),
+            };
+            fragment.values.push(OutsideValue {
+                place: entry.place,
+                value,
+                power,
+            });
+        }
+    }
+    let told = outside.into_iter().map(|part| {
+        let place = places.iter().find(|(id, _)| *id == part);
+        let size = pattern
+            .sizes
+            .iter()
+            .find(|size| PartId::from(size.id) == part);
+        Outside {
+            part,
+            words: place.map(|(_, place)| pattern.describe(place)),
+            name: size.map(|size| size.name.clone()),
+        }
+    });
+    fragment.outside = told.collect();
+}
+
+impl Fragment {
+    /// The fragment as a pattern of its own, in which every id counts as given.
+    pub(super) fn as_pattern(&self) -> Pattern {
+        Pattern {
+            sheets: self.sheets.clone(),
+            panels: self.panels.clone(),
+            seams: self.seams.clone(),
+            variables: self.variables.clone(),
+            fabrics: self.fabrics.clone(),
+            ids: Ids { next: u32::MAX },
+            ..Pattern::new(self.pattern.clone())
+        }
+    }
+
+    /// What would put all of the fragment into an empty pattern.
+    pub(super) fn entities(&self) -> Vec<Entity> {
+        let mut all: Vec<Entity> = Vec::new();
+        all.extend(self.fabrics.iter().cloned().map(Entity::Fabric));
+        all.extend(self.variables.iter().cloned().map(Entity::Variable));
+        for sheet in &self.sheets {
+            all.push(Entity::Sheet(SheetHead {
+                id: sheet.id,
+                name: sheet.name.clone(),
+                on: sheet.on,
+                on_table: sheet.on_table,
+            }));
+            let points = sheet.points.iter().cloned();
+            all.extend(points.map(|point| Entity::Point(sheet.id, point)));
+            let curves = sheet.curves.iter().cloned();
+            all.extend(curves.map(|curve| Entity::Curve(sheet.id, curve)));
+        }
+        all.extend(self.panels.iter().cloned().map(Entity::Panel));
+        all.extend(self.seams.iter().cloned().map(Entity::Seam));
+        all
+    }
+}

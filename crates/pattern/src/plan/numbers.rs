@@ -1,0 +1,196 @@
+//! Reads and sets the numbers of parts, each by its place.
+
+use super::impossible;
+use super::lookup::{after, refuse_faults};
+use super::number_place::{MarkNumber, NumberPlace, OperationNumber, PointNumber, Slot, SpanEnd};
+use super::seam::SeamSide;
+use crate::{Code, Edit, EditError, Evaluation, Number, PartId, Pattern, Place, Want};
+
+/// A number of a part, for an inspector.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NumberEntry {
+    /// Where it stands.
+    pub place: NumberPlace,
+    /// What it is called beside its field.
+    pub label: &'static str,
+    /// What it must be.
+    pub want: Want,
+    /// The number; nothing where it may be left out and is.
+    pub number: Option<Number>,
+}
+
+/// The numbers of a part, in the order they are shown; none if it has none or is not there.
+pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
+    let pattern = evaluation.pattern();
+    let entry = |place: NumberPlace| {
+        let mut entity = place.entity(pattern)?;
+        let number = match place.slot(&mut entity)? {
+            Slot::Always(number) => Some(number.clone()),
+            Slot::Optional(number) => number.clone(),
+        };
+        Some(NumberEntry {
+            place,
+            label: place.label(),
+            want: place.want(),
+            number,
+        })
+    };
+    candidates(pattern, part)
+        .into_iter()
+        .filter_map(entry)
+        .collect()
+}
+
+/// The number at a place; nothing if it is not there or left out.
+pub fn number_at(pattern: &Pattern, place: &NumberPlace) -> Option<Number> {
+    let mut entity = place.entity(pattern)?;
+    match place.slot(&mut entity)? {
+        Slot::Always(number) => Some(number.clone()),
+        Slot::Optional(number) => number.clone(),
+    }
+}
+
+/// The edits that set the number at a place.
+///
+/// # Errors
+/// The place is not there; the number has no value there, the wrong dimension, or needs itself.
+pub fn set_number(
+    evaluation: &Evaluation,
+    place: &NumberPlace,
+    number: Number,
+) -> Result<Vec<Edit>, EditError> {
+    let mut entity = entity(evaluation, place)?;
+    match place.slot(&mut entity).ok_or_else(|| missing(place))? {
+        Slot::Always(old) => *old = number,
+        Slot::Optional(old) => *old = Some(number),
+    }
+    let edits = vec![Edit::Put(entity)];
+    refuse_valueless(evaluation, &edits, place)?;
+    Ok(edits)
+}
+
+/// The edits that leave a number out: an edge's allowance is then its panel's, a spline's handles
+/// are as they are drawn, a level is found by the program.
+///
+/// # Errors
+/// The place is not there, or its number cannot be left out.
+pub fn clear_number(evaluation: &Evaluation, place: &NumberPlace) -> Result<Vec<Edit>, EditError> {
+    let mut entity = entity(evaluation, place)?;
+    match place.slot(&mut entity).ok_or_else(|| missing(place))? {
+        Slot::Optional(old) => *old = None,
+        Slot::Always(_) => {
+            return Err(impossible(
+                format!("the {} cannot be left out", place.label()),
+                "give it a number, zero if need be",
+            ));
+        }
+    }
+    Ok(vec![Edit::Put(entity)])
+}
+
+fn entity(evaluation: &Evaluation, place: &NumberPlace) -> Result<crate::Entity, EditError> {
+    let entity = place.entity(evaluation.pattern());
+    entity.ok_or_else(|| missing(place))
+}
+
+fn missing(place: &NumberPlace) -> EditError {
+    EditError::Missing(format!("the {} of {}", place.label(), place.part()))
+}
+
+/// Refuses edits after which the number at a place has a fault of its own or needs itself. A
+/// number that waits for other parts is taken.
+pub(super) fn refuse_valueless(
+    evaluation: &Evaluation,
+    edits: &[Edit],
+    place: &NumberPlace,
+) -> Result<(), EditError> {
+    let after = after(evaluation, edits)?;
+    let old = evaluation.diagnostics();
+    let cycles = after.diagnostics().into_iter();
+    let mut cycles = cycles.filter(|found| found.code == Code::Cycle && !old.contains(found));
+    if let Some(found) = cycles.next() {
+        return Err(impossible(found.message, found.hint));
+    }
+    if let NumberPlace::Variable(id) = place {
+        return refuse_faults(evaluation, &after, &[Place::Variable(*id)]);
+    }
+    let Some(number) = number_at(after.pattern(), place) else {
+        return Ok(());
+    };
+    let (_, faults) = after.number_of_kind(&number, place.want(), &Place::Pattern, place.label());
+    match faults.into_iter().next() {
+        Some(found) => Err(impossible(found.message, found.hint)),
+        None => Ok(()),
+    }
+}
+
+/// Places at which a part may have a number.
+fn candidates(pattern: &Pattern, part: PartId) -> Vec<NumberPlace> {
+    let marks = [MarkNumber::Distance, MarkNumber::Share];
+    let owner = |own: &dyn Fn(&crate::Panel) -> bool| {
+        let found = pattern.panels.iter().find(|panel| own(panel));
+        found.map(|panel| panel.id)
+    };
+    match part {
+        PartId::Variable(id) => vec![NumberPlace::Variable(id)],
+        PartId::Point(id) => [
+            PointNumber::X,
+            PointNumber::Y,
+            PointNumber::Angle,
+            PointNumber::Distance,
+            PointNumber::Along,
+            PointNumber::Aside,
+            PointNumber::Share,
+        ]
+        .map(|number| NumberPlace::Point(id, number))
+        .to_vec(),
+        PartId::Curve(id) => vec![NumberPlace::Bulge(id), NumberPlace::ToLength(id)],
+        PartId::Panel(id) => vec![
+            NumberPlace::Grain(id),
+            NumberPlace::Allowance(id),
+            NumberPlace::Level(id),
+        ],
+        PartId::Edge(id) => {
+            let panel = owner(&|panel| panel.edge(id).is_some());
+            let place = panel.map(|panel| NumberPlace::EdgeAllowance(panel, id));
+            place.into_iter().collect()
+        }
+        PartId::Notch(id) => {
+            let panel = owner(&|panel| panel.notches.iter().any(|notch| notch.id == id));
+            let places = panel.map(|panel| marks.map(|m| NumberPlace::Notch(panel, id, m)));
+            places.into_iter().flatten().collect()
+        }
+        PartId::Operation(id) => {
+            let panel = owner(&|panel| panel.operations.iter().any(|known| known.id == id));
+            let mut numbers: Vec<OperationNumber> = Vec::new();
+            numbers.extend(marks.map(OperationNumber::Mouth));
+            numbers.extend([
+                OperationNumber::Intake,
+                OperationNumber::Depth,
+                OperationNumber::Widest,
+            ]);
+            numbers.extend(marks.map(OperationNumber::FoldStart));
+            numbers.extend(marks.map(OperationNumber::FoldEnd));
+            let places = |panel| {
+                let numbers = numbers.into_iter();
+                numbers.map(move |number| NumberPlace::Operation(panel, id, number))
+            };
+            panel.map(places).into_iter().flatten().collect()
+        }
+        PartId::Seam(id) => {
+            let mut places = vec![NumberPlace::Ease(id)];
+            let seam = pattern.seam(id);
+            for side in [SeamSide::First, SeamSide::Second] {
+                let count = seam.map_or(0, |seam| seam.sides[side.index()].len());
+                for k in 0..count {
+                    for end in [SpanEnd::From, SpanEnd::To] {
+                        let place = |mark| NumberPlace::Span(id, side, k, end, mark);
+                        places.extend(marks.map(place));
+                    }
+                }
+            }
+            places
+        }
+        PartId::Size(_) | PartId::Fabric(_) | PartId::Sheet(_) | PartId::Line(_) => Vec::new(),
+    }
+}

@@ -1,0 +1,144 @@
+//! Puts darts, diamonds and folds on panels; adjusts, reorders and removes them.
+
+use super::impossible;
+use super::lookup::{self, after, refuse_faults};
+use super::names::free_name;
+use crate::{
+    Diagnostic, Edit, EditError, Entity, Evaluation, Operation, OperationId, OperationKind, Panel,
+    PanelId, Place, Severity,
+};
+use std::sync::Arc;
+
+/// The edits that put an operation on a panel; and the operation. It is called by what it is:
+/// `dart`, `dart 2`. Darts go before the first fold, so that both halves have them; a fold comes
+/// last.
+///
+/// # Errors
+/// The panel is not there or cannot be drawn; the operation cannot be done: its words say why.
+pub fn add_operation(
+    evaluation: &Evaluation,
+    panel: PanelId,
+    kind: OperationKind,
+) -> Result<(Vec<Edit>, OperationId), EditError> {
+    let pattern = evaluation.pattern();
+    let mut changed = (**lookup::panel(pattern, panel)?).clone();
+    let mut ids = pattern.ids;
+    let id: OperationId = ids.take();
+    let named = |name: &str| changed.operations.iter().any(|known| known.name == name);
+    let name = free_name(kind.word(), named);
+    let fold = |known: &Arc<Operation>| matches!(known.kind, OperationKind::Fold { .. });
+    let end = changed.operations.len();
+    let at = match kind {
+        OperationKind::Fold { .. } => end,
+        OperationKind::Dart { .. } | OperationKind::Diamond { .. } => {
+            changed.operations.iter().position(fold).unwrap_or(end)
+        }
+    };
+    let operation = Arc::new(Operation { id, name, kind });
+    changed.operations.insert(at, operation);
+    Ok((put(evaluation, changed, &[id])?, id))
+}
+
+/// The edits that do an operation otherwise: it keeps its id, name and place, so that what is
+/// named after it stays.
+///
+/// # Errors
+/// The operation is not there, or cannot be done so: its words say why.
+pub fn set_operation(
+    evaluation: &Evaluation,
+    (panel, operation): (PanelId, OperationId),
+    kind: OperationKind,
+) -> Result<Vec<Edit>, EditError> {
+    let mut changed = (**lookup::panel(evaluation.pattern(), panel)?).clone();
+    let at = position(&changed, operation)?;
+    Arc::make_mut(&mut changed.operations[at]).kind = kind;
+    put(evaluation, changed, &[operation])
+}
+
+/// The edits that do an operation earlier or later: at that place among the panel's operations,
+/// counted from 0 and clamped.
+///
+/// # Errors
+/// The operation is not there; one of the panel's operations could not be done then.
+pub fn move_operation(
+    evaluation: &Evaluation,
+    (panel, operation): (PanelId, OperationId),
+    to: usize,
+) -> Result<Vec<Edit>, EditError> {
+    let mut changed = (**lookup::panel(evaluation.pattern(), panel)?).clone();
+    let at = position(&changed, operation)?;
+    let moved = changed.operations.remove(at);
+    let to = to.min(changed.operations.len());
+    changed.operations.insert(to, moved);
+    let all: Vec<OperationId> = changed.operations.iter().map(|known| known.id).collect();
+    put(evaluation, changed, &all)
+}
+
+/// The edits that take an operation off a panel. What is named after it waits for its return.
+///
+/// # Errors
+/// The operation is not there.
+pub fn remove_operation(
+    evaluation: &Evaluation,
+    (panel, operation): (PanelId, OperationId),
+) -> Result<Vec<Edit>, EditError> {
+    let mut changed = (**lookup::panel(evaluation.pattern(), panel)?).clone();
+    let at = position(&changed, operation)?;
+    changed.operations.remove(at);
+    Ok(vec![Edit::Put(Entity::Panel(Arc::new(changed)))])
+}
+
+fn position(panel: &Panel, operation: OperationId) -> Result<usize, EditError> {
+    let found = panel.operations.iter().position(|o| o.id == operation);
+    found.ok_or_else(|| EditError::Missing(format!("{operation} of panel {:?}", panel.name)))
+}
+
+/// The edit that puts a panel, refused if one of its operations cannot be done.
+fn put(
+    evaluation: &Evaluation,
+    panel: Panel,
+    operations: &[OperationId],
+) -> Result<Vec<Edit>, EditError> {
+    refuse_foreign_points(evaluation, &panel)?;
+    let (id, name) = (panel.id, panel.name.clone());
+    let edits = vec![Edit::Put(Entity::Panel(Arc::new(panel)))];
+    let after = after(evaluation, &edits)?;
+    let places: Vec<Place> = operations
+        .iter()
+        .map(|&operation| Place::Operation(id, operation))
+        .collect();
+    let undone =
+        |found: &Diagnostic| found.severity == Severity::Error && places.contains(&found.place);
+    // An adjusted operation is refused for a fault it had before, too, but not for one of others.
+    if let ([_], Some(found)) = (operations, after.diagnostics().into_iter().find(undone)) {
+        return Err(impossible(found.message, found.hint));
+    }
+    refuse_faults(evaluation, &after, &places)?;
+    match after.stage(id, operations.first().copied()) {
+        Some(_) => Ok(edits),
+        None => Err(impossible(
+            format!("panel {name:?} cannot be drawn"),
+            "mend its outline first",
+        )),
+    }
+}
+
+/// Operations end at points of the panel's own sheet: those of others lie elsewhere.
+fn refuse_foreign_points(evaluation: &Evaluation, panel: &Panel) -> Result<(), EditError> {
+    let kinds = panel.operations.iter().map(|operation| &operation.kind);
+    for id in kinds.flat_map(OperationKind::points) {
+        // A point that is gone is told where it is missed.
+        if let Some((sheet, point)) = evaluation.pattern().point(id)
+            && sheet.id != panel.sheet()
+        {
+            return Err(impossible(
+                format!(
+                    "point {:?} is on sheet {:?}, which panel {:?} is not traced from",
+                    point.name, sheet.name, panel.name
+                ),
+                "choose a point of the panel's own sheet",
+            ));
+        }
+    }
+    Ok(())
+}

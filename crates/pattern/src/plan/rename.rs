@@ -1,0 +1,184 @@
+//! Renames parts. Formulas hold ids, so they follow.
+
+use super::names::{curve_owner, panel_owner, point_owner, sheet_owner, wished};
+use super::{impossible, lookup};
+use crate::{
+    Curve, Edit, EditError, Entity, Evaluation, Fabric, Panel, PartId, Pattern, Place, Point, Seam,
+    SheetHead, Size, Variable,
+};
+use std::sync::Arc;
+use toile_measure::definition;
+
+/// The edits that give a part another name; none if it has that name.
+///
+/// # Errors
+/// The part is not there; the name can be none, or another part in its scope has it: sizes,
+/// variables, fabrics, sheets, panels and seams in the pattern, points and curves in their sheet,
+/// lines, edges, notches and operations in their panel.
+pub fn rename(evaluation: &Evaluation, part: PartId, name: &str) -> Result<Vec<Edit>, EditError> {
+    let pattern = evaluation.pattern();
+    let missing = || EditError::Missing(part.to_string());
+    let parts = pattern.parts();
+    let (_, place) = parts
+        .iter()
+        .find(|(id, _)| *id == part)
+        .ok_or_else(missing)?;
+    let entity = match (part, place) {
+        (PartId::Size(id), _) => {
+            let size = pattern.sizes.iter().find(|size| size.id == id);
+            let others = pattern.sizes.iter().filter(|size| size.id != id);
+            let name = free(name, "size", others.map(|size| &*size.name))?;
+            let size = (**size.ok_or_else(missing)?).clone();
+            Entity::Size(Arc::new(Size { name, ..size }))
+        }
+        (PartId::Variable(id), _) => {
+            let variable = pattern.variables.iter().find(|variable| variable.id == id);
+            let variable = (**variable.ok_or_else(missing)?).clone();
+            let name = variable_name(pattern, Some(&variable), name)?;
+            Entity::Variable(Arc::new(Variable { name, ..variable }))
+        }
+        (PartId::Fabric(id), _) => {
+            let others = pattern.fabrics.iter().filter(|fabric| fabric.id != id);
+            let name = free(name, "fabric", others.map(|fabric| &*fabric.name))?;
+            let fabric = (**pattern.fabric(id).ok_or_else(missing)?).clone();
+            Entity::Fabric(Arc::new(Fabric { name, ..fabric }))
+        }
+        (PartId::Sheet(id), _) => {
+            let sheet = lookup::sheet(pattern, id)?;
+            Entity::Sheet(SheetHead {
+                id,
+                name: wished(name, |name| sheet_owner(pattern, Some(sheet), name))?,
+                on: sheet.on,
+                on_table: sheet.on_table,
+            })
+        }
+        (PartId::Point(id), _) => {
+            let (sheet, point) = lookup::point(pattern, id)?;
+            let owner = |name: &str| {
+                let owner = point_owner(sheet, name);
+                owner.filter(|_| point.name != name)
+            };
+            let name = wished(name, owner)?;
+            let point = (**point).clone();
+            Entity::Point(sheet.id, Arc::new(Point { name, ..point }))
+        }
+        (PartId::Curve(id), _) => {
+            let (sheet, curve) = lookup::curve(pattern, id)?;
+            let owner = |name: &str| {
+                let owner = curve_owner(sheet, name);
+                owner.filter(|_| curve.name != name)
+            };
+            let name = wished(name, owner)?;
+            let curve = (**curve).clone();
+            Entity::Curve(sheet.id, Arc::new(Curve { name, ..curve }))
+        }
+        (PartId::Panel(id), _) => {
+            let panel = lookup::panel(pattern, id)?;
+            let name = wished(name, |name| panel_owner(pattern, panel, name))?;
+            let panel = (**panel).clone();
+            Entity::Panel(Arc::new(Panel { name, ..panel }))
+        }
+        (PartId::Seam(id), _) => {
+            let others = pattern.seams.iter().filter(|seam| seam.id != id);
+            let name = free(name, "seam", others.map(|seam| &*seam.name))?;
+            let seam = (**lookup::seam(pattern, id)?).clone();
+            Entity::Seam(Arc::new(Seam { name, ..seam }))
+        }
+        (_, Place::Line(panel, _) | Place::Edge(panel, _))
+        | (_, Place::Notch(panel, _) | Place::Operation(panel, _)) => {
+            let panel = lookup::panel(pattern, *panel)?;
+            Entity::Panel(Arc::new(renamed(panel, part, name)?))
+        }
+        (PartId::Line(_) | PartId::Edge(_) | PartId::Notch(_) | PartId::Operation(_), _) => {
+            return Err(missing());
+        }
+    };
+    let mut changed = pattern.clone();
+    let edits = vec![Edit::Put(entity)];
+    changed.apply(&edits)?;
+    match changed == *pattern {
+        true => Ok(Vec::new()),
+        false => Ok(edits),
+    }
+}
+
+/// The name a variable may have: free, and no measurement's, since formulas in files would then
+/// mean the variable.
+pub(super) fn variable_name(
+    pattern: &Pattern,
+    own: Option<&Variable>,
+    name: &str,
+) -> Result<String, EditError> {
+    let others = pattern.variables.iter();
+    let others = others.filter(|variable| own.is_none_or(|own| own.id != variable.id));
+    let name = free(name, "variable", others.map(|variable| &*variable.name))?;
+    let is_measured = pattern
+        .sizes
+        .iter()
+        .any(|size| size.measurements.contains(&name));
+    let is_own = own.is_some_and(|own| own.name == name);
+    if !is_own && (is_measured || definition(&name).is_some()) {
+        return Err(impossible(
+            format!("{name:?} is a measurement, and formulas would not tell them apart"),
+            "choose a name that is none",
+        ));
+    }
+    Ok(name)
+}
+
+/// The name, unless one of a kind has it.
+fn free<'n>(
+    name: &str,
+    kind: &str,
+    others: impl Iterator<Item = &'n str> + Clone,
+) -> Result<String, EditError> {
+    wished(name, |name| {
+        let mut others = others.clone();
+        others
+            .any(|other| other == name)
+            .then(|| format!("{kind} {name:?}"))
+    })
+}
+
+/// A panel with one of its own parts renamed.
+fn renamed(panel: &Panel, part: PartId, name: &str) -> Result<Panel, EditError> {
+    let mut changed = panel.clone();
+    let of = |kind: &str, names: Vec<(PartId, &str)>| {
+        let others = names.into_iter().filter(|(id, _)| *id != part);
+        let names: Vec<&str> = others.map(|(_, name)| name).collect();
+        wished(name, |name| {
+            names
+                .contains(&name)
+                .then(|| format!("{kind} {name:?} of panel {:?}", panel.name))
+        })
+    };
+    let lines = panel.lines.iter().map(|line| (line.id.into(), &*line.name));
+    let edges = panel.edges().map(|edge| (edge.id.into(), &*edge.name));
+    let notches = panel.notches.iter().map(|n| (n.id.into(), &*n.name));
+    let operations = panel.operations.iter().map(|o| (o.id.into(), &*o.name));
+    match part {
+        PartId::Line(id) => {
+            let name = of("line", lines.collect())?;
+            let own = changed.lines.iter_mut().filter(|line| line.id == id);
+            own.for_each(|line| line.name.clone_from(&name));
+        }
+        PartId::Edge(id) => {
+            let name = of("edge", edges.collect())?;
+            let all = changed.lines.iter_mut().flat_map(|line| &mut line.edges);
+            all.filter(|edge| edge.id == id)
+                .for_each(|edge| edge.name.clone_from(&name));
+        }
+        PartId::Notch(id) => {
+            let name = of("notch", notches.collect())?;
+            let own = changed.notches.iter_mut().filter(|notch| notch.id == id);
+            own.for_each(|notch| notch.name.clone_from(&name));
+        }
+        PartId::Operation(id) => {
+            let name = of("operation", operations.collect())?;
+            let own = changed.operations.iter_mut().filter(|known| known.id == id);
+            own.for_each(|known| Arc::make_mut(known).name.clone_from(&name));
+        }
+        _ => return Err(EditError::Missing(part.to_string())),
+    }
+    Ok(changed)
+}

@@ -1,0 +1,152 @@
+//! Moves, turns, mirrors and scales many points at once: only their free numbers change.
+
+use super::impossible;
+use super::lookup;
+use super::moving::moved;
+use crate::{Edit, EditError, Entity, Evaluation, Node, Point, PointId};
+use std::sync::Arc;
+use toile_geometry::Vec2;
+
+/// A point this near to where it should be is there [m].
+const THERE: f64 = 1e-9;
+
+/// An affine map of the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Affine {
+    /// Images of the unit vectors along x and y, plain.
+    pub axes: [Vec2; 2],
+    /// Image of the origin [m].
+    pub origin: Vec2,
+}
+
+impl Affine {
+    fn about(centre: Vec2, axes: [Vec2; 2]) -> Self {
+        let turned = axes[0] * centre.x + axes[1] * centre.y;
+        Self {
+            axes,
+            origin: centre - turned,
+        }
+    }
+
+    /// Moves by a vector [m].
+    pub fn translation(by: Vec2) -> Self {
+        Self {
+            axes: [Vec2::x(), Vec2::y()],
+            origin: by,
+        }
+    }
+
+    /// Turns about a place [m] by an angle [rad], counter-clockwise.
+    pub fn rotation(about: Vec2, angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        Self::about(about, [Vec2::new(cos, sin), Vec2::new(-sin, cos)])
+    }
+
+    /// Mirrors in the line through two places [m]. Its numbers are not finite if they are one.
+    pub fn reflection([a, b]: [Vec2; 2]) -> Self {
+        let unit = (b - a) / (b - a).norm();
+        let flip = |v: Vec2| unit * (2.0 * v.dot(&unit)) - v;
+        Self::about(a, [flip(Vec2::x()), flip(Vec2::y())])
+    }
+
+    /// Scales about a place [m], along x and along y by plain factors.
+    pub fn scaling(about: Vec2, [x, y]: [f64; 2]) -> Self {
+        Self::about(about, [Vec2::x() * x, Vec2::y() * y])
+    }
+
+    /// The image of a place [m].
+    pub fn apply(&self, place: Vec2) -> Vec2 {
+        self.origin + self.axes[0] * place.x + self.axes[1] * place.y
+    }
+}
+
+/// What moving many points comes to.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Moved {
+    /// The edits.
+    pub edits: Vec<Edit>,
+    /// Points that do not come to where they should: they follow from others, or are held to a
+    /// line or a curve and go as near as that lets them.
+    pub held: Vec<PointId>,
+}
+
+/// The edits that map points by an affine map. A point that comes to its place because the points
+/// it is constructed from are moved too is left as it is.
+///
+/// # Errors
+/// A point is not there or cannot be drawn; the map is not finite; no point can move.
+pub fn transform_points(
+    evaluation: &Evaluation,
+    points: &[PointId],
+    map: &Affine,
+) -> Result<Moved, EditError> {
+    lookup::finite("the map", &[map.axes[0], map.axes[1], map.origin])?;
+    let goals: Result<Vec<(PointId, Vec2)>, EditError> = points
+        .iter()
+        .map(|&id| Ok((id, map.apply(lookup::place(evaluation, id)?))))
+        .collect();
+    move_points(evaluation, &goals?)
+}
+
+/// The edits that move points, each to a place of its own [m]; see [`transform_points`].
+///
+/// # Errors
+/// A point is not there or cannot be drawn; a place is not finite; no point can move.
+pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result<Moved, EditError> {
+    let mut ordered: Vec<(Option<u32>, PointId, Vec2)> = Vec::new();
+    for &(id, goal) in goals {
+        lookup::finite("the new place", &[goal])?;
+        lookup::place(evaluation, id)?;
+        ordered.push((evaluation.rank(Node::Point(id)), id, goal));
+    }
+    // Points come after those they are constructed from.
+    ordered.sort_by_key(|(rank, id, _)| (*rank, *id));
+    let mut work = evaluation.clone();
+    let mut result = Moved::default();
+    let mut first_refusal = None;
+    for (_, id, goal) in ordered {
+        match step(&work, id, goal) {
+            Ok(None) => {}
+            Ok(Some(edit)) => {
+                let mut pattern = work.pattern().clone();
+                pattern.apply(std::slice::from_ref(&edit))?;
+                work.update(&pattern, evaluation.measurements());
+                result.edits.push(edit);
+            }
+            Err(refusal) => first_refusal = first_refusal.or(Some(refusal)),
+        }
+    }
+    for &(id, goal) in goals {
+        let is_there = |at: Vec2| (at - goal).norm() <= THERE;
+        if !work.point(id).is_some_and(is_there) {
+            result.held.push(id);
+        }
+    }
+    match first_refusal {
+        Some(refusal) if result.held.len() == goals.len() && result.edits.is_empty() => {
+            Err(refusal)
+        }
+        _ => Ok(result),
+    }
+}
+
+/// The edit that takes one point to its goal, or nothing if it is there.
+fn step(work: &Evaluation, id: PointId, goal: Vec2) -> Result<Option<Edit>, EditError> {
+    let (sheet, found) = lookup::point(work.pattern(), id)?;
+    let now = lookup::place(work, id)?;
+    if (goal - now).norm() <= 1e-3 * THERE {
+        return Ok(None);
+    }
+    let rule = moved(work, &found.rule, now, goal)?;
+    if !rule.numbers().iter().all(|number| number.is_finite()) {
+        return Err(impossible(
+            format!("point {:?} would go too far", found.name),
+            "move it less far",
+        ));
+    }
+    let point = Arc::new(Point {
+        rule,
+        ..(**found).clone()
+    });
+    Ok(Some(Edit::Put(Entity::Point(sheet.id, point))))
+}

@@ -1,0 +1,151 @@
+//! Numbers as they are typed and shown: formulas, and bare numbers in the unit of the document.
+
+use super::impossible;
+use crate::formula::Operation;
+use crate::{DisplayUnit, EditError, Evaluation, Formula, Number, PartReference, Token, Want};
+
+/// Decimals of a value that is shown, in its unit: less than any pattern needs, and few enough
+/// that rounding in the last bits of a value does not show.
+const DECIMALS: usize = 9;
+
+impl DisplayUnit {
+    /// Its length [m].
+    pub fn metres(self) -> f64 {
+        match self {
+            Self::Millimetre => 0.001,
+            Self::Centimetre => 0.01,
+            Self::Metre => 1.0,
+            Self::Inch => 0.0254,
+        }
+    }
+
+    /// Its sign, as formulas write it.
+    pub fn sign(self) -> &'static str {
+        match self {
+            Self::Millimetre => "mm",
+            Self::Centimetre => "cm",
+            Self::Metre => "m",
+            Self::Inch => "in",
+        }
+    }
+}
+
+/// The number that a text means where something is wanted. Numbers without a unit mean the
+/// document's unit where a length is wanted, and degrees where an angle is; they become values. So
+/// does a single number with a unit; everything else stays a formula.
+///
+/// # Errors
+/// The text is no formula; it names what is not there.
+pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Number, EditError> {
+    let text = text.trim();
+    let formula = Formula::parse(text, evaluation.names()).map_err(|error| {
+        let message = format!("column {}: {}", error.column, error.message);
+        impossible(message, error.hint)
+    })?;
+    refuse_unknown(&formula)?;
+    let number = Number::Formula(formula.clone());
+    let is_constant = formula
+        .tokens()
+        .iter()
+        .all(|token| matches!(token, Token::Text(_)));
+    if !is_constant {
+        return Ok(number);
+    }
+    let unit = evaluation.pattern().unit;
+    let plain = evaluation.number(&number, Want::Plain);
+    if let Some(value) = plain.filter(|_| is_bare(text)) {
+        match want {
+            Want::Length => return Ok(Number::Value(in_metres(text, value, unit))),
+            Want::Angle => return Ok(Number::Value(value.to_radians())),
+            Want::Plain => {}
+        }
+    }
+    let is_single = matches!(
+        formula
+            .steps()
+            .iter()
+            .map(|step| &step.operation)
+            .collect::<Vec<_>>()[..],
+        [Operation::Constant { .. }] | [Operation::Constant { .. }, Operation::Negate]
+    );
+    let value = evaluation.number(&number, want).filter(|_| is_single);
+    Ok(value.map_or(number, Number::Value))
+}
+
+/// A length in the document's unit [m]. Digits that stand alone are read with the unit as their
+/// exponent, so that 12.3 cm is 0.123 m to the bit, as in files.
+fn in_metres(text: &str, value: f64, unit: DisplayUnit) -> f64 {
+    let exponent = match unit {
+        DisplayUnit::Millimetre => -3,
+        DisplayUnit::Centimetre => -2,
+        DisplayUnit::Metre => 0,
+        DisplayUnit::Inch => return value * unit.metres(),
+    };
+    let shifted: Option<f64> = format!("{text}e{exponent}").parse().ok();
+    shifted.unwrap_or(value * unit.metres())
+}
+
+/// Whether a text has neither units nor functions: its only letters are those of exponents.
+fn is_bare(text: &str) -> bool {
+    let mut before = ' ';
+    text.chars().all(|c| {
+        let is_exponent = matches!(c, 'e' | 'E') && (before.is_ascii_digit() || before == '.');
+        before = c;
+        is_exponent || !c.is_alphabetic()
+    })
+}
+
+/// Refuses names of parts that are not there. Words may be measurements that some table has.
+fn refuse_unknown(formula: &Formula) -> Result<(), EditError> {
+    let mut unknown = formula.parts().filter_map(|part| match part {
+        PartReference::Unknown(text) => Some(text),
+        _ => None,
+    });
+    match unknown.next() {
+        Some(text) => Err(impossible(
+            format!("{text} is not there"),
+            "name an edge, a point or a seam of this pattern, as in front.armhole",
+        )),
+        None => Ok(()),
+    }
+}
+
+/// A number as it is shown and may be typed again: a formula with the names of the day, a value
+/// with its unit; that of the size on show where sizes have their own.
+pub fn number_text(evaluation: &Evaluation, number: &Number, want: Want) -> String {
+    let names = evaluation.names();
+    match number {
+        Number::Value(value) => value_text(evaluation, *value, want),
+        Number::Formula(formula) => formula.text(names),
+        Number::Adjusted { formula, by } => {
+            let sign = if *by < 0.0 { '-' } else { '+' };
+            let by = value_text(evaluation, by.abs(), want);
+            format!("({}) {sign} {by}", formula.text(names))
+        }
+        Number::PerSize { usual, sizes } => {
+            let own = sizes.iter().find(|own| Some(own.0) == evaluation.size());
+            match own {
+                Some((_, value)) => value_text(evaluation, *value, want),
+                None => number_text(evaluation, usual, want),
+            }
+        }
+    }
+}
+
+fn value_text(evaluation: &Evaluation, value: f64, want: Want) -> String {
+    let unit = evaluation.pattern().unit;
+    let (value, sign) = match want {
+        Want::Length => (value / unit.metres(), unit.sign()),
+        Want::Angle => (value.to_degrees(), "deg"),
+        Want::Plain => (value, ""),
+    };
+    let digits = format!("{value:.DECIMALS$}");
+    let short = match digits.contains('.') {
+        true => digits.trim_end_matches('0').trim_end_matches('.'),
+        false => &digits,
+    };
+    match short {
+        "-0" => format!("0{sign}"),
+        short => format!("{short}{sign}"),
+    }
+}
