@@ -1,30 +1,19 @@
-//! The window of Toile: the pattern on the left, the garment on the mannequin on the right.
+//! The window of Toile: the pattern on its table, the garment on the mannequin beside it.
 //!
 //! It decides nothing about documents: whatever is done becomes a command of the session. Camera,
 //! selection and tools are view state and stay here.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
-mod act;
 mod app;
-mod bars;
-mod command;
-mod dialogs;
-mod drawing;
-mod fill;
+mod canvas;
 mod gpu;
-mod inside;
-mod layout;
-mod making;
-mod notice;
-mod orbit;
-mod selection;
-mod solid;
-mod space;
-mod stage_view;
-mod table_paint;
-mod table_view;
+mod inspector;
+mod tables;
 mod theme;
+mod tools;
+mod views;
 
-pub use app::ToileApp;
-pub use command::UiCommand;
-pub use selection::Selection;
+pub use app::command::{COMMANDS, Menu, UiCommand};
+pub use app::{Beginning, ToileApp};
+pub use canvas::selection::{Item, Selection};
+pub use views::pattern::PatternView;

@@ -1,13 +1,14 @@
-//! Opens the window: `toile-ui [FILE]`. Without a file it shows the sample T-shirt.
+//! Opens the window: `toile-ui [FILE]`. Without a file it shows how to begin.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use toile_ui::ToileApp;
+use toile_ui::{Beginning, ToileApp};
 
 fn main() -> ExitCode {
-    let file = std::env::args_os()
-        .nth(1)
-        .map_or_else(|| PathBuf::from(toile_session::SAMPLE), PathBuf::from);
+    let beginning = Beginning {
+        file: std::env::args_os().nth(1).map(PathBuf::from),
+        folder: toile_session::state_folder(),
+    };
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Toile")
@@ -25,7 +26,7 @@ fn main() -> ExitCode {
             Ok(Box::new(ToileApp::new(
                 &creation.egui_ctx,
                 state,
-                Some(&file),
+                beginning,
             )))
         }),
     );

@@ -2,36 +2,99 @@
 
 use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, Theme, vec2};
 
-/// The table under the pattern.
-pub const TABLE: Color32 = Color32::from_rgb(0xEF, 0xEC, 0xE5);
-/// Fine lines on the table.
-pub const GRID: Color32 = Color32::from_rgb(0xE6, 0xE2, 0xD9);
-/// Coarse lines on the table.
-pub const GRID_COARSE: Color32 = Color32::from_rgb(0xDB, 0xD6, 0xCA);
-/// Bars and strips.
-pub const BAR: Color32 = Color32::from_rgb(0xFB, 0xFA, 0xF7);
-/// Lines between bars.
-pub const RULE: Color32 = Color32::from_rgb(0xDD, 0xD8, 0xCD);
-/// A panel.
-pub const PANEL: Color32 = Color32::from_rgb(0xFE, 0xFD, 0xFA);
-/// The mirrored half of a folded panel.
-pub const PANEL_MIRRORED: Color32 = Color32::from_rgb(0xF6, 0xF4, 0xEE);
-/// Outlines and text.
-pub const INK: Color32 = Color32::from_rgb(0x2E, 0x33, 0x3B);
-/// Secondary text.
-pub const INK_SOFT: Color32 = Color32::from_rgb(0x6C, 0x70, 0x78);
-/// Grainlines, mirrored outlines, internal lines.
-pub const PENCIL: Color32 = Color32::from_rgb(0xA3, 0xA0, 0x98);
-/// What is selected or under the pointer, and the main button.
-pub const ACCENT: Color32 = Color32::from_rgb(0x1F, 0x6F, 0x78);
-/// Behind selected widgets.
-pub const ACCENT_SOFT: Color32 = Color32::from_rgb(0xD3, 0xE6, 0xE6);
-/// Faults.
-pub const FAULT: Color32 = Color32::from_rgb(0xA8, 0x32, 0x2A);
-/// Warnings.
-pub const WARNING: Color32 = Color32::from_rgb(0x8F, 0x5F, 0x0B);
+/// Colours of the window in one theme.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Palette {
+    /// The table under the pattern.
+    pub table: Color32,
+    /// Fine lines on the table.
+    pub grid: Color32,
+    /// Coarse lines on the table.
+    pub grid_coarse: Color32,
+    /// Bars and strips.
+    pub bar: Color32,
+    /// Lines between bars.
+    pub rule: Color32,
+    /// Fields for text, and buttons.
+    pub field: Color32,
+    /// A panel.
+    pub panel: Color32,
+    /// The mirrored half of a folded panel.
+    pub panel_mirrored: Color32,
+    /// A panel that cannot be drawn now.
+    pub panel_stale: Color32,
+    /// Outlines and text.
+    pub ink: Color32,
+    /// Secondary text.
+    pub ink_soft: Color32,
+    /// Grainlines, construction, inner lines.
+    pub pencil: Color32,
+    /// What is selected or under the pointer, and the main button.
+    pub accent: Color32,
+    /// Text on the accent.
+    pub on_accent: Color32,
+    /// Behind selected widgets.
+    pub accent_soft: Color32,
+    /// Faults.
+    pub fault: Color32,
+    /// Warnings.
+    pub warning: Color32,
+}
+
+/// By day: paper, cloth and chalk.
+pub const LIGHT: Palette = Palette {
+    table: Color32::from_rgb(0xEF, 0xEC, 0xE5),
+    grid: Color32::from_rgb(0xE6, 0xE2, 0xD9),
+    grid_coarse: Color32::from_rgb(0xDB, 0xD6, 0xCA),
+    bar: Color32::from_rgb(0xFB, 0xFA, 0xF7),
+    rule: Color32::from_rgb(0xDD, 0xD8, 0xCD),
+    field: Color32::WHITE,
+    panel: Color32::from_rgb(0xFE, 0xFD, 0xFA),
+    panel_mirrored: Color32::from_rgb(0xF6, 0xF4, 0xEE),
+    panel_stale: Color32::from_rgb(0xEC, 0xDF, 0xDA),
+    ink: Color32::from_rgb(0x2E, 0x33, 0x3B),
+    ink_soft: Color32::from_rgb(0x62, 0x66, 0x6E),
+    pencil: Color32::from_rgb(0x93, 0x90, 0x88),
+    accent: Color32::from_rgb(0x1F, 0x6F, 0x78),
+    on_accent: Color32::WHITE,
+    accent_soft: Color32::from_rgb(0xD3, 0xE6, 0xE6),
+    fault: Color32::from_rgb(0xA8, 0x32, 0x2A),
+    warning: Color32::from_rgb(0x85, 0x58, 0x0A),
+};
+
+/// By night.
+pub const DARK: Palette = Palette {
+    table: Color32::from_rgb(0x23, 0x25, 0x28),
+    grid: Color32::from_rgb(0x2B, 0x2D, 0x31),
+    grid_coarse: Color32::from_rgb(0x38, 0x3B, 0x40),
+    bar: Color32::from_rgb(0x1B, 0x1C, 0x1F),
+    rule: Color32::from_rgb(0x3A, 0x3D, 0x42),
+    field: Color32::from_rgb(0x2A, 0x2C, 0x30),
+    panel: Color32::from_rgb(0x3B, 0x3E, 0x44),
+    panel_mirrored: Color32::from_rgb(0x32, 0x35, 0x3A),
+    panel_stale: Color32::from_rgb(0x4A, 0x38, 0x36),
+    ink: Color32::from_rgb(0xE8, 0xE6, 0xE1),
+    ink_soft: Color32::from_rgb(0xB4, 0xB3, 0xAF),
+    pencil: Color32::from_rgb(0x8A, 0x8B, 0x8E),
+    accent: Color32::from_rgb(0x5F, 0xC2, 0xCB),
+    on_accent: Color32::from_rgb(0x10, 0x1A, 0x1C),
+    accent_soft: Color32::from_rgb(0x22, 0x4A, 0x4F),
+    fault: Color32::from_rgb(0xF0, 0x8A, 0x7E),
+    warning: Color32::from_rgb(0xE2, 0xB1, 0x5A),
+};
+
 /// Behind the garment.
 pub const STAGE: Color32 = Color32::from_rgb(0xE4, 0xE6, 0xE7);
+
+impl Palette {
+    /// The colours of the theme a window is in.
+    pub fn of(context: &egui::Context) -> &'static Self {
+        match context.theme() {
+            Theme::Light => &LIGHT,
+            Theme::Dark => &DARK,
+        }
+    }
+}
 
 /// Colours of seams: both sides share one. Muted, of like lightness, told apart by hue.
 const SEAMS: [Color32; 10] = [
@@ -69,66 +132,71 @@ pub fn font(size: f32) -> FontId {
     FontId::new(size, FontFamily::Proportional)
 }
 
-/// Sets colours and type of the whole window.
+/// Sets colours and type of the whole window, in both themes.
 pub fn apply(context: &egui::Context) {
-    context.set_theme(Theme::Light);
-    context.style_mut_of(Theme::Light, |style| {
-        style.text_styles = [
-            (TextStyle::Heading, font(18.0)),
-            (TextStyle::Body, font(14.5)),
-            (TextStyle::Button, font(14.5)),
-            (TextStyle::Small, font(12.5)),
-            (
-                TextStyle::Monospace,
-                FontId::new(13.0, FontFamily::Monospace),
-            ),
-        ]
-        .into();
-        style.spacing.item_spacing = vec2(6.0, 6.0);
-        style.spacing.button_padding = vec2(10.0, 5.0);
-        style.spacing.interact_size = vec2(40.0, 28.0);
-        style.spacing.menu_margin = Margin::same(8);
-        colour(&mut style.visuals);
-    });
+    for theme in [Theme::Light, Theme::Dark] {
+        context.style_mut_of(theme, |style| {
+            style.text_styles = [
+                (TextStyle::Heading, font(18.0)),
+                (TextStyle::Body, font(14.5)),
+                (TextStyle::Button, font(14.5)),
+                (TextStyle::Small, font(12.5)),
+                (
+                    TextStyle::Monospace,
+                    FontId::new(13.0, FontFamily::Monospace),
+                ),
+            ]
+            .into();
+            style.spacing.item_spacing = vec2(6.0, 6.0);
+            style.spacing.button_padding = vec2(8.0, 4.0);
+            style.spacing.interact_size = vec2(40.0, 26.0);
+            style.spacing.menu_margin = Margin::same(6);
+            colour(&mut style.visuals, theme);
+        });
+    }
 }
 
-fn colour(visuals: &mut egui::Visuals) {
-    *visuals = egui::Visuals::light();
-    visuals.override_text_color = Some(INK);
-    visuals.weak_text_color = Some(INK_SOFT);
-    visuals.panel_fill = BAR;
-    visuals.window_fill = BAR;
-    visuals.window_stroke = Stroke::new(1.0, RULE);
-    visuals.extreme_bg_color = Color32::WHITE;
-    visuals.selection.bg_fill = ACCENT_SOFT;
-    visuals.selection.stroke = Stroke::new(1.0, ACCENT);
-    visuals.warn_fg_color = WARNING;
-    visuals.error_fg_color = FAULT;
+fn colour(visuals: &mut egui::Visuals, theme: Theme) {
+    let palette = match theme {
+        Theme::Light => &LIGHT,
+        Theme::Dark => &DARK,
+    };
+    *visuals = match theme {
+        Theme::Light => egui::Visuals::light(),
+        Theme::Dark => egui::Visuals::dark(),
+    };
+    visuals.override_text_color = Some(palette.ink);
+    visuals.weak_text_color = Some(palette.ink_soft);
+    visuals.panel_fill = palette.bar;
+    visuals.window_fill = palette.bar;
+    visuals.window_stroke = Stroke::new(1.0, palette.rule);
+    visuals.extreme_bg_color = palette.field;
+    visuals.selection.bg_fill = palette.accent_soft;
+    visuals.selection.stroke = Stroke::new(1.0, palette.accent);
+    visuals.warn_fg_color = palette.warning;
+    visuals.error_fg_color = palette.fault;
     let radius = CornerRadius::same(5);
     let widgets = &mut visuals.widgets;
+    let soft = palette.accent_soft;
     for (widget, fill, edge) in [
-        (&mut widgets.noninteractive, BAR, RULE),
-        (&mut widgets.inactive, Color32::WHITE, RULE),
-        (
-            &mut widgets.hovered,
-            Color32::from_rgb(0xF1, 0xF5, 0xF4),
-            ACCENT,
-        ),
-        (&mut widgets.active, ACCENT_SOFT, ACCENT),
-        (&mut widgets.open, ACCENT_SOFT, ACCENT),
+        (&mut widgets.noninteractive, palette.bar, palette.rule),
+        (&mut widgets.inactive, palette.field, palette.rule),
+        (&mut widgets.hovered, palette.field, palette.accent),
+        (&mut widgets.active, soft, palette.accent),
+        (&mut widgets.open, soft, palette.accent),
     ] {
         widget.bg_fill = fill;
         widget.weak_bg_fill = fill;
         widget.bg_stroke = Stroke::new(1.0, edge);
-        widget.fg_stroke = Stroke::new(1.0, INK);
+        widget.fg_stroke = Stroke::new(1.0, palette.ink);
         widget.corner_radius = radius;
         widget.expansion = 0.0;
     }
 }
 
 /// The frame of a horizontal bar.
-pub fn bar() -> egui::Frame {
+pub fn bar(context: &egui::Context) -> egui::Frame {
     egui::Frame::new()
-        .fill(BAR)
-        .inner_margin(Margin::symmetric(10, 6))
+        .fill(Palette::of(context).bar)
+        .inner_margin(Margin::symmetric(8, 4))
 }

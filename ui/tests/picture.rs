@@ -10,7 +10,7 @@ use egui_kittest::wgpu::{WgpuTestRenderer, default_wgpu_setup};
 use std::path::Path;
 use std::task::{Context, Poll, Waker};
 use std::time::Duration;
-use toile_ui::ToileApp;
+use toile_ui::{Beginning, ToileApp};
 
 /// What a future of the graphics library gives: on a desktop they are ready when first asked.
 fn ready<T>(future: impl Future<Output = T>) -> T {
@@ -45,12 +45,16 @@ fn renderer() -> Option<WgpuTestRenderer> {
 fn the_pattern_and_the_mannequin_are_drawn() {
     let Some(renderer) = renderer() else { return };
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../patterns/t-shirt.toile.json");
+    let beginning = Beginning {
+        file: Some(file),
+        folder: None,
+    };
     let mut window = Harness::builder()
         .with_size(egui::vec2(1200.0, 800.0))
         .renderer(renderer)
         .build_eframe(move |creation| {
             let state = creation.wgpu_render_state.as_ref();
-            ToileApp::new(&creation.egui_ctx, state, Some(&file))
+            ToileApp::new(&creation.egui_ctx, state, beginning)
         });
     for _ in 0..600 {
         window.step();

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use toile_pattern::{Evaluation, Pattern};
 use toile_session::{Command, Session, Silent};
-use toile_ui::{Selection, ToileApp};
+use toile_ui::{Beginning, Item, ToileApp};
 
 type Window = Harness<'static, ToileApp>;
 
@@ -21,14 +21,20 @@ fn t_shirt() -> PathBuf {
 }
 
 fn window(file: &Path) -> Window {
-    let file = file.to_owned();
+    begun(Beginning {
+        file: Some(file.to_owned()),
+        folder: None,
+    })
+}
+
+fn begun(beginning: Beginning) -> Window {
     let mut window = Harness::builder()
         .with_size(vec2(1200.0, 800.0))
         .with_max_steps(20)
         .with_step_dt(1.0 / 60.0)
         .build_eframe(move |creation| {
             let state = creation.wgpu_render_state.as_ref();
-            ToileApp::new(&creation.egui_ctx, state, Some(&file))
+            ToileApp::new(&creation.egui_ctx, state, beginning)
         });
     window.run();
     window
@@ -43,6 +49,11 @@ fn drawn(pattern: &Pattern) -> impl PartialEq + std::fmt::Debug + use<> {
     (pattern.panels.clone(), pattern.seams.clone())
 }
 
+/// The part that is selected alone.
+fn selected(window: &Window) -> Option<Item> {
+    window.state().view().selection.single()
+}
+
 fn place(window: &Window, name: &str) -> Pos2 {
     // The status line may say the same words; the part itself is a button.
     let part = window.get_by_role_and_label(Role::Button, name);
@@ -51,6 +62,11 @@ fn place(window: &Window, name: &str) -> Pos2 {
 
 fn press(window: &mut Window, name: &str) {
     window.get_by_label(name).click();
+    window.run();
+}
+
+fn key(window: &mut Window, key: Key) {
+    window.key_press(key);
     window.run();
 }
 
@@ -103,7 +119,6 @@ fn the_t_shirt_opens_and_its_parts_have_names() {
     assert_eq!(window.unnamed_widgets(), Vec::<String>::new());
     let disabled = |name| window.get_by_label(name).accesskit_node().is_disabled();
     assert!(disabled("Undo") && disabled("Redo") && disabled("Save"));
-    assert!(disabled("Add point") && disabled("Delete point"));
 }
 
 #[test]
@@ -111,7 +126,7 @@ fn a_point_is_dragged_and_undone_exactly() {
     let mut window = window(&t_shirt());
     let before = pattern(&window);
     let old = point_at(&window, "front", "hem_side");
-    let scale = window.state().table().camera.scale;
+    let scale = window.state().view().camera.scale;
     let start = place(&window, "Point hem_side of front");
     drag(&mut window, start, vec2(30.0, -18.0));
 
@@ -182,15 +197,12 @@ fn a_point_is_added_in_the_middle_of_an_edge_and_deleted() {
     let count = points(&window);
     let middle = place(&window, "Edge side of front");
     click(&mut window, middle + vec2(0.0, 30.0));
-    assert!(matches!(
-        window.state().table().selection,
-        Selection::Edge(..)
-    ));
+    assert!(matches!(selected(&window), Some(Item::Edge(..))));
     assert!(window.query_by_label_contains("sewn by seam").is_some());
 
-    press(&mut window, "Add point");
+    key(&mut window, Key::Insert);
     assert_eq!(points(&window), count + 1);
-    let Selection::Point(_, point) = window.state().table().selection else {
+    let Some(Item::Point(point)) = selected(&window) else {
         panic!("the new point is selected");
     };
     let project = window.state().session().project();
@@ -198,9 +210,9 @@ fn a_point_is_added_in_the_middle_of_an_edge_and_deleted() {
     let label = format!("Point {} of front", name.name);
     assert!((place(&window, &label) - middle).length() < 1.0);
 
-    press(&mut window, "Delete point");
+    key(&mut window, Key::Delete);
     assert_eq!(points(&window), count);
-    assert_eq!(window.state().table().selection, Selection::Nothing);
+    assert_eq!(selected(&window), None);
     press(&mut window, "Undo");
     press(&mut window, "Undo");
     assert_eq!(drawn(&pattern(&window)), drawn(&before));
@@ -220,7 +232,7 @@ fn a_double_click_divides_an_edge_there() {
     }
     window.run();
     assert_eq!(corners(&pattern(&window)), count + 1);
-    let Selection::Point(..) = window.state().table().selection else {
+    let Some(Item::Point(_)) = selected(&window) else {
         panic!("the new point is selected");
     };
     window.key_press(Key::Delete);
@@ -264,13 +276,10 @@ fn a_screen_reader_can_select_a_point() {
     };
     window.event(egui::Event::AccessKitActionRequest(request));
     window.run();
-    assert!(matches!(
-        window.state().table().selection,
-        Selection::Point(..)
-    ));
+    assert!(matches!(selected(&window), Some(Item::Point(_))));
     window.key_press(Key::Escape);
     window.run();
-    assert_eq!(window.state().table().selection, Selection::Nothing);
+    assert_eq!(selected(&window), None);
 }
 
 #[test]
@@ -294,7 +303,7 @@ fn the_table_is_panned_zoomed_and_fitted() {
         (place(&window, name) - fitted).length() < 1.0,
         "zoomed at the cursor"
     );
-    let before = window.state().table().camera;
+    let before = window.state().view().camera;
     let middle_button = |pressed| egui::Event::PointerButton {
         pos: fitted,
         button: egui::PointerButton::Middle,
@@ -305,7 +314,7 @@ fn the_table_is_panned_zoomed_and_fitted() {
     window.hover_at(fitted + vec2(35.0, 20.0));
     window.run();
     assert!((place(&window, name) - fitted - vec2(35.0, 20.0)).length() < 1.0);
-    assert_eq!(window.state().table().camera.scale, before.scale);
+    assert_eq!(window.state().view().camera.scale, before.scale);
     window.event(middle_button(false));
     window.key_press(Key::F);
     window.run();

@@ -64,10 +64,11 @@ pub use live::{LiveFrame, LiveRun};
 pub use marking::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
 pub use nest_options::{MarkerFormat, NestOptions};
 pub use open::{
-    Opened, PatternFormat, SAMPLE, open_measurements, open_pattern, read_input, read_pattern_text,
+    Opened, PatternFormat, SAMPLE, SAMPLES, open_measurements, open_pattern, read_input,
+    read_pattern_text,
 };
 pub use project::{Project, WornGarment};
-pub use recovery::{Abandoned, Recovery, abandoned, recovery_folder};
+pub use recovery::{Abandoned, Recovery, abandoned, state_folder};
 pub use scene::{SceneOutcome, run_scene};
 pub use session::Session;
 pub use setup::{GarmentJob, JobPanel};
@@ -76,7 +77,7 @@ pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
 pub use toile_body::{Description, Figure, Fit, PrimitiveEdit, ProportionBox, Scaling};
 pub use toile_drape::Stage;
-pub use toile_interchange::{MarkerSettings, SizeChoice, Spread, Wanted};
+pub use toile_interchange::{MarkerSettings, SizeChoice, Spread, Wanted, write_atomically};
 pub use toile_nesting::{Budget, Nap};
 pub use tools::{
     BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, convert, fit_mesh, make_body,

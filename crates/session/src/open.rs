@@ -12,8 +12,28 @@ use toile_pattern::Pattern;
 /// The path that stands for the sample pattern inside the program.
 pub const SAMPLE: &str = "sample:t-shirt";
 
-/// The sample pattern.
-const SAMPLE_TEXT: &str = include_str!("../../../patterns/t-shirt.toile.json");
+/// Patterns inside the program: the path that stands for each, and its name.
+pub const SAMPLES: &[(&str, &str)] = &[
+    (SAMPLE, "T-shirt"),
+    ("sample:gathered-skirt", "Gathered skirt"),
+    ("sample:trousers", "Trousers"),
+    ("sample:poncho", "Poncho"),
+];
+
+/// Their files, in the same order.
+const SAMPLE_TEXTS: &[&str] = &[
+    include_str!("../../../patterns/t-shirt.toile.json"),
+    include_str!("../../../patterns/gathered-skirt.toile.json"),
+    include_str!("../../../patterns/trousers.toile.json"),
+    include_str!("../../../patterns/poncho.toile.json"),
+];
+
+fn sample(path: &Path) -> Option<&'static str> {
+    let at = SAMPLES
+        .iter()
+        .position(|known| path.to_str() == Some(known.0))?;
+    SAMPLE_TEXTS.get(at).copied()
+}
 
 /// Formats of patterns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,9 +60,9 @@ pub struct Opened {
 /// # Errors
 /// The file cannot be read, or is not a pattern.
 pub fn open_pattern(path: &Path) -> Result<Opened, SessionError> {
-    let text = match path.to_str() {
-        Some(SAMPLE) => SAMPLE_TEXT.to_owned(),
-        _ => read_input(path, Wanted::Pattern)?,
+    let text = match sample(path) {
+        Some(text) => text.to_owned(),
+        None => read_input(path, Wanted::Pattern)?,
     };
     let mut opened = read_pattern_text(&text).map_err(|error| SessionError::Format {
         path: PathBuf::from(path),

@@ -1,96 +1,118 @@
-//! From what is asked at the window to commands of the session.
+//! What the commands of the window do, and what becomes of what a tool says.
 
-use crate::app::ToileApp;
-use crate::command::UiCommand;
-use crate::notice::Notice;
-use crate::selection::Selection;
-use crate::space::PanelPoint;
-use crate::table_view::ZOOM_STEP;
+use super::ToileApp;
+use super::notice::Notice;
+use crate::canvas::selection::{Item, Selection};
+use crate::tools::{Event, Outcome, Shown, Tool};
 use egui::{Key, Modifiers};
-use std::f64::consts::{FRAC_PI_2, PI};
-use std::path::PathBuf;
 use toile_geometry::Vec2;
-use toile_pattern::{EdgeId, Edit, EditError, PanelId, PointId, plan};
+use toile_pattern::{Edit, EditError, PartId, plan};
 use toile_session::Command;
 
-/// How far an arrow key moves a point, alone and with Shift [m].
+/// How far an arrow key moves points, alone and with Shift [m].
 const NUDGES: [f64; 2] = [0.001, 0.01];
-/// How the names of files in the native format end.
-const ENDING: &str = ".toile.json";
 
 impl ToileApp {
-    /// Whether a command can be done now.
-    pub(crate) fn can(&self, command: UiCommand) -> bool {
-        let opened = !self.session.project().pattern.panels.is_empty();
-        match command {
-            UiCommand::Save => opened && self.is_unsaved(),
-            UiCommand::Undo => self.session.can_undo().is_some(),
-            UiCommand::Redo => self.session.can_redo().is_some(),
-            UiCommand::AddPoint => matches!(self.table.selection, Selection::Edge(..)),
-            UiCommand::DeletePoint => matches!(self.table.selection, Selection::Point(..)),
-            UiCommand::Deselect => self.table.selection != Selection::Nothing,
-            UiCommand::FitPattern | UiCommand::ZoomIn | UiCommand::ZoomOut | UiCommand::Drape => {
-                opened
+    /// Whether there is a pattern, be it empty.
+    pub(crate) fn is_open(&self) -> bool {
+        !self.session.project().pattern.sheets.is_empty()
+    }
+
+    pub(crate) fn has_panels(&self) -> bool {
+        !self.session.project().pattern.panels.is_empty()
+    }
+
+    pub(crate) fn has_selection(&self) -> bool {
+        !self.view.selection.is_empty()
+    }
+
+    pub(crate) fn has_edge(&self) -> bool {
+        matches!(self.view.selection.single(), Some(Item::Edge(..)))
+    }
+
+    pub(crate) fn undo(&mut self) {
+        self.leave_gesture();
+        self.execute(Command::Undo);
+    }
+
+    pub(crate) fn redo(&mut self) {
+        self.leave_gesture();
+        self.execute(Command::Redo);
+    }
+
+    /// Takes a tool in hand; a gesture of the one before is left.
+    pub(crate) fn take(&mut self, tool: Tool) {
+        self.leave_gesture();
+        self.view.take(tool);
+    }
+
+    /// Nothing that a tool shows is made.
+    fn leave_gesture(&mut self) {
+        if self.session.cancel().is_some() {
+            self.refresh();
+        }
+        self.view.take(self.view.tool);
+    }
+
+    pub(crate) fn deselect(&mut self) {
+        match self.view.tool {
+            Tool::Select => {
+                let outcome = self.view.step(&Event::Escape, &self.base);
+                self.follow_outcome(outcome);
             }
-            UiCommand::Pause | UiCommand::Stop => self.making.is_draping(),
-            UiCommand::FrontView | UiCommand::BackView | UiCommand::SideView => true,
+            Tool::Slots(_) => self.take(Tool::Select),
         }
     }
 
-    /// Does a command.
-    pub(crate) fn run(&mut self, command: UiCommand) {
-        match command {
-            UiCommand::Save => self.save(),
-            UiCommand::Undo => {
-                self.execute(Command::Undo);
-            }
-            UiCommand::Redo => {
-                self.execute(Command::Redo);
-            }
-            UiCommand::AddPoint => {
-                if let Selection::Edge(panel, edge) = self.table.selection {
-                    self.split((panel, edge), None);
+    pub(crate) fn select_all(&mut self) {
+        let pattern = self.session.project().pattern.clone();
+        let panels = pattern.panels.iter().map(|panel| Item::Panel(panel.id));
+        let points = pattern.sheets.iter().flat_map(|sheet| &sheet.points);
+        let selection: Selection = match pattern.panels.is_empty() {
+            false => panels.collect(),
+            true => points.map(|point| Item::Point(point.id)).collect(),
+        };
+        self.view.select(selection);
+    }
+
+    /// What an event of a tool came to.
+    pub(crate) fn follow_outcome(&mut self, outcome: Outcome) {
+        match outcome.shown {
+            Shown::Same => {}
+            Shown::Nothing => {
+                if self.session.cancel().is_some() {
+                    self.refresh();
                 }
             }
-            UiCommand::DeletePoint => {
-                if let Selection::Point(panel, point) = self.table.selection {
-                    self.delete((panel, point));
-                }
-            }
-            UiCommand::Deselect => self.table.selection = Selection::Nothing,
-            UiCommand::FitPattern => self.table.fit(),
-            UiCommand::ZoomIn => self.table.zoom(ZOOM_STEP),
-            UiCommand::ZoomOut => self.table.zoom(1.0 / ZOOM_STEP),
-            UiCommand::Drape => {
-                self.notice = Notice::default();
-                self.making.start_garment(&self.session);
-            }
-            UiCommand::Pause => self.making.toggle_pause(),
-            UiCommand::Stop => self.making.stop(),
-            UiCommand::FrontView => self.stage.look_from(0.0),
-            UiCommand::BackView => self.stage.look_from(PI),
-            UiCommand::SideView => self.stage.look_from(FRAC_PI_2),
+            Shown::Edits(edits) => self.preview(&edits),
+        }
+        if let Some((edits, label)) = outcome.commit {
+            self.edit(Ok(edits), &label);
+        }
+        if let Some(label) = outcome.commit_shown {
+            self.commit(&label);
+        }
+        if let Some(selection) = outcome.select {
+            self.view.select(selection);
+        }
+        if let Some(words) = outcome.refusal {
+            self.notice = Notice::fault(words);
+        }
+        if outcome.done {
+            self.take(Tool::Select);
         }
     }
 
-    /// Moves a point to a place of its panel.
-    pub(crate) fn move_point(&mut self, point: (PanelId, PointId), to: PanelPoint) {
-        self.show_moved(point, to);
-        self.commit("Move point");
+    /// Tells why something was not done.
+    pub(crate) fn say_fault(&mut self, words: String) {
+        self.notice = Notice::fault(words);
     }
 
-    /// Shows a point at a place of its panel until the gesture is committed.
-    pub(crate) fn show_moved(&mut self, (_, point): (PanelId, PointId), to: PanelPoint) {
-        let evaluation = self.session.evaluation();
-        let shown = plan::move_point(&evaluation, point, to.0)
-            .map_err(|error| error.to_string())
-            .and_then(|edits| {
-                let shown = self.session.preview(&edits);
-                shown.map_err(|error| error.to_string())
-            });
-        match shown {
+    /// Shows edits until they are committed or left.
+    pub(crate) fn preview(&mut self, edits: &[Edit]) {
+        match self.session.preview(edits) {
             Ok(()) => self.refresh(),
-            Err(words) => self.notice = Notice::fault(words),
+            Err(error) => self.notice = Notice::fault(error.to_string()),
         }
     }
 
@@ -102,25 +124,8 @@ impl ToileApp {
         }
     }
 
-    /// Divides an edge at the place nearest to a point, or in its middle, and selects the corner.
-    pub(crate) fn split(&mut self, (panel, edge): (PanelId, EdgeId), near: Option<PanelPoint>) {
-        let evaluation = self.session.evaluation();
-        let planned = plan::divide_edge(&evaluation, (panel, edge), near.map(|near| near.0));
-        let corner = planned.as_ref().ok().map(|(_, corner)| *corner);
-        if self.edit(planned.map(|(edits, _)| edits), "Add point")
-            && let Some(corner) = corner
-        {
-            self.table.selection = Selection::Point(panel, corner);
-        }
-    }
-
-    fn delete(&mut self, (panel, point): (PanelId, PointId)) {
-        let evaluation = self.session.evaluation();
-        let edits = plan::remove_point(&evaluation, (panel, point));
-        self.edit(edits, "Delete point");
-    }
-
-    fn edit(&mut self, edits: Result<Vec<Edit>, EditError>, label: &str) -> bool {
+    /// Makes the edits of a planner as one step of the history; says whether it was done.
+    pub(crate) fn edit(&mut self, edits: Result<Vec<Edit>, EditError>, label: &str) -> bool {
         match edits {
             Ok(edits) => self.execute(Command::Edit {
                 edits,
@@ -133,12 +138,59 @@ impl ToileApp {
         }
     }
 
-    /// Moves the selected point by the arrow keys.
-    pub(crate) fn nudge(&mut self, context: &egui::Context) {
-        let Selection::Point(panel, point) = self.table.selection else {
+    /// Divides the selected edge in its middle, and selects the corner.
+    pub(crate) fn divide_edge(&mut self) {
+        let Some(Item::Edge(panel, edge)) = self.view.selection.single() else {
             return;
         };
-        if context.egui_wants_keyboard_input() {
+        let planned = plan::divide_edge(&self.base, (panel, edge), None);
+        let corner = planned.as_ref().ok().map(|(_, corner)| *corner);
+        let done = self.edit(planned.map(|(edits, _)| edits), "Add point");
+        if let Some(corner) = corner.filter(|_| done) {
+            self.view.select(Selection::one(Item::Point(corner)));
+        }
+    }
+
+    /// Removes what is selected.
+    pub(crate) fn delete(&mut self) {
+        let items = self.view.selection.items().to_vec();
+        let parts: Vec<PartId> = items.iter().map(|item| item.part()).collect();
+        let label = match (items.len(), items.first()) {
+            (1, Some(Item::Point(_))) => "Delete point",
+            (1, Some(Item::Panel(_))) => "Delete panel",
+            _ => "Delete",
+        };
+        self.edit(plan::remove_parts(&self.base, &parts), label);
+    }
+
+    /// A panel with something changed.
+    pub(crate) fn changed_panel(
+        &self,
+        id: toile_pattern::PanelId,
+        change: impl FnOnce(&mut toile_pattern::Panel),
+    ) -> Result<Vec<Edit>, EditError> {
+        let found = self.base.pattern().panel(id);
+        let panel = found.ok_or_else(|| EditError::Missing(id.to_string()))?;
+        let mut panel = (**panel).clone();
+        change(&mut panel);
+        let put = toile_pattern::Entity::Panel(std::sync::Arc::new(panel));
+        Ok(vec![Edit::Put(put)])
+    }
+
+    pub(crate) fn drape(&mut self) {
+        self.notice = Notice::default();
+        self.shows.garment = true;
+        self.making.start_garment(&self.session);
+    }
+
+    pub(crate) fn change_theme(&mut self) {
+        self.wants_theme = true;
+    }
+
+    /// Moves the selected points by the arrow keys.
+    pub(crate) fn nudge(&mut self, context: &egui::Context) {
+        let points = self.view.selection.points();
+        if points.is_empty() || self.view.is_typing() || self.types(context) {
             return;
         }
         let way = context.input_mut(|input| {
@@ -159,37 +211,28 @@ impl ToileApp {
             }
             way
         });
-        let at = self.drawing.panel(panel).and_then(|p| p.point(point));
-        if let Some(at) = at.map(|point| point.at.0)
-            && way != Vec2::zeros()
-        {
-            self.move_point((panel, point), PanelPoint(at + way));
-        }
-    }
-
-    pub(crate) fn save(&mut self) {
-        let path = self.save_path();
-        let own = self.session.project().source.as_ref() == Some(&path);
-        if !own && path.exists() {
-            self.notice = Notice::fault(format!(
-                "{} is there already: move it away, or open that file",
-                path.display()
-            ));
+        if way == Vec2::zeros() {
             return;
         }
-        self.execute(Command::SavePattern { path });
-    }
-
-    /// The file it came from, if that is in the native format; else one beside it.
-    fn save_path(&self) -> PathBuf {
-        let project = self.session.project();
-        match &project.source {
-            Some(path) if path.to_string_lossy().ends_with(ENDING) => path.clone(),
-            Some(path) if path.exists() => {
-                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-                path.with_file_name(format!("{stem}{ENDING}"))
+        let mut edits = Vec::new();
+        for point in &points {
+            let Some(at) = self.base.point(*point) else {
+                continue;
+            };
+            match plan::move_point(&self.base, *point, at + way) {
+                Ok(found) => edits.extend(found),
+                Err(error) if points.len() == 1 => {
+                    self.notice = Notice::fault(error.to_string());
+                    return;
+                }
+                Err(_) => {}
             }
-            _ => PathBuf::from(format!("{}{ENDING}", project.pattern.name)),
         }
+        let label = if points.len() == 1 {
+            "Move point"
+        } else {
+            "Move points"
+        };
+        self.edit(Ok(edits), label);
     }
 }

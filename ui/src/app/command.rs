@@ -1,155 +1,462 @@
-//! Every command of the window: label, tooltip and shortcut in one place.
+//! Every command of the window in one table: name, key, when it can be done, what it does. Menus,
+//! keys, buttons, the palette and tests all go by it.
 
+use super::ToileApp;
+use crate::tools::{Tool, draw, panel};
 use egui::{Key, KeyboardShortcut, Modifiers};
 
-/// Something the person at the window can ask for by button or key.
+/// A command of the window.
+pub struct UiCommand {
+    /// Its name: text of its button and menu entry, and its accessible name.
+    pub name: &'static str,
+    /// One sentence on what it does.
+    pub tip: &'static str,
+    /// Its key.
+    pub key: Option<KeyboardShortcut>,
+    /// The menu it is in.
+    pub menu: Menu,
+    /// Whether it can be done now.
+    pub when: fn(&ToileApp) -> bool,
+    /// Does it.
+    pub does: fn(&mut ToileApp),
+}
+
+/// Menus, in the order of the menu bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum UiCommand {
-    /// Write the pattern to its file.
-    Save,
-    /// Take the last change back.
-    Undo,
-    /// Do it again.
-    Redo,
-    /// Divide the selected edge in its middle.
-    AddPoint,
-    /// Remove the selected point.
-    DeletePoint,
-    /// Select nothing.
-    Deselect,
-    /// Show the whole pattern.
-    FitPattern,
-    /// Enlarge the pattern.
-    ZoomIn,
-    /// Make the pattern smaller.
-    ZoomOut,
-    /// Sew and drape the garment.
-    Drape,
-    /// Hold the drape, or let it go on.
-    Pause,
-    /// End the drape.
-    Stop,
-    /// Look at the wearer's front.
-    FrontView,
-    /// Look at the wearer's back.
-    BackView,
-    /// Look at the wearer's left side.
-    SideView,
+pub enum Menu {
+    /// Files.
+    File,
+    /// Changes.
+    Edit,
+    /// What is seen.
+    View,
+    /// Tools for sheets.
+    Draw,
+    /// Tools for panels.
+    Panel,
+    /// The drape.
+    Garment,
+}
+
+impl Menu {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::File,
+        Self::Edit,
+        Self::View,
+        Self::Draw,
+        Self::Panel,
+        Self::Garment,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::File => "File",
+            Self::Edit => "Edit",
+            Self::View => "View",
+            Self::Draw => "Draw",
+            Self::Panel => "Panel",
+            Self::Garment => "Garment",
+        }
+    }
+}
+
+const fn key(modifiers: Modifiers, key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(modifiers, key))
+}
+
+const PLAIN: Modifiers = Modifiers::NONE;
+const SHIFT: Modifiers = Modifiers::SHIFT;
+const COMMAND: Modifiers = Modifiers::COMMAND;
+const BOTH: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+const fn command(
+    menu: Menu,
+    name: &'static str,
+    key: Option<KeyboardShortcut>,
+    tip: &'static str,
+    when: fn(&ToileApp) -> bool,
+    does: fn(&mut ToileApp),
+) -> UiCommand {
+    UiCommand {
+        name,
+        tip,
+        key,
+        menu,
+        when,
+        does,
+    }
+}
+
+/// All commands, in the order of their menus.
+pub static COMMANDS: &[UiCommand] = &[
+    command(
+        Menu::File,
+        "New",
+        key(COMMAND, Key::N),
+        "Begin a new pattern",
+        always,
+        ToileApp::ask_new,
+    ),
+    command(
+        Menu::File,
+        "Open",
+        key(COMMAND, Key::O),
+        "Open a pattern from a file",
+        always,
+        ToileApp::ask_open,
+    ),
+    command(
+        Menu::File,
+        "Save",
+        key(COMMAND, Key::S),
+        "Write the pattern to its file",
+        |app| app.is_open() && app.is_unsaved(),
+        ToileApp::save,
+    ),
+    command(
+        Menu::File,
+        "Save as",
+        key(BOTH, Key::S),
+        "Write the pattern to another file",
+        ToileApp::is_open,
+        ToileApp::ask_save,
+    ),
+    command(
+        Menu::Edit,
+        "Undo",
+        key(COMMAND, Key::Z),
+        "Take the last change back",
+        |app| app.session.can_undo().is_some(),
+        ToileApp::undo,
+    ),
+    command(
+        Menu::Edit,
+        "Redo",
+        key(BOTH, Key::Z),
+        "Do the change again that was taken back",
+        |app| app.session.can_redo().is_some(),
+        ToileApp::redo,
+    ),
+    command(
+        Menu::Edit,
+        "Delete",
+        key(PLAIN, Key::Delete),
+        "Remove what is selected; the edges at a removed corner become one",
+        ToileApp::has_selection,
+        ToileApp::delete,
+    ),
+    command(
+        Menu::Edit,
+        "Add point",
+        key(PLAIN, Key::Insert),
+        "Divide the selected edge in its middle; double-click an edge to divide it there",
+        ToileApp::has_edge,
+        ToileApp::divide_edge,
+    ),
+    command(
+        Menu::Edit,
+        "Select all",
+        key(COMMAND, Key::A),
+        "Select every panel, or every point where there is no panel",
+        ToileApp::is_open,
+        ToileApp::select_all,
+    ),
+    command(
+        Menu::Edit,
+        "Deselect",
+        key(PLAIN, Key::Escape),
+        "Put the tool down, or select nothing",
+        |app| app.has_selection() || !matches!(app.view.tool, Tool::Select),
+        ToileApp::deselect,
+    ),
+    command(
+        Menu::Edit,
+        "Find command",
+        key(COMMAND, Key::K),
+        "Find a command by its name",
+        always,
+        ToileApp::ask_command,
+    ),
+    command(
+        Menu::View,
+        "Fit",
+        key(PLAIN, Key::F),
+        "Show the whole pattern",
+        ToileApp::is_open,
+        |app| app.view.fit(),
+    ),
+    command(
+        Menu::View,
+        "Zoom in",
+        key(PLAIN, Key::Plus),
+        "Enlarge the pattern",
+        ToileApp::is_open,
+        |app| app.view.zoom(crate::views::pattern::ZOOM_STEP),
+    ),
+    command(
+        Menu::View,
+        "Zoom out",
+        key(PLAIN, Key::Minus),
+        "Make the pattern smaller",
+        ToileApp::is_open,
+        |app| app.view.zoom(1.0 / crate::views::pattern::ZOOM_STEP),
+    ),
+    command(
+        Menu::View,
+        "Tables",
+        key(PLAIN, Key::F8),
+        "Show or hide measurements, variables, sizes and the history",
+        always,
+        |app| app.shows.tables = !app.shows.tables,
+    ),
+    command(
+        Menu::View,
+        "Findings",
+        key(PLAIN, Key::F9),
+        "List what is found wrong with the pattern",
+        always,
+        |app| app.shows.findings = !app.shows.findings,
+    ),
+    command(
+        Menu::View,
+        "Garment view",
+        key(PLAIN, Key::F7),
+        "Show or hide the garment on the mannequin",
+        always,
+        |app| app.shows.garment = !app.shows.garment,
+    ),
+    command(
+        Menu::View,
+        "Dark or light",
+        None,
+        "Change between dark and light colours",
+        always,
+        ToileApp::change_theme,
+    ),
+    command(
+        Menu::Draw,
+        "Select",
+        key(PLAIN, Key::V),
+        "Select, move, divide",
+        always,
+        |app| app.take(Tool::Select),
+    ),
+    command(
+        Menu::Draw,
+        "Point",
+        key(PLAIN, Key::P),
+        "Draw a point by coordinates, on a curve, at a crossing or beside another",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&draw::POINT)),
+    ),
+    command(
+        Menu::Draw,
+        "Line",
+        key(PLAIN, Key::L),
+        "Draw straight lines, each from where the last ends",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&draw::LINE)),
+    ),
+    command(
+        Menu::Draw,
+        "Polygon",
+        key(SHIFT, Key::L),
+        "Draw lines through several corners; closed by a click on the first they are a panel",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&draw::POLYGON)),
+    ),
+    command(
+        Menu::Draw,
+        "Curve",
+        key(PLAIN, Key::C),
+        "Draw a smooth curve through several places",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&draw::SPLINE)),
+    ),
+    command(
+        Menu::Draw,
+        "Arc",
+        key(PLAIN, Key::A),
+        "Draw a circular arc through a place",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&draw::ARC)),
+    ),
+    command(
+        Menu::Draw,
+        "Rectangle",
+        key(PLAIN, Key::R),
+        "Draw a rectangular panel",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&draw::RECTANGLE)),
+    ),
+    command(
+        Menu::Draw,
+        "Point along",
+        key(PLAIN, Key::E),
+        "Draw a point on a curve at a distance from its end",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&draw::ALONG)),
+    ),
+    command(
+        Menu::Draw,
+        "Perpendicular",
+        key(SHIFT, Key::P),
+        "Draw the foot of a perpendicular from a point to a line",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&draw::FOOT)),
+    ),
+    command(
+        Menu::Draw,
+        "Mirror point",
+        key(SHIFT, Key::M),
+        "Draw the mirror image of a point in a line",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&draw::MIRROR)),
+    ),
+    command(
+        Menu::Panel,
+        "Trace",
+        key(PLAIN, Key::T),
+        "Make a panel of closed lines",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&draw::TRACE)),
+    ),
+    command(
+        Menu::Panel,
+        "Divide edge",
+        key(PLAIN, Key::B),
+        "Put a point on an edge",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&panel::DIVIDE)),
+    ),
+    command(
+        Menu::Panel,
+        "Dart",
+        key(PLAIN, Key::D),
+        "Take a dart out of an edge",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&panel::DART)),
+    ),
+    command(
+        Menu::Panel,
+        "Fold",
+        key(SHIFT, Key::F),
+        "Lay a straight edge on the fold of the cloth",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&panel::FOLD)),
+    ),
+    command(
+        Menu::Panel,
+        "Notch",
+        key(PLAIN, Key::N),
+        "Mark an edge with a notch",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&panel::NOTCH)),
+    ),
+    command(
+        Menu::Panel,
+        "Inner line",
+        key(PLAIN, Key::I),
+        "Draw a line inside a panel, or a hole by closing it",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&panel::INNER_LINE)),
+    ),
+    command(
+        Menu::Panel,
+        "Grain",
+        key(PLAIN, Key::G),
+        "Set the direction of the warp",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&panel::GRAIN)),
+    ),
+    command(
+        Menu::Garment,
+        "Drape",
+        key(PLAIN, Key::F5),
+        "Sew the garment round the mannequin and let it hang",
+        ToileApp::has_panels,
+        ToileApp::drape,
+    ),
+    command(
+        Menu::Garment,
+        "Pause",
+        key(PLAIN, Key::F6),
+        "Hold the drape, or let it go on",
+        |app| app.making.is_draping(),
+        |app| app.making.toggle_pause(),
+    ),
+    command(
+        Menu::Garment,
+        "Stop",
+        key(SHIFT, Key::F5),
+        "End the drape and keep what there is",
+        |app| app.making.is_draping(),
+        |app| app.making.stop(),
+    ),
+    command(
+        Menu::Garment,
+        "Front view",
+        key(PLAIN, Key::Num1),
+        "Look at the front of the garment",
+        always,
+        |app| app.stage.look_from(0.0),
+    ),
+    command(
+        Menu::Garment,
+        "Back view",
+        key(PLAIN, Key::Num2),
+        "Look at the back of the garment",
+        always,
+        |app| app.stage.look_from(std::f64::consts::PI),
+    ),
+    command(
+        Menu::Garment,
+        "Side view",
+        key(PLAIN, Key::Num3),
+        "Look at the wearer's left side",
+        always,
+        |app| app.stage.look_from(std::f64::consts::FRAC_PI_2),
+    ),
+];
+
+fn always(_: &ToileApp) -> bool {
+    true
 }
 
 impl UiCommand {
-    /// All of them, in the order shortcuts are looked at: those with more modifiers first.
-    pub const ALL: [Self; 15] = [
-        Self::Redo,
-        Self::Undo,
-        Self::Save,
-        Self::AddPoint,
-        Self::DeletePoint,
-        Self::Deselect,
-        Self::FitPattern,
-        Self::ZoomIn,
-        Self::ZoomOut,
-        Self::Stop,
-        Self::Drape,
-        Self::Pause,
-        Self::FrontView,
-        Self::BackView,
-        Self::SideView,
-    ];
-
-    /// Text of its button, and its accessible name.
-    pub fn label(self) -> &'static str {
-        self.words().0
+    /// The command with that name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        COMMANDS.iter().find(|command| command.name == name)
     }
 
-    /// One sentence on what it does.
-    pub fn tooltip(self) -> &'static str {
-        self.words().1
-    }
-
-    fn words(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Save => ("Save", "Write the pattern to its file"),
-            Self::Undo => ("Undo", "Take the last change back"),
-            Self::Redo => ("Redo", "Do the change again that was taken back"),
-            Self::AddPoint => (
-                "Add point",
-                "Divide the selected edge in its middle; double-click an edge to divide it there",
-            ),
-            Self::DeletePoint => (
-                "Delete point",
-                "Remove the selected point; its two edges become one",
-            ),
-            Self::Deselect => ("Deselect", "Select nothing"),
-            Self::FitPattern => ("Fit", "Show the whole pattern"),
-            Self::ZoomIn => ("Zoom in", "Enlarge the pattern"),
-            Self::ZoomOut => ("Zoom out", "Make the pattern smaller"),
-            Self::Drape => (
-                "Drape",
-                "Sew the garment round the mannequin and let it hang",
-            ),
-            Self::Pause => ("Pause", "Hold the drape, or let it go on"),
-            Self::Stop => ("Stop", "End the drape and keep what there is"),
-            Self::FrontView => ("Front", "Look at the front of the garment"),
-            Self::BackView => ("Back", "Look at the back of the garment"),
-            Self::SideView => ("Side", "Look at the wearer's left side"),
+    /// What is said of it where the pointer rests: what it does, and its key.
+    pub fn words(&self, context: &egui::Context) -> String {
+        match self.key {
+            Some(key) => format!("{} ({})", self.tip, context.format_shortcut(&key)),
+            None => self.tip.to_owned(),
         }
     }
 
-    /// Its key.
-    pub fn shortcut(self) -> KeyboardShortcut {
-        let (modifiers, key) = match self {
-            Self::Save => (Modifiers::COMMAND, Key::S),
-            Self::Undo => (Modifiers::COMMAND, Key::Z),
-            Self::Redo => (Modifiers::COMMAND | Modifiers::SHIFT, Key::Z),
-            Self::AddPoint => (Modifiers::NONE, Key::A),
-            Self::DeletePoint => (Modifiers::NONE, Key::Delete),
-            Self::Deselect => (Modifiers::NONE, Key::Escape),
-            Self::FitPattern => (Modifiers::NONE, Key::F),
-            Self::ZoomIn => (Modifiers::NONE, Key::Plus),
-            Self::ZoomOut => (Modifiers::NONE, Key::Minus),
-            Self::Drape => (Modifiers::NONE, Key::D),
-            Self::Pause => (Modifiers::NONE, Key::P),
-            Self::Stop => (Modifiers::SHIFT, Key::D),
-            Self::FrontView => (Modifiers::NONE, Key::Num1),
-            Self::BackView => (Modifiers::NONE, Key::Num2),
-            Self::SideView => (Modifiers::NONE, Key::Num3),
-        };
-        KeyboardShortcut::new(modifiers, key)
-    }
-
-    /// A button for it: true when it was pressed. A command that cannot be done now is greyed.
-    pub fn button(self, ui: &mut egui::Ui, enabled: bool) -> bool {
-        self.show(ui, enabled, egui::Button::new(self.label()), self.tooltip())
-    }
-
-    /// The same with a button and a tooltip of one's own.
-    pub fn show(
-        self,
-        ui: &mut egui::Ui,
-        enabled: bool,
-        button: egui::Button<'_>,
-        tooltip: &str,
-    ) -> bool {
-        let tip = format!("{tooltip} ({})", ui.ctx().format_shortcut(&self.shortcut()));
-        ui.add_enabled(enabled, button)
-            .on_hover_text(&tip)
-            .on_disabled_hover_text(&tip)
-            .clicked()
-    }
-
     /// Commands whose keys were pressed in this frame. While text is typed only those with a
-    /// command key count.
-    pub fn pressed(context: &egui::Context) -> Vec<Self> {
-        let typing = context.egui_wants_keyboard_input();
+    /// command key count; while a tool is `busy`, Escape is its own.
+    pub fn pressed(context: &egui::Context, typing: bool, busy: bool) -> Vec<&'static Self> {
+        // Keys with more modifiers first: a key without them matches those with them too.
+        let mut keyed: Vec<(&Self, KeyboardShortcut)> = COMMANDS
+            .iter()
+            .filter_map(|command| Some((command, command.key?)))
+            .collect();
+        let modifiers = |key: &KeyboardShortcut| {
+            u8::from(key.modifiers.shift) + u8::from(key.modifiers.command)
+        };
+        keyed.sort_by_key(|(_, key)| std::cmp::Reverse(modifiers(key)));
         let mut pressed = Vec::new();
         context.input_mut(|input| {
-            for command in Self::ALL {
-                let shortcut = command.shortcut();
-                if typing && !shortcut.modifiers.command {
-                    continue;
-                }
-                if input.consume_shortcut(&shortcut) {
+            for (command, key) in keyed {
+                let waits =
+                    typing && !key.modifiers.command || busy && key.logical_key == Key::Escape;
+                if !waits && input.consume_shortcut(&key) {
                     pressed.push(command);
                 }
             }
@@ -158,18 +465,54 @@ impl UiCommand {
     }
 }
 
+impl ToileApp {
+    /// A button for a command, greyed while it cannot be done.
+    pub(crate) fn command_button(&mut self, ui: &mut egui::Ui, name: &str) {
+        if let Some(command) = UiCommand::named(name) {
+            let button = egui::Button::new(command.name);
+            self.command_widget(ui, command, button, None);
+        }
+    }
+
+    /// The same with a button and words of one's own.
+    pub(crate) fn command_widget(
+        &mut self,
+        ui: &mut egui::Ui,
+        command: &'static UiCommand,
+        button: egui::Button<'_>,
+        words: Option<String>,
+    ) {
+        let words = words.unwrap_or_else(|| command.words(ui.ctx()));
+        let response = ui
+            .add_enabled((command.when)(self), button)
+            .on_hover_text(&words)
+            .on_disabled_hover_text(&words);
+        if response.clicked() {
+            (command.does)(self);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn labels_and_shortcuts_are_all_different() {
-        for (k, one) in UiCommand::ALL.into_iter().enumerate() {
-            for other in &UiCommand::ALL[k + 1..] {
-                assert_ne!(one.label(), other.label());
-                assert_ne!(one.shortcut(), other.shortcut(), "{one:?} and {other:?}");
+    fn names_and_keys_are_all_different() {
+        for (k, one) in COMMANDS.iter().enumerate() {
+            for other in &COMMANDS[k + 1..] {
+                assert_ne!(one.name, other.name);
+                let same = one.key.is_some() && one.key == other.key;
+                assert!(!same, "{} and {}", one.name, other.name);
             }
-            assert!(!one.tooltip().is_empty());
+            assert!(!one.tip.is_empty());
         }
+    }
+
+    #[test]
+    fn commands_of_a_menu_stand_together() {
+        let mut menus: Vec<Menu> = COMMANDS.iter().map(|command| command.menu).collect();
+        menus.dedup();
+        assert_eq!(menus, Menu::ALL);
     }
 }

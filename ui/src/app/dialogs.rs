@@ -1,77 +1,237 @@
-//! What is said in the middle of the window: no pattern, and closing with unsaved changes.
+//! Dialogs: what must be answered before something is done.
 
-use crate::app::ToileApp;
-use crate::theme;
-use egui::{Align2, Button, Color32, Rect, RichText, Ui, ViewportCommand, vec2};
+use super::ToileApp;
+use super::files::FileChoice;
+use crate::theme::Palette;
+use egui::{Button, Context, Key, RichText, ScrollArea, Ui, ViewportCommand};
+use std::path::PathBuf;
+use toile_session::Command;
 
-/// Width of a card [logical pixels].
-const CARD: f32 = 460.0;
+/// Width of a dialog [pixels].
+const WIDTH: f32 = 420.0;
+/// Height of a list in a dialog [pixels].
+const LIST: f32 = 240.0;
+
+/// A dialog that is open.
+pub enum Dialog {
+    /// The name of a new pattern.
+    New(String),
+    /// The file to open.
+    Open(FileChoice),
+    /// The file to save to.
+    SaveAs(FileChoice),
+    /// A file would be replaced.
+    Replace(PathBuf),
+    /// Changes are in no file; what comes then.
+    Leave(Box<Dialog>),
+    /// The window is closed with changes in no file.
+    Close,
+    /// Documents a crash left.
+    Recover,
+    /// A command by its name: what is typed, and which of those found is taken.
+    Find(String, usize),
+}
+
+/// What a dialog came to.
+pub(super) enum Answer {
+    /// It stays.
+    Stay,
+    /// It is left.
+    Leave,
+    /// It is left, and this is done.
+    Do(Box<dyn FnOnce(&mut ToileApp)>),
+}
 
 impl ToileApp {
-    /// Says why no pattern is shown.
-    pub(crate) fn no_pattern(&self, ui: &mut Ui, view: Rect) {
-        let size = vec2(CARD.min(view.width() - 40.0), 190.0);
-        let card = Align2::CENTER_CENTER.align_size_within_rect(size, view);
-        ui.painter().rect_filled(card, 8.0, theme::BAR);
-        let inside = card.shrink(20.0);
-        ui.scope_builder(egui::UiBuilder::new().max_rect(inside), |ui| {
-            let (title, words) = match &self.refusal {
-                Some(words) => ("This pattern cannot be opened", words.as_str()),
-                None if self.session.revision() > 0 => (
-                    "Nothing can be drawn",
-                    "The pattern has no panel whose outline can be drawn. The status line says why.",
-                ),
-                None => ("No pattern is open", ""),
+    pub(crate) fn show_dialog(&mut self, context: &Context) {
+        let Some(mut dialog) = self.dialog.take() else {
+            return;
+        };
+        let mut answer = Answer::Stay;
+        let modal = egui::Modal::new(egui::Id::unique("dialog")).show(context, |ui| {
+            ui.set_width(WIDTH);
+            answer = match &mut dialog {
+                Dialog::New(name) => ask_name(ui, name),
+                Dialog::Open(choice) => ask_file(ui, choice, "Open a pattern", "Open"),
+                Dialog::SaveAs(choice) => ask_file(ui, choice, "Save the pattern", "Save"),
+                Dialog::Replace(path) => ask_replace(ui, path),
+                Dialog::Leave(_) | Dialog::Close => ask_save(ui),
+                Dialog::Recover => self.ask_recover(ui),
+                Dialog::Find(text, chosen) => self.ask_find(ui, text, chosen),
             };
-            ui.heading(title);
-            ui.add_space(4.0);
-            if !words.is_empty() {
-                ui.label(RichText::new(words).color(theme::FAULT));
-                ui.add_space(4.0);
-            }
-            ui.label(
-                RichText::new("Drop a pattern file here, or start the window with: toile-ui FILE")
-                    .color(theme::INK_SOFT),
-            );
         });
+        if matches!(answer, Answer::Stay) && modal.should_close() {
+            answer = Answer::Leave;
+        }
+        match answer {
+            Answer::Stay => self.dialog = Some(dialog),
+            Answer::Leave => {}
+            Answer::Do(then) => {
+                let open = matches!(dialog, Dialog::Open(_));
+                let next = match dialog {
+                    Dialog::Leave(next) => Some(*next),
+                    Dialog::Close => {
+                        self.closes = true;
+                        None
+                    }
+                    _ => None,
+                };
+                then(self);
+                self.leave(next, open);
+            }
+        }
+    }
+
+    /// What comes after a dialog, if the changes it asked about are safe or given up.
+    fn leave(&mut self, next: Option<Dialog>, _opened: bool) {
+        if self.dialog.is_none() {
+            self.dialog = next;
+        }
+        // Saving failed, or asks for a file first: the window stays.
+        if self.closes && (self.dialog.is_some() || self.notice.is_fault()) {
+            self.closes = false;
+        }
     }
 
     /// Asks before changes are lost.
-    pub(crate) fn guard_closing(&mut self, context: &egui::Context) {
+    pub(crate) fn guard_closing(&mut self, context: &Context) {
         let closing = context.input(|input| input.viewport().close_requested());
         if closing && !self.closes && self.is_unsaved() {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.asks_to_close = true;
-        }
-        if !self.asks_to_close {
-            return;
-        }
-        let asked = egui::Modal::new(egui::Id::unique("closing")).show(context, |ui| {
-            ui.set_width(CARD * 0.8);
-            ui.heading("Save the changes?");
-            ui.add_space(4.0);
-            ui.label("The pattern has changes that are in no file.");
-            ui.add_space(12.0);
-            ui.horizontal(|ui| {
-                let save = RichText::new("Save and close").color(Color32::WHITE);
-                if ui.add(Button::new(save).fill(theme::ACCENT)).clicked() {
-                    self.save();
-                    self.closes = !self.is_unsaved();
-                    self.asks_to_close = false;
-                }
-                if ui.button("Close without saving").clicked() {
-                    self.closes = true;
-                }
-                if ui.button("Keep working").clicked() {
-                    self.asks_to_close = false;
-                }
-            });
-        });
-        if asked.should_close() {
-            self.asks_to_close = false;
+            self.dialog = Some(Dialog::Close);
         }
         if self.closes {
+            self.forget_recovery();
             context.send_viewport_cmd(ViewportCommand::Close);
         }
     }
+}
+
+fn ask_name(ui: &mut Ui, name: &mut String) -> Answer {
+    ui.heading("New pattern");
+    let label = ui.label("Name").id;
+    let field = ui.text_edit_singleline(name).labelled_by(label);
+    if ui.memory(|memory| memory.focused().is_none()) {
+        field.request_focus();
+    }
+    let entered = ui.input(|input| input.key_pressed(Key::Enter));
+    let mut answer = Answer::Stay;
+    ui.horizontal(|ui| {
+        if main_button(ui, "Create") || entered {
+            let name = name.trim().to_owned();
+            answer = Answer::Do(Box::new(move |app| {
+                if !app.execute(Command::NewPattern { name: name.clone() }) {
+                    app.dialog = Some(Dialog::New(name));
+                }
+            }));
+        } else if ui.button("Cancel").clicked() {
+            answer = Answer::Leave;
+        }
+    });
+    answer
+}
+
+fn ask_file(ui: &mut Ui, choice: &mut FileChoice, title: &str, verb: &'static str) -> Answer {
+    ui.heading(title);
+    ui.label(RichText::new(choice.folder.display().to_string()).small());
+    let mut entered = ui.input(|input| input.key_pressed(Key::Enter));
+    let mut folder = None;
+    ScrollArea::vertical()
+        .max_height(LIST)
+        .auto_shrink([false, false])
+        .show(ui, |ui| {
+            if let Some(above) = choice.folder.parent()
+                && ui
+                    .selectable_label(false, "\u{2191} folder above")
+                    .clicked()
+            {
+                folder = Some(above.to_owned());
+            }
+            for entry in &choice.entries {
+                let words = match entry.is_file {
+                    true => entry.name.clone(),
+                    false => format!("{}/", entry.name),
+                };
+                let response = ui.selectable_label(choice.path == entry.name, words);
+                match entry.is_file {
+                    true if response.double_clicked() => {
+                        choice.path.clone_from(&entry.name);
+                        entered = true;
+                    }
+                    true if response.clicked() => choice.path.clone_from(&entry.name),
+                    false if response.clicked() => folder = Some(choice.folder.join(&entry.name)),
+                    _ => {}
+                }
+            }
+        });
+    if let Some(folder) = folder {
+        choice.list(folder);
+    }
+    if !choice.fault.is_empty() {
+        let colour = Palette::of(ui.ctx()).fault;
+        ui.label(RichText::new(&choice.fault).color(colour));
+    }
+    let label = ui.label("File").id;
+    let field = egui::TextEdit::singleline(&mut choice.path).desired_width(WIDTH);
+    let field = ui.add(field).labelled_by(label);
+    if ui.memory(|memory| memory.focused().is_none()) {
+        field.request_focus();
+    }
+    let mut answer = Answer::Stay;
+    ui.horizontal(|ui| {
+        let named = !choice.path.trim().is_empty();
+        if ui.add_enabled_ui(named, |ui| main_button(ui, verb)).inner || entered && named {
+            let path = choice.chosen();
+            if path.is_dir() {
+                choice.path.clear();
+                choice.list(path);
+                return;
+            }
+            answer = match verb {
+                "Open" => Answer::Do(Box::new(move |app| app.open(&path))),
+                _ => Answer::Do(Box::new(move |app| app.save_to(path, false))),
+            };
+        } else if ui.button("Cancel").clicked() {
+            answer = Answer::Leave;
+        }
+    });
+    answer
+}
+
+fn ask_replace(ui: &mut Ui, path: &std::path::Path) -> Answer {
+    ui.heading("Replace the file?");
+    ui.label(format!("{} is there already.", path.display()));
+    let mut answer = Answer::Stay;
+    ui.horizontal(|ui| {
+        if main_button(ui, "Replace") {
+            let path = path.to_owned();
+            answer = Answer::Do(Box::new(move |app| app.save_to(path, true)));
+        } else if ui.button("Another file").clicked() {
+            answer = Answer::Do(Box::new(ToileApp::ask_save));
+        }
+    });
+    answer
+}
+
+fn ask_save(ui: &mut Ui) -> Answer {
+    ui.heading("Save the changes?");
+    ui.label("The pattern has changes that are in no file.");
+    let mut answer = Answer::Stay;
+    ui.horizontal(|ui| {
+        if main_button(ui, "Save") {
+            answer = Answer::Do(Box::new(ToileApp::save));
+        } else if ui.button("Leave without saving").clicked() {
+            answer = Answer::Do(Box::new(|_| {}));
+        } else if ui.button("Keep working").clicked() {
+            answer = Answer::Leave;
+        }
+    });
+    answer
+}
+
+/// The button that Enter presses.
+pub(super) fn main_button(ui: &mut Ui, words: &str) -> bool {
+    let palette = Palette::of(ui.ctx());
+    let words = RichText::new(words).color(palette.on_accent);
+    ui.add(Button::new(words).fill(palette.accent)).clicked()
 }

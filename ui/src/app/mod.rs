@@ -1,74 +1,158 @@
 //! The window: what it holds, and one frame of it.
 
-use crate::command::UiCommand;
-use crate::drawing::Drawing;
-use crate::making::{Making, News};
-use crate::notice::Notice;
-use crate::solid::first_frame;
-use crate::stage_view::StageView;
-use crate::table_view::{TableAction, TableView};
+mod act;
+mod bars;
+pub mod command;
+mod dialogs;
+mod files;
+mod findings;
+mod garment_side;
+mod making;
+mod notice;
+mod palette;
+mod preferences;
+mod welcome;
+
+use crate::gpu::solid::first_frame;
+use crate::inspector;
+use crate::tables::Tables;
 use crate::theme;
+use crate::views::garment::GarmentView;
+use crate::views::pattern::PatternView;
+use command::UiCommand;
+use dialogs::Dialog;
 use eframe::egui_wgpu::RenderState;
 use egui::{Panel, Ui};
-use std::path::Path;
+use making::{Making, News};
+use notice::Notice;
+use preferences::Preferences;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
-use toile_pattern::Diagnostic;
-use toile_session::{Command, Event, Project, Session, Silent};
+use toile_pattern::{Diagnostic, Evaluation, Pattern};
+use toile_session::{Abandoned, Command, Event, Project, Recovery, Session, Silent, abandoned};
 
 /// Time between frames while something runs by itself.
 const FRAME: Duration = Duration::from_millis(33);
 /// Share of the window's width the 3D view begins with.
-const STAGE_SHARE: f32 = 0.42;
+const GARMENT_SHARE: f32 = 0.34;
 /// Most of the window's width that the 3D view may take.
-const STAGE_MOST: f32 = 0.6;
+const GARMENT_MOST: f32 = 0.6;
 
 /// The window. Documents are decided on by the session alone; this holds what is seen of them.
 pub struct ToileApp {
     pub(crate) session: Session,
-    pub(crate) drawing: Arc<Drawing>,
+    /// Every value as before the gesture that is shown.
+    pub(crate) base: Arc<Evaluation>,
     pub(crate) findings: Arc<Vec<Diagnostic>>,
-    pub(crate) table: TableView,
-    pub(crate) stage: StageView,
+    pub(crate) view: PatternView,
+    pub(crate) stage: GarmentView,
     pub(crate) making: Making,
     pub(crate) notice: Notice,
+    pub(crate) dialog: Option<Dialog>,
+    pub(crate) tables: Tables,
+    pub(crate) inspector: inspector::Inspector,
+    pub(crate) shows: Shows,
     /// Why the file that was asked for is not open.
     pub(crate) refusal: Option<String>,
-    pub(crate) shows_findings: bool,
-    pub(crate) asks_to_close: bool,
     pub(crate) closes: bool,
+    pub(crate) wants_theme: bool,
+    pub(crate) preferences: Preferences,
+    recovery: Option<Recovery>,
+    /// Documents a crash left, to be offered.
+    pub(crate) abandoned: Vec<Abandoned>,
+    /// The pattern that was last given to be kept.
+    kept: Option<Arc<Pattern>>,
     revision: Option<u64>,
+    octave: i32,
     checked: Option<u64>,
     body_of: Option<Project>,
     title: String,
 }
 
+/// Parts of the window that can be hidden.
+#[derive(Clone, Copy, Debug)]
+pub struct Shows {
+    /// The 3D view.
+    pub garment: bool,
+    /// Measurements, variables, sizes, history.
+    pub tables: bool,
+    /// What is found wrong.
+    pub findings: bool,
+}
+
+/// What a window begins with.
+#[derive(Default)]
+pub struct Beginning {
+    /// The pattern to open.
+    pub file: Option<PathBuf>,
+    /// The user's folder for what is kept from one time to the next; nothing keeps nothing.
+    pub folder: Option<PathBuf>,
+}
+
 impl ToileApp {
     /// A window with a pattern in it, if the file can be opened; else with a message why not.
     /// Without a graphics card the 3D view says so, and all else works.
-    pub fn new(context: &egui::Context, state: Option<&RenderState>, file: Option<&Path>) -> Self {
+    pub fn new(context: &egui::Context, state: Option<&RenderState>, beginning: Beginning) -> Self {
         theme::apply(context);
+        let preferences = Preferences::read(beginning.folder.as_deref());
+        preferences.apply(context);
         let mut app = Self {
             session: Session::new(),
-            drawing: Arc::default(),
+            base: Arc::default(),
             findings: Arc::default(),
-            table: TableView::default(),
-            stage: StageView::new(state),
+            view: PatternView::default(),
+            stage: GarmentView::new(state),
             making: Making::default(),
             notice: Notice::default(),
+            dialog: None,
+            tables: Tables::default(),
+            inspector: inspector::Inspector::default(),
+            shows: Shows {
+                garment: true,
+                tables: false,
+                findings: false,
+            },
             refusal: None,
-            shows_findings: false,
-            asks_to_close: false,
             closes: false,
+            wants_theme: false,
+            preferences,
+            recovery: None,
+            abandoned: Vec::new(),
+            kept: None,
             revision: None,
+            octave: 0,
             checked: None,
             body_of: None,
             title: String::new(),
         };
-        if let Some(file) = file {
+        if let Some(folder) = &beginning.folder {
+            app.begin_recovery(&folder.join("recovery"));
+        }
+        if let Some(file) = &beginning.file {
             app.open(file);
         }
         app
+    }
+
+    /// Looks for what a crash left, and keeps what is unsaved from now on.
+    fn begin_recovery(&mut self, folder: &Path) {
+        let found = abandoned(folder).and_then(|found| {
+            self.abandoned = found;
+            Recovery::start(folder)
+        });
+        match found {
+            Ok(recovery) => self.recovery = Some(recovery),
+            Err(error) => {
+                self.notice = Notice::warning(format!(
+                    "{}: {error}: unsaved work will not survive a crash; save often",
+                    folder.display()
+                ));
+            }
+        }
+        if !self.abandoned.is_empty() {
+            self.dialog = Some(Dialog::Recover);
+        }
     }
 
     /// The session: the document and everything derived from it.
@@ -82,12 +166,12 @@ impl ToileApp {
     }
 
     /// The pattern view.
-    pub fn table(&self) -> &TableView {
-        &self.table
+    pub fn view(&self) -> &PatternView {
+        &self.view
     }
 
     /// The 3D view.
-    pub fn stage(&self) -> &StageView {
+    pub fn stage(&self) -> &GarmentView {
         &self.stage
     }
 
@@ -96,7 +180,7 @@ impl ToileApp {
         let command = Command::OpenPattern {
             path: path.to_owned(),
         };
-        if !self.execute(command) && self.drawing.panels.is_empty() {
+        if !self.execute(command) && !self.is_open() {
             self.refusal = Some(self.notice.text.clone());
             self.notice = Notice::default();
         }
@@ -111,6 +195,7 @@ impl ToileApp {
             }
             Err(error) => {
                 self.notice = Notice::fault(error.to_string());
+                self.refresh();
                 false
             }
         }
@@ -124,9 +209,12 @@ impl ToileApp {
         self.refresh();
         if opened {
             self.refusal = None;
-            self.table.opened(&self.drawing);
+            self.view.opened(&self.base.pattern().clone());
             self.making.clear();
             self.stage.clear_garment();
+            if let Some(path) = self.session.project().source.clone() {
+                self.preferences.opened(&path);
+            }
         }
         for event in events {
             match event {
@@ -134,26 +222,64 @@ impl ToileApp {
                 Event::FilesWritten { paths } => {
                     let names: Vec<_> = paths.iter().map(|p| p.display().to_string()).collect();
                     self.notice = Notice::news(format!("Saved {}", names.join(", ")));
+                    if let Some(path) = self.session.project().source.clone() {
+                        self.preferences.opened(&path);
+                    }
                 }
                 _ => {}
             }
         }
     }
 
-    /// Follows the session to its present revision.
+    /// Follows the session to its present revision, and the view to its enlargement.
     pub(crate) fn refresh(&mut self) {
-        if self.revision != Some(self.session.revision()) {
+        let octave = self.view.camera.octave();
+        let is_new = self.revision != Some(self.session.revision());
+        if is_new || octave != self.octave {
             self.revision = Some(self.session.revision());
+            self.octave = octave;
             let draft = self.session.draft();
             let evaluation = self.session.evaluation();
-            self.drawing = Arc::new(Drawing::new(&evaluation, &draft));
-            self.table.changed(&self.drawing);
-            self.follow_body();
+            self.view.follow(&evaluation, &draft);
+            if !self.session.is_previewing() {
+                self.base = evaluation;
+                self.follow_body();
+            }
         }
-        // Checks may take longer than a frame: they wait until a drag is over.
+        // Checks may take longer than a frame: they wait until a gesture is over.
         if self.checked != self.revision && !self.session.is_previewing() {
             self.checked = self.revision;
             self.findings = self.session.diagnostics();
+        }
+        self.keep_unsaved();
+    }
+
+    /// Has the state of the document kept while it is in no file.
+    fn keep_unsaved(&mut self) {
+        let Some(recovery) = &self.recovery else {
+            return;
+        };
+        let project = self.session.project();
+        let is_kept = |kept: &Arc<Pattern>| Arc::ptr_eq(kept, &project.pattern);
+        if self.session.is_unsaved() {
+            if !self.kept.as_ref().is_some_and(is_kept) {
+                recovery.keep(&project.pattern, project.source.as_deref());
+                self.kept = Some(project.pattern.clone());
+            }
+        } else if self.kept.take().is_some() {
+            recovery.clear();
+        }
+        if let Some(words) = recovery.failure() {
+            self.notice = Notice::warning(format!(
+                "unsaved work cannot be kept for recovery: {words}; save often"
+            ));
+        }
+    }
+
+    /// What is unsaved is given up: nothing of it is offered again.
+    fn forget_recovery(&mut self) {
+        if let Some(recovery) = &self.recovery {
+            recovery.clear();
         }
     }
 
@@ -164,7 +290,7 @@ impl ToileApp {
             .body_of
             .as_ref()
             .is_some_and(|of| of.figure() == project.figure() && of.wearer() == project.wearer());
-        if !same {
+        if !same && !project.pattern.sheets.is_empty() {
             self.body_of = Some(project.clone());
             self.making.start_body(&self.session);
         }
@@ -173,6 +299,12 @@ impl ToileApp {
     /// Whether the pattern has changes that are in no file.
     pub fn is_unsaved(&self) -> bool {
         self.session.is_unsaved()
+    }
+
+    /// Whether text is typed into a field.
+    pub(crate) fn types(&self, context: &egui::Context) -> bool {
+        let focused = context.memory(|memory| memory.focused());
+        context.egui_wants_keyboard_input() && focused != Some(PatternView::id())
     }
 
     fn take_news(&mut self) {
@@ -204,23 +336,6 @@ impl ToileApp {
         }
     }
 
-    fn take_files(&mut self, context: &egui::Context) {
-        let dropped = context.input(|input| {
-            let files = input.raw.dropped_files.iter();
-            files.map(|file| file.path().to_owned()).next_back()
-        });
-        match dropped {
-            Some(path) if !self.is_unsaved() => self.open(&path),
-            Some(_) => {
-                self.notice = Notice::fault(
-                    "The pattern has changes that are not saved: save it, or undo them, \
-                     then drop the file again",
-                );
-            }
-            None => {}
-        }
-    }
-
     fn name_window(&mut self, context: &egui::Context) {
         let name = &self.session.project().pattern.name;
         let mark = if self.is_unsaved() { " \u{2022}" } else { "" };
@@ -238,88 +353,98 @@ impl ToileApp {
     pub fn show(&mut self, ui: &mut Ui) {
         let context = ui.ctx().clone();
         self.take_files(&context);
-        for command in UiCommand::pressed(&context) {
-            if self.can(command) {
-                self.run(command);
+        let typing = self.types(&context) || self.view.is_typing() || self.dialog.is_some();
+        // While a tool is under way Escape is a step back of the tool, which the canvas takes.
+        let busy = self.view.is_busy();
+        for command in UiCommand::pressed(&context, typing, busy) {
+            if (command.when)(self) {
+                (command.does)(self);
             }
         }
         self.nudge(&context);
         self.take_news();
         self.refresh();
         self.name_window(&context);
-        Panel::top("toolbar")
-            .frame(theme::bar())
-            .resizable(false)
-            .show(ui, |ui| self.toolbar(ui));
-        Panel::bottom("status")
-            .frame(theme::bar())
-            .resizable(false)
-            .show(ui, |ui| self.status(ui));
-        if self.shows_findings {
-            Panel::bottom("findings")
-                .frame(theme::bar())
-                .default_size(150.0)
-                .resizable(true)
-                .show(ui, |ui| self.list_findings(ui));
+        if std::mem::take(&mut self.wants_theme) {
+            self.preferences.change_theme(&context);
         }
-        let width = ui.available_width();
-        Panel::right("stage")
-            .frame(egui::Frame::new())
-            .resizable(true)
-            .default_size(width * STAGE_SHARE)
-            .size_range(240.0..=(width * STAGE_MOST).max(240.0))
-            .show(ui, |ui| self.stage_side(ui));
-        egui::CentralPanel::default()
-            .frame(egui::Frame::new())
-            .show(ui, |ui| self.table_side(ui));
+        self.parts(ui);
+        self.show_dialog(&context);
         self.guard_closing(&context);
         if self.making.is_busy() {
             context.request_repaint_after(FRAME);
         }
     }
 
-    fn table_side(&mut self, ui: &mut Ui) {
-        Panel::top("selection")
-            .frame(theme::bar())
+    /// Bars and views, from the rim of the window inward.
+    fn parts(&mut self, ui: &mut Ui) {
+        let frame = theme::bar(ui.ctx());
+        Panel::top("menus")
+            .frame(frame)
             .resizable(false)
-            .exact_size(crate::bars::STRIP)
-            .show(ui, |ui| self.selection_strip(ui));
-        let drawing = self.drawing.clone();
-        let view = ui.available_rect_before_wrap();
-        let seen = |app: &Self| (app.table.selection, app.table.hover, app.session.revision());
+            .show(ui, |ui| self.menu_bar(ui));
+        Panel::bottom("status")
+            .frame(frame)
+            .resizable(false)
+            .show(ui, |ui| self.status(ui));
+        if self.shows.findings {
+            Panel::bottom("findings")
+                .frame(frame)
+                .default_size(130.0)
+                .resizable(true)
+                .show(ui, |ui| self.list_findings(ui));
+        }
+        if !self.is_open() {
+            egui::CentralPanel::default()
+                .frame(egui::Frame::new().fill(theme::Palette::of(ui.ctx()).table))
+                .show(ui, |ui| self.welcome(ui));
+            return;
+        }
+        if self.shows.tables {
+            Panel::bottom("tables")
+                .frame(frame)
+                .default_size(220.0)
+                .resizable(true)
+                .show(ui, |ui| self.show_tables(ui));
+        }
+        Panel::left("tools")
+            .frame(frame)
+            .resizable(false)
+            .exact_size(bars::TOOLS)
+            .show(ui, |ui| self.tool_bar(ui));
+        if self.shows.garment {
+            let width = ui.available_width();
+            Panel::right("garment")
+                .frame(egui::Frame::new())
+                .resizable(true)
+                .default_size(width * GARMENT_SHARE)
+                .size_range(240.0..=(width * GARMENT_MOST).max(240.0))
+                .show(ui, |ui| self.garment_side(ui));
+        }
+        Panel::right("inspector")
+            .frame(frame)
+            .resizable(true)
+            .default_size(240.0)
+            .size_range(190.0..=420.0)
+            .show(ui, |ui| self.show_inspector(ui));
+        egui::CentralPanel::default()
+            .frame(egui::Frame::new())
+            .show(ui, |ui| self.pattern_side(ui));
+    }
+
+    fn pattern_side(&mut self, ui: &mut Ui) {
+        let seen = |app: &Self| {
+            let hover = app.view.hover.map(|hit| hit.item);
+            (app.view.selection.clone(), hover, app.session.revision())
+        };
         let before = seen(self);
-        for action in self.table.show(ui, &drawing) {
-            self.act(action);
+        let base = self.base.clone();
+        for outcome in self.view.show(ui, &base) {
+            self.follow_outcome(outcome);
         }
         if seen(self) != before {
             // The bars were drawn before this was known.
             ui.ctx().request_repaint();
-        }
-        if drawing.panels.is_empty() {
-            self.no_pattern(ui, view);
-        }
-    }
-
-    fn stage_side(&mut self, ui: &mut Ui) {
-        Panel::top("drape")
-            .frame(theme::bar())
-            .resizable(false)
-            .exact_size(crate::bars::STRIP)
-            .show(ui, |ui| self.drape_strip(ui));
-        let view = ui.available_rect_before_wrap();
-        let empty = match self.making.is_making_body() {
-            true => "Making the mannequin\u{2026}",
-            false => "No mannequin yet",
-        };
-        self.stage.show(ui, empty);
-        self.drape_progress(ui, view);
-    }
-
-    fn act(&mut self, action: TableAction) {
-        match action {
-            TableAction::Move { panel, point, to } => self.show_moved((panel, point), to),
-            TableAction::Drop => self.commit("Move point"),
-            TableAction::Split { panel, edge, near } => self.split((panel, edge), Some(near)),
         }
     }
 }
@@ -330,6 +455,6 @@ impl eframe::App for ToileApp {
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        theme::BAR.to_normalized_gamma_f32()
+        theme::LIGHT.bar.to_normalized_gamma_f32()
     }
 }

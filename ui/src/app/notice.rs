@@ -22,6 +22,11 @@ pub struct Notice {
 }
 
 impl Notice {
+    /// Whether something was not done.
+    pub fn is_fault(&self) -> bool {
+        self.tone == Tone::Fault && !self.text.is_empty()
+    }
+
     /// Good to know.
     pub fn news(text: impl Into<String>) -> Self {
         Self {

@@ -151,13 +151,7 @@ pub fn hits(
     ranked.into_iter().map(|(_, hit)| hit).collect()
 }
 
-fn panel_hits(
-    panel: &PanelScene,
-    origin: Vec2,
-    at: Vec2,
-    reach: f64,
-    ranked: &mut Vec<(u8, Hit)>,
-) {
+fn panel_hits(panel: &PanelScene, origin: Vec2, at: Vec2, reach: f64, ranked: &mut Vec<(u8, Hit)>) {
     let there = at - origin;
     let bounds = panel.bounds();
     let margin = Vec2::new(reach, reach);

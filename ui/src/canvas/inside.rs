@@ -14,7 +14,7 @@ fn sides(rings: &[Vec<Vec2>]) -> impl Iterator<Item = [Vec2; 2]> {
 
 /// Whether a point is inside, by the even-odd rule. Points on a side may count either way: they
 /// only matter to where a name is put.
-fn contains(rings: &[Vec<Vec2>], point: Vec2) -> bool {
+pub fn contains(rings: &[Vec<Vec2>], point: Vec2) -> bool {
     sides(rings).fold(false, |inside, [a, b]| {
         let between = (a.y > point.y) != (b.y > point.y);
         let crossing = || a.x + (point.y - a.y) * (b.x - a.x) / (b.y - a.y);

@@ -12,5 +12,4 @@ mod seams;
 pub mod selection;
 pub mod snap;
 
-pub use panel_shape::{PanelShape, along};
-pub use seams::SeamDrawing;
+pub use panel_shape::along;

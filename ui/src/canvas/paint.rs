@@ -1,124 +1,132 @@
-//! Paints the pattern view.
+//! Paints the pattern on its table.
 
-use crate::drawing::{Drawing, PanelDrawing, PointDrawing, PointRole, SeamDrawing, along};
-use crate::fill::Fill;
-use crate::selection::{Selection, centimetres};
-use crate::space::{PanelPlace, PanelPoint, TablePoint};
-use crate::table_view::TableView;
-use crate::theme;
+use super::boards::Boards;
+use super::camera::{TableCamera, TablePoint};
+use super::fill::Fill;
+use super::hit::{ShownPoint, shown_points};
+use super::panel_shape::along;
+use super::scene::{PanelScene, PointRole, Scene, SheetScene};
+use super::seams::SeamDrawing;
+use super::selection::{Item, Selection};
+use crate::theme::{self, Palette};
+use crate::tools::Overlay;
 use egui::epaint::Vertex;
-use egui::{Align2, Color32, CornerRadius, Mesh, Painter, Pos2, Rect, Shape, Stroke, Ui, vec2};
+use egui::{Align2, Color32, CornerRadius, Mesh, Painter, Pos2, Rect, Shape, Stroke, vec2};
 use toile_geometry::Vec2;
+use toile_pattern::SheetId;
 
-/// Distance of the fine lines of the table [m].
-const GRID_FINE: f64 = 0.1;
-/// Every so many of them is drawn stronger.
-const GRID_GROUP: i64 = 5;
-/// Fine lines nearer than this are left out [logical pixels].
+/// Steps of the lines of the table [m]: the finest that are far enough apart are drawn.
+const GRID: [f64; 4] = [0.01, 0.05, 0.1, 0.5];
+/// Fine lines nearer than this are left out [pixels].
 const GRID_LEAST: f64 = 14.0;
-/// How far inside the outline a seam's line runs [logical pixels].
+/// How far inside the outline a seam's line runs [pixels].
 const SEAM_INSET: f64 = 5.0;
-/// How far inside the outline a seam's number stands [logical pixels].
+/// How far inside the outline a seam's number stands [pixels].
 const NUMBER_INSET: f64 = 16.0;
-/// Stretches shorter than this carry no number [logical pixels].
+/// Stretches shorter than this carry no number [pixels].
 const NUMBER_LEAST: f64 = 34.0;
-/// Length of a notch [logical pixels].
+/// Length of a notch [pixels].
 const NOTCH: f32 = 9.0;
 
-/// Paints one frame of the pattern view.
-pub struct TablePainter<'a> {
-    painter: Painter,
-    view: Rect,
-    table: &'a TableView,
-    drawing: &'a Drawing,
+/// Everything that is painted in one frame.
+pub struct Picture<'a> {
+    /// Where to.
+    pub painter: Painter,
+    /// The part of the screen.
+    pub view: Rect,
+    /// How the table is seen.
+    pub camera: TableCamera,
+    /// Where sheets and panels lie.
+    pub boards: &'a Boards,
+    /// The pattern.
+    pub scene: &'a Scene,
+    /// What is selected.
+    pub selection: &'a Selection,
+    /// What is under the pointer.
+    pub hover: Option<Item>,
+    /// Sheets all of whose points are shown.
+    pub open: &'a [SheetId],
+    /// Colours.
+    pub palette: &'a Palette,
 }
 
-impl<'a> TablePainter<'a> {
-    /// A painter inside `view`.
-    pub fn new(ui: &Ui, view: Rect, table: &'a TableView, drawing: &'a Drawing) -> Self {
-        Self {
-            painter: ui.painter_at(view),
-            view,
-            table,
-            drawing,
-        }
-    }
-
-    /// Paints everything.
-    pub fn paint(&self) {
-        self.painter.rect_filled(self.view, 0.0, theme::TABLE);
+impl Picture<'_> {
+    /// Paints the table, the pattern, and what a tool draws over it.
+    pub fn paint(&self, overlay: &[Overlay]) {
+        self.painter.rect_filled(self.view, 0.0, self.palette.table);
         self.grid();
-        for panel in &self.drawing.panels {
-            if let Some(place) = self.table.layout.place(panel.id) {
-                self.cloth(panel, place);
-            }
+        for panel in &self.scene.panels {
+            self.cloth(panel);
         }
-        for seam in &self.drawing.seams {
+        for sheet in &self.scene.sheets {
+            self.curves(sheet);
+        }
+        for seam in &self.scene.seams {
             self.seam_lines(seam);
         }
-        for panel in &self.drawing.panels {
-            if let Some(place) = self.table.layout.place(panel.id) {
-                self.marks(panel, place);
-                self.outline(panel, place);
-                self.caption(panel, place);
-            }
+        for panel in &self.scene.panels {
+            self.marks(panel);
+            self.outline(panel);
+            self.caption(panel);
         }
-        for seam in &self.drawing.seams {
+        for seam in &self.scene.seams {
             self.seam_numbers(seam);
         }
-        for panel in &self.drawing.panels {
-            for point in &panel.points {
-                self.point(panel, point);
-            }
+        self.handles();
+        for shown in shown_points(self.scene, self.boards, self.open) {
+            self.point(&shown);
         }
-        self.selected_length();
+        for mark in overlay {
+            self.overlay(mark);
+        }
     }
 
-    fn seen(&self, place: PanelPlace, at: Vec2) -> Pos2 {
-        let camera = &self.table.camera;
-        camera.screen(self.view, place.table(PanelPoint(at))).0
+    fn seen(&self, origin: Vec2, at: Vec2) -> Pos2 {
+        self.camera.screen(self.view, TablePoint(at + origin)).0
     }
 
-    fn line(&self, place: PanelPlace, line: &[Vec2]) -> Vec<Pos2> {
-        line.iter().map(|at| self.seen(place, *at)).collect()
+    fn line(&self, origin: Vec2, line: &[Vec2]) -> Vec<Pos2> {
+        line.iter().map(|at| self.seen(origin, *at)).collect()
+    }
+
+    fn is_lit(&self, item: Item) -> bool {
+        self.selection.contains(item) || self.hover == Some(item)
     }
 
     fn grid(&self) {
-        let camera = &self.table.camera;
+        let camera = &self.camera;
         let half = vec2(self.view.width(), self.view.height()) * 0.5;
         let reach = Vec2::new(f64::from(half.x), f64::from(half.y)) / camera.scale;
         let (low, high) = (camera.centre - reach, camera.centre + reach);
-        let fine = GRID_FINE * camera.scale >= GRID_LEAST;
-        for coarse in [false, true] {
-            let stroke = Stroke::new(
-                1.0,
-                if coarse {
-                    theme::GRID_COARSE
-                } else {
-                    theme::GRID
-                },
-            );
-            let wanted = |k: &i64| (k % GRID_GROUP == 0) == coarse && (coarse || fine);
-            let range = |from: f64, to: f64| {
-                ((from / GRID_FINE).floor() as i64..=(to / GRID_FINE).ceil() as i64).filter(wanted)
+        let shown = GRID
+            .iter()
+            .position(|step| step * camera.scale >= GRID_LEAST);
+        let finest = shown.unwrap_or(GRID.len() - 1);
+        for (k, step) in GRID.iter().enumerate().skip(finest).take(2) {
+            let colour = match k == finest {
+                true => self.palette.grid,
+                false => self.palette.grid_coarse,
             };
-            for k in range(low.x, high.x) {
-                let at = TablePoint(Vec2::new(k as f64 * GRID_FINE, 0.0));
-                let x = camera.screen(self.view, at).0.x.round();
+            let stroke = Stroke::new(1.0, colour);
+            let range =
+                |from: f64, to: f64| (from / step).floor() as i64..=(to / step).ceil() as i64;
+            for n in range(low.x, high.x) {
+                let at = Vec2::new(n as f64 * step, 0.0);
+                let x = self.seen(Vec2::zeros(), at).x.round();
                 self.painter.vline(x, self.view.y_range(), stroke);
             }
-            for k in range(low.y, high.y) {
-                let at = TablePoint(Vec2::new(0.0, k as f64 * GRID_FINE));
-                let y = camera.screen(self.view, at).0.y.round();
+            for n in range(low.y, high.y) {
+                let at = Vec2::new(0.0, n as f64 * step);
+                let y = self.seen(Vec2::zeros(), at).y.round();
                 self.painter.hline(self.view.x_range(), y, stroke);
             }
         }
     }
 
-    fn filled(&self, place: PanelPlace, fill: &Fill, colour: Color32, shift: egui::Vec2) {
+    fn filled(&self, origin: Vec2, fill: &Fill, colour: Color32, shift: egui::Vec2) {
         let at = |p: &[f32; 2]| Vec2::new(f64::from(p[0]), f64::from(p[1]));
         let vertices = fill.points.iter().map(|p| Vertex {
-            pos: self.seen(place, at(p)) + shift,
+            pos: self.seen(origin, at(p)) + shift,
             uv: egui::epaint::WHITE_UV,
             color: colour,
         });
@@ -129,146 +137,174 @@ impl<'a> TablePainter<'a> {
         });
     }
 
-    fn cloth(&self, panel: &PanelDrawing, place: PanelPlace) {
+    fn cloth(&self, panel: &PanelScene) {
+        let origin = self.boards.panel(panel.id);
         let shadow = Color32::from_black_alpha(16);
-        for fill in [&panel.mirrored_fill, &panel.fill] {
-            self.filled(place, fill, shadow, vec2(1.5, 2.5));
+        let shape = &panel.shape;
+        for fill in [&shape.mirrored_fill, &shape.fill] {
+            self.filled(origin, fill, shadow, vec2(1.5, 2.5));
         }
         let flat = egui::Vec2::ZERO;
-        self.filled(place, &panel.mirrored_fill, theme::PANEL_MIRRORED, flat);
-        self.filled(place, &panel.fill, theme::PANEL, flat);
+        let lit = self.is_lit(Item::Panel(panel.id));
+        let colour = match () {
+            () if panel.is_stale => self.palette.panel_stale,
+            () if lit => self.palette.accent_soft,
+            () => self.palette.panel,
+        };
+        let mirrored = self.palette.panel_mirrored;
+        self.filled(origin, &shape.mirrored_fill, mirrored, flat);
+        self.filled(origin, &shape.fill, colour, flat);
     }
 
-    fn marks(&self, panel: &PanelDrawing, place: PanelPlace) {
-        let pencil = Stroke::new(1.2, theme::PENCIL);
-        for line in &panel.mirrored {
-            self.painter.line(self.line(place, line), pencil);
+    /// Curves that no panel follows where it lies, as pencil lines.
+    fn curves(&self, sheet: &SheetScene) {
+        let origin = self.boards.sheet(sheet.id);
+        for curve in &sheet.curves {
+            let lit = self.is_lit(Item::Curve(curve.id));
+            if curve.is_traced && !lit {
+                continue;
+            }
+            let stroke = match lit {
+                true => Stroke::new(2.6, self.palette.accent),
+                false => Stroke::new(1.3, self.palette.ink_soft),
+            };
+            self.painter.line(self.line(origin, &curve.line), stroke);
         }
-        for line in panel.internal_lines.iter().chain(&panel.darts) {
-            let line = self.line(place, line);
-            let ink = Stroke::new(1.2, theme::INK_SOFT);
+    }
+
+    fn marks(&self, panel: &PanelScene) {
+        let origin = self.boards.panel(panel.id);
+        let shape = &panel.shape;
+        let pencil = Stroke::new(1.2, self.palette.pencil);
+        for line in &shape.mirrored {
+            self.painter.line(self.line(origin, line), pencil);
+        }
+        let dashed = |line: &[Vec2], item: Item| {
+            let lit = self.is_lit(item);
+            let ink = match lit {
+                true => Stroke::new(2.4, self.palette.accent),
+                false => Stroke::new(1.2, self.palette.ink_soft),
+            };
+            let line = self.line(origin, line);
             self.painter
                 .extend(Shape::dashed_line(&line, ink, 6.0, 4.0));
+        };
+        for (id, line) in &shape.internal_lines {
+            dashed(line, Item::Line(panel.id, *id));
         }
-        if let Some(ends) = panel.grainline {
-            let [low, high] = ends.map(|end| self.seen(place, end));
+        for (id, _, line) in &shape.darts {
+            dashed(line, Item::Operation(panel.id, *id));
+        }
+        if let Some(ends) = shape.grainline {
+            let [low, high] = ends.map(|end| self.seen(origin, end));
             if low.distance(high) > 30.0 {
                 self.painter.line_segment([low, high], pencil);
-                self.arrow_head(high, (high - low).normalized(), theme::PENCIL);
-                self.arrow_head(low, (low - high).normalized(), theme::PENCIL);
+                self.arrow_head(high, (high - low).normalized());
+                self.arrow_head(low, (low - high).normalized());
             }
         }
-        for (at, inward) in &panel.notches {
-            let from = self.seen(place, *at);
+        for (id, at, inward) in &shape.notches {
+            let from = self.seen(origin, *at);
             let way = vec2(inward.x as f32, -inward.y as f32) * NOTCH;
-            let ink = Stroke::new(2.0, theme::INK);
-            self.painter.line_segment([from, from + way], ink);
+            let colour = match self.is_lit(Item::Notch(panel.id, *id)) {
+                true => self.palette.accent,
+                false => self.palette.ink,
+            };
+            self.painter
+                .line_segment([from, from + way], Stroke::new(2.4, colour));
         }
     }
 
-    fn arrow_head(&self, tip: Pos2, way: egui::Vec2, colour: Color32) {
+    fn arrow_head(&self, tip: Pos2, way: egui::Vec2) {
         let back = tip - way * 8.0;
         let across = way.rot90() * 3.2;
         self.painter.add(Shape::convex_polygon(
             vec![tip, back + across, back - across],
-            colour,
+            self.palette.pencil,
             Stroke::NONE,
         ));
     }
 
-    fn outline(&self, panel: &PanelDrawing, place: PanelPlace) {
-        for edge in &panel.edges {
-            let this = Selection::Edge(panel.id, edge.id);
+    fn outline(&self, panel: &PanelScene) {
+        let origin = self.boards.panel(panel.id);
+        for edge in &panel.shape.edges {
+            let this = Item::Edge(panel.id, edge.id);
             let stroke = match () {
-                () if self.table.selection == this => Stroke::new(3.0, theme::ACCENT),
-                () if self.table.hover == this => Stroke::new(2.4, theme::ACCENT),
-                () => Stroke::new(1.6, theme::INK),
+                () if self.selection.contains(this) => Stroke::new(3.0, self.palette.accent),
+                () if self.hover == Some(this) => Stroke::new(2.4, self.palette.accent),
+                () => Stroke::new(1.6, self.palette.ink),
             };
             for line in &edge.lines {
-                self.painter.line(self.line(place, line), stroke);
-            }
-            if self.table.selection.panel() == Some(panel.id) {
-                for handle in &edge.handles {
-                    let line = handle.map(|at| self.seen(place, at));
-                    self.painter
-                        .line_segment(line, Stroke::new(1.0, theme::PENCIL));
-                }
+                self.painter.line(self.line(origin, line), stroke);
             }
         }
         if let Some(fold) = panel.fold {
-            let line = fold.map(|at| self.seen(place, at));
+            let line = fold.map(|at| self.seen(origin, at));
+            let lit = panel_fold_is_lit(panel, self.selection);
+            let ink = match lit {
+                true => Stroke::new(2.4, self.palette.accent),
+                false => Stroke::new(1.4, self.palette.ink_soft),
+            };
             self.painter
-                .line_segment(line, Stroke::new(2.0, theme::PANEL));
-            let ink = Stroke::new(1.4, theme::INK_SOFT);
+                .line_segment(line, Stroke::new(2.0, self.palette.panel));
             self.painter
                 .extend(Shape::dashed_line(&line, ink, 14.0, 5.0));
         }
     }
 
     /// The panel's name and cut: inside where there is room, else under it.
-    fn caption(&self, panel: &PanelDrawing, place: PanelPlace) {
+    fn caption(&self, panel: &PanelScene) {
+        let origin = self.boards.panel(panel.id);
         let layout = |text: &str, size: f32, colour| {
             self.painter
                 .layout_no_wrap(text.to_owned(), theme::font(size), colour)
         };
-        let name = layout(&panel.name, 15.0, theme::INK);
-        let cut = layout(&panel.cut, 12.0, theme::INK_SOFT);
+        let name = layout(&panel.name, 15.0, self.palette.ink);
+        let cut = layout(&panel.cut, 12.0, self.palette.ink_soft);
         let width = name.size().x.max(cut.size().x);
-        let height = name.size().y
-            + if panel.cut.is_empty() {
-                0.0
-            } else {
-                cut.size().y
-            };
-        let bounds = &panel.drawn_bounds;
-        let [low, high] = [bounds.min, bounds.max].map(|p| self.seen(place, p));
+        let second = if panel.cut.is_empty() {
+            0.0
+        } else {
+            cut.size().y
+        };
+        let height = name.size().y + second;
+        let bounds = &panel.shape.drawn_bounds;
+        let [low, high] = [bounds.min, bounds.max].map(|p| self.seen(origin, p));
         let room = 2.0 * NUMBER_INSET as f32;
         let fits =
             width + room + 16.0 < (high.x - low.x).abs() && height + room < (low.y - high.y).abs();
         let middle = if fits {
-            self.seen(place, panel.middle)
+            self.seen(origin, panel.shape.middle)
         } else {
             Pos2::new((low.x + high.x) * 0.5, low.y + 8.0 + height * 0.5)
         };
-        let ground = Rect::from_center_size(middle, vec2(width + 10.0, height + 6.0));
-        if fits {
-            self.painter
-                .rect_filled(ground, CornerRadius::same(4), theme::PANEL);
-        }
         let top = middle - vec2(0.0, height * 0.5);
         let centred = |width: f32, down: f32| top + vec2(-width * 0.5, down);
         let (name_size, cut_size) = (name.size(), cut.size());
         self.painter
-            .galley(centred(name_size.x, 0.0), name, theme::INK);
+            .galley(centred(name_size.x, 0.0), name, self.palette.ink);
         self.painter
-            .galley(centred(cut_size.x, name_size.y), cut, theme::INK_SOFT);
+            .galley(centred(cut_size.x, name_size.y), cut, self.palette.ink_soft);
     }
 
     /// Seams at the selected or pointed edge are drawn stronger.
     fn touched(&self, seam: &SeamDrawing) -> bool {
-        [self.table.selection, self.table.hover].iter().any(|part| {
-            seam.stretches.iter().any(|stretch| {
-                matches!((*part, stretch.edge), (Selection::Edge(panel, edge), Some(own))
-                    if panel == stretch.panel && edge == own)
+        self.is_lit(Item::Seam(seam.id))
+            || seam.stretches.iter().any(|stretch| {
+                let item = stretch.edge.map(|edge| Item::Edge(stretch.panel, edge));
+                item.is_some_and(|item| self.is_lit(item))
             })
-        })
     }
 
     fn seam_lines(&self, seam: &SeamDrawing) {
         let width = if self.touched(seam) { 5.0 } else { 2.6 };
         for stretch in &seam.stretches {
-            let places = (
-                self.drawing.panel(stretch.panel),
-                self.table.layout.place(stretch.panel),
-            );
-            let (Some(panel), Some(place)) = places else {
+            let Some(panel) = self.scene.panel_scene(stretch.panel) else {
                 continue;
             };
-            let inset = panel.cloth_side * SEAM_INSET / self.table.camera.scale;
-            let line: Vec<Pos2> = beside(&stretch.line, inset)
-                .into_iter()
-                .map(|at| self.seen(place, at))
-                .collect();
+            let origin = self.boards.panel(panel.id);
+            let inset = panel.shape.cloth_side * SEAM_INSET / self.camera.scale;
+            let line = self.line(origin, &beside(&stretch.line, inset));
             let colour = theme::seam(seam.number);
             let colour = match stretch.edge {
                 Some(_) => colour,
@@ -280,14 +316,10 @@ impl<'a> TablePainter<'a> {
 
     fn seam_numbers(&self, seam: &SeamDrawing) {
         for stretch in &seam.stretches {
-            let places = (
-                self.drawing.panel(stretch.panel),
-                self.table.layout.place(stretch.panel),
-            );
-            let (Some(panel), Some(place)) = places else {
+            let Some(panel) = self.scene.panel_scene(stretch.panel) else {
                 continue;
             };
-            let scale = self.table.camera.scale;
+            let scale = self.camera.scale;
             let length: f64 = stretch.line.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
             if length * scale < NUMBER_LEAST {
                 continue;
@@ -295,10 +327,11 @@ impl<'a> TablePainter<'a> {
             let Some((at, way)) = along(&stretch.line, 0.5) else {
                 continue;
             };
-            let inward = Vec2::new(-way.y, way.x) * panel.cloth_side;
-            let middle = self.seen(place, at + inward * (NUMBER_INSET / scale));
-            let colour = theme::seam(seam.number);
-            self.painter.circle_filled(middle, 8.5, colour);
+            let inward = Vec2::new(-way.y, way.x) * panel.shape.cloth_side;
+            let origin = self.boards.panel(panel.id);
+            let middle = self.seen(origin, at + inward * (NUMBER_INSET / scale));
+            self.painter
+                .circle_filled(middle, 8.5, theme::seam(seam.number));
             self.painter.text(
                 middle,
                 Align2::CENTER_CENTER,
@@ -309,35 +342,50 @@ impl<'a> TablePainter<'a> {
         }
     }
 
-    fn point(&self, panel: &PanelDrawing, point: &PointDrawing) {
-        if !self.table.shows(panel.id, point.role) {
+    /// Lines from points to their handles, on sheets that are open.
+    fn handles(&self) {
+        for sheet in &self.scene.sheets {
+            if !sheet.is_bare && !self.open.contains(&sheet.id) {
+                continue;
+            }
+            let origin = self.boards.sheet(sheet.id);
+            for pair in sheet.curves.iter().flat_map(|curve| &curve.handles) {
+                let ends = pair.map(|id| sheet.points.iter().find(|point| point.id == id));
+                if let [Some(from), Some(to)] = ends {
+                    let line = [from, to].map(|point| self.seen(origin, point.at));
+                    let pencil = Stroke::new(1.0, self.palette.pencil);
+                    self.painter.line_segment(line, pencil);
+                }
+            }
+        }
+    }
+
+    fn point(&self, shown: &ShownPoint<'_>) {
+        let at = self.seen(shown.origin, shown.point.at);
+        if !self.view.expand(20.0).contains(at) {
             return;
         }
-        let Some(at) = self.table.screen(self.view, panel.id, point.at) else {
-            return;
+        let this = Item::Point(shown.point.id);
+        let selected = self.selection.contains(this);
+        let lit = self.is_lit(this);
+        let fill = match selected {
+            true => self.palette.accent,
+            false => self.palette.field,
         };
-        let this = Selection::Point(panel.id, point.id);
-        let selected = self.table.selection == this;
-        let hovered = self.table.hover == this;
-        let fill = if selected {
-            theme::ACCENT
-        } else {
-            Color32::WHITE
+        let edge = match lit {
+            true => self.palette.accent,
+            false => self.palette.ink,
         };
-        let edge = match selected || hovered {
-            true => theme::ACCENT,
-            false => theme::INK,
-        };
-        let radius = if selected || hovered { 4.5 } else { 3.2 };
+        let radius = if lit { 4.5 } else { 3.2 };
         let stroke = Stroke::new(1.4, edge);
-        match point.role {
+        match shown.point.role {
             PointRole::Corner => {
                 let square = Rect::from_center_size(at, egui::Vec2::splat(2.0 * radius));
                 self.painter.rect_filled(square, 1.0, fill);
                 self.painter
                     .rect_stroke(square, 1.0, stroke, egui::StrokeKind::Middle);
             }
-            PointRole::Control => {
+            PointRole::Handle => {
                 self.painter.circle(at, radius, fill, stroke);
             }
             PointRole::Construction => {
@@ -346,36 +394,71 @@ impl<'a> TablePainter<'a> {
                 }
             }
         }
-        if hovered || selected {
-            self.tag(at + vec2(10.0, -14.0), &point.name);
+        let is_open = self.open.contains(&shown.sheet) || self.scene.panels.is_empty();
+        if lit {
+            self.tag(at + vec2(10.0, -14.0), &shown.point.name);
+        } else if is_open && shown.point.role != PointRole::Handle {
+            self.painter.text(
+                at + vec2(6.0, -6.0),
+                Align2::LEFT_BOTTOM,
+                &shown.point.name,
+                theme::font(11.5),
+                self.palette.ink_soft,
+            );
         }
     }
 
-    fn selected_length(&self) {
-        let Selection::Edge(panel, edge) = self.table.selection else {
-            return;
-        };
-        let drawn = self.drawing.panel(panel);
-        let edge = drawn.and_then(|panel| panel.edge(edge));
-        let middle = edge.and_then(|edge| Some((edge, edge.middle()?)));
-        if let Some((edge, middle)) = middle
-            && let Some(at) = self.table.screen(self.view, panel, PanelPoint(middle))
-        {
-            self.tag(at + vec2(12.0, -16.0), &centimetres(edge.length));
+    fn overlay(&self, mark: &Overlay) {
+        let accent = self.palette.accent;
+        match mark {
+            Overlay::Line(sheet, line) => {
+                let line = self.line(self.boards.sheet(*sheet), line);
+                let stroke = Stroke::new(1.4, accent);
+                self.painter
+                    .extend(Shape::dashed_line(&line, stroke, 5.0, 4.0));
+            }
+            Overlay::Dot(sheet, at) => {
+                let at = self.seen(self.boards.sheet(*sheet), *at);
+                let stroke = Stroke::new(1.6, accent);
+                self.painter.circle(at, 4.5, self.palette.field, stroke);
+            }
+            Overlay::Words(sheet, at, words) if !words.is_empty() => {
+                let at = self.seen(self.boards.sheet(*sheet), *at);
+                self.tag(at + vec2(12.0, 20.0), words);
+            }
+            Overlay::Words(..) => {}
+            Overlay::Box(corners) => {
+                let [a, b] = corners.map(|at| self.seen(Vec2::zeros(), at));
+                let rect = Rect::from_two_pos(a, b);
+                self.painter
+                    .rect_filled(rect, 0.0, accent.gamma_multiply(0.12));
+                let stroke = Stroke::new(1.0, accent);
+                self.painter
+                    .rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Middle);
+            }
         }
     }
 
     /// A small label beside something.
     fn tag(&self, at: Pos2, text: &str) {
-        let text = self
-            .painter
-            .layout_no_wrap(text.to_owned(), theme::font(12.5), Color32::WHITE);
+        let text =
+            self.painter
+                .layout_no_wrap(text.to_owned(), theme::font(12.5), self.palette.on_accent);
         let ground = Align2::LEFT_CENTER.anchor_size(at, text.size() + vec2(12.0, 4.0));
         self.painter
-            .rect_filled(ground, CornerRadius::same(4), theme::ACCENT);
+            .rect_filled(ground, CornerRadius::same(4), self.palette.accent);
         let corner = Align2::CENTER_CENTER.align_size_within_rect(text.size(), ground);
-        self.painter.galley(corner.min, text, Color32::WHITE);
+        self.painter
+            .galley(corner.min, text, self.palette.on_accent);
     }
+}
+
+/// Whether an operation of the panel is selected that has no line of its own: its fold.
+fn panel_fold_is_lit(panel: &PanelScene, selection: &Selection) -> bool {
+    selection.items().iter().any(|item| {
+        matches!(item, Item::Operation(of, id) if *of == panel.id
+            && !panel.shape.darts.iter().any(|(dart, ..)| dart == id))
+    })
 }
 
 /// A polyline moved to its left by a distance, corner by corner; ends stay square to it.

@@ -9,12 +9,7 @@ const REACH: f64 = 9.0;
 /// How near it must be to the level of a point [pixels].
 const LEVEL_REACH: f64 = 5.0;
 /// Steps of the grid [m], and the least enlargement each is used at [pixels per metre].
-const GRID: [(f64, f64); 4] = [
-    (0.001, 8000.0),
-    (0.005, 1600.0),
-    (0.01, 500.0),
-    (0.05, 0.0),
-];
+const GRID: [(f64, f64); 4] = [(0.001, 8000.0), (0.005, 1600.0), (0.01, 500.0), (0.05, 0.0)];
 
 /// How a point at a place comes about.
 #[derive(Clone, Debug, PartialEq)]
@@ -170,7 +165,9 @@ fn crossings(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) 
 fn is_end(first: &CurveScene, second: &CurveScene, at: Vec2) -> bool {
     [first, second].iter().any(|curve| {
         let ends = [curve.line.first(), curve.line.last()];
-        ends.into_iter().flatten().any(|end| (end - at).norm() < 1e-7)
+        ends.into_iter()
+            .flatten()
+            .any(|end| (end - at).norm() < 1e-7)
     })
 }
 
@@ -230,7 +227,12 @@ fn levels(sheet: &SheetScene, at: Vec2, (reach, step): (f64, f64), found: &mut V
     };
     if let Some(level) = nearest(1) {
         let way = Vec2::new(rounded(at.x - level.at.x, step), 0.0);
-        beside(level.id, level.at, way, format!("level with {}", level.name));
+        beside(
+            level.id,
+            level.at,
+            way,
+            format!("level with {}", level.name),
+        );
     }
     if let Some(above) = nearest(0) {
         let word = if at.y >= above.at.y { "above" } else { "below" };

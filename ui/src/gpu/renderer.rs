@@ -1,8 +1,8 @@
 //! Draws the 3D view into a texture of its own, with its own depth, four samples a pixel, and
 //! hands it to egui as an image. So it works in the window, in tests and without a window.
 
-use crate::orbit::Orbit;
-use crate::solid::{CORNER_FLOATS, Corner};
+use super::orbit::Orbit;
+use super::solid::{CORNER_FLOATS, Corner};
 use crate::theme;
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;

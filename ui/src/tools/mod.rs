@@ -1,7 +1,10 @@
 //! Tools: small state machines from what is done at the canvas to edits. They know the document's
 //! reading side and edits, never the toolkit of the window.
 
+pub mod draw;
 pub mod number;
+pub mod panel;
+mod planning;
 mod select;
 pub mod slots;
 
@@ -171,14 +174,6 @@ impl Tool {
         match self {
             Self::Select => State::default(),
             Self::Slots(_) => State::Slots(SlotState::default()),
-        }
-    }
-
-    /// Its key in the table of commands.
-    pub fn key(self) -> &'static str {
-        match self {
-            Self::Select => "select",
-            Self::Slots(tool) => tool.key,
         }
     }
 

@@ -1,87 +1,42 @@
 //! Numbers as they are typed and shown: lengths in the document's unit, angles in degrees.
 
-use toile_pattern::{DisplayUnit, Evaluation, Formula, Number, Want};
+use toile_pattern::{DisplayUnit, Evaluation, Number, Want, plan};
 
-/// What a number measures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// A length.
-    Length,
-    /// An angle.
-    Angle,
-    /// A share, a count, a factor.
-    Plain,
-}
-
-impl Kind {
-    /// What a formula for it must give.
-    pub fn want(self) -> Want {
-        match self {
-            Self::Length => Want::Length,
-            Self::Angle | Self::Plain => Want::Plain,
-        }
-    }
-}
-
-/// The short name of a unit, and its size [m].
-pub fn unit(unit: DisplayUnit) -> (&'static str, f64) {
-    match unit {
-        DisplayUnit::Millimetre => ("mm", 0.001),
-        DisplayUnit::Centimetre => ("cm", 0.01),
-        DisplayUnit::Metre => ("m", 1.0),
-        DisplayUnit::Inch => ("in", 0.0254),
-    }
-}
-
-/// A number of a tool or a field from what was typed: a bare number is in the document's unit or
-/// in degrees, and a decimal comma is as good as a point; all else is a formula.
+/// A number from what was typed: a bare number is in the document's unit or in degrees, a decimal
+/// comma is as good as a point, and a formula may begin with `=`.
 ///
 /// # Errors
 /// What is wrong with the formula, and what to do.
-pub fn parse(text: &str, kind: Kind, evaluation: &Evaluation) -> Result<Number, String> {
+pub fn parse(text: &str, want: Want, evaluation: &Evaluation) -> Result<Number, String> {
     let text = text.trim().trim_start_matches('=').trim();
     let plain = match text.matches(',').count() {
-        1 => text.replace(',', "."),
+        // A comma between digits of a text without parentheses separates nothing.
+        1 if !text.contains('(') => text.replace(',', "."),
         _ => text.to_owned(),
     };
-    if let Ok(value) = plain.parse::<f64>() {
-        if !value.is_finite() {
-            return Err("the number is not finite: type another".into());
-        }
-        return Ok(Number::Value(match kind {
-            Kind::Length => value * unit(evaluation.pattern().unit).1,
-            Kind::Angle => value.to_radians(),
-            Kind::Plain => value,
-        }));
-    }
-    let formula = Formula::parse(text, evaluation.names())
-        .map_err(|error| format!("column {}: {}: {}", error.column, error.message, error.hint))?;
-    let number = Number::Formula(formula);
-    match evaluation.number_or_fault(&number, kind.want()) {
-        Ok(_) => Ok(number),
-        Err(words) => Err(words),
-    }
+    let number = plan::read_number(evaluation, &plain, want).map_err(|error| error.to_string())?;
+    evaluation.number_or_fault(&number, want)?;
+    Ok(number)
 }
 
 /// A value in words.
-pub fn show(value: f64, kind: Kind, of: DisplayUnit) -> String {
-    match kind {
-        Kind::Length => {
-            let (name, size) = unit(of);
-            let digits = match of {
+pub fn show(value: f64, want: Want, unit: DisplayUnit) -> String {
+    match want {
+        Want::Length => {
+            let digits = match unit {
                 DisplayUnit::Millimetre => 1,
                 DisplayUnit::Centimetre | DisplayUnit::Inch => 2,
                 DisplayUnit::Metre => 4,
             };
-            format!("{} {name}", trimmed(value / size, digits))
+            format!("{} {}", trimmed(value / unit.metres(), digits), unit.sign())
         }
-        Kind::Angle => format!("{}\u{b0}", trimmed(value.to_degrees(), 2)),
-        Kind::Plain => trimmed(value, 4),
+        Want::Angle => format!("{}\u{b0}", trimmed(value.to_degrees(), 2)),
+        Want::Plain => trimmed(value, 4),
     }
 }
 
 /// A number with at most so many digits after the point.
-pub fn trimmed(value: f64, digits: usize) -> String {
+fn trimmed(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     let text = match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.'),
@@ -90,5 +45,35 @@ pub fn trimmed(value: f64, digits: usize) -> String {
     match text {
         "-0" => "0".into(),
         text => text.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toile_pattern::Pattern;
+
+    #[test]
+    fn numbers_are_typed_in_the_units_of_the_document() {
+        let pattern = Pattern::blank("A");
+        let evaluation = Evaluation::new(&pattern, &toile_measure::Measurements::default());
+        let read = |text: &str, want| parse(text, want, &evaluation);
+        assert_eq!(read("12,5", Want::Length), Ok(Number::Value(0.125)));
+        assert_eq!(read("=3mm", Want::Length), Ok(Number::Value(0.003)));
+        assert_eq!(
+            read("90", Want::Angle),
+            Ok(Number::Value(90_f64.to_radians()))
+        );
+        assert!(
+            read("waist / 4", Want::Length).is_err(),
+            "nobody was measured"
+        );
+        assert!(read("max(1cm,", Want::Length).is_err());
+        assert!(read("1e999", Want::Length).is_err());
+        assert_eq!(
+            show(0.1234, Want::Length, DisplayUnit::Centimetre),
+            "12.34 cm"
+        );
+        assert_eq!(show(-1e-9, Want::Length, DisplayUnit::Millimetre), "0 mm");
     }
 }

@@ -1,12 +1,12 @@
 //! Tools that are given one thing after another: a list of slots and a planner. One machine gives
 //! all of them hovering, typed numbers, snapping, steps back and hints.
 
-use super::number::{self, Kind};
+use super::number;
 use super::{Event, Outcome, Overlay, Pointer, Reading, Shown};
 use crate::canvas::selection::{Item, Selection};
 use crate::canvas::snap::{Placed, Spec};
 use toile_geometry::Vec2;
-use toile_pattern::{CurveId, Edit, EditError, EdgeId, Number, PanelId, SheetId};
+use toile_pattern::{CurveId, EdgeId, Edit, EditError, Number, PanelId, SheetId, Want};
 
 /// Steps of an angle while Shift is held [degrees].
 const TURN: f64 = 15.0;
@@ -14,8 +14,8 @@ const TURN: f64 = 15.0;
 /// A tool of slots.
 #[derive(Debug)]
 pub struct SlotTool {
-    /// Its key in the table of commands.
-    pub key: &'static str,
+    /// The name of the command that takes it in hand.
+    pub command: &'static str,
     /// What it is given, in order.
     pub slots: &'static [Slot],
     /// From what it was given to edits.
@@ -53,7 +53,7 @@ pub enum SlotKind {
         /// What it is called.
         label: &'static str,
         /// What it measures.
-        kind: Kind,
+        want: Want,
         /// What it is as long as nothing is typed, if the pointer does not say [m], [rad].
         usual: f64,
         /// What the pointer says, from what was given before [m], [rad].
@@ -75,12 +75,12 @@ pub enum Fields {
 }
 
 impl Fields {
-    fn labels(self) -> &'static [(&'static str, Kind)] {
+    fn labels(self) -> &'static [(&'static str, Want)] {
         match self {
             Self::None => &[],
-            Self::Coordinates => &[("x", Kind::Length), ("y", Kind::Length)],
-            Self::FromLast => &[("length", Kind::Length), ("angle", Kind::Angle)],
-            Self::Size => &[("width", Kind::Length), ("height", Kind::Length)],
+            Self::Coordinates => &[("x", Want::Length), ("y", Want::Length)],
+            Self::FromLast => &[("length", Want::Length), ("angle", Want::Angle)],
+            Self::Size => &[("width", Want::Length), ("height", Want::Length)],
         }
     }
 }
@@ -144,6 +144,11 @@ impl SlotState {
     /// Whether a number is being typed.
     pub fn is_typing(&self) -> bool {
         self.typed.iter().any(|text| !text.is_empty())
+    }
+
+    /// The sheet of the place given last.
+    pub fn sheet(&self) -> Option<SheetId> {
+        self.last_place().map(|placed| placed.sheet)
     }
 
     /// The place given last [m].
@@ -222,11 +227,11 @@ pub(super) fn step(
 }
 
 /// Numbers that may be typed in a slot.
-fn fields(kind: SlotKind) -> Vec<(&'static str, Kind)> {
+fn fields(kind: SlotKind) -> Vec<(&'static str, Want)> {
     match kind {
         SlotKind::Place(fields) => fields.labels().to_vec(),
         SlotKind::Places => Fields::FromLast.labels().to_vec(),
-        SlotKind::Number { label, kind, .. } => vec![(label, kind)],
+        SlotKind::Number { label, want, .. } => vec![(label, want)],
         _ => Vec::new(),
     }
 }
@@ -272,11 +277,15 @@ fn answer(kind: SlotKind, state: &SlotState, reading: &Reading<'_>) -> Result<An
             Ok(Answer::Inside(pointer.sheet, pointer.at))
         }
         SlotKind::Number {
-            kind, usual, live, ..
+            want, usual, live, ..
         } => {
             let typed = state.typed[0].trim();
             if !typed.is_empty() {
-                return Ok(Answer::Number(number::parse(typed, kind, reading.evaluation)?));
+                return Ok(Answer::Number(number::parse(
+                    typed,
+                    want,
+                    reading.evaluation,
+                )?));
             }
             let said = live.zip(pointer);
             let value = said.map_or(usual, |(live, pointer)| live(&state.answers, pointer));
@@ -288,10 +297,10 @@ fn answer(kind: SlotKind, state: &SlotState, reading: &Reading<'_>) -> Result<An
 /// The place that is given now: where the pointer is, or where typed numbers say.
 fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Placed, String> {
     let mut numbers = [None, None];
-    for (k, (_, kind)) in fields.labels().iter().enumerate() {
+    for (k, (_, want)) in fields.labels().iter().enumerate() {
         let text = state.typed[k].trim();
         if !text.is_empty() {
-            numbers[k] = Some(number::parse(text, *kind, reading.evaluation)?);
+            numbers[k] = Some(number::parse(text, *want, reading.evaluation)?);
         }
     }
     let pointer = state.pointer.as_ref();
@@ -305,8 +314,8 @@ fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Pl
             None => free,
         });
     }
-    let value = |number: &Number, kind: Kind| {
-        let value = reading.evaluation.number(number, kind.want());
+    let value = |number: &Number, want: Want| {
+        let value = reading.evaluation.number(number, want);
         value.ok_or_else(|| "the formula has no value".to_owned())
     };
     let pointed = pointer.map(|pointer| pointer.placed(state.snap).at);
@@ -326,10 +335,7 @@ fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Pl
         Fields::FromLast if last.is_some() => {
             let distance = or_pointed(first, way.norm())?;
             let angle = or_pointed(second, way.y.atan2(way.x))?;
-            let (far, turn) = (
-                value(&distance, Kind::Length)?,
-                value(&angle, Kind::Angle)?,
-            );
+            let (far, turn) = (value(&distance, Want::Length)?, value(&angle, Want::Angle)?);
             Ok(Placed {
                 sheet,
                 at: origin + Vec2::new(turn.cos(), turn.sin()) * far,
@@ -341,7 +347,7 @@ fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Pl
             // A rectangle grows to the side the pointer is on.
             let signed = |number: Option<Number>, way: f64| or_pointed(number, way);
             let (x, y) = (signed(first, way.x)?, signed(second, way.y)?);
-            let to = Vec2::new(value(&x, Kind::Length)?, value(&y, Kind::Length)?);
+            let to = Vec2::new(value(&x, Want::Length)?, value(&y, Want::Length)?);
             Ok(Placed {
                 sheet,
                 at: origin + to,
@@ -352,7 +358,7 @@ fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Pl
         _ => {
             let at = pointed.unwrap_or_default();
             let (x, y) = (or_pointed(first, at.x)?, or_pointed(second, at.y)?);
-            let at = Vec2::new(value(&x, Kind::Length)?, value(&y, Kind::Length)?);
+            let at = Vec2::new(value(&x, Want::Length)?, value(&y, Want::Length)?);
             Ok(Placed {
                 sheet,
                 at,
@@ -407,14 +413,14 @@ fn accept(
                 Err(words) => return refused(words),
             },
         };
-        let near = state.pointer.as_ref().map_or(0.0, |pointer| 9.0 * pointer.pixel);
-        let first = state.places.first();
-        let closes = given
+        let near = state
+            .pointer
             .as_ref()
-            .zip(first)
-            .is_some_and(|(given, first)| {
-                state.places.len() > 2 && (given.at - first.at).norm() <= near
-            });
+            .map_or(0.0, |pointer| 9.0 * pointer.pixel);
+        let first = state.places.first();
+        let closes = given.as_ref().zip(first).is_some_and(|(given, first)| {
+            state.places.len() > 2 && (given.at - first.at).norm() <= near
+        });
         if let Some(placed) = given.filter(|_| !closes) {
             state.places.push(placed);
             state.clear_typed();
@@ -472,11 +478,7 @@ fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Shown {
     }
 }
 
-pub(super) fn overlay(
-    tool: &SlotTool,
-    state: &SlotState,
-    reading: &Reading<'_>,
-) -> Vec<Overlay> {
+pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Vec<Overlay> {
     let kind = slot(tool, state).kind;
     let mut marks = Vec::new();
     for answer in &state.answers {
@@ -501,8 +503,8 @@ pub(super) fn overlay(
             if let Some(last) = state.last_place() {
                 marks.push(Overlay::Line(placed.sheet, vec![last.at, placed.at]));
                 let way = placed.at - last.at;
-                words.push(number::show(way.norm(), Kind::Length, unit));
-                words.push(number::show(way.y.atan2(way.x), Kind::Angle, unit));
+                words.push(number::show(way.norm(), Want::Length, unit));
+                words.push(number::show(way.y.atan2(way.x), Want::Angle, unit));
             }
             words.push(typed);
             words.retain(|word| !word.is_empty());
@@ -510,11 +512,15 @@ pub(super) fn overlay(
             marks.push(Overlay::Words(placed.sheet, placed.at, words.join("  ")));
         }
         Ok(Answer::Number(given)) => {
-            if let (Some(pointer), SlotKind::Number { label, kind, .. }) = (&state.pointer, kind) {
-                let value = reading.evaluation.number(&given, kind.want());
-                let value = value.map_or_else(String::new, |v| number::show(v, kind, unit));
+            if let (Some(pointer), SlotKind::Number { label, want, .. }) = (&state.pointer, kind) {
+                let value = reading.evaluation.number(&given, want);
+                let value = value.map_or_else(String::new, |v| number::show(v, want, unit));
                 let words = format!("{label} {value}  {typed}");
-                marks.push(Overlay::Words(pointer.sheet, pointer.at, words.trim().into()));
+                marks.push(Overlay::Words(
+                    pointer.sheet,
+                    pointer.at,
+                    words.trim().into(),
+                ));
             }
         }
         Ok(Answer::OnLine(_, _, at) | Answer::Edge(_, _, at) | Answer::Curve(_, _, at)) => {
@@ -561,7 +567,11 @@ pub(super) fn hint(tool: &SlotTool, state: &SlotState) -> String {
         _ => format!(
             "; or type {} (a formula begins with =), Enter; Tab next snap, Shift level, {} free",
             labels.join(", Tab, "),
-            if cfg!(target_os = "macos") { "Cmd" } else { "Ctrl" }
+            if cfg!(target_os = "macos") {
+                "Cmd"
+            } else {
+                "Ctrl"
+            }
         ),
     };
     format!("{}{keys}", slot.hint)

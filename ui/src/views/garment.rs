@@ -1,8 +1,8 @@
 //! The 3D view: mannequin and garment, seen by an eye that goes round them.
 
+use crate::gpu::orbit::Orbit;
+use crate::gpu::solid::{ClothLook, ClothSolid, Corner, mannequin};
 use crate::gpu::{CornerBuffer, StageRenderer};
-use crate::orbit::Orbit;
-use crate::solid::{ClothLook, ClothSolid, Corner, mannequin};
 use crate::theme;
 use eframe::egui_wgpu::RenderState;
 use egui::{Align2, CursorIcon, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
@@ -11,7 +11,7 @@ use toile_session::{GarmentJob, LiveFrame};
 
 /// The 3D view and its state.
 #[derive(Default)]
-pub struct StageView {
+pub struct GarmentView {
     /// Where the eye is.
     pub orbit: Orbit,
     renderer: Option<StageRenderer>,
@@ -45,7 +45,7 @@ struct Drawn {
     id: egui::TextureId,
 }
 
-impl StageView {
+impl GarmentView {
     /// A view drawn by the window's graphics card; without one it says so in words.
     pub fn new(state: Option<&RenderState>) -> Self {
         Self {
@@ -137,7 +137,7 @@ impl StageView {
                 Align2::CENTER_CENTER,
                 words,
                 theme::font(14.5),
-                theme::INK_SOFT,
+                theme::LIGHT.ink_soft,
             );
         }
     }

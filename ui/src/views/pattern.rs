@@ -1,85 +1,95 @@
-//! The pattern view: pan, zoom, select, drag. It changes nothing itself: it says what was asked.
+//! The pattern view: pans and zooms, turns the pointer and keys into events of the tool in hand.
+//! It changes no document: it says what came of the events.
 
-use crate::drawing::{Drawing, PanelDrawing, PointRole};
-use crate::layout::Layout;
-use crate::selection::Selection;
-use crate::space::{PanelPoint, ScreenPoint, TableCamera};
-use crate::table_paint::TablePainter;
-use egui::{CursorIcon, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
-use toile_geometry::{Vec2, closest_on_segment};
-use toile_pattern::{EdgeId, PanelId, PointId};
+use crate::canvas::boards::Boards;
+use crate::canvas::camera::{ScreenPoint, TableCamera};
+use crate::canvas::hit::{Hit, hits, inside_box, open_sheets, shown_points};
+use crate::canvas::paint::Picture;
+use crate::canvas::scene::Scene;
+use crate::canvas::selection::{Item, Selection};
+use crate::canvas::snap::snaps;
+use crate::theme::Palette;
+use crate::tools::{Event, Held, Outcome, Pointer, Reading, State, Tool};
+use egui::{
+    CursorIcon, EventFilter, Id, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui,
+    WidgetInfo,
+};
+use toile_geometry::Vec2;
+use toile_pattern::{Draft, Evaluation, Pattern, SheetId};
 
-/// How near the pointer must be to a point to take hold of it [logical pixels].
-const POINT_REACH: f32 = 10.0;
-/// How near it must be to an edge [logical pixels].
-const EDGE_REACH: f32 = 8.0;
 /// Enlargement by one press of a zoom key.
 pub const ZOOM_STEP: f64 = 1.25;
-
-/// Something asked for in the view.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum TableAction {
-    /// Show a point somewhere else while it is dragged.
-    Move {
-        /// The panel.
-        panel: PanelId,
-        /// The point.
-        point: PointId,
-        /// Where to.
-        to: PanelPoint,
-    },
-    /// Leave the dragged point where it is shown.
-    Drop,
-    /// Divide an edge at the place nearest to a point.
-    Split {
-        /// The panel.
-        panel: PanelId,
-        /// The edge.
-        edge: EdgeId,
-        /// Where.
-        near: PanelPoint,
-    },
-}
-
-/// A point held by the pointer.
-#[derive(Clone, Copy, Debug)]
-struct PointDrag {
-    panel: PanelId,
-    point: PointId,
-    /// Where the pointer was pressed.
-    pressed: ScreenPoint,
-    /// Where the point was then.
-    origin: PanelPoint,
-    /// Where it was last asked to go.
-    asked: PanelPoint,
-}
+/// Parts up to this many are named for assistive technology; of more only those of the sheets that
+/// something selected is on.
+const MOST_NAMED: usize = 600;
+/// Half the width of the named node of a part [pixels].
+const NAMED_REACH: f32 = 5.0;
 
 /// The pattern view and its state.
-#[derive(Default)]
-pub struct TableView {
+pub struct PatternView {
     /// How the table is seen.
     pub camera: TableCamera,
-    /// Where the panels lie.
-    pub layout: Layout,
+    /// Where sheets and panels lie.
+    pub boards: Boards,
+    /// What is drawn.
+    pub scene: Scene,
     /// What is selected.
     pub selection: Selection,
     /// What is under the pointer.
-    pub hover: Selection,
-    /// Where the pointer is, in the panel it is over or that is selected.
-    pub pointer: Option<PanelPoint>,
-    held: Option<PointDrag>,
+    pub hover: Option<Hit>,
+    /// The tool in hand.
+    pub tool: Tool,
+    /// How far it has come.
+    pub state: State,
+    /// Where the pointer is, on the sheet that is drawn on [m].
+    pub pointer: Option<Vec2>,
+    /// The sheet that is drawn on.
+    pub sheet: Option<SheetId>,
+    pressed: Option<Pointer>,
     wants_fit: bool,
     /// Size of the view that everything was fitted into, until it is panned or zoomed.
     fitted: Option<egui::Vec2>,
 }
 
-impl TableView {
+impl Default for PatternView {
+    fn default() -> Self {
+        Self {
+            camera: TableCamera::default(),
+            boards: Boards::default(),
+            scene: Scene::default(),
+            selection: Selection::default(),
+            hover: None,
+            tool: Tool::Select,
+            state: State::default(),
+            pointer: None,
+            sheet: None,
+            pressed: None,
+            wants_fit: false,
+            fitted: None,
+        }
+    }
+}
+
+impl PatternView {
+    /// The focus of the canvas: keys typed there go to the tool.
+    pub fn id() -> Id {
+        Id::unique("pattern canvas")
+    }
+
     /// Lays out a pattern that was just opened, and shows all of it.
-    pub fn opened(&mut self, drawing: &Drawing) {
-        self.layout = Layout::arrange(drawing);
-        self.selection = Selection::Nothing;
-        self.held = None;
+    pub fn opened(&mut self, pattern: &Pattern) {
+        self.boards.open(pattern, &self.scene);
+        self.selection = Selection::default();
+        self.sheet = pattern.sheets.first().map(|sheet| sheet.id);
+        self.take(Tool::Select);
         self.fit();
+    }
+
+    /// Takes a tool in hand.
+    pub fn take(&mut self, tool: Tool) {
+        self.tool = tool;
+        self.state = tool.begin();
+        self.pressed = None;
     }
 
     /// Shows the whole pattern when it is next drawn.
@@ -95,24 +105,65 @@ impl TableView {
         self.camera.zoom(view, middle, factor);
     }
 
-    /// Follows a change of the pattern.
-    pub fn changed(&mut self, drawing: &Drawing) {
-        self.layout.add_missing(drawing);
-        if !self.selection.exists(drawing) {
-            self.selection = Selection::Nothing;
-            self.held = None;
+    /// Follows a change of the pattern or of the enlargement.
+    pub fn follow(&mut self, evaluation: &Evaluation, draft: &Draft) {
+        let pattern = evaluation.pattern();
+        self.scene.update(evaluation, draft, self.camera.octave());
+        self.boards.follow(pattern);
+        self.selection.follow(pattern);
+        if self.sheet.is_none_or(|id| pattern.sheet(id).is_none()) {
+            self.sheet = pattern.sheets.first().map(|sheet| sheet.id);
         }
     }
 
-    /// Whether a point is being dragged.
-    pub fn dragging(&self) -> bool {
-        self.held.is_some()
+    /// Selects parts, and draws on the sheet they are on from now on.
+    pub fn select(&mut self, selection: Selection) {
+        let open = open_sheets(&self.scene, &selection);
+        if let [.., last] = open[..] {
+            self.sheet = Some(last);
+        }
+        self.selection = selection;
     }
 
-    /// Draws the view and takes what is done in it.
-    pub fn show(&mut self, ui: &mut Ui, drawing: &Drawing) -> Vec<TableAction> {
+    /// Whether a gesture of the tool is under way.
+    pub fn is_busy(&self) -> bool {
+        self.tool.is_under_way(&self.state)
+    }
+
+    /// Gives an event to the tool in hand.
+    pub fn step(&mut self, event: &Event, evaluation: &Evaluation) -> Outcome {
+        let open = open_sheets(&self.scene, &self.selection);
+        let (scene, boards) = (&self.scene, &self.boards);
+        let inside = |corners| inside_box((scene, boards), &open, corners);
+        let reading = Reading {
+            evaluation,
+            scene,
+            selection: &self.selection,
+            inside: &inside,
+        };
+        let (state, outcome) = self.tool.step(&self.state, event, &reading);
+        self.state = state;
+        outcome
+    }
+
+    /// What a click does now.
+    pub fn hint(&self, evaluation: &Evaluation) -> String {
+        let inside = |_| Vec::new();
+        let reading = Reading {
+            evaluation,
+            scene: &self.scene,
+            selection: &self.selection,
+            inside: &inside,
+        };
+        self.tool.hint(&self.state, &reading)
+    }
+
+    /// Draws the view, and tells what came of what is done in it. The evaluation is that before the
+    /// gesture that is shown.
+    pub fn show(&mut self, ui: &mut Ui, evaluation: &Evaluation) -> Vec<Outcome> {
         let view = ui.available_rect_before_wrap();
-        let response = ui.allocate_rect(view, Sense::click_and_drag());
+        let response = ui.interact(view, Self::id(), Sense::click_and_drag());
+        ui.advance_cursor_after_rect(view);
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Pattern view"));
         let camera = self.camera;
         let panning = self.navigate(ui, &response);
@@ -122,45 +173,38 @@ impl TableView {
         let resized = self.fitted.is_some_and(|size| size != view.size());
         if (self.wants_fit || resized)
             && view.width() > 50.0
-            && let Some(bounds) = self.layout.bounds(drawing)
+            && let Some(bounds) = self.boards.bounds(&self.scene)
         {
             self.camera.fit(view, &bounds);
             self.wants_fit = false;
             self.fitted = Some(view.size());
         }
-        let pointer = response.hover_pos();
-        self.hover = match (pointer, self.held) {
-            (_, Some(held)) => Selection::Point(held.panel, held.point),
-            (Some(at), None) if !panning => self.hit(view, drawing, at),
-            _ => Selection::Nothing,
-        };
-        self.pointer = pointer.and_then(|at| {
-            let panel = self.hover.panel().or(self.selection.panel())?;
-            let place = self.layout.place(panel)?;
-            Some(place.panel(self.camera.table(view, ScreenPoint(at))))
-        });
-        let mut actions = Vec::new();
-        if !panning {
-            self.select_and_split(&response, drawing, &mut actions);
-            self.drag(ui, &response, drawing, &mut actions);
+        let mut outcomes = Vec::new();
+        for event in self.events(ui, &response, panning) {
+            outcomes.push(self.step(&event, evaluation));
         }
-        cursor(ui, panning, self.hover, response.hovered());
-        TablePainter::new(ui, view, self, drawing).paint();
-        self.name_parts(ui, view, drawing);
-        actions
+        self.cursor(ui, panning, response.hovered());
+        self.paint(ui, view, evaluation);
+        if let Some(item) = self.name_parts(ui, view, evaluation.pattern()) {
+            outcomes.push(Outcome {
+                select: Some(Selection::one(item)),
+                ..Outcome::default()
+            });
+        }
+        outcomes
     }
 
     /// Panning and zooming; says whether the primary button pans too.
     fn navigate(&mut self, ui: &Ui, response: &Response) -> bool {
         let with_space = response.contains_pointer()
-            && !ui.ctx().egui_wants_keyboard_input()
+            && !self.is_typed_into(ui)
             && ui.input(|input| input.key_down(Key::Space));
         for button in [PointerButton::Middle, PointerButton::Secondary] {
             if response.dragged_by(button) {
                 self.camera.pan(response.drag_delta());
             }
         }
-        if with_space && response.dragged_by(PointerButton::Primary) && self.held.is_none() {
+        if with_space && response.dragged_by(PointerButton::Primary) && self.pressed.is_none() {
             self.camera.pan(response.drag_delta());
         }
         if let Some(at) = response.hover_pos() {
@@ -174,202 +218,264 @@ impl TableView {
         with_space
     }
 
-    fn select_and_split(
-        &mut self,
-        response: &Response,
-        drawing: &Drawing,
-        actions: &mut Vec<TableAction>,
-    ) {
-        let Some(at) = response.interact_pointer_pos() else {
-            return;
-        };
-        if response.clicked() {
-            self.selection = self.hit(response.rect, drawing, at);
-        }
-        if response.double_clicked()
-            && let Selection::Edge(panel, edge) = self.hit(response.rect, drawing, at)
-            && let Some(place) = self.layout.place(panel)
+    /// Whether keys go to another widget.
+    fn is_typed_into(&self, ui: &Ui) -> bool {
+        let focused = ui.memory(|memory| memory.focused());
+        focused.is_some_and(|id| id != Self::id())
+    }
+
+    /// What was done since the last frame.
+    fn events(&mut self, ui: &Ui, response: &Response, panning: bool) -> Vec<Event> {
+        let mut events = Vec::new();
+        let held = ui.input(|input| Held {
+            shift: input.modifiers.shift,
+            command: input.modifiers.command,
+        });
+        let view = response.rect;
+        let hovered = response.hover_pos().filter(|_| !panning);
+        let was_there = self.pointer.is_some();
+        if response.drag_started_by(PointerButton::Primary)
+            && !panning
+            && let Some(from) = ui.input(|input| input.pointer.press_origin())
         {
-            let table = self.camera.table(response.rect, ScreenPoint(at));
-            actions.push(TableAction::Split {
-                panel,
-                edge,
-                near: place.panel(table),
+            self.pressed = Some(self.pointer_at(view, from, held));
+        }
+        if response.clicked() || response.drag_started() {
+            response.request_focus();
+        }
+        match (&self.pressed, response.interact_pointer_pos()) {
+            (Some(from), Some(to)) => {
+                let from = from.clone();
+                let to = self.pointer_at(view, to, held);
+                self.pointer = Some(to.at);
+                events.push(Event::Drag(from, to));
+            }
+            _ => match hovered {
+                Some(at) => {
+                    let pointer = self.pointer_at(view, at, held);
+                    self.hover = pointer.hit();
+                    self.pointer = Some(pointer.at);
+                    events.push(Event::Hover(pointer));
+                }
+                None => {
+                    self.hover = None;
+                    self.pointer = None;
+                    if was_there {
+                        events.push(Event::Leave);
+                    }
+                }
+            },
+        }
+        if let Some(at) = response.interact_pointer_pos()
+            && !panning
+            && response.clicked()
+        {
+            let pointer = self.pointer_at(view, at, held);
+            events.push(match response.double_clicked() {
+                true => Event::DoubleClick(pointer),
+                false => Event::Click(pointer),
             });
         }
-    }
-
-    fn drag(
-        &mut self,
-        ui: &Ui,
-        response: &Response,
-        drawing: &Drawing,
-        actions: &mut Vec<TableAction>,
-    ) {
-        if response.drag_started_by(PointerButton::Primary)
-            && let Some(pressed) = ui.input(|input| input.pointer.press_origin())
+        if self.pressed.is_some()
+            && (response.drag_stopped() || !ui.input(|input| input.pointer.primary_down()))
         {
-            let hit = self.hit(response.rect, drawing, pressed);
-            self.held = self.take_hold(drawing, hit, pressed);
-            if hit != Selection::Nothing {
-                self.selection = hit;
-            }
+            self.pressed = None;
+            events.push(Event::Drop);
         }
-        let Some(mut held) = self.held else { return };
-        if let Some(now) = response.interact_pointer_pos() {
-            // The whole way since the press, not the sum of the frames' ways, which loses moves.
-            let mut way = self.camera.way(now - held.pressed.0);
-            if ui.input(|input| input.modifiers.shift) {
-                way = straight(way);
-            }
-            let to = PanelPoint(held.origin.0 + way);
-            if to != held.asked {
-                held.asked = to;
-                actions.push(TableAction::Move {
-                    panel: held.panel,
-                    point: held.point,
-                    to,
-                });
-            }
+        if response.secondary_clicked() && self.is_busy() {
+            events.push(Event::Enter);
         }
-        self.held = Some(held);
-        if response.drag_stopped() || !ui.input(|input| input.pointer.primary_down()) {
-            self.held = None;
-            actions.push(TableAction::Drop);
-        }
+        events.extend(self.keys(ui, response));
+        events
     }
 
-    fn take_hold(&self, drawing: &Drawing, hit: Selection, at: Pos2) -> Option<PointDrag> {
-        let Selection::Point(panel, point) = hit else {
-            return None;
+    fn keys(&self, ui: &Ui, response: &Response) -> Vec<Event> {
+        if self.is_typed_into(ui) {
+            return Vec::new();
+        }
+        if let Tool::Slots(_) = self.tool {
+            // Keys of the tool must not move the focus of the window.
+            response.request_focus();
+            let filter = EventFilter {
+                tab: true,
+                escape: true,
+                horizontal_arrows: true,
+                vertical_arrows: true,
+            };
+            ui.memory_mut(|memory| memory.set_focus_lock_filter(Self::id(), filter));
+        }
+        let typing = self.is_typing();
+        let mut events = Vec::new();
+        ui.input_mut(|input| {
+            input.events.retain(|event| {
+                let taken = match event {
+                    egui::Event::Text(text) => {
+                        let begins = text.starts_with(|c: char| {
+                            c.is_ascii_digit() || matches!(c, '=' | '.' | ',' | '-' | '(')
+                        });
+                        let is_slots = matches!(self.tool, Tool::Slots(_));
+                        let takes = is_slots && (typing || begins);
+                        takes.then(|| Event::Text(text.clone()))
+                    }
+                    egui::Event::Key {
+                        key, pressed: true, ..
+                    } => match key {
+                        Key::Enter => Some(Event::Enter),
+                        Key::Tab => Some(Event::Tab),
+                        Key::Backspace if typing => Some(Event::Backspace),
+                        Key::Escape => Some(Event::Escape),
+                        _ => None,
+                    },
+                    _ => None,
+                };
+                let is_taken = taken.is_some();
+                events.extend(taken);
+                !is_taken
+            });
+        });
+        events
+    }
+
+    /// Whether a number of the tool in hand is being typed.
+    pub fn is_typing(&self) -> bool {
+        matches!(&self.state, State::Slots(state) if state.is_typing())
+    }
+
+    fn pointer_at(&self, view: Rect, at: Pos2, held: Held) -> Pointer {
+        let table = self.camera.table(view, ScreenPoint(at)).0;
+        let open = open_sheets(&self.scene, &self.selection);
+        let found = hits((&self.scene, &self.boards), &open, table, self.camera.scale);
+        let begun = match &self.state {
+            State::Slots(state) => state.sheet(),
+            State::Select(_) => None,
         };
-        let origin = drawing.panel(panel)?.point(point)?.at;
-        Some(PointDrag {
-            panel,
-            point,
-            pressed: ScreenPoint(at),
-            origin,
-            asked: origin,
-        })
+        let sheet = begun
+            .or(found.first().map(|hit| hit.sheet))
+            .or(self.sheet)
+            .unwrap_or(SheetId(0));
+        let at = table - self.boards.sheet(sheet);
+        Pointer {
+            table,
+            sheet,
+            at,
+            snaps: snaps(&self.scene, sheet, at, self.camera.scale),
+            hits: found,
+            pixel: 1.0 / self.camera.scale,
+            held,
+        }
     }
 
-    /// Where a point of a panel is seen.
-    pub fn screen(&self, view: Rect, panel: PanelId, point: PanelPoint) -> Option<Pos2> {
-        let place = self.layout.place(panel)?;
-        Some(self.camera.screen(view, place.table(point)).0)
+    fn cursor(&self, ui: &Ui, panning: bool, inside: bool) {
+        if !inside {
+            return;
+        }
+        let icon = match (self.tool, self.hover.map(|hit| hit.item)) {
+            _ if panning => CursorIcon::Grab,
+            (Tool::Slots(_), _) => CursorIcon::Crosshair,
+            (_, Some(Item::Point(_) | Item::Panel(_))) => CursorIcon::Move,
+            (_, Some(_)) => CursorIcon::PointingHand,
+            (_, None) => CursorIcon::Default,
+        };
+        ui.ctx().set_cursor_icon(icon);
     }
 
-    /// Whether a point of a panel is shown: corners always, the others while something of their
-    /// panel is selected.
-    pub fn shows(&self, panel: PanelId, role: PointRole) -> bool {
-        role == PointRole::Corner || self.selection.panel() == Some(panel)
+    fn paint(&self, ui: &Ui, view: Rect, evaluation: &Evaluation) {
+        let open = open_sheets(&self.scene, &self.selection);
+        let inside = |_| Vec::new();
+        let reading = Reading {
+            evaluation,
+            scene: &self.scene,
+            selection: &self.selection,
+            inside: &inside,
+        };
+        let overlay = self.tool.overlay(&self.state, &reading);
+        let hover = match self.tool {
+            Tool::Select => self.hover.map(|hit| hit.item),
+            Tool::Slots(_) => None,
+        };
+        let picture = Picture {
+            painter: ui.painter_at(view),
+            view,
+            camera: self.camera,
+            boards: &self.boards,
+            scene: &self.scene,
+            selection: &self.selection,
+            hover,
+            open: &open,
+            palette: Palette::of(ui.ctx()),
+        };
+        picture.paint(&overlay);
     }
 
-    /// What is at a place of the screen: a point, else an edge. The nearest wins.
-    fn hit(&self, view: Rect, drawing: &Drawing, at: Pos2) -> Selection {
-        let mut best = (POINT_REACH, Selection::Nothing);
-        for panel in &drawing.panels {
-            for point in &panel.points {
-                if !self.shows(panel.id, point.role) {
-                    continue;
+    /// Where a place of a sheet is seen.
+    pub fn screen(&self, view: Rect, origin: Vec2, at: Vec2) -> Pos2 {
+        let table = crate::canvas::camera::TablePoint(at + origin);
+        self.camera.screen(view, table).0
+    }
+
+    /// Names points, edges and panels for assistive technology, and tells which was chosen there.
+    /// Their nodes take no clicks: those go to the view under them, by place, as everyone's do.
+    fn name_parts(&self, ui: &Ui, view: Rect, pattern: &Pattern) -> Option<Item> {
+        let open = open_sheets(&self.scene, &self.selection);
+        let mut parts: Vec<(SheetId, Item, Pos2)> = Vec::new();
+        for panel in &self.scene.panels {
+            let origin = self.boards.panel(panel.id);
+            let middle = self.screen(view, origin, panel.shape.middle);
+            parts.push((panel.sheet, Item::Panel(panel.id), middle));
+            for edge in &panel.shape.edges {
+                if let Some(middle) = edge.middle() {
+                    let at = self.screen(view, origin, middle);
+                    parts.push((panel.sheet, Item::Edge(panel.id, edge.id), at));
                 }
-                let seen = self.screen(view, panel.id, point.at);
-                let away = seen.map_or(f32::INFINITY, |seen| seen.distance(at));
-                if away < best.0 {
-                    best = (away, Selection::Point(panel.id, point.id));
+            }
+            for (id, at, _) in &panel.shape.notches {
+                let at = self.screen(view, origin, *at);
+                parts.push((panel.sheet, Item::Notch(panel.id, *id), at));
+            }
+            for (id, mirrored, line) in &panel.shape.darts {
+                if let Some(at) = line.first().filter(|_| !mirrored) {
+                    let at = self.screen(view, origin, *at);
+                    parts.push((panel.sheet, Item::Operation(panel.id, *id), at));
                 }
             }
         }
-        if best.1 != Selection::Nothing {
-            return best.1;
+        for sheet in &self.scene.sheets {
+            let origin = self.boards.sheet(sheet.id);
+            for curve in sheet.curves.iter().filter(|curve| !curve.is_traced) {
+                if let Some((middle, _)) = crate::canvas::along(&curve.line, 0.5) {
+                    let at = self.screen(view, origin, middle);
+                    parts.push((sheet.id, Item::Curve(curve.id), at));
+                }
+            }
         }
-        best.0 = EDGE_REACH;
-        for panel in &drawing.panels {
-            let Some(place) = self.layout.place(panel.id) else {
+        for shown in shown_points(&self.scene, &self.boards, &open) {
+            let at = self.screen(view, shown.origin, shown.point.at);
+            parts.push((shown.sheet, Item::Point(shown.point.id), at));
+        }
+        if parts.len() > MOST_NAMED {
+            parts.retain(|(sheet, ..)| open.contains(sheet));
+        }
+        let mut asked = None;
+        let mut named = std::collections::BTreeSet::new();
+        for (_, item, at) in parts {
+            // A point that is seen twice is named once.
+            if !view.contains(at) || !named.insert(item) {
+                continue;
+            }
+            let Some(words) = item.words(pattern) else {
                 continue;
             };
-            let there = place.panel(self.camera.table(view, ScreenPoint(at))).0;
-            if let Some((edge, away)) = nearest_edge(panel, there) {
-                let away = (away * self.camera.scale) as f32;
-                if away < best.0 {
-                    best = (away, Selection::Edge(panel.id, edge));
-                }
-            }
-        }
-        best.1
-    }
-
-    /// Names the points and edges for assistive technology. Their nodes take no clicks: those go
-    /// to the view under them, by place, as everyone's do.
-    fn name_parts(&mut self, ui: &Ui, view: Rect, drawing: &Drawing) {
-        for panel in &drawing.panels {
-            let points = panel
-                .points
-                .iter()
-                .filter(|point| self.shows(panel.id, point.role))
-                .map(|point| (Selection::Point(panel.id, point.id), Some(point.at)));
-            let edges = panel.edges.iter().map(|edge| {
-                let middle = edge.middle().map(PanelPoint);
-                (Selection::Edge(panel.id, edge.id), middle)
+            let rect = Rect::from_center_size(at, egui::Vec2::splat(2.0 * NAMED_REACH));
+            let id = Self::id().with(item);
+            let response = ui.interact(rect, id, Sense::hover());
+            response.widget_info(|| {
+                WidgetInfo::selected(Role::Button, true, self.selection.contains(item), &words)
             });
-            let mut asked = None;
-            for (part, at) in edges.chain(points) {
-                let seen = at.and_then(|at| self.screen(view, panel.id, at));
-                let Some(seen) = seen.filter(|seen| view.contains(*seen)) else {
-                    continue;
-                };
-                let id = ui.scope_id().with(match part {
-                    Selection::Nothing => continue,
-                    Selection::Point(panel, point) => ("point", panel.0, point.0),
-                    Selection::Edge(panel, edge) => ("edge", panel.0, edge.0),
-                });
-                let rect = Rect::from_center_size(seen, egui::Vec2::splat(POINT_REACH));
-                let response = ui.interact(rect, id, Sense::hover());
-                response.widget_info(|| {
-                    let words = part.words(drawing);
-                    WidgetInfo::selected(Role::Button, true, self.selection == part, words)
-                });
-                let click = egui::accesskit::Action::Click;
-                if ui.input(|input| input.has_accesskit_action_request(id, click)) {
-                    asked = Some(part);
-                }
-            }
-            self.selection = asked.unwrap_or(self.selection);
-        }
-    }
-}
-
-fn cursor(ui: &Ui, panning: bool, hover: Selection, inside: bool) {
-    if !inside {
-        return;
-    }
-    let icon = match hover {
-        _ if panning => CursorIcon::Grab,
-        Selection::Point(..) => CursorIcon::Move,
-        Selection::Edge(..) => CursorIcon::PointingHand,
-        Selection::Nothing => CursorIcon::Default,
-    };
-    ui.ctx().set_cursor_icon(icon);
-}
-
-/// The way across or up only, whichever is longer.
-fn straight(way: Vec2) -> Vec2 {
-    match way.x.abs() >= way.y.abs() {
-        true => Vec2::new(way.x, 0.0),
-        false => Vec2::new(0.0, way.y),
-    }
-}
-
-/// The edge of a panel nearest to a place, and how far it is [m].
-fn nearest_edge(panel: &PanelDrawing, there: Vec2) -> Option<(EdgeId, f64)> {
-    let mut best: Option<(EdgeId, f64)> = None;
-    for edge in &panel.edges {
-        for side in edge.lines.iter().flat_map(|line| line.windows(2)) {
-            let away = (closest_on_segment(there, [side[0], side[1]]) - there).norm();
-            if best.is_none_or(|(_, least)| away < least) {
-                best = Some((edge.id, away));
+            let click = egui::accesskit::Action::Click;
+            if ui.input(|input| input.has_accesskit_action_request(id, click)) {
+                asked = Some(item);
             }
         }
+        asked
     }
-    best
 }

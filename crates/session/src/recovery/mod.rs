@@ -19,14 +19,14 @@ const LOCK: &str = "lock";
 const NEWEST: &str = "newest";
 const BEFORE: &str = "before";
 
-/// The user's folder for states of programs, with a folder of ours in it; nothing where the
+/// The user's folder for what this program keeps from one time to the next; nothing where the
 /// system has none.
-pub fn recovery_folder() -> Option<PathBuf> {
+pub fn state_folder() -> Option<PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "toile")?;
     let folder = folders
         .state_dir()
         .unwrap_or_else(|| folders.data_local_dir());
-    Some(folder.join("recovery"))
+    Some(folder.to_owned())
 }
 
 /// A file of one process.

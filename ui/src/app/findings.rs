@@ -1,0 +1,88 @@
+//! What is found wrong with the pattern, and where.
+
+use super::ToileApp;
+use crate::canvas::selection::{Item, Selection};
+use crate::theme::Palette;
+use egui::{Button, Color32, RichText, Ui};
+use toile_pattern::{Diagnostic, Place, Severity};
+
+impl ToileApp {
+    pub(crate) fn findings_button(&mut self, ui: &mut Ui) {
+        let palette = Palette::of(ui.ctx());
+        if !self.is_open() {
+            return;
+        }
+        let count = |severity| {
+            self.findings
+                .iter()
+                .filter(|f| f.severity == severity)
+                .count()
+        };
+        let (faults, warnings) = (count(Severity::Error), count(Severity::Warning));
+        let several = |count: usize, word: &str| match count {
+            1 => format!("1 {word}"),
+            _ => format!("{count} {word}s"),
+        };
+        let (words, colour) = match (faults, warnings) {
+            (0, 0) => ("No faults".to_owned(), palette.accent),
+            (0, w) => (several(w, "warning"), palette.warning),
+            (f, 0) => (several(f, "fault"), palette.fault),
+            (f, w) => (
+                format!("{}, {}", several(f, "fault"), several(w, "warning")),
+                palette.fault,
+            ),
+        };
+        let button = Button::new(RichText::new(words).color(colour)).selected(self.shows.findings);
+        let tip = "List what is found wrong with the pattern";
+        if ui.add(button).on_hover_text(tip).clicked() {
+            self.shows.findings = !self.shows.findings;
+        }
+    }
+
+    pub(crate) fn list_findings(&mut self, ui: &mut Ui) {
+        let palette = Palette::of(ui.ctx());
+        let findings = self.findings.clone();
+        let mut chosen = None;
+        egui::ScrollArea::vertical()
+            .auto_shrink([false, false])
+            .show(ui, |ui| {
+                if findings.is_empty() {
+                    ui.label("Nothing is wrong with this pattern.");
+                }
+                for found in findings.iter() {
+                    let words = RichText::new(found.to_string());
+                    let words = words.color(finding_colour(found, palette));
+                    if ui.add(Button::new(words).frame(false).wrap()).clicked() {
+                        chosen = Some(found.place.clone());
+                    }
+                }
+            });
+        if let Some(item) = chosen.and_then(|place| item_at(&place)) {
+            self.view.select(Selection::one(item));
+        }
+    }
+}
+
+/// The part that a finding is about.
+fn item_at(place: &Place) -> Option<Item> {
+    Some(match *place {
+        Place::Point(id) => Item::Point(id),
+        Place::Curve(id) => Item::Curve(id),
+        Place::Panel(id) => Item::Panel(id),
+        Place::Line(panel, id) => Item::Line(panel, id),
+        Place::Edge(panel, id) => Item::Edge(panel, id),
+        Place::Notch(panel, id) => Item::Notch(panel, id),
+        Place::Operation(panel, id) => Item::Operation(panel, id),
+        Place::Seam(id) => Item::Seam(id),
+        _ => return None,
+    })
+}
+
+/// The colour a finding is told in.
+pub fn finding_colour(found: &Diagnostic, palette: &Palette) -> Color32 {
+    match found.severity {
+        Severity::Note => palette.ink,
+        Severity::Warning => palette.warning,
+        Severity::Error => palette.fault,
+    }
+}

@@ -1,0 +1,138 @@
+//! The side of the window with the garment on the mannequin.
+
+use super::ToileApp;
+use super::command::UiCommand;
+use super::making::Moment;
+use crate::theme::{self, Palette};
+use egui::{Button, ComboBox, Panel, Rect, RichText, Ui, pos2, vec2};
+use toile_session::{Command, Quality, Stage};
+
+/// Height of the strip over the view [pixels].
+const STRIP: f32 = 38.0;
+
+impl ToileApp {
+    pub(crate) fn garment_side(&mut self, ui: &mut Ui) {
+        Panel::top("drape")
+            .frame(theme::bar(ui.ctx()))
+            .resizable(false)
+            .exact_size(STRIP)
+            .show(ui, |ui| self.drape_strip(ui));
+        let view = ui.available_rect_before_wrap();
+        let empty = match self.making.is_making_body() {
+            true => "Making the mannequin\u{2026}",
+            false => "No mannequin yet",
+        };
+        self.stage.show(ui, empty);
+        self.drape_progress(ui, view);
+    }
+
+    pub(crate) fn drape_strip(&mut self, ui: &mut Ui) {
+        ui.horizontal_centered(|ui| {
+            let palette = Palette::of(ui.ctx());
+            if let Some(command) = UiCommand::named("Drape") {
+                let words = RichText::new(command.name).color(palette.on_accent);
+                let button = Button::new(words).fill(palette.accent);
+                self.command_widget(ui, command, button, None);
+            }
+            if let Some(command) = UiCommand::named("Pause") {
+                let button = Button::new(command.name).selected(self.making.is_paused());
+                self.command_widget(ui, command, button, None);
+            }
+            self.command_button(ui, "Stop");
+            self.quality_choice(ui);
+        });
+    }
+
+    fn quality_choice(&mut self, ui: &mut Ui) {
+        let before = self.session.project().quality;
+        let mut chosen = before;
+        let label = ui.label("Cloth").id;
+        let response = ComboBox::from_id_salt("quality")
+            .selected_text(quality_words(before))
+            .width(80.0)
+            .show_ui(ui, |ui| {
+                for quality in [Quality::Preview, Quality::Fit, Quality::Final] {
+                    ui.selectable_value(&mut chosen, quality, quality_words(quality));
+                }
+            })
+            .response;
+        let response = response.labelled_by(label);
+        response.on_hover_text("How finely the cloth is meshed and how long it settles");
+        if chosen != before {
+            self.execute(Command::SetQuality { quality: chosen });
+        }
+    }
+
+    /// What the drape is doing, over the lower end of the 3D view.
+    pub(crate) fn drape_progress(&self, ui: &mut Ui, view: Rect) {
+        let share = self
+            .making
+            .moment()
+            .map_or(0.0, |moment| moment.share as f32);
+        let palette = Palette::of(ui.ctx());
+        let words = self.drape_words();
+        if words.is_empty() {
+            return;
+        }
+        let bar = Rect::from_min_max(pos2(view.left(), view.bottom() - 4.0), view.max);
+        if self.making.is_draping() {
+            ui.painter().rect_filled(bar, 0.0, palette.rule);
+            let done = Rect::from_min_size(bar.min, vec2(bar.width() * share, bar.height()));
+            ui.painter().rect_filled(done, 0.0, palette.accent);
+        }
+        let line = Rect::from_min_max(
+            pos2(view.left() + 12.0, view.bottom() - 34.0),
+            pos2(view.right() - 12.0, view.bottom() - 10.0),
+        );
+        ui.scope_builder(egui::UiBuilder::new().max_rect(line), |ui| {
+            let words = RichText::new(words).color(palette.ink_soft);
+            ui.add(egui::Label::new(words).truncate());
+        });
+    }
+
+    fn drape_words(&self) -> String {
+        if self.making.is_preparing() {
+            return "Cutting the cloth into triangles and placing it\u{2026}".into();
+        }
+        let Some(moment) = self.making.moment() else {
+            return String::new();
+        };
+        let state = moment_words(&moment);
+        let current = self.making.revision() == Some(self.session.revision());
+        match () {
+            () if !current => format!("The pattern has changed: drape it again. {state}"),
+            () if self.making.is_paused() => format!("{state}. Paused"),
+            () if !self.making.is_draping() && moment.stage != Stage::Finished => {
+                format!("{state}. Stopped")
+            }
+            () => state,
+        }
+    }
+}
+
+fn quality_words(quality: Quality) -> &'static str {
+    match quality {
+        Quality::Preview => "coarse",
+        Quality::Fit => "medium",
+        Quality::Final => "fine",
+    }
+}
+
+fn moment_words(moment: &Moment) -> String {
+    let step = moment.step;
+    match moment.stage {
+        Stage::Sewing => {
+            let gap = moment.gap * 1000.0;
+            format!("Sewing, step {step}: seams up to {gap:.1} mm apart")
+        }
+        Stage::Swinging => "Swinging under its own weight".to_owned(),
+        Stage::Settling => {
+            let force = match moment.residual {
+                many if many >= 1.0 => format!("{many:.0} times the weight"),
+                few => format!("{:.2} % of the weight", few * 100.0),
+            };
+            format!("Settling, step {step}: net force {force}")
+        }
+        Stage::Finished => format!("At rest after {step} steps"),
+    }
+}

@@ -1,0 +1,72 @@
+//! What the window keeps from one time to the next: recent files and the theme.
+
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Most recent files kept.
+const MOST_RECENT: usize = 10;
+
+/// Preferences, and the file they are in.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Preferences {
+    /// Files opened or saved, the latest first.
+    pub recent: Vec<PathBuf>,
+    /// Whether colours are dark; nothing follows the system.
+    pub dark: Option<bool>,
+    #[serde(skip)]
+    file: Option<PathBuf>,
+}
+
+impl Preferences {
+    /// The preferences in a folder. What cannot be read is begun anew.
+    pub fn read(folder: Option<&Path>) -> Self {
+        let file = folder.map(|folder| folder.join("preferences.json"));
+        let text = file
+            .as_ref()
+            .and_then(|file| std::fs::read_to_string(file).ok());
+        let read = text.and_then(|text| serde_json::from_str(&text).ok());
+        Self {
+            file,
+            ..read.unwrap_or_default()
+        }
+    }
+
+    /// Sets the theme.
+    pub fn apply(&self, context: &egui::Context) {
+        context.set_theme(match self.dark {
+            None => egui::ThemePreference::System,
+            Some(true) => egui::ThemePreference::Dark,
+            Some(false) => egui::ThemePreference::Light,
+        });
+    }
+
+    /// Notes a file that was opened or saved.
+    pub fn opened(&mut self, path: &Path) {
+        // The samples in the program are no files.
+        if path.exists() {
+            let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+            self.recent.retain(|known| *known != path);
+            self.recent.insert(0, path);
+            self.recent.truncate(MOST_RECENT);
+            self.write();
+        }
+    }
+
+    /// Changes between dark and light.
+    pub fn change_theme(&mut self, context: &egui::Context) {
+        self.dark = Some(context.theme() == egui::Theme::Light);
+        self.apply(context);
+        self.write();
+    }
+
+    fn write(&self) {
+        let (Some(file), Ok(text)) = (&self.file, serde_json::to_vec_pretty(self)) else {
+            return;
+        };
+        let folder = file.parent().unwrap_or(Path::new("."));
+        // Preferences that cannot be kept are no reason to disturb anybody.
+        let _ = std::fs::create_dir_all(folder);
+        let _ = toile_session::write_atomically(file, &text);
+    }
+}

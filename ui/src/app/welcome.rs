@@ -1,0 +1,123 @@
+//! What is seen while no pattern is open: how to begin.
+
+use super::ToileApp;
+use super::dialogs::{Answer, main_button};
+use crate::theme::Palette;
+use egui::{RichText, Ui, vec2};
+use std::path::PathBuf;
+use toile_session::{Command, SAMPLES};
+
+/// Width of the page [pixels].
+const WIDTH: f32 = 520.0;
+
+impl ToileApp {
+    pub(crate) fn welcome(&mut self, ui: &mut Ui) {
+        let palette = Palette::of(ui.ctx());
+        let mut open: Option<PathBuf> = None;
+        egui::ScrollArea::vertical().show(ui, |ui| {
+            ui.vertical_centered(|ui| {
+                ui.set_max_width(WIDTH);
+                ui.add_space(40.0);
+                ui.heading("Toile");
+                ui.label(
+                    RichText::new("Draft panels, lay them on fabric, see the garment hang")
+                        .color(palette.ink_soft),
+                );
+                ui.add_space(16.0);
+                if let Some(words) = &self.refusal {
+                    ui.heading("This pattern cannot be opened");
+                    ui.label(RichText::new(words).color(palette.fault));
+                    ui.add_space(12.0);
+                }
+                ui.horizontal(|ui| {
+                    ui.add_space((ui.available_width() - 260.0).max(0.0) * 0.5);
+                    if main_button(ui, "New pattern") {
+                        self.ask_new();
+                    }
+                    if ui.button("Open a file\u{2026}").clicked() {
+                        self.ask_open();
+                    }
+                });
+                ui.add_space(20.0);
+                if !self.preferences.recent.is_empty() {
+                    ui.label(RichText::new("Recent").strong());
+                    for path in &self.preferences.recent {
+                        let name = path.file_name().unwrap_or_default().to_string_lossy();
+                        let link = ui.link(&*name);
+                        if link.on_hover_text(path.display().to_string()).clicked() {
+                            open = Some(path.clone());
+                        }
+                    }
+                    ui.add_space(12.0);
+                }
+                ui.label(RichText::new("Patterns that come with the program").strong());
+                for (path, name) in SAMPLES {
+                    if ui.link(*name).clicked() {
+                        open = Some(PathBuf::from(path));
+                    }
+                }
+                ui.add_space(20.0);
+                ui.label(
+                    RichText::new("A pattern file can be dropped anywhere on this window")
+                        .color(palette.ink_soft),
+                );
+            });
+        });
+        if let Some(path) = open {
+            self.open(&path);
+        }
+    }
+
+    /// Offers the documents a crash left.
+    pub(super) fn ask_recover(&mut self, ui: &mut Ui) -> Answer {
+        let palette = Palette::of(ui.ctx());
+        ui.heading("Recover unsaved work?");
+        ui.label("The program ended before these were saved:");
+        let mut taken = None;
+        let mut dropped = None;
+        for (k, document) in self.abandoned.iter().enumerate() {
+            ui.horizontal(|ui| {
+                ui.set_min_size(vec2(0.0, 28.0));
+                ui.label(RichText::new(&document.name).strong());
+                let age = document.kept.and_then(|kept| kept.elapsed().ok());
+                if let Some(age) = age {
+                    let words = format!("{} minutes ago", age.as_secs() / 60);
+                    ui.label(RichText::new(words).color(palette.ink_soft));
+                }
+                if main_button(ui, "Recover") {
+                    taken = Some(k);
+                }
+                if ui.button("Discard").clicked() {
+                    dropped = Some(k);
+                }
+            });
+        }
+        if let Some(k) = dropped {
+            let document = self.abandoned.remove(k);
+            if let Err(error) = document.discard() {
+                self.notice = super::notice::Notice::warning(error.to_string());
+            }
+        }
+        if let Some(k) = taken {
+            return Answer::Do(Box::new(move |app| app.recover(k)));
+        }
+        match self.abandoned.is_empty() || ui.button("Later").clicked() {
+            true => Answer::Leave,
+            false => Answer::Stay,
+        }
+    }
+
+    /// Goes on with a document that a crash left. Its files go when its state is kept anew.
+    fn recover(&mut self, k: usize) {
+        let document = self.abandoned.remove(k);
+        let restore = Command::RestorePattern {
+            text: document.text.clone(),
+            source: document.source.clone(),
+        };
+        if self.execute(restore)
+            && let Err(error) = document.discard()
+        {
+            self.notice = super::notice::Notice::warning(error.to_string());
+        }
+    }
+}

@@ -1,0 +1,546 @@
+//! The inspector: what is selected, with its name and numbers, each a value or a formula.
+
+use crate::app::ToileApp;
+use crate::canvas::selection::Item;
+use crate::theme::Palette;
+use crate::tools::number;
+use egui::{Color32, ComboBox, Grid, RichText, TextEdit, Ui};
+use std::collections::HashMap;
+use std::sync::Arc;
+use toile_pattern::plan::{self, NumberEntry};
+use toile_pattern::{
+    Corner, Edit, EditError, Entity, NotchKind, Number, Panel, PanelId, PartId, Want,
+};
+
+/// Texts that are being typed into fields.
+#[derive(Default)]
+pub struct Inspector {
+    typed: HashMap<egui::Id, Typed>,
+}
+
+/// A text that is being typed, and what is wrong with it.
+#[derive(Default)]
+struct Typed {
+    text: String,
+    fault: String,
+}
+
+/// What a text field came to.
+pub enum Entered {
+    /// Nothing, or not yet.
+    Nothing,
+    /// This was entered.
+    Text(String),
+    /// It was left.
+    Left,
+}
+
+impl Inspector {
+    /// A text field that keeps what is typed until it is entered or left.
+    pub fn field(
+        &mut self,
+        ui: &mut Ui,
+        (id, label): (egui::Id, egui::Id),
+        shown: &str,
+        preview: impl FnOnce(&str) -> Result<String, String>,
+    ) -> Entered {
+        let mut text = self
+            .typed
+            .get(&id)
+            .map_or(shown, |typed| &typed.text)
+            .to_owned();
+        let field = TextEdit::singleline(&mut text)
+            .id(id)
+            .desired_width(f32::INFINITY);
+        let response = ui.add(field).labelled_by(label);
+        if response.gained_focus() || response.changed() {
+            let typed = self.typed.entry(id).or_default();
+            typed.text.clone_from(&text);
+            typed.fault.clear();
+        }
+        let mut entered = Entered::Nothing;
+        if response.lost_focus() {
+            let escaped = ui.input(|input| input.key_pressed(egui::Key::Escape));
+            let is_new = text.trim() != shown;
+            self.typed.remove(&id);
+            entered = match escaped || !is_new {
+                true => Entered::Left,
+                false => Entered::Text(text.trim().to_owned()),
+            };
+        }
+        if let Some(typed) = self.typed.get(&id) {
+            let palette = Palette::of(ui.ctx());
+            let (words, colour): (String, Color32) = match typed.fault.is_empty() {
+                false => (typed.fault.clone(), palette.fault),
+                true if typed.text.trim() == shown => (String::new(), palette.ink_soft),
+                true => match preview(&typed.text) {
+                    Ok(words) => (words, palette.ink_soft),
+                    Err(words) => (words, palette.fault),
+                },
+            };
+            if !words.is_empty() {
+                ui.label(RichText::new(words).small().color(colour));
+            }
+        }
+        entered
+    }
+
+    /// Keeps a text in its field with what is wrong with it.
+    pub fn refuse(&mut self, id: egui::Id, text: String, fault: String) {
+        self.typed.insert(id, Typed { text, fault });
+    }
+}
+
+impl ToileApp {
+    pub(crate) fn show_inspector(&mut self, ui: &mut Ui) {
+        egui::ScrollArea::vertical()
+            .auto_shrink([false, false])
+            .show(ui, |ui| {
+                let items = self.view.selection.items().to_vec();
+                match items[..] {
+                    [] => self.inspect_pattern(ui),
+                    [item] => self.inspect(ui, item),
+                    _ => self.inspect_several(ui, &items),
+                }
+            });
+    }
+
+    /// Name and unit of the pattern, while nothing is selected.
+    fn inspect_pattern(&mut self, ui: &mut Ui) {
+        use toile_pattern::DisplayUnit::{Centimetre, Inch, Metre, Millimetre};
+        let pattern = self.base.pattern().clone();
+        ui.label(RichText::new("Pattern").strong());
+        let label = ui.label("Name").id;
+        let id = egui::Id::unique("pattern name");
+        let name = pattern.name.clone();
+        if let Entered::Text(text) = self
+            .inspector
+            .field(ui, (id, label), &name, |_| Ok(String::new()))
+        {
+            let planned = plan::rename_pattern(&self.base, &text);
+            self.enter(planned, "Rename pattern", (id, text));
+        }
+        let label = ui.label("Unit").id;
+        let mut unit = pattern.unit;
+        let choice = ComboBox::from_id_salt("unit")
+            .selected_text(unit.sign())
+            .show_ui(ui, |ui| {
+                for one in [Millimetre, Centimetre, Metre, Inch] {
+                    ui.selectable_value(&mut unit, one, one.sign());
+                }
+            });
+        choice.response.labelled_by(label);
+        if unit != pattern.unit {
+            let edits = plan::set_unit(&self.base, unit);
+            self.edit(Ok(edits), "Change unit");
+        }
+        ui.separator();
+        let soft = Palette::of(ui.ctx()).ink_soft;
+        let words = format!(
+            "{} panels, {} seams, {} sizes",
+            pattern.panels.len(),
+            pattern.seams.len(),
+            pattern.sizes.len()
+        );
+        ui.label(RichText::new(words).color(soft));
+    }
+
+    fn inspect(&mut self, ui: &mut Ui, item: Item) {
+        let pattern = self.base.pattern().clone();
+        let Some(words) = item.words(&pattern) else {
+            return;
+        };
+        ui.label(RichText::new(words).strong());
+        let soft = Palette::of(ui.ctx()).ink_soft;
+        if let Some(words) = self.measured(item) {
+            ui.label(RichText::new(words).color(soft));
+        }
+        let seams = self.seam_words(item);
+        if !seams.is_empty() {
+            ui.label(RichText::new(seams).color(soft));
+        }
+        if let Some(name) = name_of(&pattern, item.part()) {
+            let label = ui.label("Name").id;
+            let id = egui::Id::unique(("name", item));
+            let entered = self
+                .inspector
+                .field(ui, (id, label), &name, |_| Ok(String::new()));
+            if let Entered::Text(text) = entered {
+                let planned = plan::rename(&self.base, item.part(), &text);
+                self.enter(planned, "Rename", (id, text));
+            }
+        }
+        for entry in plan::numbers_of(&self.base, item.part()) {
+            self.number_field(ui, &entry);
+        }
+        match item {
+            Item::Panel(panel) => self.panel_choices(ui, panel),
+            Item::Edge(panel, edge) => self.corner_choice(ui, panel, edge),
+            Item::Notch(panel, notch) => self.notch_choice(ui, panel, notch),
+            _ => {}
+        }
+    }
+
+    /// What is measured of a part, in words.
+    fn measured(&self, item: Item) -> Option<String> {
+        let unit = self.base.pattern().unit;
+        let length = |length: f64| number::show(length, Want::Length, unit);
+        match item {
+            Item::Point(id) => {
+                let at = self.base.point(id)?;
+                Some(format!("x {}   y {}", length(at.x), length(at.y)))
+            }
+            Item::Curve(id) => Some(format!("{} long", length(self.base.curve(id)?.length()))),
+            Item::Edge(panel, edge) => {
+                let shape = self.view.scene.panel_scene(panel)?;
+                let edge = shape.shape.edge_shape(edge)?;
+                Some(format!("{} long", length(edge.length)))
+            }
+            Item::Panel(panel) => {
+                let size = self.view.scene.panel_scene(panel)?.bounds();
+                let size = size.max - size.min;
+                Some(format!("{} x {}", length(size.x), length(size.y)))
+            }
+            Item::Seam(id) => {
+                let mut seams = self.view.scene.seams.iter();
+                let lengths = seams.find(|seam| seam.id == id)?.lengths;
+                Some(format!("{} to {}", length(lengths[0]), length(lengths[1])))
+            }
+            _ => None,
+        }
+    }
+
+    /// One number: its text, its value as it is typed, what is wrong with it.
+    fn number_field(&mut self, ui: &mut Ui, entry: &NumberEntry) {
+        let label = ui.label(entry.label).id;
+        self.number_text_field(ui, entry, label);
+        let is_formula = entry
+            .number
+            .as_ref()
+            .is_some_and(|n| n.as_formula().is_some());
+        if let Some(number) = entry.number.as_ref().filter(|_| is_formula)
+            && let Some(value) = self.base.number(number, entry.want)
+        {
+            let palette = Palette::of(ui.ctx());
+            let unit = self.base.pattern().unit;
+            let words = format!("= {}", number::show(value, entry.want, unit));
+            ui.label(RichText::new(words).small().color(palette.ink_soft));
+        }
+    }
+
+    /// The field of a number alone.
+    pub(crate) fn number_text_field(&mut self, ui: &mut Ui, entry: &NumberEntry, label: egui::Id) {
+        let id = egui::Id::unique(("number", &entry.place));
+        let shown = entry.number.as_ref().map_or_else(String::new, |number| {
+            plan::number_text(&self.base, number, entry.want)
+        });
+        let base = self.base.clone();
+        let want = entry.want;
+        let unit = base.pattern().unit;
+        let value = |text: &str| -> Result<String, String> {
+            let found = number::parse(text, want, &base)?;
+            let value = base.number_or_fault(&found, want)?;
+            Ok(format!("= {}", number::show(value, want, unit)))
+        };
+        let entered = self.inspector.field(ui, (id, label), &shown, value);
+        if let Entered::Text(text) = entered {
+            let planned = match text.is_empty() {
+                true => plan::clear_number(&self.base, &entry.place).map_err(|e| e.to_string()),
+                false => number::parse(&text, want, &self.base).and_then(|number: Number| {
+                    let edits = plan::set_number(&self.base, &entry.place, number);
+                    edits.map_err(|error| error.to_string())
+                }),
+            };
+            match planned {
+                Ok(edits) => {
+                    self.edit(Ok(edits), &format!("Set {}", entry.label));
+                }
+                Err(fault) => self.inspector.refuse(id, text, fault),
+            }
+        }
+    }
+
+    /// Makes what was entered into a field, or keeps it there with what is wrong.
+    pub(crate) fn enter(
+        &mut self,
+        planned: Result<Vec<Edit>, EditError>,
+        label: &str,
+        (id, text): (egui::Id, String),
+    ) {
+        match planned {
+            Ok(edits) => {
+                self.edit(Ok(edits), label);
+            }
+            Err(error) => self.inspector.refuse(id, text, error.to_string()),
+        }
+    }
+
+    fn panel_choices(&mut self, ui: &mut Ui, id: PanelId) {
+        let pattern = self.base.pattern().clone();
+        let Some(panel) = pattern.panel(id) else {
+            return;
+        };
+        let mut changed: Panel = (**panel).clone();
+        Grid::new("panel choices").num_columns(2).show(ui, |ui| {
+            let label = ui.label("Cut").id;
+            let field = egui::DragValue::new(&mut changed.cut.quantity).range(0..=99);
+            ui.add(field.update_while_editing(false)).labelled_by(label);
+            ui.end_row();
+            ui.label("");
+            ui.checkbox(&mut changed.cut.mirrored, "in mirrored pairs");
+            ui.end_row();
+            let label = ui.label("Fabric").id;
+            let fabric = pattern.fabric(changed.fabric);
+            let choice = ComboBox::from_id_salt("fabric")
+                .selected_text(fabric.map_or("", |fabric| &fabric.name))
+                .show_ui(ui, |ui| {
+                    for fabric in &pattern.fabrics {
+                        ui.selectable_value(&mut changed.fabric, fabric.id, &fabric.name);
+                    }
+                });
+            choice.response.labelled_by(label);
+            ui.end_row();
+        });
+        self.worn_choice(ui, &mut changed);
+        if changed != **panel {
+            let label = match changed.cut == panel.cut {
+                true => "Change panel",
+                false => "Change cut",
+            };
+            let put = Edit::Put(Entity::Panel(Arc::new(changed)));
+            self.edit(Ok(vec![put]), label);
+        }
+    }
+
+    fn worn_choice(&mut self, ui: &mut Ui, panel: &mut Panel) {
+        use toile_pattern::{BodyPart, Facing, WornRule};
+        let (mut part, mut facing, level) = match &panel.worn {
+            WornRule::Wrapped {
+                part,
+                facing,
+                level,
+            } => (Some(*part), *facing, level.clone()),
+            _ => (None, Facing::Front, None),
+        };
+        let before = (part, facing);
+        let label = ui.label("Worn on").id;
+        let parts = [
+            (None, "found by the program"),
+            (Some(BodyPart::Trunk), "trunk"),
+            (Some(BodyPart::Head), "head"),
+            (Some(BodyPart::LeftArm), "left arm"),
+            (Some(BodyPart::RightArm), "right arm"),
+            (Some(BodyPart::LeftLeg), "left leg"),
+            (Some(BodyPart::RightLeg), "right leg"),
+        ];
+        let words =
+            |of: Option<BodyPart>| parts.iter().find(|known| known.0 == of).map_or("", |k| k.1);
+        let choice = ComboBox::from_id_salt("worn")
+            .selected_text(words(part))
+            .show_ui(ui, |ui| {
+                for (one, words) in parts {
+                    ui.selectable_value(&mut part, one, words);
+                }
+            });
+        choice.response.labelled_by(label);
+        if part.is_some() {
+            let label = ui.label("Side").id;
+            let sides = [
+                (Facing::Front, "front"),
+                (Facing::Back, "back"),
+                (Facing::Left, "left"),
+                (Facing::Right, "right"),
+                (Facing::Around, "all round"),
+                (Facing::Over, "over it"),
+            ];
+            let words = sides
+                .iter()
+                .find(|known| known.0 == facing)
+                .map_or("", |k| k.1);
+            let choice = ComboBox::from_id_salt("facing")
+                .selected_text(words)
+                .show_ui(ui, |ui| {
+                    for (one, words) in sides {
+                        ui.selectable_value(&mut facing, one, words);
+                    }
+                });
+            choice.response.labelled_by(label);
+        }
+        if (part, facing) != before {
+            panel.worn = match part {
+                None => WornRule::Automatic,
+                Some(part) => WornRule::Wrapped {
+                    part,
+                    facing,
+                    level,
+                },
+            };
+        }
+    }
+
+    fn corner_choice(&mut self, ui: &mut Ui, panel: PanelId, id: toile_pattern::EdgeId) {
+        let pattern = self.base.pattern().clone();
+        let Some(edge) = pattern.panel(panel).and_then(|panel| panel.edge(id)) else {
+            return;
+        };
+        let choices = [
+            (None, "as usual (mitre)"),
+            (Some(Corner::Mitre), "mitre"),
+            (Some(Corner::Bevel), "bevel"),
+            (Some(Corner::Square), "square"),
+            (Some(Corner::Extended), "seam lines extended"),
+            (Some(Corner::Mirrored), "mirrored, as a hem"),
+        ];
+        let mut corner = edge.corner;
+        let label = ui.label("Corner of allowance").id;
+        let words = choices
+            .iter()
+            .find(|known| known.0 == corner)
+            .map_or("", |k| k.1);
+        let choice = ComboBox::from_id_salt("corner")
+            .selected_text(words)
+            .show_ui(ui, |ui| {
+                for (one, words) in choices {
+                    ui.selectable_value(&mut corner, one, words);
+                }
+            });
+        choice.response.labelled_by(label);
+        if corner != edge.corner {
+            let edits = self.changed_panel(panel, |panel| {
+                let edges = panel.lines.iter_mut().flat_map(|line| &mut line.edges);
+                for edge in edges.filter(|edge| edge.id == id) {
+                    edge.corner = corner;
+                }
+            });
+            self.edit(edits, "Change corner");
+        }
+    }
+
+    fn notch_choice(&mut self, ui: &mut Ui, panel: PanelId, id: toile_pattern::NotchId) {
+        let pattern = self.base.pattern().clone();
+        let notches = pattern.panel(panel).map(|panel| &panel.notches);
+        let Some(notch) = notches.and_then(|all| all.iter().find(|notch| notch.id == id)) else {
+            return;
+        };
+        let kinds = [
+            (NotchKind::Slit, "slit"),
+            (NotchKind::V, "V"),
+            (NotchKind::Castle, "castle"),
+            (NotchKind::T, "T"),
+            (NotchKind::Check, "check"),
+        ];
+        let mut kind = notch.kind;
+        let label = ui.label("Shape").id;
+        let words = kinds
+            .iter()
+            .find(|known| known.0 == kind)
+            .map_or("", |k| k.1);
+        let choice = ComboBox::from_id_salt("notch kind")
+            .selected_text(words)
+            .show_ui(ui, |ui| {
+                for (one, words) in kinds {
+                    ui.selectable_value(&mut kind, one, words);
+                }
+            });
+        choice.response.labelled_by(label);
+        if kind != notch.kind {
+            self.edit(
+                plan::set_notch_kind(&self.base, (panel, id), kind),
+                "Change notch",
+            );
+        }
+    }
+
+    /// What several parts have in common.
+    fn inspect_several(&mut self, ui: &mut Ui, items: &[Item]) {
+        ui.label(RichText::new(format!("{} parts selected", items.len())).strong());
+        let pattern = self.base.pattern().clone();
+        let edges: Vec<(PanelId, toile_pattern::EdgeId)> = items
+            .iter()
+            .filter_map(|item| match item {
+                Item::Edge(panel, edge) => Some((*panel, *edge)),
+                _ => None,
+            })
+            .collect();
+        if edges.len() == items.len() {
+            let lengths = edges.iter().filter_map(|(_, edge)| self.base.edge(*edge));
+            let total: f64 = lengths.map(|path| path.length()).sum();
+            let words = format!(
+                "{} long together",
+                number::show(total, Want::Length, pattern.unit)
+            );
+            ui.label(words);
+            self.allowance_of_all(ui, &edges);
+        }
+        if let [Item::Point(a), Item::Point(b)] = items
+            && let (Some(a), Some(b)) = (self.base.point(*a), self.base.point(*b))
+        {
+            let way = b - a;
+            let length = number::show(way.norm(), Want::Length, pattern.unit);
+            let angle = number::show(way.y.atan2(way.x), Want::Angle, pattern.unit);
+            ui.label(format!("{length} apart, {angle}"));
+        }
+    }
+
+    fn allowance_of_all(&mut self, ui: &mut Ui, edges: &[(PanelId, toile_pattern::EdgeId)]) {
+        let label = ui.label("Allowance of all").id;
+        let id = egui::Id::unique("allowance of all");
+        let base = self.base.clone();
+        let entered = self.inspector.field(ui, (id, label), "", |text| {
+            number::parse(text, Want::Length, &base).map(|_| String::new())
+        });
+        if let Entered::Text(text) = entered {
+            match number::parse(&text, Want::Length, &self.base) {
+                Ok(number) => {
+                    let mut changed: HashMap<PanelId, Panel> = HashMap::new();
+                    for (panel, edge) in edges {
+                        let Some(owner) = self.base.pattern().panel(*panel) else {
+                            continue;
+                        };
+                        let owner = changed.entry(*panel).or_insert_with(|| (**owner).clone());
+                        let all = owner.lines.iter_mut().flat_map(|line| &mut line.edges);
+                        for known in all.filter(|known| known.id == *edge) {
+                            known.allowance = Some(number.clone());
+                        }
+                    }
+                    let edits = changed.into_values();
+                    let edits = edits
+                        .map(|p| Edit::Put(Entity::Panel(Arc::new(p))))
+                        .collect();
+                    self.edit(Ok(edits), "Set allowance");
+                }
+                Err(fault) => self.inspector.refuse(id, text, fault),
+            }
+        }
+    }
+}
+
+/// The name of a part.
+fn name_of(pattern: &toile_pattern::Pattern, part: PartId) -> Option<String> {
+    Some(match part {
+        PartId::Point(id) => pattern.point(id)?.1.name.clone(),
+        PartId::Curve(id) => {
+            let mut sheets = pattern.sheets.iter();
+            sheets.find_map(|sheet| sheet.curve(id))?.name.clone()
+        }
+        PartId::Panel(id) => pattern.panel(id)?.name.clone(),
+        PartId::Seam(id) => pattern.seam(id)?.name.clone(),
+        PartId::Edge(id) => {
+            let mut panels = pattern.panels.iter();
+            panels.find_map(|panel| panel.edge(id))?.name.clone()
+        }
+        PartId::Line(id) => {
+            let mut lines = pattern.panels.iter().flat_map(|panel| &panel.lines);
+            lines.find(|line| line.id == id)?.name.clone()
+        }
+        PartId::Notch(id) => {
+            let mut notches = pattern.panels.iter().flat_map(|panel| &panel.notches);
+            notches.find(|notch| notch.id == id)?.name.clone()
+        }
+        PartId::Operation(id) => {
+            let mut steps = pattern.panels.iter().flat_map(|panel| &panel.operations);
+            steps.find(|step| step.id == id)?.name.clone()
+        }
+        _ => return None,
+    })
+}

@@ -1,0 +1,366 @@
+//! Tables under the pattern: measurements by size, variables, the history.
+
+use crate::app::ToileApp;
+use crate::inspector::Entered;
+use crate::theme::Palette;
+use crate::tools::number;
+use egui::{Grid, Id, RichText, ScrollArea, Ui};
+use toile_measure::{CATALOGUE, Measurements, UnitKind, definition};
+use toile_pattern::{Number, SizeId, Want, plan};
+use toile_session::Command;
+
+/// Which table is on show, and what is typed into it.
+#[derive(Default)]
+pub struct Tables {
+    tab: Tab,
+    new_variable: String,
+    new_measurement: String,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+enum Tab {
+    #[default]
+    Measurements,
+    Variables,
+    History,
+}
+
+/// Measurements that a size begins with.
+const FIRST: &[&str] = &[
+    "height",
+    "bust",
+    "underbust",
+    "waist",
+    "hips",
+    "neck",
+    "shoulder_width",
+    "back_length",
+    "waist_to_hips",
+    "arm_length",
+    "upper_arm",
+    "wrist",
+];
+
+impl ToileApp {
+    pub(crate) fn show_tables(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            for (tab, name) in [
+                (Tab::Measurements, "Measurements"),
+                (Tab::Variables, "Variables"),
+                (Tab::History, "History"),
+            ] {
+                ui.selectable_value(&mut self.tables.tab, tab, name);
+            }
+        });
+        ui.separator();
+        ScrollArea::both()
+            .auto_shrink([false, false])
+            .show(ui, |ui| match self.tables.tab {
+                Tab::Measurements => self.measurement_table(ui),
+                Tab::Variables => self.variable_table(ui),
+                Tab::History => self.history_table(ui),
+            });
+    }
+
+    /// A row a measurement, a column a size.
+    fn measurement_table(&mut self, ui: &mut Ui) {
+        let pattern = self.base.pattern().clone();
+        if pattern.sizes.is_empty() {
+            ui.label("The pattern has no sizes: formulas use the measurements of the wearer.");
+        }
+        let mut names: Vec<String> = Vec::new();
+        for known in CATALOGUE {
+            let is_used = pattern
+                .sizes
+                .iter()
+                .any(|s| s.measurements.contains(known.name));
+            if is_used {
+                names.push(known.name.to_owned());
+            }
+        }
+        for size in &pattern.sizes {
+            for (name, _) in size.measurements.iter() {
+                if !names.iter().any(|known| known == name) {
+                    names.push(name.to_owned());
+                }
+            }
+        }
+        Grid::new("measurements").striped(true).show(ui, |ui| {
+            ui.label(RichText::new("Measurement").strong());
+            for size in &pattern.sizes {
+                self.size_head(ui, size.id, &size.name);
+            }
+            ui.end_row();
+            for name in &names {
+                let known = definition(name);
+                let label = ui.label(known.map_or(name.as_str(), |known| known.label));
+                let label = match known {
+                    Some(known) => label.on_hover_text(format!("{name}: {}", known.meaning)),
+                    None => label,
+                };
+                for size in &pattern.sizes {
+                    let value = size.measurements.get(name);
+                    self.measurement(ui, (size.id, label.id), name, value);
+                }
+                ui.end_row();
+            }
+        });
+        ui.horizontal(|ui| {
+            if ui.button("Add size").clicked() {
+                self.add_size();
+            }
+            if pattern.sizes.is_empty() {
+                return;
+            }
+            let label = ui.label("Add measurement").id;
+            let chosen = &mut self.tables.new_measurement;
+            let choice = egui::ComboBox::from_id_salt("new measurement")
+                .selected_text("choose")
+                .show_ui(ui, |ui| {
+                    for known in CATALOGUE
+                        .iter()
+                        .filter(|k| !names.iter().any(|n| n == k.name))
+                    {
+                        ui.selectable_value(chosen, known.name.to_owned(), known.label)
+                            .on_hover_text(known.meaning);
+                    }
+                });
+            choice.response.labelled_by(label);
+        });
+        let name = std::mem::take(&mut self.tables.new_measurement);
+        if !name.is_empty() {
+            self.add_measurement(&name);
+        }
+    }
+
+    fn size_head(&mut self, ui: &mut Ui, id: SizeId, name: &str) {
+        let is_base = self.base.pattern().base().is_some_and(|base| base.id == id);
+        let words = match is_base {
+            true => RichText::new(format!("{name} (base)")).strong(),
+            false => RichText::new(name).strong(),
+        };
+        let menu = ui.menu_button(words, |ui| {
+            let field = Id::unique(("size name", id));
+            let label = ui.label("Name").id;
+            let entered = self
+                .inspector
+                .field(ui, (field, label), name, |_| Ok(String::new()));
+            if let Entered::Text(text) = entered {
+                let planned = plan::rename(&self.base, id.into(), &text);
+                self.enter(planned, "Rename size", (field, text));
+            }
+            if ui.button("Make it the base size").clicked() {
+                let planned = plan::set_base_size(&self.base, Some(id));
+                self.edit(planned, "Choose base size");
+            }
+            if ui.button("Remove this size").clicked() {
+                let planned = plan::remove_size(&self.base, id);
+                self.edit(planned, "Remove size");
+            }
+        });
+        menu.response.on_hover_text("Rename or remove the size");
+    }
+
+    fn measurement(
+        &mut self,
+        ui: &mut Ui,
+        (size, label): (SizeId, Id),
+        name: &str,
+        value: Option<f64>,
+    ) {
+        let is_angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
+        let want = if is_angle { Want::Angle } else { Want::Length };
+        let id = Id::unique(("measurement", size, name));
+        let base = self.base.clone();
+        let shown = value.map_or_else(String::new, |value| {
+            plan::number_text(&base, &Number::Value(value), want)
+        });
+        ui.scope(|ui| {
+            ui.set_width(84.0);
+            let entered = self.inspector.field(ui, (id, label), &shown, |text| {
+                number::parse(text, want, &base).map(|_| String::new())
+            });
+            let Entered::Text(text) = entered else {
+                return;
+            };
+            let value = match text.is_empty() {
+                true => Ok(None),
+                false => number::parse(&text, want, &base)
+                    .and_then(|found| base.number_or_fault(&found, want).map(Some)),
+            };
+            let planned = value.and_then(|value| {
+                let planned = plan::set_measurement(&base, size, name, value);
+                planned.map_err(|error| error.to_string())
+            });
+            match planned {
+                Ok(edits) => {
+                    self.edit(Ok(edits), "Set measurement");
+                }
+                Err(fault) => self.inspector.refuse(id, text, fault),
+            }
+        });
+    }
+
+    /// A size like the last; the first has the wearer's measurements.
+    fn add_size(&mut self) {
+        let pattern = self.base.pattern();
+        let table = match pattern.sizes.last() {
+            Some(last) => last.measurements.clone(),
+            None => {
+                let wearer = self.session.project().wearer();
+                let mut table = Measurements::new();
+                for name in FIRST {
+                    if let Some(found) = wearer.measured(name) {
+                        // A name and value of a table are always taken by another.
+                        let _ =
+                            table.set(name, (found.value * 1000.0).round() / 1000.0, found.origin);
+                    }
+                }
+                table
+            }
+        };
+        let planned = plan::add_size(&self.base, None, table);
+        self.edit(planned.map(|(edits, _)| edits), "Add size");
+    }
+
+    /// A measurement in every size, as far as the wearer has it.
+    fn add_measurement(&mut self, name: &str) {
+        let wearer = self.session.project().wearer();
+        let value = wearer.get(name).unwrap_or(0.5);
+        let sizes = self.base.pattern().sizes.clone();
+        let mut edits = Vec::new();
+        for size in &sizes {
+            match plan::set_measurement(&self.base, size.id, name, Some(value)) {
+                Ok(found) => edits.extend(found),
+                Err(error) => {
+                    self.edit(Err(error), "Add measurement");
+                    return;
+                }
+            }
+        }
+        self.edit(Ok(edits), "Add measurement");
+    }
+
+    /// A row a variable: name, number, value.
+    fn variable_table(&mut self, ui: &mut Ui) {
+        let pattern = self.base.pattern().clone();
+        let palette = Palette::of(ui.ctx());
+        Grid::new("variables")
+            .striped(true)
+            .num_columns(4)
+            .show(ui, |ui| {
+                for head in ["Name", "Number or formula", "Value", ""] {
+                    ui.label(RichText::new(head).strong());
+                }
+                ui.end_row();
+                for variable in &pattern.variables {
+                    let label = ui.label("").id;
+                    let field = Id::unique(("variable name", variable.id));
+                    let name = &variable.name;
+                    ui.scope(|ui| {
+                        ui.set_width(150.0);
+                        let entered = self
+                            .inspector
+                            .field(ui, (field, label), name, |_| Ok(String::new()));
+                        if let Entered::Text(text) = entered {
+                            let planned = plan::rename(&self.base, variable.id.into(), &text);
+                            self.enter(planned, "Rename variable", (field, text));
+                        }
+                    });
+                    ui.scope(|ui| {
+                        ui.set_width(260.0);
+                        for entry in plan::numbers_of(&self.base, variable.id.into()) {
+                            self.number_text_field(ui, &entry, label);
+                        }
+                    });
+                    let value = self.base.variable(variable.id);
+                    let words = match value {
+                        Some((value, 1)) => number::show(value, Want::Length, pattern.unit),
+                        Some((value, _)) => number::show(value, Want::Plain, pattern.unit),
+                        None => "no value".into(),
+                    };
+                    ui.label(RichText::new(words).color(palette.ink_soft));
+                    if ui.button("Remove").clicked() {
+                        let planned = plan::remove_parts(&self.base, &[variable.id.into()]);
+                        self.edit(planned, "Remove variable");
+                    }
+                    ui.end_row();
+                }
+            });
+        ui.horizontal(|ui| {
+            let label = ui.label("New variable").id;
+            let field = egui::TextEdit::singleline(&mut self.tables.new_variable)
+                .hint_text("ease = 2cm")
+                .desired_width(220.0);
+            let response = ui.add(field).labelled_by(label);
+            let entered =
+                response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            if ui.button("Add variable").clicked() || entered {
+                self.add_variable();
+            }
+        });
+    }
+
+    /// A variable from `name = formula`, or from a formula alone.
+    fn add_variable(&mut self) {
+        let text = self.tables.new_variable.clone();
+        let (name, formula) = match text.split_once('=') {
+            Some((name, formula)) => (Some(name.trim()), formula),
+            None => (None, text.as_str()),
+        };
+        let planned = number::parse(formula, Want::Plain, &self.base)
+            .or_else(|_| {
+                // A length with its unit stays a formula: a bare value is a plain number.
+                toile_pattern::Formula::parse(formula.trim(), self.base.names())
+                    .map(Number::Formula)
+                    .map_err(|error| format!("{}: {}", error.message, error.hint))
+            })
+            .and_then(|number| {
+                plan::add_variable(&self.base, name, number).map_err(|error| error.to_string())
+            });
+        match planned {
+            Ok((edits, _)) => {
+                if self.edit(Ok(edits), "Add variable") {
+                    self.tables.new_variable.clear();
+                }
+            }
+            Err(words) => self.say_fault(words),
+        }
+    }
+
+    /// Steps of the history; a click goes there.
+    fn history_table(&mut self, ui: &mut Ui) {
+        let past: Vec<String> = self.session.past().into_iter().map(str::to_owned).collect();
+        let future: Vec<String> = self
+            .session
+            .future()
+            .into_iter()
+            .map(str::to_owned)
+            .collect();
+        let mut steps: Vec<Command> = Vec::new();
+        if ui
+            .selectable_label(past.is_empty(), "as it was opened")
+            .clicked()
+        {
+            steps = vec![Command::Undo; past.len()];
+        }
+        for (k, label) in past.iter().enumerate() {
+            let is_now = k + 1 == past.len();
+            let words = format!("{}  {label}", k + 1);
+            if ui.selectable_label(is_now, words).clicked() {
+                steps = vec![Command::Undo; past.len() - k - 1];
+            }
+        }
+        let soft = Palette::of(ui.ctx()).ink_soft;
+        for (k, label) in future.iter().enumerate() {
+            let words = format!("{}  {label}", past.len() + k + 1);
+            let words = RichText::new(words).color(soft);
+            if ui.selectable_label(false, words).clicked() {
+                steps = vec![Command::Redo; k + 1];
+            }
+        }
+        for step in steps {
+            self.execute(step);
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! Tools that draw points and curves on a sheet, and whole figures.
+
+use super::Reading;
+use super::planning::{Planning, places, refuse};
+use super::slots::{Answer, Fields, Plan, Slot, SlotKind, SlotTool};
+use crate::canvas::selection::Item;
+use crate::canvas::snap::{Placed, Spec};
+use toile_geometry::Vec2;
+use toile_pattern::{
+    CurveRule, EditError, Number, PointRule, Want,
+    plan::{self, Chain, CurveShape, Holes, NewPanel},
+};
+
+/// A point by coordinates, on a curve, at a crossing or beside another.
+pub static POINT: SlotTool = SlotTool {
+    command: "Point",
+    slots: &[Slot {
+        hint: "Click where the point is to be",
+        kind: SlotKind::Place(Fields::Coordinates),
+    }],
+    plan: |answers, reading| {
+        let mut planning = Planning::new(reading);
+        let points = planning.points(&places(answers))?;
+        Ok(planning.done("Draw point", points.into_iter().map(Item::Point)))
+    },
+};
+
+/// A straight line; the next begins where it ends.
+pub static LINE: SlotTool = SlotTool {
+    command: "Line",
+    slots: &[
+        Slot {
+            hint: "Click where the line starts",
+            kind: SlotKind::Place(Fields::Coordinates),
+        },
+        Slot {
+            hint: "Click where it ends",
+            kind: SlotKind::Place(Fields::FromLast),
+        },
+    ],
+    plan: |answers, reading| {
+        let mut planning = Planning::new(reading);
+        let given = places(answers);
+        let points = planning.points(&given)?;
+        let ends = [points[0], points[1]];
+        let sheet = given[0].sheet;
+        let curve = planning.run(|evaluation| {
+            let shape = CurveShape::Rule(CurveRule::Line);
+            plan::add_curve(evaluation, (sheet, None), ends, shape)
+        })?;
+        let end = Placed {
+            spec: Spec::Point(ends[1]),
+            ..given[1].clone()
+        };
+        let mut done = planning.done("Draw line", [Item::Curve(curve)]);
+        done.again = vec![Answer::Place(end)];
+        Ok(done)
+    },
+};
+
+/// Lines through several places, closed by a click on the first.
+pub static POLYGON: SlotTool = SlotTool {
+    command: "Polygon",
+    slots: &[Slot {
+        hint: "Click the corners in order, the first once more to close",
+        kind: SlotKind::Places,
+    }],
+    plan: |answers, reading| {
+        let Some(Answer::Places(_, closes)) = answers.first() else {
+            return Err(refuse("nothing was given", "click at least two places"));
+        };
+        let mut planning = Planning::new(reading);
+        let given = places(answers);
+        let points = planning.points(&given)?;
+        let sheet = given[0].sheet;
+        let count = points.len();
+        let mut curves = Vec::new();
+        for k in 0..if *closes { count } else { count - 1 } {
+            let ends = [points[k], points[(k + 1) % count]];
+            let curve = planning.run(|evaluation| {
+                let shape = CurveShape::Rule(CurveRule::Line);
+                plan::add_curve(evaluation, (sheet, None), ends, shape)
+            })?;
+            curves.push(curve);
+        }
+        if *closes {
+            let panel = planning.run(|evaluation| {
+                plan::trace_panel(
+                    evaluation,
+                    sheet,
+                    Chain::Curves(&curves),
+                    NewPanel::default(),
+                )
+            })?;
+            return Ok(planning.done("Draw panel", [Item::Panel(panel)]));
+        }
+        Ok(planning.done("Draw lines", curves.into_iter().map(Item::Curve)))
+    },
+};
+
+/// An arc through a place.
+pub static ARC: SlotTool = SlotTool {
+    command: "Arc",
+    slots: &[
+        Slot {
+            hint: "Click where the arc starts",
+            kind: SlotKind::Place(Fields::Coordinates),
+        },
+        Slot {
+            hint: "Click where it ends",
+            kind: SlotKind::Place(Fields::FromLast),
+        },
+        Slot {
+            hint: "Click a place it goes through",
+            kind: SlotKind::Place(Fields::None),
+        },
+    ],
+    plan: |answers, reading| {
+        let mut planning = Planning::new(reading);
+        let given = places(answers);
+        let points = planning.points(&given[..2])?;
+        let (sheet, through) = (given[0].sheet, given[2].at);
+        let curve = planning.run(|evaluation| {
+            let shape = CurveShape::ArcThrough(through);
+            plan::add_curve(evaluation, (sheet, None), [points[0], points[1]], shape)
+        })?;
+        Ok(planning.done("Draw arc", [Item::Curve(curve)]))
+    },
+};
+
+/// A smooth curve through several places; its handles can be moved afterwards.
+pub static SPLINE: SlotTool = SlotTool {
+    command: "Curve",
+    slots: &[Slot {
+        hint: "Click where the curve goes, Enter ends it",
+        kind: SlotKind::Places,
+    }],
+    plan: |answers, reading| {
+        let mut planning = Planning::new(reading);
+        let given = places(answers);
+        let (first, last) = (given[0], given[given.len() - 1]);
+        let ends = planning.points(&[first, last])?;
+        let shape = smooth(&given.iter().map(|placed| placed.at).collect::<Vec<_>>());
+        let curve = planning.run(|evaluation| {
+            plan::add_curve(evaluation, (first.sheet, None), [ends[0], ends[1]], shape)
+        })?;
+        Ok(planning.done("Draw curve", [Item::Curve(curve)]))
+    },
+};
+
+/// A spline through places: each handle lies along the chord of the places beside its own, a third
+/// of the way to its neighbour (Catmull and Rom 1974); at both ends toward the neighbour's handle.
+fn smooth(places: &[Vec2]) -> CurveShape {
+    let count = places.len();
+    let tangent = |k: usize| (places[k + 1] - places[k - 1]) * 0.5;
+    let reach = |k: usize, to: usize| (places[to] - places[k]).norm() / 3.0;
+    let along = |k: usize, to: usize, sign: f64| {
+        let way = tangent(k).try_normalize(1e-12).unwrap_or_default();
+        places[k] + way * (sign * reach(k, to))
+    };
+    let knots: Vec<[Vec2; 3]> = (1..count - 1)
+        .map(|k| [along(k, k - 1, -1.0), places[k], along(k, k + 1, 1.0)])
+        .collect();
+    let (start, end) = (places[0], places[count - 1]);
+    let first = knots.first().map_or(end, |knot| knot[0]);
+    let last = knots.last().map_or(start, |knot| knot[2]);
+    let toward = |from: Vec2, to: Vec2, length: f64| {
+        from + (to - from).try_normalize(1e-12).unwrap_or_default() * length
+    };
+    CurveShape::Spline {
+        handles: [
+            toward(start, first, reach(0, 1)),
+            toward(end, last, reach(count - 1, count - 2)),
+        ],
+        knots,
+    }
+}
+
+/// A rectangle with its panel.
+pub static RECTANGLE: SlotTool = SlotTool {
+    command: "Rectangle",
+    slots: &[
+        Slot {
+            hint: "Click a corner of the rectangle",
+            kind: SlotKind::Place(Fields::Coordinates),
+        },
+        Slot {
+            hint: "Click the opposite corner",
+            kind: SlotKind::Place(Fields::Size),
+        },
+    ],
+    plan: |answers, reading| {
+        let mut planning = Planning::new(reading);
+        let given = places(answers);
+        let (from, to) = (given[0], given[1]);
+        let size = match &to.spec {
+            Spec::BesideLast { x, y } => [x.clone(), y.clone()],
+            _ => [to.at.x - from.at.x, to.at.y - from.at.y].map(Number::Value),
+        };
+        let corner = planning.point(from, None)?;
+        let figure = planning.run(|evaluation| {
+            let corner = (plan::FirstCorner::Point(corner), size);
+            plan::add_rectangle(evaluation, from.sheet, corner, Some(NewPanel::default()))
+        })?;
+        let panel = figure.panel.map(Item::Panel);
+        Ok(planning.done("Draw rectangle", panel))
+    },
+};
+
+/// A panel round a place.
+pub static TRACE: SlotTool = SlotTool {
+    command: "Trace",
+    slots: &[Slot {
+        hint: "Click inside closed lines to make a panel of them",
+        kind: SlotKind::Inside,
+    }],
+    plan: |answers, reading| {
+        let Some(Answer::Inside(sheet, at)) = answers.first() else {
+            return Err(refuse("nothing was given", "click inside closed lines"));
+        };
+        let mut planning = Planning::new(reading);
+        let panel = planning.run(|evaluation| {
+            plan::trace_face(evaluation, *sheet, (*at, Holes::Cut), NewPanel::default())
+        })?;
+        Ok(planning.done("Trace panel", [Item::Panel(panel)]))
+    },
+};
+
+/// A point along a curve, at a distance from its nearer end.
+pub static ALONG: SlotTool = SlotTool {
+    command: "Point along",
+    slots: &[
+        Slot {
+            hint: "Click a curve nearer to the end to measure from",
+            kind: SlotKind::Curve,
+        },
+        Slot {
+            hint: "Click how far along it the point is",
+            kind: SlotKind::Number {
+                label: "distance",
+                want: Want::Length,
+                usual: 0.05,
+                live: None,
+            },
+        },
+    ],
+    plan: |answers, reading| {
+        let [Answer::Curve(sheet, curve, at), Answer::Number(distance)] = answers else {
+            return Err(refuse("nothing was given", "click a curve"));
+        };
+        let path = reading
+            .evaluation
+            .curve(*curve)
+            .ok_or_else(|| refuse("the curve cannot be drawn", "mend its formulas first"))?;
+        let along = path.nearest(*at).map_or(0.0, |place| place.along);
+        // A negative distance is measured from the far end.
+        let distance = match along > 0.5 * path.length() {
+            false => distance.clone(),
+            true => negated(distance, reading)?,
+        };
+        let rule = PointRule::AlongCurve {
+            curve: *curve,
+            distance,
+        };
+        let mut planning = Planning::new(reading);
+        let point = planning.run(|evaluation| plan::add_point(evaluation, *sheet, None, rule))?;
+        Ok(planning.done("Draw point on curve", [Item::Point(point)]))
+    },
+};
+
+/// The number with its sign changed; a formula stays one.
+fn negated(number: &Number, reading: &Reading<'_>) -> Result<Number, EditError> {
+    match number.as_formula() {
+        None => {
+            let value = reading.evaluation.number(number, Want::Length);
+            Ok(Number::Value(-value.unwrap_or(0.0)))
+        }
+        Some(formula) => {
+            let names = reading.evaluation.names();
+            let text = format!("-({})", formula.text(names));
+            toile_pattern::Formula::parse(&text, names)
+                .map(Number::Formula)
+                .map_err(|error| refuse(&error.message, &error.hint))
+        }
+    }
+}
+
+/// The foot of the perpendicular from a point to the line through two.
+pub static FOOT: SlotTool = SlotTool {
+    command: "Perpendicular",
+    slots: &[
+        Slot {
+            hint: "Click the point to drop a perpendicular from",
+            kind: SlotKind::Place(Fields::None),
+        },
+        Slot {
+            hint: "Click a point of the line",
+            kind: SlotKind::Place(Fields::None),
+        },
+        Slot {
+            hint: "Click another point of the line",
+            kind: SlotKind::Place(Fields::None),
+        },
+    ],
+    plan: |answers, reading| {
+        let made = |[base, from, to]: [toile_pattern::PointId; 3]| PointRule::Foot {
+            base,
+            line: [from, to],
+        };
+        constructed(answers, reading, made, "Draw perpendicular")
+    },
+};
+
+/// The mirror image of a point in the line through two.
+pub static MIRROR: SlotTool = SlotTool {
+    command: "Mirror point",
+    slots: &[
+        Slot {
+            hint: "Click the point to mirror",
+            kind: SlotKind::Place(Fields::None),
+        },
+        Slot {
+            hint: "Click a point of the mirror line",
+            kind: SlotKind::Place(Fields::None),
+        },
+        Slot {
+            hint: "Click another point of the mirror line",
+            kind: SlotKind::Place(Fields::None),
+        },
+    ],
+    plan: |answers, reading| {
+        let made = |[base, from, to]: [toile_pattern::PointId; 3]| PointRule::Mirrored {
+            base,
+            line: [from, to],
+        };
+        constructed(answers, reading, made, "Mirror point")
+    },
+};
+
+/// A point constructed from three.
+fn constructed(
+    answers: &[Answer],
+    reading: &Reading<'_>,
+    rule: impl FnOnce([toile_pattern::PointId; 3]) -> PointRule,
+    label: &str,
+) -> Result<Plan, EditError> {
+    let mut planning = Planning::new(reading);
+    let given = places(answers);
+    let points = planning.points(&given)?;
+    let rule = rule([points[0], points[1], points[2]]);
+    let sheet = given[0].sheet;
+    let point = planning.run(|evaluation| plan::add_point(evaluation, sheet, None, rule))?;
+    Ok(planning.done(label, [Item::Point(point)]))
+}

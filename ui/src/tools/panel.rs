@@ -1,0 +1,254 @@
+//! Tools that work on panels: darts, folds, notches, points on edges, lines inside.
+
+use super::planning::{Planning, places, refuse};
+use super::slots::{Answer, Fields, Slot, SlotKind, SlotTool};
+use super::{Pointer, Reading};
+use crate::canvas::selection::Item;
+use std::sync::Arc;
+use toile_geometry::Vec2;
+use toile_pattern::{
+    Apex, CurveRule, Edit, EditError, Entity, LineKind, Mark, Name, NotchKind, Number,
+    OperationKind, Panel, PanelId, Want,
+    plan::{self, Chain, CurveShape},
+};
+
+/// A dart taken out of an outline.
+pub static DART: SlotTool = SlotTool {
+    command: "Dart",
+    slots: &[
+        Slot {
+            hint: "Click the edge where the middle of the dart's mouth is",
+            kind: SlotKind::OnLine,
+        },
+        Slot {
+            hint: "Type the width of the mouth",
+            kind: SlotKind::Number {
+                label: "intake",
+                want: Want::Length,
+                usual: 0.03,
+                live: None,
+            },
+        },
+        Slot {
+            hint: "Click how deep the dart is",
+            kind: SlotKind::Number {
+                label: "depth",
+                want: Want::Length,
+                usual: 0.1,
+                live: Some(depth),
+            },
+        },
+    ],
+    plan: |answers, reading| {
+        let [
+            Answer::OnLine(panel, _, at),
+            Answer::Number(intake),
+            Answer::Number(depth),
+        ] = answers
+        else {
+            return Err(refuse("nothing was given", "click an edge"));
+        };
+        let near = marked(reading, *panel, *at)?;
+        let kind = OperationKind::Dart {
+            line: Name::Drawn(near.line),
+            mouth: near.mark,
+            intake: intake.clone(),
+            apex: Apex::Depth(depth.clone()),
+        };
+        operation(reading, *panel, kind, "Add dart")
+    },
+};
+
+/// How far the pointer is from the mouth of a dart [m].
+fn depth(answers: &[Answer], pointer: &Pointer) -> f64 {
+    let mouth = answers.iter().find_map(|answer| match answer {
+        Answer::OnLine(_, _, at) => Some(*at),
+        _ => None,
+    });
+    let away = mouth.map_or(0.1, |mouth| (pointer.at - mouth).norm());
+    crate::canvas::snap::rounded(away, 0.001).max(0.001)
+}
+
+/// A panel that is half of what is cut: a straight edge lies on the fold.
+pub static FOLD: SlotTool = SlotTool {
+    command: "Fold",
+    slots: &[Slot {
+        hint: "Click the straight edge that lies on the fold of the cloth",
+        kind: SlotKind::Edge,
+    }],
+    plan: |answers, reading| {
+        let Some(Answer::Edge(panel, edge, _)) = answers.first() else {
+            return Err(refuse("nothing was given", "click a straight edge"));
+        };
+        let owner = panel_of(reading, *panel)?;
+        let missing = || refuse("the edge is not there", "click another");
+        let line = owner.line_of(*edge).ok_or_else(missing)?;
+        let ends = owner.edge(*edge).ok_or_else(missing)?.ends;
+        let kind = OperationKind::Fold {
+            line: Name::Drawn(line.id),
+            ends: ends.map(Mark::corner),
+        };
+        operation(reading, *panel, kind, "Put on fold")
+    },
+};
+
+/// A notch.
+pub static NOTCH: SlotTool = SlotTool {
+    command: "Notch",
+    slots: &[Slot {
+        hint: "Click the edge where the notch is",
+        kind: SlotKind::OnLine,
+    }],
+    plan: |answers, reading| {
+        let Some(Answer::OnLine(panel, _, at)) = answers.first() else {
+            return Err(refuse("nothing was given", "click an edge"));
+        };
+        let near = marked(reading, *panel, *at)?;
+        let mut planning = Planning::new(reading);
+        let id = planning.run(|evaluation| {
+            let place = (near.line, near.mark);
+            plan::add_notch(evaluation, *panel, place, NotchKind::default())
+        })?;
+        Ok(planning.done("Add notch", [Item::Notch(*panel, id)]))
+    },
+};
+
+/// A corner on an edge.
+pub static DIVIDE: SlotTool = SlotTool {
+    command: "Divide edge",
+    slots: &[Slot {
+        hint: "Click the edge where a point is to divide it",
+        kind: SlotKind::Edge,
+    }],
+    plan: |answers, reading| {
+        let Some(Answer::Edge(panel, edge, at)) = answers.first() else {
+            return Err(refuse("nothing was given", "click an edge"));
+        };
+        let mut planning = Planning::new(reading);
+        let corner =
+            planning.run(|evaluation| plan::divide_edge(evaluation, (*panel, *edge), Some(*at)))?;
+        Ok(planning.done("Add point", [Item::Point(corner)]))
+    },
+};
+
+/// A line inside a panel.
+pub static INNER_LINE: SlotTool = SlotTool {
+    command: "Inner line",
+    slots: &[
+        Slot {
+            hint: "Click the panel the line is on",
+            kind: SlotKind::Panel,
+        },
+        Slot {
+            hint: "Click where the line goes, Enter ends it",
+            kind: SlotKind::Places,
+        },
+    ],
+    plan: |answers, reading| {
+        let Some(Answer::Panel(panel)) = answers.first() else {
+            return Err(refuse("nothing was given", "click a panel"));
+        };
+        let closes = matches!(answers.get(1), Some(Answer::Places(_, true)));
+        let mut planning = Planning::new(reading);
+        let given = places(answers);
+        let points = planning.points(&given)?;
+        let sheet = panel_of(reading, *panel)?.sheet();
+        let count = points.len();
+        let mut curves = Vec::new();
+        for k in 0..if closes { count } else { count - 1 } {
+            let ends = [points[k], points[(k + 1) % count]];
+            let curve = planning.run(|evaluation| {
+                let shape = CurveShape::Rule(CurveRule::Line);
+                plan::add_curve(evaluation, (sheet, None), ends, shape)
+            })?;
+            curves.push(curve);
+        }
+        let kind = match closes {
+            true => LineKind::Hole,
+            false => LineKind::Internal,
+        };
+        let line = planning.run(|evaluation| {
+            plan::add_line(evaluation, *panel, (kind, None), Chain::Curves(&curves))
+        })?;
+        let label = if closes { "Add hole" } else { "Add inner line" };
+        Ok(planning.done(label, [Item::Line(*panel, line)]))
+    },
+};
+
+/// The direction of the warp.
+pub static GRAIN: SlotTool = SlotTool {
+    command: "Grain",
+    slots: &[
+        Slot {
+            hint: "Click the panel whose grain is set",
+            kind: SlotKind::Panel,
+        },
+        Slot {
+            hint: "Click where the grainline starts",
+            kind: SlotKind::Place(Fields::None),
+        },
+        Slot {
+            hint: "Click where it points",
+            kind: SlotKind::Place(Fields::FromLast),
+        },
+    ],
+    plan: |answers, reading| {
+        let Some(Answer::Panel(panel)) = answers.first() else {
+            return Err(refuse("nothing was given", "click a panel"));
+        };
+        let given = places(answers);
+        let way = given[1].at - given[0].at;
+        if way.norm() < 1e-9 {
+            return Err(refuse(
+                "the grainline has no direction",
+                "click another place",
+            ));
+        }
+        let mut planning = Planning::new(reading);
+        let changed = Panel {
+            grain: Number::Value(way.y.atan2(way.x)),
+            ..(**panel_of(reading, *panel)?).clone()
+        };
+        planning.make(vec![Edit::Put(Entity::Panel(Arc::new(changed)))])?;
+        Ok(planning.done("Set grain", [Item::Panel(*panel)]))
+    },
+};
+
+fn panel_of<'r>(reading: &Reading<'r>, id: PanelId) -> Result<&'r Arc<Panel>, EditError> {
+    let found = reading.evaluation.pattern().panel(id);
+    found.ok_or_else(|| refuse("the panel is not there", "click another"))
+}
+
+/// The mark of a panel's line nearest to a place, on a whole millimetre of its edge or in the middle
+/// if that is near.
+fn marked(reading: &Reading<'_>, panel: PanelId, at: Vec2) -> Result<plan::NearMark, EditError> {
+    let mut near = plan::nearest_mark(reading.evaluation, panel, at)?;
+    if let Mark::Between { share, .. } = &mut near.mark
+        && let Some(path) = reading.evaluation.edge(near.edge)
+        && let Some(value) = share.value()
+    {
+        let length = path.length();
+        *share = Number::Value(tidy_share(value * length, length));
+    }
+    Ok(near)
+}
+
+/// A share of a length that falls on a whole millimetre, or on the middle if that is near.
+fn tidy_share(along: f64, length: f64) -> f64 {
+    if (along - 0.5 * length).abs() < 0.004_f64.min(0.1 * length) {
+        return 0.5;
+    }
+    (crate::canvas::snap::rounded(along, 0.001) / length).clamp(0.0, 1.0)
+}
+
+/// An operation put on a panel.
+fn operation(
+    reading: &Reading<'_>,
+    panel: PanelId,
+    kind: OperationKind,
+    label: &str,
+) -> Result<super::slots::Plan, EditError> {
+    let mut planning = Planning::new(reading);
+    let id = planning.run(|evaluation| plan::add_operation(evaluation, panel, kind))?;
+    Ok(planning.done(label, [Item::Operation(panel, id)]))
+}

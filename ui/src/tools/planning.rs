@@ -1,0 +1,134 @@
+//! Several planners one after another, each seeing what those before it did.
+
+use super::Reading;
+use super::slots::{Answer, Plan};
+use crate::canvas::selection::{Item, Selection};
+use crate::canvas::snap::{Placed, Spec};
+use toile_pattern::{Edit, EditError, Evaluation, PointId, PointRule, SheetId, plan};
+
+/// Edits in the making.
+pub struct Planning {
+    evaluation: Evaluation,
+    edits: Vec<Edit>,
+}
+
+impl Planning {
+    /// None yet.
+    pub fn new(reading: &Reading<'_>) -> Self {
+        Self {
+            evaluation: reading.evaluation.clone(),
+            edits: Vec::new(),
+        }
+    }
+
+    /// Makes the edits of a planner.
+    ///
+    /// # Errors
+    /// The planner refuses, or its edits cannot be made.
+    pub fn run<T>(
+        &mut self,
+        planner: impl FnOnce(&Evaluation) -> Result<(Vec<Edit>, T), EditError>,
+    ) -> Result<T, EditError> {
+        let (edits, found) = planner(&self.evaluation)?;
+        self.make(edits)?;
+        Ok(found)
+    }
+
+    /// Makes edits.
+    ///
+    /// # Errors
+    /// They cannot be made.
+    pub fn make(&mut self, edits: Vec<Edit>) -> Result<(), EditError> {
+        let mut pattern = self.evaluation.pattern().clone();
+        pattern.apply(&edits)?;
+        let measurements = self.evaluation.measurements().clone();
+        self.evaluation.update(&pattern, &measurements);
+        self.edits.extend(edits);
+        Ok(())
+    }
+
+    /// The point at a place: the one that is there, else a new one. `before` is the point at the
+    /// place given before.
+    ///
+    /// # Errors
+    /// The point cannot be made.
+    pub fn point(
+        &mut self,
+        placed: &Placed,
+        before: Option<PointId>,
+    ) -> Result<PointId, EditError> {
+        let rule = match (&placed.spec, before) {
+            (Spec::Point(id), _) => return Ok(*id),
+            (Spec::New(rule), _) => rule.clone(),
+            (Spec::FromLast { distance, angle }, Some(base)) => PointRule::Polar {
+                base,
+                angle: angle.clone(),
+                distance: distance.clone(),
+            },
+            (Spec::BesideLast { x, y }, Some(base)) => PointRule::Offset {
+                base,
+                x: x.clone(),
+                y: y.clone(),
+            },
+            _ => PointRule::at(placed.at.x, placed.at.y),
+        };
+        let sheet = placed.sheet;
+        self.run(|evaluation| plan::add_point(evaluation, sheet, None, rule))
+    }
+
+    /// The points at places, each after the one before.
+    ///
+    /// # Errors
+    /// A point cannot be made, or the places are on several sheets.
+    pub fn points(&mut self, places: &[&Placed]) -> Result<Vec<PointId>, EditError> {
+        let mut points = Vec::new();
+        for placed in places {
+            one_sheet(places[0].sheet, placed.sheet)?;
+            let point = self.point(placed, points.last().copied())?;
+            points.push(point);
+        }
+        Ok(points)
+    }
+
+    /// The plan of a tool.
+    pub fn done(self, label: &str, select: impl IntoIterator<Item = Item>) -> Plan {
+        Plan {
+            edits: self.edits,
+            label: label.to_owned(),
+            select: select.into_iter().collect::<Selection>(),
+            again: Vec::new(),
+        }
+    }
+}
+
+/// Refuses what is drawn across two sheets.
+fn one_sheet(one: SheetId, other: SheetId) -> Result<(), EditError> {
+    if one == other {
+        return Ok(());
+    }
+    Err(refuse(
+        "the places are on two sheets",
+        "stay on the sheet that was begun on",
+    ))
+}
+
+/// A refusal with what is wrong and what to do.
+pub fn refuse(message: &str, hint: &str) -> EditError {
+    EditError::Impossible {
+        message: message.into(),
+        hint: hint.into(),
+    }
+}
+
+/// The places that were given, in order.
+pub fn places(answers: &[Answer]) -> Vec<&Placed> {
+    let mut found = Vec::new();
+    for answer in answers {
+        match answer {
+            Answer::Place(placed) => found.push(placed),
+            Answer::Places(places, _) => found.extend(places),
+            _ => {}
+        }
+    }
+    found
+}

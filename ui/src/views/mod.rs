@@ -1,0 +1,4 @@
+//! Views: draw what the session holds, and turn what is done in them into events.
+
+pub mod garment;
+pub mod pattern;
