@@ -39,7 +39,9 @@ pub use marks::{NearMark, nearest_mark};
 pub use moving::move_point;
 pub use notch::{NotchRow, add_notch, add_notches, move_notch, remove_notch, set_notch_kind};
 pub use number_place::{MarkNumber, NumberPlace, OperationNumber, PointNumber, SpanEnd};
-pub use numbers::{NumberEntry, clear_number, number_at, numbers_of, set_number};
+pub use numbers::{
+    NumberEntry, adjust_number, clear_number, number_at, numbers_of, set_number, set_number_in_size,
+};
 pub use operations::{add_operation, move_operation, remove_operation, set_operation};
 pub use paste::{PasteTarget, Pasted, duplicate, insert_pattern, paste};
 pub use remove::{remove_parts, remove_point};
