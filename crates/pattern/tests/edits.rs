@@ -405,3 +405,47 @@ fn a_moved_point_is_followed_by_its_dependants_alone() {
     ));
     assert_eq!(evaluation.update(&pattern, &body).computed, 0);
 }
+
+/// A curve and an edge may have the same name; a formula says which it means.
+#[test]
+fn curves_named_like_edges_are_told_apart() {
+    let mut pattern = sample();
+    let [_, corner] = ends(&pattern, "front", "right");
+    let curve = pattern.sheets[0].curves[1].id;
+    let on = PointRule::OnCurve {
+        curve,
+        share: 0.25.into(),
+    };
+    let quarter = put_point(&mut pattern, 0, "quarter", on);
+    let first = pattern.sheets[0].points[1].id;
+    alter(&mut pattern, 0, |panel| {
+        panel.lines[0].edges[1].ends = [quarter, corner];
+        panel.lines[0].edges[0].ends[1] = first;
+    });
+    let names = Names::new(&pattern);
+    for (text, length) in [
+        ("length(front.right)", 0.45),
+        (
+            "length(curve front.right) + angle(curve 'front'.right) * 0cm",
+            0.6,
+        ),
+        ("length(curve front.bottom)", 0.4),
+    ] {
+        let formula = Formula::parse(text, &names).unwrap();
+        let printed = formula.text(&names);
+        assert_eq!(
+            Formula::parse(&printed, &names).unwrap(),
+            formula,
+            "{printed}"
+        );
+        let id = put_variable(&mut pattern, &format!("v{length}"), formula.into());
+        let evaluation = Evaluation::new(&pattern, &Measurements::adult());
+        let found = evaluation.variable(id).unwrap().0;
+        assert!((found - length).abs() < 1e-9, "{printed} is {found}");
+    }
+    // A panel called so is no word before another.
+    alter(&mut pattern, 1, |panel| panel.name = "curve".into());
+    let names = Names::new(&pattern);
+    let formula = Formula::parse("length(curve.right)", &names).unwrap();
+    assert_eq!(formula.text(&names), "length(curve.right)");
+}

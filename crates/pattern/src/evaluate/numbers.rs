@@ -115,9 +115,14 @@ impl Computation<'_> {
             }
             Number::PerSize { usual, sizes } => {
                 let own = sizes.iter().find(|own| Some(own.0) == self.evaluation.size);
-                match own {
-                    Some((_, value)) => Ok(plain(*value)),
-                    None => self.quantity(usual, want),
+                match (own, want) {
+                    (Some((_, value)), Want::Length) => Ok(plain(*value)),
+                    // What a variable is, its usual number says.
+                    (Some((_, value)), Want::Plain | Want::Angle) => Ok(Quantity {
+                        value: *value,
+                        power: self.quantity(usual, want).map_or(0, |found| found.power),
+                    }),
+                    (None, _) => self.quantity(usual, want),
                 }
             }
         }

@@ -52,7 +52,7 @@ impl Drawing<'_, '_, '_> {
             .c
             .number(&panel.allowance, Want::Length, &place, &words);
         let words = self.words("grain");
-        let grain = self.c.number(&panel.grain, Want::Plain, &place, &words);
+        let grain = self.c.number(&panel.grain, Want::Angle, &place, &words);
         let mut stage = Stage {
             grain: grain.unwrap_or(std::f64::consts::FRAC_PI_2),
             ..Stage::default()

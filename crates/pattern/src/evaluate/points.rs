@@ -49,7 +49,7 @@ fn construct(c: &mut Computation<'_>, rule: &PointRule) -> Result<Vec2, Failure>
             angle,
             distance,
         } => {
-            let angle = c.measure(angle, Want::Plain)?;
+            let angle = c.measure(angle, Want::Angle)?;
             let direction = Vec2::new(angle.cos(), angle.sin());
             Ok(c.point_at(*base)? + direction * c.measure(distance, Want::Length)?)
         }

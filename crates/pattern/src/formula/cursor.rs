@@ -39,6 +39,20 @@ impl Cursor<'_> {
         found
     }
 
+    /// Takes a word that stands before a name, as in `curve front.side`.
+    pub fn take_prefix(&mut self, wanted: &str) -> bool {
+        let before = self.at;
+        let next = match self.take_word(wanted) {
+            true => self.peek(),
+            false => None,
+        };
+        let found = next.is_some_and(|c| c.is_ascii_alphabetic() || c == '_' || c == '\'');
+        if !found {
+            self.at = before;
+        }
+        found
+    }
+
     pub fn column(&self) -> usize {
         self.text[..self.at].chars().count() + 1
     }

@@ -132,7 +132,8 @@ impl Formula {
     /// Numbers may carry a unit (`mm cm m in deg rad`, and `1 5/8in`); names are variables or
     /// measurements; `length(front.armhole)`, `length(front.side..front.hem)`, `angle`, `distance`,
     /// `x`, `y` speak of parts as they are drawn, `finished` of an edge after all operations;
-    /// `length('side seam')` of a seam. `if(a < b, c, d)` chooses, `round(x, 5mm)` rounds. Names
+    /// `length('side seam')` of a seam; `length(curve front.side)` of a curve whose sheet is called
+    /// like a panel with an edge of that name. `if(a < b, c, d)` chooses, `round(x, 5mm)` rounds. Names
     /// that are not plain words stand in single quotes.
     ///
     /// # Errors

@@ -8,6 +8,9 @@ use crate::{
 use std::collections::HashMap;
 use std::sync::Arc;
 
+/// The word before a curve that is named like an edge.
+pub(super) const CURVE: &str = "curve";
+
 /// The names formulas may use, of one state of a document.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
@@ -129,6 +132,18 @@ impl Names {
         Some(PartReference::Curve(curve.id))
     }
 
+    /// The curve of a sheet that `curve owner.part` names, even where a panel has such an edge: of
+    /// the sheet called so, else of that of the panel called so.
+    pub fn curve(&self, owner: &str, part: &str) -> Option<PartReference> {
+        let named = self.sheets_named.get(owner).map(|id| &self.sheets[id]);
+        let own = named.and_then(|sheet| sheet.curve_named(part));
+        let curve = match own {
+            Some(curve) => curve,
+            None => self.sheet(owner)?.curve_named(part)?,
+        };
+        Some(PartReference::Curve(curve.id))
+    }
+
     /// The stretch from corner to corner of a panel that `owner.from..owner.to` names.
     pub fn between(&self, owner: &str, [from, to]: [&str; 2]) -> Option<PartReference> {
         let panel = *self.panels_named.get(owner)?;
@@ -206,11 +221,12 @@ impl Names {
             },
             PartReference::Curve(id) => match self.curves.get(id) {
                 Some((sheet, curve)) => {
-                    let name = self
-                        .sheets
-                        .get(sheet)
-                        .map_or_else(String::new, |s| quoted(&s.name));
-                    format!("{name}.{}", quoted(&curve.name))
+                    let owner = self.sheets.get(sheet).map_or("", |sheet| &sheet.name);
+                    let text = format!("{}.{}", quoted(owner), quoted(&curve.name));
+                    match self.stretch(owner, &curve.name) == Some(part.clone()) {
+                        true => text,
+                        false => format!("{CURVE} {text}"),
+                    }
                 }
                 None => format!("?{}", id.0),
             },

@@ -1,7 +1,7 @@
 //! Reads formulas: a recursive-descent parser of bounded depth that writes postfix steps.
 
 use super::cursor::Cursor;
-use super::names::part_of_ids;
+use super::names::{CURVE, part_of_ids};
 use super::{
     Comparison, FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Function, Names, Operation,
     Step, Token,
@@ -328,6 +328,10 @@ impl Parser<'_> {
         self.cursor.at += 1;
         let start = self.cursor.at;
         let state = (self.tokens.len(), self.pending);
+        if self.cursor.take_prefix(CURVE) {
+            self.cursor.at = start;
+            return Ok(Operation::Angle(self.part(Kind::Stretch)?));
+        }
         let first = self.part(Kind::Point)?;
         if self.cursor.peek() == Some(',') {
             self.cursor.at += 1;
@@ -423,6 +427,7 @@ impl Parser<'_> {
         }
         self.cursor.skip_space();
         let start = self.cursor.at;
+        let is_curve = kind == Kind::Stretch && self.cursor.take_prefix(CURVE);
         let (owner, _) = self.cursor.word()?;
         if !self.cursor.take('.') {
             if kind == Kind::Stretch && self.cursor.peek() == Some(')') {
@@ -450,6 +455,8 @@ impl Parser<'_> {
             }
             let (to, _) = self.cursor.word()?;
             self.names.between(&owner, [&part, &to])
+        } else if is_curve {
+            self.names.curve(&owner, &part)
         } else if kind == Kind::Point {
             self.names.point(&owner, &part).map(PartReference::Point)
         } else {

@@ -171,7 +171,8 @@ fn unused(
     if curves[0] != curves[1] {
         for curve in curves {
             let still = panel.edges().filter(|edge| edge.curve == curve).count() > 1;
-            if !still && only(curve.into(), std::slice::from_ref(&own)) {
+            let is_there = pattern.curve(curve).is_some();
+            if is_there && !still && only(curve.into(), std::slice::from_ref(&own)) {
                 edits.push(Edit::Remove(curve.into()));
                 allowed.push(Place::Curve(curve));
             }

@@ -4,6 +4,7 @@ mod additions;
 mod align;
 mod chain;
 mod construct;
+mod crossings;
 mod divide;
 mod face;
 mod figure;
@@ -30,6 +31,7 @@ mod typed;
 pub use align::{Alignment, Axis, align, distribute};
 pub use chain::Chain;
 pub use construct::{CurveShape, add_curve, add_point, add_sheet};
+pub use crossings::mark_crossings;
 pub use divide::{divide_edge, join_edges};
 pub use figure::{Figure, FirstCorner, add_polygon, add_rectangle};
 pub use fragment::{Fragment, FragmentKind, Outside, OutsideValue, copy};
@@ -37,7 +39,9 @@ pub use marks::{NearMark, nearest_mark};
 pub use moving::move_point;
 pub use notch::{NotchRow, add_notch, add_notches, move_notch, remove_notch, set_notch_kind};
 pub use number_place::{MarkNumber, NumberPlace, OperationNumber, PointNumber, SpanEnd};
-pub use numbers::{NumberEntry, clear_number, number_at, numbers_of, set_number};
+pub use numbers::{
+    NumberEntry, adjust_number, clear_number, number_at, numbers_of, set_number, set_number_in_size,
+};
 pub use operations::{add_operation, move_operation, remove_operation, set_operation};
 pub use paste::{PasteTarget, Pasted, duplicate, insert_pattern, paste};
 pub use remove::{remove_parts, remove_point};

@@ -2,9 +2,10 @@
 
 use super::impossible;
 use super::lookup::{after, refuse_faults};
+use super::moving::added;
 use super::number_place::{MarkNumber, NumberPlace, OperationNumber, PointNumber, Slot, SpanEnd};
 use super::seam::SeamSide;
-use crate::{Code, Edit, EditError, Evaluation, Number, PartId, Pattern, Place, Want};
+use crate::{Code, Edit, EditError, Evaluation, Number, PartId, Pattern, Place, SizeId, Want};
 
 /// A number of a part, for an inspector.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +68,65 @@ pub fn set_number(
     let edits = vec![Edit::Put(entity)];
     refuse_valueless(evaluation, &edits, place)?;
     Ok(edits)
+}
+
+/// The edits that bring the number at a place to a value [m], [rad] or plain for the measurements on
+/// show: a value is set, a formula stays and gets something added.
+///
+/// # Errors
+/// The place is not there or has no number; the number has no value now; the new one has none.
+pub fn adjust_number(
+    evaluation: &Evaluation,
+    place: &NumberPlace,
+    to: f64,
+) -> Result<Vec<Edit>, EditError> {
+    let number = number_at(evaluation.pattern(), place).ok_or_else(|| missing(place))?;
+    let now = match place {
+        NumberPlace::Variable(id) => evaluation.variable(*id).map(|found| found.0),
+        _ => evaluation.number(&number, place.want()),
+    };
+    let now = now.ok_or_else(|| {
+        impossible(
+            format!("the {} of {} has no value", place.label(), place.part()),
+            "mend its formula first, or give it another number",
+        )
+    })?;
+    set_number(evaluation, place, added(&number, to - now))
+}
+
+/// The edits that give a number a value of its own in one size [m], [rad] or plain, or take it away
+/// again; in all other sizes it stays.
+///
+/// # Errors
+/// The size or the place is not there, or has no number; the value is not finite.
+pub fn set_number_in_size(
+    evaluation: &Evaluation,
+    place: &NumberPlace,
+    (size, value): (SizeId, Option<f64>),
+) -> Result<Vec<Edit>, EditError> {
+    let pattern = evaluation.pattern();
+    if !pattern.sizes.iter().any(|known| known.id == size) {
+        return Err(EditError::Missing(size.to_string()));
+    }
+    let number = number_at(pattern, place).ok_or_else(|| missing(place))?;
+    let (usual, mut sizes) = match number {
+        Number::PerSize { usual, sizes } => (usual, sizes),
+        other => (Box::new(other), Vec::new()),
+    };
+    let at = sizes.iter().position(|own| own.0 == size);
+    match (at, value) {
+        (Some(k), Some(value)) => sizes[k].1 = value,
+        (Some(k), None) => {
+            sizes.remove(k);
+        }
+        (None, Some(value)) => sizes.push((size, value)),
+        (None, None) => {}
+    }
+    let number = match sizes.is_empty() {
+        true => *usual,
+        false => Number::PerSize { usual, sizes },
+    };
+    set_number(evaluation, place, number)
 }
 
 /// The edits that leave a number out: an edge's allowance is then its panel's, a spline's handles

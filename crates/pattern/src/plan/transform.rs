@@ -3,7 +3,7 @@
 use super::impossible;
 use super::lookup;
 use super::moving::moved;
-use crate::{Edit, EditError, Entity, Evaluation, Node, Point, PointId};
+use crate::{Edit, EditError, Entity, Evaluation, Node, Point, PointId, PointRule};
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
@@ -104,16 +104,22 @@ pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result
     let mut work = evaluation.clone();
     let mut result = Moved::default();
     let mut first_refusal = None;
-    for (_, id, goal) in ordered {
-        match step(&work, id, goal) {
-            Ok(None) => {}
-            Ok(Some(edit)) => {
-                let mut pattern = work.pattern().clone();
-                pattern.apply(std::slice::from_ref(&edit))?;
-                work.update(&pattern, evaluation.measurements());
-                result.edits.push(edit);
+    // Points that need nothing are moved at once, the others one after another.
+    let (free, bound): (Vec<_>, Vec<_>) = ordered
+        .into_iter()
+        .partition(|(_, id, _)| needs_nothing(evaluation, *id));
+    let free = [free];
+    for group in free.iter().map(Vec::as_slice).chain(bound.chunks(1)) {
+        let mut edits = Vec::new();
+        for &(_, id, goal) in group {
+            match step(&work, id, goal) {
+                Ok(edit) => edits.extend(edit),
+                Err(refusal) => first_refusal = first_refusal.or(Some(refusal)),
             }
-            Err(refusal) => first_refusal = first_refusal.or(Some(refusal)),
+        }
+        if !edits.is_empty() {
+            work = lookup::after(&work, &edits)?;
+            result.edits.extend(edits);
         }
     }
     for &(id, goal) in goals {
@@ -128,6 +134,15 @@ pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result
         }
         _ => Ok(result),
     }
+}
+
+/// Whether a point is at coordinates that are values.
+fn needs_nothing(evaluation: &Evaluation, id: PointId) -> bool {
+    let found = evaluation.pattern().point(id);
+    found.is_some_and(|(_, point)| match &point.rule {
+        PointRule::At { x, y } => x.value().is_some() && y.value().is_some(),
+        _ => false,
+    })
 }
 
 /// The edit that takes one point to its goal, or nothing if it is there.

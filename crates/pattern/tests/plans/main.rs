@@ -12,6 +12,7 @@ mod operations;
 mod remove;
 mod rename;
 mod seam;
+mod sequences;
 mod sizes;
 mod trace;
 mod transform;

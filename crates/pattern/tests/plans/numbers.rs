@@ -369,3 +369,66 @@ fn numbers_without_a_value_are_refused() {
         );
     }
 }
+
+#[test]
+fn formulas_are_adjusted_and_sizes_have_values_of_their_own() {
+    let (edits, size) =
+        plan::add_size(&evaluated(&sample()), None, Measurements::adult_woman()).unwrap();
+    let pattern = done(&sample(), &edits);
+    let p1 = point(&pattern, "front", "p1");
+    let place = NumberPlace::Point(p1, PointNumber::X);
+    let edits = plan::set_number(&evaluated(&pattern), &place, formula("bust / 2")).unwrap();
+    let pattern = done(&pattern, &edits);
+    let half = |body: &Measurements| body.get("bust").unwrap() / 2.0;
+    let wanted = half(&Measurements::adult()) + 0.02;
+    let edits = plan::adjust_number(&evaluated(&pattern), &place, wanted).unwrap();
+    let adjusted = done(&pattern, &edits);
+    let wish = (size, Some(0.3));
+    let edits = plan::set_number_in_size(&evaluated(&adjusted), &place, wish).unwrap();
+    let own = done(&adjusted, &edits);
+    for body in bodies() {
+        same_place(
+            places(&adjusted, &body, &[p1])[0],
+            v(half(&body) + 0.02, 0.0),
+        );
+        let x = match body == Measurements::adult_woman() {
+            true => 0.3,
+            false => half(&body) + 0.02,
+        };
+        same_place(places(&own, &body, &[p1])[0], v(x, 0.0));
+    }
+    // Back again, the document is the same as before.
+    let wish = (size, None);
+    let edits = plan::set_number_in_size(&evaluated(&own), &place, wish).unwrap();
+    let back = done(&own, &edits);
+    assert_eq!(back, adjusted);
+    let edits = plan::adjust_number(&evaluated(&back), &place, wanted - 0.02).unwrap();
+    assert_eq!(done(&back, &edits), pattern);
+    let evaluation = evaluated(&pattern);
+    let lost = NumberPlace::Variable(VariableId(9999));
+    for (found, says) in [
+        (
+            plan::adjust_number(&evaluation, &place, f64::NAN),
+            "not finite",
+        ),
+        (
+            plan::adjust_number(&evaluation, &lost, 0.0),
+            "variable 9999 is not there",
+        ),
+        (
+            plan::set_number_in_size(&evaluation, &place, (SizeId(9999), None)),
+            "size 9999",
+        ),
+        (
+            plan::set_number_in_size(&evaluation, &lost, wish),
+            "variable 9999 is not there",
+        ),
+        (
+            plan::set_number_in_size(&evaluation, &place, (size, Some(f64::NAN))),
+            "not finite",
+        ),
+    ] {
+        let told = refusal(found);
+        assert!(told.contains(says), "{told}");
+    }
+}

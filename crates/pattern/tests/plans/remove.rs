@@ -163,3 +163,16 @@ fn internal_lines_lose_edges_and_closed_ones_do_not() {
     }
     assert!(plan::remove_parts(&evaluation, &[]).unwrap().is_empty());
 }
+
+#[test]
+fn a_corner_goes_even_where_its_curve_is_gone() {
+    let pattern = sample();
+    let curve = pattern.sheets[0].curves[1].id;
+    let without = removed(&pattern, &[curve.into()]);
+    let corner = point(&pattern, "front", "p2");
+    let after = removed(&without, &[corner.into()]);
+    assert!(evaluated(&after).stage(after.panels[0].id, None).is_some());
+    for body in bodies() {
+        assert!((area(&after, &body, after.panels[0].id) - 0.12).abs() < 1e-9);
+    }
+}

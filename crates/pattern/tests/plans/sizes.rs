@@ -114,3 +114,26 @@ fn the_unit_and_the_name_move_nothing() {
         assert_eq!(points, Evaluation::new(&pattern, &body).points());
     }
 }
+
+#[test]
+fn a_length_stays_a_length_in_sizes_with_their_own() {
+    let (edits, size) =
+        plan::add_size(&evaluated(&sample()), None, Measurements::adult_woman()).unwrap();
+    let pattern = done(&sample(), &edits);
+    let number = formula("bust / 10");
+    let (edits, tenth) = plan::add_variable(&evaluated(&pattern), None, number).unwrap();
+    let pattern = done(&pattern, &edits);
+    let place = NumberPlace::Variable(tenth);
+    let wish = (size, Some(0.07));
+    let edits = plan::set_number_in_size(&evaluated(&pattern), &place, wish).unwrap();
+    let pattern = done(&pattern, &edits);
+    for body in bodies() {
+        let value = match body == Measurements::adult_woman() {
+            true => 0.07,
+            false => body.get("bust").unwrap() / 10.0,
+        };
+        let evaluation = Evaluation::new(&pattern, &body);
+        let (found, power) = evaluation.variable(tenth).unwrap();
+        assert!((found - value).abs() < 1e-12 && power == 1);
+    }
+}

@@ -291,11 +291,24 @@ fn curves_that_cross_without_a_point_are_named() {
         "{told}"
     );
     let level = pattern.sheets[0].curve_named("FE").unwrap().id;
-    let at = PointRule::CurveCrossing {
-        curves: [level, cross],
-        index: 0,
-    };
-    dot(&mut pattern, sheet, at);
+    let (edits, made) = plan::mark_crossings(&evaluated(&pattern), sheet, [level, cross]).unwrap();
+    pattern = done(&pattern, &edits);
+    assert_eq!(made.len(), 1);
+    let bottom = pattern.sheets[0].curve_named("bottom").unwrap().id;
+    let top = pattern.sheets[0].curve_named("top").unwrap().id;
+    for (curves, says) in [
+        (
+            [level, cross],
+            "every crossing of curves \"FE\" and \"AC\" has a point",
+        ),
+        ([bottom, cross], "has a point"),
+        ([bottom, top], "\"bottom\" and \"top\" do not cross"),
+        ([top, top], "\"top\" and \"top\" do not cross"),
+        ([top, CurveId(9999)], "curve 9999 is not there"),
+    ] {
+        let told = refusal(plan::mark_crossings(&evaluated(&pattern), sheet, curves));
+        assert!(told.contains(says), "{told}");
+    }
     let (edits, panel) =
         plan::trace_face(&evaluated(&pattern), sheet, wish, NewPanel::default()).unwrap();
     let after = done(&pattern, &edits);
@@ -303,6 +316,7 @@ fn curves_that_cross_without_a_point_are_named() {
         // Under the diagonal and under the level line.
         let width = body.get("bust").unwrap() / 2.0;
         let wanted = width * 0.4 / 2.0 - width / 4.0 * 0.1 / 2.0;
+        same_place(places(&after, &body, &made)[0], v(0.75 * width, 0.3));
         assert!((area(&after, &body, panel) - wanted).abs() < 1e-9);
     }
 }
