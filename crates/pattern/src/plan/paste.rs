@@ -60,6 +60,7 @@ pub fn paste(
     }
     let mut pasting = Pasting {
         work: pattern.clone(),
+        known: pattern.parts().into_iter().map(|(id, _)| id).collect(),
         ids: pattern.ids,
         remap: Remap::default(),
         result: Pasted::default(),
@@ -130,6 +131,8 @@ pub fn insert_pattern(
 struct Pasting {
     /// The pattern with what was pasted so far.
     work: Pattern,
+    /// The parts it had before.
+    known: HashSet<PartId>,
     ids: Ids,
     remap: Remap,
     result: Pasted,
@@ -245,13 +248,9 @@ impl Pasting {
 
     /// Puts an entity of the fragment under its new id and a free name.
     fn put(&mut self, entity: Entity, target: PasteTarget) -> Result<(), EditError> {
-        let old = entity.id();
         let mut entity = self.remap.entity(entity);
-        let is_here = entity.id().is_some_and(|id| {
-            let mut parts = self.work.parts().into_iter();
-            parts.any(|(known, _)| known == id)
-        });
-        if is_here || old.is_none() {
+        let is_here = |id: PartId| self.known.contains(&id);
+        if entity.id().is_none_or(is_here) {
             return Ok(());
         }
         self.rename(&mut entity);

@@ -1,5 +1,7 @@
 //! Renames parts. Formulas hold ids, so they follow.
 
+use super::bind::bound;
+use super::lookup::after;
 use super::names::{curve_owner, panel_owner, point_owner, sheet_owner, wished};
 use super::{impossible, lookup};
 use crate::{
@@ -9,7 +11,8 @@ use crate::{
 use std::sync::Arc;
 use toile_measure::definition;
 
-/// The edits that give a part another name; none if it has that name.
+/// The edits that give a part another name; none if it has that name. Formulas that speak of a part
+/// of the new name, and found none, mean it from now on.
 ///
 /// # Errors
 /// The part is not there; the name can be none, or another part in its scope has it: sizes,
@@ -93,13 +96,13 @@ pub fn rename(evaluation: &Evaluation, part: PartId, name: &str) -> Result<Vec<E
             return Err(missing());
         }
     };
-    let mut changed = pattern.clone();
-    let edits = vec![Edit::Put(entity)];
-    changed.apply(&edits)?;
-    match changed == *pattern {
-        true => Ok(Vec::new()),
-        false => Ok(edits),
+    let mut edits = vec![Edit::Put(entity)];
+    let after = after(evaluation, &edits)?;
+    if after.pattern() == pattern {
+        return Ok(Vec::new());
     }
+    edits.extend(bound(&after));
+    Ok(edits)
 }
 
 /// The name a variable may have: free, and no measurement's, since formulas in files would then
