@@ -1,6 +1,7 @@
 //! Pastes fragments, duplicates parts, and inserts the panels of another pattern.
 
 use super::fragment::{Fragment, Outside, copy, copy_all, references};
+use super::impossible;
 use super::lookup::{after, finite, sheet};
 use super::names::{curve_owner, free_name, letter_name, panel_owner, sheet_owner};
 use super::number_place::{NumberPlace, Slot};
@@ -45,8 +46,8 @@ pub struct Pasted {
 /// becomes the value it had, and is listed.
 ///
 /// # Errors
-/// The sheet is not there; the offset is not finite; a part of the fragment is none that a pattern
-/// takes.
+/// The sheet is not there; the offset is not finite; two parts of the fragment have one id, or one
+/// is none that a pattern takes.
 pub fn paste(
     evaluation: &Evaluation,
     fragment: &Fragment,
@@ -65,6 +66,7 @@ pub fn paste(
         remap: Remap::default(),
         result: Pasted::default(),
     };
+    refuse_doubles(fragment)?;
     let fragment = pasting.loosened(fragment)?;
     pasting.number(&fragment, target.sheet);
     for entity in fragment.entities() {
@@ -74,6 +76,19 @@ pub fn paste(
     match target.sheet {
         Some(_) if offset != Vec2::zeros() => moved(evaluation, result, offset),
         _ => Ok(result),
+    }
+}
+
+/// Refuses data in which two parts have one id: references would mean two things.
+fn refuse_doubles(fragment: &Fragment) -> Result<(), EditError> {
+    let mut seen = HashSet::new();
+    let parts = fragment.as_pattern().parts().into_iter();
+    match parts.map(|(id, _)| id).find(|id| !seen.insert(id.number())) {
+        Some(id) => Err(impossible(
+            format!("two parts of the fragment have the id {id}"),
+            "copy it again",
+        )),
+        None => Ok(()),
     }
 }
 
