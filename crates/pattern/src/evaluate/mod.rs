@@ -20,7 +20,7 @@ pub use numbers::Want;
 
 use crate::{Diagnostic, Pattern, PointId, SheetId};
 use node::NodeState;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_measure::Measurements;
@@ -169,6 +169,18 @@ impl Evaluation {
     /// Place of a node in the order of computation: after everything it needs, but in a cycle.
     pub(crate) fn rank(&self, node: Node) -> Option<u32> {
         self.state(node).map(|state| state.rank)
+    }
+
+    /// Adds a node and everything that needs it, by however many steps.
+    pub(crate) fn gather_dependants(&self, node: Node, found: &mut HashSet<Node>) {
+        let mut open: Vec<Node> = vec![node];
+        while let Some(node) = open.pop() {
+            if !found.insert(node) {
+                continue;
+            }
+            let needed_by = self.state(node).map_or(&[][..], |state| &state.needed_by);
+            open.extend(needed_by.iter().map(|&k| self.nodes[k as usize].node));
+        }
     }
 
     fn state(&self, node: Node) -> Option<&NodeState> {

@@ -118,7 +118,7 @@ impl Graph {
         let Some(path) = evaluation.curve(curve.id) else {
             return;
         };
-        let bounds = Bounds2::of(path.flatten(FLAT)).grown(2.0 * FLAT);
+        let bounds = bounds(path);
         let mut places: Vec<(f64, usize)> = Vec::new();
         for point in &sheet.points {
             let Some(at) = evaluation.point(point.id) else {
@@ -173,10 +173,13 @@ impl Graph {
         sheet: &Sheet,
         face: &Cycle,
     ) -> Result<(), EditError> {
-        let paths: Vec<(&Curve, &Arc<Path>)> = sheet
+        let reach = face.polygon.bounds().grown(2.0 * FLAT);
+        let paths: Vec<(&Curve, &Arc<Path>, Bounds2)> = sheet
             .curves
             .iter()
             .filter_map(|curve| Some((&**curve, evaluation.curve(curve.id)?)))
+            .map(|(curve, path)| (curve, path, bounds(path)))
+            .filter(|(_, _, bounds)| bounds.meets(&reach))
             .collect();
         let on_outline = |at: Vec2| {
             let mut links = face.halves.iter().map(|h| &self.links[h / 2]);
@@ -185,8 +188,11 @@ impl Graph {
                 near.is_some_and(|n| (link.path.point(n) - at).norm() <= ON_CURVE)
             })
         };
-        for (k, (one, path)) in paths.iter().enumerate() {
-            for (other, second) in &paths[k + 1..] {
+        for (k, (one, path, own)) in paths.iter().enumerate() {
+            for (other, second, bounds) in &paths[k + 1..] {
+                if !own.meets(bounds) {
+                    continue;
+                }
                 let is_open = |at: Vec2| {
                     let mut nodes = self.nodes.iter();
                     !nodes.any(|n| (n.1 - at).norm() <= 2.0 * ON_CURVE)
@@ -206,28 +212,15 @@ impl Graph {
         Ok(())
     }
 
-    /// Leaves out links that bound nothing: those with a loose end, and those with one face on
-    /// both sides.
+    /// Leaves out links that bound nothing: those with one face on both sides, as loose lines and
+    /// bridges between lines have. Leaving them out joins no two faces, so that once is enough.
     fn prune(&mut self) {
-        loop {
-            let mut degree = vec![0_usize; self.nodes.len()];
-            for link in self.used_links() {
-                self.links[link].nodes.iter().for_each(|&n| degree[n] += 1);
-            }
-            let loose = self
-                .used_links()
-                .find(|&l| self.links[l].nodes.iter().any(|&n| degree[n] == 1));
-            if let Some(link) = loose {
-                self.used[link] = false;
-                continue;
-            }
-            let walk = self.walk();
-            let face = |half: usize| walk.iter().position(|halves| halves.contains(&half));
-            let bridge = self.used_links().find(|l| face(2 * l) == face(2 * l + 1));
-            match bridge {
-                Some(link) => self.used[link] = false,
-                None => return,
-            }
+        let mut face = vec![0_usize; 2 * self.links.len()];
+        for (k, halves) in self.walk().iter().enumerate() {
+            halves.iter().for_each(|&half| face[half] = k);
+        }
+        for (link, used) in self.used.iter_mut().enumerate() {
+            *used = face[2 * link] != face[2 * link + 1];
         }
     }
 
@@ -388,6 +381,11 @@ impl Graph {
         }
         found
     }
+}
+
+/// Bounds that hold a path with room to spare.
+fn bounds(path: &Path) -> Bounds2 {
+    Bounds2::of(path.flatten(FLAT)).grown(2.0 * FLAT)
 }
 
 fn name(sheet: &Sheet, curve: CurveId) -> &str {

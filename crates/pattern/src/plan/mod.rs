@@ -2,6 +2,7 @@
 
 mod additions;
 mod align;
+mod bind;
 mod chain;
 mod construct;
 mod crossings;

@@ -1,6 +1,7 @@
 //! Pastes fragments, duplicates parts, and inserts the panels of another pattern.
 
 use super::fragment::{Fragment, Outside, copy, copy_all, references};
+use super::impossible;
 use super::lookup::{after, finite, sheet};
 use super::names::{curve_owner, free_name, letter_name, panel_owner, sheet_owner};
 use super::number_place::{NumberPlace, Slot};
@@ -45,8 +46,8 @@ pub struct Pasted {
 /// becomes the value it had, and is listed.
 ///
 /// # Errors
-/// The sheet is not there; the offset is not finite; a part of the fragment is none that a pattern
-/// takes.
+/// The sheet is not there; the offset is not finite; two parts of the fragment have one id, or one
+/// is none that a pattern takes.
 pub fn paste(
     evaluation: &Evaluation,
     fragment: &Fragment,
@@ -60,10 +61,12 @@ pub fn paste(
     }
     let mut pasting = Pasting {
         work: pattern.clone(),
+        known: pattern.parts().into_iter().map(|(id, _)| id).collect(),
         ids: pattern.ids,
         remap: Remap::default(),
         result: Pasted::default(),
     };
+    refuse_doubles(fragment)?;
     let fragment = pasting.loosened(fragment)?;
     pasting.number(&fragment, target.sheet);
     for entity in fragment.entities() {
@@ -73,6 +76,19 @@ pub fn paste(
     match target.sheet {
         Some(_) if offset != Vec2::zeros() => moved(evaluation, result, offset),
         _ => Ok(result),
+    }
+}
+
+/// Refuses data in which two parts have one id: references would mean two things.
+fn refuse_doubles(fragment: &Fragment) -> Result<(), EditError> {
+    let mut seen = HashSet::new();
+    let parts = fragment.as_pattern().parts().into_iter();
+    match parts.map(|(id, _)| id).find(|id| !seen.insert(id.number())) {
+        Some(id) => Err(impossible(
+            format!("two parts of the fragment have the id {id}"),
+            "copy it again",
+        )),
+        None => Ok(()),
     }
 }
 
@@ -130,6 +146,8 @@ pub fn insert_pattern(
 struct Pasting {
     /// The pattern with what was pasted so far.
     work: Pattern,
+    /// The parts it had before.
+    known: HashSet<PartId>,
     ids: Ids,
     remap: Remap,
     result: Pasted,
@@ -245,13 +263,9 @@ impl Pasting {
 
     /// Puts an entity of the fragment under its new id and a free name.
     fn put(&mut self, entity: Entity, target: PasteTarget) -> Result<(), EditError> {
-        let old = entity.id();
         let mut entity = self.remap.entity(entity);
-        let is_here = entity.id().is_some_and(|id| {
-            let mut parts = self.work.parts().into_iter();
-            parts.any(|(known, _)| known == id)
-        });
-        if is_here || old.is_none() {
+        let is_here = |id: PartId| self.known.contains(&id);
+        if entity.id().is_none_or(is_here) {
             return Ok(());
         }
         self.rename(&mut entity);

@@ -1,5 +1,7 @@
 //! Renames parts. Formulas hold ids, so they follow.
 
+use super::bind::bound;
+use super::lookup::after;
 use super::names::{curve_owner, panel_owner, point_owner, sheet_owner, wished};
 use super::{impossible, lookup};
 use crate::{
@@ -9,7 +11,8 @@ use crate::{
 use std::sync::Arc;
 use toile_measure::definition;
 
-/// The edits that give a part another name; none if it has that name.
+/// The edits that give a part another name; none if it has that name. Formulas that speak of a part
+/// of the new name, and found none, mean it from now on.
 ///
 /// # Errors
 /// The part is not there; the name can be none, or another part in its scope has it: sizes,
@@ -17,33 +20,35 @@ use toile_measure::definition;
 /// lines, edges, notches and operations in their panel.
 pub fn rename(evaluation: &Evaluation, part: PartId, name: &str) -> Result<Vec<Edit>, EditError> {
     let pattern = evaluation.pattern();
-    let missing = || EditError::Missing(part.to_string());
     let parts = pattern.parts();
-    let (_, place) = parts
-        .iter()
-        .find(|(id, _)| *id == part)
-        .ok_or_else(missing)?;
-    let entity = match (part, place) {
-        (PartId::Size(id), _) => {
-            let size = pattern.sizes.iter().find(|size| size.id == id);
-            let others = pattern.sizes.iter().filter(|size| size.id != id);
-            let name = free(name, "size", others.map(|size| &*size.name))?;
-            let size = (**size.ok_or_else(missing)?).clone();
-            Entity::Size(Arc::new(Size { name, ..size }))
+    let found = parts.iter().find(|(id, _)| *id == part);
+    let (_, place) = found.ok_or_else(|| EditError::Missing(part.to_string()))?;
+    let entity = match place {
+        Place::Line(panel, _)
+        | Place::Edge(panel, _)
+        | Place::Notch(panel, _)
+        | Place::Operation(panel, _) => {
+            let panel = lookup::panel(pattern, *panel)?;
+            Entity::Panel(Arc::new(renamed(panel, part, name)?))
         }
-        (PartId::Variable(id), _) => {
-            let variable = pattern.variables.iter().find(|variable| variable.id == id);
-            let variable = (**variable.ok_or_else(missing)?).clone();
-            let name = variable_name(pattern, Some(&variable), name)?;
-            Entity::Variable(Arc::new(Variable { name, ..variable }))
-        }
-        (PartId::Fabric(id), _) => {
-            let others = pattern.fabrics.iter().filter(|fabric| fabric.id != id);
-            let name = free(name, "fabric", others.map(|fabric| &*fabric.name))?;
-            let fabric = (**pattern.fabric(id).ok_or_else(missing)?).clone();
-            Entity::Fabric(Arc::new(Fabric { name, ..fabric }))
-        }
-        (PartId::Sheet(id), _) => {
+        _ => match of_sheet(pattern, part, name)? {
+            Some(entity) => entity,
+            None => of_pattern(pattern, part, name)?,
+        },
+    };
+    let mut edits = vec![Edit::Put(entity)];
+    let after = after(evaluation, &edits)?;
+    if after.pattern() == pattern {
+        return Ok(Vec::new());
+    }
+    edits.extend(bound(&after));
+    Ok(edits)
+}
+
+/// A sheet, a point, a curve or a panel by its new name; nothing for other parts.
+fn of_sheet(pattern: &Pattern, part: PartId, name: &str) -> Result<Option<Entity>, EditError> {
+    Ok(Some(match part {
+        PartId::Sheet(id) => {
             let sheet = lookup::sheet(pattern, id)?;
             Entity::Sheet(SheetHead {
                 id,
@@ -52,7 +57,7 @@ pub fn rename(evaluation: &Evaluation, part: PartId, name: &str) -> Result<Vec<E
                 on_table: sheet.on_table,
             })
         }
-        (PartId::Point(id), _) => {
+        PartId::Point(id) => {
             let (sheet, point) = lookup::point(pattern, id)?;
             let owner = |name: &str| {
                 let owner = point_owner(sheet, name);
@@ -62,7 +67,7 @@ pub fn rename(evaluation: &Evaluation, part: PartId, name: &str) -> Result<Vec<E
             let point = (**point).clone();
             Entity::Point(sheet.id, Arc::new(Point { name, ..point }))
         }
-        (PartId::Curve(id), _) => {
+        PartId::Curve(id) => {
             let (sheet, curve) = lookup::curve(pattern, id)?;
             let owner = |name: &str| {
                 let owner = curve_owner(sheet, name);
@@ -72,34 +77,47 @@ pub fn rename(evaluation: &Evaluation, part: PartId, name: &str) -> Result<Vec<E
             let curve = (**curve).clone();
             Entity::Curve(sheet.id, Arc::new(Curve { name, ..curve }))
         }
-        (PartId::Panel(id), _) => {
+        PartId::Panel(id) => {
             let panel = lookup::panel(pattern, id)?;
             let name = wished(name, |name| panel_owner(pattern, panel, name))?;
             let panel = (**panel).clone();
             Entity::Panel(Arc::new(Panel { name, ..panel }))
         }
-        (PartId::Seam(id), _) => {
+        _ => return Ok(None),
+    }))
+}
+
+/// A size, a variable, a fabric or a seam by its new name.
+fn of_pattern(pattern: &Pattern, part: PartId, name: &str) -> Result<Entity, EditError> {
+    let missing = || EditError::Missing(part.to_string());
+    Ok(match part {
+        PartId::Size(id) => {
+            let size = pattern.sizes.iter().find(|size| size.id == id);
+            let others = pattern.sizes.iter().filter(|size| size.id != id);
+            let name = free(name, "size", others.map(|size| &*size.name))?;
+            let size = (**size.ok_or_else(missing)?).clone();
+            Entity::Size(Arc::new(Size { name, ..size }))
+        }
+        PartId::Variable(id) => {
+            let variable = pattern.variables.iter().find(|variable| variable.id == id);
+            let variable = (**variable.ok_or_else(missing)?).clone();
+            let name = variable_name(pattern, Some(&variable), name)?;
+            Entity::Variable(Arc::new(Variable { name, ..variable }))
+        }
+        PartId::Fabric(id) => {
+            let others = pattern.fabrics.iter().filter(|fabric| fabric.id != id);
+            let name = free(name, "fabric", others.map(|fabric| &*fabric.name))?;
+            let fabric = (**pattern.fabric(id).ok_or_else(missing)?).clone();
+            Entity::Fabric(Arc::new(Fabric { name, ..fabric }))
+        }
+        PartId::Seam(id) => {
             let others = pattern.seams.iter().filter(|seam| seam.id != id);
             let name = free(name, "seam", others.map(|seam| &*seam.name))?;
             let seam = (**lookup::seam(pattern, id)?).clone();
             Entity::Seam(Arc::new(Seam { name, ..seam }))
         }
-        (_, Place::Line(panel, _) | Place::Edge(panel, _))
-        | (_, Place::Notch(panel, _) | Place::Operation(panel, _)) => {
-            let panel = lookup::panel(pattern, *panel)?;
-            Entity::Panel(Arc::new(renamed(panel, part, name)?))
-        }
-        (PartId::Line(_) | PartId::Edge(_) | PartId::Notch(_) | PartId::Operation(_), _) => {
-            return Err(missing());
-        }
-    };
-    let mut changed = pattern.clone();
-    let edits = vec![Edit::Put(entity)];
-    changed.apply(&edits)?;
-    match changed == *pattern {
-        true => Ok(Vec::new()),
-        false => Ok(edits),
-    }
+        _ => return Err(missing()),
+    })
 }
 
 /// The name a variable may have: free, and no measurement's, since formulas in files would then

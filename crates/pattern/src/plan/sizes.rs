@@ -1,5 +1,7 @@
 //! Sizes and their measurements, variables, and what a pattern has besides its parts.
 
+use super::bind::bound;
+use super::lookup::after;
 use super::names::{free_name, wished};
 use super::number_place::NumberPlace;
 use super::rename::variable_name;
@@ -81,6 +83,7 @@ pub fn set_measurement(
 }
 
 /// The edits that add a variable; and the variable. Without a name it is called `v1`, `v2`, ...
+/// Formulas that speak of a variable of that name, and found none, mean it from now on.
 ///
 /// # Errors
 /// The name is taken, that of a measurement or can be none; the number has no value.
@@ -97,8 +100,9 @@ pub fn add_variable(
     let mut ids = pattern.ids;
     let id: VariableId = ids.take();
     let variable = Arc::new(Variable { id, name, number });
-    let edits = vec![Edit::Put(Entity::Variable(variable))];
+    let mut edits = vec![Edit::Put(Entity::Variable(variable))];
     numbers::refuse_valueless(evaluation, &edits, &NumberPlace::Variable(id))?;
+    edits.extend(bound(&after(evaluation, &edits)?));
     Ok((edits, id))
 }
 

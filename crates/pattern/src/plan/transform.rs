@@ -3,7 +3,8 @@
 use super::impossible;
 use super::lookup;
 use super::moving::moved;
-use crate::{Edit, EditError, Entity, Evaluation, Node, Point, PointId, PointRule};
+use crate::{Edit, EditError, Entity, Evaluation, Node, Point, PointId};
+use std::collections::HashSet;
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
@@ -104,23 +105,27 @@ pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result
     let mut work = evaluation.clone();
     let mut result = Moved::default();
     let mut first_refusal = None;
-    // Points that need nothing are moved at once, the others one after another.
-    let (free, bound): (Vec<_>, Vec<_>) = ordered
-        .into_iter()
-        .partition(|(_, id, _)| needs_nothing(evaluation, *id));
-    let free = [free];
-    for group in free.iter().map(Vec::as_slice).chain(bound.chunks(1)) {
+    let mut pending = ordered;
+    while !pending.is_empty() {
+        // Points that follow from others of these are moved after them.
+        let mut dependants = HashSet::new();
+        let mut later = Vec::new();
         let mut edits = Vec::new();
-        for &(_, id, goal) in group {
+        for (rank, id, goal) in pending {
+            let node = Node::Point(id);
+            if dependants.contains(&node) {
+                later.push((rank, id, goal));
+                continue;
+            }
+            evaluation.gather_dependants(node, &mut dependants);
             match step(&work, id, goal) {
                 Ok(edit) => edits.extend(edit),
                 Err(refusal) => first_refusal = first_refusal.or(Some(refusal)),
             }
         }
-        if !edits.is_empty() {
-            work = lookup::after(&work, &edits)?;
-            result.edits.extend(edits);
-        }
+        work = lookup::after(&work, &edits)?;
+        result.edits.append(&mut edits);
+        pending = later;
     }
     for &(id, goal) in goals {
         let is_there = |at: Vec2| (at - goal).norm() <= THERE;
@@ -134,15 +139,6 @@ pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result
         }
         _ => Ok(result),
     }
-}
-
-/// Whether a point is at coordinates that are values.
-fn needs_nothing(evaluation: &Evaluation, id: PointId) -> bool {
-    let found = evaluation.pattern().point(id);
-    found.is_some_and(|(_, point)| match &point.rule {
-        PointRule::At { x, y } => x.value().is_some() && y.value().is_some(),
-        _ => false,
-    })
 }
 
 /// The edit that takes one point to its goal, or nothing if it is there.

@@ -368,6 +368,13 @@ fn what_cannot_be_copied_or_pasted_is_refused() {
     Arc::make_mut(&mut sheet.points[0]).rule = PointRule::at(f64::NAN, 0.0);
     let target = PasteTarget::default();
     assert!(refusal(plan::paste(&evaluation, &broken, target)).contains("not finite"));
+    let mut double = fragment.clone();
+    double.sheets.push(double.sheets[0].clone());
+    let told = refusal(plan::paste(&evaluation, &double, target));
+    assert!(
+        told.contains("two parts of the fragment have the id"),
+        "{told}"
+    );
     let text = serde_json::to_string(&fragment)
         .unwrap()
         .replace("\"fragment\"", "\"block\"");

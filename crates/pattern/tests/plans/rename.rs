@@ -93,3 +93,52 @@ fn taken_names_are_refused_with_their_owner() {
     let edits = plan::rename(&evaluation, sheet.id.into(), "front").unwrap();
     assert_eq!(done(&pattern, &edits).sheets[0].name, "front");
 }
+
+#[test]
+fn formulas_that_wait_for_a_name_find_it() {
+    let mut pattern = sample();
+    let of_text = |text: &str, pattern: &Pattern| formula_in(pattern, text);
+    let waiting = of_text("ease + length(front.armhole)", &pattern);
+    put_variable(&mut pattern, "waiting", waiting);
+    let both = of_text("ease * 2", &pattern);
+    super::sample::alter(&mut pattern, 0, |panel| {
+        panel.allowance = both.clone();
+        panel.lines[0].edges[0].allowance = Some(both);
+    });
+    let lost = put_variable(&mut pattern, "lost", 1.0.into());
+    let with_lost = of_text("lost * ease", &pattern);
+    put_variable(&mut pattern, "with lost", with_lost.clone());
+    pattern.apply(&[Edit::Remove(lost.into())]).unwrap();
+    let waiting = pattern.variables[0].id;
+    assert_eq!(evaluated(&pattern).variable(waiting), None);
+    let length = super::sample::formula("2cm");
+    let (edits, ease) = plan::add_variable(&evaluated(&pattern), Some("ease"), length).unwrap();
+    let pattern = done(&pattern, &edits);
+    assert_eq!(
+        evaluated(&pattern).variable(waiting),
+        None,
+        "one name is there, one is not"
+    );
+    let right = edge(&pattern, "front", "right");
+    let edits = plan::rename(&evaluated(&pattern), right.into(), "armhole").unwrap();
+    let pattern = done(&pattern, &edits);
+    for body in bodies() {
+        let evaluation = Evaluation::new(&pattern, &body);
+        assert!((evaluation.variable(waiting).unwrap().0 - 0.62).abs() < 1e-12);
+        let stage = evaluation.stage(pattern.panels[0].id, None).unwrap();
+        assert!(
+            stage
+                .outline()
+                .iter()
+                .all(|edge| (edge.allowance - 0.04).abs() < 1e-12)
+        );
+    }
+    assert_eq!(
+        pattern.variables[1].number, with_lost,
+        "it keeps what was removed"
+    );
+    // It is bound to the variable, not to its name.
+    let edits = plan::rename(&evaluated(&pattern), ease.into(), "fullness").unwrap();
+    let pattern = done(&pattern, &edits);
+    assert!(evaluated(&pattern).variable(waiting).is_some());
+}

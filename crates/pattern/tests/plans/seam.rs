@@ -103,6 +103,16 @@ fn chains_merge_into_spans_and_tell_their_direction() {
             assert!((one.2 - 1.0).abs() < 1e-9 && (two.2 - 1.0).abs() < 1e-9);
         }
     }
+    // One edge is walked against a chain that tells its direction.
+    for (chain, backwards) in [([bottom, right], true), ([right, bottom], false)] {
+        for sides in [[&chain[..], &[left]], [&[left], &chain[..]]] {
+            let (edits, seam) = plan::sew(&evaluated(&pattern), sides, None).unwrap();
+            let after = done(&pattern, &edits);
+            let mut spans = after.seam(seam).unwrap().spans();
+            let single = spans.find(|span| span.panel == left.panel).unwrap();
+            assert_eq!(single.backwards, backwards);
+        }
+    }
     // A chain over two panels against one edge that is twice as long.
     let chain = [
         sewn(&pattern, "front", "right"),

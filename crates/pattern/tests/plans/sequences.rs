@@ -125,7 +125,7 @@ fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditError> 
         intake: (z * 0.05).into(),
         apex,
     };
-    match which % 36 {
+    match which % 37 {
         0 => add_sheet(evaluation, None, [*x, *y]).map(|done| done.0),
         1 | 2 => {
             let rule = rules[usize::from(n) % rules.len()].clone();
@@ -257,7 +257,13 @@ fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditError> 
             let text = texts[usize::from(numbers[1]) % texts.len()];
             let number = read_number(evaluation, text, entry.want)?;
             assert!(!number_text(evaluation, &number, entry.want).is_empty());
-            set_number(evaluation, &entry.place, number)
+            let size = c.pick(2, |part| matches!(part, PartId::Size(_)));
+            match n % 4 {
+                0 => adjust_number(evaluation, &entry.place, *z),
+                1 => set_number_in_size(evaluation, &entry.place, (size, Some(*z))),
+                2 => clear_number(evaluation, &entry.place),
+                _ => set_number(evaluation, &entry.place, number),
+            }
         }
         29 => {
             let fragment = copy(evaluation, &[c.any(0), c.any(1)])?;
@@ -287,6 +293,10 @@ fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditError> 
         34 => {
             let seam = c.pick(0, |part| matches!(part, PartId::Seam(_)));
             flip_side(evaluation, seam, SeamSide::First)
+        }
+        35 => {
+            let curves = [c.curve(0), c.curve(1)];
+            mark_crossings(evaluation, c.sheet(), curves).map(|done| done.0)
         }
         _ => {
             let near = nearest_mark(evaluation, panel, at)?;

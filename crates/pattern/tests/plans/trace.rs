@@ -378,3 +378,32 @@ fn holes_and_internal_lines_come_and_go() {
     pattern = done(&pattern, &[Edit::Remove(slash.into())]);
     assert!(pattern.says_the_same(&before));
 }
+
+#[test]
+fn lines_that_cross_inside_a_face_are_named_though_they_are_loose() {
+    let (mut pattern, sheet, _) = block();
+    let bars = [
+        [(0.05, 0.1), (0.25, 0.1)],
+        [(0.05, 0.2), (0.25, 0.2)],
+        [(0.1, 0.05), (0.1, 0.25)],
+        [(0.2, 0.05), (0.2, 0.25)],
+    ];
+    for bar in bars {
+        let ends = bar.map(|(x, y)| dot(&mut pattern, sheet, PointRule::at(x, y)));
+        straight(&mut pattern, sheet, ends);
+    }
+    let evaluation = evaluated(&pattern);
+    for place in [v(0.15, 0.15), v(0.02, 0.02)] {
+        let wish = (place, Holes::Cut);
+        let told = refusal(plan::trace_face(
+            &evaluation,
+            sheet,
+            wish,
+            NewPanel::default(),
+        ));
+        assert!(told.contains("cross where there is no point"), "{told}");
+    }
+    // Above the level line nothing crosses.
+    let wish = (v(0.2, 0.35), Holes::Cut);
+    assert!(plan::trace_face(&evaluation, sheet, wish, NewPanel::default()).is_ok());
+}
