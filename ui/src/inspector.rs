@@ -4,6 +4,7 @@ use crate::app::ToileApp;
 use crate::canvas::selection::Item;
 use crate::theme::Palette;
 use crate::tools::number;
+use egui::text::{CCursor, CCursorRange};
 use egui::{Color32, ComboBox, Grid, RichText, TextEdit, Ui};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -52,7 +53,15 @@ impl Inspector {
         let field = TextEdit::singleline(&mut text)
             .id(id)
             .desired_width(f32::INFINITY);
-        let response = ui.add(field).labelled_by(label);
+        let output = field.show(ui);
+        let response = output.response.response.labelled_by(label);
+        if response.gained_focus() {
+            // What is typed takes the place of what stands there.
+            let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
+            let mut state = output.state;
+            state.cursor.set_char_range(Some(all));
+            state.store(ui.ctx(), id);
+        }
         if response.gained_focus() || response.changed() {
             let typed = self.typed.entry(id).or_default();
             typed.text.clone_from(&text);

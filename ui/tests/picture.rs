@@ -51,6 +51,7 @@ fn the_pattern_and_the_mannequin_are_drawn() {
     };
     let mut window = Harness::builder()
         .with_size(egui::vec2(1200.0, 800.0))
+        .with_theme(egui::Theme::Light)
         .renderer(renderer)
         .build_eframe(move |creation| {
             let state = creation.wgpu_render_state.as_ref();

@@ -12,7 +12,7 @@ use toile_pattern::{Severity, Want};
 use toile_session::Command;
 
 /// Width of the tool bar [pixels].
-pub const TOOLS: f32 = 122.0;
+pub const TOOLS: f32 = 158.0;
 
 /// Buttons of the tool bar, in groups.
 const TOOL_BUTTONS: &[&[&str]] = &[
@@ -88,6 +88,7 @@ impl ToileApp {
                     let button = Button::new(*name)
                         .selected(in_hand)
                         .frame_when_inactive(false)
+                        .truncate()
                         .min_size(egui::vec2(ui.available_width(), 0.0))
                         .shortcut_text(key.unwrap_or_default());
                     self.command_widget(ui, command, button, None);

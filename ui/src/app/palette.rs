@@ -68,9 +68,9 @@ fn found(text: &str) -> Vec<&'static UiCommand> {
             if !words.iter().all(|word| all.contains(word)) {
                 return None;
             }
-            let first = words.first().map_or("", String::as_str);
+            let (typed, first) = (words.join(" "), words.first().map_or("", String::as_str));
             let rank = match () {
-                () if name.starts_with(first) => 0,
+                () if name.starts_with(&typed) => 0,
                 () if name.contains(first) => 1,
                 () => 2,
             };

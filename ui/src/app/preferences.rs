@@ -34,6 +34,8 @@ impl Preferences {
 
     /// Sets the theme.
     pub fn apply(&self, context: &egui::Context) {
+        // Where the system says nothing, colours are light.
+        context.options_mut(|options| options.fallback_theme = egui::Theme::Light);
         context.set_theme(match self.dark {
             None => egui::ThemePreference::System,
             Some(true) => egui::ThemePreference::Dark,

@@ -46,6 +46,8 @@ pub struct PatternView {
     /// The sheet that is drawn on.
     pub sheet: Option<SheetId>,
     pressed: Option<Pointer>,
+    /// Where the pointer was told to be last, and what was held.
+    told: Option<(Pos2, Held)>,
     wants_fit: bool,
     /// Size of the view that everything was fitted into, until it is panned or zoomed.
     fitted: Option<egui::Vec2>,
@@ -64,6 +66,7 @@ impl Default for PatternView {
             pointer: None,
             sheet: None,
             pressed: None,
+            told: None,
             wants_fit: false,
             fitted: None,
         }
@@ -246,20 +249,26 @@ impl PatternView {
         match (&self.pressed, response.interact_pointer_pos()) {
             (Some(from), Some(to)) => {
                 let from = from.clone();
+                let place = to;
                 let to = self.pointer_at(view, to, held);
                 self.pointer = Some(to.at);
-                events.push(Event::Drag(from, to));
+                if self.told.replace((place, held)) != Some((place, held)) {
+                    events.push(Event::Drag(from, to));
+                }
             }
             _ => match hovered {
                 Some(at) => {
                     let pointer = self.pointer_at(view, at, held);
                     self.hover = pointer.hit();
                     self.pointer = Some(pointer.at);
-                    events.push(Event::Hover(pointer));
+                    if self.told.replace((at, held)) != Some((at, held)) {
+                        events.push(Event::Hover(pointer));
+                    }
                 }
                 None => {
                     self.hover = None;
                     self.pointer = None;
+                    self.told = None;
                     if was_there {
                         events.push(Event::Leave);
                     }
@@ -293,17 +302,18 @@ impl PatternView {
         if self.is_typed_into(ui) {
             return Vec::new();
         }
-        if let Tool::Slots(_) = self.tool {
-            // Keys of the tool must not move the focus of the window.
+        let takes_tab = matches!(self.tool, Tool::Slots(_));
+        if takes_tab {
             response.request_focus();
-            let filter = EventFilter {
-                tab: true,
-                escape: true,
-                horizontal_arrows: true,
-                vertical_arrows: true,
-            };
-            ui.memory_mut(|memory| memory.set_focus_lock_filter(Self::id(), filter));
         }
+        // Keys of the canvas must not move the focus of the window.
+        let filter = EventFilter {
+            tab: takes_tab,
+            escape: true,
+            horizontal_arrows: true,
+            vertical_arrows: true,
+        };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(Self::id(), filter));
         let typing = self.is_typing();
         let mut events = Vec::new();
         ui.input_mut(|input| {
