@@ -2,10 +2,10 @@
 
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;
+use crate::fields::text_field;
 use crate::theme::Palette;
 use crate::tools::number;
-use egui::text::{CCursor, CCursorRange};
-use egui::{Color32, ComboBox, Grid, RichText, TextEdit, Ui};
+use egui::{Color32, ComboBox, Grid, RichText, Ui};
 use std::collections::HashMap;
 use std::sync::Arc;
 use toile_pattern::plan::{self, NumberEntry};
@@ -50,18 +50,7 @@ impl Inspector {
             .get(&id)
             .map_or(shown, |typed| &typed.text)
             .to_owned();
-        let field = TextEdit::singleline(&mut text)
-            .id(id)
-            .desired_width(f32::INFINITY);
-        let output = field.show(ui);
-        let response = output.response.response.labelled_by(label);
-        if response.gained_focus() {
-            // What is typed takes the place of what stands there.
-            let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
-            let mut state = output.state;
-            state.cursor.set_char_range(Some(all));
-            state.store(ui.ctx(), id);
-        }
+        let response = text_field(ui, id, &mut text).labelled_by(label);
         if response.gained_focus() || response.changed() {
             let typed = self.typed.entry(id).or_default();
             typed.text.clone_from(&text);

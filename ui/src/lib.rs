@@ -6,6 +6,7 @@
 
 mod app;
 mod canvas;
+mod fields;
 mod gpu;
 mod inspector;
 mod tables;

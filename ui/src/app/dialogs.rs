@@ -2,6 +2,7 @@
 
 use super::ToileApp;
 use super::files::FileChoice;
+use crate::fields::text_field;
 use crate::theme::Palette;
 use egui::{Button, Context, Key, RichText, ScrollArea, Ui, ViewportCommand};
 use std::path::PathBuf;
@@ -110,7 +111,7 @@ impl ToileApp {
 fn ask_name(ui: &mut Ui, name: &mut String) -> Answer {
     ui.heading("New pattern");
     let label = ui.label("Name").id;
-    let field = ui.text_edit_singleline(name).labelled_by(label);
+    let field = text_field(ui, egui::Id::unique("new name"), name).labelled_by(label);
     if ui.memory(|memory| memory.focused().is_none()) {
         field.request_focus();
     }
@@ -172,8 +173,7 @@ fn ask_file(ui: &mut Ui, choice: &mut FileChoice, title: &str, verb: &'static st
         ui.label(RichText::new(&choice.fault).color(colour));
     }
     let label = ui.label("File").id;
-    let field = egui::TextEdit::singleline(&mut choice.path).desired_width(WIDTH);
-    let field = ui.add(field).labelled_by(label);
+    let field = text_field(ui, egui::Id::unique("file name"), &mut choice.path).labelled_by(label);
     if ui.memory(|memory| memory.focused().is_none()) {
         field.request_focus();
     }

@@ -417,6 +417,12 @@ impl PatternView {
         picture.paint(&overlay);
     }
 
+    /// The table place of the origin of the sheet that is drawn on [m].
+    pub fn sheet_origin(&self) -> Vec2 {
+        self.sheet
+            .map_or_else(Vec2::zeros, |sheet| self.boards.sheet(sheet))
+    }
+
     /// Where a place of a sheet is seen.
     pub fn screen(&self, view: Rect, origin: Vec2, at: Vec2) -> Pos2 {
         let table = crate::canvas::camera::TablePoint(at + origin);

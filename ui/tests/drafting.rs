@@ -1,0 +1,246 @@
+//! Drafting from an empty window by tools alone, from raw events, with actions counted: an action is
+//! a click, a whole drag, a key or chord, or a typed field with its Enter.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use egui::{Key, Modifiers, Pos2, Role, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use toile_geometry::Vec2;
+use toile_pattern::{Evaluation, Pattern};
+use toile_session::{Command, Session, Silent};
+use toile_ui::{Beginning, ToileApp};
+
+/// A window with its actions counted.
+struct Drafter {
+    window: Harness<'static, ToileApp>,
+    actions: usize,
+}
+
+impl Drafter {
+    fn new() -> Self {
+        let mut window = Harness::builder()
+            .with_size(vec2(1400.0, 900.0))
+            .with_theme(egui::Theme::Light)
+            .with_max_steps(20)
+            .with_step_dt(1.0 / 60.0)
+            .build_eframe(move |creation| {
+                let state = creation.wgpu_render_state.as_ref();
+                ToileApp::new(&creation.egui_ctx, state, Beginning::default())
+            });
+        window.run();
+        Self { window, actions: 0 }
+    }
+
+    fn pattern(&self) -> Pattern {
+        (*self.window.state().session().project().pattern).clone()
+    }
+
+    fn evaluation(&self) -> Evaluation {
+        let project = self.window.state().session().project();
+        Evaluation::new(&project.pattern, &project.drafted_to())
+    }
+
+    /// Presses a button or an entry of a menu that is open.
+    fn press(&mut self, name: &str) {
+        self.actions += 1;
+        self.window
+            .get_by_role_and_label(Role::Button, name)
+            .click();
+        self.window.run();
+    }
+
+    fn key(&mut self, key: Key) {
+        self.chord(Modifiers::NONE, key);
+    }
+
+    fn chord(&mut self, modifiers: Modifiers, key: Key) {
+        self.actions += 1;
+        self.window.key_press_modifiers(modifiers, key);
+        self.window.run();
+    }
+
+    /// Types text where the keys go, and takes it.
+    fn typed(&mut self, text: &str) {
+        self.actions += 1;
+        for c in text.chars() {
+            self.window.event(egui::Event::Text(c.to_string()));
+            self.window.run();
+        }
+        self.window.key_press(Key::Enter);
+        self.window.run();
+    }
+
+    /// Types text into the field of a name, and takes it.
+    fn enter(&mut self, field: &str, text: &str) {
+        let field = self.window.get_by_role_and_label(Role::TextInput, field);
+        field.focus();
+        self.window.run();
+        self.window.event(egui::Event::Text(text.into()));
+        self.window.run();
+        self.window.key_press(Key::Enter);
+        self.window.run();
+        self.actions += 1;
+    }
+
+    fn click(&mut self, at: Pos2) {
+        self.actions += 1;
+        self.window.hover_at(at);
+        self.window.run();
+        self.window.drag_at(at);
+        self.window.drop_at(at);
+        self.window.run();
+    }
+
+    fn hover(&mut self, at: Pos2) {
+        self.window.hover_at(at);
+        self.window.run();
+    }
+
+    /// Where a named part is seen.
+    fn part(&self, name: &str) -> Pos2 {
+        let part = self.window.get_by_role_and_label(Role::Button, name);
+        part.rect().center()
+    }
+
+    /// A place of the first sheet on the screen.
+    fn place(&self, x: f64, y: f64) -> Pos2 {
+        let view = self.window.get_by_label("Pattern view").rect();
+        let view_state = self.window.state().view();
+        let origin = view_state.sheet_origin();
+        view_state.screen(view, origin, Vec2::new(x, y))
+    }
+
+    fn point(&self, name: &str) -> Vec2 {
+        let pattern = self.pattern();
+        let found = pattern
+            .sheets
+            .iter()
+            .find_map(|sheet| sheet.point_named(name));
+        self.evaluation().point(found.unwrap().id).unwrap()
+    }
+}
+
+#[test]
+fn a_skirt_panel_with_a_dart_from_an_empty_window() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Skirt");
+    drafter.actions -= 1; // The Enter that creates it belongs to the field.
+    assert_eq!(drafter.pattern().name, "Skirt");
+
+    // The panel: a rectangle with a width from a measurement.
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    let opposite = drafter.place(0.2, 0.3);
+    drafter.hover(opposite);
+    for c in "=hips / 4 + 1cm".chars() {
+        drafter.window.event(egui::Event::Text(c.to_string()));
+        drafter.window.run();
+    }
+    drafter.actions += 1;
+    drafter.key(Key::Tab);
+    drafter.typed("60");
+    let pattern = drafter.pattern();
+    assert_eq!(
+        pattern.panels.len(),
+        1,
+        "{:?}",
+        drafter.window.state().findings()
+    );
+    let hips = drafter
+        .window
+        .state()
+        .session()
+        .project()
+        .drafted_to()
+        .get("hips")
+        .unwrap();
+    let size = drafter.point("C") - drafter.point("A");
+    assert!(
+        (size - Vec2::new(hips / 4.0 + 0.01, 0.6)).norm() < 1e-12,
+        "{size}"
+    );
+
+    // The dart in the middle of the waist edge.
+    drafter.key(Key::F);
+    drafter.key(Key::D);
+    let top = drafter.part("Edge top of draft");
+    drafter.click(top);
+    drafter.typed("2.5");
+    drafter.typed("11");
+    let pattern = drafter.pattern();
+    assert_eq!(pattern.panels[0].operations.len(), 1);
+    // Centre front lies on the fold.
+    drafter.chord(Modifiers::SHIFT, Key::F);
+    drafter.click(drafter.part("Edge left of draft"));
+    assert_eq!(drafter.pattern().panels[0].operations.len(), 2);
+    println!("{} actions", drafter.actions);
+    assert!(drafter.actions <= 30, "{}", drafter.actions);
+    assert!(
+        drafter.window.query_by_label("No faults").is_some(),
+        "{:?}",
+        drafter.window.state().findings()
+    );
+
+    // All of it can be undone and done again to the same bytes.
+    let end = drafter.pattern();
+    let steps = drafter.window.state().session().past().len();
+    for _ in 0..steps {
+        drafter.chord(Modifiers::COMMAND, Key::Z);
+    }
+    assert!(drafter.pattern().panels.is_empty());
+    for _ in 0..steps {
+        drafter.chord(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    }
+    assert!(drafter.pattern().says_the_same(&end));
+    // And replayed from the journal.
+    let journal = drafter.window.state().session().journal();
+    let folder = tempfile::tempdir().unwrap();
+    let (again, _) = Session::replay(&journal, folder.path(), &mut Silent).unwrap();
+    assert!(again.project().pattern.says_the_same(&end));
+    assert!(matches!(journal[0], Command::NewPattern { .. }));
+}
+
+#[test]
+fn lines_by_lengths_and_angles_become_constructions() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Lines");
+    drafter.key(Key::L);
+    drafter.click(drafter.place(0.0, 0.0));
+    for (length, angle) in [("20", "0"), ("=10cm + 5cm", "90"), ("12,5", "180")] {
+        for c in length.chars() {
+            drafter.window.event(egui::Event::Text(c.to_string()));
+            drafter.window.run();
+        }
+        drafter.key(Key::Tab);
+        drafter.typed(angle);
+    }
+    let pattern = drafter.pattern();
+    assert_eq!(pattern.sheets[0].curves.len(), 3);
+    for (name, at) in [("B", [0.2, 0.0]), ("C", [0.2, 0.15]), ("D", [0.075, 0.15])] {
+        let away = (drafter.point(name) - Vec2::from(at)).norm();
+        assert!(away < 1e-12, "{name} is {away} away");
+    }
+    // Back to the first point closes the figure; a click inside makes a panel of it.
+    drafter.click(drafter.part("Point A of draft"));
+    drafter.key(Key::Escape);
+    drafter.key(Key::T);
+    drafter.hover(drafter.place(0.12, 0.07));
+    println!("{}", drafter.status());
+    drafter.click(drafter.place(0.12, 0.07));
+    assert_eq!(drafter.pattern().panels.len(), 1, "{}", drafter.status());
+    drafter.key(Key::Escape);
+    assert!(drafter.window.query_by_label("No faults").is_some());
+}
+
+impl Drafter {
+    /// What the status line says.
+    fn status(&self) -> String {
+        let labels = self.window.query_all_by_role(Role::Label);
+        labels
+            .filter_map(|label| label.value())
+            .collect::<Vec<_>>()
+            .join(" | ")
+    }
+}
