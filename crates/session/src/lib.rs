@@ -9,7 +9,6 @@ mod bodies;
 mod choice;
 mod command;
 mod crossings;
-mod cut;
 mod derived;
 mod drape;
 mod dressed;
@@ -19,7 +18,6 @@ mod export;
 mod fabrics;
 mod flaws;
 mod going_on;
-mod halves;
 mod hands;
 mod history;
 mod journal;
@@ -33,6 +31,8 @@ mod nest_options;
 mod open;
 mod perform;
 mod pictures;
+mod piece_facts;
+mod printing;
 mod product;
 mod project;
 mod report;
@@ -64,6 +64,10 @@ pub use nest_options::{MarkerFormat, NestOptions};
 pub use open::{
     Opened, PatternFormat, SAMPLE, open_measurements, open_pattern, read_input, read_pattern_text,
 };
+pub use piece_facts::{
+    DartFacts, EdgeFacts, NotchFacts, PieceFacts, RegionFacts, SeamFacts, piece_facts, seam_facts,
+};
+pub use printing::{PrintOptions, PrintSizes, Printed, print_job, print_pattern};
 pub use project::{Project, WornGarment};
 pub use scene::{SceneOutcome, run_scene};
 pub use session::Session;
@@ -72,8 +76,9 @@ pub use study::{RuleCost, rule_table, study_rules};
 pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
 pub use toile_body::{Description, Figure, Fit, PrimitiveEdit, ProportionBox, Scaling};
+pub use toile_cut::{CutList, CutListPiece, Shrinkage};
 pub use toile_drape::Stage;
-pub use toile_interchange::{MarkerSettings, SizeChoice, Spread, Wanted};
+pub use toile_interchange::{Lines, MarkerSettings, Paper, SizeChoice, Spread, Tile, Wanted};
 pub use toile_nesting::{Budget, Nap};
 pub use tools::{
     BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, convert, fit_mesh, make_body,
