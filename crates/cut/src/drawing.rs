@@ -125,7 +125,11 @@ impl CutPiece {
             draw(StrokeKind::Fold, StrokeName::Piece, placed(&ends), false);
         }
         let polygon = self.polygon().mapped(&place);
-        let spot = roomiest_spot(&polygon);
+        // Words and grain keep clear of seam lines and darts where these are known.
+        let spot = match self.sew.is_empty() {
+            true => roomiest_spot(&polygon),
+            false => roomiest_spot(&self.sewn().mapped(&place)),
+        };
         for points in self.grain_arrow(&place, &spot) {
             draw(StrokeKind::Grain, StrokeName::Piece, points, false);
         }
