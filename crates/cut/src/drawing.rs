@@ -104,9 +104,8 @@ impl CutPiece {
             }
         };
         let mut rings = |kind, rings: &[PieceRing]| {
-            for ring in rings {
-                let name = StrokeName::Ring(ring.segments.clone());
-                draw(kind, name, placed(&ring.points), true);
+            for (points, segments, closed) in rings.iter().flat_map(off_the_fold) {
+                draw(kind, StrokeName::Ring(segments), placed(&points), closed);
             }
         };
         rings(StrokeKind::Cut, &self.cut);
@@ -125,12 +124,14 @@ impl CutPiece {
             draw(StrokeKind::Fold, StrokeName::Piece, placed(&ends), false);
         }
         let polygon = self.polygon().mapped(&place);
+        let up = |words: &[Words]| words.first().map_or(Vec2::y(), Words::up);
         // Words and grain keep clear of seam lines and darts where these are known.
         let spot = match self.sew.is_empty() {
             true => roomiest_spot(&polygon),
             false => roomiest_spot(&self.sewn().mapped(&place)),
         };
-        for points in self.grain_arrow(&place, &spot) {
+        let words = words_at(&spot, lines);
+        for points in self.grain_arrow(&place, &spot, up(&words)) {
             draw(StrokeKind::Grain, StrokeName::Piece, points, false);
         }
         for drill in &self.drills {
@@ -143,25 +144,55 @@ impl CutPiece {
         Drawing {
             fill: Some(polygon),
             strokes,
-            words: words_at(&spot, lines),
+            words,
         }
     }
 
-    /// The grain line through the roomiest spot, and its arrow head.
-    fn grain_arrow(&self, place: impl Fn(Vec2) -> Vec2, spot: &Spot) -> Vec<Vec<Vec2>> {
+    /// The grain line above the words at the roomiest spot, and its arrow head.
+    fn grain_arrow(&self, place: impl Fn(Vec2) -> Vec2, spot: &Spot, up: Vec2) -> Vec<Vec<Vec2>> {
         let along = Vec2::new(self.grain.cos(), self.grain.sin());
         let way = (place(along) - place(Vec2::zeros())).try_normalize(0.0);
         let Some(way) = way.filter(|_| spot.room > 0.0) else {
             return Vec::new();
         };
-        let centre = spot.at + Vec2::new(0.0, spot.room * 0.2);
-        let reach = spot.room * 0.75;
+        // All of it lies above the spot and inside the free circle round it.
+        let rise = way.dot(&up).abs();
+        let reach = spot.room * (0.42 / rise.max(1e-9)).min(0.75);
+        let centre = spot.at + up * (0.2 * spot.room).max(reach * rise + 0.08 * spot.room);
         let [tail, head] = [centre - way * reach, centre + way * reach];
         let side = Vec2::new(-way.y, way.x);
         let barb = (letters(spot) * 0.6).min(reach * 0.6);
         let wing = |s: f64| head - way * barb + side * (barb * s);
         vec![vec![tail, head], vec![wing(0.5), head, wing(-0.5)]]
     }
+}
+
+impl Words {
+    /// Unit vector from their feet to their heads.
+    fn up(&self) -> Vec2 {
+        Vec2::new(-self.angle.sin(), self.angle.cos())
+    }
+}
+
+/// A closed line whole, or its parts that do not lie on the fold of the cloth: corners, segments,
+/// and whether it is closed.
+fn off_the_fold(ring: &PieceRing) -> Vec<(Vec<Vec2>, Vec<PieceSegment>, bool)> {
+    let count = ring.points.len();
+    let on_fold = |k: usize| ring.segments[k % count] == PieceSegment::Fold;
+    let Some(first) = (0..ring.segments.len()).find(|&k| on_fold(k)) else {
+        return vec![(ring.points.clone(), ring.segments.clone(), true)];
+    };
+    let mut parts = Vec::new();
+    let mut part: (Vec<Vec2>, Vec<PieceSegment>, bool) = (Vec::new(), Vec::new(), false);
+    for k in first + 1..=first + count {
+        part.0.push(ring.points[k % count]);
+        if on_fold(k) {
+            parts.push(std::mem::take(&mut part));
+        } else {
+            part.1.push(ring.segments[k % count]);
+        }
+    }
+    parts
 }
 
 /// Size of the first line at a spot \[m\].

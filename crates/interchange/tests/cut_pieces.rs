@@ -8,7 +8,7 @@ use read_back::{dxf_lines, hausdorff, svg_paths};
 use std::path::Path;
 use std::sync::Arc;
 use toile_cut::{
-    CutOptions, CutPiece, PieceSegment, Shrinkage, TextKind, cut_diagnostics, cut_list,
+    CutOptions, CutPiece, PieceSegment, Shrinkage, StrokeKind, TextKind, cut_diagnostics, cut_list,
 };
 use toile_geometry::{CrossingKind, Polygon, Vec2};
 use toile_interchange::{
@@ -235,6 +235,24 @@ fn a_piece_has_every_part_with_what_it_came_from() {
     assert_eq!(texts, ["front", "size M", "cut 1 pair", "poplin"]);
     let drawing = piece.drawing(|p| p, &texts);
     assert_eq!(drawing.words.len(), 4);
+    // The grain line stands clear of the words, however the piece lies.
+    for quarter in 0..4 {
+        let (sin, cos) = (f64::from(quarter) * std::f64::consts::FRAC_PI_2).sin_cos();
+        let turned = |p: Vec2| Vec2::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y);
+        let drawing = piece.drawing(turned, &texts);
+        let first = &drawing.words[0];
+        let up = Vec2::new(-first.angle.sin(), first.angle.cos());
+        let heads = first.at.dot(&up) + first.size;
+        let grain = drawing
+            .strokes
+            .iter()
+            .filter(|s| s.kind == StrokeKind::Grain);
+        let lowest = grain.flat_map(|s| &s.points).map(|p| p.dot(&up));
+        assert!(
+            lowest.fold(f64::INFINITY, f64::min) >= heads,
+            "turned by {quarter} quarters"
+        );
+    }
     let caps = piece.cut[0].segments.iter();
     assert!(
         caps.filter(|s| matches!(s, PieceSegment::DartCap(_)))
@@ -281,6 +299,14 @@ fn halves_and_copies_are_mirror_images() {
             1,
             "{kind:?}"
         );
+        // What lies on the fold is drawn as the fold, and neither cut nor sewn.
+        let strokes = half.drawing(|p| p, &[]).strokes;
+        let on_fold = |p: &Vec2| (p - fold.at).dot(&fold.inward).abs() < 1e-6;
+        for stroke in &strokes {
+            let folded = stroke.points.windows(2).any(|p| p.iter().all(on_fold));
+            assert_eq!(folded, stroke.kind == StrokeKind::Fold, "{stroke:?}");
+            assert!(!stroke.closed || !stroke.points.iter().any(on_fold));
+        }
         let other = CutPiece::new((&pattern, &draft), 1, (None, &CutOptions::default())).unwrap();
         assert!(
             (other.polygon().area() - piece.polygon().area()).abs() < 1e-9,

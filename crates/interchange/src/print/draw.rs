@@ -13,6 +13,8 @@ const PURPLE: Ink = [0.55, 0.2, 0.55];
 const PROJECTED: f64 = 0.0012;
 /// Letters beside the fold \[m\].
 const FOLD_LETTERS: f64 = 0.005;
+/// Their size over the length of the fold at the most: the words then fit.
+const FOLD_SHARE: f64 = 0.1;
 
 /// Ink and dash of each size's lines, one after another: told apart in colour and in black and white.
 const SIZES: [(Ink, f64); 8] = [
@@ -107,7 +109,8 @@ fn words_mark(words: Words) -> Mark {
 fn fold_words([from, to]: [Vec2; 2], fill: Option<&toile_geometry::Polygon>) -> Option<Mark> {
     let way = (to - from).try_normalize(0.0)?;
     let middle = (from + to) * 0.5;
-    let left = Vec2::new(-way.y, way.x) * FOLD_LETTERS;
+    let size = FOLD_LETTERS.min((to - from).norm() * FOLD_SHARE);
+    let left = Vec2::new(-way.y, way.x) * size;
     let inside = fill.is_some_and(|fill| fill.contains(middle + left));
     // Letters stand with their feet towards the fold, read from below or from the right.
     let (way, above) = if inside { (way, left) } else { (-way, -left) };
@@ -121,7 +124,7 @@ fn fold_words([from, to]: [Vec2; 2], fill: Option<&toile_geometry::Polygon>) -> 
         shape: Shape::Text {
             text: "fold of the cloth".to_owned(),
             at: middle + above,
-            size: FOLD_LETTERS,
+            size,
             angle: way.y.atan2(way.x),
             align: Align::Middle,
             ink: PURPLE,
