@@ -16,7 +16,7 @@ use toile_interchange::{
 };
 use toile_measure::Measurements;
 use toile_nesting::{Pose, Strip};
-use toile_pattern::{Draft, NotchKind, Pattern, Severity};
+use toile_pattern::{Draft, NotchKind, OperationKind, Pattern, Pressed, Severity};
 
 fn shipped() -> Vec<(String, Pattern)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../patterns");
@@ -314,6 +314,36 @@ fn halves_and_copies_are_mirror_images() {
         );
         assert!(piece.is_mirror_image_of(&other), "{kind:?}");
     }
+}
+
+#[test]
+fn darts_are_folded_to_the_leg_they_are_pressed_to_on_both_halves() {
+    // A slanting dart: of one that is the same on both sides the mouth is the same either way.
+    let slanting = EVERYTHING
+        .replace("\"depth\": 10", "\"apex\": \"v\"")
+        .replace("\"p\": [5, 4]", "\"v\": [14.5, 30], \"p\": [5, 4]");
+    let (pattern, _) = read_pattern(&slanting).unwrap();
+    let drafted = |pressed: Pressed| {
+        let mut pattern = pattern.clone();
+        let panel = Arc::make_mut(&mut pattern.panels[0]);
+        for operation in &mut panel.operations {
+            let operation = Arc::make_mut(operation);
+            if let OperationKind::Dart { pressed: own, .. } = &mut operation.kind {
+                *own = pressed;
+            }
+        }
+        let (draft, _) = pattern.resolve(&Measurements::adult());
+        cut(&pattern, &draft, &CutOptions::default())
+    };
+    let [before, after] = [Pressed::Before, Pressed::After].map(drafted);
+    for piece in [&before, &after] {
+        let fold = piece.fold.unwrap();
+        let mirror = |p: &Vec2| p - fold.inward * (2.0 * (p - fold.at).dot(&fold.inward));
+        let image: Vec<Vec2> = piece.cut[0].points.iter().map(mirror).collect();
+        assert!(hausdorff(&image, &piece.outer()) < 1e-5);
+    }
+    // Pressed the other way the cloth at the mouth leans the other way, by some millimetres.
+    assert!(hausdorff(&before.cut[0].points, &after.outer()) > 1e-3);
 }
 
 #[test]

@@ -13,6 +13,19 @@ use toile_session::{
     Lines, Paper, PrintOptions, PrintSizes, SessionError, Silent, print_job, print_pattern,
 };
 
+const SAIL: &str = r#"{
+ "toile": 1, "kind": "pattern", "name": "Sail", "unit": "m",
+ "fabrics": { "poplin": {
+   "density_kg_per_m2": 0.12, "thickness_m": 0.0004, "stretch_N_per_m": [1500, 1200],
+   "shear_N_per_m": 120, "poisson": 0.2, "bend_N_m": [1e-5, 8e-6, 7e-6], "friction": 0.4,
+   "width_m": 1.5, "nap": false, "colour": [0.5, 0.6, 0.8] } },
+ "panels": {
+  "sail": { "fabric": "poplin",
+   "points": { "a": [0, 0], "b": [40, 0], "c": [40, 40], "d": [0, 40] },
+   "outline": [ { "edge": "foot", "from": "a" }, { "edge": "leech", "from": "b" },
+                { "edge": "head", "from": "c" }, { "edge": "luff", "from": "d" } ] } },
+ "seams": [] }"#;
+
 /// 0.01 mm.
 const FINE: f64 = 1e-5;
 /// Widths of the lines of a print [m].
@@ -325,7 +338,9 @@ fn a_print_says_how_far_it_is_and_stops() {
 #[test]
 fn what_is_not_there_is_refused_by_its_name() {
     let refused = |options: PrintOptions, said: &str| {
-        let error = print_job(&pattern("t-shirt"), &options, &mut Silent).unwrap_err();
+        let Err(error) = print_job(&pattern("t-shirt"), &options, &mut Silent) else {
+            panic!("not refused: {said}");
+        };
         assert!(
             error.is_bad_input() && error.to_string().contains(said),
             "{error}"
@@ -360,6 +375,14 @@ fn what_is_not_there_is_refused_by_its_name() {
         },
         "1:100",
     );
+    // A sail of 40 by 40 m.
+    let folder = tempfile::tempdir().unwrap();
+    let sail = folder.path().join("sail.toile.json");
+    std::fs::write(&sail, SAIL).unwrap();
+    let Err(error) = print_job(&sail, &usual(), &mut Silent) else {
+        panic!("a sail is printed on sheets of A4");
+    };
+    assert!(error.to_string().contains("more than 500"), "{error}");
     let paths = (&*pattern("t-shirt"), Path::new("shirt.ps"));
     let error = print_pattern(paths, &usual(), &mut Silent).unwrap_err();
     assert!(
