@@ -29,7 +29,7 @@ const LAYERS: [(&str, &[&str]); 15] = [
     ("toile-geometry", &[]),
     ("toile-measure", &[]),
     ("toile-pattern", &["geometry", "measure"]),
-    ("toile-cut", &["geometry"]),
+    ("toile-cut", &["geometry", "pattern"]),
     ("toile-assembly", &["geometry", "measure", "pattern"]),
     ("toile-nesting", &["geometry"]),
     ("toile-body", &["geometry", "measure"]),
@@ -128,6 +128,52 @@ fn every_dependency_is_named_with_its_reason() {
             "docs/ARCHITECTURE.md does not say why {dependency} is used"
         );
     }
+}
+
+/// What grows an outline, or makes a region of grown loops.
+const GROWING: [&str; 2] = ["offset", "wound_region"];
+
+#[test]
+fn no_crate_but_cut_offsets_an_outline() {
+    let mut growing = Vec::new();
+    let mut seen = 0;
+    for folder in ["crates", "ui"] {
+        for path in files_below(&root().join(folder), ".rs") {
+            // The laboratory makes regions of shadows, not of pieces.
+            let apart = |c: std::path::Component<'_>| {
+                ["geometry", "lab"].iter().any(|f| c.as_os_str() == *f)
+            };
+            let own = path.components().any(apart);
+            let text = fs::read_to_string(&path).expect("readable");
+            let words = used_of_geometry(&text);
+            let grows = words.iter().any(|word| GROWING.contains(word));
+            if grows && path.components().any(|c| c.as_os_str() == "cut") {
+                seen += 1;
+            } else if grows && !own {
+                growing.push(path.display().to_string());
+            }
+        }
+    }
+    assert!(seen > 0, "crate cut is not seen to grow outlines");
+    assert!(
+        growing.is_empty(),
+        "take `CutPiece` of crate cut instead of growing outlines in {growing:?}"
+    );
+}
+
+/// Names that a file takes from our geometry, or calls there by path.
+fn used_of_geometry(text: &str) -> Vec<&str> {
+    let mut words = Vec::new();
+    for after in text.split("toile_geometry::").skip(1) {
+        let end = match after.starts_with('{') {
+            true => after.find('}'),
+            false => after.find(|c: char| !c.is_alphanumeric() && c != '_'),
+        };
+        let names = &after[..end.unwrap_or(after.len())];
+        let split = names.split(|c: char| !c.is_alphanumeric() && c != '_');
+        words.extend(split.filter(|word| !word.is_empty()));
+    }
+    words
 }
 
 #[test]

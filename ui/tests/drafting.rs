@@ -4,7 +4,7 @@
 
 use egui::{Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::kittest::Queryable;
 use toile_geometry::Vec2;
 use toile_pattern::{Evaluation, Pattern};
 use toile_session::{Command, Session, Silent};

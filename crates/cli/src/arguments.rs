@@ -1,6 +1,7 @@
 //! What can be asked on the command line.
 
 use crate::nest_arguments::Nest;
+use crate::print_arguments::Print;
 use crate::stretch::Stretch;
 use crate::values::blend;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -48,6 +49,12 @@ pub enum Task {
     /// Each fabric has its own marker, and each roll of it. Says length, efficiency, fabric needed
     /// (m), cost, and what found no place and why.
     Nest(Box<Nest>),
+    /// Print the pieces at true size: sheets to join by their marks, or one page; PDF or SVG.
+    ///
+    /// Pieces are arranged to save paper, each panel once with how often it is cut. Sheets overlap
+    /// by 10 mm and are numbered by row and column; sizes are layers of the file. A box of
+    /// 50 x 100 mm is there to be measured.
+    Print(Print),
     /// Write the triangulated panels as OBJ, in metres, side by side.
     Mesh(Mesh),
     /// Make a mannequin as OBJ, in metres, and list its measurements as asked and as got.

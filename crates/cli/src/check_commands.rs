@@ -6,7 +6,9 @@ use crate::output::{Failure, Output, count};
 use crate::session_commands::warnings;
 use serde_json::{Value, json};
 use std::path::Path;
-use toile_session::{Command, Event, Session, is_marker_file, judge_marker_file};
+use toile_session::{
+    Command, Event, Session, is_marker_file, judge_marker_file, piece_facts, seam_facts,
+};
 
 /// One file judged, or several with a verdict each.
 pub fn check(check: &Check, output: &Output) -> Result<Value, Failure> {
@@ -91,10 +93,28 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
         })
         .collect();
     output.tell(&events);
-    let report = json!({ "diagnostics": listed, "warnings": warnings(&events) });
     let errors = events
         .iter()
         .any(|e| matches!(e, Event::Checked { errors, .. } if *errors > 0));
+    let draft = session.draft();
+    let project = session.project();
+    let (pieces, seams) = match errors {
+        false => {
+            let of = (&*project.pattern, &*draft);
+            (piece_facts(of, project.size_name()), seam_facts(&draft))
+        }
+        true => (Vec::new(), Vec::new()),
+    };
+    let report = json!({
+        "format": "toile-check",
+        "version": 1,
+        "pattern": project.pattern.name,
+        "size": project.size_name(),
+        "pieces": pieces,
+        "seams": seams,
+        "diagnostics": listed,
+        "warnings": warnings(&events),
+    });
     if errors {
         let message = format!("{}: the garment cannot be made", path.display());
         return Err(Failure::bad_input(message).with_report(report));

@@ -10,6 +10,8 @@ mod lab_commands;
 mod nest_arguments;
 mod nest_commands;
 mod output;
+mod print_arguments;
+mod print_commands;
 mod session_commands;
 mod stretch;
 mod tool_commands;
@@ -53,6 +55,7 @@ fn run(task: Task, output: &Output) -> Result<serde_json::Value, Failure> {
         Task::Replay(replay) => session_commands::replay(&replay, output),
         Task::Convert(convert) => tool_commands::convert(&convert, output),
         Task::Mesh(mesh) => tool_commands::mesh(&mesh, output),
+        Task::Print(print) => print_commands::print(&print, output),
         Task::Nest(nest) => nest_commands::nest(&nest, output),
         Task::Body(body) => tool_commands::body(&body, output),
         Task::Run(run) => tool_commands::run(&run, output),

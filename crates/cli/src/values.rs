@@ -1,7 +1,7 @@
 //! Values of options that have several parts.
 
 use toile_geometry::Length;
-use toile_session::GivenFlaw;
+use toile_session::{GivenFlaw, Shrinkage};
 
 /// Most garments of one size: far more than can be laid at once.
 const MOST_GARMENTS: u32 = 10_000;
@@ -79,6 +79,41 @@ pub fn flaw(text: &str) -> Result<GivenFlaw, String> {
         .try_into()
         .map_err(|_| format!("there are {count} lengths; give four"))?;
     Ok(GivenFlaw { fabric, place })
+}
+
+/// A length on paper to a length of cloth, as in 1:4.
+pub fn scale(text: &str) -> Result<f64, String> {
+    let parts = text.split_once(':');
+    let number = |part: &str| part.trim().parse::<f64>().ok();
+    let parts = parts.and_then(|(paper, cloth)| Some((number(paper)?, number(cloth)?)));
+    match parts {
+        Some((paper, cloth)) if paper > 0.0 && cloth > 0.0 && (paper / cloth).is_finite() => {
+            Ok(paper / cloth)
+        }
+        _ => Err(format!(
+            "{text:?} is no scale; write paper:cloth, as in 1:4, from 1:100 to 2:1"
+        )),
+    }
+}
+
+/// What cloth loses along warp and weft in percent, as in 3,1.5.
+pub fn shrinkage(text: &str) -> Result<Shrinkage, String> {
+    let percents: Option<Vec<f64>> = text.split(',').map(|p| p.trim().parse().ok()).collect();
+    let shrinkage = match percents.as_deref() {
+        Some(&[warp, weft]) => Shrinkage {
+            warp: warp / 100.0,
+            weft: weft / 100.0,
+        },
+        _ => {
+            return Err(format!(
+                "{text:?} is no pair of percents; write WARP,WEFT, as in 3,1.5"
+            ));
+        }
+    };
+    match shrinkage.is_sound() {
+        true => Ok(shrinkage),
+        false => Err(format!("{text:?} is beyond any cloth; give -50 to 50 %")),
+    }
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ fn help_states_units_and_defaults() {
     let folder = tempfile::tempdir().unwrap();
     let help = words(&toile(folder.path(), &["--help"]).stdout);
     for task in [
-        "make", "drape", "check", "nest", "mesh", "body", "convert", "replay",
+        "make", "drape", "check", "nest", "print", "mesh", "body", "convert", "replay",
     ] {
         assert!(help.contains(task), "{help}");
         let help = words(&toile(folder.path(), &[task, "--help"]).stdout);

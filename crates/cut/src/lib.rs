@@ -3,8 +3,9 @@
 //! The cut line is the boundary of a union of convex pieces of cloth (a rectangle outside each
 //! chord, a wedge at each outer bend, a patch at each corner, a cap at each dart), so that it
 //! cannot cross itself and no loops have to be taken out. Every segment of it says which edge it
-//! belongs to; what could not be done as asked is listed. Lengths in metres.
-//! `docs/methods/cut.md` has the equations.
+//! belongs to; what could not be done as asked is listed. A [`CutPiece`] is a piece of a draft with
+//! all that is drawn on it, and its [`Drawing`] is what prints, markers, files and the window show.
+//! Lengths in metres. `docs/methods/cut.md` has the equations.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
@@ -13,18 +14,38 @@ mod chain;
 mod check;
 mod corner;
 mod cut_line;
+mod cut_list;
 mod dart;
+mod drawing;
 mod finding;
+mod fold;
+mod label;
+mod names;
+mod notch;
+mod options;
 mod outline;
+mod piece;
 mod region;
 mod ring;
 mod seam_line;
+mod seams;
 mod stretch;
 mod trace;
+mod words;
 
 pub use corner::{Corner, MITRE_LIMIT};
 pub use cut_line::{CutLine, CutRing, Origin, SegmentKind};
+pub use cut_list::{CutList, CutListPiece, cut_list};
+pub use drawing::{Drawing, Stroke, StrokeKind, StrokeName, Words};
 pub use finding::{CapFault, Finding};
+pub use label::{Spot, roomiest_spot};
+pub use notch::{CutNotch, NOTCH_DEPTH};
+pub use options::{CutOptions, Shrinkage};
 pub use outline::cut_line;
+pub use piece::{
+    CutPiece, Drill, HalfPlane, InsideLine, PieceError, PieceRing, PieceSegment, PieceText,
+    TextKind,
+};
 pub use ring::FLATNESS;
 pub use seam_line::{CutError, Dart, EdgeIndex, SeamEdge, SeamLine};
+pub use words::cut_diagnostics;

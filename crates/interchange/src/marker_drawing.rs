@@ -1,10 +1,12 @@
 //! Everything that is drawn of a marker, whatever the format.
 
 use crate::FormatError;
-use toile_geometry::{Polygon, Vec2};
+use std::sync::Arc;
+use toile_cut::CutPiece;
+use toile_geometry::Polygon;
 use toile_nesting::{Fold, Nap, Pose, Strip};
 
-/// Everything that is drawn on a marker. All points of a piece are in its own plane \[m\].
+/// Everything that is drawn on a marker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarkerDrawing {
     /// Name of the marker.
@@ -68,16 +70,8 @@ pub struct MarkerPiece {
     pub name: String,
     /// Number that pieces of one kind share: they are filled with one colour.
     pub item: usize,
-    /// Line to cut along \[m\].
-    pub cut: Polygon,
-    /// Line to sew along \[m\]; without rings where it is not known.
-    pub sew: Polygon,
-    /// Grain line, from its tail to its head \[m\]; nothing draws one through the middle.
-    pub grain: Option<[Vec2; 2]>,
-    /// Notches, each a short stroke \[m\].
-    pub notches: Vec<[Vec2; 2]>,
-    /// Other lines drawn on the piece \[m\].
-    pub lines: Vec<Vec<Vec2>>,
+    /// What is drawn on it, in its own plane.
+    pub piece: Arc<CutPiece>,
     /// Marker from piece.
     pub pose: Pose,
 }
@@ -162,17 +156,9 @@ impl MarkerDrawing {
         }
         for piece in &self.pieces {
             let [x, y] = piece.pose.axes();
-            let rings = piece
-                .cut
-                .rings()
-                .chain(piece.sew.rings())
-                .chain(&piece.lines);
-            let mut points = rings
-                .flatten()
-                .chain(piece.grain.iter().flatten())
-                .chain(piece.notches.iter().flatten())
-                .chain([&x, &y, &piece.pose.translation]);
-            if !points.all(|p| p.x.is_finite() && p.y.is_finite()) {
+            let mut points = [x, y, piece.pose.translation].into_iter();
+            let posed = points.all(|p| p.x.is_finite() && p.y.is_finite());
+            if !posed || !piece.piece.is_finite() {
                 return refuse(format!("piece \"{}\"", piece.name));
             }
         }

@@ -7,8 +7,8 @@ use crate::pdf::{Align, PdfPage, PdfSheets, PdfText, fitted, wrapped};
 use crate::{FormatError, MarkerDrawing};
 use toile_geometry::Vec2;
 
-/// A marker as DXF of release 12, in millimetres: layers CUT, SEW, NOTCH, GRAIN, LINE, TEXT for the
-/// pieces and FABRIC, MARGIN, FOLD, PRINT, FLAW for the cloth. The lower corner of the fabric's
+/// A marker as DXF of release 12, in millimetres: layers CUT, SEW, NOTCH, GRAIN, LINE, DRILL, TEXT for
+/// the pieces and FABRIC, MARGIN, FOLD, PRINT, FLAW for the cloth. The lower corner of the fabric's
 /// start is the origin.
 ///
 /// # Errors
@@ -119,7 +119,7 @@ pub(crate) fn plot(page: &mut PdfPage, drawing: &MarkerDrawing, look: &PlotLook)
     let on_page = |p: Vec2| look.origin + p * look.scale;
     let mapped = |points: &[Vec2]| points.iter().map(|&p| on_page(p)).collect::<Vec<_>>();
     for piece in &drawing.pieces {
-        let cut = piece.pose.lay(&piece.cut);
+        let cut = piece.pose.lay(&piece.piece.polygon());
         let rings: Vec<Vec<Vec2>> = cut.rings().map(|r| mapped(r)).collect();
         let fill = fill_of(piece.item).map(|part| f32::from(part) / 255.0);
         page.fill(rings.iter().map(Vec::as_slice), fill);

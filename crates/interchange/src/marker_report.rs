@@ -206,7 +206,7 @@ impl Report {
             seen.push(kind);
             let is_it = |p: &&MarkerPiece| (p.item, p.name.as_str()) == kind;
             let same = || marker.pieces.iter().filter(is_it);
-            let size = piece.pose.lay(&piece.cut).bounds().size();
+            let size = piece.pose.lay(&piece.piece.outer()).bounds().size();
             self.row(
                 &columns,
                 &[
@@ -214,7 +214,7 @@ impl Report {
                     same().count().to_string(),
                     same().filter(|p| p.pose.mirrored).count().to_string(),
                     format!("{:.1}", size.x * 100.0),
-                    format!("{:.0}", piece.cut.area() * 1e4),
+                    format!("{:.0}", piece.piece.polygon().area() * 1e4),
                 ],
             );
         }

@@ -1,8 +1,8 @@
 //! What a plot of a marker is drawn of: lines and words on layers, in the fabric's own plane [m],
 //! x along the warp from 0, y across from the lower side.
 
-use crate::marker_label::{roomiest_spot, size_on};
 use crate::{MarkerDrawing, MarkerPiece};
+use toile_cut::{StrokeKind, Words};
 use toile_geometry::{Polygon, Vec2};
 use toile_nesting::Fold;
 
@@ -19,11 +19,12 @@ pub(crate) enum Layer {
     Line,
     Notch,
     Grain,
+    Drill,
     Text,
 }
 
 impl Layer {
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Fabric,
         Self::Margin,
         Self::Fold,
@@ -34,6 +35,7 @@ impl Layer {
         Self::Line,
         Self::Notch,
         Self::Grain,
+        Self::Drill,
         Self::Text,
     ];
 
@@ -50,6 +52,7 @@ impl Layer {
             Self::Line => "LINE",
             Self::Notch => "NOTCH",
             Self::Grain => "GRAIN",
+            Self::Drill => "DRILL",
             Self::Text => "TEXT",
         }
     }
@@ -60,7 +63,7 @@ impl Layer {
             Self::Cut | Self::Text => 7,
             Self::Fabric | Self::Margin => 8,
             Self::Sew | Self::Line => 9,
-            Self::Notch => 3,
+            Self::Notch | Self::Drill => 3,
             Self::Grain => 5,
             Self::Print => 4,
             Self::Fold => 6,
@@ -72,7 +75,7 @@ impl Layer {
     pub fn ink(self) -> [f32; 3] {
         match self {
             Self::Cut | Self::Text => [0.07, 0.07, 0.07],
-            Self::Notch => [0.07, 0.07, 0.07],
+            Self::Notch | Self::Drill => [0.07, 0.07, 0.07],
             Self::Fabric => [0.33, 0.33, 0.33],
             Self::Margin => [0.7, 0.68, 0.64],
             Self::Sew | Self::Line => [0.45, 0.45, 0.45],
@@ -87,7 +90,7 @@ impl Layer {
     pub fn pen(self) -> u8 {
         match self {
             Self::Cut | Self::Notch => 1,
-            Self::Sew | Self::Line | Self::Grain | Self::Text => 2,
+            Self::Sew | Self::Line | Self::Grain | Self::Drill | Self::Text => 2,
             Self::Fabric | Self::Margin | Self::Fold | Self::Print | Self::Flaw => 3,
         }
     }
@@ -99,17 +102,6 @@ pub(crate) struct Stroke {
     pub layer: Layer,
     pub points: Vec<Vec2>,
     pub closed: bool,
-}
-
-/// Words, their baseline's middle at a point.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Words {
-    pub text: String,
-    pub at: Vec2,
-    /// Height of the letters \[m\].
-    pub size: f64,
-    /// Direction of the baseline \[rad\].
-    pub angle: f64,
 }
 
 /// Lines and words of a marker.
@@ -228,50 +220,28 @@ impl Strokes {
     }
 
     fn piece(&mut self, piece: &MarkerPiece) {
-        let laid = |points: &[Vec2]| points.iter().map(|&p| piece.pose.apply(p)).collect();
-        let cut = piece.pose.lay(&piece.cut);
-        self.rings(Layer::Cut, &cut);
-        self.rings(Layer::Sew, &piece.pose.lay(&piece.sew));
-        for line in &piece.lines {
-            self.line(Layer::Line, laid(line), false);
-        }
-        for notch in &piece.notches {
-            self.line(Layer::Notch, laid(notch), false);
-        }
-        let spot = roomiest_spot(&cut);
-        let size = (spot.room * 0.3).clamp(0.004, 0.022);
-        let along = Vec2::new(piece.pose.turn.cos(), piece.pose.turn.sin()) * (spot.room * 0.75);
-        let centre = spot.at + Vec2::new(0.0, spot.room * 0.2);
-        let [tail, head] = piece
-            .grain
-            .map_or([centre - along, centre + along], |ends| {
-                ends.map(|p| piece.pose.apply(p))
-            });
-        if let Some(way) = (head - tail).try_normalize(0.0) {
-            let side = Vec2::new(-way.y, way.x);
-            let barb = (size * 0.6).min((head - tail).norm() * 0.3);
-            let wing = |s: f64| head - way * barb + side * (barb * s);
-            self.line(Layer::Grain, vec![tail, head], false);
-            self.line(Layer::Grain, vec![wing(0.5), head, wing(-0.5)], false);
-        }
-        let (size, upright) = size_on(&spot, &piece.name, size);
-        let angle = if upright {
-            std::f64::consts::FRAC_PI_2
-        } else {
-            0.0
+        let lines: &[&str] = match piece.pose.mirrored {
+            true => &[&piece.name, "face down"],
+            false => &[&piece.name],
         };
-        let down = Vec2::new(angle.sin(), -angle.cos());
-        let mut word = |text: &str, size: f64, below: f64| {
-            self.words.push(Words {
-                text: text.to_owned(),
-                at: spot.at + down * below,
-                size,
-                angle,
-            });
-        };
-        word(&piece.name, size, spot.room * 0.05 + size);
-        if piece.pose.mirrored {
-            word("face down", size * 0.7, spot.room * 0.05 + 1.9 * size);
+        let drawing = piece.piece.drawing(|p| piece.pose.apply(p), lines);
+        for stroke in drawing.strokes {
+            self.line(stroke.kind.into(), stroke.points, stroke.closed);
+        }
+        self.words.extend(drawing.words);
+    }
+}
+
+impl From<StrokeKind> for Layer {
+    fn from(kind: StrokeKind) -> Self {
+        match kind {
+            StrokeKind::Cut => Self::Cut,
+            StrokeKind::Sew => Self::Sew,
+            StrokeKind::Inside => Self::Line,
+            StrokeKind::Notch => Self::Notch,
+            StrokeKind::Fold => Self::Fold,
+            StrokeKind::Grain => Self::Grain,
+            StrokeKind::Drill => Self::Drill,
         }
     }
 }

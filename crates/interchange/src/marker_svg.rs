@@ -5,9 +5,11 @@
 //! layers in Inkscape, which knows them by attributes of its own.
 
 use crate::marker_label::lines_within;
-use crate::marker_strokes::{Layer, Stroke, Strokes, Words, fill_of};
+use crate::marker_strokes::{Layer, Stroke, Strokes, fill_of};
+use crate::svg_text::{escape, number};
 use crate::{FormatError, MarkerDrawing, MarkerPiece};
 use std::fmt::Write as _;
+use toile_cut::Words;
 use toile_geometry::Vec2;
 use toile_nesting::Fold;
 
@@ -85,32 +87,6 @@ fn layer(text: &mut String, (id, label, style): (&str, &str, &str), inside: &str
             "<g id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"{style}>\n{inside}</g>"
         );
     }
-}
-
-/// Three decimals of a millimetre; no negative zero.
-fn number(value: f64) -> String {
-    let text = format!("{value:.3}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        "0".into()
-    } else {
-        text.into()
-    }
-}
-
-fn escape(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '"' => safe.push_str("&quot;"),
-            c if c.is_control() => safe.push(' '),
-            c => safe.push(c),
-        }
-    }
-    safe
 }
 
 /// What is said above the fabric.
@@ -310,6 +286,16 @@ fn write_piece(text: &mut String, piece: &MarkerPiece, width: f64) {
             Layer::Grain,
             "grain",
             "fill=\"none\" stroke=\"#1f4e9e\" stroke-width=\"1\"",
+        ),
+        (
+            Layer::Fold,
+            "on-fold",
+            "fill=\"none\" stroke=\"#8c338c\" stroke-width=\"1\" stroke-dasharray=\"20 5 4 5\"",
+        ),
+        (
+            Layer::Drill,
+            "drill",
+            "fill=\"none\" stroke=\"#111111\" stroke-width=\"0.5\"",
         ),
     ];
     for (layer, class, style) in looks {

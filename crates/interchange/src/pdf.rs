@@ -3,7 +3,8 @@
 
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
-use toile_geometry::Vec2;
+use std::collections::BTreeSet;
+use toile_geometry::{Bounds2, Vec2};
 
 /// Points of a PDF in a metre \[1/m\].
 const POINTS: f64 = 72.0 / 0.0254;
@@ -16,7 +17,9 @@ pub(crate) type Ink = [f32; 3];
 /// A PDF in the making.
 #[derive(Default)]
 pub(crate) struct PdfSheets {
-    pages: Vec<(Vec2, f64, Content)>,
+    pages: Vec<PdfPage>,
+    /// Names of the layers that readers can hide (optional content groups).
+    layers: Vec<String>,
 }
 
 /// A page in the making.
@@ -25,6 +28,8 @@ pub(crate) struct PdfPage {
     /// Points in a unit of the page.
     unit: f64,
     content: Content,
+    /// Layers that have something on it.
+    layers: BTreeSet<usize>,
 }
 
 /// Where a text stands on its baseline.
@@ -60,7 +65,37 @@ impl PdfPage {
             size,
             unit,
             content,
+            layers: BTreeSet::new(),
         }
+    }
+
+    /// What follows belongs to a layer, until its end.
+    pub fn begin_layer(&mut self, layer: usize) {
+        self.layers.insert(layer);
+        self.content
+            .begin_marked_content_with_properties(Name(b"OC"))
+            .properties_named(Name(layer_name(layer).as_bytes()));
+    }
+
+    /// Ends a layer.
+    pub fn end_layer(&mut self) {
+        self.content.end_marked_content();
+    }
+
+    /// What follows is seen inside bounds \[m\] alone, until the end of the clip.
+    pub fn clip(&mut self, bounds: &Bounds2) {
+        let (low, size) = (bounds.min, bounds.size());
+        let [x, y, width, height] = [low.x, low.y, size.x, size.y].map(|m| self.units(m));
+        self.content
+            .save_state()
+            .rect(x, y, width, height)
+            .clip_nonzero()
+            .end_path();
+    }
+
+    /// Ends a clip.
+    pub fn end_clip(&mut self) {
+        self.content.restore_state();
     }
 
     fn units(&self, metres: f64) -> f32 {
@@ -124,26 +159,63 @@ impl PdfPage {
     }
 }
 
+/// The name of a layer in a page's resources.
+fn layer_name(layer: usize) -> String {
+    format!("L{layer}")
+}
+
 impl PdfSheets {
+    /// Without pages, with layers that readers can hide.
+    pub fn with_layers(layers: &[String]) -> Self {
+        Self {
+            pages: Vec::new(),
+            layers: layers.to_vec(),
+        }
+    }
+
     /// Adds a page.
     pub fn push(&mut self, page: PdfPage) {
-        self.pages.push((page.size, page.unit, page.content));
+        self.pages.push(page);
     }
 
     /// The file.
     pub fn finish(self, title: &str) -> Vec<u8> {
         let mut pdf = Pdf::new();
         let (catalog, tree, font, info) = (Ref::new(1), Ref::new(2), Ref::new(3), Ref::new(4));
-        let page_of = |k: usize| Ref::new(5 + 2 * k as i32);
-        let content_of = |k: usize| Ref::new(6 + 2 * k as i32);
-        pdf.catalog(catalog).pages(tree);
+        let first = 5 + self.layers.len() as i32;
+        let layer_of = |k: usize| Ref::new(5 + k as i32);
+        let page_of = |k: usize| Ref::new(first + 2 * k as i32);
+        let content_of = |k: usize| Ref::new(first + 1 + 2 * k as i32);
+        let mut root = pdf.catalog(catalog);
+        root.pages(tree);
+        let layers = || (0..self.layers.len()).map(layer_of);
+        if !self.layers.is_empty() {
+            let mut properties = root.insert(Name(b"OCProperties")).dict();
+            properties.insert(Name(b"OCGs")).array().items(layers());
+            let mut usual = properties.insert(Name(b"D")).dict();
+            usual.insert(Name(b"Order")).array().items(layers());
+            usual.insert(Name(b"ON")).array().items(layers());
+        }
+        root.finish();
+        for (k, name) in self.layers.iter().enumerate() {
+            pdf.indirect(layer_of(k))
+                .dict()
+                .pair(Name(b"Type"), Name(b"OCG"))
+                .pair(Name(b"Name"), pdf_writer::TextStr(name));
+        }
         pdf.document_info(info)
             .title(pdf_writer::TextStr(title))
             .producer(pdf_writer::TextStr("Toile"));
         pdf.pages(tree)
             .kids((0..self.pages.len()).map(page_of))
             .count(self.pages.len() as i32);
-        for (k, (size, unit, content)) in self.pages.into_iter().enumerate() {
+        for (k, sheet) in self.pages.into_iter().enumerate() {
+            let PdfPage {
+                size,
+                unit,
+                content,
+                layers,
+            } = sheet;
             let units = |metres: f64| (metres * POINTS / unit) as f32;
             let mut page = pdf.page(page_of(k));
             page.media_box(Rect::new(0.0, 0.0, units(size.x), units(size.y)));
@@ -151,7 +223,15 @@ impl PdfSheets {
                 page.pair(Name(b"UserUnit"), unit as f32);
             }
             page.parent(tree).contents(content_of(k));
-            page.resources().fonts().pair(Name(b"F1"), font);
+            let mut resources = page.resources();
+            resources.fonts().pair(Name(b"F1"), font);
+            if !layers.is_empty() {
+                let mut properties = resources.insert(Name(b"Properties")).dict();
+                for layer in layers {
+                    properties.pair(Name(layer_name(layer).as_bytes()), layer_of(layer));
+                }
+            }
+            resources.finish();
             page.finish();
             pdf.stream(content_of(k), &content.finish());
         }

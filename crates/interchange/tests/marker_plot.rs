@@ -1,6 +1,9 @@
 //! Markers for machines and paper, read back: scale to a hundredth of a millimetre, layers, words.
 #![allow(clippy::unwrap_used)]
 
+mod cut_piece;
+
+use cut_piece::cut_piece;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 use toile_geometry::{Polygon, Vec2};
@@ -19,14 +22,11 @@ fn drawing() -> MarkerDrawing {
         [0.013, 0.512_345_6],
     ];
     let cut = Polygon::new(ring.map(Vec2::from).to_vec());
+    let sew = Polygon::new(ring.map(|p| Vec2::from(p) * 0.9).to_vec());
     let piece = |name: &str, turn: f64, mirrored: bool, at: [f64; 2]| MarkerPiece {
         name: name.into(),
         item: 0,
-        cut: cut.clone(),
-        sew: Polygon::new(ring.map(|p| Vec2::from(p) * 0.9).to_vec()),
-        grain: None,
-        notches: vec![[Vec2::new(0.1, 0.0), Vec2::new(0.1, 0.006)]],
-        lines: vec![vec![Vec2::new(0.1, 0.3), Vec2::new(0.2, 0.3)]],
+        piece: cut_piece(name, (&cut, &sew), ([0.1, 0.0], [0.0, 1.0])),
         pose: Pose {
             grain: FRAC_PI_2,
             turn,
@@ -63,7 +63,10 @@ fn drawing() -> MarkerDrawing {
 
 /// The cut lines as laid [m].
 fn cut_lines(drawing: &MarkerDrawing) -> Vec<Vec<Vec2>> {
-    let laid = drawing.pieces.iter().map(|p| p.pose.lay(&p.cut).outer);
+    let laid = drawing
+        .pieces
+        .iter()
+        .map(|p| p.pose.lay(&p.piece.outer()).outer);
     laid.collect()
 }
 

@@ -1,7 +1,12 @@
 //! The drawing of a marker: true to size, well formed, the same every time.
 #![allow(clippy::unwrap_used)]
 
+mod cut_piece;
+
+use cut_piece::cut_piece;
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+use toile_cut::CutPiece;
 use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_interchange::{MarkerDrawing, MarkerFacts, MarkerPiece, write_marker_svg};
 use toile_nesting::{Defect, Fold, Nap, Pose, Strip};
@@ -18,11 +23,7 @@ fn drawing() -> MarkerDrawing {
     let piece = |name: &str, turn: f64, mirrored: bool, translation: Vec2| MarkerPiece {
         name: name.into(),
         item: 0,
-        cut: cut.clone(),
-        sew: sew.clone(),
-        grain: Some([Vec2::new(0.15, 0.1), Vec2::new(0.15, 0.4)]),
-        notches: vec![[Vec2::new(0.3, 0.2), Vec2::new(0.295, 0.2)]],
-        lines: vec![vec![Vec2::new(0.1, 0.3), Vec2::new(0.2, 0.3)]],
+        piece: cut_piece(name, (&cut, &sew), ([0.3, 0.2], [-1.0, 0.0])),
         pose: Pose {
             grain: FRAC_PI_2,
             turn,
@@ -107,12 +108,13 @@ fn empty_and_broken_drawings() {
     empty.unplaced.clear();
     check_well_formed(&write_marker_svg(&empty).unwrap());
     let mut bare = drawing();
-    bare.pieces[0].cut = Polygon::default();
-    bare.pieces[0].sew = Polygon::default();
-    bare.pieces[0].grain = None;
+    let nothing = Polygon::default();
+    bare.pieces[0].piece = Arc::new(CutPiece::of_outline("nothing", &nothing, 0.0));
     check_well_formed(&write_marker_svg(&bare).unwrap());
     let mut broken = drawing();
-    broken.pieces[1].notches[0][0].x = f64::NAN;
+    let mut back = (*broken.pieces[1].piece).clone();
+    back.notches[0].point.x = f64::NAN;
+    broken.pieces[1].piece = Arc::new(back);
     assert!(
         write_marker_svg(&broken)
             .unwrap_err()

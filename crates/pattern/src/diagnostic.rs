@@ -74,8 +74,20 @@ pub enum Code {
     Negative,
     /// A corner of the cut line is too sharp for a mitre and is cut off.
     SharpCorner,
-    /// The seam allowance of a hole is left out of the cut line.
-    HoleAllowance,
+    /// A corner of the cut line is too blunt for its kind and is mitred.
+    BluntCorner,
+    /// Along an edge the seam allowance runs into other cloth.
+    AllowanceSwallowed,
+    /// Along an edge the seam allowance is narrower than asked.
+    AllowanceNarrow,
+    /// The seam allowances of a slit's or a bay's sides meet.
+    SlitShut,
+    /// A hole is filled or divided by its seam allowance.
+    HoleShut,
+    /// The mouth of a dart is cut straight across.
+    StraightDart,
+    /// A piece has no line to cut along.
+    NoCutLine,
     /// A mirrored pair is cut an odd number of times.
     OddPair,
     /// The file has a field this version does not know.

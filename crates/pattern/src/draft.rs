@@ -1,5 +1,6 @@
 //! The draft: a pattern with every formula resolved for one set of measurements. Plain numbers.
 
+use crate::stage::StageDart;
 use crate::{
     Corner, EdgeName, FabricId, LineId, Name, NotchId, NotchKind, OperationId, PanelId, Role,
     SeamId,
@@ -46,6 +47,10 @@ pub struct Piece {
     pub internal_lines: Vec<PieceLine>,
     /// Marks on the outline.
     pub notches: Vec<PieceNotch>,
+    /// Darts taken out of it, diamonds too.
+    pub darts: Vec<StageDart>,
+    /// Fold lines it was unfolded in: a point on each [m] and its direction.
+    pub folds: Vec<[Vec2; 2]>,
     /// Direction of the warp in the piece's plane [rad], from +x counter-clockwise.
     pub grain: f64,
     /// Index into [`Draft::fabrics`].
@@ -100,6 +105,9 @@ pub struct PieceEdge {
     pub seam_allowance: f64,
     /// How the cut line turns the corner at its start.
     pub corner: Corner,
+    /// Whether it runs against the edge as drawn, as on a mirror image: the corner at its start is
+    /// then that at the end of the edge as drawn.
+    pub reversed: bool,
 }
 
 /// A line inside a piece.
@@ -116,6 +124,8 @@ pub struct PieceLine {
 pub struct PieceNotch {
     /// Which notch of the panel it is.
     pub id: NotchId,
+    /// The edge it is on.
+    pub edge: EdgeOrigin,
     /// How it is cut.
     pub kind: NotchKind,
     /// Where on the outline [m].

@@ -399,11 +399,14 @@ fn piece(id: PieceId, name: String, stage: &Stage, (fabric, worn): (usize, Worn)
             .iter()
             .map(|notch| PieceNotch {
                 id: notch.id,
+                edge: origin(notch.edge, notch.half),
                 kind: notch.kind,
                 point: notch.point,
                 inward: notch.inward,
             })
             .collect(),
+        darts: stage.darts.clone(),
+        folds: stage.folds.iter().map(|fold| [fold.0, fold.1]).collect(),
         grain: stage.grain,
         fabric,
         worn,
@@ -417,6 +420,7 @@ fn piece_edge(edge: &StageEdge) -> PieceEdge {
         curve: edge.curve,
         seam_allowance: edge.allowance,
         corner: edge.corner,
+        reversed: edge.from > edge.to,
     }
 }
 

@@ -1,7 +1,6 @@
 //! Several garments worn at once: each is drafted and meshed by itself, then all are one garment of
 //! several parts, each in its layer.
 
-use crate::cut::cut_findings;
 use crate::drape::Drape;
 use crate::fabrics::FabricChoice;
 use crate::{Project, SessionError, WornGarment};
@@ -9,6 +8,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 use toile_assembly::Garment;
+use toile_cut::cut_diagnostics;
 use toile_geometry::TriangleMesh;
 use toile_interchange::ObjMesh;
 use toile_pattern::{Diagnostic, Draft, Evaluation, Pattern, Severity};
@@ -91,7 +91,7 @@ pub(crate) fn checked(evaluation: &Evaluation) -> (Draft, Vec<Diagnostic>) {
     let mut found = evaluation.check();
     let (draft, _) = evaluation.draft();
     if found.iter().all(|f| f.severity != Severity::Error) {
-        found.extend(cut_findings(pattern, &draft));
+        found.extend(cut_diagnostics(pattern, &draft));
     }
     (draft, found)
 }

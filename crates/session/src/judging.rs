@@ -6,6 +6,7 @@ use crate::{Nested, SessionError};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::path::{Path, PathBuf};
+use toile_cut::CutPiece;
 use toile_geometry::{Polygon, Vec2, total_area};
 use toile_interchange::{
     MarkerDrawing, MarkerFacts, MarkerFile, MarkerPiece, Wanted, read_marker_json, read_text,
@@ -168,11 +169,7 @@ fn drawing_of(
                     name: item.name.clone(),
                     item: *kinds.entry(placement.item).or_insert(count),
                     pose: placement.pose(&item),
-                    cut: item.outline,
-                    sew: Polygon::new(Vec::new()),
-                    grain: None,
-                    notches: Vec::new(),
-                    lines: Vec::new(),
+                    piece: CutPiece::of_outline(&item.name, &item.outline, item.grain).into(),
                 }
             })
             .collect(),

@@ -2,13 +2,14 @@
 
 use crate::flaws::check_given;
 use crate::going_on::{check_locks, lock, read_starts, start_of};
-use crate::laying_items::{LaidPiece, Wanted, items_on, wanted_of};
+use crate::laying_items::{Wanted, items_on, wanted_of};
 use crate::matching::runs_one_way;
 use crate::nest_options::{FabricPlan, PlannedRoll};
 use crate::watcher::tell;
 use crate::{Budget, NestOptions, Nested, SessionError, Watcher};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use toile_cut::CutPiece;
 use toile_interchange::{
     ANY_NAME, MarkerDrawing, MarkerFabric, MarkerFacts, MarkerFile, MarkerFileUnplaced,
     MarkerPiece, Spread,
@@ -27,7 +28,7 @@ pub(crate) struct Laying {
     /// Pieces by their cut outline.
     pub items: Vec<Item>,
     /// What is drawn on them, in the order of the items.
-    pub pieces: Vec<LaidPiece>,
+    pub pieces: Vec<Arc<CutPiece>>,
     pub strip: Strip,
     pub marker: Marker,
     pub verdict: Verdict,
@@ -75,11 +76,7 @@ impl Laying {
             MarkerPiece {
                 name: item.name.clone(),
                 item: self.of_fabric(placement.item, placement.copy).0,
-                cut: item.outline.clone(),
-                sew: piece.sew.clone(),
-                grain: None,
-                notches: piece.notches.clone(),
-                lines: piece.lines.clone(),
+                piece: piece.clone(),
                 pose: placement.pose(item),
             }
         };
@@ -250,7 +247,7 @@ struct FabricJob<'a> {
     fabric: &'a str,
     plan: FabricPlan,
     items: Vec<Item>,
-    pieces: Vec<LaidPiece>,
+    pieces: Vec<Arc<CutPiece>>,
     notes: Vec<String>,
     /// What to go on from.
     start: Option<Marker>,
@@ -362,7 +359,7 @@ impl<'a> FabricJob<'a> {
     fn laying(
         &self,
         roll: &PlannedRoll,
-        (items, pieces): (Vec<Item>, Vec<LaidPiece>),
+        (items, pieces): (Vec<Item>, Vec<Arc<CutPiece>>),
         marker: Marker,
         options: &NestOptions,
     ) -> Laying {

@@ -1,37 +1,25 @@
 //! The pieces of drafts as they are laid: cut outlines, copies, what may be done with them.
 
-use crate::cut::{cut_outline, piece_findings, sewn_outline};
-use crate::halves::{HalfPlane, are_mirror_images, fold_of, straightened};
 use crate::laying::Garments;
 use crate::matching::{match_up, resolve_marks};
 use crate::nest_options::FabricPlan;
 use crate::{NestOptions, SessionError};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
-use toile_geometry::{Polygon, Vec2, ring_area};
+use std::sync::Arc;
+use toile_cut::{CutOptions, CutPiece, HalfPlane};
+use toile_geometry::Vec2;
 use toile_interchange::{ANY_NAME, PieceSettings, Spread};
 use toile_nesting::{
     Allowed, FoldEdge, Item, Locked, MOST_PIECES, MatchPoint, Mirror, Nap, NestingError, Phase,
 };
-use toile_pattern::{Diagnostic, Piece};
-
-/// Length of a notch's stroke on the drawing [m].
-const NOTCH: f64 = 0.006;
-
-/// What is drawn on a piece that is laid, in its own plane [m].
-#[derive(Clone, Debug)]
-pub(crate) struct LaidPiece {
-    pub sew: Polygon,
-    pub notches: Vec<[Vec2; 2]>,
-    pub lines: Vec<Vec<Vec2>>,
-}
+use toile_pattern::{Diagnostic, Piece, Severity};
 
 /// A piece of one draft that is to be cut from a fabric.
 #[derive(Clone, Debug)]
 pub(crate) struct Wanted {
     pub fabric: String,
-    /// As seen from the right side of the cloth.
-    pub piece: Piece,
+    pub cut: Arc<CutPiece>,
     pub settings: PieceSettings,
     /// Name for messages and on the marker.
     pub name: String,
@@ -63,16 +51,16 @@ pub(crate) fn wanted_of(
             false => vec![bundles],
         };
         for bundles in parts {
-            for piece in &garment.draft.pieces {
+            for (number, piece) in garment.draft.pieces.iter().enumerate() {
                 let Some(own) = garment.draft.fabrics.get(piece.fabric) else {
                     continue;
                 };
                 let settings = options.piece(panel_name(garment, piece), &piece.name);
+                let cut = cut_piece(garment, number, &settings)?;
                 let found = match piece.id.copy {
-                    0 => piece_findings(garment.pattern, piece),
+                    0 => cut.diagnostics(garment.pattern),
                     _ => Vec::new(),
                 };
-                let piece = right_side_up(piece);
                 let name = match garment.label {
                     Some(label) => format!("{} {label}", piece.name),
                     None => piece.name.clone(),
@@ -88,12 +76,12 @@ pub(crate) fn wanted_of(
                         .iter()
                         .filter(|mark| mark.1 == piece.id.panel)
                         .filter_map(|mark| {
-                            let notch = piece.notches.iter().find(|n| n.id == mark.2)?;
+                            let notch = cut.notches.iter().find(|n| n.id == mark.2)?;
                             Some((mark.0, notch.point))
                         })
                         .collect(),
                     settings: settings.clone(),
-                    piece: piece.clone(),
+                    cut: cut.clone(),
                     notes: notes_of(&found, garment.label),
                 };
                 let fabric = settings.fabric.as_deref().unwrap_or(&own.name);
@@ -109,11 +97,33 @@ pub(crate) fn wanted_of(
     Ok(all)
 }
 
-/// Findings in words, with what tells their garment from others.
+/// A piece of a draft with the block round it.
+fn cut_piece(
+    garment: &Garments<'_>,
+    number: usize,
+    settings: &PieceSettings,
+) -> Result<Arc<CutPiece>, SessionError> {
+    let options = CutOptions {
+        block: settings.block.unwrap_or_default().0.max(0.0),
+        ..CutOptions::default()
+    };
+    let of = (garment.pattern, garment.draft);
+    let made = CutPiece::new(of, number, (None, &options));
+    made.map(Arc::new).map_err(|error| SessionError::Faults {
+        source_name: garment.pattern.name.clone(),
+        faults: vec![format!(
+            "piece {:?} cannot be cut: {error}",
+            garment.draft.pieces[number].name
+        )],
+    })
+}
+
+/// Warnings in words, with what tells their garment from others.
 fn notes_of(found: &[Diagnostic], label: Option<&str>) -> Vec<String> {
     let of = label.map_or_else(String::new, |label| format!("{label}: "));
     let words = |one: &Diagnostic| format!("{of}{}; {}", one.message, one.hint);
-    found.iter().map(words).collect()
+    let warnings = found.iter().filter(|one| one.severity > Severity::Note);
+    warnings.map(words).collect()
 }
 
 fn panel_name<'a>(garment: &Garments<'a>, piece: &Piece) -> &'a str {
@@ -179,7 +189,7 @@ fn check_piece_names(garments: &[Garments<'_>], options: &NestOptions) -> Result
 }
 
 /// Items, what is drawn on each, and what the cutter must know.
-type Items = (Vec<Item>, Vec<LaidPiece>, Vec<String>);
+type Items = (Vec<Item>, Vec<Arc<CutPiece>>, Vec<String>);
 
 /// The pieces of one fabric as they are laid on it.
 pub(crate) fn items_on(
@@ -203,13 +213,13 @@ pub(crate) fn items_on(
         let wanted = &wanted[k];
         let on_print = wanted.settings.on_print.unwrap_or(!matched);
         let print = printed && on_print && wanted.marks.is_empty();
-        let (mut item, piece) = item_of(wanted, print, options);
+        let mut item = item_of(wanted, print, options);
         match role {
             Role::Twin => continue,
             Role::Alone => {}
             Role::Paired => item.allowed.mirror = Mirror::Free,
             Role::Half(half) => {
-                let (halved, piece) = halved(item, &piece, half);
+                let (halved, piece) = halved(item, &wanted.cut, half);
                 items.push(halved);
                 drawn.push((k, piece));
                 continue;
@@ -225,7 +235,7 @@ pub(crate) fn items_on(
             }
         }
         items.push(item);
-        drawn.push((k, piece));
+        drawn.push((k, wanted.cut.clone()));
     }
     if printed {
         let order: Vec<usize> = drawn.iter().map(|d| d.0).collect();
@@ -278,27 +288,27 @@ fn roles(wanted: &[Wanted], plan: &FabricPlan) -> Result<Vec<Role>, SessionError
     if plan.spread == Spread::Open {
         return Ok(wanted.iter().map(|_| Role::Alone).collect());
     }
-    let shape = |w: &Wanted| straightened(&cut_of(w), w.piece.grain);
-    let shapes: Vec<Polygon> = wanted.iter().map(shape).collect();
     let folded = plan.spread != Spread::FaceToFace;
     let mut roles: Vec<Option<Role>> = wanted.iter().map(|_| None).collect();
     for k in 0..wanted.len() {
         if roles[k].is_some() {
             continue;
         }
-        let along = |half: &HalfPlane| half.runs_along(wanted[k].piece.grain);
-        let fold = fold_of(&wanted[k].piece).filter(along);
+        let along = |half: &HalfPlane| {
+            half.runs_along(wanted[k].cut.grain) && wanted[k].cut.is_symmetric_in(half)
+        };
+        let fold = wanted[k].cut.fold.filter(along);
         let on_fold = wanted[k].settings.on_fold.unwrap_or(true);
         if let Some(half) = fold.filter(|_| folded && on_fold) {
             roles[k] = Some(Role::Half(half));
             continue;
         }
-        let symmetrical = are_mirror_images(&shapes[k], &shapes[k]);
+        let symmetrical = wanted[k].cut.is_mirror_image_of(&wanted[k].cut);
         let twin = (k + 1..wanted.len()).find(|&other| {
             roles[other].is_none()
                 && !symmetrical
                 && wanted[other].bundles == wanted[k].bundles
-                && are_mirror_images(&shapes[k], &shapes[other])
+                && wanted[k].cut.is_mirror_image_of(&wanted[other].cut)
         });
         roles[k] = Some(match (twin, symmetrical, folded) {
             (Some(other), ..) => {
@@ -323,23 +333,10 @@ fn roles(wanted: &[Wanted], plan: &FabricPlan) -> Result<Vec<Role>, SessionError
         .collect())
 }
 
-/// The line a piece is cut along, with the block round it [m].
-fn cut_of(wanted: &Wanted) -> Polygon {
-    let block = wanted.settings.block.unwrap_or_default().0;
-    if block <= 0.0 {
-        return cut_outline(&wanted.piece);
-    }
-    let mut wide = wanted.piece.clone();
-    for edge in &mut wide.outline {
-        edge.seam_allowance = edge.seam_allowance.max(0.0) + block;
-    }
-    cut_outline(&wide)
-}
-
 /// A piece as it is laid: its cut outline, its grain, and where the print must meet it.
-fn item_of(wanted: &Wanted, print: bool, options: &NestOptions) -> (Item, LaidPiece) {
-    let (piece, settings) = (&wanted.piece, &wanted.settings);
-    let outline = cut_of(wanted);
+fn item_of(wanted: &Wanted, print: bool, options: &NestOptions) -> Item {
+    let (piece, settings) = (&wanted.cut, &wanted.settings);
+    let outline = piece.outer();
     // Back to the grain's own axes: the hem lies where the grain starts.
     let bounds = outline.rotated(-piece.grain).bounds();
     let hem = turned(Vec2::new(bounds.min.x, bounds.centre().y), piece.grain);
@@ -353,7 +350,7 @@ fn item_of(wanted: &Wanted, print: bool, options: &NestOptions) -> (Item, LaidPi
         mirrored: lock.face_down,
         translation: Vec2::new(lock.at[0].0, lock.at[1].0),
     });
-    let item = Item {
+    Item {
         grain: piece.grain,
         quantity: wanted.bundles.len() as u32,
         bundles: wanted.bundles.clone(),
@@ -376,29 +373,13 @@ fn item_of(wanted: &Wanted, print: bool, options: &NestOptions) -> (Item, LaidPi
         },
         locked: locked.collect(),
         ..Item::new(wanted.name.clone(), outline)
-    };
-    let drawn = LaidPiece {
-        sew: sewn_outline(piece),
-        notches: piece
-            .notches
-            .iter()
-            .map(|n| [n.point, n.point + n.inward * NOTCH])
-            .collect(),
-        lines: piece
-            .internal_lines
-            .iter()
-            .map(|line| {
-                let curves = line.curves.iter();
-                curves.flat_map(|curve| curve.flatten(1e-4)).collect()
-            })
-            .collect(),
-    };
-    (item, drawn)
+    }
 }
 
 /// Half of a piece, for the fold.
-fn halved(mut item: Item, piece: &LaidPiece, half: HalfPlane) -> (Item, LaidPiece) {
-    item.outline = half.cut(&item.outline);
+fn halved(mut item: Item, piece: &CutPiece, half: HalfPlane) -> (Item, Arc<CutPiece>) {
+    let drawn = piece.halved(&half);
+    item.outline = drawn.outer();
     let inward = turned(half.inward, -item.grain);
     item.fold_edge = Some(match inward.y > 0.0 {
         true => FoldEdge::Lower,
@@ -406,42 +387,11 @@ fn halved(mut item: Item, piece: &LaidPiece, half: HalfPlane) -> (Item, LaidPiec
     });
     item.allowed.mirror = Mirror::Free;
     item.allowed.tilt = 0.0;
-    let notches = piece.notches.iter().filter(|n| half.keeps(n[0]));
-    let drawn = LaidPiece {
-        sew: half.cut(&piece.sew),
-        notches: notches.copied().collect(),
-        lines: piece.lines.iter().flat_map(|l| half.cut_line(l)).collect(),
-    };
-    (item, drawn)
+    (item, Arc::new(drawn))
 }
 
 /// A vector turned by an angle [rad].
 pub(crate) fn turned(v: Vec2, angle: f64) -> Vec2 {
     let (sin, cos) = angle.sin_cos();
     Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
-}
-
-/// The piece as seen from the right side of the cloth, which lies up: a clockwise outline is drawn
-/// from the wrong side and is reflected.
-fn right_side_up(piece: &Piece) -> Piece {
-    let mut piece = piece.clone();
-    if ring_area(&sewn_outline(&piece).outer) >= 0.0 {
-        return piece;
-    }
-    let across = |p: Vec2| Vec2::new(-p.x, p.y);
-    let holes = piece.holes.iter_mut().flatten();
-    for edge in piece.outline.iter_mut().chain(holes) {
-        edge.curve = edge.curve.reflected(Vec2::zeros(), Vec2::y());
-    }
-    for line in &mut piece.internal_lines {
-        for curve in &mut line.curves {
-            *curve = curve.reflected(Vec2::zeros(), Vec2::y());
-        }
-    }
-    for notch in &mut piece.notches {
-        notch.point = across(notch.point);
-        notch.inward = across(notch.inward);
-    }
-    piece.grain = PI - piece.grain;
-    piece
 }

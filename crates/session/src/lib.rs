@@ -9,7 +9,6 @@ mod bodies;
 mod choice;
 mod command;
 mod crossings;
-mod cut;
 mod derived;
 mod drape;
 mod dressed;
@@ -20,7 +19,6 @@ mod fabrics;
 mod flaws;
 mod gesture;
 mod going_on;
-mod halves;
 mod hands;
 mod history;
 mod journal;
@@ -34,6 +32,8 @@ mod nest_options;
 mod open;
 mod perform;
 mod pictures;
+mod piece_facts;
+mod printing;
 mod product;
 mod project;
 mod recovery;
@@ -67,6 +67,10 @@ pub use open::{
     Opened, PatternFormat, SAMPLE, SAMPLES, open_measurements, open_pattern, read_input,
     read_pattern_text,
 };
+pub use piece_facts::{
+    DartFacts, EdgeFacts, NotchFacts, PieceFacts, RegionFacts, SeamFacts, piece_facts, seam_facts,
+};
+pub use printing::{PrintOptions, PrintSizes, Printed, print_job, print_pattern};
 pub use project::{Project, WornGarment};
 pub use recovery::{Abandoned, Recovery, abandoned, state_folder};
 pub use scene::{SceneOutcome, run_scene};
@@ -76,8 +80,11 @@ pub use study::{RuleCost, rule_table, study_rules};
 pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
 pub use toile_body::{Description, Figure, Fit, PrimitiveEdit, ProportionBox, Scaling};
+pub use toile_cut::{CutList, CutListPiece, Shrinkage};
 pub use toile_drape::Stage;
-pub use toile_interchange::{MarkerSettings, SizeChoice, Spread, Wanted, write_atomically};
+pub use toile_interchange::{
+    Lines, MarkerSettings, Paper, SizeChoice, Spread, Tile, Wanted, write_atomically,
+};
 pub use toile_nesting::{Budget, Nap};
 pub use tools::{
     BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, convert, fit_mesh, make_body,

@@ -46,7 +46,7 @@ pub(crate) fn match_up(
     let marks: Vec<Vec<(usize, Vec2)>> = order
         .iter()
         .map(|&k| {
-            let grain = wanted[k].piece.grain;
+            let grain = wanted[k].cut.grain;
             let straight = |m: &(usize, Vec2)| (m.0, turned(m.1, -grain));
             wanted[k].marks.iter().map(straight).collect()
         })

@@ -3,7 +3,6 @@
 use crate::Project;
 use crate::choice::figure_name;
 use crate::crossings::Tangles;
-use crate::cut::sewn_outline;
 use crate::drape::Drape;
 use crate::dressed::DraftedPart;
 use crate::laying::Laying;
@@ -295,23 +294,19 @@ impl Report {
 }
 
 /// Area of a piece, holes taken out [m2]. Exact for lines, arcs and Bezier curves.
-fn piece_area(piece: &toile_pattern::Piece) -> f64 {
+pub(crate) fn piece_area(piece: &toile_pattern::Piece) -> f64 {
     let ring = |edges: &[toile_pattern::PieceEdge]| -> f64 {
         0.5 * edges
             .iter()
             .map(|edge| edge.curve.swept_area())
             .sum::<f64>()
     };
-    let outer = ring(&piece.outline).abs();
-    if outer.is_finite() {
-        outer - piece.holes.iter().map(|h| ring(h).abs()).sum::<f64>()
-    } else {
-        sewn_outline(piece).area()
-    }
+    let holes = piece.holes.iter().map(|hole| ring(hole).abs());
+    ring(&piece.outline).abs() - holes.sum::<f64>()
 }
 
 /// Length of a span [m].
-fn span_length(draft: &Draft, span: &DraftSpan) -> f64 {
+pub(crate) fn span_length(draft: &Draft, span: &DraftSpan) -> f64 {
     let Some(piece) = draft.pieces.get(span.piece) else {
         return 0.0;
     };

@@ -4,7 +4,8 @@
 use std::path::{Path, PathBuf};
 use toile_session::{Budget, Command, Event, NestOptions, Session, Silent, nest_patterns};
 
-/// A folded panel whose point is too sharp for a mitre, with a square hole on either side.
+/// A folded panel whose point is too sharp for a mitre, with a hole narrower than its allowances on
+/// either side.
 const PENNANT: &str = r#"{
  "toile": 1, "kind": "pattern", "name": "Pennant", "unit": "cm",
  "fabrics": { "poplin": {
@@ -14,7 +15,7 @@ const PENNANT: &str = r#"{
  "panels": {
   "pennant": { "fabric": "poplin", "seam_allowance": 1, "cut": "pair", "fold": "middle",
    "points": { "a": [0, 0], "b": [60, 0], "c": [0, 15],
-     "p": [5, 4], "q": [5, 8], "r": [9, 8], "s": [9, 4] },
+     "p": [5, 4], "q": [5, 8], "r": [6.5, 8], "s": [6.5, 4] },
    "outline": [ { "edge": "middle", "from": "a" }, { "edge": "slant", "from": "b" },
                 { "edge": "hoist", "from": "c" } ],
    "holes": [ [ { "edge": "h1", "from": "p" }, { "edge": "h2", "from": "q" },
@@ -28,13 +29,13 @@ fn pennant(folder: &Path, text: &str) -> PathBuf {
     path
 }
 
-/// How often a corner cut off and a hole without its allowance are told.
+/// How often a corner cut off and a hole filled by its allowance are told.
 fn told<'a>(messages: impl IntoIterator<Item = &'a str>) -> [usize; 2] {
     let mut found = [0; 2];
     for message in messages {
         let panel = message.contains("\"pennant\"");
         let corner = panel && message.contains("\"slant\"") && message.contains("cut off");
-        let hole = panel && message.contains("hole 1") && message.contains("left out");
+        let hole = panel && message.contains("hole 1") && message.contains("filled");
         found[0] += usize::from(corner);
         found[1] += usize::from(hole);
     }
@@ -62,12 +63,12 @@ fn warned(events: &[Event]) -> Vec<&str> {
 }
 
 #[test]
-fn a_check_tells_of_a_corner_cut_off_and_of_a_hole_without_its_allowance() {
+fn a_check_tells_of_a_corner_cut_off_and_of_a_hole_filled_by_its_allowance() {
     let folder = tempfile::tempdir().unwrap();
     // Drawn from the right side of the cloth, and from its wrong side.
     let wrong_side = PENNANT.replace("[60, 0]", "[-60, 0]").replace(
-        "\"p\": [5, 4], \"q\": [5, 8], \"r\": [9, 8], \"s\": [9, 4]",
-        "\"p\": [-5, 4], \"q\": [-5, 8], \"r\": [-9, 8], \"s\": [-9, 4]",
+        "\"p\": [5, 4], \"q\": [5, 8], \"r\": [6.5, 8], \"s\": [6.5, 4]",
+        "\"p\": [-5, 4], \"q\": [-5, 8], \"r\": [-6.5, 8], \"s\": [-6.5, 4]",
     );
     for text in [PENNANT, &wrong_side] {
         let path = pennant(folder.path(), text);
@@ -81,7 +82,7 @@ fn a_check_tells_of_a_corner_cut_off_and_of_a_hole_without_its_allowance() {
             "{findings:?}"
         );
     }
-    // Without an allowance nothing is cut off and nothing left out.
+    // Without an allowance nothing is cut off and nothing filled.
     let bare = PENNANT.replace("\"seam_allowance\": 1", "\"seam_allowance\": 0");
     let path = pennant(folder.path(), &bare);
     let (_, events) = done(&path, vec![Command::Check]);

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::{
     Apex, CurveRule, Edit, EditError, Entity, LineKind, Mark, Name, NotchKind, Number,
-    OperationKind, Panel, PanelId, Want,
+    OperationKind, Panel, PanelId, Pressed, Want,
     plan::{self, Chain, CurveShape},
 };
 
@@ -54,6 +54,7 @@ pub static DART: SlotTool = SlotTool {
             mouth: near.mark,
             intake: intake.clone(),
             apex: Apex::Depth(depth.clone()),
+            pressed: Pressed::default(),
         };
         operation(reading, *panel, kind, "Add dart")
     },

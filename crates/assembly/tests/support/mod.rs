@@ -28,6 +28,7 @@ pub fn edges(curves: &[Curve]) -> Vec<PieceEdge> {
             curve,
             seam_allowance: 0.0,
             corner: Corner::Mitre,
+            reversed: false,
         })
         .collect()
 }
@@ -43,6 +44,8 @@ pub fn piece(number: u32, name: &str, outline: Vec<PieceEdge>, worn: Worn) -> Pi
         holes: Vec::new(),
         internal_lines: Vec::new(),
         notches: Vec::new(),
+        darts: Vec::new(),
+        folds: Vec::new(),
         grain: std::f64::consts::FRAC_PI_2,
         fabric: 0,
         worn,

@@ -4,11 +4,12 @@ use super::item::{Item, Object};
 use super::json::Value;
 use super::read::{Measure, Reader};
 use super::read_seam::{mark, name};
-use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS};
+use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, PRESSED};
 use crate::FormatError;
 use std::sync::Arc;
 use toile_pattern::{
-    Apex, Cut, Edge, Line, Notch, NotchKind, Number, Operation, OperationKind, Panel, WornRule,
+    Apex, Cut, Edge, Line, Notch, NotchKind, Number, Operation, OperationKind, Panel, Pressed,
+    WornRule,
 };
 
 /// Reads a panel.
@@ -190,7 +191,7 @@ fn operation<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Operation, 
 }
 
 fn dart<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
-    let known = &["line", "mouth", "intake", "depth", "apex"];
+    let known = &["line", "mouth", "intake", "depth", "apex", "pressed"];
     let fields = item.object(known, &mut reader.notes)?;
     Ok(OperationKind::Dart {
         line: name(reader, &fields.need("line")?)?,
@@ -199,6 +200,10 @@ fn dart<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, F
         apex: match fields.get("apex") {
             Some(apex) => Apex::Point(reader.reference(&apex)?),
             None => Apex::Depth(reader.number(&fields.need("depth")?, Measure::Length)?),
+        },
+        pressed: match fields.get("pressed") {
+            Some(pressed) => pressed.choice(PRESSED)?,
+            None => Pressed::default(),
         },
     })
 }

@@ -1,6 +1,6 @@
 //! Words of the format that are fixed.
 
-use toile_pattern::{BodyPart, Corner, Facing, LineKind, NotchKind, Role};
+use toile_pattern::{BodyPart, Corner, Facing, LineKind, NotchKind, Pressed, Role};
 
 /// Version of the format this program writes.
 pub const VERSION: u32 = 2;
@@ -48,6 +48,9 @@ pub const CORNERS: &[(&str, Corner)] = &[
     ("extended", Corner::Extended),
     ("mirrored", Corner::Mirrored),
 ];
+
+/// Names of the legs a dart is pressed towards.
+pub const PRESSED: &[(&str, Pressed)] = &[("before", Pressed::Before), ("after", Pressed::After)];
 
 /// Names of notch kinds.
 pub const NOTCHES: &[(&str, NotchKind)] = &[

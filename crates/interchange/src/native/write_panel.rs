@@ -1,12 +1,12 @@
 //! Writes panels and seams.
 
 use super::json::Value;
-use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, ROLES, word};
+use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, PRESSED, ROLES, word};
 use super::write::{Fields, Measure, Writer, count, counts, list, named, plain_value, text};
 use crate::FormatError;
 use toile_pattern::{
     Apex, Cut, Edge, Line, Mark, Name, Notch, NotchKind, Number, Operation, OperationKind, Panel,
-    PartId, Seam, Span, WornRule,
+    PartId, Pressed, Seam, Span, WornRule,
 };
 
 /// Writes a panel.
@@ -174,6 +174,7 @@ fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, Format
             mouth,
             intake,
             apex,
+            pressed,
         } => {
             own.put("line", name(*line));
             own.put("mouth", mark(writer, mouth, &what)?);
@@ -183,6 +184,9 @@ fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, Format
                     own.put("depth", writer.number(depth, Measure::Length, &what)?);
                 }
                 Apex::Point(point) => own.put("apex", count(point.0)),
+            }
+            if *pressed != Pressed::default() {
+                own.put("pressed", text(word(PRESSED, pressed)));
             }
             "dart"
         }

@@ -416,6 +416,10 @@ fn details(dice: &mut Dice, drawing: &mut Drawing<'_>, points: &[PointId]) {
                     true => Apex::Depth(dice.share()),
                     false => Apex::Point(any(dice)),
                 },
+                pressed: match dice.chance(50) {
+                    true => Pressed::Before,
+                    false => Pressed::After,
+                },
             },
         };
         let operation = Operation {

@@ -27,6 +27,8 @@ pub enum OperationKind {
         intake: Number,
         /// Where it ends.
         apex: Apex,
+        /// The leg it is pressed towards once it is sewn.
+        pressed: Pressed,
     },
     /// A dart inside the panel, pointed at both ends.
     Diamond {
@@ -45,6 +47,27 @@ pub enum OperationKind {
         /// Both ends of the stretch, in the order of the line.
         ends: [Mark; 2],
     },
+}
+
+/// The leg a dart is pressed towards once it is sewn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Pressed {
+    /// The leg before the apex along the outline as drawn.
+    #[default]
+    Before,
+    /// The leg after it.
+    After,
+}
+
+impl Pressed {
+    /// The leg's number among those the dart makes.
+    pub fn leg(self) -> u16 {
+        match self {
+            Self::Before => 0,
+            Self::After => 1,
+        }
+    }
 }
 
 /// Where a dart ends.

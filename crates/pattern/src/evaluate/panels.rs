@@ -266,6 +266,7 @@ impl Drawing<'_, '_, '_> {
             mouth,
             intake,
             apex,
+            pressed,
         } = &operation.kind
         else {
             return None;
@@ -294,6 +295,7 @@ impl Drawing<'_, '_, '_> {
                     middle,
                     intake,
                     apex,
+                    pressed: *pressed,
                 };
                 cut_dart(stage, &mouth)
             }

@@ -234,6 +234,7 @@ impl Remap {
                 mouth,
                 intake,
                 apex,
+                pressed: _,
             } => {
                 *line = self.name(*line);
                 self.mark(mouth);

@@ -1,7 +1,7 @@
 //! Darts taken out of a line.
 
 use super::{PlaceError, Spot, Stage, StageDart, StageEdge, with_ends};
-use crate::{Corner, LineKind, LineName, Name, OperationId, Role};
+use crate::{Corner, LineKind, LineName, Name, OperationId, Pressed, Role};
 use toile_geometry::{Curve, Vec2};
 
 /// A dart whose numbers are known.
@@ -14,6 +14,7 @@ pub(crate) struct DartMouth {
     /// Width of the mouth along the line [m].
     pub intake: f64,
     pub apex: DartApex,
+    pub pressed: Pressed,
 }
 
 /// Where a dart ends.
@@ -119,6 +120,7 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
         half: 0,
         mouth: [open, close],
         apex,
+        pressed: dart.pressed,
     });
     Ok(result)
 }

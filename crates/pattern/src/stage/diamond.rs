@@ -1,7 +1,7 @@
 //! Darts inside a panel, pointed at both ends.
 
 use super::{Stage, StageDart, StageEdge, StageLine};
-use crate::{Corner, LineKind, Name, OperationId, Role};
+use crate::{Corner, LineKind, Name, OperationId, Pressed, Role};
 use toile_geometry::{Curve, Vec2};
 
 /// Takes a diamond out of a stage as a hole: legs 0 and 1 from the first end to the second on one
@@ -64,6 +64,7 @@ pub(crate) fn cut_diamond(
         half: 0,
         mouth: [middle + side, middle - side],
         apex: a,
+        pressed: Pressed::default(),
     });
     Some(result)
 }

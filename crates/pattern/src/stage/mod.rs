@@ -10,7 +10,9 @@ pub(crate) use diamond::cut_diamond;
 pub(crate) use fold::{FoldError, unfold};
 pub(crate) use place::{MarkValue, PlaceError, Spot, Stretch};
 
-use crate::{Corner, CornerName, EdgeName, LineKind, LineName, NotchId, NotchKind, OperationId};
+use crate::{
+    Corner, CornerName, EdgeName, LineKind, LineName, NotchId, NotchKind, OperationId, Pressed,
+};
 use toile_geometry::{Curve, Vec2};
 
 /// A panel after some of its operations.
@@ -90,8 +92,10 @@ pub struct StageDart {
     pub half: u8,
     /// Start and end of the mouth along the outline [m].
     pub mouth: [Vec2; 2],
-    /// Its point [m].
+    /// Its point [m]; of a diamond the first end.
     pub apex: Vec2,
+    /// The leg it is pressed towards.
+    pub pressed: Pressed,
 }
 
 impl Stage {

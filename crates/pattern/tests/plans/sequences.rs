@@ -124,6 +124,7 @@ fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditError> 
         mouth: share.clone(),
         intake: (z * 0.05).into(),
         apex,
+        pressed: toile_pattern::Pressed::default(),
     };
     match which % 37 {
         0 => add_sheet(evaluation, None, [*x, *y]).map(|done| done.0),

@@ -194,6 +194,7 @@ pub fn dart(pattern: &Pattern, name: &str, share: f64, intake: f64, apex: Apex) 
         mouth: Mark::between(ends(pattern, "front", name), share),
         intake: intake.into(),
         apex,
+        pressed: Pressed::default(),
     }
 }
 

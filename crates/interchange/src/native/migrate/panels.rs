@@ -9,7 +9,7 @@ use std::sync::Arc;
 use toile_pattern::{
     Apex, Curve, CurveId, CurveRule, Edge, EdgeId, FabricId, Line, LineId, LineKind, Mark, Name,
     Notch, NotchId, NotchKind, Number, Operation, OperationId, OperationKind, Panel, PanelId,
-    Point, PointId, PointRule, Sheet, SheetId, Want, WornRule,
+    Point, PointId, PointRule, Pressed, Sheet, SheetId, Want, WornRule,
 };
 
 /// A sheet and panel in the making.
@@ -361,6 +361,7 @@ impl Migration<'_> {
                         DartTip::Depth(depth) => Apex::Depth(self.number(depth)),
                         DartTip::Apex(apex) => Apex::Point(self.point(*apex)),
                     },
+                    pressed: Pressed::default(),
                 }
             }
             DartShape::Diamond { ends, at, width } => OperationKind::Diamond {

@@ -1,0 +1,155 @@
+//! `toile print` and `toile check --json` as a program.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{patterns, toile, words};
+use serde_json::Value;
+
+/// A rectangle of 40 x 10 cm with a hem of 3 cm, a dart, a notch and a hole, cut as a pair.
+const PLAIN: &str = r#"{
+ "toile": 1, "kind": "pattern", "name": "Plain", "unit": "cm", "base_size": "M",
+ "sizes": { "M": { "waist": 84 } },
+ "fabrics": { "poplin": {
+   "density_kg_per_m2": 0.12, "thickness_m": 0.0004, "stretch_N_per_m": [1500, 1200],
+   "shear_N_per_m": 120, "poisson": 0.2, "bend_N_m": [1e-5, 8e-6, 7e-6], "friction": 0.4,
+   "width_m": 1.5, "nap": false, "colour": [0.5, 0.6, 0.8] } },
+ "panels": {
+  "plain": { "fabric": "poplin", "seam_allowance": 1, "cut": "pair",
+   "points": { "a": [0, 0], "b": [40, 0], "c": [40, 10], "d": [0, 10],
+     "p": [5, 2], "q": [5, 6], "r": [9, 6], "s": [9, 2] },
+   "outline": [ { "edge": "hem", "from": "a", "seam_allowance": 3 }, { "edge": "right", "from": "b" },
+                { "edge": "top", "from": "c" }, { "edge": "left", "from": "d" } ],
+   "holes": [ [ { "edge": "h1", "from": "p", "seam_allowance": 0 }, { "edge": "h2", "from": "q", "seam_allowance": 0 },
+                { "edge": "h3", "from": "r", "seam_allowance": 0 }, { "edge": "h4", "from": "s", "seam_allowance": 0 } ] ],
+   "darts": { "tuck": { "edge": "top", "at": 0.5, "width": 2, "depth": 4 } },
+   "notches": { "hip": { "edge": "right", "at": 0.5 } } } },
+ "seams": [] }
+"#;
+
+fn report(output: &std::process::Output) -> Value {
+    let text = words(&output.stdout);
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+fn near(value: &Value, wanted: f64, within: f64) {
+    let found = value.as_f64().unwrap();
+    assert!((found - wanted).abs() <= within, "{found} is not {wanted}");
+}
+
+#[test]
+fn check_json_gives_every_piece_and_seam_in_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("plain.json"), PLAIN).unwrap();
+    let output = toile(folder.path(), &["check", "plain.json", "--json"]);
+    assert!(output.status.success(), "{}", words(&output.stderr));
+    let report = report(&output);
+    assert_eq!(report["format"], "toile-check");
+    assert_eq!(
+        (&report["version"], &report["ok"]),
+        (&1.into(), &true.into())
+    );
+    assert_eq!(report["size"], "M");
+    let pieces = report["pieces"].as_array().unwrap();
+    assert_eq!(pieces.len(), 2);
+    let plain = &pieces[0];
+    assert_eq!(
+        (&plain["name"], &plain["size"]),
+        (&"plain".into(), &"M".into())
+    );
+    assert_eq!(pieces[1]["name"], "plain mirrored");
+    assert_eq!(
+        (&plain["fabric"], &plain["folded"]),
+        (&"poplin".into(), &false.into())
+    );
+    near(&plain["grain_deg"], 90.0, 1e-9);
+    // 40 x 10 without a hole of 4 x 4 and a dart of 2 x 4 / 2.
+    near(&plain["sewn"]["area_cm2"], 380.0, 1e-6);
+    let legs = 41.231_056_256;
+    near(&plain["sewn"]["outline_mm"], 980.0 + 2.0 * legs, 1e-6);
+    near(&plain["cut"]["bounds_mm"][0][1], -30.0, 1e-5);
+    near(&plain["cut"]["bounds_mm"][1][0], 410.0, 1e-5);
+    let edges = plain["edges"].as_array().unwrap();
+    let hem = edges.iter().find(|e| e["name"] == "hem").unwrap();
+    near(&hem["length_mm"], 400.0, 1e-9);
+    near(&hem["allowance_mm"], 30.0, 1e-9);
+    assert_eq!(hem["corner"], "mitre");
+    let hip = &plain["notches"][0];
+    assert_eq!(
+        (&hip["name"], &hip["edge"]),
+        (&"hip".into(), &"right".into())
+    );
+    near(&hip["seam_mm"][0], 400.0, 1e-9);
+    near(&hip["cut_mm"][0], 410.0, 1e-6);
+    let dart = &plain["darts"][0];
+    assert_eq!(
+        (&dart["name"], &dart["pressed"]),
+        (&"tuck".into(), &"before".into())
+    );
+    near(&dart["width_mm"], 20.0, 1e-9);
+    near(&dart["legs_mm"][1], legs, 1e-6);
+    let seam = &report["seams"][0];
+    near(&seam["lengths_mm"][0], legs, 1e-6);
+    near(&seam["lengths_mm"][1], legs, 1e-6);
+}
+
+#[test]
+fn check_json_of_a_pattern_with_errors_has_no_pieces() {
+    let folder = tempfile::tempdir().unwrap();
+    let crossed = PLAIN.replace("\"b\": [40, 0]", "\"b\": [40, 25]");
+    std::fs::write(folder.path().join("crossed.json"), crossed).unwrap();
+    let output = toile(folder.path(), &["check", "crossed.json", "--json"]);
+    assert_eq!(output.status.code(), Some(2));
+    let report = report(&output);
+    assert_eq!(report["ok"], false);
+    assert!(report["pieces"].as_array().unwrap().is_empty());
+    let found = report["diagnostics"].as_array().unwrap();
+    assert!(found.iter().any(|d| d["severity"] == "error"), "{found:?}");
+}
+
+#[test]
+fn prints_are_written_and_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let shirt = patterns().join("t-shirt.toile.json");
+    let shirt = shirt.to_str().unwrap();
+    let asked = [
+        "print",
+        shirt,
+        "--all-sizes",
+        "--pieces",
+        "front,sleeve",
+        "--out",
+        "p.svg",
+        "--json",
+    ];
+    let output = toile(folder.path(), &asked);
+    assert!(output.status.success(), "{}", words(&output.stderr));
+    let report = report(&output);
+    assert_eq!(report["sizes"].as_array().unwrap().len(), 6);
+    assert_eq!(report["pieces"], serde_json::json!(["front", "sleeve"]));
+    let list = &report["cut_list"][0];
+    assert_eq!(
+        (&list["pieces"][1]["quantity"], &list["pieces"][1]["pairs"]),
+        (&2.into(), &1.into())
+    );
+    let text = std::fs::read_to_string(folder.path().join("p.svg")).unwrap();
+    let sheets = text.matches("<inkscape:page ").count();
+    assert_eq!(report["sheets"].as_u64(), Some(sheets as u64));
+    let asked = [
+        "print",
+        shirt,
+        "--paper",
+        "projector",
+        "--shrinkage",
+        "5,2",
+        "--out",
+        "p.pdf",
+    ];
+    let output = toile(folder.path(), &asked);
+    let said = words(&output.stdout);
+    assert!(
+        said.contains("on one page of") && said.contains("1 pair of sleeve"),
+        "{said}"
+    );
+    assert!(folder.path().join("p.pdf").exists());
+}

@@ -1,0 +1,65 @@
+//! What is to be cut, by fabric.
+
+use crate::piece::CutPiece;
+use toile_pattern::{Draft, Pattern};
+
+/// What is cut from one fabric.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutList {
+    /// The fabric.
+    pub fabric: String,
+    /// Its pieces, in the order of the pattern.
+    pub pieces: Vec<CutListPiece>,
+}
+
+/// A panel in a cut list.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutListPiece {
+    /// The panel.
+    pub name: String,
+    /// How often it is cut.
+    pub quantity: u32,
+    /// How many of these are pairs, one of two turned over.
+    pub pairs: u32,
+    /// Area of one as cut, holes taken out \[m2\].
+    pub area: f64,
+}
+
+impl CutList {
+    /// Area of all its pieces \[m2\].
+    pub fn area(&self) -> f64 {
+        let all = self.pieces.iter().map(|p| f64::from(p.quantity) * p.area);
+        all.sum()
+    }
+}
+
+/// The cut list of a draft by the first copy of each panel, fabrics in the order in which pieces name
+/// them. Copies among the pieces given are left out.
+pub fn cut_list((pattern, draft): (&Pattern, &Draft), pieces: &[CutPiece]) -> Vec<CutList> {
+    let mut lists: Vec<CutList> = Vec::new();
+    for cut in pieces.iter().filter(|piece| piece.id.copy == 0) {
+        let drafted = draft.pieces.iter().find(|piece| piece.id == cut.id);
+        let fabric = drafted.and_then(|piece| draft.fabrics.get(piece.fabric));
+        let (Some(fabric), Some(panel)) = (fabric, pattern.panel(cut.id.panel)) else {
+            continue;
+        };
+        let entry = CutListPiece {
+            name: panel.name.clone(),
+            quantity: panel.cut.quantity,
+            pairs: if panel.cut.mirrored {
+                panel.cut.quantity / 2
+            } else {
+                0
+            },
+            area: cut.polygon().area(),
+        };
+        match lists.iter_mut().find(|list| list.fabric == fabric.name) {
+            Some(list) => list.pieces.push(entry),
+            None => lists.push(CutList {
+                fabric: fabric.name.clone(),
+                pieces: vec![entry],
+            }),
+        }
+    }
+    lists
+}

@@ -1,0 +1,233 @@
+//! What is drawn of a cut piece: lines, areas and words by kind. Prints, markers, their files and
+//! the window draw a piece from this alone.
+
+use crate::label::{SMALLEST, Spot, roomiest_spot};
+use crate::piece::{CutPiece, PieceRing, PieceSegment};
+use std::f64::consts::FRAC_PI_2;
+use toile_geometry::{Polygon, Vec2};
+use toile_pattern::{CornerName, LineId, NotchId};
+
+/// What a line is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum StrokeKind {
+    /// To cut along.
+    Cut,
+    /// To sew along.
+    Sew,
+    /// Drawn inside.
+    Inside,
+    /// A notch.
+    Notch,
+    /// The fold of the cloth.
+    Fold,
+    /// The grain line with its arrow.
+    Grain,
+    /// The end of a dart.
+    Drill,
+}
+
+/// What a line is drawn of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StrokeName {
+    /// A closed line, each segment by name.
+    Ring(Vec<PieceSegment>),
+    /// A line of the panel.
+    Line(LineId),
+    /// A notch.
+    Notch(NotchId),
+    /// A corner a dart made, and the half it is on.
+    Corner(CornerName, u8),
+    /// The piece as a whole.
+    Piece,
+}
+
+/// A line through points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stroke {
+    /// What it is for.
+    pub kind: StrokeKind,
+    /// What it is drawn of.
+    pub name: StrokeName,
+    /// Its corners \[m\].
+    pub points: Vec<Vec2>,
+    /// Whether the last is joined to the first.
+    pub closed: bool,
+}
+
+/// Words, the middle of their baseline at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Words {
+    /// What is written.
+    pub text: String,
+    /// Middle of the baseline \[m\].
+    pub at: Vec2,
+    /// Height of the letters \[m\].
+    pub size: f64,
+    /// Direction of the baseline \[rad\]: 0 or upwards.
+    pub angle: f64,
+}
+
+/// A piece drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawing {
+    /// The area of the cloth.
+    pub fill: Option<Polygon>,
+    /// Its lines, in the order of their kinds as they are drawn over one another.
+    pub strokes: Vec<Stroke>,
+    /// Its words.
+    pub words: Vec<Words>,
+}
+
+/// Size of the letters on the largest pieces \[m\], and on the smallest.
+const LETTERS: [f64; 2] = [0.022, 0.004];
+/// Size of lines after the first over that of the first.
+const LATER_LINES: f64 = 0.7;
+/// From a line to the next over its size.
+const LINE_STEP: f64 = 1.3;
+/// Arm of the cross at the end of a dart \[m\].
+const DRILL: f64 = 0.003;
+
+impl CutPiece {
+    /// The piece drawn somewhere: `place` takes its points there, moved, turned, turned over or
+    /// scaled. The lines given are written on it, the first one largest.
+    pub fn drawing(&self, place: impl Fn(Vec2) -> Vec2, lines: &[&str]) -> Drawing {
+        let placed = |points: &[Vec2]| points.iter().map(|&p| place(p)).collect::<Vec<Vec2>>();
+        let mut strokes = Vec::new();
+        let mut draw = |kind, name, points: Vec<Vec2>, closed| {
+            if points.len() > 1 {
+                strokes.push(Stroke {
+                    kind,
+                    name,
+                    points,
+                    closed,
+                });
+            }
+        };
+        let mut rings = |kind, rings: &[PieceRing]| {
+            for (points, segments, closed) in rings.iter().flat_map(off_the_fold) {
+                draw(kind, StrokeName::Ring(segments), placed(&points), closed);
+            }
+        };
+        rings(StrokeKind::Cut, &self.cut);
+        rings(StrokeKind::Sew, &self.sew);
+        for line in &self.inside {
+            let name = StrokeName::Line(line.id);
+            draw(StrokeKind::Inside, name, placed(&line.points), false);
+        }
+        for notch in &self.notches {
+            for points in notch.on_seam_line().iter().chain(&notch.on_cut_line()) {
+                let name = StrokeName::Notch(notch.id);
+                draw(StrokeKind::Notch, name, placed(points), false);
+            }
+        }
+        if let Some(ends) = self.on_fold {
+            draw(StrokeKind::Fold, StrokeName::Piece, placed(&ends), false);
+        }
+        let polygon = self.polygon().mapped(&place);
+        let up = |words: &[Words]| words.first().map_or(Vec2::y(), Words::up);
+        // Words and grain keep clear of seam lines and darts where these are known.
+        let spot = match self.sew.is_empty() {
+            true => roomiest_spot(&polygon),
+            false => roomiest_spot(&self.sewn().mapped(&place)),
+        };
+        let words = words_at(&spot, lines);
+        for points in self.grain_arrow(&place, &spot, up(&words)) {
+            draw(StrokeKind::Grain, StrokeName::Piece, points, false);
+        }
+        for drill in &self.drills {
+            for arm in [Vec2::new(DRILL, 0.0), Vec2::new(0.0, DRILL)] {
+                let name = StrokeName::Corner(drill.name, drill.half);
+                let ends = placed(&[drill.at - arm, drill.at + arm]);
+                draw(StrokeKind::Drill, name, ends, false);
+            }
+        }
+        Drawing {
+            fill: Some(polygon),
+            strokes,
+            words,
+        }
+    }
+
+    /// The grain line above the words at the roomiest spot, and its arrow head.
+    fn grain_arrow(&self, place: impl Fn(Vec2) -> Vec2, spot: &Spot, up: Vec2) -> Vec<Vec<Vec2>> {
+        let along = Vec2::new(self.grain.cos(), self.grain.sin());
+        let way = (place(along) - place(Vec2::zeros())).try_normalize(0.0);
+        let Some(way) = way.filter(|_| spot.room > 0.0) else {
+            return Vec::new();
+        };
+        // All of it lies above the spot and inside the free circle round it.
+        let rise = way.dot(&up).abs();
+        let reach = spot.room * (0.42 / rise.max(1e-9)).min(0.75);
+        let centre = spot.at + up * (0.2 * spot.room).max(reach * rise + 0.08 * spot.room);
+        let [tail, head] = [centre - way * reach, centre + way * reach];
+        let side = Vec2::new(-way.y, way.x);
+        let barb = (letters(spot) * 0.6).min(reach * 0.6);
+        let wing = |s: f64| head - way * barb + side * (barb * s);
+        vec![vec![tail, head], vec![wing(0.5), head, wing(-0.5)]]
+    }
+}
+
+impl Words {
+    /// Unit vector from their feet to their heads.
+    fn up(&self) -> Vec2 {
+        Vec2::new(-self.angle.sin(), self.angle.cos())
+    }
+}
+
+/// A closed line whole, or its parts that do not lie on the fold of the cloth: corners, segments,
+/// and whether it is closed.
+fn off_the_fold(ring: &PieceRing) -> Vec<(Vec<Vec2>, Vec<PieceSegment>, bool)> {
+    let count = ring.points.len();
+    let on_fold = |k: usize| ring.segments[k % count] == PieceSegment::Fold;
+    let Some(first) = (0..ring.segments.len()).find(|&k| on_fold(k)) else {
+        return vec![(ring.points.clone(), ring.segments.clone(), true)];
+    };
+    let mut parts = Vec::new();
+    let mut part: (Vec<Vec2>, Vec<PieceSegment>, bool) = (Vec::new(), Vec::new(), false);
+    for k in first + 1..=first + count {
+        part.0.push(ring.points[k % count]);
+        if on_fold(k) {
+            parts.push(std::mem::take(&mut part));
+        } else {
+            part.1.push(ring.segments[k % count]);
+        }
+    }
+    parts
+}
+
+/// Size of the first line at a spot \[m\].
+fn letters(spot: &Spot) -> f64 {
+    (spot.room * 0.3).clamp(LETTERS[1], LETTERS[0])
+}
+
+/// Lines one under another beside the grain line.
+fn words_at(spot: &Spot, lines: &[&str]) -> Vec<Words> {
+    let longest = lines.iter().max_by_key(|line| line.chars().count());
+    let Some(longest) = longest.filter(|_| spot.room > 0.0) else {
+        return Vec::new();
+    };
+    let (first, upright) = match lines {
+        [only] | [only, _] => spot.size_of(only, letters(spot)),
+        _ => spot.size_of(longest, letters(spot)),
+    };
+    // All lines lie between the spot and the outline.
+    let heights = 1.0 + LINE_STEP * LATER_LINES * (lines.len() - 1) as f64;
+    let first = first.min(0.85 * spot.room / heights).max(SMALLEST);
+    let angle = if upright { FRAC_PI_2 } else { 0.0 };
+    let down = Vec2::new(angle.sin(), -angle.cos());
+    let mut below = spot.room * 0.05 + first;
+    let mut words = Vec::with_capacity(lines.len());
+    for (k, line) in lines.iter().enumerate() {
+        let size = if k == 0 { first } else { first * LATER_LINES };
+        if k > 0 {
+            below += LINE_STEP * size;
+        }
+        words.push(Words {
+            text: (*line).to_owned(),
+            at: spot.at + down * below,
+            size,
+            angle,
+        });
+    }
+    words
+}

@@ -1,0 +1,20 @@
+//! Names of what a cut piece is made of, in words.
+
+use toile_pattern::{EdgeOrigin, Name, Panel};
+
+/// An edge of a panel, or what an operation made, in words.
+pub(crate) fn edge_words(panel: Option<&Panel>, origin: EdgeOrigin) -> String {
+    match origin.name {
+        Name::Drawn(id) => match panel.and_then(|panel| panel.edge(id)) {
+            Some(edge) => format!("edge {:?}", edge.name),
+            None => id.to_string(),
+        },
+        Name::Made { by, .. } => {
+            let mut operations = panel.into_iter().flat_map(|panel| &panel.operations);
+            match operations.find(|operation| operation.id == by) {
+                Some(operation) => format!("{} {:?}", operation.kind.word(), operation.name),
+                None => by.to_string(),
+            }
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! What is asked of cut pieces beside what the pattern says.
+
+/// Share of its length a cloth loses when it is washed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shrinkage {
+    /// Share lost along the warp, below 1; 0.03 for 3 %.
+    pub warp: f64,
+    /// Share lost across it, below 1.
+    pub weft: f64,
+}
+
+/// Shares that cloth can lose or win, beyond any that was measured.
+const MOST_SHRINKAGE: f64 = 0.5;
+
+impl Shrinkage {
+    /// Whether both shares are finite and from -0.5 to 0.5.
+    pub fn is_sound(&self) -> bool {
+        let sound = |share: f64| share.is_finite() && share.abs() <= MOST_SHRINKAGE;
+        sound(self.warp) && sound(self.weft)
+    }
+
+    /// How much larger a piece is drawn along the warp and across it, so that it comes out right.
+    pub fn factors(&self) -> [f64; 2] {
+        [self.warp, self.weft].map(|share| 1.0 / (1.0 - share))
+    }
+}
+
+/// What is asked of cut pieces beside what the pattern says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CutOptions {
+    /// What the cloth loses in the wash. The seam line grows; allowances keep their widths.
+    pub shrinkage: Shrinkage,
+    /// Cloth all round beyond the allowances \[m\], for pieces that are cut again after fusing.
+    pub block: f64,
+}

@@ -1,0 +1,447 @@
+//! A piece as it is cut: everything that is drawn on it, each part with what it came from.
+
+use crate::names::edge_words;
+use crate::notch::{CutNotch, notches_of};
+use crate::options::CutOptions;
+use crate::outline::cut_line;
+use crate::ring::FLATNESS;
+use crate::seams::{NamedSeam, Plane, seam_of};
+use crate::{CutError, CutRing, EdgeIndex, Finding, SeamEdge, SegmentKind};
+use toile_geometry::{Bounds2, Polygon, Vec2};
+use toile_pattern::{CornerName, Draft, EdgeOrigin, LineId, Name, Pattern, Piece, PieceId, Role};
+
+/// What a segment of a cut piece's line is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum PieceSegment {
+    /// Beside an edge, in its allowance; of a line that is sewn the edge itself.
+    Edge(EdgeOrigin),
+    /// Cloth at the mouth of a dart; the edge is the leg it lies beside.
+    DartCap(EdgeOrigin),
+    /// At a corner; the edge is the one that starts there.
+    Corner(EdgeOrigin),
+    /// The fold of the cloth, which is not cut.
+    Fold,
+    /// Nothing is known of it.
+    Unknown,
+}
+
+/// A closed line of a cut piece.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PieceRing {
+    /// Its corners \[m\]; the first is not repeated.
+    pub points: Vec<Vec2>,
+    /// What the segment from each corner to the next is, one each.
+    pub segments: Vec<PieceSegment>,
+}
+
+/// A line drawn inside a cut piece.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InsideLine {
+    /// The line of the panel.
+    pub id: LineId,
+    /// Its corners \[m\].
+    pub points: Vec<Vec2>,
+}
+
+/// A point to mark with a drill or a tack: where a dart ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drill {
+    /// The corner the dart made.
+    pub name: CornerName,
+    /// Which half of a folded panel it is on.
+    pub half: u8,
+    /// Where \[m\].
+    pub at: Vec2,
+}
+
+/// What a text of a cut piece says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum TextKind {
+    /// What the piece is called.
+    Name,
+    /// The size it is drafted to.
+    Size,
+    /// How often it is cut.
+    Count,
+    /// The fabric it is cut from.
+    Fabric,
+}
+
+/// A text of a cut piece.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PieceText {
+    /// What it says.
+    pub kind: TextKind,
+    /// The words.
+    pub text: String,
+}
+
+/// A piece as it is cut, as seen from the right side of the cloth. Lengths in metres, curves
+/// flattened to [`FLATNESS`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutPiece {
+    /// The panel and copy.
+    pub id: PieceId,
+    /// Name to show.
+    pub name: String,
+    /// The line to cut along, the cloth at its left: the outline first, then holes.
+    pub cut: Vec<PieceRing>,
+    /// The lines to sew along: the outline first, then holes and darts inside the piece.
+    pub sew: Vec<PieceRing>,
+    /// Other lines.
+    pub inside: Vec<InsideLine>,
+    /// The fold line it was unfolded in last, with the half as drawn kept.
+    pub fold: Option<HalfPlane>,
+    /// Whether this is a half, to be laid on the fold of the cloth: from and to \[m\].
+    pub on_fold: Option<[Vec2; 2]>,
+    /// Direction of the warp \[rad\], from +x counter-clockwise.
+    pub grain: f64,
+    /// Notches.
+    pub notches: Vec<CutNotch>,
+    /// Ends of darts.
+    pub drills: Vec<Drill>,
+    /// What is written on it.
+    pub texts: Vec<PieceText>,
+    /// What the cut line does not do as asked.
+    pub findings: Vec<Finding>,
+    /// The edge each number in a finding stands for.
+    pub(crate) names: Vec<Vec<EdgeOrigin>>,
+    /// The width asked beside each of them [m].
+    pub(crate) widths: Vec<Vec<f64>>,
+    /// The dart each number in a finding stands for: its first leg.
+    pub(crate) darts: Vec<EdgeOrigin>,
+}
+
+/// The side of a line that is kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfPlane {
+    /// On the line \[m\].
+    pub at: Vec2,
+    /// Unit vector to the side that is kept.
+    pub inward: Vec2,
+}
+
+/// Why a piece of a draft cannot be cut.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PieceError {
+    /// The seam line has no cut line.
+    #[error("{0}")]
+    Cut(String),
+    /// The draft has no such piece.
+    #[error("there is no piece of number {0}")]
+    NoPiece(usize),
+}
+
+impl CutPiece {
+    /// A piece of a draft as it is cut. The size is written on it if there is one.
+    ///
+    /// # Errors
+    /// [`PieceError`] where the piece bounds no region.
+    pub fn new(
+        (pattern, draft): (&Pattern, &Draft),
+        number: usize,
+        (size, options): (Option<&str>, &CutOptions),
+    ) -> Result<Self, PieceError> {
+        let piece = draft.pieces.get(number);
+        let piece = piece.ok_or(PieceError::NoPiece(number))?;
+        let plane = Plane::new(piece, options);
+        let seam = seam_of(piece, &plane, options);
+        let line = cut_line(&seam.line)
+            .map_err(|error| PieceError::Cut(error_words((pattern, piece), &seam, &error)))?;
+        let named = |ring: &CutRing| PieceRing {
+            points: ring.points.clone(),
+            segments: ring
+                .origins
+                .iter()
+                .map(|origin| {
+                    let edge = name_of(&seam.names, origin.edge);
+                    match (origin.kind, edge) {
+                        (_, None) => PieceSegment::Unknown,
+                        (SegmentKind::Edge, Some(edge)) => PieceSegment::Edge(edge),
+                        (SegmentKind::DartCap, Some(edge)) => PieceSegment::DartCap(edge),
+                        (SegmentKind::Corner, Some(edge)) => PieceSegment::Corner(edge),
+                    }
+                })
+                .collect(),
+        };
+        let rings = std::iter::once(&line.outline).chain(&line.holes);
+        let cut: Vec<PieceRing> = rings.map(named).collect();
+        Ok(Self {
+            id: piece.id,
+            name: piece.name.clone(),
+            notches: notches_of(piece, &plane, &polygon_of(&cut)),
+            cut,
+            sew: sewn(&seam),
+            inside: inside_lines(piece, &plane),
+            fold: last_fold(piece, &plane),
+            on_fold: None,
+            grain: plane.grain(piece.grain),
+            drills: drills(&seam),
+            texts: texts((pattern, draft), piece, size),
+            findings: line.findings,
+            darts: seam
+                .line
+                .darts
+                .iter()
+                .filter_map(|dart| {
+                    name_of(
+                        &seam.names,
+                        EdgeIndex {
+                            ring: 0,
+                            edge: dart.legs[0],
+                        },
+                    )
+                })
+                .collect(),
+            widths: widths(&seam),
+            names: seam.names,
+        })
+    }
+
+    /// A piece of which only the line to cut along is known.
+    pub fn of_outline(name: &str, outline: &Polygon, grain: f64) -> Self {
+        let ring = |points: &Vec<Vec2>| PieceRing {
+            points: points.clone(),
+            segments: vec![PieceSegment::Unknown; points.len()],
+        };
+        Self {
+            id: PieceId {
+                panel: toile_pattern::PanelId(0),
+                copy: 0,
+            },
+            name: name.to_owned(),
+            cut: outline.rings().map(ring).collect(),
+            sew: Vec::new(),
+            inside: Vec::new(),
+            fold: None,
+            on_fold: None,
+            grain,
+            notches: Vec::new(),
+            drills: Vec::new(),
+            texts: vec![PieceText {
+                kind: TextKind::Name,
+                text: name.to_owned(),
+            }],
+            findings: Vec::new(),
+            names: Vec::new(),
+            widths: Vec::new(),
+            darts: Vec::new(),
+        }
+    }
+
+    /// Whether all its numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let rings = self.cut.iter().chain(&self.sew).map(|ring| &ring.points);
+        let lines = rings.chain(self.inside.iter().map(|line| &line.points));
+        let notches = self.notches.iter();
+        let notches = notches.flat_map(|n| [n.point, n.inward, n.on_cut, n.along]);
+        let drills = self.drills.iter().map(|drill| drill.at);
+        let mut points = lines.flatten().copied().chain(notches).chain(drills);
+        points.all(|p| p.x.is_finite() && p.y.is_finite()) && self.grain.is_finite()
+    }
+
+    /// The piece as cut, holes taken out.
+    pub fn polygon(&self) -> Polygon {
+        polygon_of(&self.cut)
+    }
+
+    /// The piece as cut without its holes: what is laid on fabric.
+    pub fn outer(&self) -> Polygon {
+        Polygon::new(self.cut.first().map_or_else(Vec::new, |r| r.points.clone()))
+    }
+
+    /// The piece as sewn.
+    pub fn sewn(&self) -> Polygon {
+        polygon_of(&self.sew)
+    }
+
+    /// Its extent as cut \[m\].
+    pub fn bounds(&self) -> Bounds2 {
+        self.outer().bounds()
+    }
+
+    /// A text of a kind.
+    pub fn text(&self, kind: TextKind) -> Option<&str> {
+        let found = self.texts.iter().find(|text| text.kind == kind);
+        found.map(|text| &*text.text)
+    }
+
+    /// The width of allowance asked beside an edge of a finding \[m\].
+    pub(crate) fn width(&self, index: EdgeIndex) -> Option<f64> {
+        self.widths.get(index.ring)?.get(index.edge).copied()
+    }
+
+    /// The edge a number in a finding stands for.
+    pub fn edge(&self, index: EdgeIndex) -> Option<EdgeOrigin> {
+        name_of(&self.names, index)
+    }
+}
+
+fn polygon_of(rings: &[PieceRing]) -> Polygon {
+    let mut points = rings.iter().map(|ring| ring.points.clone());
+    Polygon {
+        outer: points.next().unwrap_or_default(),
+        holes: points.collect(),
+    }
+}
+
+fn name_of(names: &[Vec<EdgeOrigin>], index: EdgeIndex) -> Option<EdgeOrigin> {
+    names.get(index.ring)?.get(index.edge).copied()
+}
+
+fn widths(seam: &NamedSeam) -> Vec<Vec<f64>> {
+    let loops = std::iter::once(&seam.line.outline).chain(&seam.line.holes);
+    let width = |edges: &Vec<SeamEdge>| edges.iter().map(|edge| edge.width).collect();
+    loops.map(width).collect()
+}
+
+/// The fold line a piece was unfolded in last: all that was drawn before lies on one side of it.
+fn last_fold(piece: &Piece, plane: &Plane) -> Option<HalfPlane> {
+    let bit = 1_u8 << piece.folds.len().checked_sub(1)?.min(7);
+    let [at, way] = *piece.folds.last()?;
+    let at = plane.vector(at);
+    let across = plane.normal(Vec2::new(-way.y, way.x));
+    let drawn = piece.outline.iter().filter(|e| e.origin.half & bit == 0);
+    let depths = drawn.map(|edge| (plane.vector(edge.curve.point(0.5)) - at).dot(&across));
+    let side: f64 = depths.sum();
+    Some(HalfPlane {
+        at,
+        inward: across * if side >= 0.0 { 1.0 } else { -1.0 },
+    })
+}
+
+/// The lines a piece is sewn along.
+fn sewn(seam: &NamedSeam) -> Vec<PieceRing> {
+    let loops = std::iter::once(&seam.line.outline).chain(&seam.line.holes);
+    let named = loops.zip(&seam.names);
+    let only = seam.sewn_only.iter().map(|(edges, names)| (edges, names));
+    let ring = |(edges, names): (&Vec<SeamEdge>, &Vec<EdgeOrigin>)| {
+        let mut ring = PieceRing::default();
+        for (edge, name) in edges.iter().zip(names) {
+            let points = edge.curve.flatten(FLATNESS);
+            for &p in &points[..points.len().saturating_sub(1)] {
+                ring.points.push(p);
+                ring.segments.push(PieceSegment::Edge(*name));
+            }
+        }
+        ring
+    };
+    named.chain(only).map(ring).collect()
+}
+
+fn inside_lines(piece: &Piece, plane: &Plane) -> Vec<InsideLine> {
+    let line = |line: &toile_pattern::PieceLine| {
+        let mut points: Vec<Vec2> = Vec::new();
+        for curve in line.curves.iter().flat_map(|&c| plane.curves(c)) {
+            let part = curve.flatten(FLATNESS);
+            points.extend(&part[usize::from(!points.is_empty()).min(part.len())..]);
+        }
+        InsideLine {
+            id: line.id,
+            points,
+        }
+    };
+    piece.internal_lines.iter().map(line).collect()
+}
+
+/// Ends of darts: the apex of one in the outline, the corners of one inside.
+fn drills(seam: &NamedSeam) -> Vec<Drill> {
+    let outline = seam.names.first().map_or(&[][..], |names| names);
+    let mut found = Vec::new();
+    for dart in &seam.line.darts {
+        let [_, second] = dart.legs;
+        if let Some((by, _)) = outline.get(second).and_then(EdgeOrigin::leg) {
+            found.push(Drill {
+                name: Name::Made {
+                    by,
+                    role: Role::Apex,
+                    index: 0,
+                },
+                half: outline[second].half,
+                at: seam.line.outline[second].curve.start(),
+            });
+        }
+    }
+    for (edges, names) in &seam.sewn_only {
+        for (edge, name) in edges.iter().zip(names) {
+            if let Some((by, leg)) = name.leg() {
+                found.push(Drill {
+                    name: Name::Made {
+                        by,
+                        role: Role::Mouth,
+                        index: leg,
+                    },
+                    half: name.half,
+                    at: edge.curve.start(),
+                });
+            }
+        }
+    }
+    found
+}
+
+fn texts(
+    (pattern, draft): (&Pattern, &Draft),
+    piece: &Piece,
+    size: Option<&str>,
+) -> Vec<PieceText> {
+    let cut = pattern.panel(piece.id.panel).map(|panel| panel.cut);
+    let count = cut.map(|cut| match (cut.quantity, cut.mirrored) {
+        (2, true) => "cut 1 pair".to_owned(),
+        (n, true) if n % 2 == 0 => format!("cut {} pairs", n / 2),
+        (n, true) => format!("cut {n}, every second one mirrored"),
+        (n, false) => format!("cut {n}"),
+    });
+    let fabric = draft.fabrics.get(piece.fabric).map(|f| f.name.clone());
+    let all = [
+        (TextKind::Name, Some(piece.name.clone())),
+        (TextKind::Size, size.map(|size| format!("size {size}"))),
+        (TextKind::Count, count),
+        (TextKind::Fabric, fabric),
+    ];
+    all.into_iter()
+        .filter_map(|(kind, text)| Some(PieceText { kind, text: text? }))
+        .collect()
+}
+
+/// Why a seam line has no cut line, with the names of the edges.
+fn error_words((pattern, piece): (&Pattern, &Piece), seam: &NamedSeam, error: &CutError) -> String {
+    let words = |index: EdgeIndex| match name_of(&seam.names, index) {
+        Some(origin) => edge_words(pattern.panel(piece.id.panel).map(|p| &**p), origin),
+        None => "an edge".to_owned(),
+    };
+    match error {
+        CutError::NotFinite(edge) => {
+            format!(
+                "{} has a coordinate that is not a finite number",
+                words(*edge)
+            )
+        }
+        CutError::Width(edge) => format!(
+            "{} has an allowance that is negative or not a finite number",
+            words(*edge)
+        ),
+        CutError::Open(edge, gap) => format!(
+            "{} ends {:.3} mm from where the next edge starts",
+            words(*edge),
+            gap * 1e3
+        ),
+        CutError::NoArea(_) => "a line encloses nothing".to_owned(),
+        CutError::Crossing(one, other, at) => format!(
+            "{} and {} meet near x = {:.1} cm, y = {:.1} cm",
+            words(*one),
+            words(*other),
+            at.x * 1e2,
+            at.y * 1e2
+        ),
+        CutError::StrayHole(_) => "a hole lies outside the outline or in another hole".to_owned(),
+        CutError::Dart(k) => {
+            let leg = seam.line.darts.get(*k).map(|dart| dart.legs[0]);
+            let leg = leg.map(|edge| words(EdgeIndex { ring: 0, edge }));
+            format!(
+                "{} points outwards",
+                leg.unwrap_or_else(|| "a dart".to_owned())
+            )
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! What a cut line does not do as asked, in words for people.
+
+use crate::names::edge_words;
+use crate::piece::CutPiece;
+use crate::{CapFault, EdgeIndex, Finding};
+use std::collections::BTreeSet;
+use toile_pattern::{Code, Diagnostic, Draft, EdgeOrigin, Name, Panel, Pattern, Place, Severity};
+
+/// Missing or narrow allowance along less than this is not worth a word \[m\].
+const SHORT: f64 = 0.002;
+/// Allowances that are this much narrower than asked are as good as those asked \[m\].
+const NARROWER: f64 = 5e-4;
+
+/// What the cut lines of a draft do not do as asked, once for all copies and halves of a panel, and
+/// the pieces that have none.
+pub fn cut_diagnostics(pattern: &Pattern, draft: &Draft) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for (k, piece) in draft.pieces.iter().enumerate() {
+        if piece.id.copy != 0 {
+            continue;
+        }
+        match CutPiece::new((pattern, draft), k, (None, &Default::default())) {
+            Ok(cut) => found.extend(cut.diagnostics(pattern)),
+            Err(error) => {
+                let name = pattern.panel(piece.id.panel).map_or("", |p| &p.name);
+                found.push(Diagnostic::new(
+                    Severity::Error,
+                    Code::NoCutLine,
+                    Place::Panel(piece.id.panel),
+                    format!("panel {name:?} has no cut line: {error}"),
+                    "move what is named there apart",
+                ));
+            }
+        }
+    }
+    found
+}
+
+/// A finding in words: how bad, what kind, where, what, and what to do.
+struct Said {
+    severity: Severity,
+    code: Code,
+    edge: Option<EdgeOrigin>,
+    what: String,
+    hint: &'static str,
+}
+
+fn mm(length: f64) -> String {
+    let text = format!("{:.1}", length * 1e3);
+    format!("{} mm", text.strip_suffix(".0").unwrap_or(&text))
+}
+
+impl CutPiece {
+    /// What its cut line does not do as asked, in words with millimetres and the names of edges. The
+    /// same of both halves of a folded panel is said once.
+    pub fn diagnostics(&self, pattern: &Pattern) -> Vec<Diagnostic> {
+        let id = self.id.panel;
+        let Some(panel) = pattern.panel(id) else {
+            return Vec::new();
+        };
+        let mut seen = BTreeSet::new();
+        let mut found = Vec::new();
+        for said in self.findings.iter().filter_map(|f| self.said(panel, f)) {
+            if !seen.insert(said.what.clone()) {
+                continue;
+            }
+            let place = match said.edge.map(|edge| edge.name) {
+                Some(Name::Drawn(edge)) => Place::Edge(id, edge),
+                Some(Name::Made { by, .. }) => Place::Operation(id, by),
+                None => Place::Panel(id),
+            };
+            let message = format!("panel {:?}: {}", panel.name, said.what);
+            found.push(Diagnostic::new(
+                said.severity,
+                said.code,
+                place,
+                message,
+                said.hint,
+            ));
+        }
+        found
+    }
+
+    fn said(&self, panel: &Panel, finding: &Finding) -> Option<Said> {
+        let words = |index: EdgeIndex| match self.edge(index) {
+            Some(origin) => edge_words(Some(panel), origin),
+            None => "an edge".to_owned(),
+        };
+        let said = |severity, code, at: Option<EdgeIndex>, what, hint| Said {
+            severity,
+            code,
+            edge: at.and_then(|index| self.edge(index)),
+            what,
+            hint,
+        };
+        Some(match finding {
+            Finding::Swallowed {
+                inner_corner: true, ..
+            } => return None,
+            Finding::Swallowed { edge, stretch, .. } => {
+                let length = stretch[1] - stretch[0];
+                if length < SHORT {
+                    return None;
+                }
+                said(
+                    Severity::Note,
+                    Code::AllowanceSwallowed,
+                    Some(*edge),
+                    format!(
+                        "along {} of {} the seam allowance runs into other cloth: it is wider there",
+                        mm(length),
+                        words(*edge)
+                    ),
+                    "lessen the allowance, and clip it to the seam after sewing",
+                )
+            }
+            Finding::Narrow {
+                edge,
+                stretch,
+                least,
+            } => {
+                let asked = self.width(*edge);
+                let length = stretch[1] - stretch[0];
+                if length < SHORT || asked.is_some_and(|asked| asked - least < NARROWER) {
+                    return None;
+                }
+                said(
+                    Severity::Note,
+                    Code::AllowanceNarrow,
+                    Some(*edge),
+                    format!(
+                        "along {} of {} the seam allowance is only {} wide, as its corner is cut",
+                        mm(length),
+                        words(*edge),
+                        mm(*least)
+                    ),
+                    "choose another corner there if that is too narrow to sew",
+                )
+            }
+            Finding::CutOff {
+                corner,
+                asked,
+                kept,
+            } => said(
+                Severity::Warning,
+                Code::SharpCorner,
+                Some(*corner),
+                format!(
+                    "{} is too sharp for its seam allowance, which would reach {} beyond it: it is cut off at {}",
+                    self.corner_words(panel, *corner),
+                    mm(*asked),
+                    mm(*kept)
+                ),
+                "blunt the corner, or lessen the seam allowance of its edges",
+            ),
+            Finding::Mitred { corner, asked } => said(
+                Severity::Note,
+                Code::BluntCorner,
+                Some(*corner),
+                format!(
+                    "{} is too blunt for its kind, which would reach {} beyond it: both cut lines run on until they meet",
+                    self.corner_words(panel, *corner),
+                    mm(*asked)
+                ),
+                "give the corner as a mitre",
+            ),
+            Finding::SlitShut {
+                edges,
+                depth,
+                length,
+                ..
+            } => said(
+                Severity::Warning,
+                Code::SlitShut,
+                Some(edges[0]),
+                format!(
+                    "the slit between {} and {} is not cut open: the seam allowances of its sides meet, {} of seam line up to {} deep",
+                    words(edges[0]),
+                    words(edges[1]),
+                    mm(*length),
+                    mm(*depth)
+                ),
+                "widen the slit, or lessen the seam allowance of its sides",
+            ),
+            Finding::BayShut { area, .. } => said(
+                Severity::Warning,
+                Code::SlitShut,
+                None,
+                format!(
+                    "the seam allowances round a bay of the outline meet at its mouth and leave a hole of {:.1} cm2",
+                    area * 1e4
+                ),
+                "widen the mouth, or lessen the seam allowance there",
+            ),
+            Finding::HoleShut { hole, parts } => {
+                let edge = EdgeIndex {
+                    ring: hole + 1,
+                    edge: 0,
+                };
+                let what = match parts {
+                    0 => "is filled by its seam allowance and not cut".to_owned(),
+                    n => format!("falls into {n} parts, as its seam allowances meet"),
+                };
+                let line = match self.edge(edge).map(|edge| edge.name) {
+                    Some(Name::Drawn(id)) => panel.line_of(id),
+                    _ => None,
+                };
+                let line = line.map_or("a hole".to_owned(), |line| format!("line {:?}", line.name));
+                said(
+                    Severity::Warning,
+                    Code::HoleShut,
+                    Some(edge),
+                    format!("{line} {what}"),
+                    "lessen its seam allowance, or make it wider",
+                )
+            }
+            Finding::StraightCap { dart, fault } => {
+                let leg = self.darts.get(*dart).copied();
+                let name =
+                    leg.map_or_else(|| "a dart".to_owned(), |leg| edge_words(Some(panel), leg));
+                Said {
+                    severity: Severity::Note,
+                    code: Code::StraightDart,
+                    edge: leg,
+                    what: format!(
+                        "{name} is cut straight across its mouth: {}",
+                        fault_words(*fault)
+                    ),
+                    hint: "fold the dart before cutting there, or press it to the other side",
+                }
+            }
+        })
+    }
+
+    /// The corner at the start of an edge, by its two edges.
+    fn corner_words(&self, panel: &Panel, corner: EdgeIndex) -> String {
+        let count = self.names.get(corner.ring).map_or(1, Vec::len);
+        let before = EdgeIndex {
+            edge: (corner.edge + count - 1) % count,
+            ..corner
+        };
+        let (Some(one), Some(other)) = (self.edge(before), self.edge(corner)) else {
+            return "a corner".to_owned();
+        };
+        let [mut a, mut b] = [one, other].map(|origin| edge_words(Some(panel), origin));
+        if a > b {
+            std::mem::swap(&mut a, &mut b);
+        }
+        match a == b {
+            true if one != other => format!("the corner of {a} at the fold"),
+            true => format!("a corner of {a}"),
+            false => format!("the corner of {a} and {b}"),
+        }
+    }
+}
+
+fn fault_words(fault: CapFault) -> &'static str {
+    match fault {
+        CapFault::NoNeighbour => "the edge it is pressed towards is a leg of another dart",
+        CapFault::NoMeeting => "its leg runs along the allowance of the edge beside it",
+        CapFault::TooShort => "the edge beside it is too short for a dart of its width",
+        CapFault::Crossing => "the cloth at its mouth would cross itself",
+    }
+}

@@ -1,0 +1,133 @@
+//! How a piece looks on paper.
+
+use super::mark::{Look, Mark, Shape};
+use super::{Lines, Paper, PrintJob, PrintPiece};
+use crate::pdf::{Align, Ink};
+use toile_cut::{Drawing, StrokeKind, Words};
+use toile_geometry::Vec2;
+
+pub(crate) const BLACK: Ink = [0.07, 0.07, 0.07];
+const BLUE: Ink = [0.12, 0.31, 0.62];
+const PURPLE: Ink = [0.55, 0.2, 0.55];
+/// Least width of a line that a projector shows \[m\].
+const PROJECTED: f64 = 0.0012;
+/// Letters beside the fold \[m\].
+const FOLD_LETTERS: f64 = 0.005;
+/// Their size over the length of the fold at the most: the words then fit.
+const FOLD_SHARE: f64 = 0.1;
+
+/// Ink and dash of each size's lines, one after another: told apart in colour and in black and white.
+const SIZES: [(Ink, f64); 8] = [
+    ([0.07, 0.07, 0.07], 0.0),
+    ([0.75, 0.1, 0.15], 0.012),
+    ([0.05, 0.4, 0.7], 0.006),
+    ([0.1, 0.5, 0.2], 0.003),
+    ([0.6, 0.3, 0.0], 0.018),
+    ([0.5, 0.15, 0.6], 0.009),
+    ([0.0, 0.5, 0.5], 0.0045),
+    ([0.8, 0.35, 0.55], 0.024),
+];
+
+/// How the lines of a kind look in a size.
+pub(crate) fn look(job: &PrintJob, kind: StrokeKind, layer: usize) -> Look {
+    let several = job.layers.len() > 1;
+    let (ink, dash) = match several {
+        true => SIZES[layer % SIZES.len()],
+        false => (BLACK, 0.0),
+    };
+    let (ink, width, dash) = match kind {
+        StrokeKind::Cut => (ink, 0.0005, dash),
+        // Fine and even, so that it is told from the line to cut along.
+        StrokeKind::Sew => (if several { ink } else { [0.35; 3] }, 0.0002, 0.0),
+        StrokeKind::Inside => (if several { ink } else { [0.35; 3] }, 0.0002, 0.004),
+        StrokeKind::Notch => (ink, 0.000_35, 0.0),
+        StrokeKind::Fold => (PURPLE, 0.0006, 0.02),
+        StrokeKind::Grain => (BLUE, 0.0003, 0.0),
+        StrokeKind::Drill => (ink, 0.000_25, 0.0),
+    };
+    let width = match job.paper {
+        Paper::Projector => PROJECTED.max(width),
+        _ => width,
+    };
+    Look { ink, width, dash }
+}
+
+/// Whether lines of a kind are printed.
+fn prints(job: &PrintJob, kind: StrokeKind) -> bool {
+    !matches!(
+        (job.lines, kind),
+        (Lines::Cut, StrokeKind::Sew) | (Lines::Sew, StrokeKind::Cut)
+    )
+}
+
+/// A piece in all its sizes. Words and grain line are those of the smallest, for all.
+pub(crate) fn piece_marks(job: &PrintJob, piece: &PrintPiece) -> Vec<Mark> {
+    let place = |p: Vec2| piece.pose.apply(p * job.scale);
+    let smallest = piece.sizes.iter().enumerate().min_by(|a, b| {
+        let area = |k: &(usize, std::sync::Arc<toile_cut::CutPiece>)| k.1.outer().area();
+        area(a.1).total_cmp(&area(b.1))
+    });
+    let smallest = smallest.map(|(k, _)| k);
+    let words: Vec<&str> = piece.words.iter().map(String::as_str).collect();
+    let mut marks = Vec::new();
+    for (k, (layer, cut)) in piece.sizes.iter().enumerate() {
+        let own = smallest == Some(k);
+        let drawing: Drawing = cut.drawing(place, if own { &words } else { &[] });
+        for stroke in drawing.strokes {
+            let shared = stroke.kind == StrokeKind::Grain;
+            if !prints(job, stroke.kind) || (shared && !own) {
+                continue;
+            }
+            let layer = (!shared).then_some(*layer);
+            let look = look(job, stroke.kind, layer.unwrap_or(0));
+            let on_fold = stroke.kind == StrokeKind::Fold;
+            if let ([from, to], true, true) = (&stroke.points[..], on_fold, own) {
+                marks.extend(fold_words([*from, *to], drawing.fill.as_ref()));
+            }
+            marks.push(Mark::line(layer, (stroke.points, stroke.closed), look));
+        }
+        marks.extend(drawing.words.into_iter().map(words_mark));
+    }
+    marks
+}
+
+fn words_mark(words: Words) -> Mark {
+    Mark {
+        layer: None,
+        shape: Shape::Text {
+            text: words.text,
+            at: words.at,
+            size: words.size,
+            angle: words.angle,
+            align: Align::Middle,
+            ink: BLACK,
+        },
+    }
+}
+
+/// What is written along the fold, inside the piece.
+fn fold_words([from, to]: [Vec2; 2], fill: Option<&toile_geometry::Polygon>) -> Option<Mark> {
+    let way = (to - from).try_normalize(0.0)?;
+    let middle = (from + to) * 0.5;
+    let size = FOLD_LETTERS.min((to - from).norm() * FOLD_SHARE);
+    let left = Vec2::new(-way.y, way.x) * size;
+    let inside = fill.is_some_and(|fill| fill.contains(middle + left));
+    // Letters stand with their feet towards the fold, read from below or from the right.
+    let (way, above) = if inside { (way, left) } else { (-way, -left) };
+    let upside_down = way.x < -1e-6;
+    let (way, above) = match upside_down {
+        true => (-way, above * 1.9),
+        false => (way, above * 0.8),
+    };
+    Some(Mark {
+        layer: None,
+        shape: Shape::Text {
+            text: "fold of the cloth".to_owned(),
+            at: middle + above,
+            size,
+            angle: way.y.atan2(way.x),
+            align: Align::Middle,
+            ink: PURPLE,
+        },
+    })
+}

@@ -1,0 +1,95 @@
+//! What is put on paper: lines and words, each on a layer.
+
+use crate::pdf::{Align, Ink};
+use toile_geometry::{Bounds2, Vec2};
+
+/// Ink, width and dashes of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Look {
+    pub ink: Ink,
+    /// \[m\]
+    pub width: f64,
+    /// Length of a dash \[m\]; 0 for a line without.
+    pub dash: f64,
+}
+
+/// A line or words.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Shape {
+    Line {
+        points: Vec<Vec2>,
+        closed: bool,
+        look: Look,
+    },
+    Text {
+        text: String,
+        at: Vec2,
+        /// Height of the letters \[m\].
+        size: f64,
+        /// Direction of the baseline \[rad\].
+        angle: f64,
+        align: Align,
+        ink: Ink,
+    },
+}
+
+/// A shape on a layer: the number of a size, or none for what belongs to all.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Mark {
+    pub layer: Option<usize>,
+    pub shape: Shape,
+}
+
+/// A page: what lies inside its window, and what is drawn on top wherever it lies.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Page {
+    pub size: Vec2,
+    pub name: String,
+    pub window: Bounds2,
+    pub inside: Vec<Mark>,
+    pub on_top: Vec<Mark>,
+}
+
+impl Mark {
+    pub fn line(layer: Option<usize>, (points, closed): (Vec<Vec2>, bool), look: Look) -> Self {
+        Self {
+            layer,
+            shape: Shape::Line {
+                points,
+                closed,
+                look,
+            },
+        }
+    }
+
+    /// Words for all sizes, that start or have their middle at a place, on a level baseline.
+    pub fn text(text: &str, (at, align): (Vec2, Align), (size, ink): (f64, Ink)) -> Self {
+        Self {
+            layer: None,
+            shape: Shape::Text {
+                text: text.to_owned(),
+                at,
+                size,
+                angle: 0.0,
+                align,
+                ink,
+            },
+        }
+    }
+
+    pub fn rectangle(bounds: &Bounds2) -> (Vec<Vec2>, bool) {
+        let (a, b) = (bounds.min, bounds.max);
+        let corners = [[a.x, a.y], [b.x, a.y], [b.x, b.y], [a.x, b.y]];
+        (corners.map(Vec2::from).to_vec(), true)
+    }
+
+    /// A box that holds it, roughly for words \[m\].
+    pub fn bounds(&self) -> Bounds2 {
+        match &self.shape {
+            Shape::Line { points, .. } => Bounds2::of(points.iter().copied()),
+            Shape::Text { text, at, size, .. } => {
+                Bounds2::of([*at]).grown(size * (1.0 + text.chars().count() as f64))
+            }
+        }
+    }
+}

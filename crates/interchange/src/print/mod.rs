@@ -1,0 +1,245 @@
+//! Cut pieces on paper at true size: sheets to join by their marks, or one page; PDF or SVG.
+//!
+//! Pieces lie on a drawing, as wide as it takes, whose lower left corner is the origin. Sheets show
+//! windows of it that overlap by 10 mm. Every size is a layer.
+
+mod draw;
+mod mark;
+mod paper;
+mod pdf;
+mod svg;
+mod title;
+
+pub use paper::{Paper, Tile};
+pub use title::TitleBlock;
+
+use crate::FormatError;
+use crate::pdf::Align;
+use mark::{Look, Mark, Page, Shape};
+use paper::{clipped, crosses, tiles};
+use std::sync::Arc;
+use toile_cut::CutPiece;
+use toile_geometry::{Bounds2, Vec2};
+use toile_nesting::Pose;
+
+/// Which lines of a piece are printed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Lines {
+    /// Those to cut along.
+    Cut,
+    /// Those to sew along.
+    Sew,
+    /// Both.
+    #[default]
+    Both,
+}
+
+/// A size: a layer of the print.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PrintLayer {
+    /// Name to show, as in "size M".
+    pub name: String,
+}
+
+/// A piece to print, in one size or several that lie on each other as they were drafted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PrintPiece {
+    /// The number of the size, and the piece in it.
+    pub sizes: Vec<(usize, Arc<CutPiece>)>,
+    /// What is written on it.
+    pub words: Vec<String>,
+    /// Drawing from piece, once that is scaled.
+    pub pose: Pose,
+}
+
+/// Pieces to print.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PrintJob {
+    /// What it is printed on.
+    pub paper: Paper,
+    /// Length on paper over length of cloth.
+    pub scale: f64,
+    /// Which lines are printed.
+    pub lines: Lines,
+    /// Size of the drawing \[m\].
+    pub size: Vec2,
+    /// The sizes.
+    pub layers: Vec<PrintLayer>,
+    /// The pieces.
+    pub pieces: Vec<PrintPiece>,
+    /// What is said of it all.
+    pub title: TitleBlock,
+    /// Lower left corner of the title block \[m\].
+    pub title_at: Vec2,
+}
+
+/// Arm of a cross by which sheets are joined \[m\].
+const CROSS: f64 = 0.004;
+const GREY: [f32; 3] = [0.55, 0.55, 0.55];
+/// Lines of frames and crosses.
+const JOIN: Look = Look {
+    ink: GREY,
+    width: 0.000_15,
+    dash: 0.0,
+};
+/// Letters of a sheet's row and column \[m\].
+const PLACE_LETTERS: f64 = 0.004;
+
+impl PrintJob {
+    /// The sheets, rows from above: those with something on them.
+    ///
+    /// # Errors
+    /// A number is not finite.
+    pub fn tiles(&self) -> Result<Vec<Tile>, FormatError> {
+        self.check_numbers()?;
+        Ok(self.tiles_of(&self.marks()))
+    }
+
+    /// The file as PDF; sizes are optional content.
+    ///
+    /// # Errors
+    /// A number is not finite.
+    pub fn pdf(&self) -> Result<Vec<u8>, FormatError> {
+        Ok(pdf::write_pdf(
+            &self.title.name,
+            &self.pages()?,
+            &self.layer_names(),
+        ))
+    }
+
+    /// The file as SVG, sheets side by side; sizes are layers of Inkscape.
+    ///
+    /// # Errors
+    /// A number is not finite.
+    pub fn svg(&self) -> Result<String, FormatError> {
+        Ok(svg::write_svg(
+            &self.title.name,
+            &self.pages()?,
+            &self.layer_names(),
+        ))
+    }
+
+    fn layer_names(&self) -> Vec<String> {
+        self.layers.iter().map(|layer| layer.name.clone()).collect()
+    }
+
+    fn check_numbers(&self) -> Result<(), FormatError> {
+        let refuse = |place: String| {
+            let hint = "check the piece's outline";
+            Err(FormatError::new(place, "a number is not finite", hint))
+        };
+        let sizes = [self.scale, self.size.x, self.size.y];
+        if !sizes.iter().all(|x| x.is_finite() && *x > 0.0) {
+            return refuse("print".to_owned());
+        }
+        for (_, piece) in self.pieces.iter().flat_map(|piece| &piece.sizes) {
+            if !piece.is_finite() {
+                return refuse(format!("piece {:?}", piece.name));
+            }
+        }
+        Ok(())
+    }
+
+    /// Everything on the drawing but what depends on the sheets.
+    fn marks(&self) -> Vec<Mark> {
+        let mut marks = Vec::new();
+        for piece in &self.pieces {
+            marks.extend(draw::piece_marks(self, piece));
+        }
+        marks.extend(title::block_marks(self));
+        marks
+    }
+
+    fn tiles_of(&self, marks: &[Mark]) -> Vec<Tile> {
+        tiles(self.paper, self.size, |cell| {
+            marks.iter().any(|mark| match &mark.shape {
+                Shape::Line { points, closed, .. } => !clipped(points, *closed, cell).is_empty(),
+                Shape::Text { .. } => false,
+            })
+        })
+    }
+
+    fn pages(&self) -> Result<Vec<Page>, FormatError> {
+        self.check_numbers()?;
+        let mut marks = self.marks();
+        let tiles = self.tiles_of(&marks);
+        if self.paper.sheet().is_some() {
+            marks.extend(title::map_marks(self, &tiles));
+        }
+        let count = tiles.len();
+        let pages = tiles.iter().enumerate();
+        Ok(pages
+            .map(|(k, tile)| self.page(&marks, tile, (k + 1, count)))
+            .collect())
+    }
+
+    fn page(&self, marks: &[Mark], tile: &Tile, (number, count): (usize, usize)) -> Page {
+        let window = Bounds2 {
+            min: tile.window.min + tile.shift,
+            max: tile.window.max + tile.shift,
+        };
+        let mut page = Page {
+            size: tile.sheet,
+            name: format!("row {}, column {}", tile.place[0], tile.place[1]),
+            window,
+            inside: marks.iter().flat_map(|mark| on_page(mark, tile)).collect(),
+            on_top: Vec::new(),
+        };
+        if self.paper.sheet().is_none() {
+            page.name = self.title.name.clone();
+            return page;
+        }
+        page.on_top
+            .push(Mark::line(None, Mark::rectangle(&window), JOIN));
+        for at in crosses(tile) {
+            for arm in [Vec2::new(CROSS, 0.0), Vec2::new(0.0, CROSS)] {
+                let ends = vec![at + tile.shift - arm, at + tile.shift + arm];
+                page.on_top.push(Mark::line(None, (ends, false), JOIN));
+            }
+        }
+        let at = window.min + Vec2::repeat(1.5 * PLACE_LETTERS);
+        let words = format!("{}: sheet {number} of {count}", page.name);
+        let letters = (PLACE_LETTERS, GREY);
+        page.on_top
+            .push(Mark::text(&words, (at, Align::Left), letters));
+        page
+    }
+}
+
+/// What a sheet shows of a mark.
+fn on_page(mark: &Mark, tile: &Tile) -> Vec<Mark> {
+    let moved = |points: &[Vec2]| points.iter().map(|p| p + tile.shift).collect::<Vec<_>>();
+    let with = |shape: Shape| Mark {
+        layer: mark.layer,
+        shape,
+    };
+    match &mark.shape {
+        Shape::Line {
+            points,
+            closed,
+            look,
+        } => {
+            let inside = points.iter().all(|&p| tile.window.contains(p));
+            let (parts, closed) = match inside {
+                true => (vec![points.clone()], *closed),
+                false => (clipped(points, *closed, &tile.window), false),
+            };
+            let line = |part: &Vec<Vec2>| {
+                with(Shape::Line {
+                    points: moved(part),
+                    closed,
+                    look: *look,
+                })
+            };
+            parts.iter().map(line).collect()
+        }
+        _ if !mark.bounds().meets(&tile.window) => Vec::new(),
+        Shape::Text { .. } => {
+            let mut shape = mark.shape.clone();
+            if let Shape::Text { at, .. } = &mut shape {
+                *at += tile.shift;
+            }
+            vec![with(shape)]
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! A pattern's pieces and seams in numbers, for programs: millimetres, square centimetres, degrees.
+
+use crate::report::span_length;
+use serde::Serialize;
+use toile_cut::{CutOptions, CutPiece, PieceRing};
+use toile_geometry::{Bounds2, Polygon, Vec2};
+use toile_pattern::{
+    Corner, Draft, EdgeOrigin, Name, NotchKind, Panel, Pattern, Piece, PieceEdge, Pressed,
+};
+
+/// A piece: places are in its own plane, seen from the right side of the cloth.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PieceFacts {
+    /// Name of the piece; no other has it.
+    pub name: String,
+    /// The panel it is a copy of.
+    pub panel: String,
+    /// Number of the copy, from 0.
+    pub copy: u32,
+    /// The size it is drafted to, if it is one of the pattern's.
+    pub size: Option<String>,
+    /// The fabric.
+    pub fabric: String,
+    /// Direction of the warp, counter-clockwise from +x \[deg\].
+    pub grain_deg: f64,
+    /// Whether it was unfolded.
+    pub folded: bool,
+    /// The lines it is sewn along.
+    pub sewn: RegionFacts,
+    /// The lines it is cut along.
+    pub cut: RegionFacts,
+    /// The edges of the outline, then those of holes.
+    pub edges: Vec<EdgeFacts>,
+    /// Its notches.
+    pub notches: Vec<NotchFacts>,
+    /// Its darts.
+    pub darts: Vec<DartFacts>,
+}
+
+/// A region of cloth.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RegionFacts {
+    /// Holes taken out \[cm2\].
+    pub area_cm2: f64,
+    /// Least and greatest x and y \[mm\].
+    pub bounds_mm: [[f64; 2]; 2],
+    /// Length of the outline, holes left out \[mm\].
+    pub outline_mm: f64,
+}
+
+/// An edge. A spline is several, of one name.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EdgeFacts {
+    /// Name of the edge, or of the operation that made it.
+    pub name: String,
+    /// Which half of a folded panel: 0 as drawn; a bit a fold, set beyond it.
+    pub half: u8,
+    /// Length along the seam line \[mm\].
+    pub length_mm: f64,
+    /// Width of the seam allowance \[mm\].
+    pub allowance_mm: f64,
+    /// How the cut line turns at its start: mitre, bevel, square, extended or mirrored.
+    pub corner: &'static str,
+}
+
+/// A notch.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NotchFacts {
+    /// Name of the notch.
+    pub name: String,
+    /// The edge it is on, and the half.
+    pub edge: String,
+    /// Which half of a folded panel.
+    pub half: u8,
+    /// slit, v, castle, t or check.
+    pub kind: &'static str,
+    /// On the seam line \[mm\].
+    pub seam_mm: [f64; 2],
+    /// On the cut line \[mm\].
+    pub cut_mm: [f64; 2],
+}
+
+/// A dart.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DartFacts {
+    /// Name of the dart.
+    pub name: String,
+    /// Which half of a folded panel.
+    pub half: u8,
+    /// Straight across the mouth; of a diamond across its widest place \[mm\].
+    pub width_mm: f64,
+    /// Its legs in the order of the outline; of a diamond all four \[mm\].
+    pub legs_mm: Vec<f64>,
+    /// The leg it is pressed towards: before or after the apex as drawn.
+    pub pressed: &'static str,
+}
+
+/// A seam.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SeamFacts {
+    /// Name of the seam.
+    pub name: String,
+    /// Lengths of its sides \[mm\].
+    pub lengths_mm: [f64; 2],
+    /// Whether the longer side is gathered or eased on purpose.
+    pub gathered: bool,
+}
+
+/// Every piece of a draft in numbers; pieces without a cut line are left out, as checks tell of them.
+pub fn piece_facts((pattern, draft): (&Pattern, &Draft), size: Option<&str>) -> Vec<PieceFacts> {
+    let pieces = draft.pieces.iter().enumerate();
+    let facts = pieces.filter_map(|(k, piece)| {
+        let how = (size, &CutOptions::default());
+        let cut = CutPiece::new((pattern, draft), k, how).ok()?;
+        let panel = pattern.panel(piece.id.panel)?;
+        let fabric = draft.fabrics.get(piece.fabric);
+        Some(PieceFacts {
+            name: piece.name.clone(),
+            panel: panel.name.clone(),
+            copy: piece.id.copy,
+            size: size.map(str::to_owned),
+            fabric: fabric.map_or_else(String::new, |fabric| fabric.name.clone()),
+            grain_deg: cut.grain.to_degrees(),
+            folded: !piece.folds.is_empty(),
+            sewn: sewn_facts(piece, &cut),
+            cut: region_facts(&cut.polygon()),
+            edges: edges_of(piece)
+                .map(|edge| edge_facts(panel, edge))
+                .collect(),
+            notches: notches(panel, &cut),
+            darts: darts(panel, piece),
+        })
+    });
+    facts.collect()
+}
+
+/// Every seam of a draft in numbers, darts' seams included.
+pub fn seam_facts(draft: &Draft) -> Vec<SeamFacts> {
+    let seams = draft.seams.iter().map(|seam| SeamFacts {
+        name: seam.name.clone(),
+        lengths_mm: [0, 1].map(|side| {
+            let spans = seam.sides[side].iter();
+            1e3 * spans.map(|span| span_length(draft, span)).sum::<f64>()
+        }),
+        gathered: seam.gathered,
+    });
+    seams.collect()
+}
+
+fn edges_of(piece: &Piece) -> impl Iterator<Item = &PieceEdge> {
+    piece.outline.iter().chain(piece.holes.iter().flatten())
+}
+
+fn millimetres(p: Vec2) -> [f64; 2] {
+    [p.x * 1e3, p.y * 1e3]
+}
+
+fn bounds_mm(bounds: Bounds2) -> [[f64; 2]; 2] {
+    [millimetres(bounds.min), millimetres(bounds.max)]
+}
+
+fn region_facts(polygon: &Polygon) -> RegionFacts {
+    RegionFacts {
+        area_cm2: polygon.area() * 1e4,
+        bounds_mm: bounds_mm(polygon.bounds()),
+        outline_mm: Polygon::new(polygon.outer.clone()).perimeter() * 1e3,
+    }
+}
+
+/// Lengths and areas of the curves themselves.
+fn sewn_facts(piece: &Piece, cut: &CutPiece) -> RegionFacts {
+    let outer = cut
+        .sew
+        .first()
+        .map_or(&[][..], |ring: &PieceRing| &ring.points);
+    let length: f64 = piece.outline.iter().map(|edge| edge.curve.length()).sum();
+    RegionFacts {
+        area_cm2: crate::report::piece_area(piece) * 1e4,
+        bounds_mm: bounds_mm(Bounds2::of(outer.iter().copied())),
+        outline_mm: length * 1e3,
+    }
+}
+
+/// Name of an edge, or of the operation that made it.
+fn edge_name(panel: &Panel, origin: EdgeOrigin) -> String {
+    let found = match origin.name {
+        Name::Drawn(id) => panel.edge(id).map(|edge| &edge.name),
+        Name::Made { by, .. } => {
+            let mut operations = panel.operations.iter();
+            operations.find(|o| o.id == by).map(|o| &o.name)
+        }
+    };
+    found.cloned().unwrap_or_default()
+}
+
+fn edge_facts(panel: &Panel, edge: &PieceEdge) -> EdgeFacts {
+    EdgeFacts {
+        name: edge_name(panel, edge.origin),
+        half: edge.origin.half,
+        length_mm: edge.curve.length() * 1e3,
+        allowance_mm: edge.seam_allowance * 1e3,
+        corner: match edge.corner {
+            Corner::Mitre => "mitre",
+            Corner::Bevel => "bevel",
+            Corner::Square => "square",
+            Corner::Extended => "extended",
+            Corner::Mirrored => "mirrored",
+        },
+    }
+}
+
+fn notches(panel: &Panel, cut: &CutPiece) -> Vec<NotchFacts> {
+    let notch = |notch: &toile_cut::CutNotch| {
+        let named = panel.notches.iter().find(|n| n.id == notch.id);
+        NotchFacts {
+            name: named.map_or_else(String::new, |n| n.name.clone()),
+            edge: edge_name(panel, notch.edge),
+            half: notch.edge.half,
+            kind: match notch.kind {
+                NotchKind::Slit => "slit",
+                NotchKind::V => "v",
+                NotchKind::Castle => "castle",
+                NotchKind::T => "t",
+                NotchKind::Check => "check",
+            },
+            seam_mm: millimetres(notch.point),
+            cut_mm: millimetres(notch.on_cut),
+        }
+    };
+    cut.notches.iter().map(notch).collect()
+}
+
+fn darts(panel: &Panel, piece: &Piece) -> Vec<DartFacts> {
+    let dart = |dart: &toile_pattern::StageDart| {
+        let operation = panel.operations.iter().find(|o| o.id == dart.by);
+        let is_leg = |edge: &&PieceEdge| {
+            edge.origin.half == dart.half && edge.origin.leg().is_some_and(|leg| leg.0 == dart.by)
+        };
+        let legs = edges_of(piece).filter(is_leg);
+        DartFacts {
+            name: operation.map_or_else(String::new, |o| o.name.clone()),
+            half: dart.half,
+            width_mm: (dart.mouth[1] - dart.mouth[0]).norm() * 1e3,
+            legs_mm: legs.map(|leg| leg.curve.length() * 1e3).collect(),
+            pressed: match dart.pressed {
+                Pressed::Before => "before",
+                Pressed::After => "after",
+            },
+        }
+    };
+    piece.darts.iter().map(dart).collect()
+}

@@ -1,0 +1,546 @@
+//! Pieces printed on paper: laid out to save it, in one size or all.
+
+use crate::open::open_pattern;
+use crate::tools::{check_ending, sound_draft};
+use crate::watcher::tell;
+use crate::{Project, SessionError, Watcher};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use toile_cut::{CutList, CutOptions, CutPiece, Shrinkage, TextKind, cut_list};
+use toile_geometry::{Bounds2, Polygon, Vec2, convex_hull, union};
+use toile_interchange::{
+    FormatError, Lines, Paper, PrintJob, PrintLayer, PrintPiece, Tile, TitleBlock, write_atomically,
+};
+use toile_nesting::{
+    Allowed, Budget, Control, Item, Locked, Marker, Progress, Search, Strip, make_marker,
+};
+use toile_pattern::{Draft, Pattern, Severity};
+
+/// White between pieces on paper, and to the edge of the drawing \[m\].
+const GAP: f64 = 0.004;
+const EDGE: f64 = 0.003;
+/// How long each arrangement is searched for: a second or so.
+const EVALUATIONS: u64 = 500_000;
+/// How many more rows of sheets than needed are tried.
+const MORE_ROWS: u32 = 3;
+/// Area of the drawing on one page over that of its pieces: about what laying them reaches.
+const ROOMY: f64 = 1.3;
+/// Sheets nobody joins: larger paper or a smaller scale is meant.
+const MOST_SHEETS: usize = 500;
+/// Scales that can be printed: from a doll's to twice the size.
+const SCALES: [f64; 2] = [0.01, 2.0];
+
+/// The sizes to print.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum PrintSizes {
+    /// The pattern's base size.
+    #[default]
+    Base,
+    /// A size of the pattern.
+    Named(String),
+    /// Every size, each a layer.
+    All,
+}
+
+/// What is printed, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PrintOptions {
+    /// The sizes.
+    pub sizes: PrintSizes,
+    /// Names of pieces; without any, all.
+    pub pieces: Vec<String>,
+    /// Which lines.
+    pub lines: Lines,
+    /// Length on paper over length of cloth.
+    pub scale: f64,
+    /// On what.
+    pub paper: Paper,
+    /// Whether pieces that are the same on both sides of their fold are halved.
+    pub halves: bool,
+    /// What the cloth loses in the wash.
+    pub shrinkage: Shrinkage,
+}
+
+impl Default for PrintOptions {
+    fn default() -> Self {
+        Self {
+            sizes: PrintSizes::Base,
+            pieces: Vec::new(),
+            lines: Lines::Both,
+            scale: 1.0,
+            paper: Paper::A4,
+            halves: false,
+            shrinkage: Shrinkage::default(),
+        }
+    }
+}
+
+/// What was printed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Printed {
+    /// The sheets, rows from above.
+    pub tiles: Vec<Tile>,
+    /// Names of the sizes.
+    pub sizes: Vec<String>,
+    /// Names of the pieces.
+    pub pieces: Vec<String>,
+    /// What is to be cut of each fabric, in the first of the sizes.
+    pub cut_list: Vec<CutList>,
+    /// What the cut lines do not do as asked.
+    pub notes: Vec<String>,
+}
+
+/// Prints a pattern's pieces into a file: PDF or SVG by its ending.
+///
+/// # Errors
+/// The pattern cannot be read or cut; a size, a piece or the scale is none; the file cannot be
+/// written.
+pub fn print_pattern(
+    (path, to): (&Path, &Path),
+    options: &PrintOptions,
+    watcher: &mut dyn Watcher,
+) -> Result<Printed, SessionError> {
+    let remedy = "prints are written as NAME.pdf or NAME.svg";
+    check_ending(to, &[".pdf", ".svg"], remedy)?;
+    let (job, printed) = print_job(path, options, watcher)?;
+    tell(watcher, "writing", 0.95, "")?;
+    let is_svg = to.to_string_lossy().to_lowercase().ends_with(".svg");
+    let bytes = match is_svg {
+        true => job.svg().map(String::into_bytes),
+        false => job.pdf(),
+    };
+    write_atomically(to, &bytes.map_err(unprintable)?)?;
+    Ok(printed)
+}
+
+fn unprintable(error: FormatError) -> SessionError {
+    SessionError::Write {
+        file: "the print",
+        error,
+    }
+}
+
+/// The pieces of a pattern arranged on paper, and what there is to say of them.
+///
+/// # Errors
+/// As [`print_pattern`], but for the file.
+pub fn print_job(
+    path: &Path,
+    options: &PrintOptions,
+    watcher: &mut dyn Watcher,
+) -> Result<(PrintJob, Printed), SessionError> {
+    check_numbers(options)?;
+    tell(watcher, "drafting", 0.0, "")?;
+    let pattern = Arc::new(open_pattern(path)?.pattern);
+    let sizes = drafted(&pattern, path, &options.sizes)?;
+    check_pieces(&pattern, &options.pieces)?;
+    let cuts = sizes
+        .iter()
+        .map(|size| cut_pieces(&pattern, size, options))
+        .collect::<Result<Vec<_>, _>>()?;
+    let layers: Vec<PrintLayer> = sizes.iter().map(|size| size.layer()).collect();
+    let pieces = grouped(&pattern, &cuts, &layers);
+    if pieces.is_empty() {
+        return Err(SessionError::Nothing {
+            action: "print",
+            hint: "draw a panel first",
+        });
+    }
+    let of = (&*pattern, &sizes[0].draft);
+    let whole: Vec<CutPiece> = cuts[0].iter().map(|cut| cut.whole.clone()).collect();
+    let list = cut_list(of, &whole);
+    let notes = whole.iter().flat_map(|cut| cut.diagnostics(&pattern));
+    let notes = notes
+        .filter(|found| found.severity > Severity::Note)
+        .map(|found| format!("{}; {}", found.message, found.hint))
+        .collect();
+    let job = PrintJob {
+        paper: options.paper,
+        scale: options.scale,
+        lines: options.lines,
+        size: Vec2::zeros(),
+        title: TitleBlock {
+            name: pattern.name.clone(),
+            facts: facts(options, &layers, &list),
+        },
+        title_at: Vec2::zeros(),
+        layers,
+        pieces,
+    };
+    let job = arranged(job, watcher)?;
+    let printed = Printed {
+        tiles: job.tiles().map_err(unprintable)?,
+        sizes: sizes.into_iter().filter_map(|size| size.name).collect(),
+        pieces: job.pieces.iter().map(|p| p.words[0].clone()).collect(),
+        cut_list: list,
+        notes,
+    };
+    Ok((job, printed))
+}
+
+fn check_numbers(options: &PrintOptions) -> Result<(), SessionError> {
+    let scale = options.scale;
+    if !(scale.is_finite() && (SCALES[0]..=SCALES[1]).contains(&scale)) {
+        return Err(SessionError::Number {
+            what: "the scale",
+            value: scale,
+            hint: "give one from 1:100 to 2:1",
+        });
+    }
+    let Shrinkage { warp, weft } = options.shrinkage;
+    if !options.shrinkage.is_sound() {
+        return Err(SessionError::Number {
+            what: "the shrinkage in percent",
+            value: 100.0 * if warp.abs() <= 0.5 { weft } else { warp },
+            hint: "give shares of the length from -50 to 50",
+        });
+    }
+    Ok(())
+}
+
+/// A size drafted.
+struct SizeDraft {
+    name: Option<String>,
+    draft: Draft,
+}
+
+impl SizeDraft {
+    fn layer(&self) -> PrintLayer {
+        PrintLayer {
+            name: match &self.name {
+                Some(name) => format!("size {name}"),
+                None => "as drafted".to_owned(),
+            },
+        }
+    }
+}
+
+fn drafted(
+    pattern: &Arc<Pattern>,
+    path: &Path,
+    sizes: &PrintSizes,
+) -> Result<Vec<SizeDraft>, SessionError> {
+    let names: Vec<Option<String>> = match sizes {
+        PrintSizes::Base => vec![None],
+        PrintSizes::Named(name) => vec![Some(name.clone())],
+        PrintSizes::All => pattern.sizes.iter().map(|s| Some(s.name.clone())).collect(),
+    };
+    if names.is_empty() {
+        return Err(SessionError::Conflict(
+            "the pattern has no table of sizes: print it as drafted, without all sizes".to_owned(),
+        ));
+    }
+    let each = names.into_iter().map(|size| {
+        let project = Project {
+            pattern: pattern.clone(),
+            source: Some(path.to_owned()),
+            size,
+            ..Project::default()
+        };
+        project.check_size()?;
+        Ok(SizeDraft {
+            draft: sound_draft(&project)?,
+            name: project.size_name().map(str::to_owned),
+        })
+    });
+    each.collect()
+}
+
+/// Pieces are asked for by the names of their panels.
+fn check_pieces(pattern: &Pattern, pieces: &[String]) -> Result<(), SessionError> {
+    for name in pieces {
+        if pattern.panel_named(name).is_none() {
+            let names: Vec<&str> = pattern.panels.iter().map(|p| &*p.name).collect();
+            return Err(SessionError::Unknown {
+                kind: "piece",
+                name: name.clone(),
+                hint: format!("choose from: {}", names.join(", ")),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// A piece, and what of it is printed.
+struct Cut {
+    whole: CutPiece,
+    printed: Arc<CutPiece>,
+}
+
+/// The first copy of each panel asked for.
+fn cut_pieces(
+    pattern: &Pattern,
+    size: &SizeDraft,
+    options: &PrintOptions,
+) -> Result<Vec<Cut>, SessionError> {
+    let asked = |name: &String| options.pieces.is_empty() || options.pieces.contains(name);
+    let cut_options = CutOptions {
+        shrinkage: options.shrinkage,
+        block: 0.0,
+    };
+    let mut cuts = Vec::new();
+    for (k, piece) in size.draft.pieces.iter().enumerate() {
+        let panel = pattern.panel(piece.id.panel);
+        if piece.id.copy != 0 || !panel.is_some_and(|panel| asked(&panel.name)) {
+            continue;
+        }
+        let how = (size.name.as_deref(), &cut_options);
+        let whole = CutPiece::new((pattern, &size.draft), k, how);
+        let whole = whole.map_err(|error| SessionError::Faults {
+            source_name: pattern.name.clone(),
+            faults: vec![format!("piece {:?} cannot be cut: {error}", piece.name)],
+        })?;
+        let fold = whole.fold.filter(|_| options.halves);
+        let fold = fold.filter(|fold| whole.is_symmetric_in(fold));
+        let printed = match fold {
+            Some(fold) => whole.halved(&fold),
+            None => whole.clone(),
+        };
+        cuts.push(Cut {
+            whole,
+            printed: Arc::new(printed),
+        });
+    }
+    Ok(cuts)
+}
+
+/// The pieces by panel, each in all its sizes, with what is written on them.
+fn grouped(pattern: &Pattern, cuts: &[Vec<Cut>], layers: &[PrintLayer]) -> Vec<PrintPiece> {
+    let of_panel = |panel: &Arc<toile_pattern::Panel>| {
+        let sizes = cuts.iter().enumerate().filter_map(|(k, cuts)| {
+            let found = cuts.iter().find(|cut| cut.whole.id.panel == panel.id)?;
+            Some((k, found.printed.clone()))
+        });
+        let sizes: Vec<(usize, Arc<CutPiece>)> = sizes.collect();
+        let (_, first) = sizes.first()?;
+        let mut words = vec![panel.name.clone()];
+        words.extend(match sizes.len() {
+            1 => first.text(TextKind::Size).map(str::to_owned),
+            n => Some(match n == layers.len() {
+                true => "all sizes".to_owned(),
+                false => format!("{n} sizes"),
+            }),
+        });
+        let count = first
+            .text(TextKind::Count)
+            .map(|count| match first.on_fold {
+                Some(_) => format!("{count} on the fold"),
+                None => count.to_owned(),
+            });
+        words.extend(count);
+        words.extend(first.text(TextKind::Fabric).map(str::to_owned));
+        Some(PrintPiece {
+            sizes,
+            words,
+            pose: toile_nesting::Pose {
+                grain: 0.0,
+                turn: 0.0,
+                mirrored: false,
+                translation: Vec2::zeros(),
+            },
+        })
+    };
+    pattern.panels.iter().filter_map(of_panel).collect()
+}
+
+/// What the title block says.
+fn facts(options: &PrintOptions, layers: &[PrintLayer], list: &[CutList]) -> Vec<String> {
+    let names: Vec<&str> = layers.iter().map(|layer| &*layer.name).collect();
+    let scale = match options.scale {
+        1.0 => "true size".to_owned(),
+        s if s < 1.0 => format!("scale 1:{}", plain(1.0 / s)),
+        s => format!("scale {}:1", plain(s)),
+    };
+    let sizes = match names[..] {
+        [only] => only.to_owned(),
+        _ => names.join(", ").replace(", size ", ", "),
+    };
+    let mut facts = vec![format!("{sizes}, {scale}")];
+    facts.extend(list.iter().map(|list| {
+        let count: u32 = list.pieces.iter().map(|piece| piece.quantity).sum();
+        let plural = if count == 1 { "" } else { "s" };
+        format!("{}: {count} piece{plural} to cut", list.fabric)
+    }));
+    facts.push(
+        match options.lines {
+            Lines::Cut | Lines::Both => "Seam allowances are included.",
+            Lines::Sew => "Without seam allowances: add them as you cut.",
+        }
+        .to_owned(),
+    );
+    if options.shrinkage != Shrinkage::default() {
+        let [warp, weft] = options
+            .shrinkage
+            .factors()
+            .map(|f| plain((f - 1.0) * 100.0));
+        facts.push(format!(
+            "Drawn {warp} % longer along the warp and {weft} % across it, for what is lost in the wash."
+        ));
+    }
+    if options.paper.sheet().is_some() {
+        facts.push("Join the sheets so that frames overlap by 10 mm and crosses meet.".to_owned());
+    }
+    facts
+}
+
+/// A number with at most two decimals.
+fn plain(number: f64) -> String {
+    let text = format!("{number:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// The job with its pieces laid so that they take few sheets.
+fn arranged(job: PrintJob, watcher: &mut dyn Watcher) -> Result<PrintJob, SessionError> {
+    let block = job.title.size(job.layers.len());
+    let outlines: Vec<Polygon> = job.pieces.iter().map(|p| outline(p, job.scale)).collect();
+    let extents = outlines.iter().map(|outline| outline.bounds().size());
+    // Pieces lie in any quarter turn, with their shorter side across at the least.
+    let needed = extents.map(|size| size.min()).fold(block.y, f64::max) + 2.0 * EDGE + 1e-6;
+    let heights: Vec<f64> = match job.paper.height_of(1) {
+        Some(_) => {
+            let enough = |rows: &u32| job.paper.height_of(*rows).is_some_and(|h| h >= needed);
+            let least = (1..).find(enough).unwrap_or(1);
+            let tried = least..=least + MORE_ROWS;
+            tried.filter_map(|rows| job.paper.height_of(rows)).collect()
+        }
+        None => {
+            let area: f64 = outlines.iter().map(Polygon::area).sum::<f64>() + block.x * block.y;
+            vec![needed.max((ROOMY * area).sqrt())]
+        }
+    };
+    if let Some(step) = job.paper.step() {
+        // Long before they are counted: sheets without a line are at most a few in each piece.
+        let area: f64 = outlines.iter().map(Polygon::area).sum();
+        let sheets = (area / (step.x * step.y)) as usize;
+        if sheets > 10 * MOST_SHEETS {
+            return Err(too_many(sheets));
+        }
+    }
+    let mut best: Option<(usize, PrintJob)> = None;
+    let count = heights.len() as f64;
+    for (k, height) in heights.into_iter().enumerate() {
+        let part = 0.9 / count;
+        let share = (0.05 + part * k as f64, part);
+        let laid = laid(&job, (&outlines, block, height), (&mut *watcher, share))?;
+        let sheets = laid.tiles().map_err(unprintable)?.len();
+        if best.as_ref().is_none_or(|(least, _)| sheets < *least) {
+            best = Some((sheets, laid));
+        }
+    }
+    match best {
+        Some((sheets, _)) if sheets > MOST_SHEETS => Err(too_many(sheets)),
+        best => Ok(best.map_or(job, |(_, laid)| laid)),
+    }
+}
+
+fn too_many(sheets: usize) -> SessionError {
+    SessionError::Conflict(format!(
+        "the print would take some {sheets} sheets, more than {MOST_SHEETS}; choose larger paper, one page, or a smaller scale"
+    ))
+}
+
+/// What a piece takes on paper in all its sizes.
+fn outline(piece: &PrintPiece, scale: f64) -> Polygon {
+    let mut outers = piece.sizes.iter().map(|(_, cut)| cut.outer());
+    let mut whole = outers.next().unwrap_or_default();
+    for outer in outers {
+        let mut parts = union(&whole, &outer);
+        whole = match parts.len() {
+            1 => Polygon::new(parts.remove(0).outer),
+            _ => {
+                let points: Vec<Vec2> = [whole.outer, outer.outer].concat();
+                Polygon::new(convex_hull(&points))
+            }
+        };
+    }
+    whole.mapped(|p| p * scale)
+}
+
+/// The job on a drawing of a height, its title block in the upper left corner.
+fn laid(
+    job: &PrintJob,
+    (outlines, block, height): (&[Polygon], Vec2, f64),
+    (watcher, (from, part)): (&mut dyn Watcher, (f64, f64)),
+) -> Result<PrintJob, SessionError> {
+    let title_at = Vec2::new(EDGE, height - EDGE - block.y);
+    let title = Polygon::rectangle(Bounds2 {
+        min: Vec2::zeros(),
+        max: block,
+    });
+    let locked = Locked {
+        copy: 0,
+        turn: 0.0,
+        mirrored: false,
+        translation: title_at,
+    };
+    let mut items = vec![Item {
+        allowed: Allowed::one_way(),
+        locked: vec![locked],
+        ..Item::new("the title", title)
+    }];
+    let quarters = [0.0, 0.5, 1.0, 1.5].map(|half| half * std::f64::consts::PI);
+    items.extend(
+        job.pieces
+            .iter()
+            .zip(outlines)
+            .map(|(piece, outline)| Item {
+                allowed: Allowed::turned(quarters.to_vec()),
+                ..Item::new(piece.words[0].clone(), outline.clone())
+            }),
+    );
+    let strip = Strip {
+        selvedge: EDGE,
+        end_margin: EDGE,
+        gap: GAP,
+        ..Strip::of_width(height)
+    };
+    let marker = searched(&items, &strip, (watcher, (from, part)))?;
+    let mut laid = job.clone();
+    laid.size = Vec2::new(marker.length, height);
+    laid.title_at = title_at;
+    for placement in &marker.placements {
+        let piece = placement.item.checked_sub(1);
+        if let Some(piece) = piece.and_then(|k| laid.pieces.get_mut(k)) {
+            piece.pose = placement.pose(&items[placement.item]);
+        }
+    }
+    match marker.unplaced.first() {
+        None => Ok(laid),
+        Some(lost) => Err(SessionError::Conflict(format!(
+            "piece {:?} finds no place on the paper: {}",
+            items[lost.item].name, lost.reason
+        ))),
+    }
+}
+
+fn searched(
+    items: &[Item],
+    strip: &Strip,
+    (watcher, (from, part)): (&mut dyn Watcher, (f64, f64)),
+) -> Result<Marker, SessionError> {
+    let cancel = watcher
+        .stop_flag()
+        .unwrap_or_else(|| Arc::new(AtomicBool::new(false)));
+    let mut stopped = false;
+    let mut follow = |progress: Progress| {
+        let share = from + part * progress.done.clamp(0.0, 1.0);
+        if tell(watcher, "arranging", share, "").is_err() {
+            stopped = true;
+            cancel.store(true, std::sync::atomic::Ordering::Relaxed);
+        }
+    };
+    let mut control = Control {
+        progress: &mut follow,
+        cancel: &cancel,
+    };
+    let search = Search {
+        budget: Budget::Evaluations(EVALUATIONS),
+        ..Search::default()
+    };
+    let marker = make_marker(items, strip, search, &mut control);
+    if stopped || cancel.load(std::sync::atomic::Ordering::Relaxed) {
+        return Err(SessionError::Cancelled);
+    }
+    Ok(marker?)
+}

@@ -1,0 +1,63 @@
+//! What is laid on fabric is the line that is cut, of every shipped piece and size.
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use toile_cut::{CutOptions, CutPiece};
+use toile_geometry::{EdgeTree, Polygon, Vec2};
+use toile_interchange::{read_marker_json, read_pattern};
+use toile_nesting::Pose;
+use toile_session::{Budget, MarkerFormat, NestOptions, Silent, nest_patterns};
+
+fn patterns() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../patterns");
+    let entries = std::fs::read_dir(folder).unwrap();
+    entries.map(|entry| entry.unwrap().path()).collect()
+}
+
+/// How far any point of a ring lies from another ring [m].
+fn off(points: &[Vec2], border: &[Vec2]) -> f64 {
+    let tree = EdgeTree::of(&Polygon::new(border.to_vec()));
+    let each = points.iter();
+    each.map(|p| EdgeTree::new(vec![[*p, *p]]).distance(&tree))
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn items_of_markers_are_the_cut_lines() {
+    let mut compared = 0;
+    for path in patterns() {
+        let (pattern, _) = read_pattern(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        for size in &pattern.sizes {
+            let (draft, _) = pattern.resolve(&size.measurements);
+            let folder = tempfile::tempdir().unwrap();
+            let options = NestOptions {
+                sizes: vec![(size.name.clone(), 1)],
+                formats: vec![MarkerFormat::Json],
+                budget: Budget::Evaluations(1000),
+                ..NestOptions::default()
+            };
+            let place = (folder.path(), &mut Silent as _);
+            let (_, files) = nest_patterns(std::slice::from_ref(&path), &options, place).unwrap();
+            for file in files {
+                let text = std::fs::read_to_string(file).unwrap();
+                for laid in read_marker_json(&text).unwrap().pieces {
+                    let number = draft.pieces.iter().position(|p| p.name == laid.name);
+                    let how = (None, &CutOptions::default());
+                    let cut = CutPiece::new((&pattern, &draft), number.unwrap(), how).unwrap();
+                    let pose = Pose {
+                        grain: laid.grain.to_radians(),
+                        turn: laid.turn.to_radians(),
+                        mirrored: laid.face_down,
+                        translation: Vec2::from(laid.at),
+                    };
+                    let wanted = pose.lay(&cut.outer()).outer;
+                    let found: Vec<Vec2> = laid.outline.iter().map(|&p| p.into()).collect();
+                    let far = off(&found, &wanted).max(off(&wanted, &found));
+                    assert!(far < 2e-5, "{} {}: {far}", laid.name, size.name);
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared > 50, "{compared} pieces");
+}
