@@ -8,6 +8,7 @@ use proptest::prelude::*;
 use random_pattern::{Dice, random_pattern};
 use toile_interchange::{read_pattern, write_pattern};
 use toile_measure::Measurements;
+use toile_pattern::{Edit, PartId, Pattern};
 
 const SHIPPED: [(&str, &str); 4] = [
     (
@@ -33,7 +34,8 @@ proptest! {
 
     #[test]
     fn random_patterns_are_resolved_checked_written_and_read(seed in any::<u64>()) {
-        let pattern = random_pattern(&mut Dice::new(seed));
+        let mut dice = Dice::new(seed);
+        let pattern = random_pattern(&mut dice);
         let body = Measurements::adult();
         let (draft, found) = pattern.resolve(&body);
         for diagnostic in found.iter().chain(&pattern.check(&body)) {
@@ -55,14 +57,32 @@ proptest! {
                 // Names that were nothing's when a formula was made may be something's now.
                 let (again, notes) = read_pattern(&text).unwrap();
                 prop_assert!(notes.is_empty());
-                prop_assert!(write_pattern(&again).unwrap() == text);
+                let text = write_pattern(&again).unwrap();
                 prop_assert!(read_pattern(&text).unwrap().0 == again);
                 prop_assert!(again.seams.len() == pattern.seams.len());
+                let damaged = without_some_parts(again, &mut dice);
+                let text = write_pattern(&damaged).unwrap();
+                let (again, notes) = read_pattern(&text).unwrap();
+                prop_assert!(notes.is_empty());
+                prop_assert!(again == damaged, "{}", text);
                 serde_json::from_str::<serde_json::Value>(&text).unwrap();
             }
             Err(error) => prop_assert!(!error.place.is_empty() && !error.hint.is_empty()),
         }
     }
+}
+
+/// The pattern with some parts taken out of it, whatever names them.
+fn without_some_parts(mut pattern: Pattern, dice: &mut Dice) -> Pattern {
+    let parts: Vec<PartId> = pattern.parts().into_iter().map(|(id, _)| id).collect();
+    for _ in 0..dice.below(6) {
+        let part = parts[dice.below(parts.len())];
+        // What is removed with its panel alone stays, and so does what is gone already.
+        if let Err(error) = pattern.apply(&[Edit::Remove(part)]) {
+            assert!(!error.to_string().is_empty());
+        }
+    }
+    pattern
 }
 
 /// Makes the text worse in one of many ways.

@@ -221,12 +221,15 @@ impl<'a> Reader<'a> {
         item.fixed(&self.written(item, measure)?)
     }
 
-    fn formula(&self, item: &Item<'_>, text: &str) -> Result<Formula, FormatError> {
-        Formula::parse(text, &self.names).map_err(|error| {
+    fn formula(&mut self, item: &Item<'a>, text: &str) -> Result<Formula, FormatError> {
+        let formula = Formula::parse(text, &self.names).map_err(|error| {
             let column = error.column;
             let what = format!("the formula {text:?}, column {column}: {}", error.message);
             item.error(what, error.hint)
-        })
+        })?;
+        let named = formula.references().into_iter();
+        self.referred.extend(named.map(|part| (part, item.clone())));
+        Ok(formula)
     }
 
     /// Two lengths [m].

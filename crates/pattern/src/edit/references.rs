@@ -1,10 +1,8 @@
 //! What parts refer to.
 
 use super::Entity;
-use crate::formula::Token;
 use crate::{
-    CornerName, LineName, Mark, Name, Number, OperationKind, Panel, PartId, PartReference, Pattern,
-    Place, Span,
+    CornerName, LineName, Mark, Name, Number, OperationKind, Panel, PartId, Pattern, Place, Span,
 };
 
 impl Entity {
@@ -70,24 +68,8 @@ fn number(number: &Number, found: &mut Vec<PartId>) {
     if let Number::PerSize { sizes, .. } = number {
         found.extend(sizes.iter().map(|(size, _)| PartId::from(*size)));
     }
-    let Some(formula) = number.as_formula() else {
-        return;
-    };
-    for token in formula.tokens() {
-        match token {
-            Token::Text(_) | Token::Word(_) => {}
-            Token::Variable(id) => found.push((*id).into()),
-            Token::Part(part) => match part {
-                PartReference::Point(id) => found.push((*id).into()),
-                PartReference::Curve(id) => found.push((*id).into()),
-                PartReference::Seam(id) => found.push((*id).into()),
-                PartReference::Unknown(_) => {}
-                PartReference::Stretch { panel, ends } => {
-                    found.push((*panel).into());
-                    ends.iter().for_each(|end| corner(*end, found));
-                }
-            },
-        }
+    if let Some(formula) = number.as_formula() {
+        found.extend(formula.references());
     }
 }
 

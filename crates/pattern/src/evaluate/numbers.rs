@@ -2,7 +2,7 @@
 
 use super::Evaluation;
 use super::node::{Definition, Node, Value, drawn_stretch};
-use crate::formula::{Environment, Failure, Quantity, compute, kind};
+use crate::formula::{Environment, Failure, Kind, Quantity, compute, kind};
 use crate::{Code, Diagnostic, EdgeName, Name, Number, PartReference, Place, VariableId, nearest};
 use toile_geometry::{Path, Vec2};
 
@@ -199,14 +199,7 @@ fn missing(node: Node) -> Failure {
 struct Reading<'c, 'e>(&'c Computation<'e>);
 
 impl Reading<'_, '_> {
-    fn unknown(&self, text: &str, kind: &str) -> Failure {
-        if text.starts_with('?') {
-            return Failure::new(
-                Code::MissingReference,
-                format!("{text} is not there any more"),
-                "name another part, or undo its removal",
-            );
-        }
+    fn unknown(&self, text: &str, kind: Kind) -> Failure {
         let (message, hint) = self.0.evaluation.names.missing(text, kind);
         Failure::new(Code::MissingReference, message, hint)
     }
@@ -233,7 +226,7 @@ impl Reading<'_, '_> {
                     .map(|edge| Ok(&**self.0.path(Node::Edge(edge.id))?))
                     .collect()
             }
-            PartReference::Unknown(text) => Err(self.unknown(text, "edge")),
+            PartReference::Unknown(text) => Err(self.unknown(text, Kind::StretchOrSeam)),
             PartReference::Point(_) | PartReference::Seam(_) => Err(Failure::new(
                 Code::Formula,
                 "it has no edge",
@@ -256,9 +249,6 @@ impl Environment for Reading<'_, '_> {
         let node = evaluation.words.get(name).map(|&k| Node::Word(k));
         if let Some(Value::Number(quantity)) = node.and_then(|node| evaluation.value(node)) {
             return Ok(*quantity);
-        }
-        if name.starts_with('?') {
-            return Err(self.unknown(name, "variable"));
         }
         let base = evaluation.pattern.base_measurements();
         let known = evaluation
@@ -320,7 +310,7 @@ impl Environment for Reading<'_, '_> {
     fn point(&self, part: &PartReference) -> Result<Vec2, Failure> {
         match part {
             PartReference::Point(id) => self.0.point_at(*id),
-            PartReference::Unknown(text) => Err(self.unknown(text, "point")),
+            PartReference::Unknown(text) => Err(self.unknown(text, Kind::Point)),
             _ => Err(Failure::new(
                 Code::Formula,
                 "it is no point",

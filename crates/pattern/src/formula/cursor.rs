@@ -1,15 +1,26 @@
 //! Reads the words and numbers of a formula's text, one after another.
 
 use super::FormulaError;
+use std::cell::Cell;
 
 /// A formula's text and the byte that is read next.
 pub(super) struct Cursor<'a> {
     pub text: &'a str,
     pub at: usize,
+    /// A byte and the characters before it, so that columns are not counted from the start again.
+    counted: Cell<(usize, usize)>,
 }
 
-impl Cursor<'_> {
-    pub fn rest(&self) -> &str {
+impl<'a> Cursor<'a> {
+    pub fn new(text: &'a str) -> Self {
+        Self {
+            text,
+            at: 0,
+            counted: Cell::default(),
+        }
+    }
+
+    pub fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }
 
@@ -39,8 +50,23 @@ impl Cursor<'_> {
         found
     }
 
+    /// Takes a text that stands right here.
+    pub fn take_prefix(&mut self, wanted: &str) -> bool {
+        let found = self.rest().starts_with(wanted);
+        if found {
+            self.at += wanted.len();
+        }
+        found
+    }
+
     pub fn column(&self) -> usize {
-        self.text[..self.at].chars().count() + 1
+        let (at, before) = match self.counted.get() {
+            counted if counted.0 <= self.at => counted,
+            _ => (0, 0),
+        };
+        let count = before + self.text[at..self.at].chars().count();
+        self.counted.set((self.at, count));
+        count + 1
     }
 
     pub fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> FormulaError {

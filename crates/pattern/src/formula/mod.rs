@@ -4,19 +4,25 @@
 //! part touches no formula. It is kept in postfix order with jumps, so that computing it needs no
 //! recursion whatever its length.
 
+mod by_id;
 mod compute;
 mod cursor;
 mod names;
 mod parse;
+mod print;
+mod written;
 
 pub(crate) use compute::{Environment, Failure, Quantity, compute, kind};
 pub use names::Names;
+pub(crate) use written::Kind;
 
-use crate::{PartReference, VariableId};
+use crate::{Name, PartId, PartReference, VariableId};
 use std::fmt;
 use std::sync::Arc;
 
-/// Longest formula that is read [bytes].
+/// Words that are operators, so that parts called so stand in quotes.
+const RESERVED: &[&str] = &["and", "or", "not"];
+/// Longest formula that is read, each name counted as one [bytes].
 pub const FORMULA_LENGTH: usize = 2000;
 /// Deepest nesting of parentheses, signs and calls that is read.
 pub const FORMULA_DEPTH: usize = 50;
@@ -133,7 +139,8 @@ impl Formula {
     /// measurements; `length(front.armhole)`, `length(front.side..front.hem)`, `angle`, `distance`,
     /// `x`, `y` speak of parts as they are drawn, `finished` of an edge after all operations;
     /// `length('side seam')` of a seam. `if(a < b, c, d)` chooses, `round(x, 5mm)` rounds. Names
-    /// that are not plain words stand in single quotes.
+    /// that are not plain words stand in single quotes. `?47` is the part of that id, whatever it is
+    /// called and whether it is there.
     ///
     /// # Errors
     /// The text is no formula. A name that is not known is no error: it is kept, and the formula
@@ -164,12 +171,26 @@ impl Formula {
         &self.tokens
     }
 
-    /// Parts the formula measures.
-    pub fn parts(&self) -> impl Iterator<Item = &PartReference> {
-        self.tokens.iter().filter_map(|token| match token {
-            Token::Part(part) => Some(part),
-            _ => None,
-        })
+    /// Every part the formula names by its id.
+    pub fn references(&self) -> Vec<PartId> {
+        let mut found: Vec<PartId> = Vec::new();
+        for token in self.tokens.iter() {
+            match token {
+                Token::Text(_) | Token::Word(_) | Token::Part(PartReference::Unknown(_)) => {}
+                Token::Variable(id) => found.push((*id).into()),
+                Token::Part(PartReference::Point(id)) => found.push((*id).into()),
+                Token::Part(PartReference::Curve(id)) => found.push((*id).into()),
+                Token::Part(PartReference::Seam(id)) => found.push((*id).into()),
+                Token::Part(PartReference::Stretch { panel, ends }) => {
+                    found.push((*panel).into());
+                    found.extend(ends.iter().map(|end| match end {
+                        Name::Drawn(id) => PartId::from(*id),
+                        Name::Made { by, .. } => (*by).into(),
+                    }));
+                }
+            }
+        }
+        found
     }
 
     /// Whether its length is measured after operations: by `finished`, or of a seam.
@@ -220,7 +241,7 @@ impl Formula {
 pub(crate) fn quoted(name: &str) -> String {
     let plain = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-        && !parse::RESERVED.contains(&name);
+        && !RESERVED.contains(&name);
     if plain {
         name.to_owned()
     } else {
