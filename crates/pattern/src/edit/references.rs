@@ -2,7 +2,8 @@
 
 use super::Entity;
 use crate::{
-    CornerName, LineName, Mark, Name, Number, OperationKind, Panel, PartId, Pattern, Place, Span,
+    CornerName, LineName, Mark, Name, Names, Number, OperationKind, Panel, PartId, Pattern, Place,
+    Span,
 };
 
 impl Entity {
@@ -166,10 +167,17 @@ impl Pattern {
         all
     }
 
-    /// The places of all parts that refer to a part.
+    /// The places of all parts that refer to a part, by its id or by its name.
     pub fn users(&self, part: PartId) -> Vec<Place> {
+        let names = Names::new(self);
+        let by_name = |entity: &Entity| {
+            let numbers = entity.numbers();
+            let mut formulas = numbers.iter().filter_map(|number| number.as_formula());
+            formulas.any(|formula| formula.found_by_name(&names).contains(&part))
+        };
         let all = self.entities().into_iter();
-        let using = all.filter(|(entity, _)| entity.references().contains(&part));
+        let using =
+            all.filter(|(entity, _)| entity.references().contains(&part) || by_name(entity));
         using.map(|(_, place)| place).collect()
     }
 }

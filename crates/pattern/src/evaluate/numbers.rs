@@ -1,9 +1,11 @@
 //! Numbers of a document as values, and what formulas look up.
 
 use super::Evaluation;
-use super::node::{Definition, Node, Value, drawn_stretch};
+use super::needs::drawn_stretch;
+use super::node::{Definition, Node, Value};
 use crate::formula::{Environment, Failure, Kind, Quantity, compute, kind};
 use crate::{Code, Diagnostic, EdgeName, Name, Number, PartReference, Place, VariableId, nearest};
+use std::borrow::Cow;
 use toile_geometry::{Path, Vec2};
 
 /// No length of a garment is as long as this [m].
@@ -45,6 +47,25 @@ impl Evaluation {
         what: &str,
     ) -> (Option<f64>, Vec<Diagnostic>) {
         self.number_of_kind(number, Want::Length, place, what)
+    }
+
+    /// The value of a measurement, and whether it is the base size's because it was not given.
+    pub(super) fn measurement(&self, name: &str) -> Option<(Quantity, bool)> {
+        let given = self.wearer.measurements.get(name);
+        let base = || self.pattern.base_measurements()?.get(name);
+        let value = given.or_else(base)?;
+        let known = toile_measure::definition(name);
+        let is_angle = known.is_some_and(|known| known.kind == toile_measure::UnitKind::Angle);
+        let power = i8::from(!is_angle);
+        Some((Quantity { value, power }, given.is_none()))
+    }
+
+    /// The variable that a word names which is no measurement.
+    pub(super) fn variable_called(&self, word: &str) -> Option<VariableId> {
+        match self.measurement(word) {
+            Some(_) => None,
+            None => self.names.variable(word),
+        }
     }
 
     pub(crate) fn number_of_kind(
@@ -99,12 +120,27 @@ impl Computation<'_> {
                 })
             }
             Number::PerSize { usual, sizes } => {
-                let own = sizes.iter().find(|own| Some(own.0) == self.evaluation.size);
+                let own = sizes
+                    .iter()
+                    .find(|own| Some(own.0) == self.evaluation.wearer.size);
                 match own {
                     Some((_, value)) => Ok(plain(*value)),
                     None => self.quantity(usual, want),
                 }
             }
+        }
+    }
+
+    /// The value of a variable, which may be of any dimension: a size's own value has that of the
+    /// usual number.
+    pub fn variable(&mut self, number: &Number) -> Result<Quantity, Failure> {
+        let found = self.quantity(number, Want::Plain)?;
+        match number {
+            Number::PerSize { usual, .. } => Ok(Quantity {
+                power: self.variable(usual)?.power,
+                ..found
+            }),
+            _ => Ok(found),
         }
     }
 
@@ -136,7 +172,7 @@ impl Computation<'_> {
     }
 
     /// The value of a node that is needed.
-    fn needed(&self, node: Node) -> Result<&Value, Failure> {
+    pub fn needed(&self, node: Node) -> Result<&Value, Failure> {
         let evaluation = self.evaluation;
         let Some(state) = evaluation.state(node) else {
             return Err(missing(node));
@@ -204,7 +240,22 @@ impl Reading<'_, '_> {
         Failure::new(Code::MissingReference, message, hint)
     }
 
-    fn edges(&self, part: &PartReference) -> Result<Vec<&Path>, Failure> {
+    /// The part, or what its text names now.
+    fn bound<'p>(
+        &self,
+        part: &'p PartReference,
+        kind: Kind,
+    ) -> Result<Cow<'p, PartReference>, Failure> {
+        let PartReference::Unknown(text) = part else {
+            return Ok(Cow::Borrowed(part));
+        };
+        let found = self.0.evaluation.names.part(text, kind);
+        found
+            .map(Cow::Owned)
+            .ok_or_else(|| self.unknown(text, kind))
+    }
+
+    fn edges(&self, part: &PartReference, kind: Kind) -> Result<Vec<&Path>, Failure> {
         let evaluation = self.0.evaluation;
         match part {
             PartReference::Curve(id) => Ok(vec![&**self.0.path(Node::Curve(*id))?]),
@@ -226,7 +277,7 @@ impl Reading<'_, '_> {
                     .map(|edge| Ok(&**self.0.path(Node::Edge(edge.id))?))
                     .collect()
             }
-            PartReference::Unknown(text) => Err(self.unknown(text, Kind::StretchOrSeam)),
+            PartReference::Unknown(text) => Err(self.unknown(text, kind)),
             PartReference::Point(_) | PartReference::Seam(_) => Err(Failure::new(
                 Code::Formula,
                 "it has no edge",
@@ -246,15 +297,17 @@ impl Environment for Reading<'_, '_> {
 
     fn measurement(&self, name: &str) -> Result<Quantity, Failure> {
         let evaluation = self.0.evaluation;
-        let node = evaluation.words.get(name).map(|&k| Node::Word(k));
-        if let Some(Value::Number(quantity)) = node.and_then(|node| evaluation.value(node)) {
-            return Ok(*quantity);
+        if let Some((quantity, _)) = evaluation.measurement(name) {
+            return Ok(quantity);
+        }
+        if let Some(variable) = evaluation.names.variable(name) {
+            return self.variable(variable);
         }
         let base = evaluation.pattern.base_measurements();
         let known = evaluation
             .names
             .variable_names()
-            .chain(evaluation.given.iter().map(|m| m.0))
+            .chain(evaluation.wearer.measurements.iter().map(|m| m.0))
             .chain(base.into_iter().flat_map(|base| base.iter().map(|m| m.0)));
         let hint = match nearest(name, known) {
             Some(near) => format!("did you mean {near:?}?"),
@@ -265,16 +318,22 @@ impl Environment for Reading<'_, '_> {
     }
 
     fn length(&self, part: &PartReference) -> Result<f64, Failure> {
+        let part = &*self.bound(part, Kind::StretchOrSeam)?;
         if let PartReference::Seam(id) = part {
             return match self.0.needed(Node::Seam(*id))? {
                 Value::Seam(seam) => Ok(seam.lengths[0]),
                 _ => Err(missing(Node::Seam(*id))),
             };
         }
-        Ok(self.edges(part)?.iter().map(|path| path.length()).sum())
+        Ok(self
+            .edges(part, Kind::StretchOrSeam)?
+            .iter()
+            .map(|path| path.length())
+            .sum())
     }
 
     fn finished(&self, part: &PartReference) -> Result<f64, Failure> {
+        let part = &*self.bound(part, Kind::StretchOrSeam)?;
         let PartReference::Stretch { panel, ends } = part else {
             return self.length(part);
         };
@@ -294,7 +353,8 @@ impl Environment for Reading<'_, '_> {
     }
 
     fn ends(&self, part: &PartReference) -> Result<[Vec2; 2], Failure> {
-        let edges = self.edges(part)?;
+        let part = &*self.bound(part, Kind::Stretch)?;
+        let edges = self.edges(part, Kind::Stretch)?;
         let first = edges.first().and_then(|path| path.curves().first());
         let last = edges.last().and_then(|path| path.curves().last());
         match (first, last) {
@@ -308,9 +368,8 @@ impl Environment for Reading<'_, '_> {
     }
 
     fn point(&self, part: &PartReference) -> Result<Vec2, Failure> {
-        match part {
+        match &*self.bound(part, Kind::Point)? {
             PartReference::Point(id) => self.0.point_at(*id),
-            PartReference::Unknown(text) => Err(self.unknown(text, Kind::Point)),
             _ => Err(Failure::new(
                 Code::Formula,
                 "it is no point",

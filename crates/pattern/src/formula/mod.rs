@@ -16,7 +16,7 @@ pub(crate) use compute::{Environment, Failure, Quantity, compute, kind};
 pub use names::Names;
 pub(crate) use written::Kind;
 
-use crate::{Name, PartId, PartReference, VariableId};
+use crate::{PartId, PartReference, VariableId};
 use std::fmt;
 use std::sync::Arc;
 
@@ -57,6 +57,19 @@ pub enum Token {
     Word(Box<str>),
     /// A part that is measured.
     Part(PartReference),
+}
+
+/// What a formula needs to have a value.
+pub(crate) enum Use<'f> {
+    Variable(VariableId),
+    /// A measurement, else a variable that had not that name when the formula was read.
+    Word(&'f str),
+    Part {
+        part: &'f PartReference,
+        kind: Kind,
+        /// Whether it is measured after all operations.
+        finished: bool,
+    },
 }
 
 /// One step of a formula in postfix order.
@@ -176,29 +189,58 @@ impl Formula {
         let mut found: Vec<PartId> = Vec::new();
         for token in self.tokens.iter() {
             match token {
-                Token::Text(_) | Token::Word(_) | Token::Part(PartReference::Unknown(_)) => {}
+                Token::Text(_) | Token::Word(_) => {}
                 Token::Variable(id) => found.push((*id).into()),
-                Token::Part(PartReference::Point(id)) => found.push((*id).into()),
-                Token::Part(PartReference::Curve(id)) => found.push((*id).into()),
-                Token::Part(PartReference::Seam(id)) => found.push((*id).into()),
-                Token::Part(PartReference::Stretch { panel, ends }) => {
-                    found.push((*panel).into());
-                    found.extend(ends.iter().map(|end| match end {
-                        Name::Drawn(id) => PartId::from(*id),
-                        Name::Made { by, .. } => (*by).into(),
-                    }));
-                }
+                Token::Part(part) => found.extend(part.parts()),
             }
         }
         found
     }
 
-    /// Whether its length is measured after operations: by `finished`, or of a seam.
-    pub(crate) fn finished_parts(&self) -> impl Iterator<Item = &PartReference> {
-        self.steps.iter().filter_map(|step| match &step.operation {
-            Operation::Finished(part) => Some(part),
-            _ => None,
-        })
+    /// Everything a value of the formula needs.
+    pub(crate) fn uses(&self) -> Vec<Use<'_>> {
+        let part = |part, kind| Use::Part {
+            part,
+            kind,
+            finished: false,
+        };
+        let mut uses = Vec::new();
+        for step in self.steps.iter() {
+            match &step.operation {
+                Operation::Variable(id) => uses.push(Use::Variable(*id)),
+                Operation::Word(word) => uses.push(Use::Word(word)),
+                Operation::Length(a) => uses.push(part(a, Kind::StretchOrSeam)),
+                Operation::Finished(part) => uses.push(Use::Part {
+                    part,
+                    kind: Kind::StretchOrSeam,
+                    finished: true,
+                }),
+                Operation::Angle(a) => uses.push(part(a, Kind::Stretch)),
+                Operation::Coordinate(a, _) => uses.push(part(a, Kind::Point)),
+                Operation::AngleBetween(a, b) | Operation::Distance(a, b) => {
+                    uses.extend([part(a, Kind::Point), part(b, Kind::Point)]);
+                }
+                _ => {}
+            }
+        }
+        uses
+    }
+
+    /// Parts of a document that names in the formula lead to, though nothing was called so when it
+    /// was read.
+    pub(crate) fn found_by_name(&self, names: &Names) -> Vec<PartId> {
+        let found = self.uses().into_iter().flat_map(|used| match used {
+            Use::Word(word) if !names.is_measurement(word) => {
+                names.variable(word).into_iter().map(PartId::from).collect()
+            }
+            Use::Part {
+                part: PartReference::Unknown(text),
+                kind,
+                ..
+            } => names.part(text, kind).map_or(Vec::new(), |p| p.parts()),
+            _ => Vec::new(),
+        });
+        found.collect()
     }
 
     /// The formula with every reference put through a map, as pasting does.

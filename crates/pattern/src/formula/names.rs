@@ -137,6 +137,11 @@ impl Names {
         definition(name).is_some() || self.measured.contains(name)
     }
 
+    /// The part a text names; nothing if there is none.
+    pub(crate) fn part(&self, text: &str, kind: Kind) -> Option<PartReference> {
+        self.part_of(&Written::of(text, kind)?, kind)
+    }
+
     /// The part that is written so; nothing if there is none.
     pub(super) fn part_of(&self, written: &Written, kind: Kind) -> Option<PartReference> {
         match written {
