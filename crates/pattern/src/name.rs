@@ -21,6 +21,16 @@ pub enum Name<Id> {
     },
 }
 
+impl<Id> Name<Id> {
+    /// The operation that made it; nothing if it was drawn.
+    pub fn maker(&self) -> Option<OperationId> {
+        match self {
+            Self::Drawn(_) => None,
+            Self::Made { by, .. } => Some(*by),
+        }
+    }
+}
+
 /// A corner of a panel.
 pub type CornerName = Name<PointId>;
 /// An edge of a panel.

@@ -467,3 +467,162 @@ fn check_draft_finds_the_same_in_a_draft() {
     let found = check_draft(&draft);
     assert!(found.iter().any(|d| d.code == Code::MissingSpan));
 }
+
+/// A seam of a panel that cannot be drawn waits for it: what is wrong is told where it is.
+#[test]
+fn seams_of_a_faulty_panel_have_its_cause() {
+    let mut pattern = sample();
+    place(
+        &mut pattern,
+        0,
+        "p1",
+        PointRule::At {
+            x: formula("bust / 0"),
+            y: 0.0.into(),
+        },
+    );
+    let number = formula_in(&pattern, "length('one side')");
+    put_variable(&mut pattern, "side", number);
+    let faulty = Place::Point(point(&pattern, "front", "p1"));
+    let found = pattern.check(&Measurements::adult());
+    let errors: Vec<_> = found
+        .iter()
+        .filter(|d| d.severity == Severity::Error)
+        .collect();
+    assert_eq!(errors.len(), 1, "{found:#?}");
+    assert_eq!((errors[0].code, &errors[0].place), (Code::Formula, &faulty));
+}
+
+#[test]
+fn sewing_to_a_line_inside_is_refused_by_name() {
+    let mut pattern = sample();
+    let from = put_point(&mut pattern, 0, "from", PointRule::at(0.1, 0.1));
+    let to = put_point(&mut pattern, 0, "to", PointRule::at(0.1, 0.7));
+    let pocket = ("pocket", LineKind::Internal);
+    let line = put_line(&mut pattern, 0, pocket, &[from, to]);
+    place(&mut pattern, 0, "to", PointRule::at(0.1, 0.5));
+    alter_seam(&mut pattern, 0, |seam| {
+        let span = &mut seam.sides[0][0];
+        span.line = Name::Drawn(line);
+        (span.from, span.to) = (Mark::corner(from), Mark::corner(to));
+    });
+    check_seam(&pattern, Code::BadSpan);
+    let found = pattern.check(&Measurements::adult());
+    let says = &found[0].message;
+    assert!(
+        says.contains("not possible yet") && says.contains("pocket"),
+        "{says}"
+    );
+    assert!(pattern.resolve(&Measurements::adult()).0.seams.len() == 1);
+}
+
+/// A panel with two outlines is wrong, and no fold takes the one for the other.
+#[test]
+fn a_fold_unfolds_the_line_it_names() {
+    let mut pattern = sample();
+    let corners = [(1.0, 0.0), (1.2, 0.0), (1.2, 0.3)];
+    let points =
+        corners.map(|(x, y)| put_point(&mut pattern, 0, &format!("q{x}{y}"), PointRule::at(x, y)));
+    let line = put_line(&mut pattern, 0, ("second", LineKind::Outline), &points);
+    let kind = OperationKind::Fold {
+        line: Name::Drawn(line),
+        ends: [points[1], points[2]].map(Mark::corner),
+    };
+    let fold = put_operation(&mut pattern, 0, "fold", kind);
+    let evaluation = Evaluation::new(&pattern, &Measurements::adult());
+    let stage = evaluation.stage(front(&pattern), Some(fold)).unwrap();
+    let edges: Vec<usize> = stage.lines.iter().map(|line| line.edges.len()).collect();
+    assert_eq!(edges, [4, 4]);
+    let reach = stage.lines[1].edges.iter().map(|e| e.curve.start().x);
+    assert!((reach.fold(0.0, f64::max) - 1.4).abs() < 1e-12);
+}
+
+/// Marks are taken on the first stage that has their corners, those of darts too.
+#[test]
+fn marks_are_placed_by_corners_that_operations_make() {
+    let mut pattern = sample();
+    let [_, left] = ends(&pattern, "front", "top");
+    let kind = dart(&pattern, "top", 0.5, 0.04, Apex::Depth(0.1.into()));
+    let first = put_operation(&mut pattern, 0, "dart", kind);
+    let made = |role, index| Name::Made {
+        by: first,
+        role,
+        index,
+    };
+    let line = Name::Drawn(outline(&pattern, "front"));
+    // Half the way from the mouth's end to the corner: 10 mm less than from the dart's middle.
+    let kind = OperationKind::Dart {
+        line,
+        mouth: Mark::Between {
+            ends: [made(Role::Mouth, 1), Name::Drawn(left)],
+            share: 0.5.into(),
+        },
+        intake: 0.02.into(),
+        apex: Apex::Depth(0.1.into()),
+    };
+    let second = put_operation(&mut pattern, 0, "second dart", kind);
+    let on_leg = Notch {
+        id: pattern.ids.take(),
+        name: "on the leg".into(),
+        line: outline(&pattern, "front"),
+        at: Mark::Along {
+            from: made(Role::Apex, 0),
+            distance: formula("2cm"),
+        },
+        kind: NotchKind::Slit,
+    };
+    alter(&mut pattern, 0, |panel| panel.notches.push(on_leg.clone()));
+    let mut seam = Seam::new(
+        pattern.ids.take(),
+        "top",
+        [
+            vec![Span {
+                panel: front(&pattern),
+                copy: 0,
+                half: 0,
+                line,
+                from: Mark::Corner(made(Role::Mouth, 1)),
+                to: Mark::corner(left),
+                backwards: false,
+            }],
+            vec![span(&pattern, "back", "top").reversed()],
+        ],
+    );
+    seam.ease = 1.0.into();
+    pattern.seams.push(Arc::new(seam));
+    check(&pattern, &[]);
+    let evaluation = Evaluation::new(&pattern, &Measurements::adult());
+    let stage = evaluation.last_stage(&pattern.panels[0]).unwrap();
+    let second_dart = stage.darts.iter().find(|dart| dart.by == second).unwrap();
+    let middle = (second_dart.mouth[0] + second_dart.mouth[1]) * 0.5;
+    assert!((middle.x - 0.09).abs() < 1e-12, "{middle}");
+    let notch = stage.notches.iter().find(|n| n.id == on_leg.id).unwrap();
+    let apex = stage.darts[0].apex;
+    assert!(((notch.point - apex).norm() - 0.02).abs() < 1e-12);
+    // The seam runs from the mouth to the corner without the second dart.
+    let (draft, _) = evaluation.draft();
+    let seam = draft.seams.iter().find(|seam| seam.name == "top").unwrap();
+    let piece = &draft.pieces[0];
+    let length = |span: &DraftSpan| piece.outline[span.edge].curve.length() * (span.to - span.from);
+    let walked: f64 = seam.sides[0].iter().map(length).sum();
+    assert!((walked - 0.16).abs() < 1e-12, "{walked}");
+    // Without the first dart all of these wait, and only the dart is at fault.
+    alter(&mut pattern, 0, |panel| {
+        let dart = Arc::make_mut(&mut panel.operations[0]);
+        if let OperationKind::Dart { intake, .. } = &mut dart.kind {
+            *intake = 1.0.into();
+        }
+    });
+    let place = Place::Operation(front(&pattern), first);
+    check(&pattern, &[(Code::DartTooWide, place)]);
+    // An operation cannot be placed by what a later one makes.
+    alter(&mut pattern, 0, |panel| panel.operations.swap(0, 1));
+    let found = pattern.check(&Measurements::adult());
+    let place = Place::Operation(front(&pattern), second);
+    assert!(
+        found
+            .iter()
+            .any(|d| d.place == place && d.message.contains("later")),
+        "{found:?}"
+    );
+}

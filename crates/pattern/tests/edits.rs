@@ -28,7 +28,19 @@ fn rich_sample() -> Pattern {
     };
     alter(&mut pattern, 0, |panel| panel.notches.push(notch));
     let kind = dart(&pattern, "top", 0.5, 0.02, Apex::Depth(0.1.into()));
-    put_operation(&mut pattern, 0, "dart", kind);
+    let by = put_operation(&mut pattern, 0, "dart", kind);
+    let role = Role::Mouth;
+    let beside = Notch {
+        id: pattern.ids.take(),
+        name: "beside the dart".into(),
+        line: outline(&pattern, "front"),
+        at: Mark::Along {
+            from: Name::Made { by, role, index: 1 },
+            distance: formula("bust / 100"),
+        },
+        kind: NotchKind::T,
+    };
+    alter(&mut pattern, 0, |panel| panel.notches.push(beside));
     let number = formula_in(&pattern, "length(front.right) / 10 + y(front.p2) * 0");
     put_variable(&mut pattern, "ease", number);
     let ease = formula_in(&pattern, "ease");
@@ -150,6 +162,15 @@ fn edits() -> Vec<Edit> {
             at: 9,
         },
     ];
+    let mut without = (**front).clone();
+    let dart = without.operations.remove(0);
+    all.push(put(Entity::Panel(Arc::new(without.clone()))));
+    let mut too_wide = (*dart).clone();
+    if let OperationKind::Dart { intake, .. } = &mut too_wide.kind {
+        *intake = formula("bust");
+    }
+    without.operations.push(Arc::new(too_wide));
+    all.push(put(Entity::Panel(Arc::new(without))));
     all.extend(renamings(&pattern));
     all.extend(whole);
     all

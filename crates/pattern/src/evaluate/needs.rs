@@ -2,7 +2,10 @@
 
 use super::node::{Definition, Node};
 use crate::formula::{Names, Use};
-use crate::{CornerName, Edge, Line, Name, Number, PanelId, PartReference, Pattern, WornRule};
+use crate::{
+    CornerName, Edge, Line, Mark, Name, Notch, Number, Panel, PanelId, PartReference, Pattern,
+    WornRule,
+};
 
 /// Nodes a definition needs, and panels whose lines say which.
 pub(crate) struct Needs<'d> {
@@ -64,7 +67,7 @@ impl<'d> Needs<'d> {
                     .extend(panel.edges().map(|edge| Node::Edge(edge.id)));
                 self.numbers([&panel.grain, &panel.allowance]);
                 self.numbers(panel.edges().filter_map(|e| e.allowance.as_ref()));
-                self.numbers(panel.notches.iter().filter_map(|n| n.at.number()));
+                self.notches(panel, 0);
                 if let WornRule::Wrapped {
                     level: Some(level), ..
                 } = &panel.worn
@@ -80,15 +83,46 @@ impl<'d> Needs<'d> {
                 self.numbers(operation.numbers());
                 self.nodes
                     .extend(operation.points().into_iter().map(Node::Point));
+                for mark in operation.marks() {
+                    self.mark(panel, mark, *step);
+                }
+                self.notches(panel, *step);
             }
             Definition::Seam(seam) => {
                 for span in seam.spans() {
                     self.last_stage(span.panel);
                     self.nodes.push(Node::Stage(span.panel, None));
+                    if let Some(panel) = self.pattern.panel(span.panel) {
+                        self.mark(panel, &span.from, usize::MAX);
+                        self.mark(panel, &span.to, usize::MAX);
+                    }
                 }
                 self.numbers(seam.numbers());
             }
         }
+    }
+
+    /// What notches need that are placed when that many operations are done.
+    fn notches(&mut self, panel: &Panel, step: usize) {
+        let own = |notch: &&Notch| panel.first_step(&notch.at).unwrap_or(0) == step;
+        self.numbers(
+            panel
+                .notches
+                .iter()
+                .filter(own)
+                .filter_map(|n| n.at.number()),
+        );
+    }
+
+    /// The number of a mark, and the stage it is placed on, if that comes before a step.
+    fn mark(&mut self, panel: &Panel, mark: &Mark, before: usize) {
+        if let Mark::Notch(id) = mark {
+            self.numbers(panel.notch(*id).and_then(|notch| notch.at.number()));
+        }
+        let first = panel.first_step(mark).filter(|&step| step < before);
+        let made = first.and_then(|step| panel.operations.get(step.checked_sub(1)?));
+        self.nodes
+            .extend(made.map(|o| Node::Stage(panel.id, Some(o.id))));
     }
 
     fn numbers<'a>(&mut self, numbers: impl IntoIterator<Item = &'a Number>) {
