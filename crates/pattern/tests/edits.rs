@@ -446,6 +446,61 @@ fn dividing_an_edge_and_joining_it_again_is_the_same_document() {
     assert!(pattern.says_the_same(&rich_sample()));
 }
 
+/// A corner that is joined away stays a point while anything is placed by it: it waits there.
+#[test]
+fn a_corner_that_something_is_placed_by_stays_a_point() {
+    let uses: [&dyn Fn(&mut Pattern, PointId); 4] = [
+        &|pattern, corner| {
+            let kind = dart(pattern, "top", 0.5, 0.02, Apex::Point(corner));
+            put_operation(pattern, 0, "to it", kind);
+        },
+        &|pattern, corner| {
+            let kind = OperationKind::Dart {
+                line: Name::Drawn(outline(pattern, "front")),
+                mouth: Mark::Along {
+                    from: Name::Drawn(corner),
+                    distance: 0.05.into(),
+                },
+                intake: 0.01.into(),
+                apex: Apex::Depth(0.1.into()),
+            };
+            put_operation(pattern, 0, "beside it", kind);
+        },
+        &|pattern, corner| {
+            let left = ends(pattern, "front", "left");
+            let kind = OperationKind::Fold {
+                line: Name::Drawn(outline(pattern, "front")),
+                ends: [Mark::corner(left[0]), Mark::corner(corner)],
+            };
+            put_operation(pattern, 0, "from it", kind);
+        },
+        &|pattern, corner| {
+            let inside = put_point(pattern, 0, "inside", PointRule::at(0.2, 0.2));
+            put_line(
+                pattern,
+                0,
+                ("pocket", LineKind::Internal),
+                &[corner, inside],
+            );
+        },
+    ];
+    for (k, make) in uses.into_iter().enumerate() {
+        let mut pattern = sample();
+        let body = Measurements::adult();
+        let panel = panel_id(&pattern, "front");
+        let right = edge(&pattern, "front", "right");
+        let before = Evaluation::new(&pattern, &body);
+        let (edits, corner) = plan::divide_edge(&before, (panel, right), None).unwrap();
+        pattern.apply(&edits).unwrap();
+        make(&mut pattern, corner);
+        let after = Evaluation::new(&pattern, &body);
+        let edits = plan::join_edges(&after, (panel, corner)).unwrap();
+        pattern.apply(&edits).unwrap();
+        assert!(pattern.point(corner).is_some(), "use {k}");
+        assert_eq!(pattern.panels[0].lines[0].edges.len(), 4, "use {k}");
+    }
+}
+
 #[test]
 fn a_corner_between_two_curves_becomes_a_straight_line() {
     let mut pattern = sample();
