@@ -270,7 +270,7 @@ fn darts_open_the_outline_and_seams_skip_their_mouths() {
     let mut pattern = sample();
     for share in [0.25, 0.75] {
         let kind = dart(&pattern, "top", share, 0.04, Apex::Depth(0.1.into()));
-        put_operation(&mut pattern, 0, "dart", kind);
+        put_operation(&mut pattern, 0, &format!("dart at {share}"), kind);
     }
     let sides = [
         vec![span(&pattern, "front", "top").reversed()],
@@ -441,5 +441,5 @@ fn a_size_has_a_length_of_its_own() {
     // The same measurements are not yet the same size.
     let usual = [(bust / 10.0, 1), (2.0, 0)];
     assert_eq!(values((&pattern.sizes[1]).into()), usual);
-    assert_eq!(values(Measurements::adult().into()), usual);
+    assert_eq!(values((&Measurements::adult()).into()), usual);
 }

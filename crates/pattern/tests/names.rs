@@ -199,3 +199,60 @@ fn long_names_do_not_make_a_formula_unreadable() {
     assert!(printed.len() > 40_000);
     assert_eq!(Formula::parse(&printed, &names), Ok(formula));
 }
+
+/// What a formula asked for in vain is found when something is called so, and a name that led
+/// somewhere goes on leading there.
+#[test]
+fn names_that_were_nothings_are_found_when_they_come() {
+    let mut pattern = named_sample();
+    for (name, text) in [("waiting", "late + 1cm"), ("third", "length(right) + 1cm")] {
+        let number = formula_in(&pattern, text);
+        put_variable(&mut pattern, name, number);
+    }
+    let ease = formula_in(&pattern, "ease");
+    alter_seam(&mut pattern, 0, |seam| seam.ease = ease);
+    let value = |pattern: &Pattern, name: &str| {
+        let variable = pattern.variable_named(name).unwrap().id;
+        Evaluation::new(pattern, &Measurements::adult()).variable(variable)
+    };
+    assert_eq!(value(&pattern, "waiting"), None);
+    assert_eq!(value(&pattern, "third"), None);
+    put_variable(&mut pattern, "late", formula("2cm"));
+    assert_eq!(value(&pattern, "waiting"), Some((0.03, 1)));
+    let seam = pattern.seams[0].id;
+    alter_seam(&mut pattern, 0, |seam| seam.name = "right".into());
+    let (found, _) = value(&pattern, "third").unwrap();
+    assert!(
+        (found - 0.61).abs() < 1e-12,
+        "a side and a centimetre: {found}"
+    );
+    assert!(pattern.users(seam.into()).contains(&Place::Variable(
+        pattern.variable_named("third").unwrap().id
+    )));
+    // The ease that the seam's formula was bound to is another name's by now.
+    let ease = pattern.variable_named("ease").unwrap().id;
+    let before = value(&pattern, "ease");
+    Arc::make_mut(pattern.variables.iter_mut().find(|v| v.id == ease).unwrap()).name = "e".into();
+    put_variable(&mut pattern, "ease", formula("1m"));
+    assert_eq!(value(&pattern, "e"), before);
+    assert!(pattern.users(ease.into()).contains(&Place::Seam(seam)));
+}
+
+/// What is removed and not known of which kind it was comes back with its id.
+#[test]
+fn a_lost_part_comes_back_by_its_id() {
+    let mut pattern = named_sample();
+    let seam = pattern.seams[1].id;
+    let text = format!("length(?{0}) + length(seam:?{0})", seam.0);
+    let gone = Edit::Remove(seam.into());
+    let back = Edit::Put(Entity::Seam(pattern.seams[1].clone()));
+    pattern.apply(&[gone]).unwrap();
+    let number = formula_in(&pattern, &text);
+    let variable = put_variable(&mut pattern, "both", number);
+    let mut evaluation = Evaluation::new(&pattern, &Measurements::adult());
+    assert_eq!(evaluation.variable(variable), None);
+    pattern.apply(&[back]).unwrap();
+    evaluation.update(&pattern, &Measurements::adult());
+    let (value, power) = evaluation.variable(variable).unwrap();
+    assert!((value - 1.2).abs() < 1e-9 && power == 1, "{value}");
+}

@@ -161,7 +161,7 @@ impl Project {
             .size
             .as_deref()
             .and_then(|name| pattern.size_named(name));
-        named.map_or_else(|| self.wearer().into(), Wearer::from)
+        named.map_or_else(|| (&self.wearer()).into(), Wearer::from)
     }
 
     /// Whom the pattern is drafted for: the named size; else the body that was chosen; else the

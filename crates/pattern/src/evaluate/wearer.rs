@@ -14,18 +14,12 @@ pub struct Wearer {
     pub size: Option<SizeId>,
 }
 
-impl From<Measurements> for Wearer {
-    fn from(measurements: Measurements) -> Self {
-        Self {
-            measurements,
-            size: None,
-        }
-    }
-}
-
 impl From<&Measurements> for Wearer {
     fn from(measurements: &Measurements) -> Self {
-        measurements.clone().into()
+        Self {
+            measurements: measurements.clone(),
+            size: None,
+        }
     }
 }
 

@@ -132,6 +132,18 @@ impl Names {
         self.variables.names(())
     }
 
+    /// Name of the sheet a point is on.
+    pub(crate) fn sheet_of_point(&self, id: PointId) -> Option<&str> {
+        let (sheet, _) = self.points.name(id)?;
+        self.sheets.name(sheet).map(|(_, name)| name)
+    }
+
+    /// Name of the sheet a curve is on.
+    pub(crate) fn sheet_of_curve(&self, id: CurveId) -> Option<&str> {
+        let (sheet, _) = self.curves.name(id)?;
+        self.sheets.name(sheet).map(|(_, name)| name)
+    }
+
     /// Whether a word is a measurement's name: of the catalogue, or of a size's table.
     pub(super) fn is_measurement(&self, name: &str) -> bool {
         definition(name).is_some() || self.measured.contains(name)

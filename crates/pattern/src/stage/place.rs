@@ -237,7 +237,11 @@ impl StageLine {
             let own = edge.curve.length();
             let (low, high) = (start.max(before), end.min(before + own));
             if high - low > SLACK && wanted(edge) {
-                let share = |along: f64| share_of(edge, (along - before) / own);
+                let share = |along: f64| match along {
+                    along if along <= before => edge.from,
+                    along if along >= before + own => edge.to,
+                    along => share_of(edge, (along - before) / own),
+                };
                 let (a, b) = (share(low), share(high));
                 match stretch.last_mut() {
                     Some(last) if last.0 == edge.name && (last.2 - a).abs() < SLACK => last.2 = b,
