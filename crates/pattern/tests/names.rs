@@ -169,7 +169,7 @@ fn names_print_plainly_while_they_are_unambiguous() {
     };
     let before = texts(&pattern);
     assert_eq!(before[2], "x(front.p1) + y(back.p2)");
-    assert_eq!(before[9], "length(sheet:front.right) * 2");
+    assert_eq!(before[9], "length(curve front.right) * 2");
     assert_eq!(before[10], "length(front.dart.mouth.1..front.p3)");
     let sheet = pattern.sheets[0].id;
     rename(&mut pattern, sheet.into(), "draft");
@@ -183,7 +183,7 @@ fn names_print_plainly_while_they_are_unambiguous() {
     rename(&mut pattern, ease.into(), "bust");
     let now = texts(&pattern);
     assert_eq!(now[0], "bust + 'wide ease' * 2");
-    assert_eq!(now[1], "measurement:bust / 4 + my_own");
+    assert_eq!(now[1], "measurement bust / 4 + my_own");
 }
 
 /// Names are as long as their parts like; only what stands around them is counted.
@@ -243,7 +243,7 @@ fn names_that_were_nothings_are_found_when_they_come() {
 fn a_lost_part_comes_back_by_its_id() {
     let mut pattern = named_sample();
     let seam = pattern.seams[1].id;
-    let text = format!("length(?{0}) + length(seam:?{0})", seam.0);
+    let text = format!("length(?{0}) + length(seam ?{0})", seam.0);
     let gone = Edit::Remove(seam.into());
     let back = Edit::Put(Entity::Seam(pattern.seams[1].clone()));
     pattern.apply(&[gone]).unwrap();

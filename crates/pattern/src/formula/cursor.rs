@@ -1,6 +1,6 @@
 //! Reads the words and numbers of a formula's text, one after another.
 
-use super::FormulaError;
+use super::{FormulaError, RESERVED};
 use std::cell::Cell;
 
 /// A formula's text and the byte that is read next.
@@ -50,11 +50,17 @@ impl<'a> Cursor<'a> {
         found
     }
 
-    /// Takes a text that stands right here.
+    /// Takes a word that stands before a name or an id, as in `curve front.side`.
     pub fn take_prefix(&mut self, wanted: &str) -> bool {
-        let found = self.rest().starts_with(wanted);
-        if found {
-            self.at += wanted.len();
+        let before = self.at;
+        let found = self.take_word(wanted) && {
+            let next = self.peek();
+            let is_operator = RESERVED.contains(&&self.rest()[..word_length(self.rest())]);
+            let begins = |c: char| c.is_ascii_alphabetic() || matches!(c, '_' | '\'' | '?');
+            next.is_some_and(begins) && !is_operator
+        };
+        if !found {
+            self.at = before;
         }
         found
     }

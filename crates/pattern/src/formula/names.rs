@@ -170,6 +170,13 @@ impl Names {
             Written::Seam(Word::Id(id)) => Some(PartReference::Seam((*id).into())),
             Written::Seam(Word::Name(name)) => self.seams.id((), name).map(PartReference::Seam),
             Written::Curve(id) => Some(PartReference::Curve((*id).into())),
+            Written::CurveOf(owner, Word::Name(name)) => {
+                let owners = [Owner::Sheet(owner.clone()), Owner::Panel(owner.clone())];
+                let mut sheets = owners.iter().filter_map(|owner| self.sheet(owner));
+                let curve = sheets.find_map(|sheet| self.curves.id(sheet, name))?;
+                Some(PartReference::Curve(curve))
+            }
+            Written::CurveOf(_, Word::Id(id)) => Some(PartReference::Curve((*id).into())),
             Written::Part(owner, Word::Name(name)) if kind == Kind::Point => {
                 let point = self.points.id(self.sheet(owner)?, name)?;
                 Some(PartReference::Point(point))
@@ -261,6 +268,9 @@ impl Names {
                 let near = nearest(&name, self.seams.names(()));
                 let hint = suggestion(near, "name a seam, or a part as in front.armhole");
                 (format!("there is no seam {name:?}"), hint)
+            }
+            Some(Written::CurveOf(owner, part)) => {
+                self.missing_part(&Owner::Panel(owner), &part, "curve")
             }
             Some(Written::Part(owner, part)) => {
                 let what = if kind == Kind::Point { "point" } else { "edge" };

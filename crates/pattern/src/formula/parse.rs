@@ -280,7 +280,7 @@ impl Parser<'_> {
     fn name_or_call(&mut self) -> Result<(), FormulaError> {
         self.cursor.skip_space();
         let (column, start) = (self.cursor.column(), self.cursor.at);
-        if self.cursor.take_prefix("measurement:") {
+        if self.cursor.take_prefix("measurement") {
             let (name, _) = self.cursor.word()?;
             self.name_token(start, Token::Word(name.clone()));
             self.push(column, Operation::Word(name));

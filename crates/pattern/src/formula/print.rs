@@ -14,7 +14,7 @@ impl Names {
             Token::Variable(id) if self.by_id => format!("@{}", id.0),
             Token::Variable(id) => self.print_variable(*id),
             Token::Word(word) if self.variable(word).is_some() && self.is_measurement(word) => {
-                format!("measurement:{}", quoted(word))
+                format!("measurement {}", quoted(word))
             }
             Token::Word(word) => quoted(word),
             Token::Part(part) => self.print_part(part),
@@ -65,15 +65,17 @@ impl Names {
         let panel = panel.and_then(|panel| self.panels.name(*panel));
         let own = self.sheets.name(sheet).map(|(_, name)| name);
         let word = |name: &str| Word::Name(name.into());
-        let owners = [
-            panel.map(|(_, name)| Owner::Panel(word(name))),
-            own.map(|name| Owner::Panel(word(name))),
-            own.map(|name| Owner::Sheet(word(name))),
+        let part_of = |owner: &str| Written::Part(Owner::Panel(word(owner)), word(name));
+        let ways = [
+            panel.map(|(_, panel)| part_of(panel)),
+            own.map(part_of),
+            own.map(|own| match is_point {
+                true => Written::Part(Owner::Sheet(word(own)), word(name)),
+                false => Written::CurveOf(word(own), word(name)),
+            }),
         ];
-        owners
-            .into_iter()
+        ways.into_iter()
             .flatten()
-            .map(|owner| Written::Part(owner, word(name)))
             .find(|written| self.part_of(written, kind).as_ref() == Some(part))
     }
 

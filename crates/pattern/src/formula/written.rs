@@ -30,7 +30,7 @@ pub(crate) enum Word {
 pub(crate) enum Owner {
     /// A panel and the sheet it is traced from, else a sheet.
     Panel(Word),
-    /// `sheet:front`: a sheet, whatever panel is called so.
+    /// `sheet front`: a sheet, whatever panel is called so.
     Sheet(Word),
 }
 
@@ -51,10 +51,12 @@ pub(crate) enum Corner {
 pub(crate) enum Written {
     /// `?47`: a point; where a length is measured, a part that was lost and does not say its kind.
     Lost(u32),
-    /// `'side seam'`, or `seam:?9`.
+    /// `'side seam'`, or `seam ?9`.
     Seam(Word),
-    /// `curve:?12`
+    /// `curve ?12`
     Curve(u32),
+    /// `curve front.side`: a curve of a sheet, whatever edge is called so.
+    CurveOf(Word, Word),
     /// `front.armhole`
     Part(Owner, Word),
     /// `front.underarm..front.tip`
@@ -72,13 +74,16 @@ impl Written {
     /// Reads a part.
     pub fn read(cursor: &mut Cursor<'_>, kind: Kind) -> Result<Self, FormulaError> {
         cursor.skip_space();
-        if kind != Kind::Point && cursor.take_prefix("curve:") {
-            return id(cursor).map(Self::Curve);
+        if kind != Kind::Point && cursor.take_prefix("curve") {
+            return curve(cursor);
         }
-        if kind == Kind::StretchOrSeam && cursor.take_prefix("seam:") {
+        if kind == Kind::StretchOrSeam && cursor.take_prefix("seam") {
             return id(cursor).map(|id| Self::Seam(Word::Id(id)));
         }
-        let owner = owner(cursor)?;
+        let owner = match kind == Kind::Point && cursor.take_prefix("sheet") {
+            true => Owner::Sheet(word(cursor)?),
+            false => Owner::Panel(word(cursor)?),
+        };
         let end = cursor.at;
         if !cursor.take('.') {
             let is_last = matches!(cursor.peek(), None | Some(')'));
@@ -99,16 +104,16 @@ impl Written {
             return Ok(Self::Part(owner, part));
         }
         let from = corner(cursor, part)?;
-        if !cursor.take_prefix("..") {
+        if !cursor.rest().starts_with("..") {
             return Err(cursor.error_here(
                 "stands where .. is missing",
                 "write both corners, for example front.underarm..front.tip",
             ));
         }
+        cursor.at += 2;
         cursor.skip_space();
         let start = cursor.at;
-        let second = self::owner(cursor)?;
-        if second != owner {
+        if Owner::Panel(word(cursor)?) != owner {
             cursor.at = start;
             return Err(cursor.error(
                 "the stretch ends on another panel than it starts on",
@@ -124,11 +129,19 @@ impl Written {
     }
 }
 
-fn owner(cursor: &mut Cursor<'_>) -> Result<Owner, FormulaError> {
-    cursor.skip_space();
-    match cursor.take_prefix("sheet:") {
-        true => word(cursor).map(Owner::Sheet),
-        false => word(cursor).map(Owner::Panel),
+/// The curve after its word.
+fn curve(cursor: &mut Cursor<'_>) -> Result<Written, FormulaError> {
+    let owner = word(cursor)?;
+    let end = cursor.at;
+    if cursor.take('.') {
+        return Ok(Written::CurveOf(owner, word(cursor)?));
+    }
+    match owner {
+        Word::Id(id) => {
+            cursor.at = end;
+            Ok(Written::Curve(id))
+        }
+        Word::Name(_) => Err(cursor.error_here("stands where a dot is missing", HINT)),
     }
 }
 
@@ -200,7 +213,7 @@ impl fmt::Display for Owner {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Panel(word) => word.fmt(f),
-            Self::Sheet(word) => write!(f, "sheet:{word}"),
+            Self::Sheet(word) => write!(f, "sheet {word}"),
         }
     }
 }
@@ -218,9 +231,10 @@ impl fmt::Display for Written {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Lost(id) => write!(f, "?{id}"),
-            Self::Seam(Word::Id(id)) => write!(f, "seam:?{id}"),
+            Self::Seam(Word::Id(id)) => write!(f, "seam ?{id}"),
             Self::Seam(name) => name.fmt(f),
-            Self::Curve(id) => write!(f, "curve:?{id}"),
+            Self::Curve(id) => write!(f, "curve ?{id}"),
+            Self::CurveOf(owner, part) => write!(f, "curve {owner}.{part}"),
             Self::Part(owner, part) => write!(f, "{owner}.{part}"),
             Self::Stretch(owner, [from, to]) => write!(f, "{owner}.{from}..{owner}.{to}"),
         }
