@@ -153,6 +153,7 @@ fn a_skirt_panel_with_a_dart_from_an_empty_window() {
         .session()
         .project()
         .drafted_to()
+        .measurements
         .get("hips")
         .unwrap();
     let size = drafter.point("C") - drafter.point("A");

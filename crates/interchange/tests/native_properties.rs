@@ -8,6 +8,7 @@ use proptest::prelude::*;
 use random_pattern::{Dice, random_pattern};
 use toile_interchange::{read_pattern, write_pattern};
 use toile_measure::Measurements;
+use toile_pattern::{Edit, PartId, Pattern, Seam, SeamOrigin, Severity};
 
 const SHIPPED: [(&str, &str); 4] = [
     (
@@ -33,12 +34,17 @@ proptest! {
 
     #[test]
     fn random_patterns_are_resolved_checked_written_and_read(seed in any::<u64>()) {
-        let pattern = random_pattern(&mut Dice::new(seed));
+        let mut dice = Dice::new(seed);
+        let pattern = random_pattern(&mut dice);
         let body = Measurements::adult();
         let (draft, found) = pattern.resolve(&body);
         for diagnostic in found.iter().chain(&pattern.check(&body)) {
             prop_assert!(!diagnostic.message.is_empty() && !diagnostic.hint.is_empty());
             prop_assert!(!pattern.describe(&diagnostic.place).is_empty());
+        }
+        let sewn = |seam: &Seam| draft.seams.iter().any(|s| s.id == SeamOrigin::Seam(seam.id));
+        if !pattern.seams.iter().all(|seam| sewn(seam)) {
+            prop_assert!(found.iter().any(|d| d.severity == Severity::Error), "a seam is left out");
         }
         for piece in &draft.pieces {
             let mut edges = piece.outline.iter().chain(piece.holes.iter().flatten());
@@ -55,14 +61,32 @@ proptest! {
                 // Names that were nothing's when a formula was made may be something's now.
                 let (again, notes) = read_pattern(&text).unwrap();
                 prop_assert!(notes.is_empty());
-                prop_assert!(write_pattern(&again).unwrap() == text);
+                let text = write_pattern(&again).unwrap();
                 prop_assert!(read_pattern(&text).unwrap().0 == again);
                 prop_assert!(again.seams.len() == pattern.seams.len());
+                let damaged = without_some_parts(again, &mut dice);
+                let text = write_pattern(&damaged).unwrap();
+                let (again, notes) = read_pattern(&text).unwrap();
+                prop_assert!(notes.is_empty());
+                prop_assert!(again == damaged, "{}", text);
                 serde_json::from_str::<serde_json::Value>(&text).unwrap();
             }
             Err(error) => prop_assert!(!error.place.is_empty() && !error.hint.is_empty()),
         }
     }
+}
+
+/// The pattern with some parts taken out of it, whatever names them.
+fn without_some_parts(mut pattern: Pattern, dice: &mut Dice) -> Pattern {
+    let parts: Vec<PartId> = pattern.parts().into_iter().map(|(id, _)| id).collect();
+    for _ in 0..dice.below(6) {
+        let part = parts[dice.below(parts.len())];
+        // What is removed with its panel alone stays, and so does what is gone already.
+        if let Err(error) = pattern.apply(&[Edit::Remove(part)]) {
+            assert!(!error.to_string().is_empty());
+        }
+    }
+    pattern
 }
 
 /// Makes the text worse in one of many ways.
@@ -238,5 +262,107 @@ fn refusals_say_what_was_meant() {
         let error = read_pattern(&text.replacen(from, to, 1)).unwrap_err();
         assert!(error.hint.contains(says), "{field}: {error}");
         assert!(error.place.contains("line "), "{field}: {error}");
+    }
+}
+
+/// What has fields of two kinds would lose one of them: it is refused, with both named.
+#[test]
+fn fields_of_two_kinds_are_refused_by_name() {
+    for (from, to, named) in [
+        (
+            "\"at\": [",
+            "\"curve\": 40, \"share\": 0.5, \"at\": [",
+            ["curve", "at"],
+        ),
+        ("\"at\": [", "\"index\": 1, \"at\": [", ["index", "at"]),
+        (
+            "\"offset\": [",
+            "\"toward\": 29, \"offset\": [",
+            ["toward", "offset"],
+        ),
+        (
+            "\"handles\": [",
+            "\"bulge\": 1, \"handles\": [",
+            ["handles", "bulge"],
+        ),
+        ("\"handles\": [", "\"knots\": [", ["knots", "without"]),
+        (
+            "\"fold\": {",
+            "\"dart\": {\"line\": 37}, \"fold\": {",
+            ["fold", "dart"],
+        ),
+        (
+            "\"between\": [",
+            "\"notch\": 50, \"between\": [",
+            ["between", "notch"],
+        ),
+        (
+            "\"part\": ",
+            "\"translation_m\": [0, 0, 0], \"part\": ",
+            ["part", "translation_m"],
+        ),
+        (
+            "\"value\": \"11.5cm\"",
+            "\"value\": {\"formula\": \"11.5cm\", \"by\": 0, \"usual\": 1}",
+            ["usual", "formula"],
+        ),
+        (
+            "\"value\": \"11.5cm\"",
+            "\"value\": {\"usual\": \"11.5cm\", \"sizes\": [[2, 1], [2, 3]]}",
+            ["size 2", "two values"],
+        ),
+    ] {
+        let (_, text) = SHIPPED[0];
+        assert!(text.contains(from), "{from}");
+        let error = read_pattern(&text.replacen(from, to, 1)).unwrap_err();
+        assert!(
+            named.iter().all(|name| error.what.contains(name)),
+            "{to}: {error}"
+        );
+        assert!(
+            error.place.contains("line ") && error.hint.contains("keep"),
+            "{to}: {error}"
+        );
+    }
+    let (_, darts) = SHIPPED[2];
+    let both = darts.replacen("\"depth\": ", "\"apex\": 80, \"depth\": ", 1);
+    let error = read_pattern(&both).unwrap_err();
+    assert!(
+        error.what.contains("depth") && error.what.contains("apex"),
+        "{error}"
+    );
+}
+
+#[test]
+fn unknown_fields_of_numbers_are_reported() {
+    for value in [
+        "{\"formula\": \"11.5cm\", \"by\": 0.01, \"why\": 1}",
+        "{\"usual\": \"11.5cm\", \"sizes\": [[2, 0.1]], \"why\": 1}",
+    ] {
+        let (_, text) = SHIPPED[0];
+        let more = text.replacen("\"11.5cm\"", value, 1);
+        let (pattern, notes) = read_pattern(&more).unwrap();
+        assert_eq!(notes.len(), 1, "{notes:?}");
+        assert!(
+            notes[0].to_string().contains("variables[0].value.why"),
+            "{}",
+            notes[0]
+        );
+        assert!(!write_pattern(&pattern).unwrap().contains("why"));
+    }
+}
+
+/// A part by its id in a formula is a reference like any other.
+#[test]
+fn ids_in_formulas_are_checked() {
+    for (formula, says) in [
+        ("x(?999999)", "never given"),
+        ("?26", "the file has panel 26"),
+        ("length(front.?29..front.?26)", "the file has panel 26"),
+    ] {
+        let (_, text) = SHIPPED[0];
+        let bad = text.replacen("\"11.5cm\"", &format!("\"{formula}\""), 1);
+        let error = read_pattern(&bad).unwrap_err();
+        assert!(error.what.contains(says), "{formula}: {error}");
     }
 }

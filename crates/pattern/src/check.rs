@@ -1,12 +1,11 @@
 //! Checks that a draft can be cut and sewn.
 
-use crate::evaluate::Evaluation;
+use crate::evaluate::{Evaluation, Wearer};
 use crate::{
     Code, Diagnostic, Draft, DraftSeam, DraftSpan, Fabric, LineKind, Name, Pattern, Piece,
     PieceEdge, PieceLine, Place, SeamOrigin,
 };
 use toile_geometry::{Rings, Vec2};
-use toile_measure::Measurements;
 
 /// Ends of neighbouring edges may be this far apart [m]: rounding, not a gap.
 const GAP: f64 = 1e-6;
@@ -24,10 +23,10 @@ const CROSSINGS: usize = 5;
 const LINE_SAMPLES: usize = 500;
 
 impl Pattern {
-    /// Everything that is wrong with the pattern for a table of measurements: what keeps it from
+    /// Everything that is wrong with the pattern for a size or a table of measurements: what keeps it from
     /// being drafted, then what keeps the draft from being cut and sewn.
-    pub fn check(&self, measurements: &Measurements) -> Vec<Diagnostic> {
-        Evaluation::new(self, measurements).check()
+    pub fn check(&self, wearer: impl Into<Wearer>) -> Vec<Diagnostic> {
+        Evaluation::new(self, wearer).check()
     }
 }
 

@@ -1,6 +1,6 @@
 //! From an evaluation to a draft: pieces of cloth, and seams between them.
 
-use crate::evaluate::{Evaluation, SeamValue};
+use crate::evaluate::{Evaluation, SeamValue, Wearer};
 use crate::stage::StageEdge;
 use crate::{
     BodyPart, Code, Diagnostic, Draft, DraftSeam, DraftSpan, EdgeName, EdgeOrigin, Facing,
@@ -9,7 +9,6 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 use toile_geometry::{Rigid, Vec3};
-use toile_measure::Measurements;
 
 /// Most pieces a draft may have.
 const MOST_PIECES: usize = 2000;
@@ -23,12 +22,12 @@ pub(crate) struct Drafting {
 }
 
 impl Pattern {
-    /// The draft for a table of measurements, and everything that kept parts out of it.
+    /// The draft for a size or a table of measurements, and everything that kept parts out of it.
     ///
     /// Measurements that are not given are taken from the base size, with a note. Panels that
     /// cannot be drawn and seams that cannot be walked are left out, with an error each.
-    pub fn resolve(&self, measurements: &Measurements) -> (Draft, Vec<Diagnostic>) {
-        Evaluation::new(self, measurements).draft()
+    pub fn resolve(&self, wearer: impl Into<Wearer>) -> (Draft, Vec<Diagnostic>) {
+        Evaluation::new(self, wearer).draft()
     }
 }
 

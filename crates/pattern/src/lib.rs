@@ -23,7 +23,7 @@ pub use diagnostic::{Code, Diagnostic, Place, Severity};
 pub use document::*;
 pub use draft::*;
 pub use edit::{Edit, EditError, Entity, Head, SheetHead};
-pub use evaluate::{Evaluation, Node, Update, Want};
+pub use evaluate::{Evaluation, Node, Update, Want, Wearer};
 pub use formula::{FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Names, Token};
 pub use ids::*;
 pub use name::*;

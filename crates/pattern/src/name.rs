@@ -1,7 +1,7 @@
 //! Names of places that survive edits: corners and lines by the part that was drawn, or by the
 //! operation that made them; places along a line by these.
 
-use crate::{CurveId, EdgeId, LineId, Number, OperationId, PanelId, PointId};
+use crate::{CurveId, EdgeId, LineId, Number, OperationId, PanelId, PartId, PointId};
 use serde::{Deserialize, Serialize};
 
 /// A corner, edge or line of a panel.
@@ -19,6 +19,16 @@ pub enum Name<Id> {
         /// Which of several, from 0 in the order of the outline.
         index: u16,
     },
+}
+
+impl<Id> Name<Id> {
+    /// The operation that made it; nothing if it was drawn.
+    pub fn maker(&self) -> Option<OperationId> {
+        match self {
+            Self::Drawn(_) => None,
+            Self::Made { by, .. } => Some(*by),
+        }
+    }
 }
 
 /// A corner of a panel.
@@ -137,4 +147,23 @@ pub enum PartReference {
     Seam(crate::SeamId),
     /// A text that names nothing.
     Unknown(Box<str>),
+}
+
+impl PartReference {
+    /// The part itself; of a stretch its panel and what its corners are named by.
+    pub fn parts(&self) -> Vec<PartId> {
+        match self {
+            Self::Point(id) => vec![(*id).into()],
+            Self::Curve(id) => vec![(*id).into()],
+            Self::Seam(id) => vec![(*id).into()],
+            Self::Unknown(_) => Vec::new(),
+            Self::Stretch { panel, ends } => {
+                let corners = ends.iter().map(|end| match end {
+                    Name::Drawn(id) => PartId::from(*id),
+                    Name::Made { by, .. } => (*by).into(),
+                });
+                std::iter::once((*panel).into()).chain(corners).collect()
+            }
+        }
+    }
 }

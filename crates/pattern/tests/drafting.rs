@@ -5,6 +5,7 @@ mod sample;
 
 use sample::*;
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
 use toile_geometry::{Rigid, Vec2, Vec3};
 use toile_measure::Measurements;
 use toile_pattern::*;
@@ -269,7 +270,7 @@ fn darts_open_the_outline_and_seams_skip_their_mouths() {
     let mut pattern = sample();
     for share in [0.25, 0.75] {
         let kind = dart(&pattern, "top", share, 0.04, Apex::Depth(0.1.into()));
-        put_operation(&mut pattern, 0, "dart", kind);
+        put_operation(&mut pattern, 0, &format!("dart at {share}"), kind);
     }
     let sides = [
         vec![span(&pattern, "front", "top").reversed()],
@@ -409,4 +410,36 @@ fn formulas_choose_compare_and_round() {
         }
         assert_eq!(known.text(&Names::new(&pattern)), text);
     }
+}
+
+/// A size's own value is of the kind the usual one is, and is taken in that size alone.
+#[test]
+fn a_size_has_a_length_of_its_own() {
+    let mut pattern = sample();
+    for name in ["S", "M"] {
+        let (id, name) = (pattern.ids.take(), name.to_owned());
+        let measurements = Measurements::adult();
+        pattern.sizes.push(Arc::new(Size {
+            id,
+            name,
+            measurements,
+        }));
+    }
+    let own = |usual| Number::PerSize {
+        usual: Box::new(usual),
+        sizes: vec![(pattern.sizes[0].id, 0.03)],
+    };
+    let [length, plain] = [formula("bust / 10"), 2.0.into()].map(own);
+    let length = put_variable(&mut pattern, "length", length);
+    let plain = put_variable(&mut pattern, "plain", plain);
+    let values = |wearer: Wearer| {
+        let evaluation = Evaluation::new(&pattern, wearer);
+        [length, plain].map(|id| evaluation.variable(id).unwrap())
+    };
+    let bust = Measurements::adult().get("bust").unwrap();
+    assert_eq!(values((&pattern.sizes[0]).into()), [(0.03, 1), (0.03, 0)]);
+    // The same measurements are not yet the same size.
+    let usual = [(bust / 10.0, 1), (2.0, 0)];
+    assert_eq!(values((&pattern.sizes[1]).into()), usual);
+    assert_eq!(values((&Measurements::adult()).into()), usual);
 }

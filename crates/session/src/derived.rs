@@ -14,7 +14,7 @@ use toile_body::{BodyError, Description, Figure, Mannequin};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
 use toile_measure::Measurements;
-use toile_pattern::{Diagnostic, Draft, Evaluation, Panel, Pattern};
+use toile_pattern::{Diagnostic, Draft, Evaluation, Panel, Pattern, Wearer};
 
 /// What a mannequin is made from.
 #[derive(Clone, PartialEq)]
@@ -54,7 +54,7 @@ struct KeptMannequin {
 pub(crate) struct Derived {
     evaluation: Option<Arc<Evaluation>>,
     /// The pattern and measurements it was last brought up to date with.
-    evaluated: Option<(Arc<Pattern>, Measurements)>,
+    evaluated: Option<(Arc<Pattern>, Wearer)>,
     draft: Option<Arc<Draft>>,
     diagnostics: Option<Arc<Vec<Diagnostic>>>,
     mannequin: Option<KeptMannequin>,
@@ -125,14 +125,14 @@ impl Derived {
 
     /// Every value of the pattern, brought up to date.
     pub fn evaluation(&mut self, project: &Project) -> Arc<Evaluation> {
-        let measurements = project.drafted_to();
+        let wearer = project.drafted_to();
         let kept = self.evaluation.get_or_insert_with(Arc::default);
         let is_new = self.evaluated.as_ref().is_none_or(|(pattern, known)| {
-            !Arc::ptr_eq(pattern, &project.pattern) || *known != measurements
+            !Arc::ptr_eq(pattern, &project.pattern) || *known != wearer
         });
         if is_new {
-            Arc::make_mut(kept).update(&project.pattern, &measurements);
-            self.evaluated = Some((project.pattern.clone(), measurements));
+            Arc::make_mut(kept).update(&project.pattern, &wearer);
+            self.evaluated = Some((project.pattern.clone(), wearer));
         }
         kept.clone()
     }

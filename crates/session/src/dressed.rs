@@ -266,7 +266,7 @@ mod tests {
             name: name.into(),
             ..DraftedPart::own(
                 &project,
-                Arc::new(project.pattern.resolve(&project.drafted_to()).0),
+                Arc::new(project.pattern.resolve(project.drafted_to()).0),
                 Arc::default(),
             )
         };

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use toile_body::Figure;
 use toile_measure::Measurements;
-use toile_pattern::{Diagnostic, Edit, EditError, Pattern, Severity};
+use toile_pattern::{Diagnostic, Edit, EditError, Pattern, Severity, Wearer};
 
 /// Everything a person decides. Cloning is cheap.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -154,19 +154,82 @@ impl Project {
         size.map_or_else(|| sample_of(figure), |size| size.completed(figure.build()))
     }
 
-    /// The measurements that a pattern worn with the project's is drafted to [m], [rad]: its own table's
-    /// for the named size, else those of the wearer.
-    pub(crate) fn drafted_for(&self, pattern: &Pattern) -> Measurements {
-        let named = self.size.as_deref().and_then(|name| pattern.size(name));
-        named.cloned().unwrap_or_else(|| self.wearer())
+    /// Whom a pattern worn with the project's is drafted for: its own table's named size, else the
+    /// wearer.
+    pub(crate) fn drafted_for(&self, pattern: &Pattern) -> Wearer {
+        let named = self
+            .size
+            .as_deref()
+            .and_then(|name| pattern.size_named(name));
+        named.map_or_else(|| (&self.wearer()).into(), Wearer::from)
     }
 
-    /// The measurements the pattern is drafted to [m], [rad]: the named size; else those of the
-    /// body that was chosen; else the pattern's base size.
-    pub fn drafted_to(&self) -> Measurements {
-        match self.named_size() {
-            Some(size) => size.clone(),
-            None => self.wearer(),
+    /// Whom the pattern is drafted for: the named size; else the body that was chosen; else the
+    /// pattern's base size, with what its table leaves out predicted.
+    pub fn drafted_to(&self) -> Wearer {
+        let pattern = &self.pattern;
+        let named = self
+            .size
+            .as_deref()
+            .and_then(|name| pattern.size_named(name));
+        named.map_or_else(
+            || Wearer {
+                measurements: self.wearer(),
+                size: match self.body {
+                    BodyChoice::OfPattern => pattern.base().map(|size| size.id),
+                    _ => None,
+                },
+            },
+            Wearer::from,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toile_measure::Origin;
+    use toile_pattern::{Evaluation, Number, Size, Variable};
+
+    /// Values that sizes have of their own are taken in the size that is drafted, and in the base
+    /// size where the body is the pattern's own.
+    #[test]
+    fn a_size_has_its_own_values() {
+        let mut pattern = Pattern::new("skirt");
+        for (name, waist) in [("S", 0.7), ("M", 0.75)] {
+            let mut measurements = Measurements::new();
+            measurements.set("waist", waist, Origin::Asked).unwrap();
+            let (id, name) = (pattern.ids.take(), name.into());
+            pattern.sizes.push(Arc::new(Size {
+                id,
+                name,
+                measurements,
+            }));
         }
+        let [small, medium] = [0, 1].map(|k: usize| pattern.sizes[k].id);
+        pattern.base_size = Some(medium);
+        let id = pattern.ids.take();
+        let number = Number::PerSize {
+            usual: Box::new(1.0.into()),
+            sizes: vec![(small, 2.0), (medium, 3.0)],
+        };
+        let name = "pleats".into();
+        pattern
+            .variables
+            .push(Arc::new(Variable { id, name, number }));
+        let mut project = Project {
+            pattern: Arc::new(pattern),
+            ..Project::default()
+        };
+        let pleats = |project: &Project| {
+            let evaluation = Evaluation::new(&project.pattern, project.drafted_to());
+            evaluation.variable(id).map(|(value, _)| value)
+        };
+        assert_eq!(pleats(&project), Some(3.0));
+        project.size = Some("S".into());
+        assert_eq!(pleats(&project), Some(2.0));
+        project.size = None;
+        project.body = BodyChoice::Sample(Figure::Woman);
+        assert_eq!(pleats(&project), Some(1.0));
     }
 }

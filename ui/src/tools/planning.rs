@@ -41,8 +41,8 @@ impl Planning {
     pub fn make(&mut self, edits: Vec<Edit>) -> Result<(), EditError> {
         let mut pattern = self.evaluation.pattern().clone();
         pattern.apply(&edits)?;
-        let measurements = self.evaluation.measurements().clone();
-        self.evaluation.update(&pattern, &measurements);
+        let wearer = self.evaluation.wearer().clone();
+        self.evaluation.update(&pattern, wearer);
         self.edits.extend(edits);
         Ok(())
     }

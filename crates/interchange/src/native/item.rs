@@ -21,6 +21,9 @@ pub enum Written<'a> {
     Formula(&'a str),
 }
 
+/// The fields of one kind of several: how many of the first tell it, and all.
+pub type FieldsOfKind<'k> = (usize, &'k [&'k str]);
+
 /// The fields of an object.
 pub struct Object<'a> {
     pub item: Item<'a>,
@@ -287,6 +290,38 @@ impl<'a> Object<'a> {
                 format!("add {name:?}"),
             )
         })
+    }
+
+    /// Refuses an object that has fields of two kinds, of which one would be lost. It is of the first
+    /// kind whose telling fields it has; every kind may have the `common` ones.
+    pub fn of_one_kind(
+        &self,
+        common: &[&str],
+        kinds: &[FieldsOfKind<'_>],
+    ) -> Result<(), FormatError> {
+        let tells = |(count, fields): &&FieldsOfKind<'_>| {
+            let mut telling = fields.iter().take(*count);
+            telling.all(|field| self.get(field).is_some())
+        };
+        let Some((count, own)) = kinds.iter().find(tells) else {
+            return Ok(());
+        };
+        for (name, node) in self.fields {
+            let is = |fields: &[&str]| fields.contains(&name.as_str());
+            if is(common) || is(own) || !kinds.iter().any(|(_, fields)| is(fields)) {
+                continue;
+            }
+            let telling = own.iter().take(*count).map(|field| format!("{field:?}"));
+            let beside = match telling.collect::<Vec<_>>().join(" and ") {
+                none if none.is_empty() => "without the field that it belongs to".to_owned(),
+                fields => format!("beside {fields}, with which it does not go"),
+            };
+            return Err(self.item.child(node, name).error(
+                format!("the field {name:?} stands {beside}"),
+                "keep the fields of one kind",
+            ));
+        }
+        Ok(())
     }
 
     /// The items of a list; none if it is not there.

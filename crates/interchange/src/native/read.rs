@@ -1,6 +1,6 @@
 //! Reads a pattern file: head, sizes, variables, fabrics, sheets; ids and numbers.
 
-use super::item::{Item, Written};
+use super::item::{FieldsOfKind, Item, Written};
 use super::json::Value;
 use super::read_panel::panel;
 use super::read_seam::seam;
@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use toile_pattern::{
     Curve, CurveRule, Diagnostic, DisplayUnit, Formula, Knot, Names, Number, PartId, Pattern,
-    Point, PointRule, Sheet, Size, Variable,
+    Point, PointRule, Sheet, Size, SizeId, Variable,
 };
 
 /// Reads the pattern at the root of a file.
@@ -23,6 +23,39 @@ pub fn read(root: &Item<'_>, notes: &mut Vec<Diagnostic>) -> Result<Pattern, For
     notes.extend(reader.notes);
     Ok(pattern)
 }
+
+/// Kinds of points, by the fields that tell them.
+const POINTS: &[FieldsOfKind<'_>] = &[
+    (1, &["at"]),
+    (1, &["curves", "index"]),
+    (2, &["curve", "line", "index"]),
+    (2, &["curve", "distance"]),
+    (1, &["curve", "share"]),
+    (1, &["crossing"]),
+    (1, &["foot", "in"]),
+    (1, &["mirror", "in"]),
+    (2, &["from", "offset"]),
+    (2, &["from", "angle", "distance"]),
+    (2, &["from", "toward", "distance"]),
+    (1, &["from", "to", "along", "aside"]),
+];
+
+/// Kinds of curves; the last are straight.
+const CURVES: &[FieldsOfKind<'_>] = &[
+    (1, &["bulge"]),
+    (1, &["handles", "knots", "to_length"]),
+    (1, &["mirror", "in"]),
+    (1, &["copy"]),
+    (0, &[]),
+];
+
+/// Kinds of numbers that are objects.
+const NUMBERS: &[FieldsOfKind<'_>] = &[
+    (1, &["formula", "by"]),
+    (1, &["usual", "sizes"]),
+    (1, &["m"]),
+    (1, &["rad"]),
+];
 
 /// What a number measures.
 #[derive(Clone, Copy)]
@@ -187,18 +220,26 @@ impl<'a> Reader<'a> {
     pub fn number(&mut self, item: &Item<'a>, measure: Measure) -> Result<Number, FormatError> {
         if let Value::Object(_) = item.node.value {
             let fields = item.fields()?;
+            fields.of_one_kind(&[], NUMBERS)?;
             if let Some(formula) = fields.get("formula") {
+                item.object(&["formula", "by"], &mut self.notes)?;
                 return Ok(Number::Adjusted {
                     formula: self.formula(&formula, formula.text()?)?,
                     by: self.value(&fields.need("by")?, measure)?,
                 });
             }
             if let Some(usual) = fields.get("usual") {
+                item.object(&["usual", "sizes"], &mut self.notes)?;
                 let usual = Box::new(self.number(&usual, measure)?);
-                let mut sizes = Vec::new();
+                let mut sizes: Vec<(SizeId, f64)> = Vec::new();
                 for pair in fields.need("sizes")?.list()? {
                     let [size, value]: [Item<'a>; 2] = pair.exactly()?;
-                    sizes.push((self.reference(&size)?, self.value(&value, measure)?));
+                    let id = self.reference(&size)?;
+                    if sizes.iter().any(|known| known.0 == id) {
+                        let what = format!("{id} is given two values");
+                        return Err(size.error(what, "keep one of them"));
+                    }
+                    sizes.push((id, self.value(&value, measure)?));
                 }
                 return Ok(Number::PerSize { usual, sizes });
             }
@@ -221,12 +262,15 @@ impl<'a> Reader<'a> {
         item.fixed(&self.written(item, measure)?)
     }
 
-    fn formula(&self, item: &Item<'_>, text: &str) -> Result<Formula, FormatError> {
-        Formula::parse(text, &self.names).map_err(|error| {
+    fn formula(&mut self, item: &Item<'a>, text: &str) -> Result<Formula, FormatError> {
+        let formula = Formula::parse(text, &self.names).map_err(|error| {
             let column = error.column;
             let what = format!("the formula {text:?}, column {column}: {}", error.message);
             item.error(what, error.hint)
-        })
+        })?;
+        let named = formula.references().into_iter();
+        self.referred.extend(named.map(|part| (part, item.clone())));
+        Ok(formula)
     }
 
     /// Two lengths [m].
@@ -284,6 +328,7 @@ impl<'a> Reader<'a> {
             "in",
         ];
         let fields = item.object(known, &mut self.notes)?;
+        fields.of_one_kind(&["id", "name"], POINTS)?;
         Ok(Point {
             id: self.own(&fields.need("id")?)?,
             name: fields.need("name")?.name()?.to_owned(),
@@ -399,6 +444,7 @@ impl<'a> Reader<'a> {
             "copy",
         ];
         let fields = item.object(known, &mut self.notes)?;
+        fields.of_one_kind(&["id", "name", "from", "to"], CURVES)?;
         let rule = if let Some(bulge) = fields.get("bulge") {
             CurveRule::Arc {
                 bulge: self.number(&bulge, Measure::Plain)?,

@@ -1,10 +1,10 @@
 //! Reads panels: lines, notches, operations.
 
-use super::item::{Item, Object};
+use super::item::{FieldsOfKind, Item, Object};
 use super::json::Value;
 use super::read::{Measure, Reader};
 use super::read_seam::{mark, name};
-use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, PRESSED};
+use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, PRESSED, WORN};
 use crate::FormatError;
 use std::sync::Arc;
 use toile_pattern::{
@@ -100,6 +100,7 @@ fn cut(reader: &mut Reader<'_>, item: &Item<'_>) -> Result<Cut, FormatError> {
 fn worn<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<WornRule, FormatError> {
     let known = &["part", "facing", "level", "translation_m", "rotation_xyzw"];
     let fields = item.object(known, &mut reader.notes)?;
+    fields.of_one_kind(&[], WORN)?;
     if let Some(translation) = fields.get("translation_m") {
         return Ok(WornRule::Placed {
             translation: super::values::values(&translation)?,
@@ -159,6 +160,8 @@ fn operation<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Operation, 
         &["id", "name", "dart", "diamond", "fold"],
         &mut reader.notes,
     )?;
+    let kinds: &[FieldsOfKind<'_>] = &[(1, &["dart"]), (1, &["diamond"]), (1, &["fold"])];
+    fields.of_one_kind(&["id", "name"], kinds)?;
     let kind = if let Some(item) = fields.get("dart") {
         dart(reader, &item)?
     } else if let Some(item) = fields.get("diamond") {
@@ -193,6 +196,7 @@ fn operation<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Operation, 
 fn dart<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
     let known = &["line", "mouth", "intake", "depth", "apex", "pressed"];
     let fields = item.object(known, &mut reader.notes)?;
+    fields.of_one_kind(&[], &[(1, &["apex"]), (1, &["depth"])])?;
     Ok(OperationKind::Dart {
         line: name(reader, &fields.need("line")?)?,
         mouth: mark(reader, &fields.need("mouth")?)?,

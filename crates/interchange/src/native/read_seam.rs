@@ -34,6 +34,15 @@ pub fn mark<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Mark, Format
         "by", "role", "index", "notch", "from", "distance", "between", "share",
     ];
     let fields = item.object(known, &mut reader.notes)?;
+    fields.of_one_kind(
+        &[],
+        &[
+            (1, &["notch"]),
+            (1, &["from", "distance"]),
+            (1, &["between", "share"]),
+            (1, &["by", "role", "index"]),
+        ],
+    )?;
     if let Some(notch) = fields.get("notch") {
         return reader.reference(&notch).map(Mark::Notch);
     }

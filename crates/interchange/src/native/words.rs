@@ -1,5 +1,6 @@
 //! Words of the format that are fixed.
 
+use super::item::FieldsOfKind;
 use toile_pattern::{BodyPart, Corner, Facing, LineKind, NotchKind, Pressed, Role};
 
 /// Version of the format this program writes.
@@ -67,4 +68,10 @@ pub const ROLES: &[(&str, Role)] = &[
     ("apex", Role::Apex),
     ("mouth", Role::Mouth),
     ("diamond", Role::Diamond),
+];
+
+/// Where a panel is worn: at a place, or round a part of the body.
+pub const WORN: &[FieldsOfKind<'_>] = &[
+    (1, &["translation_m", "rotation_xyzw"]),
+    (0, &["part", "facing", "level"]),
 ];

@@ -49,7 +49,7 @@ impl Dice {
     }
 
     fn number(&mut self) -> Number {
-        const FORMULAS: [&str; 16] = [
+        const FORMULAS: [&str; 17] = [
             "bust / 4 + 2cm",
             "waist",
             "ease",
@@ -59,6 +59,7 @@ impl Dice {
             "sqrt(waist * waist)",
             "length(panel0.e0)",
             "length('panel 1'.e1) / 2",
+            "finished(panel0.p0..panel0.p2) + length('seam 0')",
             "if(bust > 90cm, 1 5/8in, round(waist, 5mm))",
             "x(panel0.p2)",
             "tan(shoulder_incl) * 10cm",

@@ -105,6 +105,15 @@ impl OperationKind {
         }
     }
 
+    /// Places of lines it uses.
+    pub fn marks(&self) -> Vec<&Mark> {
+        match self {
+            Self::Dart { mouth, .. } => vec![mouth],
+            Self::Diamond { .. } => Vec::new(),
+            Self::Fold { ends, .. } => ends.iter().collect(),
+        }
+    }
+
     /// Points of the sheet it uses.
     pub fn points(&self) -> Vec<PointId> {
         match self {

@@ -1,8 +1,8 @@
 //! Panels: flat pieces of the garment, traced from a sheet.
 
 use crate::{
-    BodyPart, CurveId, EdgeId, FabricId, Facing, LineId, Mark, NotchId, Number, Operation, PanelId,
-    PointId, SheetId,
+    BodyPart, CurveId, EdgeId, FabricId, Facing, LineId, Mark, NotchId, Number, Operation,
+    OperationId, PanelId, PointId, SheetId,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -178,6 +178,30 @@ pub enum WornRule {
 }
 
 impl Panel {
+    /// The notch with that id.
+    pub fn notch(&self, id: NotchId) -> Option<&Notch> {
+        self.notches.iter().find(|notch| notch.id == id)
+    }
+
+    /// How many operations are done when the panel first has every corner a mark is placed by;
+    /// nothing if the panel has no operation that makes one.
+    pub fn first_step(&self, mark: &Mark) -> Option<usize> {
+        let at = match mark {
+            Mark::Notch(id) => &self.notch(*id)?.at,
+            own => own,
+        };
+        let makers = at.corners().into_iter().filter_map(|c| c.maker());
+        makers
+            .map(|by| self.step_of(by))
+            .try_fold(0, |first, step| Some(first.max(step?)))
+    }
+
+    /// How many operations are done after one of them.
+    pub fn step_of(&self, operation: OperationId) -> Option<usize> {
+        let mut operations = self.operations.iter();
+        operations.position(|o| o.id == operation).map(|k| k + 1)
+    }
+
     /// An empty panel of that fabric, traced from that sheet.
     pub fn new(id: PanelId, name: impl Into<String>, sheet: SheetId, fabric: FabricId) -> Self {
         Self {

@@ -1,10 +1,9 @@
 //! What parts refer to.
 
 use super::Entity;
-use crate::formula::Token;
 use crate::{
-    CornerName, LineName, Mark, Name, Number, OperationKind, Panel, PartId, PartReference, Pattern,
-    Place, Span,
+    CornerName, LineName, Mark, Name, Names, Number, OperationKind, Panel, PartId, Pattern, Place,
+    Span,
 };
 
 impl Entity {
@@ -70,24 +69,8 @@ fn number(number: &Number, found: &mut Vec<PartId>) {
     if let Number::PerSize { sizes, .. } = number {
         found.extend(sizes.iter().map(|(size, _)| PartId::from(*size)));
     }
-    let Some(formula) = number.as_formula() else {
-        return;
-    };
-    for token in formula.tokens() {
-        match token {
-            Token::Text(_) | Token::Word(_) => {}
-            Token::Variable(id) => found.push((*id).into()),
-            Token::Part(part) => match part {
-                PartReference::Point(id) => found.push((*id).into()),
-                PartReference::Curve(id) => found.push((*id).into()),
-                PartReference::Seam(id) => found.push((*id).into()),
-                PartReference::Unknown(_) => {}
-                PartReference::Stretch { panel, ends } => {
-                    found.push((*panel).into());
-                    ends.iter().for_each(|end| corner(*end, found));
-                }
-            },
-        }
+    if let Some(formula) = number.as_formula() {
+        found.extend(formula.references());
     }
 }
 
@@ -184,10 +167,17 @@ impl Pattern {
         all
     }
 
-    /// The places of all parts that refer to a part.
+    /// The places of all parts that refer to a part, by its id or by its name.
     pub fn users(&self, part: PartId) -> Vec<Place> {
+        let names = Names::new(self);
+        let by_name = |entity: &Entity| {
+            let numbers = entity.numbers();
+            let mut formulas = numbers.iter().filter_map(|number| number.as_formula());
+            formulas.any(|formula| formula.found_by_name(&names).contains(&part))
+        };
         let all = self.entities().into_iter();
-        let using = all.filter(|(entity, _)| entity.references().contains(&part));
+        let using =
+            all.filter(|(entity, _)| entity.references().contains(&part) || by_name(entity));
         using.map(|(_, place)| place).collect()
     }
 }

@@ -1,9 +1,9 @@
 //! The value of a node, whatever it is.
 
 use super::node::{Definition, Node, Value};
-use super::numbers::{Computation, Want};
+use super::numbers::Computation;
 use super::{Evaluation, curves, panels, points, seams};
-use crate::formula::Quantity;
+use crate::formula::Failure;
 use crate::{Code, Diagnostic, PartReference, Place, Severity};
 
 /// Names of a cycle that are told.
@@ -43,10 +43,11 @@ impl Evaluation {
                 names.push(self.node_words(at));
             }
             let needs = &self.nodes[at as usize].needs;
-            let Some(&next) = needs
+            let inside = needs
                 .iter()
-                .find(|&&n| self.nodes[n as usize].cycle == component)
-            else {
+                .filter(|&&n| self.nodes[n as usize].cycle == component);
+            let first = inside.min_by_key(|&&n| self.place_in_order(&self.nodes[n as usize]));
+            let Some(&next) = first else {
                 break;
             };
             at = next;
@@ -87,7 +88,10 @@ impl Evaluation {
                 format!("{}.{}", panel.name, panel.operations[step - 1].name)
             }
             Definition::Seam(seam) => seam.name.clone(),
-            Definition::Missing | Definition::Word => format!("?{k}"),
+            Definition::Missing | Definition::Word => match self.nodes[k as usize].node {
+                Node::Word(word) => self.word_texts[word as usize].to_string(),
+                _ => format!("?{k}"),
+            },
         }
     }
 
@@ -117,7 +121,7 @@ impl Computation<'_> {
             Definition::Variable(variable) => {
                 let place = Place::Variable(variable.id);
                 let what = format!("variable {:?}", variable.name);
-                let result = self.quantity(&variable.number, Want::Plain);
+                let result = self.variable(&variable.number);
                 self.reported(result, &place, &what).map(Value::Number)
             }
             Definition::Point(point) => points::point(self, point).map(Value::Point),
@@ -130,27 +134,33 @@ impl Computation<'_> {
         }
     }
 
-    /// A measurement; nothing for a word that is none.
+    /// A measurement, else the variable that is called so now; nothing for a word that is neither.
     fn word(&mut self) -> Option<Value> {
-        let Node::Word(number) = self.evaluation.nodes[self.k as usize].node else {
+        let evaluation = self.evaluation;
+        let Node::Word(number) = evaluation.nodes[self.k as usize].node else {
             return None;
         };
-        let name = &*self.evaluation.word_texts[number as usize];
-        let is_angle = toile_measure::definition(name)
-            .is_some_and(|known| known.kind == toile_measure::UnitKind::Angle);
-        let power = i8::from(!is_angle);
-        if let Some(value) = self.evaluation.given.get(name) {
-            return Some(Value::Number(Quantity { value, power }));
+        let name = &*evaluation.word_texts[number as usize];
+        if let Some((quantity, borrowed)) = evaluation.measurement(name) {
+            if borrowed {
+                self.diagnostics.push(Diagnostic::new(
+                    Severity::Note,
+                    Code::BorrowedMeasurement,
+                    Place::Pattern,
+                    format!("measurement {name:?} was not given; the pattern's base size has it"),
+                    "measure it, if the base size does not fit",
+                ));
+            }
+            return Some(Value::Number(quantity));
         }
-        let base = self.evaluation.pattern.base_measurements()?;
-        let value = base.get(name)?;
-        self.diagnostics.push(Diagnostic::new(
-            Severity::Note,
-            Code::BorrowedMeasurement,
-            Place::Pattern,
-            format!("measurement {name:?} was not given; the pattern's base size has it"),
-            "measure it, if the base size does not fit",
-        ));
-        Some(Value::Number(Quantity { value, power }))
+        let variable = evaluation.variable_called(name)?;
+        match self.needed(Node::Variable(variable)) {
+            Ok(value) => Some(value.clone()),
+            Err(Failure::Reported(cause)) => {
+                self.cause = cause;
+                None
+            }
+            Err(Failure::Fault { .. }) => None,
+        }
     }
 }

@@ -23,9 +23,8 @@ pub(super) fn curve(c: &mut Computation<'_>, curve: &Arc<Curve>) -> Option<Arc<P
 }
 
 fn curve_words(c: &Computation<'_>, curve: &Curve) -> String {
-    let mut sheets = c.evaluation.pattern.sheets.iter();
-    match sheets.find(|sheet| sheet.curve(curve.id).is_some()) {
-        Some(sheet) => format!("sheet {:?}, curve {:?}", sheet.name, curve.name),
+    match c.evaluation.names.sheet_of_curve(curve.id) {
+        Some(sheet) => format!("sheet {sheet:?}, curve {:?}", curve.name),
         None => format!("curve {:?}", curve.name),
     }
 }

@@ -1,274 +1,67 @@
-//! Takes over what changed in a pattern, orders the graph, recomputes.
+//! Brings an evaluation up to date: orders the graph, recomputes.
 
-use super::node::{Definition, Needs, Node, NodeState};
-use super::{Evaluation, Update};
+use super::changes::is_renamed;
+use super::duplicates::duplicates;
+use super::node::{Definition, Node};
+use super::{Evaluation, Update, Wearer};
+use crate::Pattern;
 use crate::formula::Names;
-use crate::{Code, Diagnostic, Panel, Pattern, Place, Sheet};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
 use std::sync::Arc;
-use toile_measure::Measurements;
 
 impl Evaluation {
-    /// Brings all values up to date with a pattern and measurements.
-    pub fn update(&mut self, pattern: &Pattern, measurements: &Measurements) -> Update {
+    /// Brings all values up to date with a pattern and whom it is drafted for.
+    pub fn update(&mut self, pattern: &Pattern, wearer: impl Into<Wearer>) -> Update {
+        let wearer = wearer.into();
         self.revision += 1;
         let before = std::mem::replace(&mut self.pattern, pattern.clone());
-        let size = pattern
-            .sizes
-            .iter()
-            .find(|size| size.measurements == *measurements);
-        let size = size.map(|size| size.id);
-        let remeasured = self.given != *measurements
+        let remeasured = self.wearer.measurements != wearer.measurements
             || before.base_measurements() != pattern.base_measurements();
-        let resized = self.size != size;
-        self.given = measurements.clone();
-        self.size = size;
-        let mut dirty: HashSet<u32> = HashSet::new();
-        let structural = self.take_over(&before, &mut dirty);
-        if structural {
+        let resized = self.wearer.size != wearer.size;
+        self.wearer = wearer;
+        let mut dirty: HashSet<u32> = self.take_over(&before).into_iter().collect();
+        let renamed = self.revision == 1 || is_renamed(&before, pattern);
+        if renamed {
             self.names = Arc::new(Names::new(pattern));
-            self.find_duplicates();
-            self.order();
+            self.duplicates = duplicates(pattern);
+        }
+        if renamed || remeasured {
+            // What was not found may be there now, and what is wrong be told by another name.
             dirty.extend((0..self.nodes.len() as u32).filter(|&k| {
                 let state = &self.nodes[k as usize];
-                state.cycle.is_some() || state.changed == 0
+                let is_word = matches!(state.node, Node::Word(_));
+                is_word || state.by_name || !state.diagnostics.is_empty()
             }));
         }
-        if remeasured {
-            dirty.extend(
-                self.words
-                    .values()
-                    .filter_map(|&w| self.index.get(&Node::Word(w))),
-            );
-        }
+        self.follow_needs(&mut dirty);
         if resized {
             dirty.extend(0..self.nodes.len() as u32);
         }
         self.recompute(dirty)
     }
 
-    /// Sets the definitions that changed. Whether needs or names did.
-    fn take_over(&mut self, before: &Pattern, dirty: &mut HashSet<u32>) -> bool {
-        let pattern = self.pattern.clone();
-        let mut changed: Vec<u32> = Vec::new();
-        let mut renamed = false;
-        let same = |a: usize, b: usize, equal: &dyn Fn(usize) -> bool| a == b && (0..a).all(equal);
-        if !same(pattern.variables.len(), before.variables.len(), &|k| {
-            Arc::ptr_eq(&pattern.variables[k], &before.variables[k])
-        }) {
-            renamed |= self.remove_missing(
-                before.variables.iter().map(|v| Node::Variable(v.id)),
-                pattern.variables.iter().map(|v| Node::Variable(v.id)),
-                &mut changed,
-            );
-            for variable in &pattern.variables {
-                self.define(
-                    Node::Variable(variable.id),
-                    Definition::Variable(variable.clone()),
-                    &mut changed,
-                );
+    /// Finds what nodes need, and orders all anew if that changed.
+    fn follow_needs(&mut self, dirty: &mut HashSet<u32>) {
+        let mut waiting: Vec<u32> = dirty.iter().copied().collect();
+        waiting.sort_unstable();
+        let mut reordered = false;
+        while !waiting.is_empty() {
+            let known = self.nodes.len() as u32;
+            for k in waiting.drain(..) {
+                reordered |= self.set_needs(k);
             }
+            // Words that were never met need the variables called so.
+            waiting.extend(known..self.nodes.len() as u32);
+            dirty.extend(&waiting);
         }
-        if !same(pattern.sheets.len(), before.sheets.len(), &|k| {
-            Arc::ptr_eq(&pattern.sheets[k], &before.sheets[k])
-        }) {
-            let nodes = |sheets: &[Arc<Sheet>]| -> Vec<Node> {
-                let points = sheets
-                    .iter()
-                    .flat_map(|s| s.points.iter().map(|p| Node::Point(p.id)));
-                let curves = sheets
-                    .iter()
-                    .flat_map(|s| s.curves.iter().map(|c| Node::Curve(c.id)));
-                points.chain(curves).collect()
-            };
-            let old: HashSet<*const Sheet> = before.sheets.iter().map(Arc::as_ptr).collect();
-            let new: HashSet<*const Sheet> = pattern.sheets.iter().map(Arc::as_ptr).collect();
-            let gone: Vec<Arc<Sheet>> = before
-                .sheets
-                .iter()
-                .filter(|s| !new.contains(&Arc::as_ptr(s)))
-                .cloned()
-                .collect();
-            let come: Vec<Arc<Sheet>> = pattern
-                .sheets
-                .iter()
-                .filter(|s| !old.contains(&Arc::as_ptr(s)))
-                .cloned()
-                .collect();
-            renamed |= self.remove_missing(
-                nodes(&gone).into_iter(),
-                nodes(&come).into_iter(),
-                &mut changed,
-            );
-            for sheet in &come {
-                for point in &sheet.points {
-                    self.define(
-                        Node::Point(point.id),
-                        Definition::Point(point.clone()),
-                        &mut changed,
-                    );
-                }
-                for curve in &sheet.curves {
-                    self.define(
-                        Node::Curve(curve.id),
-                        Definition::Curve(curve.clone()),
-                        &mut changed,
-                    );
-                }
-            }
+        if reordered {
+            self.order();
+            dirty.extend((0..self.nodes.len() as u32).filter(|&k| {
+                let state = &self.nodes[k as usize];
+                state.cycle.is_some() || state.changed == 0
+            }));
         }
-        if !same(pattern.panels.len(), before.panels.len(), &|k| {
-            Arc::ptr_eq(&pattern.panels[k], &before.panels[k])
-        }) {
-            let old: HashSet<*const Panel> = before.panels.iter().map(Arc::as_ptr).collect();
-            let new: HashSet<*const Panel> = pattern.panels.iter().map(Arc::as_ptr).collect();
-            let gone = before
-                .panels
-                .iter()
-                .filter(|p| !new.contains(&Arc::as_ptr(p)));
-            let come: Vec<_> = pattern
-                .panels
-                .iter()
-                .filter(|p| !old.contains(&Arc::as_ptr(p)))
-                .cloned()
-                .collect();
-            let gone: Vec<_> = gone.cloned().collect();
-            self.remove_missing(
-                gone.iter().flat_map(|panel| panel_nodes(panel)),
-                come.iter().flat_map(|panel| panel_nodes(panel)),
-                &mut changed,
-            );
-            for panel in &come {
-                self.define_panel(panel, &mut changed);
-            }
-            for panel in gone.iter().chain(&come) {
-                changed.extend(self.watchers.get(&panel.id).into_iter().flatten());
-            }
-            renamed = true;
-        }
-        if !same(pattern.seams.len(), before.seams.len(), &|k| {
-            Arc::ptr_eq(&pattern.seams[k], &before.seams[k])
-        }) {
-            renamed |= self.remove_missing(
-                before.seams.iter().map(|s| Node::Seam(s.id)),
-                pattern.seams.iter().map(|s| Node::Seam(s.id)),
-                &mut changed,
-            );
-            for seam in &pattern.seams {
-                self.define(
-                    Node::Seam(seam.id),
-                    Definition::Seam(seam.clone()),
-                    &mut changed,
-                );
-            }
-        }
-        let mut structural = renamed || self.revision == 1;
-        changed.sort_unstable();
-        changed.dedup();
-        for k in changed {
-            dirty.insert(k);
-            structural |= self.set_needs(k);
-        }
-        structural
-    }
-
-    fn define_panel(&mut self, panel: &Arc<Panel>, changed: &mut Vec<u32>) {
-        for (j, line) in panel.lines.iter().enumerate() {
-            for (k, edge) in line.edges.iter().enumerate() {
-                let definition = Definition::Edge(panel.clone(), j, k);
-                self.define(Node::Edge(edge.id), definition, changed);
-            }
-        }
-        for step in 0..=panel.operations.len() {
-            let after = step.checked_sub(1).map(|k| panel.operations[k].id);
-            let definition = Definition::Stage(panel.clone(), step);
-            self.define(Node::Stage(panel.id, after), definition, changed);
-        }
-    }
-
-    /// The number of a node, which is made if it is not there.
-    pub(super) fn number_of(&mut self, node: Node) -> u32 {
-        if let Some(&k) = self.index.get(&node) {
-            return k;
-        }
-        let k = self.nodes.len() as u32;
-        self.index.insert(node, k);
-        self.nodes.push(NodeState {
-            node,
-            definition: match node {
-                Node::Word(_) => Definition::Word,
-                _ => Definition::Missing,
-            },
-            needs: Vec::new(),
-            needed_by: Vec::new(),
-            rank: 0,
-            cycle: None,
-            value: Err(k),
-            last_good: None,
-            changed: 0,
-            missing: false,
-            diagnostics: Vec::new(),
-        });
-        k
-    }
-
-    fn define(&mut self, node: Node, definition: Definition, changed: &mut Vec<u32>) {
-        let k = self.number_of(node);
-        let state = &mut self.nodes[k as usize];
-        if !state.definition.is(&definition) {
-            state.definition = definition;
-            changed.push(k);
-        }
-    }
-
-    /// Marks parts that are gone. Whether there are any, or new ones.
-    fn remove_missing(
-        &mut self,
-        before: impl Iterator<Item = Node>,
-        now: impl Iterator<Item = Node>,
-        changed: &mut Vec<u32>,
-    ) -> bool {
-        let now: HashSet<Node> = now.collect();
-        let before: HashSet<Node> = before.collect();
-        for node in before.difference(&now) {
-            self.define(*node, Definition::Missing, changed);
-        }
-        before != now
-    }
-
-    /// Finds what a node needs. Whether that changed.
-    fn set_needs(&mut self, k: u32) -> bool {
-        let definition = self.nodes[k as usize].definition.clone();
-        let found = Needs::of(&definition, &self.pattern);
-        let mut needs: Vec<u32> = found.nodes.iter().map(|&n| self.number_of(n)).collect();
-        for word in found.words {
-            let next = self.word_texts.len() as u32;
-            let number = *self.words.entry(word.clone()).or_insert(next);
-            if number == next {
-                self.word_texts.push(word);
-            }
-            needs.push(self.number_of(Node::Word(number)));
-        }
-        needs.sort_unstable();
-        needs.dedup();
-        for panel in found.panels {
-            let watching = self.watchers.entry(panel).or_default();
-            if !watching.contains(&k) {
-                watching.push(k);
-            }
-        }
-        if self.nodes[k as usize].needs == needs {
-            return false;
-        }
-        let old = std::mem::replace(&mut self.nodes[k as usize].needs, needs.clone());
-        for n in old {
-            self.nodes[n as usize].needed_by.retain(|&other| other != k);
-        }
-        for n in needs {
-            self.nodes[n as usize].needed_by.push(k);
-        }
-        true
     }
 
     /// Orders all nodes so that what is needed comes first, and finds cycles: strongly connected
@@ -319,10 +112,15 @@ impl Evaluation {
                 let start = stack.iter().rposition(|&w| w == v).unwrap_or(0);
                 let component: Vec<u32> = stack.drain(start..).collect();
                 let is_cycle = component.len() > 1 || self.nodes[at].needs.contains(&v);
-                let named = component
-                    .iter()
-                    .copied()
-                    .min_by_key(|&w| self.nodes[w as usize].node);
+                let named =
+                    component
+                        .iter()
+                        .copied()
+                        .min_by_key(|&w| match self.nodes[w as usize].node {
+                            // A word is in a cycle by the variable that it names.
+                            Node::Word(_) => (true, Node::Word(0)),
+                            node => (false, node),
+                        });
                 for w in component {
                     on_stack[w as usize] = false;
                     let state = &mut self.nodes[w as usize];
@@ -382,64 +180,4 @@ impl Evaluation {
         }
         update
     }
-
-    /// Ids must be unique, or seams would mean two things; names, or formulas would.
-    fn find_duplicates(&mut self) {
-        let mut found = Vec::new();
-        let mut report = |place: Place, message: String| {
-            found.push(Diagnostic::error(
-                Code::Duplicate,
-                place,
-                message,
-                "rename or renumber one of them",
-            ));
-        };
-        let pattern = &self.pattern;
-        let mut seen = HashSet::new();
-        for variable in &pattern.variables {
-            if !seen.insert(variable.name.as_str()) {
-                let words = format!("two variables are called {:?}", variable.name);
-                report(Place::Variable(variable.id), words);
-            }
-        }
-        let mut seen = HashSet::new();
-        for panel in &pattern.panels {
-            if !seen.insert(panel.name.as_str()) {
-                let words = format!("two panels are called {:?}", panel.name);
-                report(Place::Panel(panel.id), words);
-            }
-            let mut edges = HashSet::new();
-            for edge in panel.edges() {
-                if !edges.insert(edge.name.as_str()) {
-                    let words = format!("panel {:?}: two edges {:?}", panel.name, edge.name);
-                    report(Place::Edge(panel.id, edge.id), words);
-                }
-            }
-        }
-        for sheet in &pattern.sheets {
-            let mut points = HashSet::new();
-            for point in &sheet.points {
-                if !points.insert(point.name.as_str()) {
-                    let words = format!("sheet {:?}: two points {:?}", sheet.name, point.name);
-                    report(Place::Point(point.id), words);
-                }
-            }
-        }
-        let mut ids = HashSet::new();
-        for (id, place) in pattern.parts() {
-            if !ids.insert(id.number()) {
-                report(place, format!("two parts have the id {id}"));
-            }
-        }
-        self.duplicates = found;
-    }
-}
-
-fn panel_nodes(panel: &Panel) -> Vec<Node> {
-    let edges = panel.edges().map(|edge| Node::Edge(edge.id));
-    let after = panel.operations.iter().map(|o| Some(o.id));
-    let stages = std::iter::once(None).chain(after);
-    edges
-        .chain(stages.map(|after| Node::Stage(panel.id, after)))
-        .collect()
 }

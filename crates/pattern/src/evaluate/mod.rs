@@ -5,39 +5,41 @@
 //! needs changed (strongly connected components by Tarjan 1972, on an explicit stack), and
 //! recomputes dependants in that order, stopping where a value stays the same to the bit.
 
+mod changes;
 mod compute;
 mod curves;
+mod duplicates;
 mod graph;
+mod needs;
 mod node;
 mod numbers;
 mod panels;
 mod points;
 mod seams;
+mod wearer;
 
 pub use node::Node;
 pub(crate) use node::{SeamValue, Value};
 pub use numbers::Want;
+pub use wearer::Wearer;
 
 use crate::{Diagnostic, Pattern, PointId, SheetId};
 use node::NodeState;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use toile_geometry::Vec2;
-use toile_measure::Measurements;
 
-/// Every value of a pattern for one set of measurements.
+/// Every value of a pattern for one wearer.
 #[derive(Clone, Default)]
 pub struct Evaluation {
     pattern: Pattern,
-    given: Measurements,
-    /// The size the measurements are those of, for values a size has of its own.
-    size: Option<crate::SizeId>,
+    wearer: Wearer,
     nodes: Vec<NodeState>,
     index: HashMap<Node, u32>,
     words: HashMap<Box<str>, u32>,
     word_texts: Vec<Box<str>>,
     /// Nodes whose needs follow from the lines of a panel.
-    watchers: HashMap<crate::PanelId, Vec<u32>>,
+    watchers: HashMap<crate::PanelId, HashSet<u32>>,
     names: Arc<crate::formula::Names>,
     /// Parts whose ids or names are taken twice.
     duplicates: Vec<Diagnostic>,
@@ -54,10 +56,10 @@ pub struct Update {
 }
 
 impl Evaluation {
-    /// Evaluates a pattern for a table of measurements.
-    pub fn new(pattern: &Pattern, measurements: &Measurements) -> Self {
+    /// Evaluates a pattern for a size, or a table of measurements.
+    pub fn new(pattern: &Pattern, wearer: impl Into<Wearer>) -> Self {
         let mut evaluation = Self::default();
-        evaluation.update(pattern, measurements);
+        evaluation.update(pattern, wearer);
         evaluation
     }
 
@@ -66,14 +68,14 @@ impl Evaluation {
         &self.pattern
     }
 
-    /// The measurements it was last evaluated for.
-    pub fn measurements(&self) -> &Measurements {
-        &self.given
+    /// Whom it was last evaluated for.
+    pub fn wearer(&self) -> &Wearer {
+        &self.wearer
     }
 
-    /// The size whose measurements they are, if they are those of one.
+    /// The size whose values are taken.
     pub fn size(&self) -> Option<crate::SizeId> {
-        self.size
+        self.wearer.size
     }
 
     /// Names of the pattern's parts.
@@ -83,12 +85,25 @@ impl Evaluation {
 
     /// Everything found: faults of definitions, one a cause.
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
-        let mut order: Vec<&NodeState> = self.nodes.iter().collect();
-        order.sort_by_key(|state| state.node);
+        // A word that nothing names any more is nobody's concern.
+        let is_used = |state: &&NodeState| match state.node {
+            Node::Word(_) => !state.needed_by.is_empty(),
+            _ => true,
+        };
+        let mut order: Vec<&NodeState> = self.nodes.iter().filter(is_used).collect();
+        order.sort_by_key(|state| self.place_in_order(state));
         let own = order
             .iter()
             .flat_map(|state| state.diagnostics.iter().cloned());
         self.duplicates.iter().cloned().chain(own).collect()
+    }
+
+    /// An order of nodes that does not tell when they were made: words by their texts, then parts.
+    fn place_in_order(&self, state: &NodeState) -> Result<Node, &str> {
+        match state.node {
+            Node::Word(word) => Err(&self.word_texts[word as usize]),
+            node => Ok(node),
+        }
     }
 
     /// Where a point lies [m]; nothing if it cannot be computed.

@@ -1,10 +1,10 @@
 //! What is evaluated, what defines it, and what it needs.
 
-use crate::formula::{Quantity, Token};
+use crate::formula::Quantity;
 use crate::stage::Stretch;
 use crate::{
-    Curve, CurveId, Diagnostic, EdgeId, Line, Name, Number, OperationId, Panel, PanelId,
-    PartReference, Pattern, Point, PointId, Seam, SeamId, Stage, Variable, VariableId, WornRule,
+    Curve, CurveId, Diagnostic, EdgeId, OperationId, Panel, PanelId, Point, PointId, Seam, SeamId,
+    Stage, Variable, VariableId,
 };
 use std::sync::Arc;
 use toile_geometry::{Path, Vec2};
@@ -109,6 +109,8 @@ pub(crate) struct NodeState {
     pub changed: u64,
     /// Whether the document had no such part when it was last computed.
     pub missing: bool,
+    /// Whether it names parts that nothing was called when its formulas were read.
+    pub by_name: bool,
     pub diagnostics: Vec<Diagnostic>,
 }
 
@@ -138,140 +140,4 @@ fn is_same_path(a: &Path, b: &Path) -> bool {
             .collect()
     };
     a == b && bits(a) == bits(b)
-}
-
-/// Nodes a definition needs, and panels whose lines say which.
-#[derive(Default)]
-pub(crate) struct Needs {
-    pub nodes: Vec<Node>,
-    pub words: Vec<Box<str>>,
-    pub panels: Vec<PanelId>,
-}
-
-impl Needs {
-    /// What a definition needs in a pattern.
-    pub fn of(definition: &Definition, pattern: &Pattern) -> Self {
-        let mut needs = Self::default();
-        match definition {
-            Definition::Missing | Definition::Word => {}
-            Definition::Variable(variable) => needs.number(&variable.number, pattern),
-            Definition::Point(point) => {
-                needs
-                    .nodes
-                    .extend(point.rule.points().into_iter().map(Node::Point));
-                needs
-                    .nodes
-                    .extend(point.rule.curves().into_iter().map(Node::Curve));
-                needs.numbers(point.rule.numbers(), pattern);
-            }
-            Definition::Curve(curve) => {
-                needs.nodes.extend(curve.ends.map(Node::Point));
-                needs
-                    .nodes
-                    .extend(curve.rule.points().into_iter().map(Node::Point));
-                needs.nodes.extend(curve.rule.curve().map(Node::Curve));
-                needs.numbers(curve.rule.number(), pattern);
-            }
-            Definition::Edge(panel, line, k) => {
-                let edge = &panel.lines[*line].edges[*k];
-                needs.nodes.push(Node::Curve(edge.curve));
-                needs.nodes.extend(edge.ends.map(Node::Point));
-            }
-            Definition::Stage(panel, 0) => {
-                needs
-                    .nodes
-                    .extend(panel.edges().map(|edge| Node::Edge(edge.id)));
-                needs.numbers([&panel.grain, &panel.allowance], pattern);
-                needs.numbers(panel.edges().filter_map(|e| e.allowance.as_ref()), pattern);
-                needs.numbers(panel.notches.iter().filter_map(|n| n.at.number()), pattern);
-                if let WornRule::Wrapped {
-                    level: Some(level), ..
-                } = &panel.worn
-                {
-                    needs.number(level, pattern);
-                }
-            }
-            Definition::Stage(panel, step) => {
-                let before = step.checked_sub(2).map(|k| panel.operations[k].id);
-                needs.nodes.push(Node::Stage(panel.id, before));
-                needs.nodes.push(Node::Stage(panel.id, None));
-                let operation = &panel.operations[step - 1].kind;
-                needs.numbers(operation.numbers(), pattern);
-                needs
-                    .nodes
-                    .extend(operation.points().into_iter().map(Node::Point));
-            }
-            Definition::Seam(seam) => {
-                for span in seam.spans() {
-                    needs.last_stage(span.panel, pattern);
-                    needs.nodes.push(Node::Stage(span.panel, None));
-                }
-                needs.numbers(seam.numbers(), pattern);
-            }
-        }
-        needs.nodes.sort_unstable();
-        needs.nodes.dedup();
-        needs.panels.sort_unstable();
-        needs.panels.dedup();
-        needs
-    }
-
-    fn numbers<'a>(&mut self, numbers: impl IntoIterator<Item = &'a Number>, pattern: &Pattern) {
-        for number in numbers {
-            self.number(number, pattern);
-        }
-    }
-
-    fn number(&mut self, number: &Number, pattern: &Pattern) {
-        let Some(formula) = number.as_formula() else {
-            return;
-        };
-        let finished: Vec<&PartReference> = formula.finished_parts().collect();
-        for token in formula.tokens() {
-            match token {
-                Token::Text(_) => {}
-                Token::Variable(id) => self.nodes.push(Node::Variable(*id)),
-                Token::Word(word) => self.words.push(word.clone()),
-                Token::Part(part) => self.part(part, finished.contains(&part), pattern),
-            }
-        }
-    }
-
-    fn part(&mut self, part: &PartReference, finished: bool, pattern: &Pattern) {
-        match part {
-            PartReference::Point(id) => self.nodes.push(Node::Point(*id)),
-            PartReference::Curve(id) => self.nodes.push(Node::Curve(*id)),
-            PartReference::Seam(id) => self.nodes.push(Node::Seam(*id)),
-            PartReference::Unknown(_) => {}
-            PartReference::Stretch { panel, ends } => {
-                self.panels.push(*panel);
-                if finished {
-                    self.last_stage(*panel, pattern);
-                }
-                let lines = pattern.panel(*panel).map_or(&[][..], |panel| &panel.lines);
-                let edges = drawn_stretch(lines, *ends);
-                self.nodes
-                    .extend(edges.iter().flatten().map(|e| Node::Edge(e.id)));
-            }
-        }
-    }
-
-    fn last_stage(&mut self, panel: PanelId, pattern: &Pattern) {
-        self.panels.push(panel);
-        if let Some(found) = pattern.panel(panel) {
-            let last = found.operations.last().map(|o| o.id);
-            self.nodes.push(Node::Stage(panel, last));
-        }
-    }
-}
-
-/// The drawn edges of a stretch between corners.
-pub(crate) fn drawn_stretch(
-    lines: &[Line],
-    ends: [crate::CornerName; 2],
-) -> Option<Vec<&crate::Edge>> {
-    let [Name::Drawn(from), Name::Drawn(to)] = ends else {
-        return None;
-    };
-    lines.iter().find_map(|line| line.stretch([from, to]))
 }

@@ -1,9 +1,11 @@
 //! Numbers of a document as values, and what formulas look up.
 
 use super::Evaluation;
-use super::node::{Definition, Node, Value, drawn_stretch};
-use crate::formula::{Environment, Failure, Quantity, compute, kind};
+use super::needs::drawn_stretch;
+use super::node::{Definition, Node, Value};
+use crate::formula::{Environment, Failure, Kind, Quantity, compute, kind};
 use crate::{Code, Diagnostic, EdgeName, Name, Number, PartReference, Place, VariableId, nearest};
+use std::borrow::Cow;
 use toile_geometry::{Path, Vec2};
 
 /// No length of a garment is as long as this [m].
@@ -62,6 +64,25 @@ impl Evaluation {
         self.number_of_kind(number, Want::Length, place, what)
     }
 
+    /// The value of a measurement, and whether it is the base size's because it was not given.
+    pub(super) fn measurement(&self, name: &str) -> Option<(Quantity, bool)> {
+        let given = self.wearer.measurements.get(name);
+        let base = || self.pattern.base_measurements()?.get(name);
+        let value = given.or_else(base)?;
+        let known = toile_measure::definition(name);
+        let is_angle = known.is_some_and(|known| known.kind == toile_measure::UnitKind::Angle);
+        let power = i8::from(!is_angle);
+        Some((Quantity { value, power }, given.is_none()))
+    }
+
+    /// The variable that a word names which is no measurement.
+    pub(super) fn variable_called(&self, word: &str) -> Option<VariableId> {
+        match self.measurement(word) {
+            Some(_) => None,
+            None => self.names.variable(word),
+        }
+    }
+
     pub(crate) fn number_of_kind(
         &self,
         number: &Number,
@@ -114,17 +135,27 @@ impl Computation<'_> {
                 })
             }
             Number::PerSize { usual, sizes } => {
-                let own = sizes.iter().find(|own| Some(own.0) == self.evaluation.size);
-                match (own, want) {
-                    (Some((_, value)), Want::Length) => Ok(plain(*value)),
-                    // What a variable is, its usual number says.
-                    (Some((_, value)), Want::Plain | Want::Angle) => Ok(Quantity {
-                        value: *value,
-                        power: self.quantity(usual, want).map_or(0, |found| found.power),
-                    }),
-                    (None, _) => self.quantity(usual, want),
+                let own = sizes
+                    .iter()
+                    .find(|own| Some(own.0) == self.evaluation.wearer.size);
+                match own {
+                    Some((_, value)) => Ok(plain(*value)),
+                    None => self.quantity(usual, want),
                 }
             }
+        }
+    }
+
+    /// The value of a variable, which may be of any dimension: a size's own value has that of the
+    /// usual number.
+    pub fn variable(&mut self, number: &Number) -> Result<Quantity, Failure> {
+        let found = self.quantity(number, Want::Plain)?;
+        match number {
+            Number::PerSize { usual, .. } => Ok(Quantity {
+                power: self.variable(usual)?.power,
+                ..found
+            }),
+            _ => Ok(found),
         }
     }
 
@@ -156,7 +187,7 @@ impl Computation<'_> {
     }
 
     /// The value of a node that is needed.
-    fn needed(&self, node: Node) -> Result<&Value, Failure> {
+    pub fn needed(&self, node: Node) -> Result<&Value, Failure> {
         let evaluation = self.evaluation;
         let Some(state) = evaluation.state(node) else {
             return Err(missing(node));
@@ -219,19 +250,27 @@ fn missing(node: Node) -> Failure {
 struct Reading<'c, 'e>(&'c Computation<'e>);
 
 impl Reading<'_, '_> {
-    fn unknown(&self, text: &str, kind: &str) -> Failure {
-        if text.starts_with('?') {
-            return Failure::new(
-                Code::MissingReference,
-                format!("{text} is not there any more"),
-                "name another part, or undo its removal",
-            );
-        }
+    fn unknown(&self, text: &str, kind: Kind) -> Failure {
         let (message, hint) = self.0.evaluation.names.missing(text, kind);
         Failure::new(Code::MissingReference, message, hint)
     }
 
-    fn edges(&self, part: &PartReference) -> Result<Vec<&Path>, Failure> {
+    /// The part, or what its text names now.
+    fn bound<'p>(
+        &self,
+        part: &'p PartReference,
+        kind: Kind,
+    ) -> Result<Cow<'p, PartReference>, Failure> {
+        let PartReference::Unknown(text) = part else {
+            return Ok(Cow::Borrowed(part));
+        };
+        let found = self.0.evaluation.names.part(text, kind);
+        found
+            .map(Cow::Owned)
+            .ok_or_else(|| self.unknown(text, kind))
+    }
+
+    fn edges(&self, part: &PartReference, kind: Kind) -> Result<Vec<&Path>, Failure> {
         let evaluation = self.0.evaluation;
         match part {
             PartReference::Curve(id) => Ok(vec![&**self.0.path(Node::Curve(*id))?]),
@@ -253,7 +292,7 @@ impl Reading<'_, '_> {
                     .map(|edge| Ok(&**self.0.path(Node::Edge(edge.id))?))
                     .collect()
             }
-            PartReference::Unknown(text) => Err(self.unknown(text, "edge")),
+            PartReference::Unknown(text) => Err(self.unknown(text, kind)),
             PartReference::Point(_) | PartReference::Seam(_) => Err(Failure::new(
                 Code::Formula,
                 "it has no edge",
@@ -273,18 +312,17 @@ impl Environment for Reading<'_, '_> {
 
     fn measurement(&self, name: &str) -> Result<Quantity, Failure> {
         let evaluation = self.0.evaluation;
-        let node = evaluation.words.get(name).map(|&k| Node::Word(k));
-        if let Some(Value::Number(quantity)) = node.and_then(|node| evaluation.value(node)) {
-            return Ok(*quantity);
+        if let Some((quantity, _)) = evaluation.measurement(name) {
+            return Ok(quantity);
         }
-        if name.starts_with('?') {
-            return Err(self.unknown(name, "variable"));
+        if let Some(variable) = evaluation.names.variable(name) {
+            return self.variable(variable);
         }
         let base = evaluation.pattern.base_measurements();
         let known = evaluation
             .names
             .variable_names()
-            .chain(evaluation.given.iter().map(|m| m.0))
+            .chain(evaluation.wearer.measurements.iter().map(|m| m.0))
             .chain(base.into_iter().flat_map(|base| base.iter().map(|m| m.0)));
         let hint = match nearest(name, known) {
             Some(near) => format!("did you mean {near:?}?"),
@@ -295,16 +333,22 @@ impl Environment for Reading<'_, '_> {
     }
 
     fn length(&self, part: &PartReference) -> Result<f64, Failure> {
+        let part = &*self.bound(part, Kind::StretchOrSeam)?;
         if let PartReference::Seam(id) = part {
             return match self.0.needed(Node::Seam(*id))? {
                 Value::Seam(seam) => Ok(seam.lengths[0]),
                 _ => Err(missing(Node::Seam(*id))),
             };
         }
-        Ok(self.edges(part)?.iter().map(|path| path.length()).sum())
+        Ok(self
+            .edges(part, Kind::StretchOrSeam)?
+            .iter()
+            .map(|path| path.length())
+            .sum())
     }
 
     fn finished(&self, part: &PartReference) -> Result<f64, Failure> {
+        let part = &*self.bound(part, Kind::StretchOrSeam)?;
         let PartReference::Stretch { panel, ends } = part else {
             return self.length(part);
         };
@@ -324,7 +368,8 @@ impl Environment for Reading<'_, '_> {
     }
 
     fn ends(&self, part: &PartReference) -> Result<[Vec2; 2], Failure> {
-        let edges = self.edges(part)?;
+        let part = &*self.bound(part, Kind::Stretch)?;
+        let edges = self.edges(part, Kind::Stretch)?;
         let first = edges.first().and_then(|path| path.curves().first());
         let last = edges.last().and_then(|path| path.curves().last());
         match (first, last) {
@@ -338,9 +383,8 @@ impl Environment for Reading<'_, '_> {
     }
 
     fn point(&self, part: &PartReference) -> Result<Vec2, Failure> {
-        match part {
+        match &*self.bound(part, Kind::Point)? {
             PartReference::Point(id) => self.0.point_at(*id),
-            PartReference::Unknown(text) => Err(self.unknown(text, "point")),
             _ => Err(Failure::new(
                 Code::Formula,
                 "it is no point",

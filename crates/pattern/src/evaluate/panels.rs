@@ -3,8 +3,8 @@
 use super::node::Node;
 use super::numbers::{Computation, Want};
 use crate::stage::{
-    DartApex, DartError, DartMouth, FoldError, MarkValue, PlaceError, StageEdge, StageLine,
-    StageNotch, cut_dart, cut_diamond, unfold,
+    DartApex, DartError, DartMouth, FoldError, MarkValue, PlaceError, Placed, Spot, StageEdge,
+    StageLine, StageNotch, cut_dart, cut_diamond, unfold,
 };
 use crate::{
     Apex, Code, Corner, Diagnostic, Edge, Line, LineKind, LineName, Mark, Name, Notch, Operation,
@@ -24,8 +24,14 @@ pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Opti
     let place = Place::Operation(panel.id, operation.id);
     let stage = c.reported(stage, &place, "")?;
     // An operation that cannot be done is left out, with an error.
-    let done = Drawing { c, panel }.done(&stage, operation);
-    Some(done.map_or(stage, Arc::new))
+    let mut drawing = Drawing { c, panel };
+    let done = drawing.done(&stage, (step, operation));
+    let mut stage = done.map_or(stage, Arc::new);
+    let notches = drawing.notches(&stage, step);
+    if !notches.is_empty() {
+        Arc::make_mut(&mut stage).notches.extend(notches);
+    }
+    Some(stage)
 }
 
 struct Drawing<'c, 'e, 'p> {
@@ -79,11 +85,22 @@ impl Drawing<'_, '_, '_> {
             );
             return None;
         }
-        for notch in &panel.notches {
-            let found = self.notch(&stage, notch);
-            stage.notches.extend(found);
-        }
+        stage.notches = self.notches(&stage, 0);
         Some(stage)
+    }
+
+    /// The notches that are placed when that many operations are done: on the first stage that has
+    /// their corners.
+    fn notches(&mut self, stage: &Stage, step: usize) -> Vec<StageNotch> {
+        let panel = self.panel;
+        let mut found = Vec::new();
+        for notch in &panel.notches {
+            if panel.first_step(&notch.at).unwrap_or(0) == step && has_made(stage, panel, &notch.at)
+            {
+                found.extend(self.notch(stage, notch));
+            }
+        }
+        found
     }
 
     fn line(&mut self, line: &Line, general: f64) -> Option<StageLine> {
@@ -163,6 +180,52 @@ impl Drawing<'_, '_, '_> {
         })
     }
 
+    /// Where a mark of the operation of a step is, on the first stage that has its corners.
+    fn first_spot(
+        &mut self,
+        (line, mark): (LineName, &Mark),
+        step: usize,
+        (place, what): (&Place, &str),
+    ) -> Option<Result<Spot, PlaceError>> {
+        let panel = self.panel;
+        let value = self.mark(mark, place, what)?;
+        let first = panel.first_step(mark).unwrap_or(0);
+        if first >= step {
+            self.c.diagnostics.push(Diagnostic::error(
+                Code::MissingReference,
+                place.clone(),
+                format!("{what}: it is placed by a corner that this step or a later one makes"),
+                "do the step that makes the corner first, or place it by another corner",
+            ));
+            return None;
+        }
+        let after = first.checked_sub(1).map(|k| panel.operations[k].id);
+        let stage = self.c.stage(Node::Stage(panel.id, after)).cloned();
+        let stage = self.c.reported(stage, place, "")?;
+        // What was not made was told where it is made.
+        has_made(&stage, panel, mark).then(|| stage.spot(line, value))
+    }
+
+    /// A place of the stage an operation is done on: a corner as it is there, any other mark as it
+    /// was on the first stage that had its corners.
+    fn placed(
+        &mut self,
+        (line, mark): (LineName, &Mark),
+        step: usize,
+        (place, what): (&Place, &str),
+    ) -> Option<Placed> {
+        if let Mark::Corner(corner) = mark {
+            return Some(Placed::Mark(MarkValue::Corner(*corner)));
+        }
+        match self.first_spot((line, mark), step, (place, what))? {
+            Ok(spot) => Some(Placed::Spot(spot)),
+            Err(error) => {
+                self.no_place(error, place, what);
+                None
+            }
+        }
+    }
+
     fn gone(&mut self, place: &Place, what: &str, part: &str) {
         self.c.diagnostics.push(Diagnostic::error(
             Code::MissingReference,
@@ -178,7 +241,13 @@ impl Drawing<'_, '_, '_> {
                 Some((_, point)) => format!("the corner {:?}", point.name),
                 None => id.to_string(),
             },
-            Name::Made { by, .. } => format!("a corner of {by}"),
+            Name::Made { by, .. } => {
+                let mut operations = self.panel.operations.iter();
+                match operations.find(|operation| operation.id == by) {
+                    Some(made) => format!("a corner of {} {:?}", made.kind.word(), made.name),
+                    None => format!("a corner of {by}"),
+                }
+            }
         }
     }
 
@@ -225,10 +294,10 @@ impl Drawing<'_, '_, '_> {
     }
 
     /// A stage after an operation; nothing if it cannot be done.
-    fn done(&mut self, stage: &Stage, operation: &Operation) -> Option<Stage> {
+    fn done(&mut self, stage: &Stage, (step, operation): (usize, &Operation)) -> Option<Stage> {
         let place = Place::Operation(self.panel.id, operation.id);
         match &operation.kind {
-            OperationKind::Dart { .. } => self.dart(stage, operation, &place),
+            OperationKind::Dart { .. } => self.dart(stage, (step, operation), &place),
             OperationKind::Diamond {
                 ends,
                 widest,
@@ -256,11 +325,16 @@ impl Drawing<'_, '_, '_> {
                 }
                 done
             }
-            OperationKind::Fold { line, ends } => self.fold(stage, *line, ends, &place),
+            OperationKind::Fold { line, ends } => self.fold(stage, (step, *line), ends, &place),
         }
     }
 
-    fn dart(&mut self, stage: &Stage, operation: &Operation, place: &Place) -> Option<Stage> {
+    fn dart(
+        &mut self,
+        stage: &Stage,
+        (step, operation): (usize, &Operation),
+        place: &Place,
+    ) -> Option<Stage> {
         let OperationKind::Dart {
             line,
             mouth,
@@ -272,7 +346,7 @@ impl Drawing<'_, '_, '_> {
             return None;
         };
         let what = self.words(&format!("dart {:?}", operation.name));
-        let mark = self.mark(mouth, place, &what);
+        let middle = self.first_spot((*line, mouth), step, (place, &what));
         let intake = self.c.number(intake, Want::Length, place, &what);
         let apex = match apex {
             Apex::Depth(depth) => {
@@ -284,10 +358,8 @@ impl Drawing<'_, '_, '_> {
                 self.c.reported(at, place, &what).map(DartApex::Point)
             }
         };
-        let (mark, intake, apex) = (mark?, intake?, apex?);
-        let drawn = self.c.stage(Node::Stage(self.panel.id, None)).cloned();
-        let drawn = self.c.reported(drawn, place, "")?;
-        let done = match drawn.spot(*line, mark) {
+        let (middle, intake, apex) = (middle?, intake?, apex?);
+        let done = match middle {
             Ok(middle) => {
                 let mouth = DartMouth {
                     by: operation.id,
@@ -328,13 +400,13 @@ impl Drawing<'_, '_, '_> {
     fn fold(
         &mut self,
         stage: &Stage,
-        line: LineName,
+        (step, line): (usize, LineName),
         ends: &[Mark; 2],
         place: &Place,
     ) -> Option<Stage> {
         let what = self.words("fold");
-        let from = self.mark(&ends[0], place, &what)?;
-        let to = self.mark(&ends[1], place, &what)?;
+        let from = self.placed((line, &ends[0]), step, (place, &what))?;
+        let to = self.placed((line, &ends[1]), step, (place, &what))?;
         match unfold(stage, line, [from, to]) {
             Ok((stage, lost)) => {
                 for id in lost {
@@ -364,4 +436,18 @@ impl Drawing<'_, '_, '_> {
             }
         }
     }
+}
+
+/// Whether a stage has what operations of the panel make of a mark's corners. It has not where one
+/// could not be done, which is told there.
+pub(super) fn has_made(stage: &Stage, panel: &Panel, mark: &Mark) -> bool {
+    let at = match mark {
+        Mark::Notch(id) => panel.notch(*id).map(|notch| &notch.at),
+        own => Some(own),
+    };
+    let corners = at.map_or_else(Vec::new, Mark::corners);
+    let makers = corners.iter().filter_map(|corner| corner.maker());
+    makers
+        .filter(|by| panel.step_of(*by).is_some())
+        .all(|by| stage.darts.iter().any(|dart| dart.by == by))
 }

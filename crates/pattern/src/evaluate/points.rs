@@ -19,9 +19,8 @@ pub(super) fn point(computation: &mut Computation<'_>, point: &Arc<Point>) -> Op
 
 impl Computation<'_> {
     fn point_words(&self, point: &Point) -> String {
-        let pattern = &self.evaluation.pattern;
-        match pattern.point(point.id) {
-            Some((sheet, _)) => format!("sheet {:?}, point {:?}", sheet.name, point.name),
+        match self.evaluation.names.sheet_of_point(point.id) {
+            Some(sheet) => format!("sheet {sheet:?}, point {:?}", point.name),
             None => format!("point {:?}", point.name),
         }
     }

@@ -2,8 +2,9 @@
 
 use super::node::{Node, SeamValue, SpanValue};
 use super::numbers::{Computation, Want};
-use crate::stage::{MarkValue, PlaceError, Stretch};
-use crate::{Code, Diagnostic, Mark, Place, Seam, Span, Stage};
+use super::panels::has_made;
+use crate::stage::{MarkValue, PlaceError, Placed, StageEdge, Stretch, reversed};
+use crate::{Code, Diagnostic, Line, Mark, Name, Panel, Place, Role, Seam, Span, Stage};
 use std::sync::Arc;
 
 /// The value of a seam; nothing if a span has no place.
@@ -79,22 +80,28 @@ fn locate(c: &mut Computation<'_>, seam: &Seam, span: &Span) -> Option<(SpanValu
         missing(c, seam, (message, hint));
         return None;
     }
-    let drawn = c.stage(Node::Stage(panel.id, None)).cloned();
+    let internal = |line: &&Line| Name::Drawn(line.id) == span.line && !line.is_closed();
+    if let Some(line) = panel.lines.iter().find(internal) {
+        c.diagnostics.push(Diagnostic::error(
+            Code::BadSpan,
+            Place::Seam(seam.id),
+            format!(
+                "sewing to an internal line is not possible yet: seam {name:?} names line {:?} inside \
+                 panel {:?}",
+                line.name, panel.name
+            ),
+            "sew to an edge of its outline or of a hole",
+        ));
+        return None;
+    }
     let last = panel.operations.last().map(|o| o.id);
     let finished = c.stage(Node::Stage(panel.id, last)).cloned();
-    let (Ok(drawn), Ok(finished)) = (drawn, finished) else {
-        let message = format!(
-            "seam {name:?} names panel {:?}, which could not be drawn",
-            panel.name
-        );
-        missing(c, seam, (message, "mend the panel first"));
-        return None;
-    };
+    let finished = c.reported(finished, &Place::Seam(seam.id), "")?;
     if from == to && !matches!(from, MarkValue::Corner(_)) {
         c.diagnostics.push(bad_span(seam));
         return None;
     }
-    let stretch = match drawn.stretch(span.line, [from, to], span.backwards) {
+    let stretch = match stretch(c, (seam, span), &panel, [from, to])? {
         Ok(stretch) if !stretch.is_empty() => stretch,
         Err(PlaceError::Beyond) | Ok(_) => {
             c.diagnostics.push(bad_span(seam));
@@ -121,8 +128,11 @@ fn locate(c: &mut Computation<'_>, seam: &Seam, span: &Span) -> Option<(SpanValu
     }
     let length = length(&finished, span.half, &stretch);
     if length <= 0.0 {
-        let message = format!("seam {name:?} names the fold of panel {:?}", panel.name);
-        let hint = "sew another edge, or cut the panel without a fold";
+        let message = format!(
+            "seam {name:?} names a place of panel {:?} on its fold or in the mouth of a dart",
+            panel.name
+        );
+        let hint = "sew another edge, or leave the fold or the dart out";
         missing(c, seam, (message, hint));
         return None;
     }
@@ -133,6 +143,63 @@ fn locate(c: &mut Computation<'_>, seam: &Seam, span: &Span) -> Option<(SpanValu
         stretch,
     };
     Some((value, length))
+}
+
+/// The edges of a span between its marks, each mark taken on the first stage that has its corners;
+/// nothing if that stage has not what was to be made, which is told there.
+fn stretch(
+    c: &mut Computation<'_>,
+    (seam, span): (&Seam, &Span),
+    panel: &Panel,
+    marks: [MarkValue; 2],
+) -> Option<Result<Stretch, PlaceError>> {
+    let steps = [&span.from, &span.to].map(|mark| panel.first_step(mark));
+    let [Some(from), Some(to)] = steps else {
+        return Some(Err(PlaceError::NoLine));
+    };
+    let mut stage_at = |step: usize| {
+        let after = step.checked_sub(1).map(|k| panel.operations[k].id);
+        let stage = c.stage(Node::Stage(panel.id, after)).cloned();
+        c.reported(stage, &Place::Seam(seam.id), "")
+    };
+    let stage = stage_at(from.max(to))?;
+    let mut places = marks.map(Placed::Mark);
+    for ((place, step), mark) in places
+        .iter_mut()
+        .zip([from, to])
+        .zip([&span.from, &span.to])
+    {
+        if !has_made(&stage, panel, mark) {
+            return None;
+        }
+        if step < from.max(to)
+            && let Placed::Mark(value @ (MarkValue::Along(..) | MarkValue::Between(..))) = *place
+        {
+            match stage_at(step)?.spot(span.line, value) {
+                Ok(spot) => *place = Placed::Spot(spot),
+                Err(error) => return Some(Err(error)),
+            }
+        }
+    }
+    if span.backwards {
+        places.reverse();
+    }
+    // Legs are sewn by their dart; the other halves are named by spans of their own.
+    let wanted = |edge: &StageEdge| {
+        let is_leg = matches!(
+            edge.name,
+            Name::Made {
+                role: Role::Leg,
+                ..
+            }
+        );
+        edge.half == 0 && !is_leg
+    };
+    let found = stage.stretch(span.line, places, wanted);
+    Some(found.map(|stretch| match span.backwards {
+        true => reversed(stretch),
+        false => stretch,
+    }))
 }
 
 fn bad_span(seam: &Seam) -> Diagnostic {
@@ -159,8 +226,8 @@ fn mark(c: &mut Computation<'_>, seam: &Seam, span: &Span, mark: &Mark) -> Optio
             MarkValue::Between(*ends, c.number(share, Want::Plain, &place, &what)?)
         }
         Mark::Notch(id) => {
-            let panel = c.evaluation.pattern.panel(span.panel).cloned();
-            let notch = panel.and_then(|p| p.notches.iter().find(|n| n.id == *id).cloned());
+            let panel = c.evaluation.pattern.panel(span.panel);
+            let notch = panel.and_then(|panel| panel.notch(*id)).cloned();
             match notch {
                 Some(notch) if !matches!(notch.at, Mark::Notch(_)) => {
                     self::mark(c, seam, span, &notch.at)?

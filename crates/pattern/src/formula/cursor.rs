@@ -1,15 +1,26 @@
 //! Reads the words and numbers of a formula's text, one after another.
 
-use super::FormulaError;
+use super::{FormulaError, RESERVED};
+use std::cell::Cell;
 
 /// A formula's text and the byte that is read next.
 pub(super) struct Cursor<'a> {
     pub text: &'a str,
     pub at: usize,
+    /// A byte and the characters before it, so that columns are not counted from the start again.
+    counted: Cell<(usize, usize)>,
 }
 
-impl Cursor<'_> {
-    pub fn rest(&self) -> &str {
+impl<'a> Cursor<'a> {
+    pub fn new(text: &'a str) -> Self {
+        Self {
+            text,
+            at: 0,
+            counted: Cell::default(),
+        }
+    }
+
+    pub fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }
 
@@ -39,14 +50,15 @@ impl Cursor<'_> {
         found
     }
 
-    /// Takes a word that stands before a name, as in `curve front.side`.
+    /// Takes a word that stands before a name or an id, as in `curve front.side`.
     pub fn take_prefix(&mut self, wanted: &str) -> bool {
         let before = self.at;
-        let next = match self.take_word(wanted) {
-            true => self.peek(),
-            false => None,
+        let found = self.take_word(wanted) && {
+            let next = self.peek();
+            let is_operator = RESERVED.contains(&&self.rest()[..word_length(self.rest())]);
+            let begins = |c: char| c.is_ascii_alphabetic() || matches!(c, '_' | '\'' | '?');
+            next.is_some_and(begins) && !is_operator
         };
-        let found = next.is_some_and(|c| c.is_ascii_alphabetic() || c == '_' || c == '\'');
         if !found {
             self.at = before;
         }
@@ -54,7 +66,13 @@ impl Cursor<'_> {
     }
 
     pub fn column(&self) -> usize {
-        self.text[..self.at].chars().count() + 1
+        let (at, before) = match self.counted.get() {
+            counted if counted.0 <= self.at => counted,
+            _ => (0, 0),
+        };
+        let count = before + self.text[at..self.at].chars().count();
+        self.counted.set((self.at, count));
+        count + 1
     }
 
     pub fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> FormulaError {

@@ -4,19 +4,25 @@
 //! part touches no formula. It is kept in postfix order with jumps, so that computing it needs no
 //! recursion whatever its length.
 
+mod by_id;
 mod compute;
 mod cursor;
 mod names;
 mod parse;
+mod print;
+mod written;
 
 pub(crate) use compute::{Environment, Failure, Quantity, compute, kind};
 pub use names::Names;
+pub(crate) use written::Kind;
 
-use crate::{PartReference, VariableId};
+use crate::{PartId, PartReference, VariableId};
 use std::fmt;
 use std::sync::Arc;
 
-/// Longest formula that is read [bytes].
+/// Words that are operators, so that parts called so stand in quotes.
+const RESERVED: &[&str] = &["and", "or", "not"];
+/// Longest formula that is read, each name counted as one [bytes].
 pub const FORMULA_LENGTH: usize = 2000;
 /// Deepest nesting of parentheses, signs and calls that is read.
 pub const FORMULA_DEPTH: usize = 50;
@@ -51,6 +57,19 @@ pub enum Token {
     Word(Box<str>),
     /// A part that is measured.
     Part(PartReference),
+}
+
+/// What a formula needs to have a value.
+pub(crate) enum Use<'f> {
+    Variable(VariableId),
+    /// A measurement, else a variable that had not that name when the formula was read.
+    Word(&'f str),
+    Part {
+        part: &'f PartReference,
+        kind: Kind,
+        /// Whether it is measured after all operations.
+        finished: bool,
+    },
 }
 
 /// One step of a formula in postfix order.
@@ -132,9 +151,9 @@ impl Formula {
     /// Numbers may carry a unit (`mm cm m in deg rad`, and `1 5/8in`); names are variables or
     /// measurements; `length(front.armhole)`, `length(front.side..front.hem)`, `angle`, `distance`,
     /// `x`, `y` speak of parts as they are drawn, `finished` of an edge after all operations;
-    /// `length('side seam')` of a seam; `length(curve front.side)` of a curve whose sheet is called
-    /// like a panel with an edge of that name. `if(a < b, c, d)` chooses, `round(x, 5mm)` rounds. Names
-    /// that are not plain words stand in single quotes.
+    /// `length('side seam')` of a seam. `if(a < b, c, d)` chooses, `round(x, 5mm)` rounds. Names
+    /// that are not plain words stand in single quotes. `?47` is the part of that id, whatever it is
+    /// called and whether it is there.
     ///
     /// # Errors
     /// The text is no formula. A name that is not known is no error: it is kept, and the formula
@@ -165,20 +184,63 @@ impl Formula {
         &self.tokens
     }
 
-    /// Parts the formula measures.
-    pub fn parts(&self) -> impl Iterator<Item = &PartReference> {
-        self.tokens.iter().filter_map(|token| match token {
-            Token::Part(part) => Some(part),
-            _ => None,
-        })
+    /// Every part the formula names by its id.
+    pub fn references(&self) -> Vec<PartId> {
+        let mut found: Vec<PartId> = Vec::new();
+        for token in self.tokens.iter() {
+            match token {
+                Token::Text(_) | Token::Word(_) => {}
+                Token::Variable(id) => found.push((*id).into()),
+                Token::Part(part) => found.extend(part.parts()),
+            }
+        }
+        found
     }
 
-    /// Whether its length is measured after operations: by `finished`, or of a seam.
-    pub(crate) fn finished_parts(&self) -> impl Iterator<Item = &PartReference> {
-        self.steps.iter().filter_map(|step| match &step.operation {
-            Operation::Finished(part) => Some(part),
-            _ => None,
-        })
+    /// Everything a value of the formula needs.
+    pub(crate) fn uses(&self) -> Vec<Use<'_>> {
+        let part = |part, kind| Use::Part {
+            part,
+            kind,
+            finished: false,
+        };
+        let mut uses = Vec::new();
+        for step in self.steps.iter() {
+            match &step.operation {
+                Operation::Variable(id) => uses.push(Use::Variable(*id)),
+                Operation::Word(word) => uses.push(Use::Word(word)),
+                Operation::Length(a) => uses.push(part(a, Kind::StretchOrSeam)),
+                Operation::Finished(part) => uses.push(Use::Part {
+                    part,
+                    kind: Kind::StretchOrSeam,
+                    finished: true,
+                }),
+                Operation::Angle(a) => uses.push(part(a, Kind::Stretch)),
+                Operation::Coordinate(a, _) => uses.push(part(a, Kind::Point)),
+                Operation::AngleBetween(a, b) | Operation::Distance(a, b) => {
+                    uses.extend([part(a, Kind::Point), part(b, Kind::Point)]);
+                }
+                _ => {}
+            }
+        }
+        uses
+    }
+
+    /// Parts of a document that names in the formula lead to, though nothing was called so when it
+    /// was read.
+    pub(crate) fn found_by_name(&self, names: &Names) -> Vec<PartId> {
+        let found = self.uses().into_iter().flat_map(|used| match used {
+            Use::Word(word) if !names.is_measurement(word) => {
+                names.variable(word).into_iter().map(PartId::from).collect()
+            }
+            Use::Part {
+                part: PartReference::Unknown(text),
+                kind,
+                ..
+            } => names.part(text, kind).map_or(Vec::new(), |p| p.parts()),
+            _ => Vec::new(),
+        });
+        found.collect()
     }
 
     /// The formula with every reference put through a map, as pasting does.
@@ -221,7 +283,7 @@ impl Formula {
 pub(crate) fn quoted(name: &str) -> String {
     let plain = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-        && !parse::RESERVED.contains(&name);
+        && !RESERVED.contains(&name);
     if plain {
         name.to_owned()
     } else {

@@ -1,34 +1,73 @@
-//! Names of a document's parts, both ways: from a text to ids, and back.
+//! Names of a document's parts, and the ids they lead to.
 
-use super::{Token, quoted};
+use super::written::{Corner, Kind, Owner, Word, Written};
 use crate::{
-    CornerName, Curve, CurveId, Line, Name, Panel, PanelId, PartReference, Pattern, PointId, Role,
-    Seam, SeamId, Sheet, SheetId, VariableId, nearest,
+    CornerName, CurveId, Name, OperationId, Panel, PanelId, PartReference, Pattern, PointId,
+    SeamId, SheetId, VariableId, nearest,
 };
-use std::collections::HashMap;
-use std::sync::Arc;
-
-/// The word before a curve that is named like an edge.
-pub(super) const CURVE: &str = "curve";
+use std::collections::{BTreeMap, BTreeSet};
+use toile_measure::definition;
 
 /// The names formulas may use, of one state of a document.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Names {
-    variables: HashMap<String, VariableId>,
-    variable_names: HashMap<VariableId, String>,
-    sheets: HashMap<SheetId, Arc<Sheet>>,
-    sheets_named: HashMap<String, SheetId>,
-    panels: HashMap<PanelId, Arc<Panel>>,
-    panels_named: HashMap<String, PanelId>,
-    seams: HashMap<SeamId, Arc<Seam>>,
-    seams_named: HashMap<String, SeamId>,
-    points: HashMap<PointId, (SheetId, String)>,
-    points_named: HashMap<(SheetId, String), PointId>,
-    curves: HashMap<CurveId, (SheetId, Arc<Curve>)>,
+    pub(super) variables: Book<(), VariableId>,
+    pub(super) sheets: Book<(), SheetId>,
+    pub(super) panels: Book<(), PanelId>,
+    pub(super) seams: Book<(), SeamId>,
+    pub(super) points: Book<SheetId, PointId>,
+    pub(super) curves: Book<SheetId, CurveId>,
+    pub(super) operations: Book<PanelId, OperationId>,
+    /// Ends of the first edge of a name in each panel.
+    edges: BTreeMap<PanelId, BTreeMap<Box<str>, [PointId; 2]>>,
+    /// Name of the first edge with these ends in a panel.
+    pub(super) spanned: BTreeMap<(PanelId, [PointId; 2]), Box<str>>,
+    /// The sheet each panel is traced from.
+    source: BTreeMap<PanelId, SheetId>,
     /// The first panel traced from each sheet.
-    traced: HashMap<SheetId, PanelId>,
+    pub(super) traced: BTreeMap<SheetId, PanelId>,
+    /// Measurements in the tables of sizes.
+    measured: BTreeSet<Box<str>>,
     /// Whether parts are written as `@` and their ids, which no renaming changes.
-    by_id: bool,
+    pub(super) by_id: bool,
+}
+
+/// Names of one kind of part, each within an owner. Of several parts of one name the first has it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Book<Owner, Id> {
+    of: BTreeMap<Id, (Owner, Box<str>)>,
+    named: BTreeMap<Owner, BTreeMap<Box<str>, Id>>,
+}
+
+impl<Owner, Id> Default for Book<Owner, Id> {
+    fn default() -> Self {
+        Self {
+            of: BTreeMap::new(),
+            named: BTreeMap::new(),
+        }
+    }
+}
+
+impl<Owner: Copy + Ord, Id: Copy + Ord> Book<Owner, Id> {
+    fn put(&mut self, owner: Owner, name: &str, id: Id) {
+        self.of.insert(id, (owner, name.into()));
+        let own = self.named.entry(owner).or_default();
+        own.entry(name.into()).or_insert(id);
+    }
+
+    pub fn id(&self, owner: Owner, name: &str) -> Option<Id> {
+        self.named.get(&owner)?.get(name).copied()
+    }
+
+    /// Owner and name of a part.
+    pub fn name(&self, id: Id) -> Option<(Owner, &str)> {
+        self.of.get(&id).map(|(owner, name)| (*owner, &**name))
+    }
+
+    pub fn names(&self, owner: Owner) -> impl Iterator<Item = &str> {
+        let own = self.named.get(&owner).into_iter();
+        own.flat_map(|names| names.keys().map(|name| &**name))
+    }
 }
 
 impl Names {
@@ -36,47 +75,43 @@ impl Names {
     pub fn new(pattern: &Pattern) -> Self {
         let mut names = Self::default();
         for variable in &pattern.variables {
-            names
-                .variables
-                .entry(variable.name.clone())
-                .or_insert(variable.id);
-            names
-                .variable_names
-                .insert(variable.id, variable.name.clone());
+            names.variables.put((), &variable.name, variable.id);
         }
         for sheet in &pattern.sheets {
-            names.sheets.insert(sheet.id, sheet.clone());
-            names
-                .sheets_named
-                .entry(sheet.name.clone())
-                .or_insert(sheet.id);
+            names.sheets.put((), &sheet.name, sheet.id);
             for point in &sheet.points {
-                names
-                    .points
-                    .insert(point.id, (sheet.id, point.name.clone()));
-                let key = (sheet.id, point.name.clone());
-                names.points_named.entry(key).or_insert(point.id);
+                names.points.put(sheet.id, &point.name, point.id);
             }
             for curve in &sheet.curves {
-                names.curves.insert(curve.id, (sheet.id, curve.clone()));
+                names.curves.put(sheet.id, &curve.name, curve.id);
             }
         }
         for panel in &pattern.panels {
-            names.panels.insert(panel.id, panel.clone());
-            names
-                .panels_named
-                .entry(panel.name.clone())
-                .or_insert(panel.id);
-            names.traced.entry(panel.sheet()).or_insert(panel.id);
+            names.panel(panel);
         }
         for seam in &pattern.seams {
-            names.seams.insert(seam.id, seam.clone());
-            names
-                .seams_named
-                .entry(seam.name.clone())
-                .or_insert(seam.id);
+            names.seams.put((), &seam.name, seam.id);
+        }
+        for size in &pattern.sizes {
+            let table = size.measurements.iter();
+            names.measured.extend(table.map(|(name, _)| name.into()));
         }
         names
+    }
+
+    fn panel(&mut self, panel: &Panel) {
+        self.panels.put((), &panel.name, panel.id);
+        self.source.entry(panel.id).or_insert(panel.sheet());
+        self.traced.entry(panel.sheet()).or_insert(panel.id);
+        let edges = self.edges.entry(panel.id).or_default();
+        for edge in panel.edges() {
+            edges.entry((*edge.name).into()).or_insert(edge.ends);
+            let spanned = self.spanned.entry((panel.id, edge.ends));
+            spanned.or_insert_with(|| (*edge.name).into());
+        }
+        for operation in &panel.operations {
+            self.operations.put(panel.id, &operation.name, operation.id);
+        }
     }
 
     /// Parts written as `@` and their ids: for journals, which outlive names.
@@ -87,238 +122,211 @@ impl Names {
         }
     }
 
-    /// Whether parts are written as `@` and their ids.
-    pub(crate) fn are_ids(&self) -> bool {
-        self.by_id
-    }
-
     /// The variable of that name.
     pub fn variable(&self, name: &str) -> Option<VariableId> {
-        self.variables.get(name).copied()
+        self.variables.id((), name)
     }
 
     /// Names of all variables, for suggestions.
     pub(crate) fn variable_names(&self) -> impl Iterator<Item = &str> {
-        self.variables.keys().map(String::as_str)
+        self.variables.names(())
     }
 
-    /// The sheet a name leads to: of the panel called so, else the sheet called so.
-    fn sheet(&self, name: &str) -> Option<&Arc<Sheet>> {
-        let traced = self
-            .panels_named
-            .get(name)
-            .map(|id| self.panels[id].sheet());
-        let id = traced.or_else(|| self.sheets_named.get(name).copied())?;
-        self.sheets.get(&id)
+    /// Name of the sheet a point is on.
+    pub(crate) fn sheet_of_point(&self, id: PointId) -> Option<&str> {
+        let (sheet, _) = self.points.name(id)?;
+        self.sheets.name(sheet).map(|(_, name)| name)
     }
 
-    /// The point `sheet.point` or `panel.point` names.
-    pub fn point(&self, owner: &str, part: &str) -> Option<PointId> {
-        let sheet = self.sheet(owner)?;
-        self.points_named.get(&(sheet.id, part.to_owned())).copied()
+    /// Name of the sheet a curve is on.
+    pub(crate) fn sheet_of_curve(&self, id: CurveId) -> Option<&str> {
+        let (sheet, _) = self.curves.name(id)?;
+        self.sheets.name(sheet).map(|(_, name)| name)
     }
 
-    /// The edge of a panel, else the curve of a sheet, that `owner.part` names.
-    pub fn stretch(&self, owner: &str, part: &str) -> Option<PartReference> {
-        let panel = self.panels_named.get(owner).map(|id| &self.panels[id]);
-        let edge = panel.and_then(|panel| Some((panel, panel.edge_named(part)?)));
-        if let Some((panel, edge)) = edge {
-            return Some(PartReference::Stretch {
-                panel: panel.id,
-                ends: edge.ends.map(Name::Drawn),
-            });
-        }
-        let curve = self.sheet(owner)?.curve_named(part)?;
-        Some(PartReference::Curve(curve.id))
+    /// Whether a word is a measurement's name: of the catalogue, or of a size's table.
+    pub(super) fn is_measurement(&self, name: &str) -> bool {
+        definition(name).is_some() || self.measured.contains(name)
     }
 
-    /// The curve of a sheet that `curve owner.part` names, even where a panel has such an edge: of
-    /// the sheet called so, else of that of the panel called so.
-    pub fn curve(&self, owner: &str, part: &str) -> Option<PartReference> {
-        let named = self.sheets_named.get(owner).map(|id| &self.sheets[id]);
-        let own = named.and_then(|sheet| sheet.curve_named(part));
-        let curve = match own {
-            Some(curve) => curve,
-            None => self.sheet(owner)?.curve_named(part)?,
-        };
-        Some(PartReference::Curve(curve.id))
+    /// The part a text names; nothing if there is none.
+    pub(crate) fn part(&self, text: &str, kind: Kind) -> Option<PartReference> {
+        self.part_of(&Written::of(text, kind)?, kind)
     }
 
-    /// The stretch from corner to corner of a panel that `owner.from..owner.to` names.
-    pub fn between(&self, owner: &str, [from, to]: [&str; 2]) -> Option<PartReference> {
-        let panel = *self.panels_named.get(owner)?;
-        Some(PartReference::Stretch {
-            panel,
-            ends: [
-                Name::Drawn(self.point(owner, from)?),
-                Name::Drawn(self.point(owner, to)?),
-            ],
-        })
-    }
-
-    /// The seam of that name.
-    pub fn seam(&self, name: &str) -> Option<SeamId> {
-        self.seams_named.get(name).copied()
-    }
-
-    /// Why `owner.part` names nothing, and what may have been meant; `kind` is "point" or "edge".
-    pub(crate) fn missing(&self, text: &str, kind: &str) -> (String, String) {
-        let Some((owner, part)) = text.split_once('.') else {
-            let near = nearest(text, self.seams_named.keys().map(String::as_str));
-            let hint = suggestion(near, "name a seam, or a part as in front.armhole");
-            return (format!("there is no seam {text:?}"), hint);
-        };
-        let (owner, part) = (unquoted(owner), unquoted(part));
-        let Some(sheet) = self.sheet(owner) else {
-            let known = self.panels_named.keys().chain(self.sheets_named.keys());
-            let near = nearest(owner, known.map(String::as_str));
-            let hint = suggestion(near, "name a panel of this pattern");
-            return (format!("there is no panel {owner:?}"), hint);
-        };
-        let near = if kind == "point" {
-            nearest(part, sheet.points.iter().map(|p| &*p.name))
-        } else {
-            let edges = self.panels_named.get(owner).map(|id| &self.panels[id]);
-            let edges = edges
-                .into_iter()
-                .flat_map(|panel| panel.edges().map(|e| &*e.name));
-            nearest(part, edges.chain(sheet.curves.iter().map(|c| &*c.name)))
-        };
-        let hint = suggestion(near, &format!("name a {kind} of that panel"));
-        (format!("panel {owner:?} has no {kind} {part:?}"), hint)
-    }
-
-    /// A token with the names of the day; what is gone prints its number, as in `?47`.
-    pub fn print(&self, token: &Token) -> String {
-        match token {
-            Token::Variable(id) if self.by_id => format!("@{}", id.0),
-            Token::Part(part) if self.by_id => ids_of(part),
-            Token::Text(text) => text.to_string(),
-            Token::Word(word) => quoted(word),
-            Token::Variable(id) => match self.variable_names.get(id) {
-                Some(name) => quoted(name),
-                None => format!("?{}", id.0),
-            },
-            Token::Part(part) => self.print_part(part),
-        }
-    }
-
-    fn owner_of(&self, sheet: SheetId) -> String {
-        let panel = self.traced.get(&sheet).map(|id| &self.panels[id].name);
-        match panel.or_else(|| self.sheets.get(&sheet).map(|sheet| &sheet.name)) {
-            Some(name) => quoted(name),
-            None => format!("?{}", sheet.0),
-        }
-    }
-
-    /// A part with the names of the day.
-    pub fn print_part(&self, part: &PartReference) -> String {
-        match part {
-            PartReference::Unknown(text) => text.to_string(),
-            PartReference::Point(id) => match self.points.get(id) {
-                Some((sheet, name)) => format!("{}.{}", self.owner_of(*sheet), quoted(name)),
-                None => format!("?{}", id.0),
-            },
-            PartReference::Curve(id) => match self.curves.get(id) {
-                Some((sheet, curve)) => {
-                    let owner = self.sheets.get(sheet).map_or("", |sheet| &sheet.name);
-                    let text = format!("{}.{}", quoted(owner), quoted(&curve.name));
-                    match self.stretch(owner, &curve.name) == Some(part.clone()) {
-                        true => text,
-                        false => format!("{CURVE} {text}"),
-                    }
+    /// The part that is written so; nothing if there is none.
+    pub(super) fn part_of(&self, written: &Written, kind: Kind) -> Option<PartReference> {
+        match written {
+            Written::Lost(id) if kind == Kind::Point => Some(PartReference::Point((*id).into())),
+            Written::Lost(id) => {
+                let curve = self.curves.name((*id).into()).is_some();
+                let seam = kind == Kind::StretchOrSeam && self.seams.name((*id).into()).is_some();
+                match (curve, seam) {
+                    (true, _) => Some(PartReference::Curve((*id).into())),
+                    (_, true) => Some(PartReference::Seam((*id).into())),
+                    _ => None,
                 }
-                None => format!("?{}", id.0),
-            },
-            PartReference::Seam(id) => match self.seams.get(id) {
-                Some(seam) => quoted(&seam.name),
-                None => format!("?{}", id.0),
-            },
-            PartReference::Stretch { panel, ends } => self.print_stretch(*panel, *ends),
-        }
-    }
-
-    fn print_stretch(&self, id: PanelId, ends: [CornerName; 2]) -> String {
-        let Some(panel) = self.panels.get(&id) else {
-            return format!("?{}", id.0);
-        };
-        if let Some(edge) = whole_edge(&panel.lines, ends) {
-            return format!("{}.{}", quoted(&panel.name), quoted(edge));
-        }
-        let corner = |corner: CornerName| match corner {
-            Name::Drawn(point) => match self.points.get(&point) {
-                Some((_, name)) => quoted(name),
-                None => format!("?{}", point.0),
-            },
-            Name::Made { by, .. } => format!("?{}", by.0),
-        };
-        let name = quoted(&panel.name);
-        format!("{name}.{}..{name}.{}", corner(ends[0]), corner(ends[1]))
-    }
-}
-
-/// A part by its ids: `@p47` a point, `@c12` a curve, `@s9` a seam, `@e33:47:48` a stretch.
-fn ids_of(part: &PartReference) -> String {
-    let corner = |corner: CornerName| match corner {
-        Name::Drawn(point) => point.0.to_string(),
-        Name::Made { by, role, index } => format!("{}.{}.{index}", by.0, role.word()),
-    };
-    match part {
-        PartReference::Point(id) => format!("@p{}", id.0),
-        PartReference::Curve(id) => format!("@c{}", id.0),
-        PartReference::Seam(id) => format!("@s{}", id.0),
-        PartReference::Unknown(text) => text.to_string(),
-        PartReference::Stretch { panel, ends } => {
-            format!("@e{}:{}:{}", panel.0, corner(ends[0]), corner(ends[1]))
-        }
-    }
-}
-
-/// The part that [`ids_of`] wrote.
-pub(super) fn part_of_ids(text: &str) -> Option<PartReference> {
-    let (kind, rest) = text.split_at_checked(1)?;
-    let corner = |text: &str| -> Option<CornerName> {
-        let mut parts = text.split('.');
-        let number: u32 = parts.next()?.parse().ok()?;
-        Some(match (parts.next(), parts.next()) {
-            (Some(role), Some(index)) => Name::Made {
-                by: number.into(),
-                role: Role::of_word(role)?,
-                index: index.parse().ok()?,
-            },
-            _ => Name::Drawn(number.into()),
-        })
-    };
-    let number = || rest.parse::<u32>().ok();
-    Some(match kind {
-        "p" => PartReference::Point(number()?.into()),
-        "c" => PartReference::Curve(number()?.into()),
-        "s" => PartReference::Seam(number()?.into()),
-        "e" => {
-            let mut parts = rest.split(':');
-            let panel: u32 = parts.next()?.parse().ok()?;
-            PartReference::Stretch {
-                panel: panel.into(),
-                ends: [corner(parts.next()?)?, corner(parts.next()?)?],
+            }
+            Written::Seam(Word::Id(id)) => Some(PartReference::Seam((*id).into())),
+            Written::Seam(Word::Name(name)) => self.seams.id((), name).map(PartReference::Seam),
+            Written::Curve(id) => Some(PartReference::Curve((*id).into())),
+            Written::CurveOf(owner, Word::Name(name)) => {
+                let owners = [Owner::Sheet(owner.clone()), Owner::Panel(owner.clone())];
+                let mut sheets = owners.iter().filter_map(|owner| self.sheet(owner));
+                let curve = sheets.find_map(|sheet| self.curves.id(sheet, name))?;
+                Some(PartReference::Curve(curve))
+            }
+            Written::CurveOf(_, Word::Id(id)) => Some(PartReference::Curve((*id).into())),
+            Written::Part(owner, Word::Name(name)) if kind == Kind::Point => {
+                let point = self.points.id(self.sheet(owner)?, name)?;
+                Some(PartReference::Point(point))
+            }
+            Written::Part(_, Word::Id(id)) if kind == Kind::Point => {
+                Some(PartReference::Point((*id).into()))
+            }
+            Written::Part(owner, Word::Name(name)) => self.edge_or_curve(owner, name),
+            Written::Part(_, Word::Id(id)) => {
+                let curve = CurveId(*id);
+                let known = self.curves.name(curve).is_some();
+                known.then_some(PartReference::Curve(curve))
+            }
+            Written::Stretch(owner, [from, to]) => {
+                let panel = self.owning_panel(owner)?;
+                Some(PartReference::Stretch {
+                    panel,
+                    ends: [self.corner(panel, from)?, self.corner(panel, to)?],
+                })
             }
         }
-        _ => return None,
-    })
-}
+    }
 
-/// Name of the edge that spans a stretch alone.
-fn whole_edge(lines: &[Line], ends: [CornerName; 2]) -> Option<&str> {
-    let [Name::Drawn(from), Name::Drawn(to)] = ends else {
-        return None;
-    };
-    let mut edges = lines.iter().flat_map(|line| &line.edges);
-    edges
-        .find(|edge| edge.ends == [from, to])
-        .map(|edge| &*edge.name)
-}
+    fn owning_panel(&self, owner: &Owner) -> Option<PanelId> {
+        match owner {
+            Owner::Panel(Word::Name(name)) => self.panels.id((), name),
+            Owner::Panel(Word::Id(id)) => Some(PanelId(*id)),
+            Owner::Sheet(_) => None,
+        }
+    }
 
-fn unquoted(name: &str) -> &str {
-    name.trim_matches('\'')
+    /// The sheet an owner leads to: of the panel called so, else the sheet called so.
+    fn sheet(&self, owner: &Owner) -> Option<SheetId> {
+        let panel = self.owning_panel(owner);
+        let traced = panel.and_then(|panel| self.source.get(&panel).copied());
+        traced.or_else(|| match owner {
+            Owner::Panel(Word::Name(name)) | Owner::Sheet(Word::Name(name)) => {
+                self.sheets.id((), name)
+            }
+            Owner::Panel(Word::Id(id)) | Owner::Sheet(Word::Id(id)) => Some(SheetId(*id)),
+        })
+    }
+
+    /// The edge of a panel, else the curve of a sheet.
+    fn edge_or_curve(&self, owner: &Owner, name: &str) -> Option<PartReference> {
+        let panel = self.owning_panel(owner);
+        let edge = panel.and_then(|panel| Some((panel, *self.edges.get(&panel)?.get(name)?)));
+        if let Some((panel, ends)) = edge {
+            return Some(PartReference::Stretch {
+                panel,
+                ends: ends.map(Name::Drawn),
+            });
+        }
+        let curve = self.curves.id(self.sheet(owner)?, name)?;
+        Some(PartReference::Curve(curve))
+    }
+
+    pub(super) fn corner(&self, panel: PanelId, corner: &Corner) -> Option<CornerName> {
+        match corner {
+            Corner::Drawn(Word::Id(id)) => Some(Name::Drawn((*id).into())),
+            Corner::Drawn(Word::Name(name)) => {
+                let sheet = *self.source.get(&panel)?;
+                self.points.id(sheet, name).map(Name::Drawn)
+            }
+            Corner::Made { by, role, index } => Some(Name::Made {
+                by: match by {
+                    Word::Id(id) => (*id).into(),
+                    Word::Name(name) => self.operations.id(panel, name)?,
+                },
+                role: *role,
+                index: *index,
+            }),
+        }
+    }
+
+    /// Why a text names nothing, and what may have been meant.
+    pub(crate) fn missing(&self, text: &str, kind: Kind) -> (String, String) {
+        let gone = |text: &str| {
+            (
+                format!("{text} is not there any more"),
+                "name another part, or undo its removal".to_owned(),
+            )
+        };
+        match Written::of(text, kind) {
+            None | Some(Written::Lost(_) | Written::Curve(_) | Written::Seam(Word::Id(_))) => {
+                gone(text)
+            }
+            Some(Written::Seam(Word::Name(name))) => {
+                let near = nearest(&name, self.seams.names(()));
+                let hint = suggestion(near, "name a seam, or a part as in front.armhole");
+                (format!("there is no seam {name:?}"), hint)
+            }
+            Some(Written::CurveOf(owner, part)) => {
+                self.missing_part(&Owner::Panel(owner), &part, "curve")
+            }
+            Some(Written::Part(owner, part)) => {
+                let what = if kind == Kind::Point { "point" } else { "edge" };
+                self.missing_part(&owner, &part, what)
+            }
+            Some(Written::Stretch(owner, corners)) => {
+                let panel = self.owning_panel(&owner);
+                let lost = |c: &&Corner| panel.is_none_or(|p| self.corner(p, c).is_none());
+                match corners.iter().find(lost) {
+                    Some(Corner::Drawn(point)) => self.missing_part(&owner, point, "point"),
+                    Some(Corner::Made { by, .. }) => self.missing_part(&owner, by, "operation"),
+                    None => gone(text),
+                }
+            }
+        }
+    }
+
+    fn missing_part(&self, owner: &Owner, part: &Word, kind: &str) -> (String, String) {
+        let shown = |word: &Word| match word {
+            Word::Name(name) => format!("{name:?}"),
+            Word::Id(id) => format!("?{id}"),
+        };
+        let (whose, own) = match owner {
+            Owner::Panel(word) => ("panel", word),
+            Owner::Sheet(word) => ("sheet", word),
+        };
+        let known = self
+            .sheet(owner)
+            .filter(|id| self.sheets.name(*id).is_some());
+        let Some(sheet) = known else {
+            let names = self.panels.names(()).chain(self.sheets.names(()));
+            let near = match own {
+                Word::Name(name) => nearest(name, names),
+                Word::Id(_) => None,
+            };
+            let hint = suggestion(near, &format!("name a {whose} of this pattern"));
+            return (format!("there is no {whose} {}", shown(own)), hint);
+        };
+        let panel = self.owning_panel(owner);
+        let named = match part {
+            Word::Name(name) => &**name,
+            Word::Id(_) => "",
+        };
+        let near = match (kind, panel) {
+            ("point", _) => nearest(named, self.points.names(sheet)),
+            ("operation", Some(panel)) => nearest(named, self.operations.names(panel)),
+            _ => {
+                let edges = panel.and_then(|panel| self.edges.get(&panel));
+                let edges = edges.into_iter().flat_map(|e| e.keys().map(|name| &**name));
+                nearest(named, edges.chain(self.curves.names(sheet)))
+            }
+        };
+        let hint = suggestion(near, &format!("name {kind}s of that {whose}"));
+        let message = format!("{whose} {} has no {kind} {}", shown(own), shown(part));
+        (message, hint)
+    }
 }
 
 fn suggestion(near: Option<&str>, otherwise: &str) -> String {

@@ -1,7 +1,8 @@
 //! Reads formulas: a recursive-descent parser of bounded depth that writes postfix steps.
 
+use super::by_id::part_of_ids;
 use super::cursor::Cursor;
-use super::names::{CURVE, part_of_ids};
+use super::written::{Kind, Written, id};
 use super::{
     Comparison, FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Function, Names, Operation,
     Step, Token,
@@ -24,9 +25,6 @@ const FUNCTIONS: &[(&str, Function, usize, usize)] = &[
 const FUNCTION_NAMES: &str = "min, max, abs, sqrt, sin, cos, tan, atan2, hypot, round, if, \
                               length, finished, angle, distance, x, y";
 
-/// Words that are operators, so that parts called so stand in quotes.
-pub(super) const RESERVED: &[&str] = &["and", "or", "not"];
-
 const COMPARISONS: &[(&str, Comparison)] = &[
     ("<=", Comparison::LessOrEqual),
     (">=", Comparison::MoreOrEqual),
@@ -36,6 +34,9 @@ const COMPARISONS: &[(&str, Comparison)] = &[
     (">", Comparison::More),
     ("=", Comparison::Equal),
 ];
+
+/// No part's name takes as many bytes in a formula: four names of 80 characters, and quotes.
+const LONGEST_NAME: usize = 1500;
 
 struct Parser<'a> {
     cursor: Cursor<'a>,
@@ -47,24 +48,17 @@ struct Parser<'a> {
     pending: usize,
 }
 
-/// The kinds of part a function measures.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Point,
-    /// An edge, a stretch, a curve or a seam.
-    Stretch,
-}
-
 pub(super) fn parse(text: &str, names: &Names) -> Result<Formula, FormulaError> {
-    if text.len() > FORMULA_LENGTH {
-        return Err(FormulaError {
-            column: FORMULA_LENGTH + 1,
-            message: format!("the formula is longer than {FORMULA_LENGTH} characters"),
-            hint: "split it with variables".into(),
-        });
+    let too_long = || FormulaError {
+        column: FORMULA_LENGTH + 1,
+        message: format!("the formula is longer than {FORMULA_LENGTH} characters"),
+        hint: "split it with variables".into(),
+    };
+    if text.len() > FORMULA_LENGTH * LONGEST_NAME {
+        return Err(too_long());
     }
     let mut parser = Parser {
-        cursor: Cursor { text, at: 0 },
+        cursor: Cursor::new(text),
         names,
         depth: 0,
         steps: Vec::new(),
@@ -80,6 +74,13 @@ pub(super) fn parse(text: &str, names: &Names) -> Result<Formula, FormulaError> 
         ));
     }
     parser.flush(text.len());
+    let lengths = parser.tokens.iter().map(|token| match token {
+        Token::Text(text) => text.len(),
+        _ => 1,
+    });
+    if lengths.sum::<usize>() > FORMULA_LENGTH {
+        return Err(too_long());
+    }
     Ok(Formula {
         tokens: parser.tokens.into(),
         steps: parser.steps.into(),
@@ -235,7 +236,7 @@ impl Parser<'_> {
                 Ok(())
             }
             Some('?') => self.lost(),
-            Some('@') if self.names.are_ids() => self.variable_by_id(),
+            Some('@') if self.names.by_id => self.variable_by_id(),
             Some(c) if c.is_ascii_alphabetic() || c == '_' || c == '\'' => self.name_or_call(),
             _ => Err(self.cursor.error_here(
                 "is not a value",
@@ -254,14 +255,12 @@ impl Parser<'_> {
         }
     }
 
-    /// `?47`: a part that was removed.
+    /// `?47`: a variable that was removed, or whose name is another's.
     fn lost(&mut self) -> Result<(), FormulaError> {
         let (column, start) = (self.cursor.column(), self.cursor.at);
-        let length = self.cursor.digits(1);
-        self.cursor.at += 1 + length;
-        let word: Box<str> = self.cursor.text[start..self.cursor.at].into();
-        self.name_token(start, Token::Text(word.clone()));
-        self.push(column, Operation::Word(word));
+        let variable = id(&mut self.cursor)?.into();
+        self.name_token(start, Token::Variable(variable));
+        self.push(column, Operation::Variable(variable));
         Ok(())
     }
 
@@ -281,6 +280,12 @@ impl Parser<'_> {
     fn name_or_call(&mut self) -> Result<(), FormulaError> {
         self.cursor.skip_space();
         let (column, start) = (self.cursor.column(), self.cursor.at);
+        if self.cursor.take_prefix("measurement") {
+            let (name, _) = self.cursor.word()?;
+            self.name_token(start, Token::Word(name.clone()));
+            self.push(column, Operation::Word(name));
+            return Ok(());
+        }
         let (name, is_quoted) = self.cursor.word()?;
         let end = self.cursor.at;
         if self.cursor.peek() != Some('(') || is_quoted {
@@ -299,7 +304,7 @@ impl Parser<'_> {
         let operation = match &*name {
             "length" | "finished" => {
                 self.cursor.at += 1;
-                let part = self.part(Kind::Stretch)?;
+                let part = self.part(Kind::StretchOrSeam)?;
                 match &*name {
                     "length" => Operation::Length(part),
                     _ => Operation::Finished(part),
@@ -328,13 +333,9 @@ impl Parser<'_> {
         self.cursor.at += 1;
         let start = self.cursor.at;
         let state = (self.tokens.len(), self.pending);
-        if self.cursor.take_prefix(CURVE) {
-            self.cursor.at = start;
-            return Ok(Operation::Angle(self.part(Kind::Stretch)?));
-        }
-        let first = self.part(Kind::Point)?;
-        if self.cursor.peek() == Some(',') {
-            self.cursor.at += 1;
+        if let Ok(first) = self.part(Kind::Point)
+            && self.cursor.take(',')
+        {
             return Ok(Operation::AngleBetween(first, self.part(Kind::Point)?));
         }
         self.cursor.at = start;
@@ -403,67 +404,25 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `panel.part`, `panel.from..panel.to`, or the name of a seam; plain words or quoted.
+    /// A part, by its names or ids.
     fn part(&mut self, kind: Kind) -> Result<PartReference, FormulaError> {
-        const HINT: &str = "write panel.name, for example front.armhole";
-        if self.cursor.peek() == Some('?') {
-            let start = self.cursor.at;
-            self.cursor.at += 1 + self.cursor.digits(1);
-            let part = PartReference::Unknown(self.cursor.text[start..self.cursor.at].into());
-            self.name_token(start, Token::Part(part.clone()));
-            return Ok(part);
-        }
-        if self.cursor.peek() == Some('@') && self.names.are_ids() {
-            let start = self.cursor.at;
-            let rest = &self.cursor.text[start + 1..];
+        self.cursor.skip_space();
+        let start = self.cursor.at;
+        let found = if self.names.by_id && self.cursor.rest().starts_with('@') {
+            let rest = &self.cursor.rest()[1..];
             let length = rest
                 .find(|c: char| !(c.is_ascii_alphanumeric() || matches!(c, ':' | '.' | '_')))
                 .unwrap_or(rest.len());
             let part = part_of_ids(&rest[..length])
                 .ok_or_else(|| self.cursor.error_here("is no id", "write @ and an id"))?;
             self.cursor.at = start + 1 + length;
-            self.name_token(start, Token::Part(part.clone()));
-            return Ok(part);
-        }
-        self.cursor.skip_space();
-        let start = self.cursor.at;
-        let is_curve = kind == Kind::Stretch && self.cursor.take_prefix(CURVE);
-        let (owner, _) = self.cursor.word()?;
-        if !self.cursor.take('.') {
-            if kind == Kind::Stretch && self.cursor.peek() == Some(')') {
-                self.cursor.at = start;
-                self.cursor.word()?;
-                let part = match self.names.seam(&owner) {
-                    Some(id) => PartReference::Seam(id),
-                    None => PartReference::Unknown(self.cursor.text[start..self.cursor.at].into()),
-                };
-                self.name_token(start, Token::Part(part.clone()));
-                return Ok(part);
-            }
-            return Err(self
-                .cursor
-                .error_here("stands where a dot is missing", HINT));
-        }
-        let (part, _) = self.cursor.word()?;
-        let found = if self.cursor.rest().starts_with("..") && kind == Kind::Stretch {
-            self.cursor.at += 2;
-            self.cursor.word()?;
-            if !self.cursor.take('.') {
-                return Err(self
-                    .cursor
-                    .error_here("stands where a dot is missing", HINT));
-            }
-            let (to, _) = self.cursor.word()?;
-            self.names.between(&owner, [&part, &to])
-        } else if is_curve {
-            self.names.curve(&owner, &part)
-        } else if kind == Kind::Point {
-            self.names.point(&owner, &part).map(PartReference::Point)
+            part
         } else {
-            self.names.stretch(&owner, &part)
+            let written = Written::read(&mut self.cursor, kind)?;
+            let text = &self.cursor.text[start..self.cursor.at];
+            let found = self.names.part_of(&written, kind);
+            found.unwrap_or_else(|| PartReference::Unknown(text.into()))
         };
-        let text = &self.cursor.text[start..self.cursor.at];
-        let found = found.unwrap_or_else(|| PartReference::Unknown(text.into()));
         self.name_token(start, Token::Part(found.clone()));
         Ok(found)
     }

@@ -139,10 +139,11 @@ pub fn join_edges(
         )));
     }
     line.edges.remove(next);
-    edits.push(Edit::Put(Entity::Panel(Arc::new(changed))));
+    let changed = Arc::new(changed);
+    edits.push(Edit::Put(Entity::Panel(changed.clone())));
     edits.extend(unused(
         evaluation,
-        owner,
+        &changed,
         sheet,
         corner,
         [kept.curve, gone.curve],
@@ -150,10 +151,10 @@ pub fn join_edges(
     Ok(edits)
 }
 
-/// Removals of the corner and of curves that nothing else uses.
+/// Removals of the corner and of curves that nothing uses, not the panel as it is now either.
 fn unused(
     evaluation: &Evaluation,
-    panel: &Panel,
+    panel: &Arc<Panel>,
     sheet: &Sheet,
     corner: PointId,
     curves: [CurveId; 2],
@@ -170,7 +171,7 @@ fn unused(
     let mut allowed = vec![own.clone()];
     if curves[0] != curves[1] {
         for curve in curves {
-            let still = panel.edges().filter(|edge| edge.curve == curve).count() > 1;
+            let still = panel.edges().any(|edge| edge.curve == curve);
             let is_there = pattern.curve(curve).is_some();
             if is_there && !still && only(curve.into(), std::slice::from_ref(&own)) {
                 edits.push(Edit::Remove(curve.into()));
@@ -178,21 +179,13 @@ fn unused(
             }
         }
     }
-    let named = panel.notches.iter().any(|notch| marks(&notch.at, corner));
-    let by_operations = panel
-        .operations
-        .iter()
-        .any(|operation| operation.kind.points().contains(&corner));
+    let named = Entity::Panel(panel.clone()).references();
     let is_made_for_it = matches!(
         sheet.point(corner).map(|point| &point.rule),
         Some(PointRule::OnCurve { .. })
     );
-    if is_made_for_it && !named && !by_operations && only(corner.into(), &allowed) {
+    if is_made_for_it && !named.contains(&corner.into()) && only(corner.into(), &allowed) {
         edits.push(Edit::Remove(corner.into()));
     }
     edits
-}
-
-fn marks(mark: &crate::Mark, corner: PointId) -> bool {
-    mark.corners().contains(&crate::Name::Drawn(corner))
 }

@@ -80,7 +80,7 @@ pub(super) fn after(evaluation: &Evaluation, edits: &[Edit]) -> Result<Evaluatio
     let mut pattern = evaluation.pattern().clone();
     pattern.apply(edits)?;
     let mut after = evaluation.clone();
-    after.update(&pattern, evaluation.measurements());
+    after.update(&pattern, evaluation.wearer().clone());
     Ok(after)
 }
 

@@ -97,8 +97,8 @@ fn is_bare(text: &str) -> bool {
 
 /// Refuses names of parts that are not there. Words may be measurements that some table has.
 fn refuse_unknown(formula: &Formula) -> Result<(), EditError> {
-    let mut unknown = formula.parts().filter_map(|part| match part {
-        PartReference::Unknown(text) => Some(text),
+    let mut unknown = formula.tokens().iter().filter_map(|token| match token {
+        Token::Part(PartReference::Unknown(text)) => Some(text),
         _ => None,
     });
     match unknown.next() {

@@ -1,7 +1,8 @@
 //! The other half of a panel that lies on the fold of the cloth.
 
 use super::{
-    MarkValue, PlaceError, Stage, StageDart, StageEdge, StageNotch, mirrored_edges, with_ends,
+    PlaceError, Placed, Stage, StageDart, StageEdge, StageLine, StageNotch, mirrored_edges,
+    with_ends,
 };
 use crate::{LineKind, LineName, NotchId};
 use toile_geometry::{Curve, Vec2};
@@ -20,9 +21,11 @@ pub(crate) enum FoldError {
 pub(crate) fn unfold(
     stage: &Stage,
     line: LineName,
-    ends: [MarkValue; 2],
+    ends: [Placed; 2],
 ) -> Result<(Stage, Vec<NotchId>), FoldError> {
-    let stretch = stage.stretch(line, ends, false).map_err(FoldError::Place)?;
+    let stretch = stage
+        .stretch(line, ends, |_| true)
+        .map_err(FoldError::Place)?;
     let outline = stage
         .lines
         .iter()
@@ -57,12 +60,13 @@ pub(crate) fn unfold(
         .iter()
         .filter(|notch| notch.half == 0 && folded.iter().any(|edge| edge.name == notch.edge));
     let lost: Vec<NotchId> = lost.map(|notch| notch.id).collect();
-    Ok((unfolded(stage, edges, (start, end), &lost), lost))
+    let whole = unfolded(stage, (line, edges), (start, end), &lost);
+    Ok((whole, lost))
 }
 
 fn unfolded(
     stage: &Stage,
-    edges: Vec<StageEdge>,
+    (name, edges): (LineName, Vec<StageEdge>),
     (start, end): (Vec2, Vec2),
     lost: &[NotchId],
 ) -> Stage {
@@ -89,9 +93,15 @@ fn unfolded(
             .cloned()
             .collect();
         if kind == LineKind::Outline {
-            let mut outline = own.into_iter().next().expect("the fold is on the outline");
-            outline.edges = edges.iter().cloned().chain(other.drain(..)).collect();
-            lines.push(outline);
+            let own = own.into_iter().map(|line| {
+                let is_folded = line.name == name && line.half == 0;
+                let whole = || edges.iter().chain(&other).cloned().collect();
+                StageLine {
+                    edges: if is_folded { whole() } else { line.edges },
+                    ..line
+                }
+            });
+            lines.extend(own);
             continue;
         }
         let mirrored: Vec<_> = own.iter().map(|line| line.mirrored(mirror, bit)).collect();

@@ -8,7 +8,7 @@ mod place;
 pub(crate) use dart::{DartApex, DartError, DartMouth, cut_dart};
 pub(crate) use diamond::cut_diamond;
 pub(crate) use fold::{FoldError, unfold};
-pub(crate) use place::{MarkValue, PlaceError, Spot, Stretch};
+pub(crate) use place::{MarkValue, PlaceError, Placed, Spot, Stretch, reversed};
 
 use crate::{
     Corner, CornerName, EdgeName, LineKind, LineName, NotchId, NotchKind, OperationId, Pressed,

@@ -14,6 +14,13 @@ pub(crate) enum MarkValue {
     Between([CornerName; 2], f64),
 }
 
+/// A place on a line: by its corners, or found on an earlier stage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Placed {
+    Mark(MarkValue),
+    Spot(Spot),
+}
+
 /// A place on a named edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spot {
@@ -70,25 +77,23 @@ impl Stage {
         Some((edge.curve.point(t), direction))
     }
 
-    /// The edges between two marks of a line.
+    /// The edges between two places of a line, of which those are left out that are not asked for.
     pub(crate) fn stretch(
         &self,
         line: LineName,
-        [from, to]: [MarkValue; 2],
-        backwards: bool,
+        [from, to]: [Placed; 2],
+        wanted: impl Fn(&StageEdge) -> bool,
     ) -> Result<Stretch, PlaceError> {
-        if backwards {
-            let forwards = self.stretch(line, [to, from], false)?;
-            return Ok(forwards
-                .into_iter()
-                .rev()
-                .map(|(e, a, b)| (e, b, a))
-                .collect());
-        }
         let line = self.line(line)?;
-        let (start, end) = (line.along(from)?, line.along(to)?);
-        Ok(line.between(start, end))
+        let (start, end) = (line.placed(from)?, line.placed(to)?);
+        Ok(line.between(start, end, wanted))
     }
+}
+
+/// A stretch walked the other way.
+pub(crate) fn reversed(stretch: Stretch) -> Stretch {
+    let back = stretch.into_iter().rev();
+    back.map(|(edge, from, to)| (edge, to, from)).collect()
 }
 
 impl StageLine {
@@ -114,6 +119,35 @@ impl StageLine {
             true => Ok(along),
             false => Err(PlaceError::NoCorner(corner)),
         }
+    }
+
+    fn placed(&self, place: Placed) -> Result<f64, PlaceError> {
+        match place {
+            Placed::Mark(mark) => self.along(mark),
+            Placed::Spot(spot) => self.along_spot(spot),
+        }
+    }
+
+    /// Arc length from the start of the line to a spot of an earlier stage [m]; of one that lies in
+    /// a mouth by now, to the mouth.
+    fn along_spot(&self, spot: Spot) -> Result<f64, PlaceError> {
+        let mut before = 0.0;
+        let mut best: Option<(f64, f64)> = None;
+        for edge in &self.edges {
+            let own = edge.curve.length();
+            if edge.name == spot.edge && edge.half == 0 {
+                let share = spot
+                    .share
+                    .clamp(edge.from.min(edge.to), edge.from.max(edge.to));
+                let away = (share - spot.share).abs();
+                let local = (share - edge.from) / (edge.to - edge.from);
+                if best.is_none_or(|best| away < best.0) {
+                    best = Some((away, before + own * local.clamp(0.0, 1.0)));
+                }
+            }
+            before += own;
+        }
+        best.map(|(_, along)| along).ok_or(PlaceError::Beyond)
     }
 
     /// Arc length from the start of the line to a mark [m].
@@ -190,7 +224,7 @@ impl StageLine {
     }
 
     /// The stretch from an arc length forwards to another; round the line where it is not beyond.
-    fn between(&self, start: f64, end: f64) -> Stretch {
+    fn between(&self, start: f64, end: f64, wanted: impl Fn(&StageEdge) -> bool) -> Stretch {
         let length = self.length();
         let end = match self.is_closed() && end <= start + SLACK {
             true => end + length,
@@ -202,8 +236,12 @@ impl StageLine {
         for edge in (0..rounds).flat_map(|_| &self.edges) {
             let own = edge.curve.length();
             let (low, high) = (start.max(before), end.min(before + own));
-            if high - low > SLACK {
-                let share = |along: f64| share_of(edge, (along - before) / own);
+            if high - low > SLACK && wanted(edge) {
+                let share = |along: f64| match along {
+                    along if along <= before => edge.from,
+                    along if along >= before + own => edge.to,
+                    along => share_of(edge, (along - before) / own),
+                };
                 let (a, b) = (share(low), share(high));
                 match stretch.last_mut() {
                     Some(last) if last.0 == edge.name && (last.2 - a).abs() < SLACK => last.2 = b,

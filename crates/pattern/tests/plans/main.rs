@@ -34,7 +34,16 @@ pub fn bodies() -> [Measurements; 4] {
 
 /// The pattern for an adult.
 pub fn evaluated(pattern: &Pattern) -> Evaluation {
-    Evaluation::new(pattern, &Measurements::adult())
+    Evaluation::new(pattern, wearer(pattern, &Measurements::adult()))
+}
+
+/// Somebody of a body's measurements, in the size that has the same.
+pub fn wearer(pattern: &Pattern, body: &Measurements) -> toile_pattern::Wearer {
+    let size = pattern.sizes.iter().find(|size| size.measurements == *body);
+    toile_pattern::Wearer {
+        measurements: body.clone(),
+        size: size.map(|size| size.id),
+    }
 }
 
 /// The pattern after edits, which must survive JSON, keep ids and names unique, and leave what
@@ -101,14 +110,14 @@ pub fn v(x: f64, y: f64) -> Vec2 {
 
 /// Places of points for a body.
 pub fn places(pattern: &Pattern, body: &Measurements, points: &[PointId]) -> Vec<Vec2> {
-    let evaluation = Evaluation::new(pattern, body);
+    let evaluation = Evaluation::new(pattern, wearer(pattern, body));
     let place = |id: &PointId| evaluation.point(*id).unwrap();
     points.iter().map(place).collect()
 }
 
 /// Area that a panel's outline encloses, less its holes, for a body [m2].
 pub fn area(pattern: &Pattern, body: &Measurements, panel: PanelId) -> f64 {
-    let evaluation = Evaluation::new(pattern, body);
+    let evaluation = Evaluation::new(pattern, wearer(pattern, body));
     let stage = evaluation.stage(panel, None).unwrap();
     let closed = stage.lines.iter().filter(|l| l.kind != LineKind::Internal);
     let edges = closed.flat_map(|line| &line.edges);

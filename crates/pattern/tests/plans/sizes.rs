@@ -132,7 +132,7 @@ fn a_length_stays_a_length_in_sizes_with_their_own() {
             true => 0.07,
             false => body.get("bust").unwrap() / 10.0,
         };
-        let evaluation = Evaluation::new(&pattern, &body);
+        let evaluation = Evaluation::new(&pattern, crate::wearer(&pattern, &body));
         let (found, power) = evaluation.variable(tenth).unwrap();
         assert!((found - value).abs() < 1e-12 && power == 1);
     }

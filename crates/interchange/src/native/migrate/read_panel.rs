@@ -1,8 +1,8 @@
 //! Reads one panel of a pattern file.
 
-use super::super::item::{Item, Object};
+use super::super::item::{FieldsOfKind, Item, Object};
 use super::super::json::Value;
-use super::super::words::{FACINGS, PARTS};
+use super::super::words::{FACINGS, PARTS, WORN};
 use super::document::{
     Along, Dart, DartShape, DartTip, Edge, EdgeCurve, InternalLine, LineSegment, Notch, Number,
     Panel, Pattern, Point, PointPlace, WornRule,
@@ -190,6 +190,7 @@ fn read_worn(reader: &mut Reader, item: &Item<'_>) -> Result<WornRule, FormatErr
         &["part", "facing", "level", "translation_m", "rotation_xyzw"],
         &mut reader.notes,
     )?;
+    fields.of_one_kind(&[], WORN)?;
     if let Some(translation) = fields.get("translation_m") {
         let translation: [Item<'_>; 3] = translation.exactly()?;
         let rotation: [Item<'_>; 4] = fields.need("rotation_xyzw")?.exactly()?;
@@ -215,6 +216,18 @@ fn read_worn(reader: &mut Reader, item: &Item<'_>) -> Result<WornRule, FormatErr
     })
 }
 
+/// Kinds of points, by the fields that tell them.
+const POINTS: &[FieldsOfKind<'_>] = &[
+    (1, &["edge", "at"]),
+    (1, &["at"]),
+    (1, &["crossing"]),
+    (1, &["mirror", "in"]),
+    (2, &["from", "offset"]),
+    (2, &["from", "angle", "distance"]),
+    (2, &["from", "toward", "distance"]),
+    (1, &["from", "to", "along", "aside"]),
+];
+
 /// The place of a point: `[x, y]` or an object.
 fn place(
     reader: &mut Reader,
@@ -237,6 +250,7 @@ fn place(
         ],
         &mut reader.notes,
     )?;
+    fields.of_one_kind(&["id"], POINTS)?;
     if let Some(edge) = fields.get("edge") {
         return Ok(PointPlace::OnEdge {
             edge: names.edge(&edge)?,
@@ -398,6 +412,7 @@ fn lists(
     for (name, item) in entries(fields, "notches")? {
         item.check_name(name)?;
         let fields = item.object(&["id", "edge", "at", "distance"], &mut reader.notes)?;
+        fields.of_one_kind(&[], &[(1, &["distance"]), (1, &["at"])])?;
         panel.notches.push(Notch {
             id: reader.ids.take(Kind::Notch, fields.get("id"), &item)?,
             name: name.to_owned(),
@@ -425,6 +440,7 @@ fn line(
     names: &Names<'_>,
 ) -> Result<InternalLine, FormatError> {
     let fields = item.object(&["id", "path", "segments"], &mut reader.notes)?;
+    fields.of_one_kind(&[], &[(1, &["path"]), (1, &["segments"])])?;
     let id = reader.ids.take(Kind::Line, fields.get("id"), item)?;
     let mut segments = Vec::new();
     if let Some(path) = fields.get("path") {
@@ -466,6 +482,12 @@ fn dart(
 ) -> Result<Dart, FormatError> {
     let known = &["id", "edge", "ends", "at", "width", "depth", "apex"];
     let fields = item.object(known, &mut reader.notes)?;
+    let kinds: &[FieldsOfKind<'_>] = &[
+        (1, &["ends"]),
+        (2, &["edge", "apex"]),
+        (1, &["edge", "depth"]),
+    ];
+    fields.of_one_kind(&[], kinds)?;
     let at = fields.need("at")?.plain()?.into();
     let width = fields.need("width")?.length(reader.unit)?.into();
     let shape = match fields.get("ends") {

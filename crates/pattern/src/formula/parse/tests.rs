@@ -27,6 +27,16 @@ fn refusals_name_column_and_remedy() {
         (".", 1, "not a number"),
         ("bust # 2", 6, "not expected"),
         ("größe", 3, "not expected"),
+        ("length(a.b..c.d)", 13, "another panel"),
+        ("length(a.b..?12.d)", 13, "another panel"),
+        ("length(a.b.apex..a.d)", 16, "number of the corner"),
+        ("length(a.b.knee.0..a.d)", 12, "is no corner"),
+        ("length(a.b.apex.0)", 18, ".. is missing"),
+        ("length(a..b)", 10, "not a name"),
+        ("? + 1", 1, "not the id"),
+        ("?99999999999", 1, "not the id"),
+        ("length(curve a)", 15, "dot is missing"),
+        ("measurement ?12", 13, "not a name"),
     ] {
         let error = read(text).unwrap_err();
         assert_eq!(error.column, column, "{text}: {error}");
@@ -56,6 +66,8 @@ fn what_is_printed_is_what_was_read() {
         "length( front.armhole ) + length('a b'.'c d'..'a b'.e)",
         "angle(front.a, front.b) + x(front.c)",
         "not (1 5/8in <= 2cm and 3 != 4) or ?47 = 1",
+        "length(?47) + length( seam ?9 ) + finished(curve ?12 )",
+        "length(?3.?4..?3.dart.mouth.0) + x(?47) + angle(?4) + angle(?4, sheet a.'b c') + measurement and 1",
     ] {
         let formula = read(text).unwrap();
         let printed = formula.text(&Names::default());

@@ -1,0 +1,290 @@
+//! Takes over what changed in a pattern: definitions of nodes, what they need, names.
+
+use super::Evaluation;
+use super::needs::Needs;
+use super::node::{Definition, Node, NodeState};
+use crate::{Panel, Pattern, Sheet};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+impl Evaluation {
+    /// Sets the definitions that changed, and gives their nodes.
+    pub(super) fn take_over(&mut self, before: &Pattern) -> Vec<u32> {
+        let pattern = self.pattern.clone();
+        let mut changed: Vec<u32> = Vec::new();
+        let same = |a: usize, b: usize, equal: &dyn Fn(usize) -> bool| a == b && (0..a).all(equal);
+        if !same(pattern.variables.len(), before.variables.len(), &|k| {
+            Arc::ptr_eq(&pattern.variables[k], &before.variables[k])
+        }) {
+            self.remove_missing(
+                before.variables.iter().map(|v| Node::Variable(v.id)),
+                pattern.variables.iter().map(|v| Node::Variable(v.id)),
+                &mut changed,
+            );
+            for variable in &pattern.variables {
+                self.define(
+                    Node::Variable(variable.id),
+                    Definition::Variable(variable.clone()),
+                    &mut changed,
+                );
+            }
+        }
+        if !same(pattern.sheets.len(), before.sheets.len(), &|k| {
+            Arc::ptr_eq(&pattern.sheets[k], &before.sheets[k])
+        }) {
+            let nodes = |sheets: &[Arc<Sheet>]| -> Vec<Node> {
+                let points = sheets
+                    .iter()
+                    .flat_map(|s| s.points.iter().map(|p| Node::Point(p.id)));
+                let curves = sheets
+                    .iter()
+                    .flat_map(|s| s.curves.iter().map(|c| Node::Curve(c.id)));
+                points.chain(curves).collect()
+            };
+            let old: HashSet<*const Sheet> = before.sheets.iter().map(Arc::as_ptr).collect();
+            let new: HashSet<*const Sheet> = pattern.sheets.iter().map(Arc::as_ptr).collect();
+            let gone: Vec<Arc<Sheet>> = before
+                .sheets
+                .iter()
+                .filter(|s| !new.contains(&Arc::as_ptr(s)))
+                .cloned()
+                .collect();
+            let come: Vec<Arc<Sheet>> = pattern
+                .sheets
+                .iter()
+                .filter(|s| !old.contains(&Arc::as_ptr(s)))
+                .cloned()
+                .collect();
+            self.remove_missing(
+                nodes(&gone).into_iter(),
+                nodes(&come).into_iter(),
+                &mut changed,
+            );
+            for sheet in &come {
+                for point in &sheet.points {
+                    self.define(
+                        Node::Point(point.id),
+                        Definition::Point(point.clone()),
+                        &mut changed,
+                    );
+                }
+                for curve in &sheet.curves {
+                    self.define(
+                        Node::Curve(curve.id),
+                        Definition::Curve(curve.clone()),
+                        &mut changed,
+                    );
+                }
+            }
+        }
+        if !same(pattern.panels.len(), before.panels.len(), &|k| {
+            Arc::ptr_eq(&pattern.panels[k], &before.panels[k])
+        }) {
+            let old: HashSet<*const Panel> = before.panels.iter().map(Arc::as_ptr).collect();
+            let new: HashSet<*const Panel> = pattern.panels.iter().map(Arc::as_ptr).collect();
+            let gone = before
+                .panels
+                .iter()
+                .filter(|p| !new.contains(&Arc::as_ptr(p)));
+            let come: Vec<_> = pattern
+                .panels
+                .iter()
+                .filter(|p| !old.contains(&Arc::as_ptr(p)))
+                .cloned()
+                .collect();
+            let gone: Vec<_> = gone.cloned().collect();
+            self.remove_missing(
+                gone.iter().flat_map(|panel| panel_nodes(panel)),
+                come.iter().flat_map(|panel| panel_nodes(panel)),
+                &mut changed,
+            );
+            for panel in &come {
+                self.define_panel(panel, &mut changed);
+            }
+            for panel in gone.iter().chain(&come) {
+                changed.extend(self.watchers.get(&panel.id).into_iter().flatten());
+            }
+        }
+        if !same(pattern.seams.len(), before.seams.len(), &|k| {
+            Arc::ptr_eq(&pattern.seams[k], &before.seams[k])
+        }) {
+            self.remove_missing(
+                before.seams.iter().map(|s| Node::Seam(s.id)),
+                pattern.seams.iter().map(|s| Node::Seam(s.id)),
+                &mut changed,
+            );
+            for seam in &pattern.seams {
+                self.define(
+                    Node::Seam(seam.id),
+                    Definition::Seam(seam.clone()),
+                    &mut changed,
+                );
+            }
+        }
+        changed
+    }
+
+    fn define_panel(&mut self, panel: &Arc<Panel>, changed: &mut Vec<u32>) {
+        for (j, line) in panel.lines.iter().enumerate() {
+            for (k, edge) in line.edges.iter().enumerate() {
+                let definition = Definition::Edge(panel.clone(), j, k);
+                self.define(Node::Edge(edge.id), definition, changed);
+            }
+        }
+        for step in 0..=panel.operations.len() {
+            let after = step.checked_sub(1).map(|k| panel.operations[k].id);
+            let definition = Definition::Stage(panel.clone(), step);
+            self.define(Node::Stage(panel.id, after), definition, changed);
+        }
+    }
+
+    /// The number of a node, which is made if it is not there.
+    pub(super) fn number_of(&mut self, node: Node) -> u32 {
+        if let Some(&k) = self.index.get(&node) {
+            return k;
+        }
+        let k = self.nodes.len() as u32;
+        self.index.insert(node, k);
+        self.nodes.push(NodeState {
+            node,
+            definition: match node {
+                Node::Word(_) => Definition::Word,
+                _ => Definition::Missing,
+            },
+            needs: Vec::new(),
+            needed_by: Vec::new(),
+            rank: 0,
+            cycle: None,
+            value: Err(k),
+            last_good: None,
+            changed: 0,
+            missing: false,
+            by_name: false,
+            diagnostics: Vec::new(),
+        });
+        k
+    }
+
+    fn define(&mut self, node: Node, definition: Definition, changed: &mut Vec<u32>) {
+        let k = self.number_of(node);
+        let state = &mut self.nodes[k as usize];
+        if !state.definition.is(&definition) {
+            state.definition = definition;
+            changed.push(k);
+        }
+    }
+
+    /// Marks parts that are gone.
+    fn remove_missing(
+        &mut self,
+        before: impl Iterator<Item = Node>,
+        now: impl Iterator<Item = Node>,
+        changed: &mut Vec<u32>,
+    ) {
+        let now: HashSet<Node> = now.collect();
+        for node in before.filter(|node| !now.contains(node)) {
+            self.define(node, Definition::Missing, changed);
+        }
+    }
+
+    /// Finds what a node needs. Whether that changed.
+    pub(super) fn set_needs(&mut self, k: u32) -> bool {
+        let definition = self.nodes[k as usize].definition.clone();
+        let found = Needs::of(&definition, &self.pattern, &self.names);
+        let (nodes, words, panels) = (found.nodes, found.words, found.panels);
+        self.nodes[k as usize].by_name = found.by_name;
+        let mut needs: Vec<u32> = nodes.iter().map(|&n| self.number_of(n)).collect();
+        if let Node::Word(word) = self.nodes[k as usize].node {
+            let variable = self.variable_called(&self.word_texts[word as usize]);
+            needs.extend(variable.map(|id| self.number_of(Node::Variable(id))));
+        }
+        for word in words {
+            let next = self.word_texts.len() as u32;
+            let number = *self.words.entry(word.clone()).or_insert(next);
+            if number == next {
+                self.word_texts.push(word);
+            }
+            needs.push(self.number_of(Node::Word(number)));
+        }
+        needs.sort_unstable();
+        needs.dedup();
+        for panel in panels {
+            self.watchers.entry(panel).or_default().insert(k);
+        }
+        if self.nodes[k as usize].needs == needs {
+            return false;
+        }
+        let old = std::mem::replace(&mut self.nodes[k as usize].needs, needs.clone());
+        for n in old {
+            self.nodes[n as usize].needed_by.retain(|&other| other != k);
+        }
+        for n in needs {
+            self.nodes[n as usize].needed_by.push(k);
+        }
+        true
+    }
+}
+
+fn panel_nodes(panel: &Panel) -> Vec<Node> {
+    let edges = panel.edges().map(|edge| Node::Edge(edge.id));
+    let after = panel.operations.iter().map(|o| Some(o.id));
+    let stages = std::iter::once(None).chain(after);
+    edges
+        .chain(stages.map(|after| Node::Stage(panel.id, after)))
+        .collect()
+}
+
+/// Whether parts came, went, changed places or were called something else: whether names lead
+/// elsewhere, or are told otherwise.
+pub(super) fn is_renamed(before: &Pattern, now: &Pattern) -> bool {
+    !alike(&before.sizes, &now.sizes, |_, _| false)
+        || !alike(&before.fabrics, &now.fabrics, |a, b| {
+            (a.id, &a.name) == (b.id, &b.name)
+        })
+        || !alike(&before.variables, &now.variables, |a, b| {
+            (a.id, &a.name) == (b.id, &b.name)
+        })
+        || !alike(&before.sheets, &now.sheets, |a, b| {
+            (a.id, &a.name) == (b.id, &b.name)
+                && alike(&a.points, &b.points, |a, b| {
+                    (a.id, &a.name) == (b.id, &b.name)
+                })
+                && alike(&a.curves, &b.curves, |a, b| {
+                    (a.id, &a.name) == (b.id, &b.name)
+                })
+        })
+        || !alike(&before.panels, &now.panels, is_called_alike)
+        || !alike(&before.seams, &now.seams, |a, b| {
+            (a.id, &a.name) == (b.id, &b.name)
+        })
+}
+
+/// Whether two lists have parts of the same names and ids in the same order.
+fn alike<T>(before: &[Arc<T>], now: &[Arc<T>], same: impl Fn(&T, &T) -> bool) -> bool {
+    let mut pairs = before.iter().zip(now);
+    before.len() == now.len() && pairs.all(|(a, b)| Arc::ptr_eq(a, b) || same(a, b))
+}
+
+fn is_called_alike(a: &Panel, b: &Panel) -> bool {
+    let lines = |panel: &Panel| -> Vec<_> {
+        let lines = panel.lines.iter();
+        lines.map(|line| (line.id, line.name.clone())).collect()
+    };
+    let edges = |panel: &Panel| -> Vec<_> {
+        let edges = panel.edges();
+        edges.map(|e| (e.id, e.name.clone(), e.ends)).collect()
+    };
+    let notches = |panel: &Panel| -> Vec<_> {
+        let notches = panel.notches.iter();
+        notches
+            .map(|notch| (notch.id, notch.name.clone()))
+            .collect()
+    };
+    (a.id, &a.name, a.sheet()) == (b.id, &b.name, b.sheet())
+        && lines(a) == lines(b)
+        && edges(a) == edges(b)
+        && notches(a) == notches(b)
+        && alike(&a.operations, &b.operations, |a, b| {
+            (a.id, &a.name) == (b.id, &b.name)
+        })
+}

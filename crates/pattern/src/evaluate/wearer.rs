@@ -1,0 +1,45 @@
+//! Whom a pattern is drafted for.
+
+use crate::{Size, SizeId};
+use std::sync::Arc;
+use toile_measure::Measurements;
+
+/// Whom a pattern is drafted for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wearer {
+    /// Their measurements [m], [rad].
+    pub measurements: Measurements,
+    /// The size of the pattern that is made, whose own values numbers take; nothing for a body that
+    /// is none of its sizes.
+    pub size: Option<SizeId>,
+}
+
+impl From<&Measurements> for Wearer {
+    fn from(measurements: &Measurements) -> Self {
+        Self {
+            measurements: measurements.clone(),
+            size: None,
+        }
+    }
+}
+
+impl From<&Size> for Wearer {
+    fn from(size: &Size) -> Self {
+        Self {
+            measurements: size.measurements.clone(),
+            size: Some(size.id),
+        }
+    }
+}
+
+impl From<&Arc<Size>> for Wearer {
+    fn from(size: &Arc<Size>) -> Self {
+        (&**size).into()
+    }
+}
+
+impl From<&Self> for Wearer {
+    fn from(wearer: &Self) -> Self {
+        wearer.clone()
+    }
+}
