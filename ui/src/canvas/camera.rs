@@ -14,6 +14,8 @@ pub struct ScreenPoint(pub Pos2);
 /// Smallest and largest enlargement [logical pixels per metre]: from a whole marker on the screen
 /// to a millimetre as wide as a finger.
 const SCALES: [f64; 2] = [20.0, 40_000.0];
+/// What is smaller is not enlarged to fill the view [m].
+const LEAST_FITTED: f64 = 0.1;
 /// Empty border when everything is shown [share of the view].
 const BORDER: f64 = 0.06;
 
@@ -29,8 +31,8 @@ pub struct TableCamera {
 impl Default for TableCamera {
     fn default() -> Self {
         Self {
-            centre: Vec2::zeros(),
-            scale: 500.0,
+            centre: Vec2::new(0.2, 0.25),
+            scale: 800.0,
         }
     }
 }
@@ -75,8 +77,8 @@ impl TableCamera {
     pub fn fit(&mut self, view: Rect, bounds: &Bounds2) {
         let size = bounds.max - bounds.min;
         let room = 1.0 - 2.0 * BORDER;
-        let scale = (f64::from(view.width()) * room / size.x.max(1e-3))
-            .min(f64::from(view.height()) * room / size.y.max(1e-3));
+        let scale = (f64::from(view.width()) * room / size.x.max(LEAST_FITTED))
+            .min(f64::from(view.height()) * room / size.y.max(LEAST_FITTED));
         if scale.is_finite() && scale > 0.0 {
             self.scale = scale.clamp(SCALES[0], SCALES[1]);
             self.centre = (bounds.min + bounds.max) * 0.5;

@@ -85,7 +85,15 @@ impl PatternView {
         self.selection = Selection::default();
         self.sheet = pattern.sheets.first().map(|sheet| sheet.id);
         self.take(Tool::Select);
-        self.fit();
+        // On an empty table there is nothing to fit: it is seen as at first.
+        match self.boards.bounds(&self.scene) {
+            Some(_) => self.fit(),
+            None => {
+                self.camera = TableCamera::default();
+                self.wants_fit = false;
+                self.fitted = None;
+            }
+        }
     }
 
     /// Takes a tool in hand.
