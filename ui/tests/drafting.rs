@@ -174,7 +174,8 @@ fn a_skirt_panel_with_a_dart_from_an_empty_window() {
     // Centre front lies on the fold.
     drafter.chord(Modifiers::SHIFT, Key::F);
     drafter.click(drafter.part("Edge left of draft"));
-    assert_eq!(drafter.pattern().panels[0].operations.len(), 2);
+    let count = drafter.pattern().panels[0].operations.len();
+    assert_eq!(count, 2, "{}", drafter.status());
     println!("{} actions", drafter.actions);
     assert!(drafter.actions <= 30, "{}", drafter.actions);
     assert!(

@@ -240,8 +240,9 @@ impl ToileApp {
             self.octave = octave;
             let draft = self.session.draft();
             let evaluation = self.session.evaluation();
-            self.view.follow(&evaluation, &draft);
-            if !self.session.is_previewing() {
+            let previews = self.session.is_previewing();
+            self.view.follow(&evaluation, &draft, previews);
+            if !previews {
                 self.base = evaluation;
                 self.follow_body();
             }

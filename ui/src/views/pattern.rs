@@ -33,6 +33,9 @@ pub struct PatternView {
     pub boards: Boards,
     /// What is drawn.
     pub scene: Scene,
+    /// The same as before the gesture that is shown: what the pointer finds must not move away
+    /// under it.
+    base: Scene,
     /// What is selected.
     pub selection: Selection,
     /// What is under the pointer.
@@ -59,6 +62,7 @@ impl Default for PatternView {
             camera: TableCamera::default(),
             boards: Boards::default(),
             scene: Scene::default(),
+            base: Scene::default(),
             selection: Selection::default(),
             hover: None,
             tool: Tool::Select,
@@ -116,10 +120,13 @@ impl PatternView {
         self.camera.zoom(view, middle, factor);
     }
 
-    /// Follows a change of the pattern or of the enlargement.
-    pub fn follow(&mut self, evaluation: &Evaluation, draft: &Draft) {
+    /// Follows a change of the pattern or of the enlargement; `previews` while it is a gesture's.
+    pub fn follow(&mut self, evaluation: &Evaluation, draft: &Draft, previews: bool) {
         let pattern = evaluation.pattern();
         self.scene.update(evaluation, draft, self.camera.octave());
+        if !previews {
+            self.base = self.scene.clone();
+        }
         self.boards.follow(pattern);
         self.selection.follow(pattern);
         if self.sheet.is_none_or(|id| pattern.sheet(id).is_none()) {
@@ -144,7 +151,7 @@ impl PatternView {
     /// Gives an event to the tool in hand.
     pub fn step(&mut self, event: &Event, evaluation: &Evaluation) -> Outcome {
         let open = open_sheets(&self.scene, &self.selection);
-        let (scene, boards) = (&self.scene, &self.boards);
+        let (scene, boards) = (&self.base, &self.boards);
         let inside = |corners| inside_box((scene, boards), &open, corners);
         let reading = Reading {
             evaluation,
@@ -362,7 +369,7 @@ impl PatternView {
     fn pointer_at(&self, view: Rect, at: Pos2, held: Held) -> Pointer {
         let table = self.camera.table(view, ScreenPoint(at)).0;
         let open = open_sheets(&self.scene, &self.selection);
-        let found = hits((&self.scene, &self.boards), &open, table, self.camera.scale);
+        let found = hits((&self.base, &self.boards), &open, table, self.camera.scale);
         let begun = match &self.state {
             State::Slots(state) => state.sheet(),
             State::Select(_) => None,
@@ -376,7 +383,7 @@ impl PatternView {
             table,
             sheet,
             at,
-            snaps: snaps(&self.scene, sheet, at, self.camera.scale),
+            snaps: snaps(&self.base, sheet, at, self.camera.scale),
             hits: found,
             pixel: 1.0 / self.camera.scale,
             held,
