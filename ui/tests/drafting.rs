@@ -37,7 +37,7 @@ impl Drafter {
 
     fn evaluation(&self) -> Evaluation {
         let project = self.window.state().session().project();
-        Evaluation::new(&project.pattern, &project.drafted_to())
+        Evaluation::new(&project.pattern, project.drafted_to())
     }
 
     /// Presses a button or an entry of a menu that is open.

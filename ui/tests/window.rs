@@ -105,7 +105,7 @@ fn point_at(window: &Window, panel: &str, point: &str) -> toile_geometry::Vec2 {
     let panel = project.pattern.panel_named(panel).unwrap();
     let sheet = project.pattern.sheet(panel.sheet()).unwrap();
     let id = sheet.point_named(point).unwrap().id;
-    let evaluation = Evaluation::new(&project.pattern, &project.drafted_to());
+    let evaluation = Evaluation::new(&project.pattern, project.drafted_to());
     evaluation.point(id).unwrap()
 }
 
