@@ -38,7 +38,10 @@ const LAYERS: [(&str, &[&str]); 15] = [
     ("toile-interchange", lowest(9)),
     ("toile-session", lowest(10)),
     ("toile", &["geometry", "measure", "session", "lab"]),
-    ("toile-ui", &["geometry", "pattern", "session", "picture"]),
+    (
+        "toile-ui",
+        &["geometry", "measure", "pattern", "session", "picture"],
+    ),
     ("toile-tests", lowest(11)),
     ("toile-lab", lowest(11)),
 ];

@@ -1,7 +1,9 @@
 //! Text fields: what is typed into one that was just entered takes the place of what stands there.
 
+use crate::theme::Palette;
 use egui::text::{CCursor, CCursorRange};
-use egui::{Response, TextEdit, Ui};
+use egui::{Color32, Response, RichText, TextEdit, Ui};
+use std::collections::HashMap;
 
 /// A field for a line of text as wide as there is room.
 pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
@@ -24,4 +26,80 @@ pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
         state.store(ui.ctx(), id);
     }
     response
+}
+
+/// Texts that are being typed into fields.
+#[derive(Default)]
+pub struct TypedTexts {
+    typed: HashMap<egui::Id, Typed>,
+}
+
+/// A text that is being typed, and what is wrong with it.
+#[derive(Default)]
+struct Typed {
+    text: String,
+    fault: String,
+}
+
+/// What a text field came to.
+pub enum Entered {
+    /// Nothing, or not yet.
+    Nothing,
+    /// This was entered.
+    Text(String),
+    /// It was left.
+    Left,
+}
+
+impl TypedTexts {
+    /// A text field that keeps what is typed until it is entered or left.
+    pub fn field(
+        &mut self,
+        ui: &mut Ui,
+        (id, label): (egui::Id, egui::Id),
+        shown: &str,
+        preview: impl FnOnce(&str) -> Result<String, String>,
+    ) -> Entered {
+        let mut text = self
+            .typed
+            .get(&id)
+            .map_or(shown, |typed| &typed.text)
+            .to_owned();
+        let response = text_field(ui, id, &mut text).labelled_by(label);
+        if response.gained_focus() || response.changed() {
+            let typed = self.typed.entry(id).or_default();
+            typed.text.clone_from(&text);
+            typed.fault.clear();
+        }
+        let mut entered = Entered::Nothing;
+        if response.lost_focus() {
+            let escaped = ui.input(|input| input.key_pressed(egui::Key::Escape));
+            let is_new = text.trim() != shown;
+            self.typed.remove(&id);
+            entered = match escaped || !is_new {
+                true => Entered::Left,
+                false => Entered::Text(text.trim().to_owned()),
+            };
+        }
+        if let Some(typed) = self.typed.get(&id) {
+            let palette = Palette::of(ui.ctx());
+            let (words, colour): (String, Color32) = match typed.fault.is_empty() {
+                false => (typed.fault.clone(), palette.fault),
+                true if typed.text.trim() == shown => (String::new(), palette.ink_soft),
+                true => match preview(&typed.text) {
+                    Ok(words) => (words, palette.ink_soft),
+                    Err(words) => (words, palette.fault),
+                },
+            };
+            if !words.is_empty() {
+                ui.label(RichText::new(words).small().color(colour));
+            }
+        }
+        entered
+    }
+
+    /// Keeps a text in its field with what is wrong with it.
+    pub fn refuse(&mut self, id: egui::Id, text: String, fault: String) {
+        self.typed.insert(id, Typed { text, fault });
+    }
 }

@@ -2,92 +2,16 @@
 
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;
-use crate::fields::text_field;
+use crate::fields::Entered;
 use crate::theme::Palette;
 use crate::tools::number;
-use egui::{Color32, ComboBox, Grid, RichText, Ui};
+use egui::{ComboBox, Grid, RichText, Ui};
 use std::collections::HashMap;
 use std::sync::Arc;
 use toile_pattern::plan::{self, NumberEntry};
 use toile_pattern::{
     Corner, Edit, EditError, Entity, NotchKind, Number, Panel, PanelId, PartId, Want,
 };
-
-/// Texts that are being typed into fields.
-#[derive(Default)]
-pub struct Inspector {
-    typed: HashMap<egui::Id, Typed>,
-}
-
-/// A text that is being typed, and what is wrong with it.
-#[derive(Default)]
-struct Typed {
-    text: String,
-    fault: String,
-}
-
-/// What a text field came to.
-pub enum Entered {
-    /// Nothing, or not yet.
-    Nothing,
-    /// This was entered.
-    Text(String),
-    /// It was left.
-    Left,
-}
-
-impl Inspector {
-    /// A text field that keeps what is typed until it is entered or left.
-    pub fn field(
-        &mut self,
-        ui: &mut Ui,
-        (id, label): (egui::Id, egui::Id),
-        shown: &str,
-        preview: impl FnOnce(&str) -> Result<String, String>,
-    ) -> Entered {
-        let mut text = self
-            .typed
-            .get(&id)
-            .map_or(shown, |typed| &typed.text)
-            .to_owned();
-        let response = text_field(ui, id, &mut text).labelled_by(label);
-        if response.gained_focus() || response.changed() {
-            let typed = self.typed.entry(id).or_default();
-            typed.text.clone_from(&text);
-            typed.fault.clear();
-        }
-        let mut entered = Entered::Nothing;
-        if response.lost_focus() {
-            let escaped = ui.input(|input| input.key_pressed(egui::Key::Escape));
-            let is_new = text.trim() != shown;
-            self.typed.remove(&id);
-            entered = match escaped || !is_new {
-                true => Entered::Left,
-                false => Entered::Text(text.trim().to_owned()),
-            };
-        }
-        if let Some(typed) = self.typed.get(&id) {
-            let palette = Palette::of(ui.ctx());
-            let (words, colour): (String, Color32) = match typed.fault.is_empty() {
-                false => (typed.fault.clone(), palette.fault),
-                true if typed.text.trim() == shown => (String::new(), palette.ink_soft),
-                true => match preview(&typed.text) {
-                    Ok(words) => (words, palette.ink_soft),
-                    Err(words) => (words, palette.fault),
-                },
-            };
-            if !words.is_empty() {
-                ui.label(RichText::new(words).small().color(colour));
-            }
-        }
-        entered
-    }
-
-    /// Keeps a text in its field with what is wrong with it.
-    pub fn refuse(&mut self, id: egui::Id, text: String, fault: String) {
-        self.typed.insert(id, Typed { text, fault });
-    }
-}
 
 impl ToileApp {
     pub(crate) fn show_inspector(&mut self, ui: &mut Ui) {
@@ -112,7 +36,7 @@ impl ToileApp {
         let id = egui::Id::unique("pattern name");
         let name = pattern.name.clone();
         if let Entered::Text(text) = self
-            .inspector
+            .typed
             .field(ui, (id, label), &name, |_| Ok(String::new()))
         {
             let planned = plan::rename_pattern(&self.base, &text);
@@ -161,7 +85,7 @@ impl ToileApp {
             let label = ui.label("Name").id;
             let id = egui::Id::unique(("name", item));
             let entered = self
-                .inspector
+                .typed
                 .field(ui, (id, label), &name, |_| Ok(String::new()));
             if let Entered::Text(text) = entered {
                 let planned = plan::rename(&self.base, item.part(), &text);
@@ -240,7 +164,7 @@ impl ToileApp {
             let value = base.number_or_fault(&found, want)?;
             Ok(format!("= {}", number::show(value, want, unit)))
         };
-        let entered = self.inspector.field(ui, (id, label), &shown, value);
+        let entered = self.typed.field(ui, (id, label), &shown, value);
         if let Entered::Text(text) = entered {
             let planned = match text.is_empty() {
                 true => plan::clear_number(&self.base, &entry.place).map_err(|e| e.to_string()),
@@ -253,7 +177,7 @@ impl ToileApp {
                 Ok(edits) => {
                     self.edit(Ok(edits), &format!("Set {}", entry.label));
                 }
-                Err(fault) => self.inspector.refuse(id, text, fault),
+                Err(fault) => self.typed.refuse(id, text, fault),
             }
         }
     }
@@ -269,7 +193,7 @@ impl ToileApp {
             Ok(edits) => {
                 self.edit(Ok(edits), label);
             }
-            Err(error) => self.inspector.refuse(id, text, error.to_string()),
+            Err(error) => self.typed.refuse(id, text, error.to_string()),
         }
     }
 
@@ -484,7 +408,7 @@ impl ToileApp {
         let label = ui.label("Allowance of all").id;
         let id = egui::Id::unique("allowance of all");
         let base = self.base.clone();
-        let entered = self.inspector.field(ui, (id, label), "", |text| {
+        let entered = self.typed.field(ui, (id, label), "", |text| {
             number::parse(text, Want::Length, &base).map(|_| String::new())
         });
         if let Entered::Text(text) = entered {
@@ -507,7 +431,7 @@ impl ToileApp {
                         .collect();
                     self.edit(Ok(edits), "Set allowance");
                 }
-                Err(fault) => self.inspector.refuse(id, text, fault),
+                Err(fault) => self.typed.refuse(id, text, fault),
             }
         }
     }

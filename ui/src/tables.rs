@@ -1,29 +1,14 @@
 //! Tables under the pattern: measurements by size, variables, the history.
 
 use crate::app::ToileApp;
-use crate::inspector::Entered;
+use crate::app::shows::Tab;
+use crate::fields::Entered;
 use crate::theme::Palette;
 use crate::tools::number;
 use egui::{Grid, Id, RichText, ScrollArea, Ui};
 use toile_measure::{CATALOGUE, Measurements, UnitKind, definition};
 use toile_pattern::{Number, SizeId, Want, plan};
 use toile_session::Command;
-
-/// Which table is on show, and what is typed into it.
-#[derive(Default)]
-pub struct Tables {
-    tab: Tab,
-    new_variable: String,
-    new_measurement: String,
-}
-
-#[derive(Clone, Copy, Default, PartialEq, Eq)]
-enum Tab {
-    #[default]
-    Measurements,
-    Variables,
-    History,
-}
 
 /// Measurements that a size begins with.
 const FIRST: &[&str] = &[
@@ -143,7 +128,7 @@ impl ToileApp {
             let field = Id::unique(("size name", id));
             let label = ui.label("Name").id;
             let entered = self
-                .inspector
+                .typed
                 .field(ui, (field, label), name, |_| Ok(String::new()));
             if let Entered::Text(text) = entered {
                 let planned = plan::rename(&self.base, id.into(), &text);
@@ -177,7 +162,7 @@ impl ToileApp {
         });
         ui.scope(|ui| {
             ui.set_width(84.0);
-            let entered = self.inspector.field(ui, (id, label), &shown, |text| {
+            let entered = self.typed.field(ui, (id, label), &shown, |text| {
                 number::parse(text, want, &base).map(|_| String::new())
             });
             let Entered::Text(text) = entered else {
@@ -196,7 +181,7 @@ impl ToileApp {
                 Ok(edits) => {
                     self.edit(Ok(edits), "Set measurement");
                 }
-                Err(fault) => self.inspector.refuse(id, text, fault),
+                Err(fault) => self.typed.refuse(id, text, fault),
             }
         });
     }
@@ -260,7 +245,7 @@ impl ToileApp {
                     ui.scope(|ui| {
                         ui.set_width(150.0);
                         let entered = self
-                            .inspector
+                            .typed
                             .field(ui, (field, label), name, |_| Ok(String::new()));
                         if let Entered::Text(text) = entered {
                             let planned = plan::rename(&self.base, variable.id.into(), &text);

@@ -350,7 +350,7 @@ fn spans_on<'t>(
         if cut_high - cut_low < 1e-9 {
             continue;
         }
-        let local = |f: f64| ((f - track.from) / (track.to - track.from)).clamp(0.0, 1.0);
+        let local = |f: f64| whole_at_ends((f - track.from) / (track.to - track.from));
         let (start, end) = match from < to {
             true => (cut_low, cut_high),
             false => (cut_high, cut_low),
@@ -370,6 +370,15 @@ fn spans_on<'t>(
         parts.reverse();
     }
     parts.into_iter().map(|(_, span)| span).collect()
+}
+
+/// A share of an edge; one that differs from an end by rounding alone is that end.
+fn whole_at_ends(share: f64) -> f64 {
+    match share {
+        _ if share < 1e-12 => 0.0,
+        _ if share > 1.0 - 1e-12 => 1.0,
+        _ => share,
+    }
 }
 
 fn piece(id: PieceId, name: String, stage: &Stage, (fabric, worn): (usize, Worn)) -> Piece {

@@ -10,62 +10,6 @@ use toile_geometry::Vec2;
 use toile_measure::Measurements;
 use toile_pattern::*;
 
-/// The sample with a curved side, a notch, a dart, a fold of its back, and formulas.
-fn rich_sample() -> Pattern {
-    let mut pattern = sample();
-    bend(
-        &mut pattern,
-        0,
-        "right",
-        CurveRule::Arc { bulge: 0.2.into() },
-    );
-    let notch = Notch {
-        id: pattern.ids.take(),
-        name: "notch".into(),
-        line: outline(&pattern, "front"),
-        at: Mark::between(ends(&pattern, "front", "right"), 0.75),
-        kind: NotchKind::V,
-    };
-    alter(&mut pattern, 0, |panel| panel.notches.push(notch));
-    let kind = dart(&pattern, "top", 0.5, 0.02, Apex::Depth(0.1.into()));
-    let by = put_operation(&mut pattern, 0, "dart", kind);
-    let role = Role::Mouth;
-    let beside = Notch {
-        id: pattern.ids.take(),
-        name: "beside the dart".into(),
-        line: outline(&pattern, "front"),
-        at: Mark::Along {
-            from: Name::Made { by, role, index: 1 },
-            distance: formula("bust / 100"),
-        },
-        kind: NotchKind::T,
-    };
-    alter(&mut pattern, 0, |panel| panel.notches.push(beside));
-    let number = formula_in(&pattern, "length(front.right) / 10 + y(front.p2) * 0");
-    put_variable(&mut pattern, "ease", number);
-    let ease = formula_in(&pattern, "ease");
-    alter_seam(&mut pattern, 0, |seam| seam.ease = ease);
-    for (name, text) in [
-        ("waiting", "late + 1cm"),
-        (
-            "other",
-            "length(back.'late edge') + length('late edge') + x(front.late)",
-        ),
-        ("third", "length(right) + if(0, x(front.lat), 1cm)"),
-        ("fourth", "waiting * 2 + ears"),
-    ] {
-        let number = formula_in(&pattern, text);
-        put_variable(&mut pattern, name, number);
-    }
-    let id = pattern.ids.take();
-    pattern.sizes.push(Arc::new(Size {
-        id,
-        name: "M".into(),
-        measurements: Measurements::adult(),
-    }));
-    pattern
-}
-
 fn put(entity: Entity) -> Edit {
     Edit::Put(entity)
 }

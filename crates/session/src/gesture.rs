@@ -1,18 +1,8 @@
 //! Gestures: edits that are shown while a drag or a tool goes on, and taken over when it ends.
 
-use crate::derived::Derived;
+use crate::session::Gesture;
 use crate::{Command, Event, Project, Session, SessionError, Silent};
 use toile_pattern::Edit;
-
-/// Edits that are shown and not taken over yet.
-#[derive(Clone)]
-pub(crate) struct Gesture {
-    /// The project before it.
-    base: Project,
-    /// What was derived from that.
-    derived: Derived,
-    edits: Vec<Edit>,
-}
 
 impl Session {
     /// Shows what edits of the project's pattern would give. They replace what the present gesture

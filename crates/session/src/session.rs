@@ -1,7 +1,6 @@
 //! The session: the project, what is derived from it, its history and its journal.
 
 use crate::derived::Derived;
-use crate::gesture::Gesture;
 use crate::history::History;
 use crate::journal::Journal;
 use crate::timing::Timing;
@@ -11,7 +10,17 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 use toile_body::Mannequin;
-use toile_pattern::{Diagnostic, Draft, Evaluation, Pattern};
+use toile_pattern::{Diagnostic, Draft, Edit, Evaluation, Pattern};
+
+/// Edits that are shown and not taken over yet.
+#[derive(Clone)]
+pub(crate) struct Gesture {
+    /// The project before it.
+    pub base: Project,
+    /// What was derived from that.
+    pub derived: Derived,
+    pub edits: Vec<Edit>,
+}
 
 /// The application without a window.
 #[derive(Default)]

@@ -1,7 +1,7 @@
 //! Dialogs: what must be answered before something is done.
 
 use super::ToileApp;
-use super::files::FileChoice;
+use super::file_choice::FileChoice;
 use crate::fields::text_field;
 use crate::theme::Palette;
 use egui::{Button, Context, Key, RichText, ScrollArea, Ui, ViewportCommand};

@@ -4,6 +4,7 @@ mod act;
 mod bars;
 pub mod command;
 mod dialogs;
+mod file_choice;
 mod files;
 mod findings;
 mod garment_side;
@@ -11,11 +12,11 @@ mod making;
 mod notice;
 mod palette;
 mod preferences;
+pub mod shows;
 mod welcome;
 
+use crate::fields::TypedTexts;
 use crate::gpu::solid::first_frame;
-use crate::inspector;
-use crate::tables::Tables;
 use crate::theme;
 use crate::views::garment::GarmentView;
 use crate::views::pattern::PatternView;
@@ -26,6 +27,7 @@ use egui::{Panel, Ui};
 use making::{Making, News};
 use notice::Notice;
 use preferences::Preferences;
+use shows::{Shows, Tables};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -51,7 +53,7 @@ pub struct ToileApp {
     pub(crate) notice: Notice,
     pub(crate) dialog: Option<Dialog>,
     pub(crate) tables: Tables,
-    pub(crate) inspector: inspector::Inspector,
+    pub(crate) typed: TypedTexts,
     pub(crate) shows: Shows,
     /// Why the file that was asked for is not open.
     pub(crate) refusal: Option<String>,
@@ -68,17 +70,6 @@ pub struct ToileApp {
     checked: Option<u64>,
     body_of: Option<Project>,
     title: String,
-}
-
-/// Parts of the window that can be hidden.
-#[derive(Clone, Copy, Debug)]
-pub struct Shows {
-    /// The 3D view.
-    pub garment: bool,
-    /// Measurements, variables, sizes, history.
-    pub tables: bool,
-    /// What is found wrong.
-    pub findings: bool,
 }
 
 /// What a window begins with.
@@ -107,7 +98,7 @@ impl ToileApp {
             notice: Notice::default(),
             dialog: None,
             tables: Tables::default(),
-            inspector: inspector::Inspector::default(),
+            typed: TypedTexts::default(),
             shows: Shows {
                 garment: true,
                 tables: false,
