@@ -93,7 +93,7 @@ fn the_drawing_is_true_to_size_and_says_what_it_is() {
     assert!(text.contains("M10 380L10 680L510 680L510 380Z"), "{text}");
     // Its middle is that of the seam line's box across the fabric; it stands above the words.
     assert!(text.contains("class=\"grain\" d=\"M169.375 509L370.625 509"));
-    assert!(text.contains("class=\"notch\" d=\"M210 680L210 675\""));
+    assert!(text.contains("class=\"notch\" d=\"M210 680L210 674\""));
 }
 
 #[test]
