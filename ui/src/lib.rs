@@ -14,7 +14,8 @@ mod theme;
 mod tools;
 mod views;
 
-pub use app::command::{COMMANDS, Menu, UiCommand};
+pub use app::command::{Menu, UiCommand};
+pub use app::command_table::{COMMANDS, named};
 pub use app::{Beginning, ToileApp};
 pub use canvas::selection::{Item, Selection};
 pub use views::pattern::PatternView;

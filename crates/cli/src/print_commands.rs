@@ -4,13 +4,16 @@ use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use crate::print_arguments::Print;
 use serde_json::{Value, json};
-use toile_session::{CutList, Printed, print_pattern};
+use toile_session::{CutList, Printed, Project, print_pattern};
 
 /// Pieces on paper.
 pub fn print(print: &Print, output: &Output) -> Result<Value, Failure> {
     let options = print.options();
-    let paths = (&*print.pattern, &*print.out);
-    let printed = print_pattern(paths, &options, &mut Bar::stopped_by_a_signal())
+    let printed = Project::open(&print.pattern)
+        .and_then(|project| {
+            let bar = &mut Bar::stopped_by_a_signal();
+            print_pattern((&project, &print.out), &options, bar)
+        })
         .map_err(|error| Failure::from(error).about(&print.pattern))?;
     for note in &printed.notes {
         output.warn(format!("note: {note}"));

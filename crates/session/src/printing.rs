@@ -1,6 +1,5 @@
 //! Pieces printed on paper: laid out to save it, in one size or all.
 
-use crate::open::open_pattern;
 use crate::tools::{check_ending, sound_draft};
 use crate::watcher::tell;
 use crate::{Project, SessionError, Watcher};
@@ -97,13 +96,13 @@ pub struct Printed {
 /// The pattern cannot be read or cut; a size, a piece or the scale is none; the file cannot be
 /// written.
 pub fn print_pattern(
-    (path, to): (&Path, &Path),
+    (project, to): (&Project, &Path),
     options: &PrintOptions,
     watcher: &mut dyn Watcher,
 ) -> Result<Printed, SessionError> {
     let remedy = "prints are written as NAME.pdf or NAME.svg";
     check_ending(to, &[".pdf", ".svg"], remedy)?;
-    let (job, printed) = print_job(path, options, watcher)?;
+    let (job, printed) = print_job(project, options, watcher)?;
     tell(watcher, "writing", 0.95, "")?;
     let is_svg = to.to_string_lossy().to_lowercase().ends_with(".svg");
     let bytes = match is_svg {
@@ -126,31 +125,31 @@ fn unprintable(error: FormatError) -> SessionError {
 /// # Errors
 /// As [`print_pattern`], but for the file.
 pub fn print_job(
-    path: &Path,
+    project: &Project,
     options: &PrintOptions,
     watcher: &mut dyn Watcher,
 ) -> Result<(PrintJob, Printed), SessionError> {
     check_numbers(options)?;
     tell(watcher, "drafting", 0.0, "")?;
-    let pattern = Arc::new(open_pattern(path)?.pattern);
-    let sizes = drafted(&pattern, path, &options.sizes)?;
-    check_pieces(&pattern, &options.pieces)?;
+    let pattern = &project.pattern;
+    let sizes = drafted(project, &options.sizes)?;
+    check_pieces(pattern, &options.pieces)?;
     let cuts = sizes
         .iter()
-        .map(|size| cut_pieces(&pattern, size, options))
+        .map(|size| cut_pieces(pattern, size, options))
         .collect::<Result<Vec<_>, _>>()?;
     let layers: Vec<PrintLayer> = sizes.iter().map(|size| size.layer()).collect();
-    let pieces = grouped(&pattern, &cuts, &layers);
+    let pieces = grouped(pattern, &cuts, &layers);
     if pieces.is_empty() {
         return Err(SessionError::Nothing {
             action: "print",
             hint: "draw a panel first",
         });
     }
-    let of = (&*pattern, &sizes[0].draft);
+    let of = (&**pattern, &sizes[0].draft);
     let whole: Vec<CutPiece> = cuts[0].iter().map(|cut| cut.whole.clone()).collect();
     let list = cut_list(of, &whole);
-    let notes = whole.iter().flat_map(|cut| cut.diagnostics(&pattern));
+    let notes = whole.iter().flat_map(|cut| cut.diagnostics(pattern));
     let notes = notes
         .filter(|found| found.severity > Severity::Note)
         .map(|found| format!("{}; {}", found.message, found.hint))
@@ -216,11 +215,8 @@ impl SizeDraft {
     }
 }
 
-fn drafted(
-    pattern: &Arc<Pattern>,
-    path: &Path,
-    sizes: &PrintSizes,
-) -> Result<Vec<SizeDraft>, SessionError> {
+fn drafted(project: &Project, sizes: &PrintSizes) -> Result<Vec<SizeDraft>, SessionError> {
+    let pattern = &project.pattern;
     let names: Vec<Option<String>> = match sizes {
         PrintSizes::Base => vec![None],
         PrintSizes::Named(name) => vec![Some(name.clone())],
@@ -233,10 +229,8 @@ fn drafted(
     }
     let each = names.into_iter().map(|size| {
         let project = Project {
-            pattern: pattern.clone(),
-            source: Some(path.to_owned()),
             size,
-            ..Project::default()
+            ..project.clone()
         };
         project.check_size()?;
         Ok(SizeDraft {

@@ -1,8 +1,9 @@
 //! The one ground state.
 
 use crate::choice::sample_of;
+use crate::open::open_pattern;
 use crate::{BodyChoice, FabricChoice, Quality, SessionError};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_body::Figure;
 use toile_measure::Measurements;
@@ -43,6 +44,18 @@ pub struct WornGarment {
 }
 
 impl Project {
+    /// A project of a pattern that is read from a file, as drafted.
+    ///
+    /// # Errors
+    /// The file is missing, may not be read, or holds no pattern.
+    pub fn open(path: &Path) -> Result<Self, SessionError> {
+        Ok(Self {
+            pattern: Arc::new(open_pattern(path)?.pattern),
+            source: Some(path.to_owned()),
+            ..Self::default()
+        })
+    }
+
     /// The project with edits made in its pattern, all or none.
     pub(crate) fn edited(&self, edits: &[Edit]) -> Result<Self, EditError> {
         let mut pattern = (*self.pattern).clone();

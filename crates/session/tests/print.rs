@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use toile_geometry::{EdgeTree, Polygon, Vec2};
 use toile_interchange::PrintJob;
 use toile_session::{
-    Lines, Paper, PrintOptions, PrintSizes, SessionError, Silent, print_job, print_pattern,
+    Lines, Paper, PrintOptions, PrintSizes, Project, SessionError, Silent, print_job, print_pattern,
 };
 
 const SAIL: &str = r#"{
@@ -40,8 +40,12 @@ fn pattern(name: &str) -> PathBuf {
     folder.join(format!("{name}.toile.json"))
 }
 
+fn project(name: &str) -> Project {
+    Project::open(&pattern(name)).unwrap()
+}
+
 fn job(name: &str, options: &PrintOptions) -> PrintJob {
-    print_job(&pattern(name), options, &mut Silent).unwrap().0
+    print_job(&project(name), options, &mut Silent).unwrap().0
 }
 
 fn is_wide(line: &Line, width: f64) -> bool {
@@ -312,7 +316,7 @@ fn a_print_says_how_far_it_is_and_stops() {
         shares.push(share);
         ControlFlow::Continue(())
     };
-    let paths = (&*pattern("t-shirt"), &*to);
+    let paths = (&project("t-shirt"), &*to);
     let options = PrintOptions::default();
     let printed = print_pattern(paths, &options, &mut follow).unwrap();
     assert!(
@@ -338,7 +342,7 @@ fn a_print_says_how_far_it_is_and_stops() {
 #[test]
 fn what_is_not_there_is_refused_by_its_name() {
     let refused = |options: PrintOptions, said: &str| {
-        let Err(error) = print_job(&pattern("t-shirt"), &options, &mut Silent) else {
+        let Err(error) = print_job(&project("t-shirt"), &options, &mut Silent) else {
             panic!("not refused: {said}");
         };
         assert!(
@@ -379,11 +383,11 @@ fn what_is_not_there_is_refused_by_its_name() {
     let folder = tempfile::tempdir().unwrap();
     let sail = folder.path().join("sail.toile.json");
     std::fs::write(&sail, SAIL).unwrap();
-    let Err(error) = print_job(&sail, &usual(), &mut Silent) else {
+    let Err(error) = print_job(&Project::open(&sail).unwrap(), &usual(), &mut Silent) else {
         panic!("a sail is printed on sheets of A4");
     };
     assert!(error.to_string().contains("more than 500"), "{error}");
-    let paths = (&*pattern("t-shirt"), Path::new("shirt.ps"));
+    let paths = (&project("t-shirt"), Path::new("shirt.ps"));
     let error = print_pattern(paths, &usual(), &mut Silent).unwrap_err();
     assert!(
         error.to_string().contains("NAME.pdf or NAME.svg"),

@@ -55,6 +55,7 @@ impl ToileApp {
     }
 
     pub(crate) fn deselect(&mut self) {
+        self.stop_printing();
         match self.view.tool {
             Tool::Select => {
                 let outcome = self.view.step(&Event::Escape, &self.base);
@@ -86,8 +87,13 @@ impl ToileApp {
             }
             Shown::Edits(edits) => self.preview(&edits),
         }
-        if let Some((edits, label)) = outcome.commit {
-            self.edit(Ok(edits), &label);
+        match outcome.commit {
+            // A tool that only tells something.
+            Some((edits, words)) if edits.is_empty() => self.notice = Notice::news(words),
+            Some((edits, label)) => {
+                self.edit(Ok(edits), &label);
+            }
+            None => {}
         }
         if let Some(label) = outcome.commit_shown {
             self.commit(&label);
@@ -187,9 +193,11 @@ impl ToileApp {
         self.wants_theme = true;
     }
 
-    /// Moves the selected points by the arrow keys.
+    /// Moves what is selected by the arrow keys.
     pub(crate) fn nudge(&mut self, context: &egui::Context) {
-        let points = self.view.selection.points();
+        let items = self.view.selection.items().iter();
+        let parts: Vec<PartId> = items.map(|item| item.part()).collect();
+        let points = plan::points_of(&self.base, &parts);
         if points.is_empty() || self.view.is_typing() || self.types(context) {
             return;
         }
@@ -214,25 +222,13 @@ impl ToileApp {
         if way == Vec2::zeros() {
             return;
         }
-        let mut edits = Vec::new();
-        for point in &points {
-            let Some(at) = self.base.point(*point) else {
-                continue;
-            };
-            match plan::move_point(&self.base, *point, at + way) {
-                Ok(found) => edits.extend(found),
-                Err(error) if points.len() == 1 => {
-                    self.notice = Notice::fault(error.to_string());
-                    return;
-                }
-                Err(_) => {}
-            }
-        }
+        let map = plan::Affine::translation(way);
+        let moved = plan::transform_points(&self.base, &points, &map);
         let label = if points.len() == 1 {
             "Move point"
         } else {
             "Move points"
         };
-        self.edit(Ok(edits), label);
+        self.edit(moved.map(|moved| moved.edits), label);
     }
 }

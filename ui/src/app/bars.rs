@@ -1,7 +1,8 @@
 //! Menu bar, tool bar, status line.
 
 use super::ToileApp;
-use super::command::{COMMANDS, Menu, UiCommand};
+use super::command::{Menu, UiCommand};
+use super::command_table::{COMMANDS, named};
 use super::findings::finding_colour;
 use super::notice::Tone;
 use crate::canvas::selection::Item;
@@ -18,6 +19,7 @@ pub const TOOLS: f32 = 158.0;
 const TOOL_BUTTONS: &[&[&str]] = &[
     &["Select"],
     &["Point", "Line", "Curve", "Arc", "Polygon", "Rectangle"],
+    &["Move", "Turn", "Mirror", "Scale", "Measure"],
     &["Point along", "Perpendicular", "Mirror point"],
     &[
         "Trace",
@@ -60,7 +62,7 @@ impl ToileApp {
 
     /// A button of the menu bar; those of the history tell the step.
     fn quick_button(&mut self, ui: &mut Ui, name: &str) {
-        let Some(command) = UiCommand::named(name) else {
+        let Some(command) = named(name) else {
             return;
         };
         let step = match name {
@@ -80,7 +82,7 @@ impl ToileApp {
                     ui.separator();
                 }
                 for name in *group {
-                    let Some(command) = UiCommand::named(name) else {
+                    let Some(command) = named(name) else {
                         continue;
                     };
                     let in_hand = self.tool_name() == *name;
@@ -232,6 +234,34 @@ impl ToileApp {
         match seams.is_empty() {
             true => "not sewn".into(),
             false => format!("sewn by {}", seams.join(", ")),
+        }
+    }
+}
+
+impl ToileApp {
+    /// A button for a command, greyed while it cannot be done.
+    pub(crate) fn command_button(&mut self, ui: &mut egui::Ui, name: &str) {
+        if let Some(command) = named(name) {
+            let button = egui::Button::new(command.name);
+            self.command_widget(ui, command, button, None);
+        }
+    }
+
+    /// The same with a button and words of one's own.
+    pub(crate) fn command_widget(
+        &mut self,
+        ui: &mut egui::Ui,
+        command: &'static UiCommand,
+        button: egui::Button<'_>,
+        words: Option<String>,
+    ) {
+        let words = words.unwrap_or_else(|| command.words(ui.ctx()));
+        let response = ui
+            .add_enabled((command.when)(self), button)
+            .on_hover_text(&words)
+            .on_disabled_hover_text(&words);
+        if response.clicked() {
+            (command.does)(self);
         }
     }
 }

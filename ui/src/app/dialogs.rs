@@ -1,10 +1,12 @@
 //! Dialogs: what must be answered before something is done.
 
 use super::ToileApp;
+use super::answer::{Answer, main_button};
 use super::file_choice::FileChoice;
+use super::print_choice::PrintChoice;
 use crate::fields::text_field;
 use crate::theme::Palette;
-use egui::{Button, Context, Key, RichText, ScrollArea, Ui, ViewportCommand};
+use egui::{Context, Key, RichText, ScrollArea, Ui, ViewportCommand};
 use std::path::PathBuf;
 use toile_session::Command;
 
@@ -21,6 +23,10 @@ pub enum Dialog {
     Open(FileChoice),
     /// The file to save to.
     SaveAs(FileChoice),
+    /// What is printed, and how.
+    Print(Box<PrintChoice>),
+    /// The pattern whose panels are inserted.
+    Insert(FileChoice),
     /// A file would be replaced.
     Replace(PathBuf),
     /// Changes are in no file; what comes then.
@@ -31,16 +37,6 @@ pub enum Dialog {
     Recover,
     /// A command by its name: what is typed, and which of those found is taken.
     Find(String, usize),
-}
-
-/// What a dialog came to.
-pub(super) enum Answer {
-    /// It stays.
-    Stay,
-    /// It is left.
-    Leave,
-    /// It is left, and this is done.
-    Do(Box<dyn FnOnce(&mut ToileApp)>),
 }
 
 impl ToileApp {
@@ -55,6 +51,10 @@ impl ToileApp {
                 Dialog::New(name) => ask_name(ui, name),
                 Dialog::Open(choice) => ask_file(ui, choice, "Open a pattern", "Open"),
                 Dialog::SaveAs(choice) => ask_file(ui, choice, "Save the pattern", "Save"),
+                Dialog::Print(choice) => self.ask_print_choice(ui, choice),
+                Dialog::Insert(choice) => {
+                    ask_file(ui, choice, "Insert the panels of a pattern", "Insert")
+                }
                 Dialog::Replace(path) => ask_replace(ui, path),
                 Dialog::Leave(_) | Dialog::Close => ask_save(ui),
                 Dialog::Recover => self.ask_recover(ui),
@@ -68,7 +68,6 @@ impl ToileApp {
             Answer::Stay => self.dialog = Some(dialog),
             Answer::Leave => {}
             Answer::Do(then) => {
-                let open = matches!(dialog, Dialog::Open(_));
                 let next = match dialog {
                     Dialog::Leave(next) => Some(*next),
                     Dialog::Close => {
@@ -78,13 +77,13 @@ impl ToileApp {
                     _ => None,
                 };
                 then(self);
-                self.leave(next, open);
+                self.leave(next);
             }
         }
     }
 
     /// What comes after a dialog, if the changes it asked about are safe or given up.
-    fn leave(&mut self, next: Option<Dialog>, _opened: bool) {
+    fn leave(&mut self, next: Option<Dialog>) {
         if self.dialog.is_none() {
             self.dialog = next;
         }
@@ -189,6 +188,7 @@ fn ask_file(ui: &mut Ui, choice: &mut FileChoice, title: &str, verb: &'static st
             }
             answer = match verb {
                 "Open" => Answer::Do(Box::new(move |app| app.open(&path))),
+                "Insert" => Answer::Do(Box::new(move |app| app.insert_file(&path))),
                 _ => Answer::Do(Box::new(move |app| app.save_to(path, false))),
             };
         } else if ui.button("Cancel").clicked() {
@@ -227,11 +227,4 @@ fn ask_save(ui: &mut Ui) -> Answer {
         }
     });
     answer
-}
-
-/// The button that Enter presses.
-pub(super) fn main_button(ui: &mut Ui, words: &str) -> bool {
-    let palette = Palette::of(ui.ctx());
-    let words = RichText::new(words).color(palette.on_accent);
-    ui.add(Button::new(words).fill(palette.accent)).clicked()
 }

@@ -22,6 +22,13 @@ impl ToileApp {
         self.before_leaving(Dialog::Open(choice));
     }
 
+    pub(crate) fn ask_insert(&mut self) {
+        let path = self.session.project().source.clone().unwrap_or_default();
+        let mut choice = FileChoice::new(&path);
+        choice.path.clear();
+        self.dialog = Some(Dialog::Insert(choice));
+    }
+
     pub(crate) fn ask_save(&mut self) {
         self.dialog = Some(Dialog::SaveAs(FileChoice::new(&self.save_path())));
     }

@@ -1,7 +1,6 @@
 //! The side of the window with the garment on the mannequin.
 
 use super::ToileApp;
-use super::command::UiCommand;
 use super::making::Moment;
 use crate::theme::{self, Palette};
 use egui::{Button, ComboBox, Panel, Rect, RichText, Ui, pos2, vec2};
@@ -29,12 +28,12 @@ impl ToileApp {
     pub(crate) fn drape_strip(&mut self, ui: &mut Ui) {
         ui.horizontal_centered(|ui| {
             let palette = Palette::of(ui.ctx());
-            if let Some(command) = UiCommand::named("Drape") {
+            if let Some(command) = super::command_table::named("Drape") {
                 let words = RichText::new(command.name).color(palette.on_accent);
                 let button = Button::new(words).fill(palette.accent);
                 self.command_widget(ui, command, button, None);
             }
-            if let Some(command) = UiCommand::named("Pause") {
+            if let Some(command) = super::command_table::named("Pause") {
                 let button = Button::new(command.name).selected(self.making.is_paused());
                 self.command_widget(ui, command, button, None);
             }

@@ -1,17 +1,23 @@
 //! The window: what it holds, and one frame of it.
 
 mod act;
+mod answer;
+mod arrange;
 mod bars;
 pub mod command;
+pub mod command_table;
 mod dialogs;
 mod file_choice;
 mod files;
 mod findings;
 mod garment_side;
+mod job;
 mod making;
 mod notice;
 mod palette;
 mod preferences;
+mod print_choice;
+mod printing;
 pub mod shows;
 mod welcome;
 
@@ -20,17 +26,18 @@ use crate::gpu::solid::first_frame;
 use crate::theme;
 use crate::views::garment::GarmentView;
 use crate::views::pattern::PatternView;
-use command::UiCommand;
 use dialogs::Dialog;
 use eframe::egui_wgpu::RenderState;
 use egui::{Panel, Ui};
 use making::{Making, News};
 use notice::Notice;
 use preferences::Preferences;
+use printing::Printing;
 use shows::{Shows, Tables};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
+use toile_pattern::plan::Fragment;
 use toile_pattern::{Diagnostic, Evaluation, Pattern};
 use toile_session::{Abandoned, Command, Event, Project, Recovery, Session, Silent, abandoned};
 
@@ -50,6 +57,10 @@ pub struct ToileApp {
     pub(crate) view: PatternView,
     pub(crate) stage: GarmentView,
     pub(crate) making: Making,
+    pub(crate) printing: Option<Printing>,
+    /// What was copied last, if the clipboard still holds it.
+    pub(crate) copied: Option<Fragment>,
+    pub(crate) wants_clipboard: bool,
     pub(crate) notice: Notice,
     pub(crate) dialog: Option<Dialog>,
     pub(crate) tables: Tables,
@@ -95,6 +106,9 @@ impl ToileApp {
             view: PatternView::default(),
             stage: GarmentView::new(state),
             making: Making::default(),
+            printing: None,
+            copied: None,
+            wants_clipboard: false,
             notice: Notice::default(),
             dialog: None,
             tables: Tables::default(),
@@ -348,13 +362,15 @@ impl ToileApp {
         let typing = self.types(&context) || self.view.is_typing() || self.dialog.is_some();
         // While a tool is under way Escape is a step back of the tool, which the canvas takes.
         let busy = self.view.is_busy();
-        for command in UiCommand::pressed(&context, typing, busy) {
+        for command in command_table::pressed(&context, typing, busy) {
             if (command.when)(self) {
                 (command.does)(self);
             }
         }
         self.nudge(&context);
+        self.take_clipboard(&context);
         self.take_news();
+        self.follow_printing();
         self.refresh();
         self.name_window(&context);
         if std::mem::take(&mut self.wants_theme) {
@@ -363,7 +379,7 @@ impl ToileApp {
         self.parts(ui);
         self.show_dialog(&context);
         self.guard_closing(&context);
-        if self.making.is_busy() {
+        if self.making.is_busy() || self.printing.is_some() {
             context.request_repaint_after(FRAME);
         }
     }

@@ -1,8 +1,10 @@
 //! Finding a command by its name.
 
 use super::ToileApp;
-use super::command::{COMMANDS, UiCommand};
-use super::dialogs::{Answer, Dialog};
+use super::answer::Answer;
+use super::command::UiCommand;
+use super::command_table::COMMANDS;
+use super::dialogs::Dialog;
 use egui::{Key, ScrollArea, Ui};
 
 /// Most commands that are listed.

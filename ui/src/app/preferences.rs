@@ -1,7 +1,8 @@
-//! What the window keeps from one time to the next: recent files and the theme.
+//! What the window keeps from one time to the next: recent files, the theme, the paper.
 
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use toile_session::Paper;
 
 /// Most recent files kept.
 const MOST_RECENT: usize = 10;
@@ -14,6 +15,8 @@ pub struct Preferences {
     pub recent: Vec<PathBuf>,
     /// Whether colours are dark; nothing follows the system.
     pub dark: Option<bool>,
+    /// Name of the paper that was printed on last.
+    pub paper: Option<String>,
     #[serde(skip)]
     file: Option<PathBuf>,
 }
@@ -60,6 +63,29 @@ impl Preferences {
         self.dark = Some(context.theme() == egui::Theme::Light);
         self.apply(context);
         self.write();
+    }
+
+    /// The paper that was printed on last, A4 at first.
+    pub fn paper(&self) -> Paper {
+        let known = [
+            Paper::A4,
+            Paper::Letter,
+            Paper::A0,
+            Paper::Page,
+            Paper::Projector,
+        ];
+        let found = known
+            .into_iter()
+            .find(|paper| Some(paper.name()) == self.paper.as_deref());
+        found.unwrap_or(Paper::A4)
+    }
+
+    /// Notes the paper that is printed on.
+    pub fn set_paper(&mut self, paper: Paper) {
+        if self.paper() != paper {
+            self.paper = Some(paper.name().to_owned());
+            self.write();
+        }
     }
 
     fn write(&self) {

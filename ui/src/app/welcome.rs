@@ -1,7 +1,7 @@
 //! What is seen while no pattern is open: how to begin.
 
 use super::ToileApp;
-use super::dialogs::{Answer, main_button};
+use super::answer::{Answer, main_button};
 use crate::theme::Palette;
 use egui::{RichText, Ui, vec2};
 use std::path::PathBuf;

@@ -4,6 +4,7 @@
 pub mod draw;
 pub mod number;
 pub mod panel;
+pub mod parts;
 mod planning;
 mod select;
 pub mod slots;

@@ -148,14 +148,20 @@ fn take_hold(hit: Hit, reading: &Reading<'_>) -> (Dragged, Option<Selection>) {
         Item::Edge(panel, id) => {
             let edge = reading.evaluation.pattern().panel(panel);
             match edge.and_then(|panel| panel.edge(id)) {
-                Some(edge) => Dragged::Points(edge.ends.to_vec(), edge.ends[0], hit.at),
+                Some(edge) => {
+                    let points = plan::points_of(reading.evaluation, &[id.into()]);
+                    Dragged::Points(points, edge.ends[0], hit.at)
+                }
                 None => Dragged::Fixed("the edge is not there".into()),
             }
         }
         Item::Curve(id) => {
             let mut sheets = reading.evaluation.pattern().sheets.iter();
             match sheets.find_map(|sheet| sheet.curve(id)) {
-                Some(curve) => Dragged::Points(curve.ends.to_vec(), curve.ends[0], hit.at),
+                Some(curve) => {
+                    let points = plan::points_of(reading.evaluation, &[id.into()]);
+                    Dragged::Points(points, curve.ends[0], hit.at)
+                }
                 None => Dragged::Fixed("the curve is not there".into()),
             }
         }
@@ -178,19 +184,15 @@ fn moved(
     }
     match dragged {
         Dragged::Points(points, held, _) => {
-            let mut edits = Vec::new();
-            for point in points {
-                let Some(now) = reading.evaluation.point(*point) else {
-                    continue;
-                };
-                match plan::move_point(reading.evaluation, *point, now + way) {
-                    Ok(found) => edits.extend(found),
-                    // The others move all the same; the one in hand says why it does not.
-                    Err(error) if point == held || points.len() == 1 => return Err(error),
-                    Err(_) => {}
-                }
+            // The others move all the same; the one in hand says why it does not.
+            if let Some(now) = reading.evaluation.point(*held).filter(|_| points.len() > 1) {
+                plan::move_point(reading.evaluation, *held, now + way)?;
             }
-            Ok(edits)
+            let goals: Vec<(PointId, Vec2)> = points
+                .iter()
+                .filter_map(|point| Some((*point, reading.evaluation.point(*point)? + way)))
+                .collect();
+            Ok(plan::move_points(reading.evaluation, &goals)?.edits)
         }
         Dragged::Panels(panels) => {
             let pattern = reading.evaluation.pattern();

@@ -1,0 +1,229 @@
+//! Copies, pastes, duplicates, lines up and spreads what is selected; inserts other patterns.
+
+use super::ToileApp;
+use super::notice::Notice;
+use crate::canvas::selection::{Item, Selection};
+use std::path::Path;
+use toile_geometry::Vec2;
+use toile_pattern::plan::{self, Alignment, Axis, Fragment, PasteTarget, Pasted};
+use toile_pattern::{EditError, Evaluation, PartId, Pattern, PointId};
+use toile_session::Project;
+
+/// How far what is pasted lies beside where it was copied [m].
+const ASIDE: f64 = 0.02;
+
+impl ToileApp {
+    fn selected_parts(&self) -> Vec<PartId> {
+        let items = self.view.selection.items().iter();
+        items.map(|item| item.part()).collect()
+    }
+
+    /// What is selected, as text for the clipboard.
+    fn copied_text(&mut self) -> Option<String> {
+        let copied = plan::copy(&self.base, &self.selected_parts())
+            .map_err(|error| error.to_string())
+            .and_then(|fragment| {
+                let text = serde_json::to_string(&fragment).map_err(|error| error.to_string())?;
+                Ok((fragment, text))
+            });
+        match copied {
+            Ok((fragment, text)) => {
+                self.copied = Some(fragment);
+                Some(text)
+            }
+            Err(words) => {
+                self.notice = Notice::fault(words);
+                None
+            }
+        }
+    }
+
+    /// Copies what is selected, as the menu does: keys come from the system as events.
+    pub(crate) fn copy(&mut self) {
+        if self.copied_text().is_some() {
+            self.wants_clipboard = true;
+        }
+    }
+
+    pub(crate) fn cut(&mut self) {
+        if self.copied_text().is_some() {
+            self.wants_clipboard = true;
+            self.delete();
+        }
+    }
+
+    /// Pastes what was copied last in this window.
+    pub(crate) fn paste_copied(&mut self) {
+        if let Some(fragment) = self.copied.clone() {
+            self.paste(&fragment);
+        }
+    }
+
+    pub(crate) fn has_copied(&self) -> bool {
+        self.is_open() && self.copied.is_some()
+    }
+
+    /// Follows copy, cut and paste of the system while no text is typed.
+    pub(crate) fn take_clipboard(&mut self, context: &egui::Context) {
+        if self.wants_clipboard {
+            self.wants_clipboard = false;
+            if let Some(text) = self
+                .copied
+                .as_ref()
+                .and_then(|f| serde_json::to_string(f).ok())
+            {
+                context.copy_text(text);
+            }
+        }
+        if !self.is_open() || self.dialog.is_some() || self.types(context) {
+            return;
+        }
+        let asked: Vec<egui::Event> = context.input(|input| {
+            let wanted = |event: &&egui::Event| {
+                matches!(
+                    event,
+                    egui::Event::Copy | egui::Event::Cut | egui::Event::Paste(_)
+                )
+            };
+            input.events.iter().filter(wanted).cloned().collect()
+        });
+        for event in asked {
+            match event {
+                egui::Event::Copy if self.has_selection() => self.copy(),
+                egui::Event::Cut if self.has_selection() => self.cut(),
+                egui::Event::Paste(text) => match serde_json::from_str::<Fragment>(&text) {
+                    Ok(fragment) => self.paste(&fragment),
+                    Err(_) => {
+                        self.notice = Notice::fault(
+                            "the clipboard holds no parts of a pattern: copy panels or points first",
+                        );
+                    }
+                },
+                _ => {}
+            }
+        }
+    }
+
+    fn paste(&mut self, fragment: &Fragment) {
+        // Panels bring sheets of their own; points and curves go to the sheet that is drawn on.
+        let loose = fragment.panels.is_empty() && fragment.sheets.len() <= 1;
+        let target = PasteTarget {
+            sheet: self.view.sheet.filter(|_| loose),
+            offset: [ASIDE, -ASIDE],
+        };
+        let pasted = plan::paste(&self.base, fragment, target);
+        self.take_pasted(pasted, "Paste");
+    }
+
+    pub(crate) fn duplicate(&mut self) {
+        let pasted = plan::duplicate(&self.base, &self.selected_parts());
+        self.take_pasted(pasted, "Duplicate");
+    }
+
+    /// Makes what was pasted, selects it, and says which numbers are no formulas any more.
+    fn take_pasted(&mut self, pasted: Result<Pasted, EditError>, label: &str) {
+        let pasted = match pasted {
+            Ok(pasted) => pasted,
+            Err(error) => {
+                self.notice = Notice::fault(error.to_string());
+                return;
+            }
+        };
+        if !self.edit(Ok(pasted.edits), label) {
+            return;
+        }
+        let selection = select_pasted(self.base.pattern(), &pasted.parts);
+        self.view.select(selection);
+        if !pasted.loosened.is_empty() {
+            self.notice = Notice::warning(format!(
+                "{} spoke of parts that are not here, and are values now",
+                count(pasted.loosened.len(), "number")
+            ));
+        }
+    }
+
+    /// Inserts the panels of another pattern beside what is there.
+    pub(crate) fn insert_file(&mut self, path: &Path) {
+        let other = match Project::open(path) {
+            Ok(other) => other,
+            Err(error) => {
+                self.notice = Notice::fault(error.to_string());
+                return;
+            }
+        };
+        let evaluation = Evaluation::new(&other.pattern, other.drafted_to());
+        let right = self.view.boards.bounds(&self.view.scene);
+        let offset = right.map_or(Vec2::zeros(), |bounds| {
+            Vec2::new(bounds.max.x + 0.1, bounds.min.y)
+        });
+        let pasted = plan::insert_pattern(&self.base, &evaluation, offset.into());
+        self.take_pasted(pasted, "Insert pattern");
+        self.view.fit();
+    }
+
+    /// Groups of points that move as one: those of a part each.
+    fn groups(&self) -> Vec<Vec<PointId>> {
+        let parts = self.selected_parts();
+        let groups = parts
+            .iter()
+            .map(|part| plan::points_of(&self.base, &[*part]));
+        groups.filter(|group| !group.is_empty()).collect()
+    }
+
+    pub(crate) fn has_several(&self) -> bool {
+        self.view.selection.items().len() > 1
+    }
+
+    pub(crate) fn align(&mut self, alignment: Alignment) {
+        let moved = plan::align(&self.base, &self.groups(), alignment);
+        self.take_moved(moved, "Align");
+    }
+
+    pub(crate) fn distribute(&mut self, axis: Axis) {
+        let moved = plan::distribute(&self.base, &self.groups(), axis);
+        self.take_moved(moved, "Distribute");
+    }
+
+    fn take_moved(&mut self, moved: Result<plan::Moved, EditError>, label: &str) {
+        match moved {
+            Ok(moved) => {
+                let stayed = moved.held.len();
+                if self.edit(Ok(moved.edits), label) && stayed > 0 {
+                    self.notice = Notice::warning(format!(
+                        "{} did not move: formulas or other points place them",
+                        count(stayed, "point")
+                    ));
+                }
+            }
+            Err(error) => self.notice = Notice::fault(error.to_string()),
+        }
+    }
+}
+
+/// The new panels; where there are none, the new curves and points.
+fn select_pasted(pattern: &Pattern, parts: &[PartId]) -> Selection {
+    let panels: Selection = parts
+        .iter()
+        .filter_map(|part| match part {
+            PartId::Panel(id) => Some(Item::Panel(*id)),
+            _ => None,
+        })
+        .collect();
+    if !panels.is_empty() {
+        return panels;
+    }
+    let items = parts.iter().filter_map(|part| match part {
+        PartId::Point(id) => Some(Item::Point(*id)),
+        PartId::Curve(id) => Some(Item::Curve(*id)),
+        _ => None,
+    });
+    items.filter(|item| item.words(pattern).is_some()).collect()
+}
+
+/// A number of things in words.
+pub(super) fn count(number: usize, thing: &str) -> String {
+    match number {
+        1 => format!("1 {thing}"),
+        _ => format!("{number} {thing}s"),
+    }
+}

@@ -1,0 +1,90 @@
+//! Printing, on a thread of its own.
+
+use super::ToileApp;
+use super::dialogs::Dialog;
+use super::job::Job;
+use super::notice::Notice;
+use super::print_choice::PrintChoice;
+use std::path::PathBuf;
+use toile_session::{PrintOptions, PrintSizes, Printed, print_pattern};
+
+/// A print that is being made.
+pub struct Printing {
+    job: Job<Printed>,
+    to: PathBuf,
+}
+
+impl ToileApp {
+    pub(crate) fn ask_print(&mut self) {
+        let source = self.session.project().source.clone();
+        let stem = source
+            .as_ref()
+            .and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
+        let stem = stem.unwrap_or_else(|| self.session.project().pattern.name.clone());
+        let stem = stem.split('.').next().unwrap_or("pattern").to_owned();
+        let folder = source.and_then(|path| Some(path.parent()?.to_owned()));
+        let path = folder.unwrap_or_default().join(format!("{stem}.pdf"));
+        let sizes = match self.session.project().size_name() {
+            Some(name) => PrintSizes::Named(name.to_owned()),
+            None => PrintSizes::Base,
+        };
+        self.dialog = Some(Dialog::Print(Box::new(PrintChoice {
+            options: PrintOptions {
+                sizes,
+                paper: self.preferences.paper(),
+                ..PrintOptions::default()
+            },
+            scale: "1:1".into(),
+            path: path.display().to_string(),
+            fault: String::new(),
+        })));
+    }
+
+    pub(super) fn print(&mut self, options: PrintOptions, to: PathBuf) {
+        self.preferences.set_paper(options.paper);
+        let project = self.session.project().clone();
+        let path = to.clone();
+        self.printing = Some(Printing {
+            job: Job::start(move |follower| print_pattern((&project, &path), &options, follower)),
+            to,
+        });
+    }
+
+    /// Tells of a print that has ended.
+    pub(super) fn follow_printing(&mut self) {
+        let Some(printing) = &self.printing else {
+            return;
+        };
+        let Some(result) = printing.job.result() else {
+            let share = 100.0 * printing.job.progress().share;
+            self.notice = Notice::news(format!("Printing: {share:.0} % (Esc stops)"));
+            return;
+        };
+        self.notice = match result {
+            Ok(printed) => {
+                let sheets = printed.tiles.len();
+                let plural = if sheets == 1 { "" } else { "s" };
+                let mut words = format!(
+                    "Printed {sheets} sheet{plural} to {}",
+                    printing.to.display()
+                );
+                for note in &printed.notes {
+                    words = format!("{words}; {note}");
+                }
+                match printed.notes.is_empty() {
+                    true => Notice::news(words),
+                    false => Notice::warning(words),
+                }
+            }
+            Err(words) => Notice::fault(words),
+        };
+        self.printing = None;
+    }
+
+    /// Stops the print that is being made.
+    pub(super) fn stop_printing(&mut self) {
+        if let Some(printing) = &self.printing {
+            printing.job.cancel();
+        }
+    }
+}
