@@ -128,6 +128,13 @@ fn a_skirt_panel_with_a_dart_from_an_empty_window() {
     drafter.actions -= 1; // The Enter that creates it belongs to the field.
     assert_eq!(drafter.pattern().name, "Skirt");
 
+    // The wearer: her own waist and hips.
+    drafter.key(Key::F8);
+    drafter.press("Add size");
+    drafter.enter("Waist girth", "72");
+    drafter.enter("Hip girth", "98");
+    drafter.key(Key::F8);
+
     // The panel: a rectangle with a width from a measurement.
     drafter.key(Key::R);
     drafter.click(drafter.place(0.0, 0.0));
@@ -156,6 +163,7 @@ fn a_skirt_panel_with_a_dart_from_an_empty_window() {
         .measurements
         .get("hips")
         .unwrap();
+    assert_eq!(hips, 0.98);
     let size = drafter.point("C") - drafter.point("A");
     assert!(
         (size - Vec2::new(hips / 4.0 + 0.01, 0.6)).norm() < 1e-12,
@@ -176,8 +184,29 @@ fn a_skirt_panel_with_a_dart_from_an_empty_window() {
     drafter.click(drafter.part("Edge left of draft"));
     let count = drafter.pattern().panels[0].operations.len();
     assert_eq!(count, 2, "{}", drafter.status());
+    // With the allowance of the hem, on paper.
+    drafter.key(Key::Escape);
+    drafter.click(drafter.part("Edge bottom of draft"));
+    drafter.enter("seam allowance", "4");
+    let folder = tempfile::tempdir().unwrap();
+    let paper = folder.path().join("skirt.pdf");
+    drafter.chord(Modifiers::COMMAND, Key::P);
+    drafter.enter("File", &paper.display().to_string());
+    for _ in 0..2000 {
+        if paper.exists() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        drafter.window.run_steps(1);
+    }
+    assert!(paper.exists(), "{}", drafter.status());
     println!("{} actions", drafter.actions);
     assert!(drafter.actions <= 30, "{}", drafter.actions);
+    let hem = drafter.pattern().panels[0]
+        .edges()
+        .find(|edge| edge.name == "bottom")
+        .and_then(|edge| edge.allowance.as_ref()?.value());
+    assert_eq!(hem, Some(0.04));
     assert!(
         drafter.window.query_by_label("No faults").is_some(),
         "{:?}",
@@ -197,7 +226,6 @@ fn a_skirt_panel_with_a_dart_from_an_empty_window() {
     assert!(drafter.pattern().says_the_same(&end));
     // And replayed from the journal.
     let journal = drafter.window.state().session().journal();
-    let folder = tempfile::tempdir().unwrap();
     let (again, _) = Session::replay(&journal, folder.path(), &mut Silent).unwrap();
     assert!(again.project().pattern.says_the_same(&end));
     assert!(matches!(journal[0], Command::NewPattern { .. }));
@@ -244,5 +272,95 @@ impl Drafter {
             .filter_map(|label| label.value())
             .collect::<Vec<_>>()
             .join(" | ")
+    }
+}
+
+#[test]
+fn two_clicks_sew_both_sides_and_one_puts_notches_that_meet() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Skirt");
+    // A front on the fold, and a back that is cut twice.
+    for (x, width) in [(0.0, "25"), (0.4, "26")] {
+        drafter.key(Key::R);
+        drafter.click(drafter.place(x, 0.0));
+        drafter.hover(drafter.place(x + 0.1, 0.1));
+        for c in width.chars() {
+            drafter.window.event(egui::Event::Text(c.to_string()));
+            drafter.window.run();
+        }
+        drafter.key(Key::Tab);
+        drafter.typed("60");
+    }
+    drafter.key(Key::F);
+    let names: Vec<String> = drafter
+        .pattern()
+        .panels
+        .iter()
+        .map(|p| p.name.clone())
+        .collect();
+    let [front, back] = &names[..] else {
+        panic!("{names:?}");
+    };
+    drafter.chord(Modifiers::SHIFT, Key::F);
+    drafter.click(drafter.part(&format!("Edge left of {front}")));
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.click(drafter.part(&format!("Panel {back}")));
+    drafter.enter_choice("in mirrored pairs");
+
+    drafter.key(Key::S);
+    let before = drafter.actions;
+    drafter.click(drafter.part(&format!("Edge right of {front}")));
+    drafter.click(drafter.part(&format!("Edge left of {back}")));
+    assert_eq!(drafter.actions - before, 2);
+    let pattern = drafter.pattern();
+    assert_eq!(pattern.seams.len(), 2, "{}", drafter.status());
+    let halves: Vec<(u8, u32)> = pattern
+        .seams
+        .iter()
+        .map(|seam| (seam.sides[0][0].half, seam.sides[1][0].copy))
+        .collect();
+    assert_eq!(halves, [(0, 0), (1, 1)]);
+    // Start to start: both sides are walked upward or both downward.
+    let steps = drafter.window.state().session().past().len();
+    drafter.key(Key::Escape);
+    let sewn = drafter.pattern();
+    // The other way, and back.
+    drafter.key(Key::X);
+    assert_ne!(drafter.pattern().seams, sewn.seams, "{}", drafter.status());
+    drafter.key(Key::X);
+    assert!(drafter.pattern().says_the_same(&sewn));
+    assert_eq!(drafter.window.state().session().past().len(), steps + 2);
+
+    // Two notches by a tool and a click, both a third of the way up.
+    drafter.chord(Modifiers::SHIFT, Key::N);
+    let before = drafter.actions;
+    let up = drafter.place(0.25, 0.2);
+    drafter.click(up);
+    assert!(drafter.actions - before + 1 <= 2);
+    let pattern = drafter.pattern();
+    let heights: Vec<f64> = pattern
+        .panels
+        .iter()
+        .map(|panel| {
+            assert_eq!(panel.notches.len(), 1, "{}", drafter.status());
+            let stage = drafter.evaluation();
+            let stage = stage.last_stage(panel).unwrap();
+            stage.notches[0].point.y
+        })
+        .collect();
+    assert!((heights[0] - 0.2).abs() < 0.003, "{heights:?}");
+    assert!((heights[0] - heights[1]).abs() < 1e-9, "{heights:?}");
+}
+
+impl Drafter {
+    /// Ticks a box.
+    fn enter_choice(&mut self, name: &str) {
+        self.actions += 1;
+        self.window
+            .get_by_role_and_label(Role::CheckBox, name)
+            .click();
+        self.window.run();
     }
 }

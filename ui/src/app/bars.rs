@@ -30,6 +30,7 @@ const TOOL_BUTTONS: &[&[&str]] = &[
         "Inner line",
         "Grain",
     ],
+    &["Seam", "Matched notches"],
 ];
 
 impl ToileApp {

@@ -32,18 +32,21 @@ pub enum Menu {
     Draw,
     /// Tools for panels.
     Panel,
+    /// Seams.
+    Sew,
     /// The drape.
     Garment,
 }
 
 impl Menu {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::File,
         Self::Edit,
         Self::View,
         Self::Draw,
         Self::Panel,
+        Self::Sew,
         Self::Garment,
     ];
 
@@ -55,6 +58,7 @@ impl Menu {
             Self::View => "View",
             Self::Draw => "Draw",
             Self::Panel => "Panel",
+            Self::Sew => "Sew",
             Self::Garment => "Garment",
         }
     }

@@ -3,7 +3,7 @@
 
 use super::ToileApp;
 use super::command::{Menu, UiCommand, command, key};
-use crate::tools::{Tool, draw, panel, parts};
+use crate::tools::{Tool, draw, panel, parts, seam};
 use egui::{Key, KeyboardShortcut, Modifiers};
 use toile_pattern::plan::{Alignment, Axis};
 
@@ -445,6 +445,38 @@ pub static COMMANDS: &[UiCommand] = &[
         "Set the direction of the warp",
         ToileApp::has_panels,
         |app| app.take(Tool::Slots(&panel::GRAIN)),
+    ),
+    command(
+        Menu::Sew,
+        "Seam",
+        key(PLAIN, Key::S),
+        "Sew one edge or chain of edges to another, on both sides of the wearer",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&seam::SEAM)),
+    ),
+    command(
+        Menu::Sew,
+        "Matched notches",
+        key(SHIFT, Key::N),
+        "Mark a seam with notches that meet when it is sewn",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&seam::MATCHED_NOTCH)),
+    ),
+    command(
+        Menu::Sew,
+        "Flip seam",
+        key(PLAIN, Key::X),
+        "Sew the other end of the edge: what the lines between its ends show",
+        ToileApp::has_seam,
+        ToileApp::flip_seam,
+    ),
+    command(
+        Menu::Sew,
+        "Select seam",
+        key(SHIFT, Key::X),
+        "Select the seam of the selected edge",
+        ToileApp::has_edge,
+        ToileApp::select_seam,
     ),
     command(
         Menu::Garment,

@@ -18,6 +18,7 @@ mod palette;
 mod preferences;
 mod print_choice;
 mod printing;
+mod sewing;
 pub mod shows;
 mod welcome;
 

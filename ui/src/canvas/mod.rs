@@ -8,7 +8,7 @@ mod inside;
 pub mod paint;
 mod panel_shape;
 pub mod scene;
-mod seams;
+pub mod seams;
 pub mod selection;
 pub mod snap;
 

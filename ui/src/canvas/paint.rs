@@ -6,14 +6,14 @@ use super::fill::Fill;
 use super::hit::{ShownPoint, shown_points};
 use super::panel_shape::along;
 use super::scene::{PanelScene, PointRole, Scene, SheetScene};
-use super::seams::SeamDrawing;
+use super::seams::{SeamDrawing, SeamEnd};
 use super::selection::{Item, Selection};
 use crate::theme::{self, Palette};
 use crate::tools::Overlay;
 use egui::epaint::Vertex;
 use egui::{Align2, Color32, CornerRadius, Mesh, Painter, Pos2, Rect, Shape, Stroke, vec2};
 use toile_geometry::Vec2;
-use toile_pattern::SheetId;
+use toile_pattern::{SeamId, SheetId};
 
 /// Steps of the lines of the table [m]: the finest that are far enough apart are drawn.
 const GRID: [f64; 4] = [0.01, 0.05, 0.1, 0.5];
@@ -25,6 +25,8 @@ const SEAM_INSET: f64 = 5.0;
 const NUMBER_INSET: f64 = 16.0;
 /// Stretches shorter than this carry no number [pixels].
 const NUMBER_LEAST: f64 = 34.0;
+/// Sides of a seam that differ by more are shown as a warning [m].
+const UNEVEN: f64 = 0.001;
 /// Length of a notch [pixels].
 const NOTCH: f32 = 9.0;
 
@@ -44,6 +46,8 @@ pub struct Picture<'a> {
     pub selection: &'a Selection,
     /// What is under the pointer.
     pub hover: Option<Item>,
+    /// Seams that a tool is about to make.
+    pub fresh: &'a [SeamId],
     /// Sheets all of whose points are shown.
     pub open: &'a [SheetId],
     /// Colours.
@@ -71,6 +75,11 @@ impl Picture<'_> {
         }
         for seam in &self.scene.seams {
             self.seam_numbers(seam);
+        }
+        for seam in &self.scene.seams {
+            if self.fresh.contains(&seam.id) || self.is_lit(Item::Seam(seam.id)) {
+                self.seam_links(seam);
+            }
         }
         self.handles();
         for shown in shown_points(self.scene, self.boards, self.open) {
@@ -342,6 +351,44 @@ impl Picture<'_> {
         }
     }
 
+    /// Lines between the ends that are sewn together, and how much longer one side is: in the
+    /// colour of a warning where that is more than a millimetre.
+    fn seam_links(&self, seam: &SeamDrawing) {
+        let [Some(first), Some(second)] = seam.ends else {
+            return;
+        };
+        let difference = seam.difference();
+        let colour = match difference.abs() > UNEVEN {
+            true => self.palette.warning,
+            false => self.palette.accent,
+        };
+        let seen = |(panel, at): SeamEnd| self.seen(self.boards.panel(panel), at);
+        for k in [0, 1] {
+            let line = [seen(first[k]), seen(second[k])];
+            let stroke = Stroke::new(1.4, colour);
+            self.painter
+                .extend(Shape::dashed_line(&line, stroke, 3.0, 4.0));
+            for at in line {
+                match k {
+                    0 => self.painter.circle_filled(at, 5.0, colour),
+                    _ => self.painter.circle(at, 5.0, self.palette.field, stroke),
+                };
+            }
+        }
+        let middle = seen(first[0]) + (seen(second[0]) - seen(first[0])) * 0.5;
+        let millimetres = 1e3 * difference.abs();
+        let words = match millimetres {
+            m if m < 0.05 => "same length".to_owned(),
+            m => {
+                let longer = if difference > 0.0 { first } else { second };
+                let panel = self.scene.panel_scene(longer[0].0);
+                let panel = panel.map_or("", |panel| &panel.name);
+                format!("{panel} {m:.1} mm longer")
+            }
+        };
+        self.label(middle, &words, colour);
+    }
+
     /// Lines from points to their handles, on sheets that are open.
     fn handles(&self) {
         for sheet in &self.scene.sheets {
@@ -417,6 +464,14 @@ impl Picture<'_> {
                 self.painter
                     .extend(Shape::dashed_line(&line, stroke, 5.0, 4.0));
             }
+            Overlay::Edge(panel, edge) => {
+                let shape = self.scene.panel_scene(*panel);
+                let edge = shape.and_then(|panel| panel.shape.edge_shape(*edge));
+                for line in edge.iter().flat_map(|edge| &edge.lines) {
+                    let line = self.line(self.boards.panel(*panel), line);
+                    self.painter.line(line, Stroke::new(3.4, accent));
+                }
+            }
             Overlay::Dot(sheet, at) => {
                 let at = self.seen(self.boards.sheet(*sheet), *at);
                 let stroke = Stroke::new(1.6, accent);
@@ -441,12 +496,16 @@ impl Picture<'_> {
 
     /// A small label beside something.
     fn tag(&self, at: Pos2, text: &str) {
+        self.label(at, text, self.palette.accent);
+    }
+
+    fn label(&self, at: Pos2, text: &str, ground_colour: Color32) {
         let text =
             self.painter
                 .layout_no_wrap(text.to_owned(), theme::font(12.5), self.palette.on_accent);
         let ground = Align2::LEFT_CENTER.anchor_size(at, text.size() + vec2(12.0, 4.0));
         self.painter
-            .rect_filled(ground, CornerRadius::same(4), self.palette.accent);
+            .rect_filled(ground, CornerRadius::same(4), ground_colour);
         let corner = Align2::CENTER_CENTER.align_size_within_rect(text.size(), ground);
         self.painter
             .galley(corner.min, text, self.palette.on_accent);

@@ -14,6 +14,8 @@ pub struct SeamDrawing {
     pub number: usize,
     /// Length of each side [m].
     pub lengths: [f64; 2],
+    /// Where each side starts and ends, on its panel as drawn; nothing on another copy.
+    pub ends: [Option<[SeamEnd; 2]>; 2],
     /// Stretches on the panels as drawn.
     pub stretches: Vec<SeamStretch>,
 }
@@ -31,6 +33,9 @@ pub struct SeamStretch {
     pub line: Vec<Vec2>,
 }
 
+/// An end of a side: the panel, and the place in its plane [m].
+pub type SeamEnd = (PanelId, Vec2);
+
 /// The seams of a draft, curves to within a tolerance [m].
 pub fn draw_seams(draft: &Draft, tolerance: f64) -> Vec<SeamDrawing> {
     let mut seams: Vec<SeamDrawing> = Vec::new();
@@ -43,6 +48,7 @@ pub fn draw_seams(draft: &Draft, tolerance: f64) -> Vec<SeamDrawing> {
             name: seam.name.clone(),
             number: seams.len() + 1,
             lengths: [0.0; 2],
+            ends: [None; 2],
             stretches: Vec::new(),
         };
         for (side, spans) in seam.sides.iter().enumerate() {
@@ -56,6 +62,13 @@ pub fn draw_seams(draft: &Draft, tolerance: f64) -> Vec<SeamDrawing> {
                 };
                 drawing.lengths[side] += edge.curve.length() * (span.to - span.from).abs();
                 if piece.id.copy == 0 {
+                    let [start, end] = [span.from, span.to].map(|share| {
+                        let length = edge.curve.length() * share.clamp(0.0, 1.0);
+                        let at = edge.curve.point(edge.curve.parameter_at_length(length));
+                        (piece.id.panel, at)
+                    });
+                    let first = drawing.ends[side].map_or(start, |ends| ends[0]);
+                    drawing.ends[side] = Some([first, end]);
                     drawing.stretches.push(SeamStretch {
                         panel: piece.id.panel,
                         edge: match edge.origin {
@@ -74,6 +87,13 @@ pub fn draw_seams(draft: &Draft, tolerance: f64) -> Vec<SeamDrawing> {
         seams.push(drawing);
     }
     seams
+}
+
+impl SeamDrawing {
+    /// How much longer the first side is [m].
+    pub fn difference(&self) -> f64 {
+        self.lengths[0] - self.lengths[1]
+    }
 }
 
 /// The part of a curve between two shares of its length, always in the curve's own direction.

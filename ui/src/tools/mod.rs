@@ -6,7 +6,9 @@ pub mod number;
 pub mod panel;
 pub mod parts;
 mod planning;
+pub mod seam;
 mod select;
+mod slot_overlay;
 pub mod slots;
 
 pub use select::SelectState;
@@ -17,7 +19,7 @@ use crate::canvas::selection::{Item, Selection};
 use crate::canvas::snap::Placed;
 use slots::{SlotState, SlotTool};
 use toile_geometry::Vec2;
-use toile_pattern::{Edit, Evaluation, SheetId};
+use toile_pattern::{EdgeId, Edit, Evaluation, PanelId, SheetId};
 
 /// Where the pointer is and what is there.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,6 +112,8 @@ pub enum Overlay {
     Line(SheetId, Vec<Vec2>),
     /// A place on a sheet.
     Dot(SheetId, Vec2),
+    /// An edge of a panel.
+    Edge(PanelId, EdgeId),
     /// Words beside a place on a sheet.
     Words(SheetId, Vec2, String),
     /// A rectangle of the table.
@@ -160,7 +164,7 @@ pub enum State {
     /// Of [`Tool::Select`].
     Select(SelectState),
     /// Of [`Tool::Slots`].
-    Slots(SlotState),
+    Slots(Box<SlotState>),
 }
 
 impl Default for State {
@@ -174,7 +178,7 @@ impl Tool {
     pub fn begin(self) -> State {
         match self {
             Self::Select => State::default(),
-            Self::Slots(_) => State::Slots(SlotState::default()),
+            Self::Slots(_) => State::Slots(Box::default()),
         }
     }
 
@@ -187,7 +191,7 @@ impl Tool {
             }
             (Self::Slots(tool), State::Slots(state)) => {
                 let (state, outcome) = slots::step(tool, state, event, reading);
-                (State::Slots(state), outcome)
+                (State::Slots(Box::new(state)), outcome)
             }
             // A state of another tool: begin anew.
             _ => self.step(&self.begin(), event, reading),
@@ -198,7 +202,7 @@ impl Tool {
     pub fn overlay(self, state: &State, reading: &Reading<'_>) -> Vec<Overlay> {
         match (self, state) {
             (Self::Select, State::Select(state)) => select::overlay(state),
-            (Self::Slots(tool), State::Slots(state)) => slots::overlay(tool, state, reading),
+            (Self::Slots(tool), State::Slots(state)) => slot_overlay::overlay(tool, state, reading),
             _ => Vec::new(),
         }
     }
@@ -207,7 +211,7 @@ impl Tool {
     pub fn hint(self, state: &State, reading: &Reading<'_>) -> String {
         match (self, state) {
             (Self::Select, State::Select(state)) => select::hint(state, reading),
-            (Self::Slots(tool), State::Slots(state)) => slots::hint(tool, state),
+            (Self::Slots(tool), State::Slots(state)) => slot_overlay::hint(tool, state),
             _ => String::new(),
         }
     }

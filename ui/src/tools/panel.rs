@@ -222,7 +222,11 @@ fn panel_of<'r>(reading: &Reading<'r>, id: PanelId) -> Result<&'r Arc<Panel>, Ed
 
 /// The mark of a panel's line nearest to a place, on a whole millimetre of its edge or in the middle
 /// if that is near.
-fn marked(reading: &Reading<'_>, panel: PanelId, at: Vec2) -> Result<plan::NearMark, EditError> {
+pub(super) fn marked(
+    reading: &Reading<'_>,
+    panel: PanelId,
+    at: Vec2,
+) -> Result<plan::NearMark, EditError> {
     let mut near = plan::nearest_mark(reading.evaluation, panel, at)?;
     if let Mark::Between { share, .. } = &mut near.mark
         && let Some(path) = reading.evaluation.edge(near.edge)

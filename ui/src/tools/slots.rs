@@ -2,7 +2,7 @@
 //! all of them hovering, typed numbers, snapping, steps back and hints.
 
 use super::number;
-use super::{Event, Outcome, Overlay, Pointer, Reading, Shown};
+use super::{Event, Outcome, Pointer, Reading, Shown};
 use crate::canvas::selection::{Item, Selection};
 use crate::canvas::snap::{Placed, Spec};
 use toile_geometry::Vec2;
@@ -42,6 +42,8 @@ pub enum SlotKind {
     OnLine,
     /// An edge of a panel.
     Edge,
+    /// Edges one after another: Shift-clicks add, a click ends them.
+    Chain,
     /// A curve of a sheet.
     Curve,
     /// A panel.
@@ -85,6 +87,9 @@ impl Fields {
     }
 }
 
+/// An edge of a chain, with its panel.
+pub type ChainEdge = (PanelId, EdgeId);
+
 /// What was given.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
@@ -96,6 +101,8 @@ pub enum Answer {
     OnLine(PanelId, Item, Vec2),
     /// An edge, and the place it was taken at [m].
     Edge(PanelId, EdgeId, Vec2),
+    /// Edges one after another.
+    Chain(Vec<ChainEdge>),
     /// A curve, and the place it was taken at [m].
     Curve(SheetId, CurveId, Vec2),
     /// A panel.
@@ -122,23 +129,28 @@ pub struct Plan {
 /// How far a tool has come.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SlotState {
-    answers: Vec<Answer>,
+    pub(super) answers: Vec<Answer>,
     /// Places of a slot that takes several.
-    places: Vec<Placed>,
-    typed: [String; 2],
+    pub(super) places: Vec<Placed>,
+    /// Edges of a chain that more are added to.
+    pub(super) chain: Vec<ChainEdge>,
+    pub(super) typed: [String; 2],
     /// The number that is typed.
-    field: usize,
+    pub(super) field: usize,
     /// The snap that is taken, counted from the best.
     snap: usize,
-    pointer: Option<Pointer>,
+    pub(super) pointer: Option<Pointer>,
     /// Why what was asked last was not done.
-    refusal: Option<String>,
+    pub(super) refusal: Option<String>,
 }
 
 impl SlotState {
     /// Whether nothing was given yet.
     pub fn is_empty(&self) -> bool {
-        self.answers.is_empty() && self.places.is_empty() && !self.is_typing()
+        self.answers.is_empty()
+            && self.places.is_empty()
+            && self.chain.is_empty()
+            && !self.is_typing()
     }
 
     /// Whether a number is being typed.
@@ -152,7 +164,7 @@ impl SlotState {
     }
 
     /// The place given last [m].
-    fn last_place(&self) -> Option<&Placed> {
+    pub(super) fn last_place(&self) -> Option<&Placed> {
         let given = self.answers.iter().rev().find_map(|answer| match answer {
             Answer::Place(placed) => Some(placed),
             _ => None,
@@ -167,7 +179,7 @@ impl SlotState {
     }
 }
 
-fn slot<'t>(tool: &'t SlotTool, state: &SlotState) -> &'t Slot {
+pub(super) fn slot<'t>(tool: &'t SlotTool, state: &SlotState) -> &'t Slot {
     let last = tool.slots.len() - 1;
     &tool.slots[state.answers.len().min(last)]
 }
@@ -213,7 +225,10 @@ pub(super) fn step(
         Event::Escape => {
             if next.is_typing() {
                 next.clear_typed();
-            } else if next.places.pop().is_none() && next.answers.pop().is_none() {
+            } else if next.places.pop().is_none()
+                && next.chain.pop().is_none()
+                && next.answers.pop().is_none()
+            {
                 outcome.done = true;
             }
         }
@@ -227,7 +242,7 @@ pub(super) fn step(
 }
 
 /// Numbers that may be typed in a slot.
-fn fields(kind: SlotKind) -> Vec<(&'static str, Want)> {
+pub(super) fn fields(kind: SlotKind) -> Vec<(&'static str, Want)> {
     match kind {
         SlotKind::Place(fields) => fields.labels().to_vec(),
         SlotKind::Places => Fields::FromLast.labels().to_vec(),
@@ -237,7 +252,11 @@ fn fields(kind: SlotKind) -> Vec<(&'static str, Want)> {
 }
 
 /// What is given now, if the slot can be answered so.
-fn answer(kind: SlotKind, state: &SlotState, reading: &Reading<'_>) -> Result<Answer, String> {
+pub(super) fn answer(
+    kind: SlotKind,
+    state: &SlotState,
+    reading: &Reading<'_>,
+) -> Result<Answer, String> {
     let pointer = state.pointer.as_ref();
     let here = || pointer.ok_or_else(|| "point at a place of the pattern".to_owned());
     let hit = |wanted: &dyn Fn(Item) -> bool, words: &str| {
@@ -259,6 +278,15 @@ fn answer(kind: SlotKind, state: &SlotState, reading: &Reading<'_>) -> Result<An
                 Item::Edge(panel, edge) => Ok(Answer::Edge(panel, edge, found.at)),
                 _ => Err("there is no edge here: click on one".into()),
             }
+        }
+        SlotKind::Chain => {
+            let found = hit(&|item| matches!(item, Item::Edge(..)), "edge of a panel")?;
+            let Item::Edge(panel, edge) = found.item else {
+                return Err("there is no edge here: click on one".into());
+            };
+            let mut chain = state.chain.clone();
+            chain.push((panel, edge));
+            Ok(Answer::Chain(chain))
         }
         SlotKind::Curve => {
             let found = hit(&|item| matches!(item, Item::Curve(_)), "curve")?;
@@ -432,12 +460,18 @@ fn accept(
         let places = std::mem::take(&mut state.places);
         state.answers.push(Answer::Places(places, closes));
     } else {
+        let adds = state.pointer.as_ref().is_some_and(|at| at.held.shift);
         match answer(kind, state, reading) {
+            Ok(Answer::Chain(chain)) if adds && !by_key => {
+                state.chain = chain;
+                return Outcome::default();
+            }
             Ok(answer) => state.answers.push(answer),
             Err(words) => return refused(words),
         }
     }
     state.clear_typed();
+    state.chain.clear();
     if state.answers.len() < tool.slots.len() {
         return Outcome::default();
     }
@@ -476,103 +510,4 @@ fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Shown {
         Ok(plan) => Shown::Edits(plan.edits),
         Err(_) => Shown::Nothing,
     }
-}
-
-pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Vec<Overlay> {
-    let kind = slot(tool, state).kind;
-    let mut marks = Vec::new();
-    for answer in &state.answers {
-        match answer {
-            Answer::Place(placed) => marks.push(Overlay::Dot(placed.sheet, placed.at)),
-            Answer::Places(places, _) => {
-                marks.extend(places.iter().map(|p| Overlay::Dot(p.sheet, p.at)));
-            }
-            _ => {}
-        }
-    }
-    for places in state.places.windows(2) {
-        let line = places.iter().map(|placed| placed.at).collect();
-        marks.push(Overlay::Line(places[0].sheet, line));
-    }
-    marks.extend(state.places.iter().map(|p| Overlay::Dot(p.sheet, p.at)));
-    let unit = reading.evaluation.pattern().unit;
-    let typed = typed_words(kind, state);
-    match answer(kind, state, reading) {
-        Ok(Answer::Place(placed)) => {
-            let mut words = vec![placed.words.clone()];
-            if let Some(last) = state.last_place() {
-                marks.push(Overlay::Line(placed.sheet, vec![last.at, placed.at]));
-                let way = placed.at - last.at;
-                words.push(number::show(way.norm(), Want::Length, unit));
-                words.push(number::show(way.y.atan2(way.x), Want::Angle, unit));
-            }
-            words.push(typed);
-            words.retain(|word| !word.is_empty());
-            marks.push(Overlay::Dot(placed.sheet, placed.at));
-            marks.push(Overlay::Words(placed.sheet, placed.at, words.join("  ")));
-        }
-        Ok(Answer::Number(given)) => {
-            if let (Some(pointer), SlotKind::Number { label, want, .. }) = (&state.pointer, kind) {
-                let value = reading.evaluation.number(&given, want);
-                let value = value.map_or_else(String::new, |v| number::show(v, want, unit));
-                let words = format!("{label} {value}  {typed}");
-                marks.push(Overlay::Words(
-                    pointer.sheet,
-                    pointer.at,
-                    words.trim().into(),
-                ));
-            }
-        }
-        Ok(Answer::OnLine(_, _, at) | Answer::Edge(_, _, at) | Answer::Curve(_, _, at)) => {
-            if let Some(pointer) = &state.pointer {
-                marks.push(Overlay::Dot(pointer.sheet, at));
-            }
-        }
-        Ok(_) => {}
-        Err(words) => {
-            if let Some(pointer) = state.pointer.as_ref().filter(|_| state.is_typing()) {
-                let words = format!("{typed}  {words}");
-                marks.push(Overlay::Words(pointer.sheet, pointer.at, words));
-            }
-        }
-    }
-    marks
-}
-
-/// Numbers as they are typed, the one in hand with a bar.
-fn typed_words(kind: SlotKind, state: &SlotState) -> String {
-    if !state.is_typing() {
-        return String::new();
-    }
-    let labels = fields(kind);
-    let words = labels.iter().enumerate().map(|(k, (label, _))| {
-        let bar = if k == state.field { "|" } else { "" };
-        format!("{label} {}{bar}", state.typed[k])
-    });
-    words.collect::<Vec<_>>().join("   ")
-}
-
-pub(super) fn hint(tool: &SlotTool, state: &SlotState) -> String {
-    if let Some(words) = &state.refusal {
-        return words.clone();
-    }
-    let slot = slot(tool, state);
-    let labels: Vec<&str> = fields(slot.kind).iter().map(|(label, _)| *label).collect();
-    let keys = match slot.kind {
-        SlotKind::Number { .. } => ", or type it; Enter takes it; Esc goes a step back".to_owned(),
-        SlotKind::Places => {
-            "; type length or =formula, Tab angle; Enter ends; Esc goes a step back".to_owned()
-        }
-        _ if labels.is_empty() => "; Esc goes a step back".to_owned(),
-        _ => format!(
-            "; or type {} (a formula begins with =), Enter; Tab next snap, Shift level, {} free",
-            labels.join(", Tab, "),
-            if cfg!(target_os = "macos") {
-                "Cmd"
-            } else {
-                "Ctrl"
-            }
-        ),
-    };
-    format!("{}{keys}", slot.hint)
 }

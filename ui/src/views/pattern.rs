@@ -418,6 +418,16 @@ impl PatternView {
             Tool::Select => self.hover.map(|hit| hit.item),
             Tool::Slots(_) => None,
         };
+        let known = |seam: &&crate::canvas::seams::SeamDrawing| {
+            self.base.seams.iter().all(|old| old.id != seam.id)
+        };
+        let fresh: Vec<_> = self
+            .scene
+            .seams
+            .iter()
+            .filter(known)
+            .map(|s| s.id)
+            .collect();
         let picture = Picture {
             painter: ui.painter_at(view),
             view,
@@ -426,6 +436,7 @@ impl PatternView {
             scene: &self.scene,
             selection: &self.selection,
             hover,
+            fresh: &fresh,
             open: &open,
             palette: Palette::of(ui.ctx()),
         };

@@ -19,7 +19,7 @@ mod seams;
 mod wearer;
 
 pub use node::Node;
-pub(crate) use node::{SeamValue, Value};
+pub(crate) use node::{SeamValue, SpanValue, Value};
 pub use numbers::Want;
 pub use wearer::Wearer;
 

@@ -1,0 +1,184 @@
+//! What lies opposite on a seam: matched notches, and the mirror twin of an edge that is sewn.
+
+use super::lookup::{self, after};
+use super::notch::add_notch;
+use super::seam::SewnEdge;
+use super::{NearMark, impossible};
+use crate::evaluate::SpanValue;
+use crate::{
+    EdgeId, Edit, EditError, Evaluation, LineId, Mark, Name, NotchId, NotchKind, OperationKind,
+    Panel, PanelId, Pattern,
+};
+
+/// A place that lies opposite another on a seam.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Opposite {
+    /// The panel.
+    pub panel: PanelId,
+    /// The edge.
+    pub edge: EdgeId,
+    /// Share of the edge's length, from its start.
+    pub share: f64,
+}
+
+/// The places opposite one of an edge, one for each seam that sews it there: as far along the other
+/// side in proportion to its length, so that ease is spread evenly. A place that lies opposite in
+/// several seams, as those of both halves of a folded panel, is told once.
+pub fn opposites(evaluation: &Evaluation, edge: EdgeId, share: f64) -> Vec<Opposite> {
+    let mut found: Vec<Opposite> = Vec::new();
+    for seam in &evaluation.pattern().seams {
+        let Some(value) = evaluation.seam_value(seam.id) else {
+            continue;
+        };
+        for (own, other) in [(0, 1), (1, 0)] {
+            let total = value.lengths[own];
+            let Some(along) = reached(evaluation, &value.sides[own], (edge, share)) else {
+                continue;
+            };
+            let way = along / total * value.lengths[other];
+            let Some(place) = walked(evaluation, &value.sides[other], way) else {
+                continue;
+            };
+            let is_new = |known: &Opposite| {
+                known.edge != place.edge || (known.share - place.share).abs() > 1e-6
+            };
+            let itself = place.edge == edge && (place.share - share).abs() < 1e-6;
+            if total > 0.0 && !itself && found.iter().all(is_new) {
+                found.push(place);
+            }
+        }
+    }
+    found
+}
+
+/// Length of the named edge of a stretch, mouths of darts included [m].
+fn edge_length(evaluation: &Evaluation, name: Name<EdgeId>) -> Option<(EdgeId, f64)> {
+    let Name::Drawn(edge) = name else {
+        return None;
+    };
+    Some((edge, evaluation.edge(edge)?.length()))
+}
+
+/// How far along a side a share of an edge lies [m].
+fn reached(
+    evaluation: &Evaluation,
+    side: &[SpanValue],
+    (edge, share): (EdgeId, f64),
+) -> Option<f64> {
+    let mut along = 0.0;
+    for &(name, from, to) in side.iter().flat_map(|span| &span.stretch) {
+        let (id, length) = edge_length(evaluation, name)?;
+        let (low, high) = (from.min(to), from.max(to));
+        if id == edge && (low - 1e-9..=high + 1e-9).contains(&share) {
+            return Some(along + (share - from).abs() * length);
+        }
+        along += (to - from).abs() * length;
+    }
+    None
+}
+
+/// The place at a distance along a side.
+fn walked(evaluation: &Evaluation, side: &[SpanValue], way: f64) -> Option<Opposite> {
+    let mut left = way;
+    let mut last = None;
+    for span in side {
+        for &(name, from, to) in &span.stretch {
+            let (edge, length) = edge_length(evaluation, name)?;
+            let own = (to - from).abs() * length;
+            let part = if own > 0.0 {
+                (left / own).min(1.0)
+            } else {
+                0.0
+            };
+            last = Some(Opposite {
+                panel: span.panel,
+                edge,
+                share: from + (to - from) * part,
+            });
+            if left <= own {
+                return last;
+            }
+            left -= own;
+        }
+    }
+    last
+}
+
+/// A notch and its panel.
+pub type PanelNotch = (PanelId, NotchId);
+
+/// The edits that put a notch at a mark of a panel and one opposite on each seam there; and the
+/// notches.
+///
+/// # Errors
+/// The mark is a corner, or the edge is not sewn there.
+pub fn add_matched_notches(
+    evaluation: &Evaluation,
+    (panel, near): (PanelId, NearMark),
+    kind: NotchKind,
+) -> Result<(Vec<Edit>, Vec<PanelNotch>), EditError> {
+    let share = match &near.mark {
+        Mark::Between { share, .. } => share.value(),
+        _ => None,
+    };
+    let Some(share) = share else {
+        return Err(impossible(
+            "a corner needs no notch",
+            "click on the edge between its corners",
+        ));
+    };
+    let others = opposites(evaluation, near.edge, share);
+    if others.is_empty() {
+        return Err(impossible(
+            "the edge is not sewn to anything there",
+            "sew it first, or put a single notch",
+        ));
+    }
+    let (mut edits, first) = add_notch(evaluation, panel, (near.line, near.mark), kind)?;
+    let mut made = vec![(panel, first)];
+    let mut state = after(evaluation, &edits)?;
+    for other in others {
+        let (line, ends) = located(state.pattern(), &other)?;
+        let mark = Mark::between(ends, other.share);
+        let (more, notch) = add_notch(&state, other.panel, (line, mark), kind)?;
+        state = after(&state, &more)?;
+        edits.extend(more);
+        made.push((other.panel, notch));
+    }
+    Ok((edits, made))
+}
+
+fn located(
+    pattern: &Pattern,
+    place: &Opposite,
+) -> Result<(LineId, [crate::PointId; 2]), EditError> {
+    let panel = lookup::panel(pattern, place.panel)?;
+    let mut lines = panel.lines.iter();
+    let found = lines.find_map(|line| {
+        let edge = line.edges.iter().find(|edge| edge.id == place.edge)?;
+        Some((line.id, edge.ends))
+    });
+    found.ok_or_else(|| EditError::Missing(place.edge.to_string()))
+}
+
+/// The same edge on the other side of the wearer: on the mirrored half of a folded panel, or on the
+/// other copy of a mirrored pair. Other panels have none.
+pub fn twin(pattern: &Pattern, edge: SewnEdge) -> Option<SewnEdge> {
+    let panel = pattern.panel(edge.panel)?;
+    match is_folded(panel) {
+        true => Some(SewnEdge {
+            half: edge.half ^ 1,
+            ..edge
+        }),
+        false => {
+            let copy = edge.copy ^ 1;
+            let is_pair = panel.cut.mirrored && copy < panel.cut.quantity;
+            is_pair.then_some(SewnEdge { copy, ..edge })
+        }
+    }
+}
+
+fn is_folded(panel: &Panel) -> bool {
+    let mut kinds = panel.operations.iter().map(|step| &step.kind);
+    kinds.any(|kind| matches!(kind, OperationKind::Fold { .. }))
+}

@@ -1,0 +1,97 @@
+//! Tools that sew: chain to chain, and notches that meet.
+
+use super::Reading;
+use super::planning::{Planning, refuse};
+use super::slots::{Answer, ChainEdge, Plan, Slot, SlotKind, SlotTool};
+use crate::canvas::selection::Item;
+use toile_pattern::plan::{self, SewnEdge};
+use toile_pattern::{EditError, NotchKind, Pattern};
+
+/// Sews one chain of edges to another, on both sides of the wearer.
+pub static SEAM: SlotTool = SlotTool {
+    command: "Seam",
+    slots: &[
+        Slot {
+            hint: "Click the edge to sew",
+            kind: SlotKind::Chain,
+        },
+        Slot {
+            hint: "Click the edge it is sewn to",
+            kind: SlotKind::Chain,
+        },
+    ],
+    plan: |answers, reading| {
+        let [Answer::Chain(first), Answer::Chain(second)] = answers else {
+            return Err(refuse("nothing was given", "click an edge"));
+        };
+        sewn([first, second], reading)
+    },
+};
+
+fn sewn(chains: [&[ChainEdge]; 2], reading: &Reading<'_>) -> Result<Plan, EditError> {
+    let pattern = reading.evaluation.pattern();
+    let [mut first, mut second] = chains.map(|chain| {
+        let edges = chain.iter().map(|(panel, edge)| SewnEdge {
+            panel: *panel,
+            copy: 0,
+            half: 0,
+            edge: *edge,
+        });
+        edges.collect::<Vec<_>>()
+    });
+    // An edge that is sewn to itself is sewn to its other copy: a centre back seam.
+    if first == second {
+        second = twins(pattern, &second).ok_or_else(|| {
+            refuse(
+                "an edge is not sewn to itself",
+                "click another edge, or have the panel cut in mirrored pairs",
+            )
+        })?;
+    }
+    let mut planning = Planning::new(reading);
+    let mut seams = Vec::new();
+    seams.push(planning.run(|evaluation| plan::sew(evaluation, [&first, &second], None))?);
+    if let (Some(a), Some(b)) = (twins(pattern, &first), twins(pattern, &second)) {
+        // Of a seam across the middle the other side is the same seam.
+        let is_same = a
+            .iter()
+            .all(|edge| second.contains(edge) || first.contains(edge));
+        if !is_same {
+            (first, second) = (a, b);
+            seams.push(planning.run(|evaluation| plan::sew(evaluation, [&first, &second], None))?);
+        }
+    }
+    let label = if seams.len() > 1 {
+        "Sew both sides"
+    } else {
+        "Sew"
+    };
+    Ok(planning.done(label, seams.into_iter().map(Item::Seam)))
+}
+
+/// The same chain on the other side of the wearer, if all of it has one.
+fn twins(pattern: &Pattern, chain: &[SewnEdge]) -> Option<Vec<SewnEdge>> {
+    let twins = chain.iter().map(|edge| plan::twin(pattern, *edge));
+    twins.collect()
+}
+
+/// Puts a notch on an edge and one where it meets it on every seam there.
+pub static MATCHED_NOTCH: SlotTool = SlotTool {
+    command: "Matched notches",
+    slots: &[Slot {
+        hint: "Click a sewn edge where notches are to meet",
+        kind: SlotKind::OnLine,
+    }],
+    plan: |answers, reading| {
+        let Some(Answer::OnLine(panel, _, at)) = answers.first() else {
+            return Err(refuse("nothing was given", "click a sewn edge"));
+        };
+        let near = super::panel::marked(reading, *panel, *at)?;
+        let mut planning = Planning::new(reading);
+        let made = planning.run(|evaluation| {
+            plan::add_matched_notches(evaluation, (*panel, near), NotchKind::Slit)
+        })?;
+        let items = made.into_iter().map(|(of, id)| Item::Notch(of, id));
+        Ok(planning.done("Add matched notches", items))
+    },
+};

@@ -1,0 +1,114 @@
+//! What a tool of slots draws over the pattern, and what it says.
+
+use super::slots::{Answer, ChainEdge, SlotKind, SlotState, SlotTool, answer, fields, slot};
+use super::{Overlay, Reading, number};
+use toile_pattern::Want;
+
+pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Vec<Overlay> {
+    let kind = slot(tool, state).kind;
+    let mut marks = Vec::new();
+    for answer in &state.answers {
+        match answer {
+            Answer::Place(placed) => marks.push(Overlay::Dot(placed.sheet, placed.at)),
+            Answer::Places(places, _) => {
+                marks.extend(places.iter().map(|p| Overlay::Dot(p.sheet, p.at)));
+            }
+            Answer::Chain(chain) => marks.extend(chain.iter().map(edge)),
+            _ => {}
+        }
+    }
+    marks.extend(state.chain.iter().map(edge));
+    for places in state.places.windows(2) {
+        let line = places.iter().map(|placed| placed.at).collect();
+        marks.push(Overlay::Line(places[0].sheet, line));
+    }
+    marks.extend(state.places.iter().map(|p| Overlay::Dot(p.sheet, p.at)));
+    let unit = reading.evaluation.pattern().unit;
+    let typed = typed_words(kind, state);
+    match answer(kind, state, reading) {
+        Ok(Answer::Place(placed)) => {
+            let mut words = vec![placed.words.clone()];
+            if let Some(last) = state.last_place() {
+                marks.push(Overlay::Line(placed.sheet, vec![last.at, placed.at]));
+                let way = placed.at - last.at;
+                words.push(number::show(way.norm(), Want::Length, unit));
+                words.push(number::show(way.y.atan2(way.x), Want::Angle, unit));
+            }
+            words.push(typed);
+            words.retain(|word| !word.is_empty());
+            marks.push(Overlay::Dot(placed.sheet, placed.at));
+            marks.push(Overlay::Words(placed.sheet, placed.at, words.join("  ")));
+        }
+        Ok(Answer::Number(given)) => {
+            if let (Some(pointer), SlotKind::Number { label, want, .. }) = (&state.pointer, kind) {
+                let value = reading.evaluation.number(&given, want);
+                let value = value.map_or_else(String::new, |v| number::show(v, want, unit));
+                let words = format!("{label} {value}  {typed}");
+                marks.push(Overlay::Words(
+                    pointer.sheet,
+                    pointer.at,
+                    words.trim().into(),
+                ));
+            }
+        }
+        Ok(Answer::OnLine(_, _, at) | Answer::Edge(_, _, at) | Answer::Curve(_, _, at)) => {
+            if let Some(pointer) = &state.pointer {
+                marks.push(Overlay::Dot(pointer.sheet, at));
+            }
+        }
+        Ok(Answer::Chain(chain)) => marks.extend(chain.last().map(edge)),
+        Ok(_) => {}
+        Err(words) => {
+            if let Some(pointer) = state.pointer.as_ref().filter(|_| state.is_typing()) {
+                let words = format!("{typed}  {words}");
+                marks.push(Overlay::Words(pointer.sheet, pointer.at, words));
+            }
+        }
+    }
+    marks
+}
+
+fn edge((panel, edge): &ChainEdge) -> Overlay {
+    Overlay::Edge(*panel, *edge)
+}
+
+/// Numbers as they are typed, the one in hand with a bar.
+fn typed_words(kind: SlotKind, state: &SlotState) -> String {
+    if !state.is_typing() {
+        return String::new();
+    }
+    let labels = fields(kind);
+    let words = labels.iter().enumerate().map(|(k, (label, _))| {
+        let bar = if k == state.field { "|" } else { "" };
+        format!("{label} {}{bar}", state.typed[k])
+    });
+    words.collect::<Vec<_>>().join("   ")
+}
+
+pub(super) fn hint(tool: &SlotTool, state: &SlotState) -> String {
+    if let Some(words) = &state.refusal {
+        return words.clone();
+    }
+    let slot = slot(tool, state);
+    let labels: Vec<&str> = fields(slot.kind).iter().map(|(label, _)| *label).collect();
+    let keys = match slot.kind {
+        SlotKind::Number { .. } => ", or type it; Enter takes it; Esc goes a step back".to_owned(),
+        SlotKind::Places => {
+            "; type length or =formula, Tab angle; Enter ends; Esc goes a step back".to_owned()
+        }
+        SlotKind::Chain => {
+            "; Shift-click to add the next edge of a chain; Esc goes a step back".into()
+        }
+        _ if labels.is_empty() => "; Esc goes a step back".to_owned(),
+        _ => format!(
+            "; or type {} (a formula begins with =), Enter; Tab next snap, Shift level, {} free",
+            labels.join(", Tab, "),
+            if cfg!(target_os = "macos") {
+                "Cmd"
+            } else {
+                "Ctrl"
+            }
+        ),
+    };
+    format!("{}{keys}", slot.hint)
+}
