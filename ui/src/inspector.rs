@@ -209,7 +209,10 @@ impl ToileApp {
             ui.add(field.update_while_editing(false)).labelled_by(label);
             ui.end_row();
             ui.label("");
-            ui.checkbox(&mut changed.cut.mirrored, "in mirrored pairs");
+            let pairs = ui.checkbox(&mut changed.cut.mirrored, "in mirrored pairs");
+            if pairs.changed() && changed.cut.mirrored {
+                changed.cut.quantity = changed.cut.quantity.next_multiple_of(2).max(2);
+            }
             ui.end_row();
             let label = ui.label("Fabric").id;
             let fabric = pattern.fabric(changed.fabric);

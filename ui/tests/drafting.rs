@@ -312,7 +312,7 @@ fn two_clicks_sew_both_sides_and_one_puts_notches_that_meet() {
     drafter.key(Key::S);
     let before = drafter.actions;
     drafter.click(drafter.part(&format!("Edge right of {front}")));
-    drafter.click(drafter.part(&format!("Edge left of {back}")));
+    drafter.click(drafter.part(&format!("Edge left 2 of {back}")));
     assert_eq!(drafter.actions - before, 2);
     let pattern = drafter.pattern();
     assert_eq!(pattern.seams.len(), 2, "{}", drafter.status());
