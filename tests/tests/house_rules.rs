@@ -40,7 +40,9 @@ const LAYERS: [(&str, &[&str]); 15] = [
     ("toile", &["geometry", "measure", "session", "lab"]),
     (
         "toile-ui",
-        &["geometry", "measure", "pattern", "session", "picture"],
+        &[
+            "geometry", "measure", "pattern", "cut", "session", "picture",
+        ],
     ),
     ("toile-tests", lowest(11)),
     ("toile-lab", lowest(11)),

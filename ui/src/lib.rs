@@ -15,7 +15,7 @@ mod tools;
 mod views;
 
 pub use app::command::{Menu, UiCommand};
-pub use app::command_table::{COMMANDS, named};
+pub use app::command_table::{commands, named};
 pub use app::{Beginning, ToileApp};
 pub use canvas::selection::{Item, Selection};
 pub use views::pattern::PatternView;

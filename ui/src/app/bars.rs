@@ -2,7 +2,7 @@
 
 use super::ToileApp;
 use super::command::{Menu, UiCommand};
-use super::command_table::{COMMANDS, named};
+use super::command_table::{commands, named};
 use super::findings::finding_colour;
 use super::notice::Tone;
 use crate::canvas::selection::Item;
@@ -38,7 +38,7 @@ impl ToileApp {
         ui.horizontal(|ui| {
             for menu in Menu::ALL {
                 ui.menu_button(menu.name(), |ui| {
-                    for command in COMMANDS.iter().filter(|command| command.menu == menu) {
+                    for command in commands().filter(|command| command.menu == menu) {
                         self.menu_entry(ui, command);
                     }
                 });

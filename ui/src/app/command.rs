@@ -95,3 +95,17 @@ impl UiCommand {
         }
     }
 }
+
+/// No key beside it.
+pub(super) const PLAIN: Modifiers = Modifiers::NONE;
+/// With Shift.
+pub(super) const SHIFT: Modifiers = Modifiers::SHIFT;
+/// With Ctrl, on a Mac Cmd.
+pub(super) const COMMAND: Modifiers = Modifiers::COMMAND;
+/// With both.
+pub(super) const BOTH: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// When a command can always be done.
+pub(super) fn always(_: &ToileApp) -> bool {
+    true
+}

@@ -7,6 +7,7 @@ mod bars;
 pub mod command;
 pub mod command_table;
 mod dialogs;
+mod document_commands;
 mod file_choice;
 mod files;
 mod findings;
@@ -20,6 +21,7 @@ mod print_choice;
 mod printing;
 mod sewing;
 pub mod shows;
+mod tool_commands;
 mod welcome;
 
 use crate::fields::TypedTexts;

@@ -3,7 +3,7 @@
 use super::ToileApp;
 use super::answer::Answer;
 use super::command::UiCommand;
-use super::command_table::COMMANDS;
+use super::command_table::commands;
 use super::dialogs::Dialog;
 use egui::{Key, ScrollArea, Ui};
 
@@ -62,8 +62,7 @@ impl ToileApp {
 /// come first.
 fn found(text: &str) -> Vec<&'static UiCommand> {
     let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
-    let mut found: Vec<(u8, &UiCommand)> = COMMANDS
-        .iter()
+    let mut found: Vec<(u8, &UiCommand)> = commands()
         .filter_map(|command| {
             let name = command.name.to_lowercase();
             let all = format!("{name} {}", command.tip.to_lowercase());

@@ -1,5 +1,6 @@
 //! The canvas: how a pattern is seen on the table, what is at a place of it, what a place means.
 
+mod allowance;
 pub mod boards;
 pub mod camera;
 mod fill;

@@ -46,6 +46,8 @@ pub struct Picture<'a> {
     pub selection: &'a Selection,
     /// What is under the pointer.
     pub hover: Option<Item>,
+    /// Whether lines to cut along are drawn.
+    pub allowances: bool,
     /// Seams that a tool is about to make.
     pub fresh: &'a [SeamId],
     /// Sheets all of whose points are shown.
@@ -183,6 +185,12 @@ impl Picture<'_> {
 
     fn marks(&self, panel: &PanelScene) {
         let origin = self.boards.panel(panel.id);
+        if self.allowances {
+            let pencil = Stroke::new(1.0, self.palette.pencil);
+            for ring in self.scene.cut_lines.of(panel.id) {
+                self.painter.line(self.line(origin, ring), pencil);
+            }
+        }
         let shape = &panel.shape;
         let pencil = Stroke::new(1.2, self.palette.pencil);
         for line in &shape.mirrored {

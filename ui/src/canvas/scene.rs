@@ -1,6 +1,7 @@
 //! What the canvas draws of a pattern. Parts are kept by the values they were made from: after an
 //! edit only those are made anew whose value changed.
 
+use super::allowance::CutLines;
 use super::panel_shape::PanelShape;
 use super::seams::{SeamDrawing, draw_seams};
 use std::collections::{BTreeSet, HashMap};
@@ -23,6 +24,8 @@ pub struct Scene {
     pub panels: Vec<PanelScene>,
     /// The seams, numbered from 1 in this order.
     pub seams: Vec<SeamDrawing>,
+    /// Lines to cut along.
+    pub cut_lines: CutLines,
     /// The finest enlargement it is drawn for: a power of two [pixels per metre].
     octave: i32,
     lines: HashMap<*const Path, KeptLine>,
@@ -151,6 +154,7 @@ impl Scene {
         self.lines = lines;
         self.shapes = shapes;
         self.seams = draw_seams(draft, self.tolerance());
+        self.made += self.cut_lines.follow(pattern, draft);
     }
 
     /// Whether there is nothing to see.

@@ -40,6 +40,8 @@ pub struct PatternView {
     pub selection: Selection,
     /// What is under the pointer.
     pub hover: Option<Hit>,
+    /// Whether lines to cut along are drawn.
+    pub allowances: bool,
     /// The tool in hand.
     pub tool: Tool,
     /// How far it has come.
@@ -65,6 +67,7 @@ impl Default for PatternView {
             base: Scene::default(),
             selection: Selection::default(),
             hover: None,
+            allowances: true,
             tool: Tool::Select,
             state: State::default(),
             pointer: None,
@@ -436,6 +439,7 @@ impl PatternView {
             scene: &self.scene,
             selection: &self.selection,
             hover,
+            allowances: self.allowances,
             fresh: &fresh,
             open: &open,
             palette: Palette::of(ui.ctx()),
