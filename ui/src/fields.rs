@@ -32,6 +32,12 @@ pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
 #[derive(Default)]
 pub struct TypedTexts {
     typed: HashMap<egui::Id, Typed>,
+    /// The field of a number that is being typed into.
+    number: Option<egui::Id>,
+    /// What a click would put into that field.
+    offered: Option<String>,
+    /// Whether a click did.
+    given: bool,
 }
 
 /// A text that is being typed, and what is wrong with it.
@@ -96,6 +102,69 @@ impl TypedTexts {
             }
         }
         entered
+    }
+
+    /// The same for a number: a part that is clicked while it is typed into gives its length.
+    pub fn number_field(
+        &mut self,
+        ui: &mut Ui,
+        (id, label): (egui::Id, egui::Id),
+        shown: &str,
+        preview: impl FnOnce(&str) -> Result<String, String>,
+    ) -> Entered {
+        let before = self.typed.get(&id).map(|typed| typed.text.clone());
+        let entered = self.field(ui, (id, label), shown, preview);
+        let has_focus = ui.memory(|memory| memory.has_focus(id));
+        let clicked = ui.input(|input| input.pointer.any_pressed() || input.pointer.any_released());
+        if self.number == Some(id)
+            && !has_focus
+            && clicked
+            && let Some(words) = self.offered.take()
+        {
+            // What stood there before is replaced; what was typed goes on.
+            let begun = before.filter(|text| text != shown).unwrap_or_default();
+            let typed = self.typed.entry(id).or_default();
+            typed.text = begun + &words;
+            typed.fault.clear();
+            self.given = true;
+            ui.memory_mut(|memory| memory.request_focus(id));
+            self.put_cursor_last(ui, id);
+            return Entered::Nothing;
+        }
+        match has_focus {
+            true => self.number = Some(id),
+            false if self.number == Some(id) => self.number = None,
+            false => {}
+        }
+        entered
+    }
+
+    fn put_cursor_last(&self, ui: &Ui, id: egui::Id) {
+        let length = self
+            .typed
+            .get(&id)
+            .map_or(0, |typed| typed.text.chars().count());
+        let mut state = egui::text_edit::TextEditState::load(ui.ctx(), id).unwrap_or_default();
+        let last = CCursorRange::one(CCursor::new(length));
+        state.cursor.set_char_range(Some(last));
+        state.store(ui.ctx(), id);
+        // It had the focus all along: its text is not to be selected as if it were entered anew.
+        ui.data_mut(|data| data.insert_temp(id.with("had focus"), true));
+    }
+
+    /// Whether a number is being typed, so that parts can be pointed at.
+    pub fn takes_parts(&self) -> bool {
+        self.number.is_some()
+    }
+
+    /// What a click would put into the number that is being typed.
+    pub fn offer(&mut self, words: Option<String>) {
+        self.offered = words;
+    }
+
+    /// Whether the click of this frame was taken by a number.
+    pub fn took_click(&mut self) -> bool {
+        std::mem::take(&mut self.given)
     }
 
     /// Keeps a text in its field with what is wrong with it.

@@ -354,6 +354,39 @@ fn two_clicks_sew_both_sides_and_one_puts_notches_that_meet() {
     assert!((heights[0] - heights[1]).abs() < 1e-9, "{heights:?}");
 }
 
+#[test]
+fn an_edge_that_is_clicked_while_a_number_is_typed_gives_its_length() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Lengths");
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.click(drafter.part("Edge top of draft"));
+    let field = drafter
+        .window
+        .get_by_role_and_label(Role::TextInput, "seam allowance");
+    field.focus();
+    drafter.window.run();
+    drafter.click(drafter.part("Edge right of draft"));
+    for c in "/ 20".chars() {
+        drafter.window.event(egui::Event::Text(c.to_string()));
+        drafter.window.run();
+    }
+    drafter.window.key_press(Key::Enter);
+    drafter.window.run();
+    let pattern = drafter.pattern();
+    let edge = pattern.panels[0].edges().find(|edge| edge.name == "top");
+    let allowance = edge.unwrap().allowance.clone().unwrap();
+    let formula = allowance.as_formula().unwrap();
+    let evaluation = drafter.evaluation();
+    assert_eq!(formula.text(evaluation.names()), "length(draft.right)/ 20");
+    let value = evaluation.number(&allowance, toile_pattern::Want::Length);
+    assert!((value.unwrap() - 0.3 / 20.0).abs() < 1e-12, "{value:?}");
+}
+
 impl Drafter {
     /// Ticks a box.
     fn enter_choice(&mut self, name: &str) {

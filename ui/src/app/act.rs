@@ -6,7 +6,7 @@ use crate::canvas::selection::{Item, Selection};
 use crate::tools::{Event, Outcome, Shown, Tool};
 use egui::{Key, Modifiers};
 use toile_geometry::Vec2;
-use toile_pattern::{Edit, EditError, PartId, plan};
+use toile_pattern::{Edit, EditError, Name, PartId, PartReference, plan};
 use toile_session::Command;
 
 /// How far an arrow key moves points, alone and with Shift [m].
@@ -107,6 +107,30 @@ impl ToileApp {
         if outcome.done {
             self.take(Tool::Select);
         }
+    }
+
+    /// Offers the length of the part under the pointer to the number that is being typed.
+    pub(crate) fn offer_length(&mut self) {
+        if self.typed.takes_parts() {
+            let words = self.view.hover.and_then(|hit| self.length_words(hit.item));
+            self.typed.offer(words);
+        }
+    }
+
+    /// The length of a part as a formula says it.
+    fn length_words(&self, item: Item) -> Option<String> {
+        let part = match item {
+            Item::Edge(panel, edge) => {
+                let ends = self.base.pattern().panel(panel)?.edge(edge)?.ends;
+                PartReference::Stretch {
+                    panel,
+                    ends: ends.map(Name::Drawn),
+                }
+            }
+            Item::Curve(curve) => PartReference::Curve(curve),
+            _ => return None,
+        };
+        Some(format!("length({})", self.base.names().print_part(&part)))
     }
 
     /// Tells why something was not done.

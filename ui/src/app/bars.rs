@@ -13,7 +13,7 @@ use toile_pattern::{Severity, Want};
 use toile_session::Command;
 
 /// Width of the tool bar [pixels].
-pub const TOOLS: f32 = 158.0;
+pub const TOOLS: f32 = 186.0;
 
 /// Buttons of the tool bar, in groups.
 const TOOL_BUTTONS: &[&[&str]] = &[

@@ -389,6 +389,7 @@ impl ToileApp {
 
     /// Bars and views, from the rim of the window inward.
     fn parts(&mut self, ui: &mut Ui) {
+        self.offer_length();
         let frame = theme::bar(ui.ctx());
         Panel::top("menus")
             .frame(frame)
@@ -450,6 +451,7 @@ impl ToileApp {
         };
         let before = seen(self);
         let base = self.base.clone();
+        self.view.click_is_taken |= self.typed.took_click();
         for outcome in self.view.show(ui, &base) {
             self.follow_outcome(outcome);
         }

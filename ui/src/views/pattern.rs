@@ -42,6 +42,8 @@ pub struct PatternView {
     pub hover: Option<Hit>,
     /// Whether lines to cut along are drawn.
     pub allowances: bool,
+    /// Whether the click that goes on was taken by a number that is typed elsewhere.
+    pub click_is_taken: bool,
     /// The tool in hand.
     pub tool: Tool,
     /// How far it has come.
@@ -68,6 +70,7 @@ impl Default for PatternView {
             selection: Selection::default(),
             hover: None,
             allowances: true,
+            click_is_taken: false,
             tool: Tool::Select,
             state: State::default(),
             pointer: None,
@@ -201,6 +204,11 @@ impl PatternView {
             self.fitted = Some(view.size());
         }
         let mut outcomes = Vec::new();
+        if std::mem::take(&mut self.click_is_taken) {
+            self.click_is_taken = ui.input(|input| input.pointer.primary_down());
+            self.paint(ui, view, evaluation);
+            return outcomes;
+        }
         for event in self.events(ui, &response, panning) {
             outcomes.push(self.step(&event, evaluation));
         }
