@@ -2,13 +2,16 @@
 
 use super::ToileApp;
 use super::notice::Notice;
+use crate::canvas::grading::Grading;
 use crate::canvas::selection::{Item, Selection};
 use crate::tools::{Event, Outcome, Shown, Tool};
 use egui::{Key, Modifiers};
 use toile_geometry::Vec2;
-use toile_pattern::{Edit, EditError, Name, PartId, PartReference, plan};
-use toile_session::Command;
+use toile_pattern::{Edit, EditError, Evaluation, Name, PartId, PartReference, plan};
+use toile_session::{Command, Project};
 
+/// Largest distance of the outlines of other sizes from the true ones [m].
+const GRADING_TOLERANCE: f64 = 1e-4;
 /// How far an arrow key moves points, alone and with Shift [m].
 const NUDGES: [f64; 2] = [0.001, 0.01];
 
@@ -211,6 +214,30 @@ impl ToileApp {
         self.notice = Notice::default();
         self.shows.garment = true;
         self.making.start_garment(&self.session);
+    }
+
+    pub(crate) fn has_sizes(&self) -> bool {
+        self.session.project().pattern.sizes.len() > 1
+    }
+
+    /// Shows or hides all sizes over each other.
+    pub(crate) fn toggle_grading(&mut self) {
+        self.view.grading = match self.view.grading {
+            Some(_) => None,
+            None => Some(self.graded()),
+        };
+    }
+
+    /// The outlines of all sizes of the pattern as it is.
+    pub(crate) fn graded(&self) -> Grading {
+        let project = self.session.project();
+        Grading::new(&self.base, GRADING_TOLERANCE, |size| {
+            let sized = Project {
+                size: Some(size.to_owned()),
+                ..project.clone()
+            };
+            Evaluation::new(&project.pattern, sized.drafted_to())
+        })
     }
 
     pub(crate) fn change_theme(&mut self) {

@@ -6,6 +6,10 @@ use crate::tools::Tool;
 use egui::Key;
 use toile_pattern::plan::{Alignment, Axis};
 
+/// Enlargement at which a screen of 96 pixels an inch shows things as large as they are [pixels per
+/// metre].
+const TRUE_SIZE: f64 = 96.0 / 0.0254;
+
 /// Commands of files, changes and views, in the order of their menus.
 pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
     command(
@@ -231,6 +235,30 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         "Make the pattern smaller",
         ToileApp::is_open,
         |app| app.view.zoom(1.0 / crate::views::pattern::ZOOM_STEP),
+    ),
+    command(
+        Menu::View,
+        "True size",
+        key(PLAIN, Key::Num0),
+        "Show the pattern as large as it is, on a screen of 96 pixels an inch",
+        ToileApp::is_open,
+        |app| app.view.true_size(TRUE_SIZE),
+    ),
+    command(
+        Menu::View,
+        "Rulers",
+        key(SHIFT, Key::R),
+        "Show or hide the rulers",
+        always,
+        |app| app.view.rulers = !app.view.rulers,
+    ),
+    command(
+        Menu::View,
+        "All sizes",
+        key(SHIFT, Key::G),
+        "Show or hide the outlines of all sizes over each other",
+        ToileApp::has_sizes,
+        ToileApp::toggle_grading,
     ),
     command(
         Menu::View,

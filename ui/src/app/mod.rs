@@ -252,6 +252,9 @@ impl ToileApp {
             self.view.follow(&evaluation, &draft, previews);
             if !previews {
                 self.base = evaluation;
+                if is_new && self.view.grading.is_some() {
+                    self.view.grading = Some(self.graded());
+                }
                 self.follow_body();
             }
         }

@@ -3,30 +3,24 @@
 use super::boards::Boards;
 use super::camera::{TableCamera, TablePoint};
 use super::fill::Fill;
+use super::grading::Grading;
 use super::hit::{ShownPoint, shown_points};
-use super::panel_shape::along;
+use super::rulers;
 use super::scene::{PanelScene, PointRole, Scene, SheetScene};
-use super::seams::{SeamDrawing, SeamEnd};
 use super::selection::{Item, Selection};
 use crate::theme::{self, Palette};
 use crate::tools::Overlay;
 use egui::epaint::Vertex;
 use egui::{Align2, Color32, CornerRadius, Mesh, Painter, Pos2, Rect, Shape, Stroke, vec2};
 use toile_geometry::Vec2;
-use toile_pattern::{SeamId, SheetId};
+use toile_pattern::{DisplayUnit, SeamId, SheetId};
 
 /// Steps of the lines of the table [m]: the finest that are far enough apart are drawn.
 const GRID: [f64; 4] = [0.01, 0.05, 0.1, 0.5];
 /// Fine lines nearer than this are left out [pixels].
 const GRID_LEAST: f64 = 14.0;
-/// How far inside the outline a seam's line runs [pixels].
-const SEAM_INSET: f64 = 5.0;
 /// How far inside the outline a seam's number stands [pixels].
-const NUMBER_INSET: f64 = 16.0;
-/// Stretches shorter than this carry no number [pixels].
-const NUMBER_LEAST: f64 = 34.0;
-/// Sides of a seam that differ by more are shown as a warning [m].
-const UNEVEN: f64 = 0.001;
+pub(super) const NUMBER_INSET: f64 = 16.0;
 /// Length of a notch [pixels].
 const NOTCH: f32 = 9.0;
 
@@ -46,6 +40,10 @@ pub struct Picture<'a> {
     pub selection: &'a Selection,
     /// What is under the pointer.
     pub hover: Option<Item>,
+    /// All sizes over each other, if they are drawn.
+    pub grading: Option<&'a Grading>,
+    /// Place that rulers count from [m], and their unit.
+    pub rulers: Option<(Vec2, DisplayUnit)>,
     /// Whether lines to cut along are drawn.
     pub allowances: bool,
     /// Seams that a tool is about to make.
@@ -72,6 +70,9 @@ impl Picture<'_> {
         }
         for panel in &self.scene.panels {
             self.marks(panel);
+            if let Some(grading) = self.grading {
+                self.graded(panel, grading);
+            }
             self.outline(panel);
             self.caption(panel);
         }
@@ -90,17 +91,23 @@ impl Picture<'_> {
         for mark in overlay {
             self.overlay(mark);
         }
+        if let Some(from) = self.rulers {
+            rulers::paint(&self.painter, (self.view, &self.camera), from, self.palette);
+        }
+        if let Some(grading) = self.grading {
+            self.legend(grading);
+        }
     }
 
-    fn seen(&self, origin: Vec2, at: Vec2) -> Pos2 {
+    pub(super) fn seen(&self, origin: Vec2, at: Vec2) -> Pos2 {
         self.camera.screen(self.view, TablePoint(at + origin)).0
     }
 
-    fn line(&self, origin: Vec2, line: &[Vec2]) -> Vec<Pos2> {
+    pub(super) fn line(&self, origin: Vec2, line: &[Vec2]) -> Vec<Pos2> {
         line.iter().map(|at| self.seen(origin, *at)).collect()
     }
 
-    fn is_lit(&self, item: Item) -> bool {
+    pub(super) fn is_lit(&self, item: Item) -> bool {
         self.selection.contains(item) || self.hover == Some(item)
     }
 
@@ -304,99 +311,6 @@ impl Picture<'_> {
             .galley(centred(cut_size.x, name_size.y), cut, self.palette.ink_soft);
     }
 
-    /// Seams at the selected or pointed edge are drawn stronger.
-    fn touched(&self, seam: &SeamDrawing) -> bool {
-        self.is_lit(Item::Seam(seam.id))
-            || seam.stretches.iter().any(|stretch| {
-                let item = stretch.edge.map(|edge| Item::Edge(stretch.panel, edge));
-                item.is_some_and(|item| self.is_lit(item))
-            })
-    }
-
-    fn seam_lines(&self, seam: &SeamDrawing) {
-        let width = if self.touched(seam) { 5.0 } else { 2.6 };
-        for stretch in &seam.stretches {
-            let Some(panel) = self.scene.panel_scene(stretch.panel) else {
-                continue;
-            };
-            let origin = self.boards.panel(panel.id);
-            let inset = panel.shape.cloth_side * SEAM_INSET / self.camera.scale;
-            let line = self.line(origin, &beside(&stretch.line, inset));
-            let colour = theme::seam(seam.number);
-            let colour = match stretch.edge {
-                Some(_) => colour,
-                None => colour.gamma_multiply(0.45),
-            };
-            self.painter.line(line, Stroke::new(width, colour));
-        }
-    }
-
-    fn seam_numbers(&self, seam: &SeamDrawing) {
-        for stretch in &seam.stretches {
-            let Some(panel) = self.scene.panel_scene(stretch.panel) else {
-                continue;
-            };
-            let scale = self.camera.scale;
-            let length: f64 = stretch.line.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-            if length * scale < NUMBER_LEAST {
-                continue;
-            }
-            let Some((at, way)) = along(&stretch.line, 0.5) else {
-                continue;
-            };
-            let inward = Vec2::new(-way.y, way.x) * panel.shape.cloth_side;
-            let origin = self.boards.panel(panel.id);
-            let middle = self.seen(origin, at + inward * (NUMBER_INSET / scale));
-            self.painter
-                .circle_filled(middle, 8.5, theme::seam(seam.number));
-            self.painter.text(
-                middle,
-                Align2::CENTER_CENTER,
-                seam.number,
-                theme::font(11.0),
-                Color32::WHITE,
-            );
-        }
-    }
-
-    /// Lines between the ends that are sewn together, and how much longer one side is: in the
-    /// colour of a warning where that is more than a millimetre.
-    fn seam_links(&self, seam: &SeamDrawing) {
-        let [Some(first), Some(second)] = seam.ends else {
-            return;
-        };
-        let difference = seam.difference();
-        let colour = match difference.abs() > UNEVEN {
-            true => self.palette.warning,
-            false => self.palette.accent,
-        };
-        let seen = |(panel, at): SeamEnd| self.seen(self.boards.panel(panel), at);
-        for k in [0, 1] {
-            let line = [seen(first[k]), seen(second[k])];
-            let stroke = Stroke::new(1.4, colour);
-            self.painter
-                .extend(Shape::dashed_line(&line, stroke, 3.0, 4.0));
-            for at in line {
-                match k {
-                    0 => self.painter.circle_filled(at, 5.0, colour),
-                    _ => self.painter.circle(at, 5.0, self.palette.field, stroke),
-                };
-            }
-        }
-        let middle = seen(first[0]) + (seen(second[0]) - seen(first[0])) * 0.5;
-        let millimetres = 1e3 * difference.abs();
-        let words = match millimetres {
-            m if m < 0.05 => "same length".to_owned(),
-            m => {
-                let longer = if difference > 0.0 { first } else { second };
-                let panel = self.scene.panel_scene(longer[0].0);
-                let panel = panel.map_or("", |panel| &panel.name);
-                format!("{panel} {m:.1} mm longer")
-            }
-        };
-        self.label(middle, &words, colour);
-    }
-
     /// Lines from points to their handles, on sheets that are open.
     fn handles(&self) {
         for sheet in &self.scene.sheets {
@@ -507,7 +421,7 @@ impl Picture<'_> {
         self.label(at, text, self.palette.accent);
     }
 
-    fn label(&self, at: Pos2, text: &str, ground_colour: Color32) {
+    pub(super) fn label(&self, at: Pos2, text: &str, ground_colour: Color32) {
         let text =
             self.painter
                 .layout_no_wrap(text.to_owned(), theme::font(12.5), self.palette.on_accent);
@@ -526,39 +440,4 @@ fn panel_fold_is_lit(panel: &PanelScene, selection: &Selection) -> bool {
         matches!(item, Item::Operation(of, id) if *of == panel.id
             && !panel.shape.darts.iter().any(|(dart, ..)| dart == id))
     })
-}
-
-/// A polyline moved to its left by a distance, corner by corner; ends stay square to it.
-fn beside(line: &[Vec2], distance: f64) -> Vec<Vec2> {
-    if line.len() < 2 {
-        return Vec::new();
-    }
-    let direction = |k: usize| (line[k + 1] - line[k]).try_normalize(1e-12);
-    let last = line.len().saturating_sub(2);
-    (0..line.len())
-        .filter_map(|k| {
-            let before = direction(k.saturating_sub(1).min(last));
-            let after = direction(k.min(last));
-            let way = match (before, after) {
-                (Some(a), Some(b)) => (a + b).try_normalize(1e-9).unwrap_or(b),
-                (a, b) => a.or(b)?,
-            };
-            Some(line[k] + Vec2::new(-way.y, way.x) * distance)
-        })
-        .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_line_beside_a_line_keeps_its_distance() {
-        let line = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]].map(Vec2::from);
-        for (a, b) in line.iter().zip(beside(&line, 0.25)) {
-            assert!((b - a - Vec2::new(0.0, 0.25)).norm() < 1e-12);
-        }
-        assert!(beside(&line[..1], 0.1).is_empty());
-        assert!(beside(&[], 0.1).is_empty());
-    }
 }

@@ -3,6 +3,7 @@
 
 use crate::canvas::boards::Boards;
 use crate::canvas::camera::{ScreenPoint, TableCamera};
+use crate::canvas::grading::Grading;
 use crate::canvas::hit::{Hit, hits, inside_box, open_sheets, shown_points};
 use crate::canvas::paint::Picture;
 use crate::canvas::scene::Scene;
@@ -42,6 +43,10 @@ pub struct PatternView {
     pub hover: Option<Hit>,
     /// Whether lines to cut along are drawn.
     pub allowances: bool,
+    /// Whether rulers are drawn.
+    pub rulers: bool,
+    /// All sizes over each other, while they are drawn.
+    pub grading: Option<Grading>,
     /// Whether the click that goes on was taken by a number that is typed elsewhere.
     pub click_is_taken: bool,
     /// The tool in hand.
@@ -70,6 +75,8 @@ impl Default for PatternView {
             selection: Selection::default(),
             hover: None,
             allowances: true,
+            rulers: true,
+            grading: None,
             click_is_taken: false,
             tool: Tool::Select,
             state: State::default(),
@@ -124,6 +131,12 @@ impl PatternView {
         let middle = ScreenPoint(Pos2::ZERO);
         let view = Rect::from_center_size(Pos2::ZERO, egui::Vec2::ZERO);
         self.camera.zoom(view, middle, factor);
+    }
+
+    /// Shows everything as large as it is, on a screen of so many pixels a metre.
+    pub fn true_size(&mut self, scale: f64) {
+        self.fitted = None;
+        self.camera.scale = scale;
     }
 
     /// Follows a change of the pattern or of the enlargement; `previews` while it is a gesture's.
@@ -448,6 +461,10 @@ impl PatternView {
             selection: &self.selection,
             hover,
             allowances: self.allowances,
+            rulers: self
+                .rulers
+                .then(|| (self.sheet_origin(), evaluation.pattern().unit)),
+            grading: self.grading.as_ref(),
             fresh: &fresh,
             open: &open,
             palette: Palette::of(ui.ctx()),

@@ -1,0 +1,66 @@
+//! All sizes over each other, as drafted.
+
+use egui::Color32;
+use toile_geometry::Vec2;
+use toile_pattern::{Evaluation, PanelId, SizeId};
+
+/// Outlines of every size.
+#[derive(Clone, Debug, Default)]
+pub struct Grading {
+    /// The sizes, in the order of their table.
+    pub sizes: Vec<GradedSize>,
+}
+
+/// The outlines of a size.
+#[derive(Clone, Debug)]
+pub struct GradedSize {
+    /// Which.
+    pub id: SizeId,
+    /// Its name.
+    pub name: String,
+    /// Closed outlines and holes of each panel, in its plane [m].
+    pub panels: Vec<(PanelId, Vec<Vec<Vec2>>)>,
+}
+
+impl Grading {
+    /// The outlines of a pattern in each of its sizes, from its evaluation in one of them; curves
+    /// to within a tolerance [m].
+    pub fn new(
+        evaluation: &Evaluation,
+        tolerance: f64,
+        mut in_size: impl FnMut(&str) -> Evaluation,
+    ) -> Self {
+        let pattern = evaluation.pattern();
+        let sizes = pattern.sizes.iter().map(|size| {
+            let graded = in_size(&size.name);
+            let panels = pattern.panels.iter().filter_map(|panel| {
+                let stage = graded.last_stage(panel)?;
+                let rings = std::iter::once(stage.outline()).chain(stage.holes());
+                let rings = rings.map(|ring| {
+                    let mut points: Vec<Vec2> = Vec::new();
+                    for edge in ring {
+                        points.extend(edge.curve.flatten(tolerance));
+                    }
+                    points
+                });
+                Some((panel.id, rings.collect()))
+            });
+            GradedSize {
+                id: size.id,
+                name: size.name.clone(),
+                panels: panels.collect(),
+            }
+        });
+        Self {
+            sizes: sizes.collect(),
+        }
+    }
+
+    /// The colour of a size: from blue for the first to red for the last.
+    pub fn colour(&self, number: usize) -> Color32 {
+        let last = self.sizes.len().saturating_sub(1).max(1);
+        let share = number as f32 / last as f32;
+        let hue = 0.62 * (1.0 - share);
+        egui::epaint::Hsva::new(hue, 0.75, 0.72, 1.0).into()
+    }
+}

@@ -1,0 +1,178 @@
+//! Paints seams, and the sizes over each other.
+
+use super::grading::Grading;
+use super::paint::{NUMBER_INSET, Picture};
+use super::panel_shape::along;
+use super::scene::PanelScene;
+use super::seams::{SeamDrawing, SeamEnd};
+use super::selection::Item;
+use crate::theme;
+use egui::{Align2, Color32, Shape, Stroke, vec2};
+use toile_geometry::Vec2;
+
+/// How far inside the outline a seam's line runs [pixels].
+const SEAM_INSET: f64 = 5.0;
+/// Stretches shorter than this carry no number [pixels].
+const NUMBER_LEAST: f64 = 34.0;
+/// Sides of a seam that differ by more are shown as a warning [m].
+const UNEVEN: f64 = 0.001;
+
+impl Picture<'_> {
+    /// Seams at the selected or pointed edge are drawn stronger.
+    pub(super) fn touched(&self, seam: &SeamDrawing) -> bool {
+        self.is_lit(Item::Seam(seam.id))
+            || seam.stretches.iter().any(|stretch| {
+                let item = stretch.edge.map(|edge| Item::Edge(stretch.panel, edge));
+                item.is_some_and(|item| self.is_lit(item))
+            })
+    }
+
+    pub(super) fn seam_lines(&self, seam: &SeamDrawing) {
+        let width = if self.touched(seam) { 5.0 } else { 2.6 };
+        for stretch in &seam.stretches {
+            let Some(panel) = self.scene.panel_scene(stretch.panel) else {
+                continue;
+            };
+            let origin = self.boards.panel(panel.id);
+            let inset = panel.shape.cloth_side * SEAM_INSET / self.camera.scale;
+            let line = self.line(origin, &beside(&stretch.line, inset));
+            let colour = theme::seam(seam.number);
+            let colour = match stretch.edge {
+                Some(_) => colour,
+                None => colour.gamma_multiply(0.45),
+            };
+            self.painter.line(line, Stroke::new(width, colour));
+        }
+    }
+
+    pub(super) fn seam_numbers(&self, seam: &SeamDrawing) {
+        for stretch in &seam.stretches {
+            let Some(panel) = self.scene.panel_scene(stretch.panel) else {
+                continue;
+            };
+            let scale = self.camera.scale;
+            let length: f64 = stretch.line.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+            if length * scale < NUMBER_LEAST {
+                continue;
+            }
+            let Some((at, way)) = along(&stretch.line, 0.5) else {
+                continue;
+            };
+            let inward = Vec2::new(-way.y, way.x) * panel.shape.cloth_side;
+            let origin = self.boards.panel(panel.id);
+            let middle = self.seen(origin, at + inward * (NUMBER_INSET / scale));
+            self.painter
+                .circle_filled(middle, 8.5, theme::seam(seam.number));
+            self.painter.text(
+                middle,
+                Align2::CENTER_CENTER,
+                seam.number,
+                theme::font(11.0),
+                Color32::WHITE,
+            );
+        }
+    }
+
+    /// Lines between the ends that are sewn together, and how much longer one side is: in the
+    /// colour of a warning where that is more than a millimetre.
+    pub(super) fn seam_links(&self, seam: &SeamDrawing) {
+        let [Some(first), Some(second)] = seam.ends else {
+            return;
+        };
+        let difference = seam.difference();
+        let colour = match difference.abs() > UNEVEN {
+            true => self.palette.warning,
+            false => self.palette.accent,
+        };
+        let seen = |(panel, at): SeamEnd| self.seen(self.boards.panel(panel), at);
+        for k in [0, 1] {
+            let line = [seen(first[k]), seen(second[k])];
+            let stroke = Stroke::new(1.4, colour);
+            self.painter
+                .extend(Shape::dashed_line(&line, stroke, 3.0, 4.0));
+            for at in line {
+                match k {
+                    0 => self.painter.circle_filled(at, 5.0, colour),
+                    _ => self.painter.circle(at, 5.0, self.palette.field, stroke),
+                };
+            }
+        }
+        let middle = seen(first[0]) + (seen(second[0]) - seen(first[0])) * 0.5;
+        let millimetres = 1e3 * difference.abs();
+        let words = match millimetres {
+            m if m < 0.05 => "same length".to_owned(),
+            m => {
+                let longer = if difference > 0.0 { first } else { second };
+                let panel = self.scene.panel_scene(longer[0].0);
+                let panel = panel.map_or("", |panel| &panel.name);
+                format!("{panel} {m:.1} mm longer")
+            }
+        };
+        self.label(middle, &words, colour);
+    }
+
+    /// Outlines of a panel in all sizes.
+    pub(super) fn graded(&self, panel: &PanelScene, grading: &Grading) {
+        let origin = self.boards.panel(panel.id);
+        for (k, size) in grading.sizes.iter().enumerate() {
+            let stroke = Stroke::new(1.1, grading.colour(k));
+            let own = size.panels.iter().filter(|(id, _)| *id == panel.id);
+            for ring in own.flat_map(|(_, rings)| rings) {
+                self.painter.line(self.line(origin, ring), stroke);
+            }
+        }
+    }
+
+    /// Which colour is which size.
+    pub(super) fn legend(&self, grading: &Grading) {
+        let mut at = self.view.min + vec2(30.0, 34.0);
+        for (k, size) in grading.sizes.iter().enumerate() {
+            let colour = grading.colour(k);
+            let line = [at, at + vec2(22.0, 0.0)];
+            self.painter.line_segment(line, Stroke::new(2.0, colour));
+            self.painter.text(
+                at + vec2(30.0, 0.0),
+                Align2::LEFT_CENTER,
+                &size.name,
+                theme::font(12.5),
+                self.palette.ink,
+            );
+            at.y += 17.0;
+        }
+    }
+}
+
+/// A polyline moved to its left by a distance, corner by corner; ends stay square to it.
+fn beside(line: &[Vec2], distance: f64) -> Vec<Vec2> {
+    if line.len() < 2 {
+        return Vec::new();
+    }
+    let direction = |k: usize| (line[k + 1] - line[k]).try_normalize(1e-12);
+    let last = line.len().saturating_sub(2);
+    (0..line.len())
+        .filter_map(|k| {
+            let before = direction(k.saturating_sub(1).min(last));
+            let after = direction(k.min(last));
+            let way = match (before, after) {
+                (Some(a), Some(b)) => (a + b).try_normalize(1e-9).unwrap_or(b),
+                (a, b) => a.or(b)?,
+            };
+            Some(line[k] + Vec2::new(-way.y, way.x) * distance)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_beside_a_line_keeps_its_distance() {
+        let line = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]].map(Vec2::from);
+        for (a, b) in line.iter().zip(beside(&line, 0.25)) {
+            assert!((b - a - Vec2::new(0.0, 0.25)).norm() < 1e-12);
+        }
+        assert!(beside(&line[..1], 0.1).is_empty());
+        assert!(beside(&[], 0.1).is_empty());
+    }
+}
