@@ -6,7 +6,6 @@ use crate::fields::Entered;
 use crate::theme::Palette;
 use crate::tools::number;
 use egui::{ComboBox, Grid, RichText, Ui};
-use std::collections::HashMap;
 use std::sync::Arc;
 use toile_pattern::plan::{self, NumberEntry};
 use toile_pattern::{
@@ -97,7 +96,10 @@ impl ToileApp {
         }
         match item {
             Item::Panel(panel) => self.panel_choices(ui, panel),
-            Item::Edge(panel, edge) => self.corner_choice(ui, panel, edge),
+            Item::Edge(panel, edge) => {
+                self.corner_choice(ui, panel, edge);
+                self.curve_numbers(ui, (panel, edge));
+            }
             Item::Notch(panel, notch) => self.notch_choice(ui, panel, notch),
             _ => {}
         }
@@ -133,7 +135,7 @@ impl ToileApp {
     }
 
     /// One number: its text, its value as it is typed, what is wrong with it.
-    fn number_field(&mut self, ui: &mut Ui, entry: &NumberEntry) {
+    pub(crate) fn number_field(&mut self, ui: &mut Ui, entry: &NumberEntry) {
         let label = ui.label(entry.label).id;
         self.number_text_field(ui, entry, label);
         let is_formula = entry
@@ -373,69 +375,6 @@ impl ToileApp {
                 plan::set_notch_kind(&self.base, (panel, id), kind),
                 "Change notch",
             );
-        }
-    }
-
-    /// What several parts have in common.
-    fn inspect_several(&mut self, ui: &mut Ui, items: &[Item]) {
-        ui.label(RichText::new(format!("{} parts selected", items.len())).strong());
-        let pattern = self.base.pattern().clone();
-        let edges: Vec<(PanelId, toile_pattern::EdgeId)> = items
-            .iter()
-            .filter_map(|item| match item {
-                Item::Edge(panel, edge) => Some((*panel, *edge)),
-                _ => None,
-            })
-            .collect();
-        if edges.len() == items.len() {
-            let lengths = edges.iter().filter_map(|(_, edge)| self.base.edge(*edge));
-            let total: f64 = lengths.map(|path| path.length()).sum();
-            let words = format!(
-                "{} long together",
-                number::show(total, Want::Length, pattern.unit)
-            );
-            ui.label(words);
-            self.allowance_of_all(ui, &edges);
-        }
-        if let [Item::Point(a), Item::Point(b)] = items
-            && let (Some(a), Some(b)) = (self.base.point(*a), self.base.point(*b))
-        {
-            let way = b - a;
-            let length = number::show(way.norm(), Want::Length, pattern.unit);
-            let angle = number::show(way.y.atan2(way.x), Want::Angle, pattern.unit);
-            ui.label(format!("{length} apart, {angle}"));
-        }
-    }
-
-    fn allowance_of_all(&mut self, ui: &mut Ui, edges: &[(PanelId, toile_pattern::EdgeId)]) {
-        let label = ui.label("Allowance of all").id;
-        let id = egui::Id::unique("allowance of all");
-        let base = self.base.clone();
-        let entered = self.typed.field(ui, (id, label), "", |text| {
-            number::parse(text, Want::Length, &base).map(|_| String::new())
-        });
-        if let Entered::Text(text) = entered {
-            match number::parse(&text, Want::Length, &self.base) {
-                Ok(number) => {
-                    let mut changed: HashMap<PanelId, Panel> = HashMap::new();
-                    for (panel, edge) in edges {
-                        let Some(owner) = self.base.pattern().panel(*panel) else {
-                            continue;
-                        };
-                        let owner = changed.entry(*panel).or_insert_with(|| (**owner).clone());
-                        let all = owner.lines.iter_mut().flat_map(|line| &mut line.edges);
-                        for known in all.filter(|known| known.id == *edge) {
-                            known.allowance = Some(number.clone());
-                        }
-                    }
-                    let edits = changed.into_values();
-                    let edits = edits
-                        .map(|p| Edit::Put(Entity::Panel(Arc::new(p))))
-                        .collect();
-                    self.edit(Ok(edits), "Set allowance");
-                }
-                Err(fault) => self.typed.refuse(id, text, fault),
-            }
         }
     }
 }

@@ -9,6 +9,7 @@ mod canvas;
 mod fields;
 mod gpu;
 mod inspector;
+mod several;
 mod tables;
 mod theme;
 mod tools;

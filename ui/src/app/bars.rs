@@ -261,6 +261,10 @@ impl ToileApp {
             .add_enabled((command.when)(self), button)
             .on_hover_text(&words)
             .on_disabled_hover_text(&words);
+        // Its key is said beside it, and is no part of its name.
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, response.enabled(), command.name)
+        });
         if response.clicked() {
             (command.does)(self);
         }

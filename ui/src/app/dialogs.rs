@@ -61,7 +61,9 @@ impl ToileApp {
                 Dialog::Find(text, chosen) => self.ask_find(ui, text, chosen),
             };
         });
-        if matches!(answer, Answer::Stay) && modal.should_close() {
+        // A field for text gives up its focus by Escape first: here one press is enough.
+        let escaped = context.input(|input| input.key_pressed(Key::Escape));
+        if matches!(answer, Answer::Stay) && (escaped || modal.should_close()) {
             answer = Answer::Leave;
         }
         match answer {
@@ -141,9 +143,7 @@ fn ask_file(ui: &mut Ui, choice: &mut FileChoice, title: &str, verb: &'static st
         .auto_shrink([false, false])
         .show(ui, |ui| {
             if let Some(above) = choice.folder.parent()
-                && ui
-                    .selectable_label(false, "\u{2191} folder above")
-                    .clicked()
+                && ui.selectable_label(false, ".. (folder above)").clicked()
             {
                 folder = Some(above.to_owned());
             }

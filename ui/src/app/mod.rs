@@ -454,6 +454,7 @@ impl ToileApp {
         };
         let before = seen(self);
         let base = self.base.clone();
+        self.view.is_covered = self.dialog.is_some();
         self.view.click_is_taken |= self.typed.took_click();
         for outcome in self.view.show(ui, &base) {
             self.follow_outcome(outcome);

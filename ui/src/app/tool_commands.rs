@@ -170,6 +170,14 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::Panel,
+        "Row of notches",
+        None,
+        "Divide an edge evenly by notches",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&panel::NOTCH_ROW)),
+    ),
+    command(
+        Menu::Panel,
         "Inner line",
         key(PLAIN, Key::I),
         "Draw a line inside a panel, or a hole by closing it",

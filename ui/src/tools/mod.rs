@@ -11,6 +11,7 @@ mod select;
 mod slot_overlay;
 pub mod slots;
 
+pub use planning::Planning;
 pub use select::SelectState;
 
 use crate::canvas::hit::Hit;

@@ -215,6 +215,51 @@ pub static GRAIN: SlotTool = SlotTool {
     },
 };
 
+/// Notches at equal distances along an edge.
+pub static NOTCH_ROW: SlotTool = SlotTool {
+    command: "Row of notches",
+    slots: &[
+        Slot {
+            hint: "Click the edge to divide by notches",
+            kind: SlotKind::Edge,
+        },
+        Slot {
+            hint: "Type how many notches",
+            kind: SlotKind::Number {
+                label: "count",
+                want: Want::Plain,
+                usual: 3.0,
+                live: None,
+            },
+        },
+    ],
+    plan: |answers, reading| {
+        let [Answer::Edge(panel, edge, _), Answer::Number(count)] = answers else {
+            return Err(refuse("nothing was given", "click an edge"));
+        };
+        let owner = panel_of(reading, *panel)?;
+        let mut lines = owner.lines.iter();
+        let found = lines.find_map(|line| {
+            let edge = line.edges.iter().find(|known| known.id == *edge)?;
+            Some((line.id, edge.ends))
+        });
+        let (line, ends) = found.ok_or_else(|| refuse("the edge is gone", "click another"))?;
+        let count = reading.evaluation.number(count, Want::Plain);
+        let count = count.filter(|count| (1.0..=100.0).contains(count));
+        let count = count.ok_or_else(|| refuse("a row has 1 to 100 notches", "type a count"))?;
+        let row = plan::NotchRow {
+            line,
+            ends: ends.map(Name::Drawn),
+            count: count.round() as u32,
+        };
+        let mut planning = Planning::new(reading);
+        let made = planning
+            .run(|evaluation| plan::add_notches(evaluation, *panel, row, NotchKind::Slit))?;
+        let items = made.into_iter().map(|id| Item::Notch(*panel, id));
+        Ok(planning.done("Add row of notches", items))
+    },
+};
+
 fn panel_of<'r>(reading: &Reading<'r>, id: PanelId) -> Result<&'r Arc<Panel>, EditError> {
     let found = reading.evaluation.pattern().panel(id);
     found.ok_or_else(|| refuse("the panel is not there", "click another"))

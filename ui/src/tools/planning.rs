@@ -15,10 +15,20 @@ pub struct Planning {
 impl Planning {
     /// None yet.
     pub fn new(reading: &Reading<'_>) -> Self {
+        Self::of(reading.evaluation)
+    }
+
+    /// None yet, of a pattern as evaluated.
+    pub fn of(evaluation: &Evaluation) -> Self {
         Self {
-            evaluation: reading.evaluation.clone(),
+            evaluation: evaluation.clone(),
             edits: Vec::new(),
         }
+    }
+
+    /// The edits that were made.
+    pub fn edits(self) -> Vec<Edit> {
+        self.edits
     }
 
     /// Makes the edits of a planner.

@@ -49,6 +49,8 @@ pub struct PatternView {
     pub grading: Option<Grading>,
     /// Whether the click that goes on was taken by a number that is typed elsewhere.
     pub click_is_taken: bool,
+    /// Whether a dialog lies over it, which all keys go to.
+    pub is_covered: bool,
     /// The tool in hand.
     pub tool: Tool,
     /// How far it has come.
@@ -78,6 +80,7 @@ impl Default for PatternView {
             rulers: true,
             grading: None,
             click_is_taken: false,
+            is_covered: false,
             tool: Tool::Select,
             state: State::default(),
             pointer: None,
@@ -338,7 +341,7 @@ impl PatternView {
     }
 
     fn keys(&self, ui: &Ui, response: &Response) -> Vec<Event> {
-        if self.is_typed_into(ui) {
+        if self.is_covered || self.is_typed_into(ui) {
             return Vec::new();
         }
         let takes_tab = matches!(self.tool, Tool::Slots(_));
