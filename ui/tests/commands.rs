@@ -24,6 +24,10 @@ fn window() -> Harness<'static, ToileApp> {
             let state = creation.wgpu_render_state.as_ref();
             ToileApp::new(&creation.egui_ctx, state, beginning)
         });
+    // Nothing fades in or out.
+    window
+        .ctx
+        .all_styles_mut(|style| style.animation_time = 0.0);
     window.run_ok();
     window
 }
@@ -64,6 +68,13 @@ fn every_command_is_reached_by_its_name_and_its_changes_are_undone() {
             let entry = entry.unwrap_or_else(|| panic!("{} is in no menu", command.name));
             entry.click();
             window.run_ok();
+            // What was opened in the view is closed again.
+            if menu == Menu::View {
+                open_menu(&mut window, menu);
+                let entry = window.query_all_by_label(command.name).last().unwrap();
+                entry.click();
+                window.run_ok();
+            }
             // Dialogs and tools are left; the menu too where the command could not be done.
             for _ in 0..2 {
                 window.key_press(Key::Escape);
