@@ -7,7 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use toile_geometry::Vec2;
 use toile_pattern::{Evaluation, Pattern};
-use toile_session::{Command, Session, Silent};
+use toile_session::{Command, Project, Session, Silent};
 use toile_ui::{Beginning, ToileApp};
 
 /// A window with its actions counted.
@@ -18,6 +18,19 @@ struct Drafter {
 
 impl Drafter {
     fn new() -> Self {
+        Self::begun(Beginning::default())
+    }
+
+    /// A window with a pattern that is shipped.
+    fn opened(name: &str) -> Self {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../patterns");
+        Self::begun(Beginning {
+            file: Some(folder.join(format!("{name}.toile.json"))),
+            folder: None,
+        })
+    }
+
+    fn begun(beginning: Beginning) -> Self {
         let mut window = Harness::builder()
             .with_size(vec2(1400.0, 900.0))
             .with_theme(egui::Theme::Light)
@@ -25,7 +38,7 @@ impl Drafter {
             .with_step_dt(1.0 / 60.0)
             .build_eframe(move |creation| {
                 let state = creation.wgpu_render_state.as_ref();
-                ToileApp::new(&creation.egui_ctx, state, Beginning::default())
+                ToileApp::new(&creation.egui_ctx, state, beginning)
             });
         window.run();
         Self { window, actions: 0 }
@@ -387,7 +400,135 @@ fn an_edge_that_is_clicked_while_a_number_is_typed_gives_its_length() {
     assert!((value.unwrap() - 0.3 / 20.0).abs() < 1e-12, "{value:?}");
 }
 
+#[test]
+fn a_cap_is_fitted_to_its_armhole_by_clicking_it() {
+    let mut drafter = Drafter::opened("t-shirt");
+    // A notch lies on its middle: a second click takes what is under it.
+    let middle = drafter.part("Edge cap_front of sleeve");
+    drafter.click(middle);
+    // Not a double click.
+    drafter.window.run_steps(40);
+    drafter.click(middle);
+    let field = drafter
+        .window
+        .get_by_role_and_label(Role::TextInput, "length");
+    field.focus();
+    drafter.window.run();
+    drafter.click(drafter.part("Edge armhole of front"));
+    drafter.typed(" + 0.5cm");
+    assert!(drafter.actions <= 6, "{}", drafter.actions);
+    let pattern = drafter.pattern();
+    for size in &pattern.sizes {
+        let sized = Project {
+            pattern: pattern.clone().into(),
+            size: Some(size.name.clone()),
+            ..Project::default()
+        };
+        let evaluation = Evaluation::new(&pattern, sized.drafted_to());
+        let length = |panel: &str, edge: &str| {
+            let panel = pattern.panel_named(panel).unwrap();
+            let edge = panel.edges().find(|found| found.name == edge).unwrap();
+            evaluation.edge(edge.id).unwrap().length()
+        };
+        let ease = length("sleeve", "cap_front") - length("front", "armhole");
+        assert!((ease - 0.005).abs() < 1e-6, "{}: {ease}", size.name);
+    }
+}
+
+#[test]
+fn a_dart_is_moved_by_its_number() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Dart");
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::D);
+    drafter.click(drafter.part("Edge top of draft"));
+    drafter.typed("2");
+    drafter.typed("8");
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.actions = 0;
+    drafter.click(drafter.part("Dart of draft"));
+    drafter.enter("share", "0.25");
+    assert!(drafter.actions <= 4, "{}", drafter.actions);
+    let pattern = drafter.pattern();
+    let evaluation = drafter.evaluation();
+    let stage = evaluation.last_stage(&pattern.panels[0]).unwrap();
+    let apex = stage.darts[0].apex;
+    assert!((apex.y - 0.22).abs() < 1e-9, "{apex:?}");
+    let from_end = apex.x.min(0.2 - apex.x);
+    assert!((from_end - 0.05).abs() < 1e-9, "{apex:?}");
+}
+
+#[test]
+fn what_is_selected_is_moved_turned_mirrored_scaled_and_copied() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Parts");
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.1));
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    let start = drafter.point("A");
+    drafter.click(drafter.part("Panel draft"));
+    // Moved by typed numbers.
+    drafter.key(Key::M);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.type_text("10");
+    drafter.key(Key::Tab);
+    drafter.typed("90");
+    let moved = drafter.point("A");
+    assert!(
+        (moved - start - Vec2::new(0.0, 0.1)).norm() < 1e-9,
+        "{moved}"
+    );
+    // Turned by a right angle about its first corner.
+    drafter.key(Key::Escape);
+    drafter.key(Key::Q);
+    drafter.click(drafter.part("Point A of draft"));
+    drafter.typed("90");
+    let width = drafter.point("B") - drafter.point("A");
+    assert!((width - Vec2::new(0.0, 0.2)).norm() < 1e-9, "{width}");
+    // Scaled to twice its size.
+    drafter.key(Key::Escape);
+    drafter.chord(Modifiers::SHIFT, Key::S);
+    drafter.click(drafter.part("Point A of draft"));
+    drafter.typed("2");
+    let width = drafter.point("B") - drafter.point("A");
+    assert!((width - Vec2::new(0.0, 0.4)).norm() < 1e-9, "{width}");
+    // Copied beside itself.
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.key(Key::F);
+    drafter.click(drafter.part("Panel draft"));
+    drafter.chord(Modifiers::COMMAND, Key::D);
+    assert_eq!(drafter.pattern().panels.len(), 2, "{}", drafter.status());
+    // Copied through the clipboard of the system.
+    drafter.window.event(egui::Event::Copy);
+    drafter.window.step();
+    let mut commands = drafter.window.output().platform_output.commands.iter();
+    let text = commands.find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    drafter.window.event(egui::Event::Paste(text.unwrap()));
+    drafter.window.run();
+    assert_eq!(drafter.pattern().panels.len(), 3, "{}", drafter.status());
+}
+
 impl Drafter {
+    /// Types text where the keys go.
+    fn type_text(&mut self, text: &str) {
+        for c in text.chars() {
+            self.window.event(egui::Event::Text(c.to_string()));
+            self.window.run();
+        }
+        self.actions += 1;
+    }
+
     /// Ticks a box.
     fn enter_choice(&mut self, name: &str) {
         self.actions += 1;

@@ -115,7 +115,8 @@ impl ToileApp {
     /// Offers the length of the part under the pointer to the number that is being typed.
     pub(crate) fn offer_length(&mut self) {
         if self.typed.takes_parts() {
-            let words = self.view.hover.and_then(|hit| self.length_words(hit.item));
+            let mut under = self.view.under.iter();
+            let words = under.find_map(|item| self.length_words(*item));
             self.typed.offer(words);
         }
     }

@@ -65,6 +65,7 @@ impl ToileApp {
 
     /// Follows copy, cut and paste of the system while no text is typed.
     pub(crate) fn take_clipboard(&mut self, context: &egui::Context) {
+        self.follow_clipboard(context);
         if self.wants_clipboard {
             self.wants_clipboard = false;
             if let Some(text) = self
@@ -75,6 +76,9 @@ impl ToileApp {
                 context.copy_text(text);
             }
         }
+    }
+
+    fn follow_clipboard(&mut self, context: &egui::Context) {
         if !self.is_open() || self.dialog.is_some() || self.types(context) {
             return;
         }

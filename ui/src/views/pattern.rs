@@ -41,6 +41,8 @@ pub struct PatternView {
     pub selection: Selection,
     /// What is under the pointer.
     pub hover: Option<Hit>,
+    /// Everything under the pointer, the most wanted first.
+    pub under: Vec<Item>,
     /// Whether lines to cut along are drawn.
     pub allowances: bool,
     /// Whether rulers are drawn.
@@ -76,6 +78,7 @@ impl Default for PatternView {
             base: Scene::default(),
             selection: Selection::default(),
             hover: None,
+            under: Vec::new(),
             allowances: true,
             rulers: true,
             grading: None,
@@ -302,6 +305,7 @@ impl PatternView {
                 Some(at) => {
                     let pointer = self.pointer_at(view, at, held);
                     self.hover = pointer.hit();
+                    self.under = pointer.hits.iter().map(|hit| hit.item).collect();
                     self.pointer = Some(pointer.at);
                     if self.told.replace((at, held)) != Some((at, held)) {
                         events.push(Event::Hover(pointer));
@@ -309,6 +313,7 @@ impl PatternView {
                 }
                 None => {
                     self.hover = None;
+                    self.under.clear();
                     self.pointer = None;
                     self.told = None;
                     if was_there {
