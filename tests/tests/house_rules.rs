@@ -5,7 +5,7 @@ use std::fs;
 use toile_tests::{files_below, root};
 
 /// Our libraries from below: each may at most use those before it.
-const LIBRARIES: [&str; 11] = [
+const LIBRARIES: [&str; 12] = [
     "geometry",
     "measure",
     "pattern",
@@ -16,6 +16,7 @@ const LIBRARIES: [&str; 11] = [
     "drape",
     "picture",
     "interchange",
+    "marker",
     "session",
 ];
 
@@ -25,7 +26,7 @@ const fn lowest(count: usize) -> &'static [&'static str] {
 }
 
 /// Which of our packages each may use. The arrows of docs/ARCHITECTURE.md, and nothing else.
-const LAYERS: [(&str, &[&str]); 15] = [
+const LAYERS: [(&str, &[&str]); 16] = [
     ("toile-geometry", &[]),
     ("toile-measure", &[]),
     ("toile-pattern", &["geometry", "measure"]),
@@ -36,7 +37,11 @@ const LAYERS: [(&str, &[&str]); 15] = [
     ("toile-drape", &["geometry"]),
     ("toile-picture", &["geometry"]),
     ("toile-interchange", lowest(9)),
-    ("toile-session", lowest(10)),
+    (
+        "toile-marker",
+        &["geometry", "pattern", "cut", "nesting", "interchange"],
+    ),
+    ("toile-session", lowest(11)),
     ("toile", &["geometry", "measure", "session", "lab"]),
     (
         "toile-ui",
@@ -44,8 +49,8 @@ const LAYERS: [(&str, &[&str]); 15] = [
             "geometry", "measure", "pattern", "cut", "session", "picture",
         ],
     ),
-    ("toile-tests", lowest(11)),
-    ("toile-lab", lowest(11)),
+    ("toile-tests", lowest(12)),
+    ("toile-lab", lowest(12)),
 ];
 
 /// What may stand at the top level besides dot-files.

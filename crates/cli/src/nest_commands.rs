@@ -8,7 +8,7 @@ use std::path::Path;
 use toile_geometry::{Duration, Length};
 use toile_session::{
     Budget, Event, MarkerSettings, NestOptions, Nested, is_nesting_instance, nest_instance,
-    nest_patterns, open_marker_settings, rule_table, study_rules,
+    nest_patterns, open_marker, open_marker_settings, rule_table, study_rules,
 };
 
 /// A yard [m].
@@ -46,7 +46,11 @@ fn nest_options(nest: &Nest) -> Result<NestOptions, Failure> {
             Some(path) => open_marker_settings(path)?,
             None => MarkerSettings::default(),
         },
-        from: nest.from.clone(),
+        from: nest
+            .from
+            .iter()
+            .map(|path| open_marker(path))
+            .collect::<Result<_, _>>()?,
         locked: nest.lock.clone(),
         keep_best: true,
         formats: nest.write.iter().map(|&f| f.into()).collect(),

@@ -67,7 +67,7 @@ pub use marker_plot::{write_marker_dxf, write_marker_hpgl, write_marker_pdf};
 pub use marker_report::write_marker_report;
 pub use marker_settings::{
     ANY_NAME, FabricSettings, FlawSettings, LockSettings, MarkerSettings, Metres, NapField,
-    PieceSettings, PrintSettings, RollSettings, Spread, read_marker_settings,
+    PieceSettings, PrintSettings, RollSettings, read_marker_settings,
 };
 pub use marker_svg::write_marker_svg;
 pub use measurements::read_body_yaml;

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use toile_geometry::Length;
 use toile_nesting::Nap;
+use toile_pattern::Spread;
 
 const KIND: &str = "marker-settings";
 
@@ -36,39 +37,6 @@ pub struct MarkerSettings {
     /// Marks that lie on the same place of the print in every garment: lists of `panel.notch`.
     #[serde(default, rename = "match")]
     pub matched: Vec<Vec<String>>,
-}
-
-/// How fabric is spread on the table.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Spread {
-    /// Open, all plies with the right side up.
-    #[default]
-    Open,
-    /// Folded in two along the warp, selvedge on selvedge.
-    Folded,
-    /// A tube laid flat: a fold at both sides.
-    Tubular,
-    /// Open, every second ply turned over: what is cut comes in pairs.
-    FaceToFace,
-}
-
-impl Spread {
-    /// The numbers of plies that are right.
-    pub const PLIES: &'static str = "give 1 or more, face to face an even number";
-
-    /// Layers cut at once where nothing is said.
-    pub fn usual_plies(self) -> u32 {
-        match self {
-            Self::FaceToFace => 2,
-            Self::Open | Self::Folded | Self::Tubular => 1,
-        }
-    }
-
-    /// Whether fabric can be spread so in so many plies.
-    pub fn allows(self, plies: u32) -> bool {
-        plies > 0 && (self != Self::FaceToFace || plies.is_multiple_of(2))
-    }
 }
 
 /// What a marker maker knows of a fabric. What is not given is the pattern's, or usual.

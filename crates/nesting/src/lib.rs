@@ -9,6 +9,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod check;
+mod clashes;
 mod explore;
 mod job;
 mod layout;
@@ -36,6 +37,7 @@ mod warm;
 mod words;
 
 pub use check::{ItemProblem, MOST_PIECES, NestingError, Refusal};
+pub use clashes::{Clashes, Outside, Overlap, clashes};
 pub use marker::{
     Allowed, Defect, Fold, FoldEdge, Item, Locked, Marker, MatchPoint, Mirror, Nap, Phase,
     Placement, Pose, Strip, Stripes, Unplaced,

@@ -4,7 +4,7 @@
 
 use crate::rules::check_rules;
 use crate::{Item, Marker, Strip};
-use toile_geometry::{Polygon, PreparedPolygon, Vec2, intersection, total_area};
+use toile_geometry::{Bounds2, Polygon, PreparedPolygon, Vec2, intersection, total_area};
 
 /// Deepest overlap of two pieces, nearest they may come below their gap, and furthest they may
 /// stick out, that still counts as sound \[m\].
@@ -211,6 +211,17 @@ pub(crate) fn beyond_limit(excess: f64) -> bool {
     excess.is_nan() || excess > PENETRATION_LIMIT
 }
 
+/// How far bounds reach beyond each side of the usable fabric \[m\]; below 0 where they do not.
+pub(crate) fn sides(strip: &Strip, bounds: Bounds2) -> [(Side, f64); 4] {
+    let end = strip.max_length.unwrap_or(f64::INFINITY) - strip.end_margin;
+    [
+        (Side::Start, strip.end_margin - bounds.min.x),
+        (Side::End, bounds.max.x - end),
+        (Side::Lower, strip.lower() - bounds.min.y),
+        (Side::Upper, bounds.max.y - strip.upper()),
+    ]
+}
+
 fn check_inside(strip: &Strip, laid: &[Laid<'_>], marker: &Marker, verdict: &mut Verdict) {
     let reach = laid.iter().map(|(.., p)| p.bounds().max.x);
     verdict.length = reach.fold(strip.end_margin, f64::max) + strip.end_margin;
@@ -220,16 +231,8 @@ fn check_inside(strip: &Strip, laid: &[Laid<'_>], marker: &Marker, verdict: &mut
             found: verdict.length,
         });
     }
-    let end = strip.max_length.unwrap_or(f64::INFINITY) - strip.end_margin;
     for (placement, _, outline) in laid {
-        let bounds = outline.bounds();
-        let excess = [
-            (Side::Start, strip.end_margin - bounds.min.x),
-            (Side::End, bounds.max.x - end),
-            (Side::Lower, strip.lower() - bounds.min.y),
-            (Side::Upper, bounds.max.y - strip.upper()),
-        ];
-        for (side, by) in excess {
+        for (side, by) in sides(strip, outline.bounds()) {
             if beyond_limit(by) {
                 verdict.violations.push(Violation::Outside {
                     placement: *placement,

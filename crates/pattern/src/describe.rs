@@ -65,6 +65,9 @@ impl Pattern {
             Place::Fabric(id) => {
                 named("fabric", self.fabric(*id).map(|f| &*f.name), id.to_string())
             }
+            Place::Marker(id) => {
+                named("marker", self.marker(*id).map(|m| &*m.name), id.to_string())
+            }
             Place::File { path, line, column } => {
                 format!("line {line}, column {column}, {path}")
             }
@@ -102,6 +105,8 @@ impl Pattern {
             parts.extend(panel.own_parts());
         }
         parts.extend(self.seams.iter().map(|s| (s.id.into(), Place::Seam(s.id))));
+        let markers = self.markers.iter();
+        parts.extend(markers.map(|m| (m.id.into(), Place::Marker(m.id))));
         parts
     }
 }

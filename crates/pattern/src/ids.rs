@@ -83,6 +83,8 @@ ids! {
     OperationId Operation "operation",
     /// A seam.
     SeamId Seam "seam",
+    /// A marker.
+    MarkerId Marker "marker",
 }
 
 /// Gives ids. It only counts up.
@@ -132,5 +134,6 @@ fresh!(
     EdgeId,
     NotchId,
     OperationId,
-    SeamId
+    SeamId,
+    MarkerId
 );

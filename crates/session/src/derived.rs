@@ -5,7 +5,7 @@ use crate::choice::BodyChoice;
 use crate::drape::{Drape, drape};
 use crate::dressed::{DraftedPart, Dressed, checked, tell_apart};
 use crate::fabrics::{FabricChoice, unseen_at_rest};
-use crate::laying::{Garments, Laying, lay};
+use crate::laying::lay_watched;
 use crate::setup::{self, GarmentJob};
 use crate::{Project, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
@@ -13,6 +13,7 @@ use toile_assembly::{AssemblyOptions, assemble};
 use toile_body::{BodyError, Description, Figure, Mannequin};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
+use toile_marker::{Garments, Laying};
 use toile_measure::Measurements;
 use toile_pattern::{Diagnostic, Draft, Evaluation, Panel, Pattern, Wearer};
 
@@ -241,7 +242,7 @@ impl Derived {
             label: several.then_some(&*part.name),
         });
         let garments: Vec<Garments<'_>> = each.collect();
-        let layings = Arc::new(lay(&garments, &options, watcher)?);
+        let layings = Arc::new(lay_watched(&garments, &options, watcher)?);
         self.layings = Some(layings.clone());
         Ok(layings)
     }

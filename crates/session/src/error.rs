@@ -66,8 +66,8 @@ pub enum SessionError {
     #[error("{0}")]
     Assembly(#[from] toile_assembly::AssemblyError),
     /// The pieces cannot be laid.
-    #[error("marker: {0}")]
-    Nesting(toile_nesting::NestingError),
+    #[error("{0}")]
+    Marker(toile_marker::MarkerError),
     /// The garment cannot be sewn or draped.
     #[error("{0}")]
     Drape(toile_drape::DrapeError),
@@ -107,22 +107,18 @@ impl SessionError {
                     | toile_drape::DrapeError::Material { .. }
                     | toile_drape::DrapeError::Scene { .. }
             ),
-            Self::Nesting(
-                toile_nesting::NestingError::Unsound(_) | toile_nesting::NestingError::Cancelled,
-            )
-            | Self::Write { .. }
-            | Self::Picture(_)
-            | Self::Cancelled => false,
+            Self::Marker(error) => error.is_bad_input(),
+            Self::Write { .. } | Self::Picture(_) | Self::Cancelled => false,
             _ => true,
         }
     }
 }
 
-impl From<toile_nesting::NestingError> for SessionError {
-    fn from(error: toile_nesting::NestingError) -> Self {
+impl From<toile_marker::MarkerError> for SessionError {
+    fn from(error: toile_marker::MarkerError) -> Self {
         match error {
-            toile_nesting::NestingError::Cancelled => Self::Cancelled,
-            other => Self::Nesting(other),
+            toile_marker::MarkerError::Cancelled => Self::Cancelled,
+            other => Self::Marker(other),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Events: what happened, for whoever asked.
 
 use std::path::PathBuf;
+use toile_marker::Nested;
 
 /// Something that happened while a command was done.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,41 +45,6 @@ impl Event {
             message: note.clone(),
         })
     }
-}
-
-/// A marker in a few numbers.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Nested {
-    /// Name of the fabric.
-    pub fabric: String,
-    /// The roll it is cut from, if there are several.
-    pub roll: Option<String>,
-    /// Pieces laid.
-    pub pieces: usize,
-    /// Pieces that found no place on any marker of the fabric.
-    pub unplaced: usize,
-    /// Their names, and why.
-    pub missing: Vec<[String; 2]>,
-    /// Fabric used [m].
-    pub length: f64,
-    /// Width of the fabric [m].
-    pub width: f64,
-    /// Layers cut at once; a fold does not count.
-    pub plies: u32,
-    /// Fabric needed, all plies together [m].
-    pub yardage: f64,
-    /// Its price, if a metre's is known.
-    pub cost: Option<f64>,
-    /// What the price is in.
-    pub currency: String,
-    /// Area of the pieces over width times length between the end margins, 0..=1.
-    pub efficiency: f64,
-    /// Area of the pieces over width times length, 0..=1.
-    pub utilisation: f64,
-    /// What the cutter must know.
-    pub notes: Vec<String>,
-    /// Whether the referee found no overlap and nothing outside the fabric.
-    pub sound: bool,
 }
 
 /// A garment's mesh in a few numbers.

@@ -3,16 +3,13 @@
 use crate::derived::Derived;
 use crate::drape::Drape;
 use crate::dressed::DraftedPart;
-use crate::laying::Laying;
 use crate::product::{garment_glb, garment_obj};
 use crate::report::Report;
 use crate::watcher::tell;
-use crate::{Command, MarkerFormat, Project, SessionError, Watcher, pictures};
+use crate::{Command, Project, SessionError, Watcher, pictures};
 use std::path::Path;
-use toile_interchange::{
-    FormatError, write_glb, write_jagua_instance, write_marker_dxf, write_marker_hpgl,
-    write_marker_json, write_marker_pdf, write_marker_report, write_marker_svg, write_obj,
-};
+use toile_interchange::{FormatError, write_glb, write_obj};
+use toile_marker::{MarkerFormat, marker_files};
 
 /// A file to write: its name and its content.
 pub(crate) type File = (String, Vec<u8>);
@@ -70,57 +67,6 @@ fn picture_title(project: &Project, name: &str) -> String {
 fn worn_name(parts: &[DraftedPart]) -> String {
     let names: Vec<&str> = parts.iter().map(|part| &*part.name).collect();
     names.join(" + ")
-}
-
-/// The files of markers: `marker.svg`, `marker.json` and others asked for, numbered from the second
-/// marker on. Returns for each marker what a format could not carry over.
-pub(crate) fn marker_files(
-    (name, formats): (&str, &[MarkerFormat]),
-    layings: &[Laying],
-    files: &mut Vec<File>,
-) -> Result<Vec<Vec<String>>, SessionError> {
-    let mut lost = vec![Vec::new(); layings.len()];
-    for (k, laying) in layings.iter().enumerate() {
-        let stem = match k {
-            0 => "marker".to_owned(),
-            k => format!("marker-{}", k + 1),
-        };
-        let drawing = laying.drawing(name);
-        for format in formats {
-            let (ending, bytes) = match format {
-                MarkerFormat::Svg => ("svg", write_marker_svg(&drawing).map(String::into_bytes)),
-                MarkerFormat::Json => {
-                    let text = write_marker_json(&laying.file(name));
-                    ("json", text.map(String::into_bytes))
-                }
-                MarkerFormat::Dxf => ("dxf", write_marker_dxf(&drawing).map(String::into_bytes)),
-                MarkerFormat::Hpgl => ("plt", write_marker_hpgl(&drawing).map(String::into_bytes)),
-                MarkerFormat::Pdf => ("pdf", write_marker_pdf(&drawing)),
-                MarkerFormat::Instance => {
-                    let (text, left_out) = write_jagua_instance(name, &laying.items, &laying.strip)
-                        .map_err(cannot("marker-instance.json"))?;
-                    let file = format!("{stem}-instance.json");
-                    if !left_out.is_empty() {
-                        let left_out = left_out.join(", ");
-                        lost[k].push(format!("{file} does not hold: {left_out}"));
-                    }
-                    files.push((file, text.into_bytes()));
-                    continue;
-                }
-                MarkerFormat::Report => continue,
-            };
-            files.push((
-                format!("{stem}.{ending}"),
-                bytes.map_err(cannot("the marker"))?,
-            ));
-        }
-    }
-    if formats.contains(&MarkerFormat::Report) {
-        let drawings: Vec<_> = layings.iter().map(|l| l.drawing(name)).collect();
-        let report = write_marker_report(name, &drawings).map_err(cannot("marker-report.pdf"))?;
-        files.push(("marker-report.pdf".to_owned(), report));
-    }
-    Ok(lost)
 }
 
 /// A name as one of a file: letters and digits of any language, `-`, `_` and `.` but at its start.

@@ -16,19 +16,14 @@ mod error;
 mod event;
 mod export;
 mod fabrics;
-mod flaws;
 mod gesture;
-mod going_on;
 mod hands;
 mod history;
 mod journal;
 mod judging;
 mod laying;
-mod laying_items;
 mod live;
 mod marking;
-mod matching;
-mod nest_options;
 mod open;
 mod perform;
 mod pictures;
@@ -54,18 +49,16 @@ pub use command::{Command, OtherGarment};
 pub use drape::DrapeResult;
 pub use dressed::GarmentPart;
 pub use error::SessionError;
-pub use event::{Assembled, Draped, Event, Nested};
+pub use event::{Assembled, Draped, Event};
 pub use fabrics::FabricChoice;
-pub use flaws::GivenFlaw;
 pub use hands::{LiveInput, StampedInput};
 pub use journal::{journal_lines, read_journal};
 pub use judging::{JudgedMarker, is_marker_file, judge_marker_file};
 pub use live::{LiveFrame, LiveRun};
 pub use marking::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
-pub use nest_options::{MarkerFormat, NestOptions};
 pub use open::{
-    Opened, PatternFormat, SAMPLE, SAMPLES, open_measurements, open_pattern, read_input,
-    read_pattern_text,
+    Opened, PatternFormat, SAMPLE, SAMPLES, open_marker, open_measurements, open_pattern,
+    read_input, read_pattern_text,
 };
 pub use piece_facts::{
     DartFacts, EdgeFacts, NotchFacts, PieceFacts, RegionFacts, SeamFacts, piece_facts, seam_facts,
@@ -83,9 +76,11 @@ pub use toile_body::{Description, Figure, Fit, PrimitiveEdit, ProportionBox, Sca
 pub use toile_cut::{CutList, CutListPiece, Shrinkage};
 pub use toile_drape::Stage;
 pub use toile_interchange::{
-    Lines, MarkerSettings, Paper, SizeChoice, Spread, Tile, Wanted, write_atomically,
+    Lines, MarkerSettings, Paper, SizeChoice, Tile, Wanted, write_atomically,
 };
+pub use toile_marker::{GivenFlaw, MarkerError, MarkerFormat, NestOptions, Nested};
 pub use toile_nesting::{Budget, Nap};
+pub use toile_pattern::Spread;
 pub use tools::{
     BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, convert, fit_mesh, make_body,
     measure_mesh, mesh_panels, open_mannequin, stretch_body,

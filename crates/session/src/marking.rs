@@ -1,7 +1,7 @@
 //! Markers of several patterns and sizes, and of published nesting instances.
 
-use crate::export::{cannot, file_name, marker_files};
-use crate::laying::{Garments, lay};
+use crate::export::{cannot, file_name};
+use crate::laying::lay_watched;
 use crate::open::read_input;
 use crate::tools::{project_of, sound_draft};
 use crate::watcher::tell;
@@ -13,6 +13,7 @@ use toile_interchange::{
     MarkerSettings, Wanted, is_jagua_instance, read_jagua, read_marker_settings, read_text,
     write_all_atomically, write_jagua,
 };
+use toile_marker::{Garments, MarkerError, marker_files};
 use toile_nesting::{Budget, Control, Progress, judge, make_marker};
 use toile_pattern::{Draft, Pattern};
 
@@ -107,7 +108,7 @@ pub fn nest_patterns(
 ) -> Result<(Vec<Nested>, Vec<PathBuf>), SessionError> {
     let (drafts, names) = drafts_of(patterns, options)?;
     let garments: Vec<Garments<'_>> = drafts.iter().map(|d| d.garments()).collect();
-    let layings = lay(&garments, options, watcher)?;
+    let layings = lay_watched(&garments, options, watcher)?;
     let mut files = Vec::new();
     let lost = marker_files((&names.join(" + "), &options.formats), &layings, &mut files)?;
     write_all_atomically(folder, &files)?;
@@ -189,7 +190,7 @@ pub fn nest_instance(
     let (items, strip) = (&instance.items, &instance.strip);
     let made = make_marker(items, strip, options.search(), &mut control);
     // Lengths of an instance are said as its own numbers of millimetres.
-    let marker = made.map_err(|error| error.scaled(1e-3 / scale))?;
+    let marker = made.map_err(|error| MarkerError::from(error.scaled(1e-3 / scale)))?;
     if cancel.load(Ordering::Relaxed) && !options.keep_best {
         return Err(SessionError::Cancelled);
     }

@@ -3,8 +3,8 @@
 use crate::SessionError;
 use std::path::{Path, PathBuf};
 use toile_interchange::{
-    FileError, FormatError, SizeChoice, Wanted, read_garmentcode, read_pattern,
-    read_sized_measurements,
+    FileError, FormatError, MarkerFile, SizeChoice, Wanted, read_garmentcode, read_marker_json,
+    read_pattern, read_sized_measurements,
 };
 use toile_measure::Measurements;
 use toile_pattern::Pattern;
@@ -72,6 +72,17 @@ pub fn open_pattern(path: &Path) -> Result<Opened, SessionError> {
         opened.pattern.name = stem(path);
     }
     Ok(opened)
+}
+
+/// Reads a `marker.json`.
+///
+/// # Errors
+/// The file cannot be read, or is no marker.
+pub fn open_marker(path: &Path) -> Result<MarkerFile, SessionError> {
+    read_marker_json(&read_input(path, Wanted::Marker)?).map_err(|error| SessionError::Format {
+        path: path.to_owned(),
+        error,
+    })
 }
 
 /// Reads a whole text file that should be of a kind.

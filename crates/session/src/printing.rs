@@ -536,5 +536,5 @@ fn searched(
     if stopped || cancel.load(std::sync::atomic::Ordering::Relaxed) {
         return Err(SessionError::Cancelled);
     }
-    Ok(marker?)
+    Ok(marker.map_err(toile_marker::MarkerError::from)?)
 }

@@ -5,8 +5,8 @@ use crate::choice::figure_name;
 use crate::crossings::Tangles;
 use crate::drape::Drape;
 use crate::dressed::DraftedPart;
-use crate::laying::Laying;
 use serde::Serialize;
+use toile_marker::Laying;
 use toile_pattern::{Draft, DraftSpan};
 
 /// How a garment comes to rest, in words.

@@ -1,14 +1,14 @@
 //! What each rule of the trade costs: the same garments laid with and without it, with the same
 //! number of evaluations.
 
-use crate::flaws::GivenFlaw;
-use crate::laying::{Garments, Laying, lay};
+use crate::laying::lay_watched;
 use crate::marking::drafts_of;
 use crate::watcher::Part;
-use crate::{Budget, Nap, NestOptions, SessionError, Spread, Watcher};
+use crate::{Budget, GivenFlaw, Nap, NestOptions, SessionError, Spread, Watcher};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toile_interchange::{ANY_NAME, Metres, PieceSettings};
+use toile_marker::{Garments, Laying};
 use toile_nesting::Fold;
 use toile_pattern::Pattern;
 
@@ -143,7 +143,7 @@ pub fn study_rules(
             let mut own = options.clone();
             change(&mut own);
             own.seed = options.seed.wrapping_add(seed);
-            for laying in lay(&garments, &own, watcher)? {
+            for laying in lay_watched(&garments, &own, watcher)? {
                 found.add(&laying);
             }
         }

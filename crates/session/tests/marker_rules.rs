@@ -145,7 +145,7 @@ fn a_sound_marker_gone_on_from_never_gets_longer() {
     let good = nest(&["trousers"], &long).unwrap();
     for seed in 1..4 {
         let more = NestOptions {
-            from: vec![good.path("marker.json")],
+            from: vec![good.marker("marker.json")],
             budget: Budget::Evaluations(1),
             seed,
             ..options()
@@ -165,7 +165,7 @@ fn a_fabric_goes_on_from_its_own_marker() {
     let made = nest(&["trousers"], &options).unwrap();
     let (shell, lining) = (made.marker("marker.json"), made.marker("marker-2.json"));
     assert_eq!(lining.fabric.name.as_deref(), Some("lining"));
-    options.from = vec![made.path("marker-2.json"), made.path("marker.json")];
+    options.from = vec![made.marker("marker-2.json"), made.marker("marker.json")];
     options.locked = vec!["front".into()];
     let again = nest(&["trousers"], &options).unwrap();
     let place = |file: &MarkerFile| {
@@ -175,7 +175,7 @@ fn a_fabric_goes_on_from_its_own_marker() {
     assert_eq!(place(&again.marker("marker.json")), place(&shell));
     assert_eq!(place(&again.marker("marker-2.json")), place(&lining));
     // A lock that holds nothing is a mistake.
-    options.from = vec![made.path("marker-2.json")];
+    options.from = vec![made.marker("marker-2.json")];
     options.locked = vec!["front mirrored".into()];
     let words = refused(&["trousers"], &options);
     assert!(words.contains("\"front mirrored\""), "{words}");

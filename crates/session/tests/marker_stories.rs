@@ -83,7 +83,7 @@ fn stopping_on_the_second_fabric_keeps_the_first() {
     let mut watcher = Impatient(Arc::default());
     let error = nest(&["t-shirt"], &two_fabrics(), (folder.path(), &mut watcher)).unwrap_err();
     assert!(!error.is_bad_input(), "{error}");
-    let stopped = SessionError::Nesting(toile_nesting::NestingError::Cancelled);
+    let stopped = SessionError::from(toile_session::MarkerError::Cancelled);
     assert!(!stopped.is_bad_input());
 }
 

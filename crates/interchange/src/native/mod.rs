@@ -7,12 +7,14 @@ mod item;
 mod json;
 mod migrate;
 mod read;
+mod read_marker;
 mod read_panel;
 mod read_seam;
 mod units;
 mod values;
 mod words;
 mod write;
+mod write_marker;
 mod write_panel;
 
 pub use write::write_pattern;

@@ -2,6 +2,7 @@
 
 use super::item::{FieldsOfKind, Item, Written};
 use super::json::Value;
+use super::read_marker::marker;
 use super::read_panel::panel;
 use super::read_seam::seam;
 use super::units::UNITS;
@@ -88,6 +89,7 @@ const HEAD: &[&str] = &[
     "sheets",
     "panels",
     "seams",
+    "markers",
     "next_id",
 ];
 
@@ -147,6 +149,10 @@ impl<'a> Reader<'a> {
         for item in head.items("seams")? {
             let seam = seam(self, &item)?;
             pattern.seams.push(Arc::new(seam));
+        }
+        for item in head.items("markers")? {
+            let marker = marker(self, &item)?;
+            pattern.markers.push(Arc::new(marker));
         }
         pattern.ids.next = head.need("next_id")?.count()?;
         self.check_ids(&head.need("next_id")?, pattern.ids.next)?;
@@ -258,7 +264,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn value(&self, item: &Item<'a>, measure: Measure) -> Result<f64, FormatError> {
+    /// A number that is a value.
+    pub fn value(&self, item: &Item<'a>, measure: Measure) -> Result<f64, FormatError> {
         item.fixed(&self.written(item, measure)?)
     }
 

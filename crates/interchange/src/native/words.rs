@@ -1,7 +1,9 @@
 //! Words of the format that are fixed.
 
 use super::item::FieldsOfKind;
-use toile_pattern::{BodyPart, Corner, Facing, LineKind, NotchKind, Pressed, Role};
+use toile_pattern::{
+    BodyPart, Corner, Facing, LineKind, NapRule, NotchKind, Pressed, Role, Spread,
+};
 
 /// Version of the format this program writes.
 pub const VERSION: u32 = 2;
@@ -60,6 +62,21 @@ pub const NOTCHES: &[(&str, NotchKind)] = &[
     ("castle", NotchKind::Castle),
     ("t", NotchKind::T),
     ("check", NotchKind::Check),
+];
+
+/// Names of the ways pieces may point.
+pub const NAPS: &[(&str, NapRule)] = &[
+    ("none", NapRule::None),
+    ("one-way", NapRule::OneWay),
+    ("per-garment", NapRule::PerGarment),
+];
+
+/// Names of the ways fabric is spread.
+pub const SPREADS: &[(&str, Spread)] = &[
+    ("open", Spread::Open),
+    ("folded", Spread::Folded),
+    ("tubular", Spread::Tubular),
+    ("face-to-face", Spread::FaceToFace),
 ];
 
 /// Names of what operations make.

@@ -3,6 +3,7 @@
 use super::json::{self, Node, Value};
 use super::units::{UNITS, write_degrees, write_length, write_plain};
 use super::words::{VERSION, word};
+use super::write_marker::marker;
 use super::write_panel::{panel, seam};
 use crate::FormatError;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
@@ -129,6 +130,8 @@ impl Writer<'_> {
         head.put_list("panels", panels?);
         let seams: Result<Vec<_>, _> = pattern.seams.iter().map(|s| seam(self, s)).collect();
         head.put_list("seams", seams?);
+        let markers: Result<Vec<_>, _> = pattern.markers.iter().map(|m| marker(self, m)).collect();
+        head.put_list("markers", markers?);
         head.put("next_id", count(pattern.ids.next));
         Ok(head.done())
     }

@@ -1,12 +1,17 @@
 //! The document: what is edited, saved and undone.
 
 mod drawing;
+mod marker;
 mod operation;
 mod panel;
 mod seam;
 mod sheet;
 
 pub use drawing::Drawing;
+pub use marker::{
+    Flaw, MOST_GARMENTS, Marker, MarkerCloth, MarkerFault, NapRule, OrderedPiece, OrderedSize,
+    PiecePlacement, Print, Spread, USUAL_GAP, USUAL_SELVEDGE,
+};
 pub use operation::{Apex, Operation, OperationKind, Pressed};
 pub use panel::{Corner, Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Source, WornRule};
 pub use seam::{Seam, Span};
@@ -45,6 +50,9 @@ pub struct Pattern {
     pub panels: Vec<Arc<Panel>>,
     /// The seams.
     pub seams: Vec<Arc<Seam>>,
+    /// The markers.
+    #[serde(default)]
+    pub markers: Vec<Arc<Marker>>,
     /// Gives the ids of new parts.
     pub ids: Ids,
 }

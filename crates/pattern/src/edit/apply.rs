@@ -53,6 +53,15 @@ impl Pattern {
             Entity::Variable(variable) => put(&mut self.variables, variable, |v| v.id),
             Entity::Fabric(fabric) => put(&mut self.fabrics, fabric, |f| f.id),
             Entity::Seam(seam) => put(&mut self.seams, seam, |s| s.id),
+            Entity::Marker(marker) => {
+                if let Some(fault) = marker.fault() {
+                    return Err(EditError::Impossible {
+                        message: format!("marker {:?}: {}", marker.name, fault.message),
+                        hint: fault.hint.to_owned(),
+                    });
+                }
+                put(&mut self.markers, marker, |m| m.id);
+            }
             Entity::Panel(panel) => {
                 for (id, _) in panel.own_parts() {
                     self.ids.reserve(id.number());
@@ -102,6 +111,7 @@ impl Pattern {
             PartId::Sheet(id) => remove(&mut self.sheets, |s| s.id == id),
             PartId::Panel(id) => remove(&mut self.panels, |p| p.id == id),
             PartId::Seam(id) => remove(&mut self.seams, |s| s.id == id),
+            PartId::Marker(id) => remove(&mut self.markers, |m| m.id == id),
             PartId::Point(id) => {
                 let mut sheets = self.sheets.iter_mut();
                 let owner = sheets.find(|sheet| sheet.point(id).is_some());
@@ -134,6 +144,7 @@ impl Pattern {
             PartId::Sheet(id) => order(&mut self.sheets, |s| s.id == id, at),
             PartId::Panel(id) => order(&mut self.panels, |p| p.id == id, at),
             PartId::Seam(id) => order(&mut self.seams, |s| s.id == id, at),
+            PartId::Marker(id) => order(&mut self.markers, |m| m.id == id, at),
             PartId::Point(id) => {
                 let mut sheets = self.sheets.iter_mut();
                 let owner = sheets.find(|sheet| sheet.point(id).is_some());

@@ -5,8 +5,8 @@ mod apply;
 mod references;
 
 use crate::{
-    Curve, DisplayUnit, Fabric, OperationId, Panel, PanelId, PartId, Point, Seam, SheetId, Size,
-    SizeId, Variable,
+    Curve, DisplayUnit, Fabric, Marker, OperationId, Panel, PanelId, PartId, Point, Seam, SheetId,
+    Size, SizeId, Variable,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -50,6 +50,8 @@ pub enum Entity {
     Panel(Arc<Panel>),
     /// A seam.
     Seam(Arc<Seam>),
+    /// A marker.
+    Marker(Arc<Marker>),
 }
 
 /// What a pattern has besides its parts.
@@ -126,6 +128,7 @@ impl Entity {
             Self::Curve(_, curve) => curve.id.into(),
             Self::Panel(panel) => panel.id.into(),
             Self::Seam(seam) => seam.id.into(),
+            Self::Marker(marker) => marker.id.into(),
         })
     }
 
@@ -141,6 +144,7 @@ impl Entity {
             Self::Curve(_, curve) => &curve.name,
             Self::Panel(panel) => &panel.name,
             Self::Seam(seam) => &seam.name,
+            Self::Marker(marker) => &marker.name,
         }
     }
 }

@@ -2,9 +2,10 @@
 
 use super::Entity;
 use crate::{
-    CornerName, LineName, Mark, Name, Names, Number, OperationKind, Panel, PartId, Pattern, Place,
-    Span,
+    CornerName, LineName, Mark, Marker, Name, Names, Number, OperationKind, Panel, PartId, Pattern,
+    Place, Span,
 };
+use std::collections::BTreeSet;
 
 impl Entity {
     /// Every part it refers to.
@@ -48,6 +49,7 @@ impl Entity {
                     span_references(span, &mut found);
                 }
             }
+            Self::Marker(marker) => marker_references(marker, &mut found),
         }
         found
     }
@@ -55,7 +57,9 @@ impl Entity {
     /// Every number it has.
     pub(crate) fn numbers(&self) -> Vec<&Number> {
         match self {
-            Self::Head(_) | Self::Size(_) | Self::Fabric(_) | Self::Sheet(_) => Vec::new(),
+            Self::Head(_) | Self::Size(_) | Self::Fabric(_) | Self::Sheet(_) | Self::Marker(_) => {
+                Vec::new()
+            }
             Self::Variable(variable) => vec![&variable.number],
             Self::Point(_, point) => point.rule.numbers(),
             Self::Curve(_, curve) => curve.rule.number().into_iter().collect(),
@@ -101,6 +105,19 @@ fn span_references(span: &Span, found: &mut Vec<PartId>) {
     line(span.line, found);
     mark(&span.from, found);
     mark(&span.to, found);
+}
+
+/// Each part once, however many pieces name it.
+fn marker_references(marker: &Marker, found: &mut Vec<PartId>) {
+    let mut named: BTreeSet<PartId> = BTreeSet::new();
+    named.insert(marker.cloth.fabric.into());
+    let ordered = marker.order.iter().filter_map(|one| one.size);
+    named.extend(ordered.map(PartId::from));
+    for laid in &marker.placements {
+        named.insert(laid.piece.panel.into());
+        named.extend(laid.piece.size.map(PartId::from));
+    }
+    found.extend(named);
 }
 
 fn panel_references(panel: &Panel, found: &mut Vec<PartId>) {
@@ -163,6 +180,9 @@ impl Pattern {
         }
         for seam in &self.seams {
             put(Entity::Seam(seam.clone()), Place::Seam(seam.id));
+        }
+        for marker in &self.markers {
+            put(Entity::Marker(marker.clone()), Place::Marker(marker.id));
         }
         all
     }

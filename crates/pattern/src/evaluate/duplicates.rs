@@ -48,6 +48,9 @@ pub(super) fn duplicates(pattern: &Pattern) -> Vec<Diagnostic> {
     finder.names(error, ("", "panels"), panels);
     let seams = pattern.seams.iter().map(|s| (&*s.name, Place::Seam(s.id)));
     finder.names(error, ("", "seams"), seams);
+    let markers = pattern.markers.iter();
+    let markers = markers.map(|m| (&*m.name, Place::Marker(m.id)));
+    finder.names(warning, ("", "markers"), markers);
     for panel in &pattern.panels {
         let owner = format!("panel {:?}: ", panel.name);
         let edges = panel.edges();

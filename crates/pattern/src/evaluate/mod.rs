@@ -10,6 +10,7 @@ mod compute;
 mod curves;
 mod duplicates;
 mod graph;
+mod markers;
 mod needs;
 mod node;
 mod numbers;
@@ -95,7 +96,9 @@ impl Evaluation {
         let own = order
             .iter()
             .flat_map(|state| state.diagnostics.iter().cloned());
-        self.duplicates.iter().cloned().chain(own).collect()
+        let duplicates = self.duplicates.iter().cloned();
+        let markers = markers::waiting(&self.pattern);
+        duplicates.chain(own).chain(markers).collect()
     }
 
     /// An order of nodes that does not tell when they were made: words by their texts, then parts.

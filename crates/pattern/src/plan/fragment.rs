@@ -205,7 +205,11 @@ fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
             let own = edges.filter(|(line, edge)| [(*line).into(), edge.id.into()].contains(&part));
             own.map(|(_, edge)| edge.curve.into()).collect()
         }
-        PartId::Notch(_) | PartId::Operation(_) | PartId::Size(_) | PartId::Fabric(_) => {
+        PartId::Notch(_)
+        | PartId::Operation(_)
+        | PartId::Size(_)
+        | PartId::Fabric(_)
+        | PartId::Marker(_) => {
             return Err(impossible(
                 format!("{part} is not copied by itself"),
                 "copy its panel, or points and curves",

@@ -11,6 +11,7 @@ mod face;
 mod figure;
 mod fragment;
 mod lookup;
+mod marker;
 mod marks;
 mod matched;
 mod moving;
@@ -37,6 +38,10 @@ pub use crossings::mark_crossings;
 pub use divide::{divide_edge, join_edges};
 pub use figure::{Figure, FirstCorner, add_polygon, add_rectangle};
 pub use fragment::{Fragment, FragmentKind, Outside, OutsideValue, copy};
+pub use marker::{
+    add_marker, flip_pieces, lock_pieces, move_pieces, place_marker, place_pieces, remove_marker,
+    set_marker_cloth, set_marker_order, take_off_pieces, turn_pieces,
+};
 pub use marks::{NearMark, nearest_mark};
 pub use matched::{Opposite, PanelNotch, add_matched_notches, opposites, twin};
 pub use moving::move_point;

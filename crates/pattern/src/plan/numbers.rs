@@ -251,6 +251,10 @@ fn candidates(pattern: &Pattern, part: PartId) -> Vec<NumberPlace> {
             }
             places
         }
-        PartId::Size(_) | PartId::Fabric(_) | PartId::Sheet(_) | PartId::Line(_) => Vec::new(),
+        PartId::Size(_)
+        | PartId::Fabric(_)
+        | PartId::Sheet(_)
+        | PartId::Line(_)
+        | PartId::Marker(_) => Vec::new(),
     }
 }

@@ -121,7 +121,8 @@ pub fn duplicate(evaluation: &Evaluation, parts: &[PartId]) -> Result<Pasted, Ed
 }
 
 /// The edits that insert all panels of another pattern, with its sheets, seams, variables and
-/// fabrics, moved on the table [m]. Its sizes stay behind: it is drawn for those of this pattern.
+/// fabrics, moved on the table [m]. Its sizes stay behind: it is drawn for those of this pattern; and
+/// its markers, as they were laid for those.
 ///
 /// # Errors
 /// The other pattern has nothing to insert; what [`paste`] refuses.
@@ -292,7 +293,7 @@ impl Pasting {
     fn rename(&self, entity: &mut Entity) {
         let work = &self.work;
         match entity {
-            Entity::Head(_) | Entity::Size(_) => {}
+            Entity::Head(_) | Entity::Size(_) | Entity::Marker(_) => {}
             Entity::Fabric(fabric) => {
                 let fabric = Arc::make_mut(fabric);
                 let taken = |name: &str| work.fabrics.iter().any(|known| known.name == name);
@@ -381,6 +382,7 @@ fn fresh(part: PartId, ids: &mut Ids) -> PartId {
         PartId::Notch(_) => take::<crate::NotchId>(ids),
         PartId::Operation(_) => take::<crate::OperationId>(ids),
         PartId::Seam(_) => take::<crate::SeamId>(ids),
+        PartId::Marker(_) => take::<crate::MarkerId>(ids),
     }
 }
 

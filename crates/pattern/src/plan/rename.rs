@@ -5,8 +5,8 @@ use super::lookup::after;
 use super::names::{curve_owner, panel_owner, point_owner, sheet_owner, wished};
 use super::{impossible, lookup};
 use crate::{
-    Curve, Edit, EditError, Entity, Evaluation, Fabric, Panel, PartId, Pattern, Place, Point, Seam,
-    SheetHead, Size, Variable,
+    Curve, Edit, EditError, Entity, Evaluation, Fabric, Marker, Panel, PartId, Pattern, Place,
+    Point, Seam, SheetHead, Size, Variable,
 };
 use std::sync::Arc;
 use toile_measure::definition;
@@ -16,7 +16,7 @@ use toile_measure::definition;
 ///
 /// # Errors
 /// The part is not there; the name can be none, or another part in its scope has it: sizes,
-/// variables, fabrics, sheets, panels and seams in the pattern, points and curves in their sheet,
+/// variables, fabrics, sheets, panels, seams and markers in the pattern, points and curves in their sheet,
 /// lines, edges, notches and operations in their panel.
 pub fn rename(evaluation: &Evaluation, part: PartId, name: &str) -> Result<Vec<Edit>, EditError> {
     let pattern = evaluation.pattern();
@@ -87,7 +87,7 @@ fn of_sheet(pattern: &Pattern, part: PartId, name: &str) -> Result<Option<Entity
     }))
 }
 
-/// A size, a variable, a fabric or a seam by its new name.
+/// A size, a variable, a fabric, a seam or a marker by its new name.
 fn of_pattern(pattern: &Pattern, part: PartId, name: &str) -> Result<Entity, EditError> {
     let missing = || EditError::Missing(part.to_string());
     Ok(match part {
@@ -115,6 +115,12 @@ fn of_pattern(pattern: &Pattern, part: PartId, name: &str) -> Result<Entity, Edi
             let name = free(name, "seam", others.map(|seam| &*seam.name))?;
             let seam = (**lookup::seam(pattern, id)?).clone();
             Entity::Seam(Arc::new(Seam { name, ..seam }))
+        }
+        PartId::Marker(id) => {
+            let others = pattern.markers.iter().filter(|marker| marker.id != id);
+            let name = free(name, "marker", others.map(|marker| &*marker.name))?;
+            let marker = (**pattern.marker(id).ok_or_else(missing)?).clone();
+            Entity::Marker(Arc::new(Marker { name, ..marker }))
         }
         _ => return Err(missing()),
     })

@@ -62,7 +62,8 @@ fn collect(pattern: &Pattern, part: PartId, found: &mut BTreeSet<PointId>) {
         | PartId::Variable(_)
         | PartId::Fabric(_)
         | PartId::Notch(_)
-        | PartId::Seam(_) => {}
+        | PartId::Seam(_)
+        | PartId::Marker(_) => {}
     }
 }
 

@@ -1,9 +1,10 @@
 //! Flaws measured on the fabric laid open, where they lie once it is spread.
 
-use crate::SessionError;
+use crate::MarkerError;
 use toile_geometry::{Bounds2, Polygon, Vec2};
-use toile_interchange::{FlawSettings, Metres, Spread};
+use toile_interchange::{FlawSettings, Metres};
 use toile_nesting::Defect;
+use toile_pattern::Spread;
 
 /// What a flaw may reach beyond the edge of the fabric and count as within [m].
 const ROUNDING: f64 = 1e-9;
@@ -43,18 +44,18 @@ impl GivenFlaw {
 }
 
 /// A flaw that names no fabric where there are several, or one nothing is cut from, is a mistake.
-pub(crate) fn check_given(flaws: &[GivenFlaw], fabrics: &[&str]) -> Result<(), SessionError> {
+pub(crate) fn check_given(flaws: &[GivenFlaw], fabrics: &[&str]) -> Result<(), MarkerError> {
     for flaw in flaws {
         match flaw.fabric.as_deref() {
             None if fabrics.len() > 1 => {
-                return Err(SessionError::Conflict(format!(
+                return Err(MarkerError::Conflict(format!(
                     "a flaw lies on one fabric, and pieces are cut from several: {}; name it, as in --defect {}:20cm,30cm,1cm,1cm",
                     fabrics.join(", "),
                     fabrics[0]
                 )));
             }
             Some(name) if !fabrics.contains(&name) => {
-                return Err(SessionError::Unknown {
+                return Err(MarkerError::Unknown {
                     kind: "fabric",
                     name: name.to_owned(),
                     hint: format!("pieces are cut from: {}", fabrics.join(", ")),
@@ -72,14 +73,14 @@ pub(crate) fn flaws_on(
     flaws: &[FlawSettings],
     (fabric, width): (&str, f64),
     spread: Spread,
-) -> Result<Vec<Defect>, SessionError> {
+) -> Result<Vec<Defect>, MarkerError> {
     let mut defects = Vec::new();
     for (k, flaw) in flaws.iter().enumerate() {
         let [x, low] = flaw.at.map(|m| m.0);
         let [length, high] = [flaw.size[0].0, low + flaw.size[1].0];
         let inside = x >= 0.0 && low >= -ROUNDING && high <= width + ROUNDING;
         if !inside {
-            return Err(SessionError::Conflict(format!(
+            return Err(MarkerError::Conflict(format!(
                 "flaw {} of fabric {fabric:?} reaches from {:.0} to {:.0} mm across and starts at {:.0} mm; the fabric laid open is {:.0} mm wide and starts at 0: measure the flaw on the open fabric",
                 k + 1,
                 low * 1e3,

@@ -1,45 +1,26 @@
 //! Going on from markers made before: where their pieces lie, and which of them stay there.
 
-use crate::open::read_input;
-use crate::{NestOptions, SessionError};
-use std::path::Path;
-use toile_interchange::{MarkerFile, Wanted, read_marker_json};
+use crate::MarkerError;
+use toile_interchange::MarkerFile;
 use toile_nesting::{Item, Locked, Marker, Placement, Strip, Unplaced};
 
-/// The markers that a job goes on from.
-pub(crate) fn read_starts(options: &NestOptions) -> Result<Vec<MarkerFile>, SessionError> {
-    let read = |path: &std::path::PathBuf| read_start(path);
-    let starts: Vec<MarkerFile> = options.from.iter().map(read).collect::<Result<_, _>>()?;
-    let there = |name: &str| {
-        starts
-            .iter()
-            .flat_map(|f| &f.pieces)
-            .any(|p| p.name == name)
-    };
-    match options.locked.iter().find(|name| !there(name)) {
-        None => Ok(starts),
+/// Refuses a name to lock that no marker gone on from has.
+pub(crate) fn check_names(starts: &[MarkerFile], locked: &[String]) -> Result<(), MarkerError> {
+    let laid = || starts.iter().flat_map(|file| &file.pieces);
+    let is_there = |name: &str| laid().any(|piece| piece.name == name);
+    match locked.iter().find(|name| !is_there(name)) {
+        None => Ok(()),
         Some(name) => {
-            let mut names: Vec<&str> = starts
-                .iter()
-                .flat_map(|f| &f.pieces)
-                .map(|p| p.name.as_str())
-                .collect();
+            let mut names: Vec<&str> = laid().map(|piece| &*piece.name).collect();
             names.sort_unstable();
             names.dedup();
-            Err(SessionError::Unknown {
+            Err(MarkerError::Unknown {
                 kind: "piece to lock",
                 name: name.clone(),
                 hint: format!("the marker to go on from has: {}", names.join(", ")),
             })
         }
     }
-}
-
-fn read_start(path: &Path) -> Result<MarkerFile, SessionError> {
-    read_marker_json(&read_input(path, Wanted::Marker)?).map_err(|error| SessionError::Format {
-        path: path.to_owned(),
-        error,
-    })
 }
 
 /// The start on a fabric that has pieces of these names, if any: the one with the most, the first
@@ -96,14 +77,14 @@ fn start_from(file: &MarkerFile, items: &[Item], strip: &Strip) -> Marker {
 pub(crate) fn check_locks<'a>(
     items: impl Iterator<Item = &'a Item>,
     names: &[String],
-) -> Result<(), SessionError> {
+) -> Result<(), MarkerError> {
     let held: Vec<&str> = items
         .filter(|item| !item.locked.is_empty())
         .map(|item| item.name.as_str())
         .collect();
     match names.iter().find(|name| !held.contains(&name.as_str())) {
         None => Ok(()),
-        Some(name) => Err(SessionError::Conflict(format!(
+        Some(name) => Err(MarkerError::Conflict(format!(
             "piece {name:?} cannot be locked: no marker to go on from has it on the fabric it is laid on; give that fabric's marker with --from"
         ))),
     }

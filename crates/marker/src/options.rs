@@ -1,41 +1,16 @@
 //! How markers are made: what was given on the command line, else in the settings, else the
 //! pattern's own, else usual.
 
-use crate::SessionError;
+use crate::MarkerError;
+use crate::file::MarkerFormat;
 use crate::flaws::{GivenFlaw, flaws_on};
-use std::path::PathBuf;
 use toile_geometry::Vec2;
 use toile_interchange::{
-    ANY_NAME, FabricSettings, FlawSettings, MarkerSettings, Metres, PieceSettings, RollSettings,
-    Spread,
+    ANY_NAME, FabricSettings, FlawSettings, MarkerFile, MarkerSettings, Metres, PieceSettings,
+    RollSettings,
 };
 use toile_nesting::{Budget, Fold, Nap, Search, Strip, Stripes};
-use toile_pattern::Fabric;
-
-/// Unusable edge at either side of the fabric [m].
-const SELVEDGE: f64 = 0.010;
-/// Room for the blade between two pieces [m].
-const GAP: f64 = 0.002;
-
-/// A file a marker is written as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MarkerFormat {
-    /// `marker.svg`: a drawing at true size.
-    Svg,
-    /// `marker.json`: the marker as data.
-    Json,
-    /// `marker.dxf`: release 12, millimetres.
-    Dxf,
-    /// `marker.pdf`: one page at true size.
-    Pdf,
-    /// `marker-report.pdf`: A4, all markers.
-    Report,
-    /// `marker.plt`: HPGL/2.
-    Hpgl,
-    /// `marker-instance.json`: the pieces and the usable width as a nesting instance, for other
-    /// programs.
-    Instance,
-}
+use toile_pattern::{Fabric, Spread, USUAL_GAP, USUAL_SELVEDGE};
 
 /// How markers are made. What is not given is the fabric's own, or usual.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,8 +46,8 @@ pub struct NestOptions {
     pub rolls: Vec<(f64, Option<f64>)>,
     /// Everything else, by fabric and by piece.
     pub settings: MarkerSettings,
-    /// Markers to go on from, as `marker.json`.
-    pub from: Vec<PathBuf>,
+    /// Markers to go on from.
+    pub from: Vec<MarkerFile>,
     /// Names of pieces that stay where those markers have them.
     pub locked: Vec<String>,
     /// Whether a search that the watcher stops ends with the best marker so far, not with an error.
@@ -145,7 +120,8 @@ fn metres(length: Option<Metres>) -> Option<f64> {
 }
 
 impl NestOptions {
-    pub(crate) fn search(&self) -> Search {
+    /// How hard to search.
+    pub fn search(&self) -> Search {
         Search {
             budget: self.budget,
             seed: self.seed,
@@ -203,16 +179,12 @@ impl NestOptions {
     }
 
     /// How a fabric is laid, by name; the pattern's own figures where it has it.
-    pub(crate) fn plan(
-        &self,
-        name: &str,
-        own: Option<&Fabric>,
-    ) -> Result<FabricPlan, SessionError> {
+    pub(crate) fn plan(&self, name: &str, own: Option<&Fabric>) -> Result<FabricPlan, MarkerError> {
         let given = self.fabric(name);
         let spread = self.spread.or(given.spread).unwrap_or_default();
         let plies = self.plies.or(given.plies).unwrap_or(spread.usual_plies());
         if !spread.allows(plies) {
-            return Err(SessionError::Number {
+            return Err(MarkerError::Number {
                 what: "the number of plies",
                 value: f64::from(plies),
                 hint: Spread::PLIES,
@@ -220,7 +192,7 @@ impl NestOptions {
         }
         let width = self.width.or(metres(given.width));
         let Some(width) = width.or(own.map(|f| f.width)) else {
-            return Err(SessionError::Unknown {
+            return Err(MarkerError::Unknown {
                 kind: "fabric",
                 name: name.to_owned(),
                 hint: "the pattern does not have it: give its width under fabrics in the settings"
@@ -237,7 +209,7 @@ impl NestOptions {
         let rolls = self.rolls_of(name, &given)?;
         let rolled = !rolls.is_empty();
         if rolls.len() > 1 && self.defects.iter().any(|flaw| flaw.is_on(name)) {
-            return Err(SessionError::Conflict(format!(
+            return Err(MarkerError::Conflict(format!(
                 "fabric {name:?} is laid on {} rolls, and a flaw lies on one of them; leave --defect out, and give the flaws under the rolls in the settings",
                 rolls.len()
             )));
@@ -267,13 +239,13 @@ impl NestOptions {
         &self,
         name: &str,
         given: &FabricSettings,
-    ) -> Result<Vec<RollSettings>, SessionError> {
+    ) -> Result<Vec<RollSettings>, MarkerError> {
         if self.rolls.is_empty() {
             let has = |field: fn(&RollSettings) -> bool| given.rolls.iter().any(field);
             let width = self.width.is_some() && has(|roll| roll.width.is_some());
             let length = self.length.is_some() && has(|roll| roll.length.is_some());
             if width || length {
-                return Err(SessionError::Conflict(format!(
+                return Err(MarkerError::Conflict(format!(
                     "the settings have rolls of fabric {name:?} with a {} of their own; leave --{0} out, or give the rolls with --roll",
                     if width { "width" } else { "length" }
                 )));
@@ -294,7 +266,7 @@ impl NestOptions {
         given: &FabricSettings,
         cloth: &Cloth<'_>,
         (number, roll): (usize, &RollSettings),
-    ) -> Result<PlannedRoll, SessionError> {
+    ) -> Result<PlannedRoll, MarkerError> {
         let cloth = Cloth {
             width: roll.width.map_or(cloth.width, |w| w.0),
             ..*cloth
@@ -318,7 +290,7 @@ impl NestOptions {
         given: &FabricSettings,
         cloth: &Cloth<'_>,
         flaws: &[FlawSettings],
-    ) -> Result<Strip, SessionError> {
+    ) -> Result<Strip, MarkerError> {
         let own = if cloth.nap { Nap::OneWay } else { Nap::None };
         let of_all = self.repeat.map(|repeat| Stripes {
             repeat: Vec2::from(repeat),
@@ -333,9 +305,12 @@ impl NestOptions {
         let own_flaws = own_flaws.map(GivenFlaw::settings);
         let flaws: Vec<FlawSettings> = flaws.iter().copied().chain(own_flaws).collect();
         Ok(Strip {
-            selvedge: self.selvedge.or(metres(given.selvedge)).unwrap_or(SELVEDGE),
+            selvedge: self
+                .selvedge
+                .or(metres(given.selvedge))
+                .unwrap_or(USUAL_SELVEDGE),
             end_margin: margin.unwrap_or_default(),
-            gap: self.gap.or(metres(given.gap)).unwrap_or(GAP),
+            gap: self.gap.or(metres(given.gap)).unwrap_or(USUAL_GAP),
             max_length: self.length.map(|length| length / f64::from(cloth.plies)),
             nap: self.nap.or(given.nap.map(|n| n.0)).unwrap_or(own),
             fold: match cloth.spread {

@@ -1,192 +1,21 @@
-//! The pieces of drafts as they are laid: cut outlines, copies, what may be done with them.
+//! The pieces of one fabric as the search takes them: cut outlines, copies, what may be done with
+//! them.
 
-use crate::laying::Garments;
-use crate::matching::{match_up, resolve_marks};
-use crate::nest_options::FabricPlan;
-use crate::{NestOptions, SessionError};
+use crate::marks::turned;
+use crate::matching::match_up;
+use crate::options::FabricPlan;
+use crate::pieces::Wanted;
+use crate::{MarkerError, NestOptions};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::sync::Arc;
-use toile_cut::{CutOptions, CutPiece, HalfPlane};
+use toile_cut::{CutPiece, HalfPlane};
 use toile_geometry::Vec2;
-use toile_interchange::{ANY_NAME, PieceSettings, Spread};
+
 use toile_nesting::{
-    Allowed, FoldEdge, Item, Locked, MOST_PIECES, MatchPoint, Mirror, Nap, NestingError, Phase,
+    Allowed, FoldEdge, Item, Locked, MatchPoint, Mirror, Nap, NestingError, Phase,
 };
-use toile_pattern::{Diagnostic, Piece, Severity};
-
-/// A piece of one draft that is to be cut from a fabric.
-#[derive(Clone, Debug)]
-pub(crate) struct Wanted {
-    pub fabric: String,
-    pub cut: Arc<CutPiece>,
-    pub settings: PieceSettings,
-    /// Name for messages and on the marker.
-    pub name: String,
-    /// The garment of each copy.
-    pub bundles: Vec<u32>,
-    /// Marks on the print: number of the set, and the point [m].
-    pub marks: Vec<(usize, Vec2)>,
-    /// What its cut line does not do as drawn.
-    pub notes: Vec<String>,
-}
-
-/// Everything that is to be cut, in the order of the drafts. Where pieces are matched, every
-/// garment's pieces stand alone, as each garment is matched in itself.
-pub(crate) fn wanted_of(
-    garments: &[Garments<'_>],
-    options: &NestOptions,
-) -> Result<Vec<Wanted>, SessionError> {
-    check_piece_names(garments, options)?;
-    check_count(garments, options)?;
-    let mut all = Vec::new();
-    let mut first = 0;
-    for garment in garments {
-        let marks = resolve_marks(garment.pattern, &options.settings.matched);
-        let bundles: Vec<u32> = (first..first + garment.count).collect();
-        first += garment.count;
-        let alone = !options.settings.matched.is_empty();
-        let parts: Vec<Vec<u32>> = match alone {
-            true => bundles.iter().map(|&b| vec![b]).collect(),
-            false => vec![bundles],
-        };
-        for bundles in parts {
-            for (number, piece) in garment.draft.pieces.iter().enumerate() {
-                let Some(own) = garment.draft.fabrics.get(piece.fabric) else {
-                    continue;
-                };
-                let settings = options.piece(panel_name(garment, piece), &piece.name);
-                let cut = cut_piece(garment, number, &settings)?;
-                let found = match piece.id.copy {
-                    0 => cut.diagnostics(garment.pattern),
-                    _ => Vec::new(),
-                };
-                let name = match garment.label {
-                    Some(label) => format!("{} {label}", piece.name),
-                    None => piece.name.clone(),
-                };
-                let wanted = |fabric: &str, count: u32| Wanted {
-                    fabric: fabric.to_owned(),
-                    name: name.clone(),
-                    bundles: bundles
-                        .iter()
-                        .flat_map(|&b| (0..count).map(move |_| b))
-                        .collect(),
-                    marks: marks
-                        .iter()
-                        .filter(|mark| mark.1 == piece.id.panel)
-                        .filter_map(|mark| {
-                            let notch = cut.notches.iter().find(|n| n.id == mark.2)?;
-                            Some((mark.0, notch.point))
-                        })
-                        .collect(),
-                    settings: settings.clone(),
-                    cut: cut.clone(),
-                    notes: notes_of(&found, garment.label),
-                };
-                let fabric = settings.fabric.as_deref().unwrap_or(&own.name);
-                all.push(wanted(fabric, 1));
-                for (fabric, &count) in settings.also.iter().flatten() {
-                    if piece.id.copy == 0 && count > 0 {
-                        all.push(wanted(fabric, count));
-                    }
-                }
-            }
-        }
-    }
-    Ok(all)
-}
-
-/// A piece of a draft with the block round it.
-fn cut_piece(
-    garment: &Garments<'_>,
-    number: usize,
-    settings: &PieceSettings,
-) -> Result<Arc<CutPiece>, SessionError> {
-    let options = CutOptions {
-        block: settings.block.unwrap_or_default().0.max(0.0),
-        ..CutOptions::default()
-    };
-    let of = (garment.pattern, garment.draft);
-    let made = CutPiece::new(of, number, (None, &options));
-    made.map(Arc::new).map_err(|error| SessionError::Faults {
-        source_name: garment.pattern.name.clone(),
-        faults: vec![format!(
-            "piece {:?} cannot be cut: {error}",
-            garment.draft.pieces[number].name
-        )],
-    })
-}
-
-/// Warnings in words, with what tells their garment from others.
-fn notes_of(found: &[Diagnostic], label: Option<&str>) -> Vec<String> {
-    let of = label.map_or_else(String::new, |label| format!("{label}: "));
-    let words = |one: &Diagnostic| format!("{of}{}; {}", one.message, one.hint);
-    let warnings = found.iter().filter(|one| one.severity > Severity::Note);
-    warnings.map(words).collect()
-}
-
-fn panel_name<'a>(garment: &Garments<'a>, piece: &Piece) -> &'a str {
-    let panels = &garment.pattern.panels;
-    let panel = panels.iter().find(|p| p.id == piece.id.panel);
-    panel.map_or("", |p| p.name.as_str())
-}
-
-/// More pieces than can be laid at once are refused before any list of them is made.
-fn check_count(garments: &[Garments<'_>], options: &NestOptions) -> Result<(), SessionError> {
-    let of = |garment: &Garments<'_>| {
-        let each = |piece: &Piece| {
-            let settings = options.piece(panel_name(garment, piece), &piece.name);
-            let also = settings.also.iter().flatten();
-            1 + also.map(|(_, &count)| u64::from(count)).sum::<u64>()
-        };
-        let pieces: u64 = garment.draft.pieces.iter().map(each).sum();
-        pieces.saturating_mul(u64::from(garment.count))
-    };
-    let total = garments.iter().map(of).fold(0, u64::saturating_add);
-    match total > u64::from(MOST_PIECES) {
-        true => Err(NestingError::TooManyPieces(total).into()),
-        false => Ok(()),
-    }
-}
-
-/// Settings, locks and marks that name nothing are mistakes.
-fn check_piece_names(garments: &[Garments<'_>], options: &NestOptions) -> Result<(), SessionError> {
-    let mut names: Vec<String> = Vec::new();
-    let mut marks: Vec<String> = Vec::new();
-    for garment in garments {
-        names.extend(garment.draft.pieces.iter().map(|p| p.name.clone()));
-        for panel in &garment.pattern.panels {
-            names.push(panel.name.clone());
-            let notch = |n: &toile_pattern::Notch| format!("{}.{}", panel.name, n.name);
-            marks.extend(panel.notches.iter().map(notch));
-        }
-    }
-    for list in [&mut names, &mut marks] {
-        list.sort_unstable();
-        list.dedup();
-    }
-    let unknown = |kind: &'static str, name: &str, there: &[String]| SessionError::Unknown {
-        kind,
-        name: name.to_owned(),
-        hint: match there.is_empty() {
-            true => "there are none in the pattern".to_owned(),
-            false => format!("choose from: {}", there.join(", ")),
-        },
-    };
-    let given = options.settings.pieces.keys();
-    for name in given.filter(|name| *name != ANY_NAME) {
-        if !names.contains(name) {
-            return Err(unknown("piece", name, &names));
-        }
-    }
-    for mark in options.settings.matched.iter().flatten() {
-        if !marks.contains(mark) {
-            return Err(unknown("mark", mark, &marks));
-        }
-    }
-    Ok(())
-}
+use toile_pattern::Spread;
 
 /// Items, what is drawn on each, and what the cutter must know.
 type Items = (Vec<Item>, Vec<Arc<CutPiece>>, Vec<String>);
@@ -196,7 +25,7 @@ pub(crate) fn items_on(
     wanted: &[Wanted],
     plan: &FabricPlan,
     options: &NestOptions,
-) -> Result<Items, SessionError> {
+) -> Result<Items, MarkerError> {
     let mut items = Vec::new();
     let mut drawn = Vec::new();
     let mut notes: Vec<String> = Vec::new();
@@ -284,7 +113,7 @@ enum Role {
     Two { spare: bool },
 }
 
-fn roles(wanted: &[Wanted], plan: &FabricPlan) -> Result<Vec<Role>, SessionError> {
+fn roles(wanted: &[Wanted], plan: &FabricPlan) -> Result<Vec<Role>, MarkerError> {
     if plan.spread == Spread::Open {
         return Ok(wanted.iter().map(|_| Role::Alone).collect());
     }
@@ -388,10 +217,4 @@ fn halved(mut item: Item, piece: &CutPiece, half: HalfPlane) -> (Item, Arc<CutPi
     item.allowed.mirror = Mirror::Free;
     item.allowed.tilt = 0.0;
     (item, Arc::new(drawn))
-}
-
-/// A vector turned by an angle [rad].
-pub(crate) fn turned(v: Vec2, angle: f64) -> Vec2 {
-    let (sin, cos) = angle.sin_cos();
-    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
 }

@@ -5,41 +5,23 @@
 //! a' = a - m + m', all in the grain's own axes. That holds if i and j lie the same way up, so
 //! pieces with several marks make their garment run one way.
 
-use crate::SessionError;
-use crate::laying_items::{Wanted, turned};
-use crate::nest_options::FabricPlan;
+use crate::MarkerError;
+use crate::marks::turned;
+use crate::options::FabricPlan;
+use crate::pieces::Wanted;
 use std::collections::BTreeMap;
 use toile_geometry::Vec2;
 use toile_nesting::{Item, MatchPoint, Mirror, NestingError, Phase, Stripes};
-use toile_pattern::{NotchId, PanelId, Pattern};
 
 /// How far marks of one set may miss each other [m].
 const MISS: f64 = 1e-6;
-
-/// The marks of a pattern: number of the set, panel and notch. Names that are not there are left out.
-pub(crate) fn resolve_marks(
-    pattern: &Pattern,
-    sets: &[Vec<String>],
-) -> Vec<(usize, PanelId, NotchId)> {
-    let mut marks = Vec::new();
-    for (set, names) in sets.iter().enumerate() {
-        for panel in &pattern.panels {
-            for notch in &panel.notches {
-                if names.contains(&format!("{}.{}", panel.name, notch.name)) {
-                    marks.push((set, panel.id, notch.id));
-                }
-            }
-        }
-    }
-    marks
-}
 
 /// Gives every item with marks its match point. `order` names the wanted piece of each item.
 pub(crate) fn match_up(
     items: &mut [Item],
     order: &[usize],
     (wanted, plan): (&[Wanted], &FabricPlan),
-) -> Result<(), SessionError> {
+) -> Result<(), MarkerError> {
     let Some(stripes) = plan.rolls.iter().find_map(|r| r.strip.stripes) else {
         return Ok(());
     };

@@ -1,0 +1,85 @@
+//! Markers as files.
+
+use crate::{Laying, MarkerError};
+use toile_interchange::{
+    FormatError, write_jagua_instance, write_marker_dxf, write_marker_hpgl, write_marker_json,
+    write_marker_pdf, write_marker_report, write_marker_svg,
+};
+
+/// A file a marker is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MarkerFormat {
+    /// `marker.svg`: a drawing at true size.
+    Svg,
+    /// `marker.json`: the marker as data.
+    Json,
+    /// `marker.dxf`: release 12, millimetres.
+    Dxf,
+    /// `marker.pdf`: one page at true size.
+    Pdf,
+    /// `marker-report.pdf`: A4, all markers.
+    Report,
+    /// `marker.plt`: HPGL/2.
+    Hpgl,
+    /// `marker-instance.json`: the pieces and the usable width as a nesting instance, for other
+    /// programs.
+    Instance,
+}
+
+/// The files of markers: `marker.svg`, `marker.json` and others asked for, numbered from the second
+/// marker on. Returns for each marker what a format could not carry over.
+///
+/// # Errors
+/// A marker that a format cannot hold.
+pub fn marker_files(
+    (name, formats): (&str, &[MarkerFormat]),
+    layings: &[Laying],
+    files: &mut Vec<(String, Vec<u8>)>,
+) -> Result<Vec<Vec<String>>, MarkerError> {
+    let mut lost = vec![Vec::new(); layings.len()];
+    for (k, laying) in layings.iter().enumerate() {
+        let stem = match k {
+            0 => "marker".to_owned(),
+            k => format!("marker-{}", k + 1),
+        };
+        let drawing = laying.drawing(name);
+        for format in formats {
+            let (ending, bytes) = match format {
+                MarkerFormat::Svg => ("svg", write_marker_svg(&drawing).map(String::into_bytes)),
+                MarkerFormat::Json => {
+                    let text = write_marker_json(&laying.file(name));
+                    ("json", text.map(String::into_bytes))
+                }
+                MarkerFormat::Dxf => ("dxf", write_marker_dxf(&drawing).map(String::into_bytes)),
+                MarkerFormat::Hpgl => ("plt", write_marker_hpgl(&drawing).map(String::into_bytes)),
+                MarkerFormat::Pdf => ("pdf", write_marker_pdf(&drawing)),
+                MarkerFormat::Instance => {
+                    let (text, left_out) = write_jagua_instance(name, &laying.items, &laying.strip)
+                        .map_err(cannot("marker-instance.json"))?;
+                    let file = format!("{stem}-instance.json");
+                    if !left_out.is_empty() {
+                        let left_out = left_out.join(", ");
+                        lost[k].push(format!("{file} does not hold: {left_out}"));
+                    }
+                    files.push((file, text.into_bytes()));
+                    continue;
+                }
+                MarkerFormat::Report => continue,
+            };
+            files.push((
+                format!("{stem}.{ending}"),
+                bytes.map_err(cannot("the marker"))?,
+            ));
+        }
+    }
+    if formats.contains(&MarkerFormat::Report) {
+        let drawings: Vec<_> = layings.iter().map(|l| l.drawing(name)).collect();
+        let report = write_marker_report(name, &drawings).map_err(cannot("marker-report.pdf"))?;
+        files.push(("marker-report.pdf".to_owned(), report));
+    }
+    Ok(lost)
+}
+
+fn cannot(file: &'static str) -> impl Fn(FormatError) -> MarkerError {
+    move |error| MarkerError::Write { file, error }
+}

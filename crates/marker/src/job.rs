@@ -1,0 +1,251 @@
+//! The pieces of one fabric, ready to be laid on it.
+
+use crate::follow::Standing;
+use crate::going_on::{lock, start_of};
+use crate::items::items_on;
+use crate::laying::Laying;
+use crate::matching::runs_one_way;
+use crate::options::{FabricPlan, PlannedRoll};
+use crate::pieces::Wanted;
+use crate::{MarkerError, NestOptions};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use toile_cut::CutPiece;
+use toile_interchange::{MarkerFacts, MarkerFileUnplaced};
+use toile_nesting::{
+    Control, Item, Marker, Nap, NestingError, Progress, Search, Strip, improve_marker, judge,
+    make_marker, make_markers_on_rolls,
+};
+use toile_pattern::{Fabric, OrderedPiece, SizeId, Spread};
+
+/// Told how far the search on one fabric is; answers whether to go on.
+type Told<'a> = &'a mut dyn FnMut(Standing) -> bool;
+
+/// What is to be laid on one fabric.
+pub(crate) struct FabricJob {
+    fabric: String,
+    plan: FabricPlan,
+    pub items: Vec<Item>,
+    pub pieces: Vec<Arc<CutPiece>>,
+    pub notes: Vec<String>,
+    /// What to go on from.
+    start: Option<Marker>,
+}
+
+impl FabricJob {
+    pub fn new(
+        (fabric, wanted): (&str, &[Wanted]),
+        own: Option<&Fabric>,
+        options: &NestOptions,
+    ) -> Result<Self, MarkerError> {
+        let starts = &options.from;
+        let mut plan = options.plan(fabric, own)?;
+        if plan.rolled && !starts.is_empty() {
+            return Err(MarkerError::Conflict(format!(
+                "fabric {fabric:?} is laid on rolls, and markers on rolls cannot be gone on from; leave out --from, or the rolls"
+            )));
+        }
+        if runs_one_way(wanted) {
+            for roll in &mut plan.rolls {
+                if roll.strip.stripes.is_some() && roll.strip.nap == Nap::None {
+                    roll.strip.nap = Nap::PerBundle;
+                }
+            }
+        }
+        let (mut items, pieces, notes) = items_on(wanted, &plan, options)?;
+        let start = start_of(starts, fabric, (&items, &plan.rolls[0].strip));
+        if let Some(start) = &start {
+            lock(&mut items, start, &options.locked);
+        }
+        Ok(Self {
+            fabric: fabric.to_owned(),
+            plan,
+            items,
+            pieces,
+            notes,
+            start,
+        })
+    }
+
+    /// All markers of the fabric. Stops when the flag is set, or the one told says so.
+    pub fn lay(
+        &self,
+        options: &NestOptions,
+        (flag, told): (&AtomicBool, Told<'_>),
+    ) -> Result<Vec<Laying>, MarkerError> {
+        if self.plan.rolled {
+            return self.lay_on_rolls(options, (flag, told));
+        }
+        let of = (&*self.items, self.start.as_ref());
+        let marker = self.made(of, options.search(), (flag, told))?;
+        Ok(vec![self.whole(marker, options)])
+    }
+
+    /// The items, some of them locked, on the only roll: anew, or from a start.
+    pub fn made(
+        &self,
+        (items, start): (&[Item], Option<&Marker>),
+        search: Search,
+        (flag, told): (&AtomicBool, Told<'_>),
+    ) -> Result<Marker, MarkerError> {
+        let mut follow = |progress| self.follow(progress, flag, told);
+        let mut control = Control {
+            progress: &mut follow,
+            cancel: flag,
+        };
+        let strip = &self.plan.rolls[0].strip;
+        Ok(match start {
+            Some(start) => improve_marker(items, strip, start, search, &mut control)?,
+            None => make_marker(items, strip, search, &mut control)?,
+        })
+    }
+
+    fn follow(
+        &self,
+        progress: Progress,
+        flag: &AtomicBool,
+        told: &mut dyn FnMut(Standing) -> bool,
+    ) {
+        if !told(self.standing(progress)) {
+            flag.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// A marker of all pieces on the only roll.
+    pub fn whole(&self, marker: Marker, options: &NestOptions) -> Laying {
+        let missing = named(&self.items, &marker.unplaced);
+        let of = (self.items.clone(), self.pieces.clone());
+        Laying {
+            missing,
+            ..self.laying(&self.plan.rolls[0], of, marker, options)
+        }
+    }
+
+    /// The only roll.
+    pub fn strip(&self) -> &Strip {
+        &self.plan.rolls[0].strip
+    }
+
+    /// Price of a length of the only roll [m], all plies together, if a metre's is known.
+    pub fn cost(&self, length: f64) -> Option<f64> {
+        let price = self.plan.rolls[0].price_per_metre;
+        price.map(|price| price * length * f64::from(self.plan.plies))
+    }
+
+    /// Which piece of an order each copy of each item is. The order is that of the garments laid.
+    pub fn keys(&self, order: &[(Option<SizeId>, u32)]) -> Vec<Vec<OrderedPiece>> {
+        let garments: Vec<(Option<SizeId>, u32)> = order
+            .iter()
+            .flat_map(|&(size, quantity)| (0..quantity).map(move |garment| (size, garment)))
+            .collect();
+        let items = self.items.iter().zip(&self.pieces);
+        let keys = items.map(|(item, piece)| {
+            let bundles = item.bundles.iter();
+            let own = bundles.filter_map(|&bundle| garments.get(bundle as usize));
+            let key = |&(size, garment): &(Option<SizeId>, u32)| OrderedPiece {
+                panel: piece.id.panel,
+                copy: piece.id.copy,
+                size,
+                garment,
+            };
+            own.map(key).collect()
+        });
+        keys.collect()
+    }
+
+    /// How far a search is. On rolls nothing is known of the whole before the end.
+    fn standing(&self, progress: Progress) -> Standing {
+        let length = Some(progress.length).filter(|length| length.is_finite());
+        let whole = length.filter(|_| !self.plan.rolled);
+        let roll = &self.plan.rolls[0];
+        let copies = self.items.iter();
+        let area = copies.map(|item| item.outline.area() * f64::from(item.quantity));
+        let area: f64 = area.sum();
+        let width = roll.strip.width;
+        let efficiency = |length: f64| area / (width * (length - 2.0 * roll.strip.end_margin));
+        Standing {
+            done: progress.done,
+            length,
+            efficiency: whole.map(efficiency),
+            cost: whole.and_then(|length| self.cost(length)),
+        }
+    }
+
+    fn lay_on_rolls(
+        &self,
+        options: &NestOptions,
+        (flag, told): (&AtomicBool, Told<'_>),
+    ) -> Result<Vec<Laying>, MarkerError> {
+        let mut follow = |progress| self.follow(progress, flag, told);
+        let mut control = Control {
+            progress: &mut follow,
+            cancel: flag,
+        };
+        let strips: Vec<Strip> = self.plan.rolls.iter().map(|r| r.strip.clone()).collect();
+        let out = make_markers_on_rolls(&self.items, &strips, options.search(), &mut control)?;
+        let missing = named(&self.items, &out.unplaced);
+        let mut layings: Vec<Laying> = out
+            .markers
+            .into_iter()
+            .map(|made| {
+                let drawn = made.sources.iter().map(|s| self.pieces[s.0].clone());
+                let of = (made.items, drawn.collect());
+                let roll = &self.plan.rolls[made.roll];
+                Laying {
+                    sources: Some(made.sources),
+                    ..self.laying(roll, of, made.marker, options)
+                }
+            })
+            .collect();
+        let Some(last) = layings.last_mut() else {
+            let reasons = missing.iter().map(|u| format!("{}: {}", u.name, u.reason));
+            let reasons: Vec<String> = reasons.collect();
+            let what = format!("no piece fits any roll: {}", reasons.join("; "));
+            return Err(NestingError::Strip(what).into());
+        };
+        last.missing = missing;
+        Ok(layings)
+    }
+
+    /// A marker with what a drawing of it needs; nothing counts as missing yet.
+    fn laying(
+        &self,
+        roll: &PlannedRoll,
+        (items, pieces): (Vec<Item>, Vec<Arc<CutPiece>>),
+        marker: Marker,
+        options: &NestOptions,
+    ) -> Laying {
+        let verdict = judge(&items, &roll.strip, &marker);
+        Laying {
+            fabric: self.fabric.clone(),
+            strip: roll.strip.clone(),
+            facts: MarkerFacts {
+                fabric: self.fabric.clone(),
+                roll: roll.name.clone(),
+                plies: self.plan.plies,
+                face_to_face: self.plan.spread == Spread::FaceToFace,
+                utilisation: marker.utilisation,
+                price_per_metre: roll.price_per_metre,
+                currency: options.settings.currency.clone().unwrap_or_default(),
+                notes: self.notes.clone(),
+            },
+            missing: Vec::new(),
+            sources: None,
+            items,
+            pieces,
+            marker,
+            verdict,
+        }
+    }
+}
+
+/// Copies that found no place, by name.
+fn named(items: &[Item], unplaced: &[toile_nesting::Unplaced]) -> Vec<MarkerFileUnplaced> {
+    let name = |u: &toile_nesting::Unplaced| MarkerFileUnplaced {
+        name: items[u.item].name.clone(),
+        item: u.item,
+        copy: u.copy,
+        reason: u.reason.clone(),
+    };
+    unplaced.iter().map(name).collect()
+}

@@ -1,0 +1,260 @@
+//! A marker of a document with its pieces where they lie: shown, checked, searched for, written.
+
+use crate::follow::{Follow, Standing};
+use crate::ordered::MarkerPieces;
+use crate::{Laying, MarkerError, Nested};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use toile_cut::CutPiece;
+use toile_nesting::{Locked, Pose, Search, Side, Strip, Unplaced, clashes};
+use toile_pattern::{Marker, OrderedPiece, PiecePlacement};
+
+/// A marker of a document with its pieces where they lie.
+pub struct LaidMarker {
+    marker: Arc<Marker>,
+    pieces: Arc<MarkerPieces>,
+    /// What lies where; pieces that wait are listed as unplaced.
+    laid: toile_nesting::Marker,
+    /// The placement of the document that each of these is.
+    sources: Vec<usize>,
+    suspended: Vec<OrderedPiece>,
+}
+
+/// A piece on a marker.
+#[derive(Clone, Copy, Debug)]
+pub struct LaidPiece<'a> {
+    /// Which it is.
+    pub piece: OrderedPiece,
+    /// Name to write on it.
+    pub name: &'a str,
+    /// What is drawn on it, in its own plane; on the fold of the fabric the half that is laid.
+    pub cut: &'a Arc<CutPiece>,
+    /// Marker from piece.
+    pub pose: Pose,
+    /// Whether it is locked.
+    pub locked: bool,
+}
+
+/// A piece of the order that is not laid.
+#[derive(Clone, Copy, Debug)]
+pub struct WaitingPiece<'a> {
+    /// Which it is.
+    pub piece: OrderedPiece,
+    /// Name to write on it.
+    pub name: &'a str,
+    /// What is drawn on it, in its own plane.
+    pub cut: &'a Arc<CutPiece>,
+}
+
+/// What keeps a marker from being cut as it lies, and what it comes to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MarkerState {
+    /// Pairs of pieces that overlap, and the shortest move that ends it [m].
+    pub overlaps: Vec<([OrderedPiece; 2], f64)>,
+    /// Pieces that reach beyond the usable fabric, where, and by how much [m].
+    pub outside: Vec<(OrderedPiece, Side, f64)>,
+    /// Pieces laid.
+    pub laid: usize,
+    /// Pieces that wait to be laid.
+    pub waiting: usize,
+    /// Fabric used, end margins included [m].
+    pub length: f64,
+    /// Area of the pieces over width times length between the end margins; above 1 where they
+    /// overlap.
+    pub efficiency: f64,
+    /// Area of the pieces over width times length.
+    pub utilisation: f64,
+    /// Price of the fabric, all plies together, if a metre's is known.
+    pub cost: Option<f64>,
+}
+
+/// What a search begins with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Start {
+    /// Nothing but what is locked.
+    #[default]
+    Anew,
+    /// What lies on the marker: pieces that wait are added, overlaps taken apart. Where all lies
+    /// well the marker gets no longer.
+    AsItLies,
+}
+
+/// What a search found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Where the pieces lie, for `plan::place_marker`.
+    pub placements: Vec<PiecePlacement>,
+    /// The marker in a few numbers.
+    pub nested: Nested,
+}
+
+impl LaidMarker {
+    /// A marker with its pieces.
+    pub fn new(marker: Arc<Marker>, pieces: Arc<MarkerPieces>) -> Self {
+        let mut laid = toile_nesting::Marker::default();
+        let mut sources = Vec::new();
+        let mut suspended = Vec::new();
+        for (k, placed) in marker.placements.iter().enumerate() {
+            let Some(&(item, copy)) = pieces.index.get(&placed.piece) else {
+                suspended.push(placed.piece);
+                continue;
+            };
+            sources.push(k);
+            laid.placements.push(toile_nesting::Placement {
+                item,
+                copy,
+                turn: placed.turn,
+                mirrored: placed.flipped,
+                translation: placed.at.into(),
+            });
+        }
+        for (item, copies) in pieces.keys.iter().enumerate() {
+            for (key, copy) in copies.iter().zip(0..) {
+                if marker.placement(*key).is_none() {
+                    laid.unplaced.push(Unplaced {
+                        item,
+                        copy,
+                        reason: "it is not laid yet; lay it, or search".to_owned(),
+                    });
+                }
+            }
+        }
+        laid.measure(&pieces.job.items, pieces.strip());
+        Self {
+            marker,
+            pieces,
+            laid,
+            sources,
+            suspended,
+        }
+    }
+
+    /// The marker of the document.
+    pub fn marker(&self) -> &Arc<Marker> {
+        &self.marker
+    }
+
+    /// The fabric as it lies.
+    pub fn strip(&self) -> &Strip {
+        self.pieces.strip()
+    }
+
+    /// The pieces that are laid, in the order of the document.
+    pub fn laid(&self) -> impl Iterator<Item = LaidPiece<'_>> {
+        let placed = self.laid.placements.iter().zip(&self.sources);
+        placed.map(|(placement, &source)| {
+            let job = &self.pieces.job;
+            let item = &job.items[placement.item];
+            let known = &self.marker.placements[source];
+            LaidPiece {
+                piece: known.piece,
+                name: &item.name,
+                cut: &job.pieces[placement.item],
+                pose: placement.pose(item),
+                locked: known.locked,
+            }
+        })
+    }
+
+    /// The pieces of the order that are not laid.
+    pub fn waiting(&self) -> impl Iterator<Item = WaitingPiece<'_>> {
+        self.laid.unplaced.iter().map(|unplaced| {
+            let job = &self.pieces.job;
+            WaitingPiece {
+                piece: self.pieces.keys[unplaced.item][unplaced.copy as usize],
+                name: &job.items[unplaced.item].name,
+                cut: &job.pieces[unplaced.item],
+            }
+        })
+    }
+
+    /// Pieces with a place that are not laid now: their panel or size is gone, the order does not
+    /// cut them, or they are cut together with another.
+    pub fn suspended(&self) -> &[OrderedPiece] {
+        &self.suspended
+    }
+
+    /// What the cutter must know of the pieces.
+    pub fn notes(&self) -> &[String] {
+        &self.pieces.job.notes
+    }
+
+    /// Overlaps and pieces off the fabric as all lies now, with length, efficiency and cost: quick
+    /// enough to be asked at every move.
+    pub fn state(&self) -> MarkerState {
+        let job = &self.pieces.job;
+        let found = clashes(&job.items, self.strip(), &self.laid);
+        let piece = |k: usize| self.marker.placements[self.sources[k]].piece;
+        let overlaps = found.overlaps.iter();
+        let outside = found.outside.iter();
+        MarkerState {
+            overlaps: overlaps.map(|o| (o.pair.map(piece), o.depth)).collect(),
+            outside: outside
+                .map(|o| (piece(o.placement), o.side, o.by))
+                .collect(),
+            laid: self.laid.placements.len(),
+            waiting: self.laid.unplaced.len(),
+            length: found.length,
+            efficiency: found.efficiency,
+            utilisation: found.utilisation,
+            cost: job.cost(found.length),
+        }
+    }
+
+    /// The marker as it lies, judged by all rules, to be drawn and written.
+    pub fn laying(&self) -> Laying {
+        self.pieces.laying(self.laid.clone())
+    }
+
+    /// Lays the pieces in little length. Locked pieces stay where they are.
+    ///
+    /// # Errors
+    /// Pieces that cannot be laid, a locked one that cannot stay, in words; the search was stopped
+    /// before anything was found.
+    pub fn search(
+        &self,
+        (start, search): (Start, Search),
+        follow: &mut Follow<'_>,
+    ) -> Result<Found, MarkerError> {
+        let mut items = self.pieces.job.items.clone();
+        let placed = self.laid.placements.iter().zip(&self.sources);
+        for (placement, &source) in placed {
+            if self.marker.placements[source].locked {
+                items[placement.item].locked.push(Locked {
+                    copy: placement.copy,
+                    turn: placement.turn,
+                    mirrored: placement.mirrored,
+                    translation: placement.translation,
+                });
+            }
+        }
+        let from = (start == Start::AsItLies).then_some(&self.laid);
+        let flag = follow.stop.clone();
+        let mut stopped = false;
+        let mut told = |standing: Standing| {
+            stopped |= !(follow.told)(&standing);
+            !stopped
+        };
+        let job = &self.pieces.job;
+        let made = job.made((&items, from), search, (&flag, &mut told))?;
+        let key = |k: usize, copy: u32| self.pieces.keys[k][copy as usize];
+        let placements = made.placements.iter().map(|placement| {
+            let piece = key(placement.item, placement.copy);
+            let known = self.marker.placement(piece);
+            PiecePlacement {
+                piece,
+                at: placement.translation.into(),
+                turn: placement.turn,
+                flipped: placement.mirrored,
+                locked: known.is_some_and(|known| known.locked),
+            }
+        });
+        let placements = placements.collect();
+        let mut nested = self.pieces.laying(made).summary();
+        if stopped || flag.load(Ordering::Relaxed) {
+            let note = "stopped early: the best so far";
+            nested.notes.push(note.to_owned());
+        }
+        Ok(Found { placements, nested })
+    }
+}

@@ -1,0 +1,156 @@
+//! The pieces that a marker of a document cuts, ready to be laid.
+
+use crate::job::FabricJob;
+use crate::pieces::{Garments, wanted_of};
+use crate::{Laying, MarkerError, NestOptions};
+use std::collections::HashMap;
+use std::sync::Arc;
+use toile_interchange::{FabricSettings, FlawSettings, MarkerSettings, Metres, PrintSettings};
+use toile_nesting::{Nap, NestingError, Strip};
+use toile_pattern::{
+    Draft, Marker, MarkerCloth, NapRule, OrderedPiece, OrderedSize, Pattern, SizeId,
+};
+
+/// A pattern drafted to the sizes of an order; nothing stands for a pattern without sizes.
+pub type SizeDrafts = [(Option<SizeId>, Arc<Draft>)];
+
+/// The pieces that a marker of a document cuts, as they are cut and as its fabric lies. It stays the
+/// same while pieces are moved.
+pub struct MarkerPieces {
+    cloth: MarkerCloth,
+    order: Vec<OrderedSize>,
+    pub(crate) job: FabricJob,
+    pub(crate) options: NestOptions,
+    /// Which piece of the order each copy of each item is.
+    pub(crate) keys: Vec<Vec<OrderedPiece>>,
+    /// The item and copy of each piece.
+    pub(crate) index: HashMap<OrderedPiece, (usize, u32)>,
+}
+
+impl MarkerPieces {
+    /// The pieces of a marker of a pattern, by its drafts to the sizes of the order. Sizes that are
+    /// gone are passed over.
+    ///
+    /// # Errors
+    /// The fabric is gone, a size was not drafted, nothing is cut from the fabric, a piece has no cut
+    /// line or cannot be cut from fabric so spread.
+    pub fn new(
+        pattern: &Pattern,
+        marker: &Marker,
+        drafts: &SizeDrafts,
+    ) -> Result<Self, MarkerError> {
+        let id = marker.cloth.fabric;
+        let fabric = pattern.fabric(id).ok_or_else(|| MarkerError::Unknown {
+            kind: "fabric of the marker",
+            name: id.to_string(),
+            hint: "give the marker one of the pattern's fabrics".to_owned(),
+        })?;
+        let options = options_of(&marker.cloth, &fabric.name);
+        let ordered = ordered(pattern, &marker.order);
+        let several = ordered.len() > 1;
+        let mut garments = Vec::new();
+        for (size, quantity) in &ordered {
+            let name = size.and_then(|id| pattern.sizes.iter().find(|size| size.id == id));
+            let draft = drafts.iter().find(|(known, _)| known == size);
+            let (_, draft) = draft.ok_or_else(|| MarkerError::Unknown {
+                kind: "draft",
+                name: name.map_or_else(String::new, |size| size.name.clone()),
+                hint: "draft the pattern to every size of the order".to_owned(),
+            })?;
+            garments.push(Garments {
+                pattern,
+                draft,
+                count: *quantity,
+                label: name.map(|size| &*size.name).filter(|_| several),
+            });
+        }
+        let mut wanted = wanted_of(&garments, &options)?;
+        wanted.retain(|wanted| wanted.fabric == fabric.name);
+        if wanted.is_empty() {
+            return Err(NestingError::NoItems.into());
+        }
+        let drafted = garments.iter().flat_map(|garment| &garment.draft.fabrics);
+        let own = drafted.into_iter().find(|known| known.name == fabric.name);
+        let job = FabricJob::new((&fabric.name, &wanted), own, &options)?;
+        let keys = job.keys(&ordered);
+        let pairs = keys.iter().enumerate().flat_map(|(item, copies)| {
+            let copies = copies.iter().zip(0..);
+            copies.map(move |(piece, copy)| (*piece, (item, copy)))
+        });
+        Ok(Self {
+            cloth: marker.cloth.clone(),
+            order: marker.order.clone(),
+            index: pairs.collect(),
+            job,
+            options,
+            keys,
+        })
+    }
+
+    /// The fabric as it lies.
+    pub fn strip(&self) -> &Strip {
+        self.job.strip()
+    }
+
+    /// A marker of these pieces, judged, to be drawn and written.
+    pub(crate) fn laying(&self, marker: toile_nesting::Marker) -> Laying {
+        self.job.whole(marker, &self.options)
+    }
+
+    /// Whether a marker cuts the same pieces from fabric that lies alike, as long as the drafts are
+    /// the same.
+    pub fn serve(&self, marker: &Marker) -> bool {
+        self.cloth == marker.cloth && self.order == marker.order
+    }
+}
+
+/// The sizes of an order that are there, and how many garments of each.
+pub(crate) fn ordered(pattern: &Pattern, order: &[OrderedSize]) -> Vec<(Option<SizeId>, u32)> {
+    let known = |id: SizeId| pattern.sizes.iter().any(|size| size.id == id);
+    let there = order.iter().filter(|one| one.size.is_none_or(known));
+    there.map(|one| (one.size, one.quantity)).collect()
+}
+
+/// What a marker's fabric asks of a search.
+fn options_of(cloth: &MarkerCloth, fabric: &str) -> NestOptions {
+    let metres = |place: [f64; 2]| place.map(Metres);
+    let settings = FabricSettings {
+        print: cloth.print.map(|print| PrintSettings {
+            repeat: metres(print.repeat),
+            origin: metres(print.origin),
+        }),
+        flaws: cloth
+            .flaws
+            .iter()
+            .map(|flaw| FlawSettings {
+                at: metres(flaw.at),
+                size: metres(flaw.size),
+                clearance: Metres(flaw.clearance),
+            })
+            .collect(),
+        ..FabricSettings::default()
+    };
+    NestOptions {
+        width: cloth.width,
+        length: cloth.length,
+        selvedge: Some(cloth.selvedge),
+        end_margin: Some(cloth.end_margin),
+        gap: Some(cloth.gap),
+        nap: cloth.nap.map(|rule| match rule {
+            NapRule::None => Nap::None,
+            NapRule::OneWay => Nap::OneWay,
+            NapRule::PerGarment => Nap::PerBundle,
+        }),
+        tilt: Some(cloth.tilt),
+        spread: Some(cloth.spread),
+        plies: Some(cloth.plies),
+        price_per_metre: cloth.price_per_metre,
+        settings: MarkerSettings {
+            currency: Some(cloth.currency.clone()),
+            fabrics: [(fabric.to_owned(), settings)].into(),
+            ..MarkerSettings::default()
+        },
+        keep_best: true,
+        ..NestOptions::default()
+    }
+}

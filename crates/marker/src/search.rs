@@ -1,0 +1,109 @@
+//! Markers of drafts: one for each fabric their pieces are cut from, and for each roll of it.
+
+use crate::flaws::check_given;
+use crate::follow::{Follow, Standing};
+use crate::going_on::{check_locks, check_names};
+use crate::job::FabricJob;
+use crate::laying::Laying;
+use crate::pieces::{Garments, Wanted, wanted_of};
+use crate::{MarkerError, NestOptions};
+use std::sync::atomic::{AtomicBool, Ordering};
+use toile_interchange::ANY_NAME;
+use toile_nesting::{Budget, NestingError};
+use toile_pattern::Fabric;
+
+/// Lays all pieces of one or more drafts, each fabric on its own markers, fabrics in the order in
+/// which pieces first name them.
+///
+/// # Errors
+/// Something that cannot be laid, in words, before anything is searched for; the search was stopped
+/// and its best is not to be kept.
+pub fn lay(
+    garments: &[Garments<'_>],
+    options: &NestOptions,
+    follow: &mut Follow<'_>,
+) -> Result<Vec<Laying>, MarkerError> {
+    let mut groups: Vec<(String, Vec<Wanted>)> = Vec::new();
+    for wanted in wanted_of(garments, options)? {
+        match groups.iter_mut().find(|g| g.0 == wanted.fabric) {
+            Some(group) => group.1.push(wanted),
+            None => groups.push((wanted.fabric.clone(), vec![wanted])),
+        }
+    }
+    if groups.is_empty() {
+        return Err(NestingError::NoItems.into());
+    }
+    check_fabric_names(&groups, options)?;
+    let names: Vec<&str> = groups.iter().map(|group| group.0.as_str()).collect();
+    check_given(&options.defects, &names)?;
+    let fabrics = || garments.iter().flat_map(|g| &g.draft.fabrics);
+    check_names(&options.from, &options.locked)?;
+    // Everything is refused before anything is searched for.
+    let jobs: Vec<FabricJob> = groups
+        .iter()
+        .map(|(name, wanted)| {
+            let own: Option<&Fabric> = fabrics().find(|f| f.name == *name);
+            FabricJob::new((name, wanted), own, options)
+        })
+        .collect::<Result<_, _>>()?;
+    check_locks(jobs.iter().flat_map(|job| &job.items), &options.locked)?;
+    let count = jobs.len() as f64;
+    let flag = follow.stop.clone();
+    let mut layings = Vec::new();
+    let mut stopped = false;
+    for (k, job) in jobs.iter().enumerate() {
+        let from = k as f64 / count;
+        let mut part = |standing: Standing| {
+            let done = from + standing.done / count;
+            stopped |= !(follow.told)(&Standing { done, ..standing });
+            !stopped
+        };
+        let laid = match part(Standing::default()) {
+            true => job.lay(options, (&flag, &mut part)),
+            false => Err(MarkerError::Cancelled),
+        };
+        stopped |= flag.load(Ordering::Relaxed);
+        if stopped && !options.keep_best {
+            return Err(MarkerError::Cancelled);
+        }
+        layings.extend(match laid {
+            // Earlier fabrics are done: this one gets the first marker that is found.
+            Err(MarkerError::Cancelled) if !layings.is_empty() => {
+                stopped = true;
+                let mut shortly = options.clone();
+                shortly.budget = Budget::Evaluations(1);
+                job.lay(&shortly, (&AtomicBool::new(false), &mut |_| true))?
+            }
+            laid => laid?,
+        });
+    }
+    if stopped {
+        for laying in &mut layings {
+            laying
+                .facts
+                .notes
+                .push("stopped early: the best so far".to_owned());
+        }
+    }
+    Ok(layings)
+}
+
+/// Settings of a fabric that nothing is cut from are a mistake.
+fn check_fabric_names(
+    groups: &[(String, Vec<Wanted>)],
+    options: &NestOptions,
+) -> Result<(), MarkerError> {
+    let known = |name: &str| name == ANY_NAME || groups.iter().any(|g| g.0 == name);
+    let given = options.settings.fabrics.keys();
+    match given.into_iter().find(|name| !known(name)) {
+        None => Ok(()),
+        Some(name) => {
+            let names: Vec<&str> = groups.iter().map(|g| g.0.as_str()).collect();
+            Err(MarkerError::Unknown {
+                kind: "fabric",
+                name: name.clone(),
+                hint: format!("pieces are cut from: {}", names.join(", ")),
+            })
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! What lies in the way where pieces keep their places while their outlines change: a part of what
+//! the referee decides, fast enough for every move of a hand.
+
+use crate::referee::{beyond_limit, sides};
+use crate::{Item, Marker, PENETRATION_LIMIT, Side, Strip};
+use toile_geometry::PreparedPolygon;
+
+/// Pieces that cannot be cut where they lie, and what the marker comes to. Placements are named by
+/// their index in the marker.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Clashes {
+    /// Pairs of pieces that overlap.
+    pub overlaps: Vec<Overlap>,
+    /// Pieces that reach beyond the usable fabric.
+    pub outside: Vec<Outside>,
+    /// Fabric used, end margins included \[m\].
+    pub length: f64,
+    /// Area of the pieces over width times length between the end margins; above 1 where they
+    /// overlap.
+    pub efficiency: f64,
+    /// Area of the pieces over width times length.
+    pub utilisation: f64,
+}
+
+/// Two pieces that overlap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Overlap {
+    /// The placements, the lower index first.
+    pub pair: [usize; 2],
+    /// Length of the shortest move that ends it \[m\].
+    pub depth: f64,
+}
+
+/// A piece that reaches beyond the usable fabric.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outside {
+    /// The placement.
+    pub placement: usize,
+    /// Where.
+    pub side: Side,
+    /// By how much \[m\].
+    pub by: f64,
+}
+
+impl Clashes {
+    /// Whether all lies on the fabric and apart.
+    pub fn is_empty(&self) -> bool {
+        self.overlaps.is_empty() && self.outside.is_empty()
+    }
+}
+
+/// Overlapping pairs and pieces off the fabric, by the referee's limits and exact predicates.
+/// Gaps, orientations, print and flaws are not looked at. Placements that name no item, or whose
+/// place is not finite, are passed over. Costs a sweep along the warp, and one exact test for each
+/// pair whose boxes meet.
+pub fn clashes(items: &[Item], strip: &Strip, marker: &Marker) -> Clashes {
+    let mut measured = marker.clone();
+    measured.measure(items, strip);
+    let mut found = Clashes {
+        length: measured.length,
+        efficiency: measured.efficiency,
+        utilisation: measured.utilisation,
+        ..Clashes::default()
+    };
+    let mut laid: Vec<(usize, PreparedPolygon)> = Vec::new();
+    for (k, placement) in marker.placements.iter().enumerate() {
+        let at = placement.translation;
+        let finite = [at.x, at.y, placement.turn].iter().all(|x| x.is_finite());
+        if let Some(item) = items.get(placement.item).filter(|_| finite) {
+            let outline = placement.pose(item).lay(&item.outline);
+            laid.push((k, PreparedPolygon::new(&outline)));
+        }
+    }
+    for (k, outline) in &laid {
+        for (side, by) in sides(strip, outline.bounds()) {
+            if beyond_limit(by) {
+                found.outside.push(Outside {
+                    placement: *k,
+                    side,
+                    by,
+                });
+            }
+        }
+    }
+    let start = |n: &(usize, PreparedPolygon)| n.1.bounds().min.x;
+    laid.sort_by(|a, b| start(a).total_cmp(&start(b)));
+    for (n, (k, one)) in laid.iter().enumerate() {
+        let end = one.bounds().max.x;
+        for (other, outline) in laid[n + 1..].iter().take_while(|o| start(o) < end) {
+            if !one.bounds().overlaps(&outline.bounds()) || !one.overlaps(outline) {
+                continue;
+            }
+            let depth = one.penetration_depth(outline);
+            if depth > PENETRATION_LIMIT {
+                found.overlaps.push(Overlap {
+                    pair: [*k.min(other), *k.max(other)],
+                    depth,
+                });
+            }
+        }
+    }
+    found.overlaps.sort_by_key(|overlap| overlap.pair);
+    found
+}

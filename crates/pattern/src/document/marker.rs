@@ -1,0 +1,366 @@
+//! Markers: which pieces of which sizes lie where on a fabric, to be cut together.
+//!
+//! x runs along the warp from the start of the fabric, y across it from the lower selvedge.
+
+use super::Pattern;
+use crate::{FabricId, MarkerId, PanelId, SizeId};
+use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// Unusable edge at either side of fabric where nothing else is said [m].
+pub const USUAL_SELVEDGE: f64 = 0.010;
+/// Room for the blade between two pieces where nothing else is said [m].
+pub const USUAL_GAP: f64 = 0.002;
+
+/// Most garments of a size on a marker.
+pub const MOST_GARMENTS: u32 = 2_000;
+
+/// Pieces of one fabric, laid to be cut together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Marker {
+    /// Its id.
+    pub id: MarkerId,
+    /// Name to show, unique among markers.
+    pub name: String,
+    /// The fabric and how it is spread.
+    pub cloth: MarkerCloth,
+    /// How many garments of which sizes are cut.
+    pub order: Vec<OrderedSize>,
+    /// What lies where. Pieces of the order that are not here wait to be laid.
+    pub placements: Vec<PiecePlacement>,
+}
+
+/// Fabric as a marker takes it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MarkerCloth {
+    /// The fabric; the pieces cut from it are laid.
+    pub fabric: FabricId,
+    /// Full width laid open, of a tube its girth [m]; nothing means the fabric's own.
+    pub width: Option<f64>,
+    /// Length at hand, all plies together [m]; nothing means as much as it takes.
+    pub length: Option<f64>,
+    /// Unusable edge at either side [m].
+    pub selvedge: f64,
+    /// Fabric left free at either end [m].
+    pub end_margin: f64,
+    /// Least distance between two pieces [m].
+    pub gap: f64,
+    /// Which way pieces may point; nothing means as the fabric's nap has it.
+    pub nap: Option<NapRule>,
+    /// How far the grain of a piece may lie off the warp [rad].
+    pub tilt: f64,
+    /// How it is spread.
+    pub spread: Spread,
+    /// Layers cut at once; a fold does not count.
+    pub plies: u32,
+    /// Price of a metre of length.
+    pub price_per_metre: Option<f64>,
+    /// What the price is in, as in EUR.
+    pub currency: String,
+    /// Print that repeats.
+    pub print: Option<Print>,
+    /// Flaws no piece may lie on.
+    pub flaws: Vec<Flaw>,
+}
+
+/// Which way pieces may point along the warp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NapRule {
+    /// Each either way.
+    None,
+    /// All one way.
+    OneWay,
+    /// All pieces of a garment one way.
+    PerGarment,
+}
+
+/// How fabric is spread on the table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Spread {
+    /// Open, all plies with the right side up.
+    #[default]
+    Open,
+    /// Folded in two along the warp, selvedge on selvedge.
+    Folded,
+    /// A tube laid flat: a fold at both sides.
+    Tubular,
+    /// Open, every second ply turned over: what is cut comes in pairs.
+    FaceToFace,
+}
+
+impl Spread {
+    /// The numbers of plies that are right.
+    pub const PLIES: &'static str = "give 1 or more, face to face an even number";
+
+    /// Layers cut at once where nothing is said.
+    pub fn usual_plies(self) -> u32 {
+        match self {
+            Self::FaceToFace => 2,
+            Self::Open | Self::Folded | Self::Tubular => 1,
+        }
+    }
+
+    /// Whether fabric can be spread so in so many plies.
+    pub fn allows(self, plies: u32) -> bool {
+        plies > 0 && (self != Self::FaceToFace || plies.is_multiple_of(2))
+    }
+}
+
+/// A print that repeats.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Print {
+    /// Length of a repeat along the warp and across [m]; 0 where it does not repeat.
+    pub repeat: [f64; 2],
+    /// A point where lines of the print cross [m].
+    pub origin: [f64; 2],
+}
+
+/// A flaw: a rectangle of the fabric laid open.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Flaw {
+    /// Its corner nearest to the start: along the warp and across [m].
+    pub at: [f64; 2],
+    /// Its length and width [m].
+    pub size: [f64; 2],
+    /// Distance pieces keep from it [m].
+    pub clearance: f64,
+}
+
+/// Garments of one size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct OrderedSize {
+    /// The size; nothing for a pattern without sizes.
+    pub size: Option<SizeId>,
+    /// How many garments, 1 to [`MOST_GARMENTS`].
+    pub quantity: u32,
+}
+
+/// One piece that an order cuts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct OrderedPiece {
+    /// The panel it is cut from.
+    pub panel: PanelId,
+    /// Number of the copy, from 0; of a mirrored pair the odd ones are mirror images.
+    pub copy: u32,
+    /// The size; nothing for a pattern without sizes.
+    pub size: Option<SizeId>,
+    /// The garment, from 0 within its size.
+    pub garment: u32,
+}
+
+/// Where a piece lies: its grain turned to +x, then turned over (y changes sign) if it is flipped,
+/// then turned, then moved.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PiecePlacement {
+    /// The piece.
+    pub piece: OrderedPiece,
+    /// Where the origin of its panel comes to lie [m].
+    pub at: [f64; 2],
+    /// Angle from the warp to its grain, counter-clockwise [rad].
+    pub turn: f64,
+    /// Whether it lies face down.
+    pub flipped: bool,
+    /// Whether it stays where it is while others are laid.
+    pub locked: bool,
+}
+
+/// What no marker may have, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MarkerFault {
+    /// The field of the file.
+    pub field: &'static str,
+    /// Which item of it, from 0, if it is a list.
+    pub item: Option<usize>,
+    /// What is wrong.
+    pub message: String,
+    /// What to do.
+    pub hint: &'static str,
+}
+
+impl MarkerCloth {
+    /// Fabric spread open in one ply, of its own width and nap.
+    pub fn of(fabric: FabricId) -> Self {
+        Self {
+            fabric,
+            width: None,
+            length: None,
+            selvedge: USUAL_SELVEDGE,
+            end_margin: 0.0,
+            gap: USUAL_GAP,
+            nap: None,
+            tilt: 0.0,
+            spread: Spread::Open,
+            plies: 1,
+            price_per_metre: None,
+            currency: String::new(),
+            print: None,
+            flaws: Vec::new(),
+        }
+    }
+}
+
+impl Marker {
+    /// Where a piece lies, if it is laid.
+    pub fn placement(&self, piece: OrderedPiece) -> Option<&PiecePlacement> {
+        self.placements.iter().find(|known| known.piece == piece)
+    }
+
+    /// How many garments of a size are cut.
+    pub fn quantity(&self, size: Option<SizeId>) -> u32 {
+        let own = self.order.iter().filter(|ordered| ordered.size == size);
+        own.map(|ordered| ordered.quantity).sum()
+    }
+
+    /// The first thing that no marker may have.
+    pub fn fault(&self) -> Option<MarkerFault> {
+        self.cloth
+            .fault()
+            .or_else(|| self.order_fault())
+            .or_else(|| self.placement_fault())
+    }
+
+    fn order_fault(&self) -> Option<MarkerFault> {
+        let mut seen = HashSet::new();
+        self.order.iter().enumerate().find_map(|(k, ordered)| {
+            let fault = |message: &str, hint| MarkerFault {
+                field: "order",
+                item: Some(k),
+                message: message.to_owned(),
+                hint,
+            };
+            match seen.insert(ordered.size) {
+                _ if ordered.quantity == 0 => Some(fault(
+                    "no garment of the size is cut",
+                    "give a quantity of 1 or more, or leave the size out",
+                )),
+                _ if ordered.quantity > MOST_GARMENTS => Some(fault(
+                    "more than 2000 garments of the size are cut",
+                    "make several markers",
+                )),
+                false => Some(fault("the size is ordered twice", "keep one of them")),
+                true => None,
+            }
+        })
+    }
+
+    fn placement_fault(&self) -> Option<MarkerFault> {
+        let mut seen = HashSet::new();
+        self.placements.iter().enumerate().find_map(|(k, laid)| {
+            let fault = |message: &str, hint| MarkerFault {
+                field: "placements",
+                item: Some(k),
+                message: message.to_owned(),
+                hint,
+            };
+            let numbers = [laid.at[0], laid.at[1], laid.turn];
+            match seen.insert(laid.piece) {
+                _ if numbers.iter().any(|number| !number.is_finite()) => Some(fault(
+                    "its place has a number that is not finite",
+                    "give it a place, or take it off the marker",
+                )),
+                false => Some(fault("the piece is laid twice", "keep one of them")),
+                true => None,
+            }
+        })
+    }
+}
+
+impl MarkerCloth {
+    fn fault(&self) -> Option<MarkerFault> {
+        let sound = |value: f64| value.is_finite() && value >= 0.0;
+        let numbers = [
+            ("width", self.width.unwrap_or_default()),
+            ("length", self.length.unwrap_or_default()),
+            ("selvedge", self.selvedge),
+            ("end_margin", self.end_margin),
+            ("gap", self.gap),
+            ("tilt", self.tilt),
+            ("price_per_metre", self.price_per_metre.unwrap_or_default()),
+        ];
+        let fault = |field, item, message: String, hint| MarkerFault {
+            field,
+            item,
+            message,
+            hint,
+        };
+        if let Some((field, value)) = numbers.iter().find(|(_, value)| !sound(*value)) {
+            let message = format!("the {} is {value}", field.replace('_', " "));
+            return Some(fault(field, None, message, "give 0 or more"));
+        }
+        if !self.spread.allows(self.plies) {
+            let message = format!("it is spread in {} plies", self.plies);
+            return Some(fault("plies", None, message, Spread::PLIES));
+        }
+        if let Some(print) = &self.print
+            && !(print.repeat.iter().all(|v| sound(*v))
+                && print.origin.iter().all(|v| v.is_finite()))
+        {
+            let message = "the repeat of the print is not 0 or more".to_owned();
+            return Some(fault("print", None, message, "give lengths"));
+        }
+        let flawed = |flaw: &Flaw| {
+            let at = flaw.at.iter().all(|v| v.is_finite());
+            at && flaw.size.iter().all(|v| sound(*v)) && sound(flaw.clearance)
+        };
+        let wrong = self.flaws.iter().position(|flaw| !flawed(flaw));
+        wrong.map(|k| {
+            let message = "the flaw's size or clearance is not 0 or more".to_owned();
+            fault("flaws", Some(k), message, "give lengths")
+        })
+    }
+}
+
+impl Pattern {
+    /// The marker with that id.
+    pub fn marker(&self, id: MarkerId) -> Option<&Arc<Marker>> {
+        self.markers.iter().find(|marker| marker.id == id)
+    }
+
+    /// The marker with that name.
+    pub fn marker_named(&self, name: &str) -> Option<&Arc<Marker>> {
+        self.markers.iter().find(|marker| marker.name == name)
+    }
+
+    /// Every piece that a marker's order cuts from its fabric: by size, garment, panel and copy.
+    /// Where the fabric lies double some of them are cut with another and not laid.
+    pub fn ordered_pieces<'a>(
+        &'a self,
+        marker: &'a Marker,
+    ) -> impl Iterator<Item = OrderedPiece> + 'a {
+        let garments = marker
+            .order
+            .iter()
+            .flat_map(|ordered| (0..ordered.quantity).map(|garment| (ordered.size, garment)));
+        let fabric = marker.cloth.fabric;
+        garments.flat_map(move |(size, garment)| {
+            let panels = self
+                .panels
+                .iter()
+                .filter(move |panel| panel.fabric == fabric);
+            panels.flat_map(move |panel| {
+                (0..panel.cut.quantity).map(move |copy| OrderedPiece {
+                    panel: panel.id,
+                    copy,
+                    size,
+                    garment,
+                })
+            })
+        })
+    }
+
+    /// A piece of an order in words: panel, copy, size, garment.
+    pub fn piece_words(&self, piece: OrderedPiece) -> String {
+        let panel = self.panel(piece.panel);
+        let panel = panel.map_or_else(|| piece.panel.to_string(), |p| format!("{:?}", p.name));
+        let size = piece.size.map(|id| {
+            let found = self.sizes.iter().find(|size| size.id == id);
+            found.map_or_else(|| id.to_string(), |size| format!("size {:?}", size.name))
+        });
+        let size = size.map_or_else(String::new, |size| format!(", {size}"));
+        let (copy, garment) = (piece.copy + 1, piece.garment + 1);
+        format!("piece {panel}, copy {copy}{size}, garment {garment}")
+    }
+}

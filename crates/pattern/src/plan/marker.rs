@@ -1,0 +1,300 @@
+//! Markers: made, given other fabric or another order, their pieces laid, moved, turned, turned
+//! over, locked and taken off.
+
+use super::impossible;
+use super::names::{free_name, wished};
+use crate::{
+    Edit, EditError, Entity, Evaluation, FabricId, Marker, MarkerCloth, MarkerId, OrderedPiece,
+    OrderedSize, PiecePlacement,
+};
+use std::collections::HashSet;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::Arc;
+
+/// The edits that add a marker of a fabric for one garment of the base size; and the marker.
+/// Without a name it is called as the fabric is.
+///
+/// # Errors
+/// The fabric is not there; the name is taken or can be none.
+pub fn add_marker(
+    evaluation: &Evaluation,
+    name: Option<&str>,
+    fabric: FabricId,
+) -> Result<(Vec<Edit>, MarkerId), EditError> {
+    let pattern = evaluation.pattern();
+    let missing = || EditError::Missing(fabric.to_string());
+    let cloth = pattern.fabric(fabric).ok_or_else(missing)?;
+    let owner = |name: &str| {
+        pattern
+            .marker_named(name)
+            .map(|_| format!("marker {name:?}"))
+    };
+    let name = match name {
+        Some(name) => wished(name, owner)?,
+        None => free_name(&cloth.name, |name| owner(name).is_some()),
+    };
+    let mut ids = pattern.ids;
+    let id: MarkerId = ids.take();
+    let marker = Marker {
+        id,
+        name,
+        cloth: MarkerCloth::of(fabric),
+        order: vec![OrderedSize {
+            size: pattern.base().map(|size| size.id),
+            quantity: 1,
+        }],
+        placements: Vec::new(),
+    };
+    Ok((vec![Edit::Put(Entity::Marker(Arc::new(marker)))], id))
+}
+
+/// The edits that take a marker away.
+///
+/// # Errors
+/// The marker is not there.
+pub fn remove_marker(evaluation: &Evaluation, id: MarkerId) -> Result<Vec<Edit>, EditError> {
+    found(evaluation, id)?;
+    Ok(vec![Edit::Remove(id.into())])
+}
+
+/// The edits that give a marker another order. Pieces that it does not cut any more keep their
+/// places for the day they are ordered again.
+///
+/// # Errors
+/// The marker is not there; a size is ordered twice or not at all.
+pub fn set_marker_order(
+    evaluation: &Evaluation,
+    id: MarkerId,
+    order: Vec<OrderedSize>,
+) -> Result<Vec<Edit>, EditError> {
+    let marker = found(evaluation, id)?.clone();
+    put(Marker { order, ..marker })
+}
+
+/// The edits that lay a marker on other fabric, or spread it otherwise. Pieces keep their places.
+///
+/// # Errors
+/// The marker is not there; a length is negative or not finite, the plies do not go with the
+/// spread.
+pub fn set_marker_cloth(
+    evaluation: &Evaluation,
+    id: MarkerId,
+    cloth: MarkerCloth,
+) -> Result<Vec<Edit>, EditError> {
+    let marker = found(evaluation, id)?.clone();
+    put(Marker { cloth, ..marker })
+}
+
+/// The edits that lay all of a marker anew, as a search found it. Places of pieces that the order
+/// does not cut, or whose panel is gone, stay as they are.
+///
+/// # Errors
+/// The marker is not there; a piece is laid twice or nowhere; a locked piece would move.
+pub fn place_marker(
+    evaluation: &Evaluation,
+    id: MarkerId,
+    placements: Vec<PiecePlacement>,
+) -> Result<Vec<Edit>, EditError> {
+    let mut marker = found(evaluation, id)?.clone();
+    let cut: HashSet<OrderedPiece> = evaluation.pattern().ordered_pieces(&marker).collect();
+    let new = |piece: OrderedPiece| placements.iter().find(|laid| laid.piece == piece);
+    for laid in &marker.placements {
+        let same = new(laid.piece).is_some_and(|new| {
+            (new.at, new.turn, new.flipped) == (laid.at, laid.turn, laid.flipped)
+        });
+        if laid.locked && !same && cut.contains(&laid.piece) {
+            return Err(locked(evaluation, laid.piece));
+        }
+    }
+    let stays = |laid: &PiecePlacement| !cut.contains(&laid.piece) && new(laid.piece).is_none();
+    marker.placements.retain(stays);
+    marker.placements.extend(placements);
+    put(marker)
+}
+
+/// The edits that lay some pieces of a marker: those that wait, and those that lie elsewhere.
+///
+/// # Errors
+/// The marker is not there; a piece is laid twice or nowhere, or is locked where it is.
+pub fn place_pieces(
+    evaluation: &Evaluation,
+    id: MarkerId,
+    placements: &[PiecePlacement],
+) -> Result<Vec<Edit>, EditError> {
+    let mut marker = found(evaluation, id)?.clone();
+    for new in placements {
+        let known = |laid: &PiecePlacement| laid.piece == new.piece;
+        match marker.placements.iter().position(known) {
+            Some(k) if marker.placements[k].locked => return Err(locked(evaluation, new.piece)),
+            Some(k) => marker.placements[k] = *new,
+            None => marker.placements.push(*new),
+        }
+    }
+    put(marker)
+}
+
+/// The edits that take pieces off a marker: they wait to be laid.
+///
+/// # Errors
+/// The marker is not there; a piece does not lie on it or is locked.
+pub fn take_off_pieces(
+    evaluation: &Evaluation,
+    id: MarkerId,
+    pieces: &[OrderedPiece],
+) -> Result<Vec<Edit>, EditError> {
+    let mut marker = changed(evaluation, (id, pieces), |_| {})?;
+    let is_off = |laid: &PiecePlacement| pieces.contains(&laid.piece);
+    marker.placements.retain(|laid| !is_off(laid));
+    put(marker)
+}
+
+/// The edits that move pieces of a marker [m].
+///
+/// # Errors
+/// The marker is not there; a piece does not lie on it or is locked; the move is not finite.
+pub fn move_pieces(
+    evaluation: &Evaluation,
+    (id, pieces): (MarkerId, &[OrderedPiece]),
+    by: [f64; 2],
+) -> Result<Vec<Edit>, EditError> {
+    put(changed(evaluation, (id, pieces), |laid| {
+        laid.at = [laid.at[0] + by[0], laid.at[1] + by[1]];
+    })?)
+}
+
+/// The edits that turn pieces of a marker together round a point of it, counter-clockwise [rad].
+///
+/// # Errors
+/// The marker is not there; a piece does not lie on it or is locked; a number is not finite.
+pub fn turn_pieces(
+    evaluation: &Evaluation,
+    (id, pieces): (MarkerId, &[OrderedPiece]),
+    (angle, centre): (f64, [f64; 2]),
+) -> Result<Vec<Edit>, EditError> {
+    let [cos, sin] = direction(angle);
+    put(changed(evaluation, (id, pieces), |laid| {
+        let [x, y] = [laid.at[0] - centre[0], laid.at[1] - centre[1]];
+        laid.at = [centre[0] + cos * x - sin * y, centre[1] + sin * x + cos * y];
+        laid.turn = principal(laid.turn + angle);
+    })?)
+}
+
+/// The edits that turn pieces of a marker over together, about a line along the warp [m].
+///
+/// # Errors
+/// The marker is not there; a piece does not lie on it or is locked; the line is not finite.
+pub fn flip_pieces(
+    evaluation: &Evaluation,
+    (id, pieces): (MarkerId, &[OrderedPiece]),
+    line: f64,
+) -> Result<Vec<Edit>, EditError> {
+    put(changed(evaluation, (id, pieces), |laid| {
+        laid.at[1] = 2.0 * line - laid.at[1];
+        laid.turn = principal(-laid.turn);
+        laid.flipped = !laid.flipped;
+    })?)
+}
+
+/// The edits that lock pieces of a marker where they lie, or unlock them.
+///
+/// # Errors
+/// The marker is not there; a piece does not lie on it.
+pub fn lock_pieces(
+    evaluation: &Evaluation,
+    (id, pieces): (MarkerId, &[OrderedPiece]),
+    is_locked: bool,
+) -> Result<Vec<Edit>, EditError> {
+    let mut marker = found(evaluation, id)?.clone();
+    for &piece in pieces {
+        laid(evaluation, &mut marker, piece)?.locked = is_locked;
+    }
+    put(marker)
+}
+
+fn found(evaluation: &Evaluation, id: MarkerId) -> Result<&Marker, EditError> {
+    let marker = evaluation.pattern().marker(id);
+    let marker = marker.ok_or_else(|| EditError::Missing(id.to_string()))?;
+    Ok(marker)
+}
+
+/// The edit that puts a marker, if it is one that may be.
+fn put(marker: Marker) -> Result<Vec<Edit>, EditError> {
+    if let Some(fault) = marker.fault() {
+        let what = format!("marker {:?}: {}", marker.name, fault.message);
+        return Err(impossible(what, fault.hint));
+    }
+    Ok(vec![Edit::Put(Entity::Marker(Arc::new(marker)))])
+}
+
+/// The marker with pieces of it changed that are not locked.
+fn changed(
+    evaluation: &Evaluation,
+    (id, pieces): (MarkerId, &[OrderedPiece]),
+    change: impl Fn(&mut PiecePlacement),
+) -> Result<Marker, EditError> {
+    let mut marker = found(evaluation, id)?.clone();
+    for &piece in pieces {
+        let own = laid(evaluation, &mut marker, piece)?;
+        if own.locked {
+            return Err(locked(evaluation, piece));
+        }
+        change(own);
+    }
+    Ok(marker)
+}
+
+fn laid<'m>(
+    evaluation: &Evaluation,
+    marker: &'m mut Marker,
+    piece: OrderedPiece,
+) -> Result<&'m mut PiecePlacement, EditError> {
+    let name = &marker.name;
+    let missing = || {
+        impossible(
+            format!(
+                "{} does not lie on marker {name:?}",
+                words(evaluation, piece)
+            ),
+            "lay it first",
+        )
+    };
+    let placements = &mut marker.placements;
+    match placements.iter().position(|known| known.piece == piece) {
+        Some(k) => Ok(&mut placements[k]),
+        None => Err(missing()),
+    }
+}
+
+fn locked(evaluation: &Evaluation, piece: OrderedPiece) -> EditError {
+    impossible(
+        format!("{} is locked where it lies", words(evaluation, piece)),
+        "unlock it first",
+    )
+}
+
+/// A piece in words.
+fn words(evaluation: &Evaluation, piece: OrderedPiece) -> String {
+    evaluation.pattern().piece_words(piece)
+}
+
+/// An angle from above -PI to PI [rad], unchanged where it is one.
+fn principal(angle: f64) -> f64 {
+    match angle {
+        angle if angle > -PI && angle <= PI => angle,
+        angle => PI - (PI - angle).rem_euclid(TAU),
+    }
+}
+
+/// Cosine and sine, exact for whole quarter turns.
+fn direction(angle: f64) -> [f64; 2] {
+    let quarters = (angle / FRAC_PI_2).round();
+    if (angle - quarters * FRAC_PI_2).abs() > 1e-12 {
+        return [angle.cos(), angle.sin()];
+    }
+    match quarters.rem_euclid(4.0) as u8 {
+        0 => [1.0, 0.0],
+        1 => [0.0, 1.0],
+        2 => [-1.0, 0.0],
+        _ => [0.0, -1.0],
+    }
+}
