@@ -34,19 +34,22 @@ pub enum Menu {
     Panel,
     /// Seams.
     Sew,
+    /// Markers.
+    Marker,
     /// The drape.
     Garment,
 }
 
 impl Menu {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::File,
         Self::Edit,
         Self::View,
         Self::Draw,
         Self::Panel,
         Self::Sew,
+        Self::Marker,
         Self::Garment,
     ];
 
@@ -59,6 +62,7 @@ impl Menu {
             Self::Draw => "Draw",
             Self::Panel => "Panel",
             Self::Sew => "Sew",
+            Self::Marker => "Marker",
             Self::Garment => "Garment",
         }
     }

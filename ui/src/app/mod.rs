@@ -14,6 +14,7 @@ mod findings;
 mod garment_side;
 mod job;
 mod making;
+mod marker_side;
 mod notice;
 mod palette;
 mod preferences;
@@ -28,11 +29,13 @@ use crate::fields::TypedTexts;
 use crate::gpu::solid::first_frame;
 use crate::theme;
 use crate::views::garment::GarmentView;
+use crate::views::marker::MarkerView;
 use crate::views::pattern::PatternView;
 use dialogs::Dialog;
 use eframe::egui_wgpu::RenderState;
 use egui::{Panel, Ui};
 use making::{Making, News};
+use marker_side::{SearchChoice, Searching};
 use notice::Notice;
 use preferences::Preferences;
 use printing::Printing;
@@ -59,6 +62,9 @@ pub struct ToileApp {
     pub(crate) findings: Arc<Vec<Diagnostic>>,
     pub(crate) view: PatternView,
     pub(crate) stage: GarmentView,
+    pub(crate) marker_view: MarkerView,
+    pub(crate) searching: Option<Searching>,
+    pub(crate) search_choice: SearchChoice,
     pub(crate) making: Making,
     pub(crate) printing: Option<Printing>,
     /// What was copied last, if the clipboard still holds it.
@@ -108,6 +114,9 @@ impl ToileApp {
             findings: Arc::default(),
             view: PatternView::default(),
             stage: GarmentView::new(state),
+            marker_view: MarkerView::default(),
+            searching: None,
+            search_choice: SearchChoice::default(),
             making: Making::default(),
             printing: None,
             copied: None,
@@ -118,6 +127,7 @@ impl ToileApp {
             typed: TypedTexts::default(),
             shows: Shows {
                 garment: true,
+                marker: false,
                 tables: false,
                 findings: false,
             },
@@ -256,6 +266,7 @@ impl ToileApp {
                     self.view.grading = Some(self.graded());
                 }
                 self.follow_body();
+                self.follow_marker();
             }
         }
         // Checks may take longer than a frame: they wait until a gesture is over.
@@ -365,7 +376,11 @@ impl ToileApp {
     pub fn show(&mut self, ui: &mut Ui) {
         let context = ui.ctx().clone();
         self.take_files(&context);
-        let typing = self.types(&context) || self.view.is_typing() || self.dialog.is_some();
+        let on_marker = context.memory(|memory| memory.has_focus(MarkerView::id()));
+        let typing = self.types(&context)
+            || self.view.is_typing()
+            || self.dialog.is_some()
+            || on_marker;
         // While a tool is under way Escape is a step back of the tool, which the canvas takes.
         let busy = self.view.is_busy();
         for command in command_table::pressed(&context, typing, busy) {
@@ -377,6 +392,7 @@ impl ToileApp {
         self.take_clipboard(&context);
         self.take_news();
         self.follow_printing();
+        self.follow_search();
         self.refresh();
         self.name_window(&context);
         if std::mem::take(&mut self.wants_theme) {
@@ -385,7 +401,7 @@ impl ToileApp {
         self.parts(ui);
         self.show_dialog(&context);
         self.guard_closing(&context);
-        if self.making.is_busy() || self.printing.is_some() {
+        if self.making.is_busy() || self.printing.is_some() || self.searching.is_some() {
             context.request_repaint_after(FRAME);
         }
     }
@@ -421,6 +437,15 @@ impl ToileApp {
                 .default_size(220.0)
                 .resizable(true)
                 .show(ui, |ui| self.show_tables(ui));
+        }
+        if self.shows.marker {
+            let height = ui.available_height();
+            Panel::bottom("marker")
+                .frame(frame)
+                .resizable(true)
+                .default_size(height * 0.4)
+                .size_range(140.0..=(height * 0.8).max(140.0))
+                .show(ui, |ui| self.marker_side(ui));
         }
         Panel::left("tools")
             .frame(frame)

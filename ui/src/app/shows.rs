@@ -5,6 +5,8 @@
 pub struct Shows {
     /// The 3D view.
     pub garment: bool,
+    /// The marker.
+    pub marker: bool,
     /// Measurements, variables, sizes, history.
     pub tables: bool,
     /// What is found wrong.

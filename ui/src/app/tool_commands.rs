@@ -3,6 +3,7 @@
 use super::ToileApp;
 use super::command::{Menu, PLAIN, SHIFT, UiCommand, always, command, key};
 use crate::tools::{Tool, draw, panel, parts, seam};
+use crate::views::marker::{MarkerAction, MarkerView};
 use egui::Key;
 
 /// Commands that take a tool in hand, and those of seams and the garment, in the order of their
@@ -223,6 +224,78 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Select the seam of the selected edge",
         ToileApp::has_edge,
         ToileApp::select_seam,
+    ),
+    command(
+        Menu::Marker,
+        "Show marker",
+        key(PLAIN, Key::F10),
+        "Show or hide how the pieces lie on the fabric",
+        ToileApp::has_panels,
+        ToileApp::toggle_marker,
+    ),
+    command(
+        Menu::Marker,
+        "New marker",
+        None,
+        "Make a marker of a fabric",
+        ToileApp::has_panels,
+        ToileApp::new_marker,
+    ),
+    command(
+        Menu::Marker,
+        "Remove marker",
+        None,
+        "Take the marker away; the panels stay",
+        ToileApp::has_marker,
+        ToileApp::remove_marker,
+    ),
+    command(
+        Menu::Marker,
+        "Search marker",
+        key(SHIFT, Key::F10),
+        "Lay all pieces in as little fabric as can be found",
+        |app| app.has_marker() && !app.is_searching(),
+        ToileApp::search_marker,
+    ),
+    command(
+        Menu::Marker,
+        "Stop search",
+        None,
+        "End the search with the best marker so far",
+        ToileApp::is_searching,
+        ToileApp::stop_search,
+    ),
+    command(
+        Menu::Marker,
+        "Turn piece",
+        None,
+        "Turn the selected pieces by half a turn (R in the marker)",
+        ToileApp::has_pieces,
+        |app| app.on_pieces(|view| view.turn(2.0)),
+    ),
+    command(
+        Menu::Marker,
+        "Turn over",
+        None,
+        "Turn the selected pieces face down (F in the marker)",
+        ToileApp::has_pieces,
+        |app| app.on_pieces(MarkerView::flip),
+    ),
+    command(
+        Menu::Marker,
+        "Lock piece",
+        None,
+        "Keep the selected pieces where they are, or free them (L in the marker)",
+        ToileApp::has_pieces,
+        |app| app.on_pieces(|_| Some(MarkerAction::Lock)),
+    ),
+    command(
+        Menu::Marker,
+        "Take off",
+        None,
+        "Take the selected pieces off the fabric (Delete in the marker)",
+        ToileApp::has_pieces,
+        |app| app.on_pieces(|_| Some(MarkerAction::TakeOff)),
     ),
     command(
         Menu::Garment,

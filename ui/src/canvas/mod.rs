@@ -3,7 +3,7 @@
 mod allowance;
 pub mod boards;
 pub mod camera;
-mod fill;
+pub mod fill;
 pub mod grading;
 pub mod hit;
 mod inside;

@@ -1,4 +1,5 @@
 //! Views: draw what the session holds, and turn what is done in them into events.
 
 pub mod garment;
+pub mod marker;
 pub mod pattern;
