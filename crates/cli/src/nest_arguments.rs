@@ -12,6 +12,19 @@ pub struct Nest {
     /// instance in the JSON of jagua-rs: its solution is written to DIR/NAME.json.
     #[arg(required = true)]
     pub patterns: Vec<PathBuf>,
+    /// A marker of the pattern file: it is searched for with its own fabric and order, pieces locked
+    /// there stay, and where the pieces lie is stored in the file. The files of --write follow.
+    #[arg(long, value_name = "NAME", conflicts_with_all = [
+        "width", "length", "selvedge", "end_margin", "gap", "nap", "spread", "plies", "roll", "price",
+        "settings", "tilt", "repeat", "defect", "size", "sizes", "from", "lock", "study",
+    ])]
+    pub marker: Option<String>,
+    /// Go on from where the marker's pieces lie, instead of laying them anew.
+    #[arg(long, requires = "marker")]
+    pub as_it_lies: bool,
+    /// Only write the marker as it is stored; nothing is searched for, the pattern stays as it is.
+    #[arg(long, requires = "marker", conflicts_with_all = ["as_it_lies", "time"])]
+    pub stored: bool,
     /// Full width of the fabric, as in 150cm. Default: the fabric's own.
     #[arg(long, value_name = "LENGTH")]
     pub width: Option<Length>,

@@ -4,11 +4,12 @@ use crate::bar::Bar;
 use crate::nest_arguments::Nest;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toile_geometry::{Duration, Length};
 use toile_session::{
-    Budget, Event, MarkerSettings, NestOptions, Nested, is_nesting_instance, nest_instance,
-    nest_patterns, open_marker, open_marker_settings, rule_table, study_rules,
+    Budget, Event, MarkerJob, MarkerSettings, NestOptions, Nested, Start, is_nesting_instance,
+    nest_instance, nest_marker, nest_patterns, open_marker, open_marker_settings, rule_table,
+    study_rules,
 };
 
 /// A yard [m].
@@ -107,6 +108,30 @@ fn solve(
     }))
 }
 
+/// A marker of the only pattern: searched for and stored in its file, or as it is stored.
+fn marker_of_file(
+    nest: &Nest,
+    (name, options): (&str, &NestOptions),
+) -> Result<(Vec<Nested>, Vec<PathBuf>), Failure> {
+    let [path] = &nest.patterns[..] else {
+        let message = "--marker names a marker of one pattern; give that pattern alone";
+        return Err(Failure::bad_input(message));
+    };
+    let start = match nest.as_it_lies {
+        true => Start::AsItLies,
+        false => Start::Anew,
+    };
+    let job = MarkerJob {
+        name: name.to_owned(),
+        search: (!nest.stored).then(|| (start, options.search())),
+        formats: options.formats.clone(),
+    };
+    let bar = &mut Bar::stopped_by_a_signal();
+    let made = nest_marker(path, &job, (&nest.out, bar));
+    let (nested, paths) = made.map_err(|error| Failure::from(error).about(path))?;
+    Ok((vec![nested], paths))
+}
+
 /// Pieces laid on fabric.
 pub fn nest(nest: &Nest, output: &Output) -> Result<Value, Failure> {
     let options = nest_options(nest)?;
@@ -122,11 +147,14 @@ pub fn nest(nest: &Nest, output: &Output) -> Result<Value, Failure> {
     if nest.study {
         return study(nest, &options, output);
     }
-    let (layings, paths) = nest_patterns(
-        &nest.patterns,
-        &options,
-        (&nest.out, &mut Bar::stopped_by_a_signal()),
-    )?;
+    let (layings, paths) = match &nest.marker {
+        Some(name) => marker_of_file(nest, (name, &options))?,
+        None => nest_patterns(
+            &nest.patterns,
+            &options,
+            (&nest.out, &mut Bar::stopped_by_a_signal()),
+        )?,
+    };
     let listed: Vec<Value> = layings
         .iter()
         .map(|laying| {

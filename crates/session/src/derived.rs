@@ -6,6 +6,7 @@ use crate::drape::{Drape, drape};
 use crate::dressed::{DraftedPart, Dressed, checked, tell_apart};
 use crate::fabrics::{FabricChoice, unseen_at_rest};
 use crate::laying::lay_watched;
+use crate::markers::KeptMarkers;
 use crate::setup::{self, GarmentJob};
 use crate::{Project, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
@@ -61,6 +62,8 @@ pub(crate) struct Derived {
     mannequin: Option<KeptMannequin>,
     /// The markers, if they were made.
     pub layings: Option<Arc<Vec<Laying>>>,
+    /// Drafts and pieces of the document's markers.
+    pub markers: KeptMarkers,
     /// The garments worn, drafted.
     parts: Option<Arc<Vec<DraftedPart>>>,
     dressed: Option<Arc<Dressed>>,

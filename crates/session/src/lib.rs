@@ -23,6 +23,7 @@ mod journal;
 mod judging;
 mod laying;
 mod live;
+mod markers;
 mod marking;
 mod open;
 mod perform;
@@ -38,6 +39,7 @@ mod scene_builder;
 mod session;
 mod setup;
 mod snapshot;
+mod stored_marker;
 mod study;
 mod timing;
 mod tools;
@@ -55,6 +57,7 @@ pub use hands::{LiveInput, StampedInput};
 pub use journal::{journal_lines, read_journal};
 pub use judging::{JudgedMarker, is_marker_file, judge_marker_file};
 pub use live::{LiveFrame, LiveRun};
+pub use markers::{FoundMarker, MarkerSearch};
 pub use marking::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
 pub use open::{
     Opened, PatternFormat, SAMPLE, SAMPLES, open_marker, open_measurements, open_pattern,
@@ -69,6 +72,7 @@ pub use recovery::{Abandoned, Recovery, abandoned, state_folder};
 pub use scene::{SceneOutcome, run_scene};
 pub use session::Session;
 pub use setup::{GarmentJob, JobPanel};
+pub use stored_marker::{MarkerJob, nest_marker};
 pub use study::{RuleCost, rule_table, study_rules};
 pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
@@ -78,8 +82,11 @@ pub use toile_drape::Stage;
 pub use toile_interchange::{
     Lines, MarkerSettings, Paper, SizeChoice, Tile, Wanted, write_atomically,
 };
-pub use toile_marker::{GivenFlaw, MarkerError, MarkerFormat, NestOptions, Nested};
-pub use toile_nesting::{Budget, Nap};
+pub use toile_marker::{
+    Follow, Found, GivenFlaw, LaidMarker, LaidPiece, MarkerError, MarkerFormat, MarkerState,
+    NestOptions, Nested, Standing, Start, WaitingPiece,
+};
+pub use toile_nesting::{Budget, Nap, Pose, Search, Side};
 pub use toile_pattern::Spread;
 pub use tools::{
     BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, convert, fit_mesh, make_body,

@@ -1,5 +1,8 @@
 //! Patterns at random, most of them nonsense, for property tests.
 
+mod markers;
+
+use markers::markers;
 use std::sync::Arc;
 use toile_measure::{Measurements, Origin};
 use toile_pattern::*;
@@ -144,6 +147,7 @@ pub fn random_pattern(dice: &mut Dice) -> Pattern {
         seam.multi_ply = dice.chance(20);
         pattern.seams.push(Arc::new(seam));
     }
+    pattern.markers = markers(dice, &mut ids, &pattern);
     ids.next += dice.below(3) as u32;
     pattern.ids = ids;
     bind(&pattern)

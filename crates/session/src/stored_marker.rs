@@ -1,0 +1,111 @@
+//! A marker of a pattern file: searched for and stored in the file, or written as it is stored.
+
+use crate::laying::watched;
+use crate::markers::there_are;
+use crate::{
+    Command, MarkerFormat, Nested, PatternFormat, Session, SessionError, Silent, Watcher,
+    open_pattern,
+};
+use std::path::{Path, PathBuf};
+use toile_interchange::write_all_atomically;
+use toile_marker::{Start, marker_files};
+use toile_nesting::Search;
+use toile_pattern::MarkerId;
+
+/// What is done with a marker of a pattern file.
+#[derive(Clone, Debug)]
+pub struct MarkerJob {
+    /// Name of the marker.
+    pub name: String,
+    /// What is searched for and stored in the file; nothing leaves the marker as it is stored.
+    pub search: Option<(Start, Search)>,
+    /// Files to write.
+    pub formats: Vec<MarkerFormat>,
+}
+
+/// Searches for a marker of a pattern file, stores where its pieces lie in the file, and writes the
+/// marker. Returns a summary and the files written, the pattern's first if it was stored.
+///
+/// # Errors
+/// The pattern cannot be read, is not in Toile's format or has what would be lost in storing; it
+/// has no such marker; the marker cannot be laid; a file cannot be written. What was stored then is
+/// whole: the old marker or the new one.
+pub fn nest_marker(
+    path: &Path,
+    job: &MarkerJob,
+    (folder, watcher): (&Path, &mut dyn Watcher),
+) -> Result<(Nested, Vec<PathBuf>), SessionError> {
+    let opened = open_pattern(path)?;
+    let pattern = &opened.pattern;
+    let id = pattern.marker_named(&job.name).map(|marker| marker.id);
+    let id = id.ok_or_else(|| SessionError::Unknown {
+        kind: "marker",
+        name: job.name.clone(),
+        hint: there_are(pattern.markers.iter().map(|m| m.name.clone()).collect()),
+    })?;
+    if job.search.is_some() {
+        refuse_loss(path, (opened.format, &opened.notes))?;
+    }
+    let mut session = Session::new();
+    let path = path.to_owned();
+    session.execute(Command::OpenPattern { path: path.clone() }, &mut Silent)?;
+    let mut paths = Vec::new();
+    let mut notes = Vec::new();
+    if let Some(how) = job.search {
+        let search = session.marker_search(id)?;
+        let found = watched(watcher, |follow| search.run(how, follow))?;
+        notes.clone_from(&found.found.nested.notes);
+        if session.adopt_marker(found)?.is_none() {
+            let what = "the marker changed while it was searched for; search again";
+            return Err(SessionError::Conflict(what.to_owned()));
+        }
+        let save = Command::SavePattern { path: path.clone() };
+        session.execute(save, &mut Silent)?;
+        paths.push(path);
+    }
+    let (mut nested, files) = written(&mut session, id, &job.formats)?;
+    for note in notes {
+        if !nested.notes.contains(&note) {
+            nested.notes.push(note);
+        }
+    }
+    write_all_atomically(folder, &files)?;
+    paths.extend(files.iter().map(|(name, _)| folder.join(name)));
+    Ok((nested, paths))
+}
+
+/// A marker as it lies, in a few numbers and as files.
+fn written(
+    session: &mut Session,
+    id: MarkerId,
+    formats: &[MarkerFormat],
+) -> Result<(Nested, Vec<(String, Vec<u8>)>), SessionError> {
+    let laid = session.marker(id)?;
+    let name = format!("{}, {}", session.project().pattern.name, laid.marker().name);
+    let layings = [laid.laying()];
+    let mut files = Vec::new();
+    let lost = marker_files((&name, formats), &layings, &mut files)?;
+    let mut nested = layings[0].summary();
+    nested.notes.extend(lost.into_iter().flatten());
+    Ok((nested, files))
+}
+
+/// Storing writes the whole file anew: what this program does not know would be lost.
+fn refuse_loss(
+    path: &Path,
+    (format, notes): (PatternFormat, &[String]),
+) -> Result<(), SessionError> {
+    if format != PatternFormat::Native {
+        return Err(SessionError::Conflict(format!(
+            "{}: markers are stored in Toile's own format; convert the pattern first, as in `toile convert PATTERN NAME.toile.json`",
+            path.display()
+        )));
+    }
+    match notes.first() {
+        None => Ok(()),
+        Some(note) => Err(SessionError::Conflict(format!(
+            "{}: storing the marker would lose what this program does not know: {note}",
+            path.display()
+        ))),
+    }
+}
