@@ -8,9 +8,7 @@ use crate::tools::number;
 use crate::views::marker::{MarkerAction, MarkerView};
 use egui::{ComboBox, DragValue, RichText, Ui};
 use toile_pattern::plan;
-use toile_pattern::{
-    Edit, EditError, Marker, MarkerId, OrderedSize, PiecePlacement, SizeId, Want,
-};
+use toile_pattern::{Edit, EditError, Marker, MarkerId, OrderedSize, PiecePlacement, SizeId, Want};
 use toile_session::{Follow, FoundMarker, Search, SessionError, Start, Watcher};
 
 /// Seconds a search may take.
@@ -29,7 +27,9 @@ pub struct SearchChoice {
 
 impl Default for SearchChoice {
     fn default() -> Self {
-        Self { seconds: SECONDS[1] }
+        Self {
+            seconds: SECONDS[1],
+        }
     }
 }
 
@@ -81,7 +81,9 @@ impl ToileApp {
             return;
         }
         let Some(id) = self.marker_id() else {
-            return self.marker_view.clear("There is no marker: make a new one".into());
+            return self
+                .marker_view
+                .clear("There is no marker: make a new one".into());
         };
         self.marker_view.chosen = Some(id);
         match self.session.marker(id) {
@@ -171,7 +173,9 @@ impl ToileApp {
 
     fn cloth_fields(&mut self, ui: &mut Ui, marker: &Marker) {
         let pattern = self.base.pattern().clone();
-        let own = pattern.fabric(marker.cloth.fabric).map_or(1.5, |fabric| fabric.width);
+        let own = pattern
+            .fabric(marker.cloth.fabric)
+            .map_or(1.5, |fabric| fabric.width);
         let unit = pattern.unit;
         let metres = unit.metres();
         let mut cloth = marker.cloth.clone();
@@ -256,12 +260,18 @@ impl ToileApp {
             100.0 * state.efficiency
         );
         if let Some(cost) = state.cost {
-            let marker = self.marker_id().and_then(|id| self.base.pattern().marker(id));
+            let marker = self
+                .marker_id()
+                .and_then(|id| self.base.pattern().marker(id));
             let currency = marker.map_or("", |marker| &*marker.cloth.currency);
             words = format!("{words}, {cost:.2} {currency}");
         }
         if state.waiting > 0 {
-            words = format!("{words}; {} of {} wait", state.waiting, state.laid + state.waiting);
+            words = format!(
+                "{words}; {} of {} wait",
+                state.waiting,
+                state.laid + state.waiting
+            );
         }
         if let Some((pair, depth)) = state.overlaps.first() {
             let pattern = self.base.pattern();
@@ -327,7 +337,11 @@ impl ToileApp {
                     laid.is_some_and(|laid| laid.locked)
                 });
                 let planned = plan::lock_pieces(&self.base, (id, &selected), !all_locked);
-                let label = if all_locked { "Unlock pieces" } else { "Lock pieces" };
+                let label = if all_locked {
+                    "Unlock pieces"
+                } else {
+                    "Lock pieces"
+                };
                 self.marker_edit(planned, label);
             }
             MarkerAction::TakeOff => {
@@ -371,7 +385,7 @@ impl ToileApp {
             Ok(search) => search,
             Err(error) => return self.say_fault(error.to_string()),
         };
-        let how = (Start::Anew, Search::of_seconds(self.search_choice.seconds));
+        let how = (Start::Anew, Search::seconds(self.search_choice.seconds));
         self.shows.marker = true;
         self.searching = Some(Searching {
             job: Job::start(move |follower| {
@@ -384,7 +398,9 @@ impl ToileApp {
                     if let Some(cost) = standing.cost {
                         words = format!("{words}, {cost:.2}");
                     }
-                    follower.progress("searching", standing.done, &words).is_continue()
+                    follower
+                        .progress("searching", standing.done, &words)
+                        .is_continue()
                 };
                 let mut follow = Follow {
                     told: &mut told,

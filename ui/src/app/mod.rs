@@ -188,6 +188,11 @@ impl ToileApp {
         &self.view
     }
 
+    /// The marker view.
+    pub fn marker_view(&self) -> &MarkerView {
+        &self.marker_view
+    }
+
     /// The 3D view.
     pub fn stage(&self) -> &GarmentView {
         &self.stage
@@ -377,10 +382,8 @@ impl ToileApp {
         let context = ui.ctx().clone();
         self.take_files(&context);
         let on_marker = context.memory(|memory| memory.has_focus(MarkerView::id()));
-        let typing = self.types(&context)
-            || self.view.is_typing()
-            || self.dialog.is_some()
-            || on_marker;
+        let typing =
+            self.types(&context) || self.view.is_typing() || self.dialog.is_some() || on_marker;
         // While a tool is under way Escape is a step back of the tool, which the canvas takes.
         let busy = self.view.is_busy();
         for command in command_table::pressed(&context, typing, busy) {

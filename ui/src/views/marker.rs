@@ -117,7 +117,7 @@ impl MarkerView {
             .map(|scene| (scene.piece, scene))
             .collect();
         let strip = laid.strip();
-        let length = strip.length.unwrap_or(self.state.length).max(0.5);
+        let length = strip.max_length.unwrap_or(self.state.length).max(0.5);
         self.cloth = Bounds2 {
             min: Vec2::zeros(),
             max: Vec2::new(length, strip.width),
@@ -135,7 +135,11 @@ impl MarkerView {
             // The same place may hold another shape: its outline tells.
             let outline = piece.cut.polygon();
             let first = outline.outer.first().map(|at| piece.pose.apply(*at));
-            let drawn = scene.drawing.fill.as_ref().and_then(|fill| fill.outer.first().copied());
+            let drawn = scene
+                .drawing
+                .fill
+                .as_ref()
+                .and_then(|fill| fill.outer.first().copied());
             if first != drawn {
                 scene = PieceScene::new(piece.piece, piece.name, piece.pose, |place, words| {
                     piece.cut.drawing(place, words)
@@ -293,8 +297,13 @@ impl MarkerView {
 
     /// The middle of what is selected [m].
     fn middle(&self) -> Option<Vec2> {
-        let selected = self.pieces.iter().filter(|s| self.selection.contains(&s.piece));
-        let all = selected.filter_map(PieceScene::bounds).reduce(|a, b| a.union(&b));
+        let selected = self
+            .pieces
+            .iter()
+            .filter(|s| self.selection.contains(&s.piece));
+        let all = selected
+            .filter_map(PieceScene::bounds)
+            .reduce(|a, b| a.union(&b));
         all.map(|bounds| bounds.centre())
     }
 
@@ -319,9 +328,8 @@ impl MarkerView {
             tab: false,
         };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(Self::id(), filter));
-        let pressed = |key: Key| {
-            ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, key))
-        };
+        let pressed =
+            |key: Key| ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, key));
         let mut actions = Vec::new();
         if pressed(Key::R) {
             actions.extend(self.turn(2.0));
@@ -389,7 +397,10 @@ impl MarkerView {
             egui::StrokeKind::Outside,
         );
         for scene in &self.pieces {
-            let dragged = self.drag.as_ref().is_some_and(|(_, p)| p.contains(&scene.piece));
+            let dragged = self
+                .drag
+                .as_ref()
+                .is_some_and(|(_, p)| p.contains(&scene.piece));
             let shift = match (scene.waits && dragged, ui.input(|i| i.pointer.latest_pos())) {
                 (true, Some(now)) => {
                     let from = self.drag.as_ref().map_or(Vec2::zeros(), |(from, _)| *from);
@@ -408,15 +419,26 @@ impl MarkerView {
         scene: &PieceScene,
         shift: Vec2,
     ) {
-        let overlapping = self.state.overlaps.iter().any(|(pair, _)| pair.contains(&scene.piece))
-            || self.state.outside.iter().any(|(piece, ..)| *piece == scene.piece);
+        let overlapping = self
+            .state
+            .overlaps
+            .iter()
+            .any(|(pair, _)| pair.contains(&scene.piece))
+            || self
+                .state
+                .outside
+                .iter()
+                .any(|(piece, ..)| *piece == scene.piece);
         let selected = self.selection.contains(&scene.piece);
         let lit = selected || self.hover == Some(scene.piece);
         let (ground, line) = match () {
             () if overlapping => (palette.fault.gamma_multiply(0.28), palette.fault),
             () if selected => (palette.accent_soft, palette.accent),
             () if scene.locked => (palette.rule, palette.ink),
-            () => (theme::seam(usize::from(scene.group()) + 1).gamma_multiply(0.22), palette.ink),
+            () => (
+                theme::seam(usize::from(scene.group()) + 1).gamma_multiply(0.22),
+                palette.ink,
+            ),
         };
         let at = |p: Vec2| self.screen(view, p + shift);
         let vertices = scene.fill.points.iter().map(|p| Vertex {

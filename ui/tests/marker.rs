@@ -1,0 +1,119 @@
+//! Markers in the window: made, searched for, moved, locked, undone.
+#![allow(clippy::unwrap_used)]
+
+use egui::{Key, Modifiers, Pos2, Role, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use toile_pattern::{Marker, PiecePlacement};
+use toile_ui::{Beginning, ToileApp};
+
+type Window = Harness<'static, ToileApp>;
+
+fn window() -> Window {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../patterns/t-shirt.toile.json");
+    let mut window = Harness::builder()
+        .with_size(vec2(1400.0, 1000.0))
+        .with_theme(egui::Theme::Light)
+        .with_max_steps(8)
+        .with_step_dt(1.0 / 60.0)
+        .build_eframe(move |creation| {
+            let beginning = Beginning {
+                file: Some(file.clone()),
+                folder: None,
+            };
+            let state = creation.wgpu_render_state.as_ref();
+            ToileApp::new(&creation.egui_ctx, state, beginning)
+        });
+    window.run_ok();
+    window
+}
+
+fn marker(window: &Window) -> Arc<Marker> {
+    window.state().session().project().pattern.markers[0].clone()
+}
+
+fn press(window: &mut Window, key: Key) {
+    window.key_press(key);
+    window.run_ok();
+}
+
+/// Where a piece is seen.
+fn piece(window: &Window, name: &str) -> Pos2 {
+    let found = window.get_by_role_and_label(Role::Button, name);
+    found.rect().center()
+}
+
+fn drag(window: &mut Window, from: Pos2, by: egui::Vec2) {
+    window.hover_at(from);
+    window.run_ok();
+    window.drag_at(from);
+    window.run_ok();
+    window.hover_at(from + by * 0.5);
+    window.run_ok();
+    window.hover_at(from + by);
+    window.run_ok();
+    window.drop_at(from + by);
+    window.run_ok();
+}
+
+#[test]
+fn a_marker_is_searched_for_moved_locked_and_undone() {
+    let mut window = window();
+    press(&mut window, Key::F10);
+    let made = marker(&window);
+    assert!(made.placements.is_empty());
+    assert_eq!(made.order.len(), 1);
+
+    // Everything waits: a search lays it all.
+    window.key_press_modifiers(Modifiers::SHIFT, Key::F10);
+    window.run_ok();
+    let begun = Instant::now();
+    while marker(&window).placements.is_empty() && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(20));
+        window.run_ok();
+    }
+    let found = marker(&window);
+    assert_eq!(found.placements.len(), 4, "front, back and two sleeves");
+    let state = window.state().marker_view().state.clone();
+    assert!(
+        state.overlaps.is_empty() && state.outside.is_empty(),
+        "{state:?}"
+    );
+    assert_eq!((state.laid, state.waiting), (4, 0));
+    assert!(state.efficiency > 0.5, "{state:?}");
+    window.run_ok();
+
+    // A piece dragged over another is one step of the history, and is said to overlap.
+    let steps = window.state().session().past().len();
+    let [front, back] = ["Piece front", "Piece back"].map(|name| piece(&window, name));
+    drag(&mut window, front, (back - front) * 0.8);
+    assert_eq!(window.state().session().past().len(), steps + 1);
+    assert_ne!(marker(&window).placements, found.placements);
+    assert!(!window.state().marker_view().state.overlaps.is_empty());
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    window.run_ok();
+    assert_eq!(marker(&window).placements, found.placements);
+    assert!(window.state().marker_view().state.overlaps.is_empty());
+
+    // A locked piece stays.
+    let front = piece(&window, "Piece front");
+    window.hover_at(front);
+    window.run_ok();
+    window.drag_at(front);
+    window.drop_at(front);
+    window.run_ok();
+    press(&mut window, Key::L);
+    let locked = |placements: &[PiecePlacement]| placements.iter().filter(|p| p.locked).count();
+    assert_eq!(locked(&marker(&window).placements), 1);
+    let before = marker(&window);
+    drag(&mut window, front, vec2(40.0, 0.0));
+    assert_eq!(marker(&window), before);
+    // It is taken off only when it is free again.
+    press(&mut window, Key::L);
+    press(&mut window, Key::Delete);
+    assert_eq!(marker(&window).placements.len(), 3);
+    assert_eq!(window.state().marker_view().state.waiting, 1);
+}
