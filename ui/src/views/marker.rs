@@ -17,6 +17,8 @@ use toile_session::{LaidMarker, MarkerState, Pose};
 
 /// Room between pieces that wait beside the fabric [m].
 const GAP: f64 = 0.03;
+/// Smaller letters are not read [pixels].
+const LEAST_LETTERS: f32 = 7.0;
 /// Quarter of a turn [rad].
 const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
 
@@ -465,9 +467,10 @@ impl MarkerView {
             };
             painter.add(Shape::line(points, Stroke::new(width, colour)));
         }
+        self.small_name(painter, scene, (at(scene.middle()), palette));
         for words in &scene.drawing.words {
             let size = (words.size * self.camera.scale) as f32;
-            if size < 5.0 {
+            if size < LEAST_LETTERS {
                 continue;
             }
             let galley = painter.layout_no_wrap(
@@ -492,6 +495,29 @@ impl MarkerView {
                 theme::font(10.5),
                 palette.ink_soft,
             );
+        }
+    }
+
+    /// The name of a piece whose own letters are too small to read, where there is room for it.
+    fn small_name(
+        &self,
+        painter: &egui::Painter,
+        scene: &PieceScene,
+        (middle, palette): (Pos2, &Palette),
+    ) {
+        let own = scene.drawing.words.first().map_or(0.0, |words| words.size);
+        let Some(bounds) = scene.bounds() else {
+            return;
+        };
+        if (own * self.camera.scale) as f32 >= LEAST_LETTERS {
+            return;
+        }
+        let ink = palette.ink_soft;
+        let galley = painter.layout_no_wrap(scene.name.clone(), theme::font(10.5), ink);
+        let room = bounds.size() * self.camera.scale;
+        let fits = f64::from(galley.size().x) < room.x && f64::from(galley.size().y) < room.y;
+        if fits {
+            painter.galley(middle - galley.size() * 0.5, galley, ink);
         }
     }
 
@@ -541,6 +567,12 @@ impl PieceScene {
     fn bounds(&self) -> Option<Bounds2> {
         let polygon = self.drawing.fill.as_ref()?;
         Some(polygon.bounds())
+    }
+
+    fn middle(&self) -> Vec2 {
+        let words = self.drawing.words.first().map(|words| words.at);
+        let bounds = self.bounds().map(|bounds| bounds.centre());
+        words.or(bounds).unwrap_or_else(Vec2::zeros)
     }
 
     /// A number by which pieces of one size look alike.
