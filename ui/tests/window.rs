@@ -507,3 +507,42 @@ fn saving_writes_a_file_that_opens_again() {
     let again = self::window(&file);
     assert_eq!(drawn(&pattern(&again)), drawn(&pattern(&window)));
 }
+
+#[test]
+fn panning_makes_nothing_anew_and_zooming_evaluates_nothing() {
+    let mut window = window(&t_shirt());
+    let seen = |window: &Window| {
+        let app = window.state();
+        let scene = &app.view().scene;
+        (scene.made(), scene.octave(), app.session().revision())
+    };
+    let before = seen(&window);
+    let view = window.get_by_label("Pattern view").rect();
+    let middle = view.center();
+    for k in 0..20 {
+        let at = middle + vec2(k as f32 * 3.0, 2.0);
+        window.event(egui::Event::PointerMoved(at));
+        window.event(egui::Event::PointerButton {
+            pos: at,
+            button: egui::PointerButton::Middle,
+            pressed: k < 19,
+            modifiers: Modifiers::NONE,
+        });
+        window.run();
+    }
+    assert_eq!(seen(&window), before);
+    let camera = window.state().view().camera;
+    window.hover_at(middle);
+    window.run();
+    // Within an octave nothing is made anew; beyond it lines are, and nothing is evaluated.
+    for _ in 0..6 {
+        let (made, octave, revision) = seen(&window);
+        window.key_press(Key::Plus);
+        window.run();
+        let now = seen(&window);
+        assert_eq!(now.2, revision);
+        assert_eq!(now.1 == octave, now.0 == made);
+    }
+    assert!(window.state().view().camera.scale > camera.scale * 2.0);
+    assert_ne!(seen(&window).0, before.0);
+}

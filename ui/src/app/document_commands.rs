@@ -250,7 +250,7 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         key(SHIFT, Key::R),
         "Show or hide the rulers",
         always,
-        |app| app.view.rulers = !app.view.rulers,
+        |app| app.shows.rulers = !app.shows.rulers,
     ),
     command(
         Menu::View,
@@ -290,7 +290,7 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         key(SHIFT, Key::A),
         "Show or hide the lines to cut along",
         always,
-        |app| app.view.allowances = !app.view.allowances,
+        |app| app.shows.allowances = !app.shows.allowances,
     ),
     command(
         Menu::View,

@@ -125,12 +125,7 @@ impl ToileApp {
             dialog: None,
             tables: Tables::default(),
             typed: TypedTexts::default(),
-            shows: Shows {
-                garment: true,
-                marker: false,
-                tables: false,
-                findings: false,
-            },
+            shows: preferences.shows,
             refusal: None,
             closes: false,
             wants_theme: false,
@@ -402,6 +397,7 @@ impl ToileApp {
             self.preferences.change_theme(&context);
         }
         self.parts(ui);
+        self.preferences.set_shows(self.shows);
         self.show_dialog(&context);
         self.guard_closing(&context);
         if self.making.is_busy() || self.printing.is_some() || self.searching.is_some() {
@@ -482,6 +478,8 @@ impl ToileApp {
         };
         let before = seen(self);
         let base = self.base.clone();
+        self.view.allowances = self.shows.allowances;
+        self.view.rulers = self.shows.rulers;
         self.view.is_covered = self.dialog.is_some();
         self.view.click_is_taken |= self.typed.took_click();
         for outcome in self.view.show(ui, &base) {

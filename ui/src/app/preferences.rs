@@ -1,5 +1,7 @@
-//! What the window keeps from one time to the next: recent files, the theme, the paper.
+//! What the window keeps from one time to the next: recent files, the theme, its layout, the
+//! paper.
 
+use super::shows::Shows;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toile_session::Paper;
@@ -15,6 +17,8 @@ pub struct Preferences {
     pub recent: Vec<PathBuf>,
     /// Whether colours are dark; nothing follows the system.
     pub dark: Option<bool>,
+    /// What of the window is on show.
+    pub shows: Shows,
     /// Name of the paper that was printed on last.
     pub paper: Option<String>,
     #[serde(skip)]
@@ -63,6 +67,14 @@ impl Preferences {
         self.dark = Some(context.theme() == egui::Theme::Light);
         self.apply(context);
         self.write();
+    }
+
+    /// Notes what of the window is on show.
+    pub fn set_shows(&mut self, shows: Shows) {
+        if self.shows != shows {
+            self.shows = shows;
+            self.write();
+        }
     }
 
     /// The paper that was printed on last, A4 at first.

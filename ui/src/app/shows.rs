@@ -1,7 +1,10 @@
 //! What of the window is on show.
 
+use serde::{Deserialize, Serialize};
+
 /// Parts of the window that can be hidden.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Shows {
     /// The 3D view.
     pub garment: bool,
@@ -11,6 +14,23 @@ pub struct Shows {
     pub tables: bool,
     /// What is found wrong.
     pub findings: bool,
+    /// Lines to cut along.
+    pub allowances: bool,
+    /// Rulers.
+    pub rulers: bool,
+}
+
+impl Default for Shows {
+    fn default() -> Self {
+        Self {
+            garment: true,
+            marker: false,
+            tables: false,
+            findings: false,
+            allowances: true,
+            rulers: true,
+        }
+    }
 }
 
 /// Which table is on show, and what is typed into it.
