@@ -546,3 +546,47 @@ fn panning_makes_nothing_anew_and_zooming_evaluates_nothing() {
     assert!(window.state().view().camera.scale > camera.scale * 2.0);
     assert_ne!(seen(&window).0, before.0);
 }
+
+#[test]
+fn a_number_begun_in_a_tool_is_no_command() {
+    let mut window = window(&t_shirt());
+    let view = window.get_by_label("Pattern view").rect();
+    window.key_press(Key::P);
+    window.run();
+    window.hover_at(view.center());
+    window.run();
+    let scale = window.state().view().camera.scale;
+    window.event(egui::Event::Text("0".into()));
+    window.key_press(Key::Num0);
+    window.run();
+    assert_eq!(window.state().view().camera.scale, scale);
+    assert!(window.state().view().is_typing());
+    // Put down, the same key shows everything in its true size.
+    for _ in 0..3 {
+        window.key_press(Key::Escape);
+        window.run();
+    }
+    window.key_press(Key::Num0);
+    window.run();
+    let scale = window.state().view().camera.scale;
+    assert!((scale - 96.0 / 0.0254).abs() < 1e-6, "{scale}");
+}
+
+#[test]
+fn a_panel_is_shown_alone_and_with_the_others_again() {
+    let mut window = window(&t_shirt());
+    let sleeve = place(&window, "Panel sleeve");
+    window.hover_at(sleeve);
+    window.drag_at(sleeve);
+    window.drop_at(sleeve);
+    window.run();
+    let shown = |window: &Window| window.state().view().scene.panels.len();
+    assert_eq!(shown(&window), 3);
+    window.key_press(Key::Period);
+    window.run();
+    assert_eq!(shown(&window), 1);
+    assert!(window.query_by_label("Panel front").is_none());
+    window.key_press(Key::Period);
+    window.run();
+    assert_eq!(shown(&window), 3);
+}

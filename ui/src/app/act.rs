@@ -217,6 +217,29 @@ impl ToileApp {
         self.making.start_garment(&self.session);
     }
 
+    pub(crate) fn can_isolate(&self) -> bool {
+        !self.view.isolated.is_empty()
+            || self
+                .view
+                .selection
+                .items()
+                .iter()
+                .any(|i| i.panel().is_some())
+    }
+
+    /// Shows the selected panels alone, or everything again.
+    pub(crate) fn isolate(&mut self) {
+        let items = self.view.selection.items().iter();
+        let panels = items.filter_map(|item| item.panel()).collect();
+        self.view.isolated = match self.view.isolated.is_empty() {
+            true => panels,
+            false => Vec::new(),
+        };
+        self.revision = None;
+        self.refresh();
+        self.view.fit();
+    }
+
     pub(crate) fn has_sizes(&self) -> bool {
         self.session.project().pattern.sizes.len() > 1
     }

@@ -15,9 +15,44 @@ pub fn named(name: &str) -> Option<&'static UiCommand> {
     commands().find(|command| command.name == name)
 }
 
-/// Commands whose keys were pressed in this frame. While text is typed only those with a
-/// command key count; while a tool is `busy`, Escape is its own.
-pub fn pressed(context: &egui::Context, typing: bool, busy: bool) -> Vec<&'static UiCommand> {
+/// Keys that are no commands now.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct KeysTaken {
+    /// Text is typed: all but those with a command key.
+    pub typing: bool,
+    /// A tool takes numbers: those a number begins with.
+    pub numbers: bool,
+    /// A tool is under way: Escape goes a step back in it.
+    pub busy: bool,
+}
+
+/// Whether a number can begin with a key.
+fn begins_number(key: Key) -> bool {
+    use Key::{
+        Comma, Equals, Minus, Num0, Num1, Num2, Num3, Num4, Num5, Num6, Num7, Num8, Num9, Period,
+        Plus,
+    };
+    matches!(
+        key,
+        Num0 | Num1
+            | Num2
+            | Num3
+            | Num4
+            | Num5
+            | Num6
+            | Num7
+            | Num8
+            | Num9
+            | Comma
+            | Equals
+            | Minus
+            | Period
+            | Plus
+    )
+}
+
+/// Commands whose keys were pressed in this frame.
+pub fn pressed(context: &egui::Context, keys: KeysTaken) -> Vec<&'static UiCommand> {
     // Keys with more modifiers first: a key without them matches those with them too.
     let mut keyed: Vec<(&UiCommand, KeyboardShortcut)> = commands()
         .filter_map(|command| Some((command, command.key?)))
@@ -28,7 +63,10 @@ pub fn pressed(context: &egui::Context, typing: bool, busy: bool) -> Vec<&'stati
     let mut pressed = Vec::new();
     context.input_mut(|input| {
         for (command, key) in keyed {
-            let waits = typing && !key.modifiers.command || busy && key.logical_key == Key::Escape;
+            let plain = !key.modifiers.command;
+            let waits = keys.typing && plain
+                || keys.numbers && plain && begins_number(key.logical_key)
+                || keys.busy && key.logical_key == Key::Escape;
             if !waits && input.consume_shortcut(&key) {
                 pressed.push(command);
             }

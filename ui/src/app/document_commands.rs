@@ -254,6 +254,14 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::View,
+        "Isolate",
+        key(PLAIN, Key::Period),
+        "Show the selected panels alone, or all again",
+        ToileApp::can_isolate,
+        ToileApp::isolate,
+    ),
+    command(
+        Menu::View,
         "All sizes",
         key(SHIFT, Key::G),
         "Show or hide the outlines of all sizes over each other",

@@ -28,9 +28,11 @@ mod welcome;
 use crate::fields::TypedTexts;
 use crate::gpu::solid::first_frame;
 use crate::theme;
+use crate::tools::Tool;
 use crate::views::garment::GarmentView;
 use crate::views::marker::MarkerView;
 use crate::views::pattern::PatternView;
+use command_table::KeysTaken;
 use dialogs::Dialog;
 use eframe::egui_wgpu::RenderState;
 use egui::{Panel, Ui};
@@ -85,7 +87,7 @@ pub struct ToileApp {
     pub(crate) abandoned: Vec<Abandoned>,
     /// The pattern that was last given to be kept.
     kept: Option<Arc<Pattern>>,
-    revision: Option<u64>,
+    pub(crate) revision: Option<u64>,
     octave: i32,
     checked: Option<u64>,
     body_of: Option<Project>,
@@ -381,7 +383,12 @@ impl ToileApp {
             self.types(&context) || self.view.is_typing() || self.dialog.is_some() || on_marker;
         // While a tool is under way Escape is a step back of the tool, which the canvas takes.
         let busy = self.view.is_busy();
-        for command in command_table::pressed(&context, typing, busy) {
+        let keys = KeysTaken {
+            typing,
+            numbers: matches!(self.view.tool, Tool::Slots(_)),
+            busy,
+        };
+        for command in command_table::pressed(&context, keys) {
             if (command.when)(self) {
                 (command.does)(self);
             }

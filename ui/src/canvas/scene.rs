@@ -157,6 +157,13 @@ impl Scene {
         self.made += self.cut_lines.follow(pattern, draft);
     }
 
+    /// Leaves out everything but some panels and the sheets they are traced from.
+    pub fn isolate(&mut self, panels: &[PanelId]) {
+        self.panels.retain(|panel| panels.contains(&panel.id));
+        let sheets: Vec<SheetId> = self.panels.iter().map(|panel| panel.sheet).collect();
+        self.sheets.retain(|sheet| sheets.contains(&sheet.id));
+    }
+
     /// Whether there is nothing to see.
     pub fn is_empty(&self) -> bool {
         self.panels.is_empty() && self.sheets.iter().all(|sheet| sheet.points.is_empty())

@@ -16,7 +16,7 @@ use egui::{
     WidgetInfo,
 };
 use toile_geometry::Vec2;
-use toile_pattern::{Draft, Evaluation, Pattern, SheetId};
+use toile_pattern::{Draft, Evaluation, PanelId, Pattern, SheetId};
 
 /// Enlargement by one press of a zoom key.
 pub const ZOOM_STEP: f64 = 1.25;
@@ -43,6 +43,8 @@ pub struct PatternView {
     pub hover: Option<Hit>,
     /// Everything under the pointer, the most wanted first.
     pub under: Vec<Item>,
+    /// Panels that alone are shown; none for all.
+    pub isolated: Vec<PanelId>,
     /// Whether lines to cut along are drawn.
     pub allowances: bool,
     /// Whether rulers are drawn.
@@ -79,6 +81,7 @@ impl Default for PatternView {
             selection: Selection::default(),
             hover: None,
             under: Vec::new(),
+            isolated: Vec::new(),
             allowances: true,
             rulers: true,
             grading: None,
@@ -106,6 +109,7 @@ impl PatternView {
     pub fn opened(&mut self, pattern: &Pattern) {
         self.boards.open(pattern, &self.scene);
         self.selection = Selection::default();
+        self.isolated.clear();
         self.sheet = pattern.sheets.first().map(|sheet| sheet.id);
         self.take(Tool::Select);
         // On an empty table there is nothing to fit: it is seen as at first.
@@ -149,6 +153,10 @@ impl PatternView {
     pub fn follow(&mut self, evaluation: &Evaluation, draft: &Draft, previews: bool) {
         let pattern = evaluation.pattern();
         self.scene.update(evaluation, draft, self.camera.octave());
+        self.isolated.retain(|id| pattern.panel(*id).is_some());
+        if !self.isolated.is_empty() {
+            self.scene.isolate(&self.isolated);
+        }
         if !previews {
             self.base = self.scene.clone();
         }
