@@ -7,13 +7,16 @@ mod item;
 mod json;
 mod migrate;
 mod read;
+mod read_operation;
 mod read_panel;
 mod read_seam;
 mod units;
 mod values;
 mod words;
 mod write;
+mod write_operation;
 mod write_panel;
+mod write_seam;
 
 pub use write::write_pattern;
 

@@ -7,7 +7,7 @@ mod seam;
 mod sheet;
 
 pub use drawing::Drawing;
-pub use operation::{Apex, Operation, OperationKind, Pressed};
+pub use operation::{Apex, Bridge, Operation, OperationKind, Pressed, SpreadCut, Turned};
 pub use panel::{Corner, Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Source, WornRule};
 pub use seam::{Seam, Span};
 pub use sheet::{Curve, CurveRule, Knot, Point, PointRule, Sheet};

@@ -13,8 +13,10 @@ mod graph;
 mod needs;
 mod node;
 mod numbers;
+mod operations;
 mod panels;
 mod points;
+mod reshape;
 mod seams;
 mod wearer;
 
