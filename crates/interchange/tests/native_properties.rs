@@ -334,6 +334,56 @@ fn fields_of_two_kinds_are_refused_by_name() {
 }
 
 #[test]
+fn damaged_operations_are_refused_at_their_place() {
+    let (_, text) = SHIPPED[0];
+    let fold = "\"fold\": {";
+    let before = &text[..text.find(fold).unwrap()];
+    let line = before.lines().count();
+    let end = text[before.len()..].find('}').unwrap();
+    let with = |operation: &str| {
+        let rest = &text[before.len() + end + 1..];
+        read_pattern(&format!("{before}{operation}{rest}"))
+    };
+    let pivot = r#""pivot": {"dart": 52, "line": 37, "mouth": 29, "share": 0.5, "back": 2}"#;
+    let spread = r#""spread": {"line": 37, "held": 27, "cuts": [{"number": 3, "from": 28, "to": 29, "openings": [2, 0]}]}"#;
+    for whole in [pivot, spread] {
+        let (pattern, notes) = with(whole).unwrap();
+        assert!(notes.is_empty(), "{notes:?}");
+        let (again, _) = read_pattern(&write_pattern(&pattern).unwrap()).unwrap();
+        assert_eq!(again, pattern);
+    }
+    for (whole, from, to, says) in [
+        (pivot, "\"dart\": 52, ", "", "dart"),
+        (pivot, "52", "29", "point 29"),
+        (pivot, "0.5", "\"late +\"", "share"),
+        (pivot, "\"back\": 2", "\"turned\": \"round\"", "round"),
+        (spread, "\"held\": 27, ", "", "held"),
+        (spread, "[2, 0]", "[2]", "openings"),
+        (
+            spread,
+            "\"number\": 3",
+            "\"number\": 60000",
+            "not that many",
+        ),
+        (
+            spread,
+            "\"cuts\"",
+            "\"bridge\": \"wooden\", \"cuts\"",
+            "wooden",
+        ),
+    ] {
+        let error = with(&whole.replacen(from, to, 1)).unwrap_err();
+        let told = format!("{error}");
+        assert!(told.contains(says), "{to}: {told}");
+        assert!(
+            error.place.contains(&format!("line {line}, column ")),
+            "{to}: {told}"
+        );
+        assert!(!error.hint.is_empty());
+    }
+}
+
+#[test]
 fn unknown_fields_of_numbers_are_reported() {
     for value in [
         "{\"formula\": \"11.5cm\", \"by\": 0.01, \"why\": 1}",

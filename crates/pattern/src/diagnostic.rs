@@ -58,6 +58,10 @@ pub enum Code {
     DartTooWide,
     /// A dart's apex lies outside its panel.
     DartOutside,
+    /// A dart cannot be pivoted so.
+    BadPivot,
+    /// A panel cannot be cut so.
+    BadCut,
     /// A notch lies beyond its edge.
     NotchOffEdge,
     /// A seam names a span that is not there.

@@ -231,30 +231,30 @@ impl Drafter<'_> {
             let halves = 1_u8 << folds(panel);
             for operation in &panel.operations {
                 for half in 0..halves {
-                    let leg = |leg: u16, reverse: bool| -> Option<DraftSpan> {
+                    let leg = |leg: u16, reverse: bool| -> Option<Vec<DraftSpan>> {
                         let name = Name::Made {
                             by: operation.id,
                             role: Role::Leg,
                             index: leg,
                         };
-                        let track = tracks.get(&EdgeOrigin { name, half })?.first()?;
-                        let backwards = (track.from > track.to) != reverse;
-                        Some(DraftSpan {
-                            piece: *piece,
-                            edge: track.edge,
-                            from: f64::from(u8::from(backwards)),
-                            to: f64::from(u8::from(!backwards)),
-                        })
+                        let found = tracks.get(&EdgeOrigin { name, half })?.iter();
+                        let (from, to) = if reverse { (1.0, 0.0) } else { (0.0, 1.0) };
+                        Some(spans_on(*piece, found, from, to))
                     };
                     let sides = match operation.kind {
-                        OperationKind::Dart { .. } => [vec![leg(0, false)], vec![leg(1, true)]],
+                        OperationKind::Dart { .. } | OperationKind::Pivot { .. } => {
+                            [vec![leg(0, false)], vec![leg(1, true)]]
+                        }
                         OperationKind::Diamond { .. } => [
                             vec![leg(0, false), leg(1, false)],
                             vec![leg(3, true), leg(2, true)],
                         ],
-                        OperationKind::Fold { .. } => continue,
+                        OperationKind::Fold { .. } | OperationKind::Spread { .. } => continue,
                     };
-                    let sides = sides.map(|s| s.into_iter().collect::<Option<Vec<_>>>());
+                    let sides = sides.map(|legs| {
+                        let legs: Option<Vec<_>> = legs.into_iter().collect();
+                        legs.map(|legs| legs.concat())
+                    });
                     if let [Some(first), Some(second)] = sides {
                         let owner = &self.drafting.draft.pieces[*piece].name;
                         seams.push(DraftSeam {

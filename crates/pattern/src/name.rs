@@ -29,6 +29,14 @@ impl<Id> Name<Id> {
             Self::Made { by, .. } => Some(*by),
         }
     }
+
+    /// What it is in the operation that made it; nothing if it was drawn.
+    pub fn role(&self) -> Option<Role> {
+        match self {
+            Self::Drawn(_) => None,
+            Self::Made { role, .. } => Some(*role),
+        }
+    }
 }
 
 /// A corner of a panel.
@@ -50,14 +58,18 @@ pub enum Role {
     Mouth,
     /// The hole of a diamond dart.
     Diamond,
+    /// What bridges an opening of a spread panel: that of cut n is 2n where the cut starts and
+    /// 2n + 1 where it ends. Opening k has the corners 2k and 2k + 1.
+    Opening,
 }
 
 impl Role {
-    const WORDS: [(Self, &'static str); 4] = [
+    const WORDS: [(Self, &'static str); 5] = [
         (Self::Leg, "leg"),
         (Self::Apex, "apex"),
         (Self::Mouth, "mouth"),
         (Self::Diamond, "diamond"),
+        (Self::Opening, "opening"),
     ];
 
     /// What it is called.

@@ -25,6 +25,8 @@ const TOOL_BUTTONS: &[&[&str]] = &[
         "Trace",
         "Divide edge",
         "Dart",
+        "Pivot dart",
+        "Spread",
         "Fold",
         "Notch",
         "Inner line",

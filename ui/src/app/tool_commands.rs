@@ -2,7 +2,7 @@
 
 use super::ToileApp;
 use super::command::{Menu, PLAIN, SHIFT, UiCommand, always, command, key};
-use crate::tools::{Tool, draw, panel, parts, seam};
+use crate::tools::{Tool, alter, draw, panel, parts, seam};
 use crate::views::marker::{MarkerAction, MarkerView};
 use egui::Key;
 
@@ -152,6 +152,22 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Take a dart out of an edge",
         ToileApp::has_panels,
         |app| app.take(Tool::Slots(&panel::DART)),
+    ),
+    command(
+        Menu::Panel,
+        "Pivot dart",
+        key(SHIFT, Key::E),
+        "Move a dart, or a share of it, to another place",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&alter::PIVOT)),
+    ),
+    command(
+        Menu::Panel,
+        "Spread",
+        key(SHIFT, Key::W),
+        "Cut a panel from edge to edge and spread the parts",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&alter::SPREAD)),
     ),
     command(
         Menu::Panel,

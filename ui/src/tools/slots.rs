@@ -6,7 +6,9 @@ use super::{Event, Outcome, Pointer, Reading, Shown};
 use crate::canvas::selection::{Item, Selection};
 use crate::canvas::snap::{Placed, Spec};
 use toile_geometry::Vec2;
-use toile_pattern::{CurveId, EdgeId, Edit, EditError, Number, PanelId, SheetId, Want};
+use toile_pattern::{
+    CurveId, EdgeId, Edit, EditError, Number, OperationId, PanelId, SheetId, Want,
+};
 
 /// Steps of an angle while Shift is held [degrees].
 const TURN: f64 = 15.0;
@@ -44,6 +46,8 @@ pub enum SlotKind {
     Edge,
     /// Edges one after another: Shift-clicks add, a click ends them.
     Chain,
+    /// A dart or another kept step of a panel.
+    Operation,
     /// A curve of a sheet.
     Curve,
     /// A panel.
@@ -103,6 +107,8 @@ pub enum Answer {
     Edge(PanelId, EdgeId, Vec2),
     /// Edges one after another.
     Chain(Vec<ChainEdge>),
+    /// A kept step of a panel.
+    Operation(PanelId, OperationId),
     /// A curve, and the place it was taken at [m].
     Curve(SheetId, CurveId, Vec2),
     /// A panel.
@@ -287,6 +293,13 @@ pub(super) fn answer(
             let mut chain = state.chain.clone();
             chain.push((panel, edge));
             Ok(Answer::Chain(chain))
+        }
+        SlotKind::Operation => {
+            let found = hit(&|item| matches!(item, Item::Operation(..)), "dart")?;
+            match found.item {
+                Item::Operation(panel, step) => Ok(Answer::Operation(panel, step)),
+                _ => Err("there is no dart here: click on one".into()),
+            }
         }
         SlotKind::Curve => {
             let found = hit(&|item| matches!(item, Item::Curve(_)), "curve")?;

@@ -8,6 +8,7 @@ mod json;
 mod migrate;
 mod read;
 mod read_marker;
+mod read_operation;
 mod read_panel;
 mod read_seam;
 mod units;
@@ -15,7 +16,9 @@ mod values;
 mod words;
 mod write;
 mod write_marker;
+mod write_operation;
 mod write_panel;
+mod write_seam;
 
 pub use write::write_pattern;
 

@@ -1,16 +1,14 @@
-//! Reads panels: lines, notches, operations.
+//! Reads panels: lines and notches.
 
-use super::item::{FieldsOfKind, Item, Object};
+use super::item::{Item, Object};
 use super::json::Value;
 use super::read::{Measure, Reader};
-use super::read_seam::{mark, name};
-use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, PRESSED, WORN};
+use super::read_operation::operation;
+use super::read_seam::mark;
+use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, WORN};
 use crate::FormatError;
 use std::sync::Arc;
-use toile_pattern::{
-    Apex, Cut, Edge, Line, Notch, NotchKind, Number, Operation, OperationKind, Panel, Pressed,
-    WornRule,
-};
+use toile_pattern::{Cut, Edge, Line, Notch, NotchKind, Number, Panel, WornRule};
 
 /// Reads a panel.
 pub fn panel<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Panel, FormatError> {
@@ -153,61 +151,4 @@ fn line<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Line, FormatErro
         });
     }
     Ok(line)
-}
-
-fn operation<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Operation, FormatError> {
-    let fields = item.object(
-        &["id", "name", "dart", "diamond", "fold"],
-        &mut reader.notes,
-    )?;
-    let kinds: &[FieldsOfKind<'_>] = &[(1, &["dart"]), (1, &["diamond"]), (1, &["fold"])];
-    fields.of_one_kind(&["id", "name"], kinds)?;
-    let kind = if let Some(item) = fields.get("dart") {
-        dart(reader, &item)?
-    } else if let Some(item) = fields.get("diamond") {
-        let fields = item.object(&["ends", "widest", "intake"], &mut reader.notes)?;
-        OperationKind::Diamond {
-            ends: reader.references(&fields.need("ends")?)?,
-            widest: reader.number(&fields.need("widest")?, Measure::Plain)?,
-            intake: reader.number(&fields.need("intake")?, Measure::Length)?,
-        }
-    } else if let Some(item) = fields.get("fold") {
-        let fields = item.object(&["line", "from", "to"], &mut reader.notes)?;
-        OperationKind::Fold {
-            line: name(reader, &fields.need("line")?)?,
-            ends: [
-                mark(reader, &fields.need("from")?)?,
-                mark(reader, &fields.need("to")?)?,
-            ],
-        }
-    } else {
-        return Err(item.error(
-            "the operation is none that this version knows",
-            "give it dart, diamond or fold, or use a newer version",
-        ));
-    };
-    Ok(Operation {
-        id: reader.own(&fields.need("id")?)?,
-        name: fields.need("name")?.name()?.to_owned(),
-        kind,
-    })
-}
-
-fn dart<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
-    let known = &["line", "mouth", "intake", "depth", "apex", "pressed"];
-    let fields = item.object(known, &mut reader.notes)?;
-    fields.of_one_kind(&[], &[(1, &["apex"]), (1, &["depth"])])?;
-    Ok(OperationKind::Dart {
-        line: name(reader, &fields.need("line")?)?,
-        mouth: mark(reader, &fields.need("mouth")?)?,
-        intake: reader.number(&fields.need("intake")?, Measure::Length)?,
-        apex: match fields.get("apex") {
-            Some(apex) => Apex::Point(reader.reference(&apex)?),
-            None => Apex::Depth(reader.number(&fields.need("depth")?, Measure::Length)?),
-        },
-        pressed: match fields.get("pressed") {
-            Some(pressed) => pressed.choice(PRESSED)?,
-            None => Pressed::default(),
-        },
-    })
 }

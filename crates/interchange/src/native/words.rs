@@ -2,7 +2,7 @@
 
 use super::item::FieldsOfKind;
 use toile_pattern::{
-    BodyPart, Corner, Facing, LineKind, NapRule, NotchKind, Pressed, Role, Spread,
+    BodyPart, Bridge, Corner, Facing, LineKind, NapRule, NotchKind, Pressed, Role, Spread, Turned,
 };
 
 /// Version of the format this program writes.
@@ -85,7 +85,16 @@ pub const ROLES: &[(&str, Role)] = &[
     ("apex", Role::Apex),
     ("mouth", Role::Mouth),
     ("diamond", Role::Diamond),
+    ("opening", Role::Opening),
 ];
+
+/// Names of the parts that pivots turn.
+pub const TURNED: &[(&str, Turned)] =
+    &[("from_dart", Turned::FromDart), ("to_dart", Turned::ToDart)];
+
+/// Names of how an outline goes across an opening.
+pub const BRIDGES: &[(&str, Bridge)] =
+    &[("straight", Bridge::Straight), ("smooth", Bridge::Smooth)];
 
 /// Where a panel is worn: at a place, or round a part of the body.
 pub const WORN: &[FieldsOfKind<'_>] = &[

@@ -4,7 +4,8 @@ use super::json::{self, Node, Value};
 use super::units::{UNITS, write_degrees, write_length, write_plain};
 use super::words::{VERSION, word};
 use super::write_marker::marker;
-use super::write_panel::{panel, seam};
+use super::write_panel::panel;
+use super::write_seam::seam;
 use crate::FormatError;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
 use toile_pattern::{

@@ -1,13 +1,12 @@
-//! Writes panels and seams.
+//! Writes panels: lines and notches.
 
 use super::json::Value;
-use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, PRESSED, ROLES, word};
-use super::write::{Fields, Measure, Writer, count, counts, list, named, plain_value, text};
+use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, word};
+use super::write::{Fields, Measure, Writer, count, list, named, plain_value, text};
+use super::write_operation::operation;
+use super::write_seam::mark;
 use crate::FormatError;
-use toile_pattern::{
-    Apex, Cut, Edge, Line, Mark, Name, Notch, NotchKind, Number, Operation, OperationKind, Panel,
-    PartId, Pressed, Seam, Span, WornRule,
-};
+use toile_pattern::{Cut, Edge, Line, Notch, NotchKind, Number, Panel, WornRule};
 
 /// Writes a panel.
 pub fn panel(writer: &Writer<'_>, panel: &Panel) -> Result<Value, FormatError> {
@@ -130,126 +129,6 @@ fn notch(writer: &Writer<'_>, notch: &Notch) -> Result<Value, FormatError> {
     fields.put("at", mark(writer, &notch.at, &what)?);
     if notch.kind != NotchKind::Slit {
         fields.put("kind", text(word(NOTCHES, &notch.kind)));
-    }
-    Ok(fields.done())
-}
-
-fn name<T: Copy + Into<PartId>>(name: Name<T>) -> Value {
-    match name {
-        Name::Drawn(id) => count(id.into().number()),
-        Name::Made { by, role, index } => {
-            let mut fields = Fields::default();
-            fields.put("by", count(by.0));
-            fields.put("role", text(word(ROLES, &role)));
-            fields.put("index", count(u32::from(index)));
-            fields.done()
-        }
-    }
-}
-
-fn mark(writer: &Writer<'_>, mark: &Mark, what: &str) -> Result<Value, FormatError> {
-    let mut fields = Fields::default();
-    match mark {
-        Mark::Corner(corner) => return Ok(name(*corner)),
-        Mark::Notch(id) => fields.put("notch", count(id.0)),
-        Mark::Along { from, distance } => {
-            fields.put("from", name(*from));
-            fields.put("distance", writer.number(distance, Measure::Length, what)?);
-        }
-        Mark::Between { ends, share } => {
-            fields.put("between", list(ends.map(name)));
-            fields.put("share", writer.number(share, Measure::Plain, what)?);
-        }
-    }
-    Ok(fields.done())
-}
-
-fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, FormatError> {
-    let what = format!("operation {:?}", operation.name);
-    let mut fields = named(operation.id.0, &operation.name)?;
-    let mut own = Fields::default();
-    let kind = match &operation.kind {
-        OperationKind::Dart {
-            line,
-            mouth,
-            intake,
-            apex,
-            pressed,
-        } => {
-            own.put("line", name(*line));
-            own.put("mouth", mark(writer, mouth, &what)?);
-            own.put("intake", writer.number(intake, Measure::Length, &what)?);
-            match apex {
-                Apex::Depth(depth) => {
-                    own.put("depth", writer.number(depth, Measure::Length, &what)?);
-                }
-                Apex::Point(point) => own.put("apex", count(point.0)),
-            }
-            if *pressed != Pressed::default() {
-                own.put("pressed", text(word(PRESSED, pressed)));
-            }
-            "dart"
-        }
-        OperationKind::Diamond {
-            ends,
-            widest,
-            intake,
-        } => {
-            own.put("ends", counts(ends.map(|id| id.0)));
-            own.put("widest", writer.number(widest, Measure::Plain, &what)?);
-            own.put("intake", writer.number(intake, Measure::Length, &what)?);
-            "diamond"
-        }
-        OperationKind::Fold { line, ends } => {
-            own.put("line", name(*line));
-            own.put("from", mark(writer, &ends[0], &what)?);
-            own.put("to", mark(writer, &ends[1], &what)?);
-            "fold"
-        }
-    };
-    fields.put(kind, own.done());
-    Ok(fields.done())
-}
-
-/// Writes a seam.
-pub fn seam(writer: &Writer<'_>, seam: &Seam) -> Result<Value, FormatError> {
-    let what = format!("seam {:?}", seam.name);
-    let mut fields = named(seam.id.0, &seam.name)?;
-    let mut sides = Vec::new();
-    for side in &seam.sides {
-        let spans: Result<Vec<_>, _> = side.iter().map(|s| span(writer, s, &what)).collect();
-        sides.push(list(spans?));
-    }
-    fields.put("sides", list(sides));
-    if seam.ease != Number::ZERO {
-        fields.put("ease", writer.number(&seam.ease, Measure::Length, &what)?);
-    }
-    if seam.gathered {
-        fields.put("gathered", Value::Flag(true));
-    }
-    if !seam.right_sides_together {
-        fields.put("right_sides_together", Value::Flag(false));
-    }
-    if seam.multi_ply {
-        fields.put("multi_ply", Value::Flag(true));
-    }
-    Ok(fields.done())
-}
-
-fn span(writer: &Writer<'_>, span: &Span, what: &str) -> Result<Value, FormatError> {
-    let mut fields = Fields::default();
-    fields.put("panel", count(span.panel.0));
-    fields.put("line", name(span.line));
-    fields.put("from", mark(writer, &span.from, what)?);
-    fields.put("to", mark(writer, &span.to, what)?);
-    if span.copy != 0 {
-        fields.put("copy", count(span.copy));
-    }
-    if span.half != 0 {
-        fields.put("half", count(u32::from(span.half)));
-    }
-    if span.backwards {
-        fields.put("backwards", Value::Flag(true));
     }
     Ok(fields.done())
 }

@@ -400,7 +400,37 @@ fn details(dice: &mut Dice, drawing: &mut Drawing<'_>, points: &[PointId]) {
     }
     for k in 0..dice.below(4) {
         let line = lines[dice.below(lines.len())];
-        let kind = match dice.below(4) {
+        let kind = match dice.below(6) {
+            4 => OperationKind::Pivot {
+                dart: match drawing.panel.operations.first() {
+                    Some(known) => known.id,
+                    None => drawing.id(),
+                },
+                line: Name::Drawn(line.id),
+                mouth: mark(dice, &line.edges),
+                share: dice.share(),
+                back: dice.number(),
+                turned: match dice.chance(50) {
+                    true => Turned::FromDart,
+                    false => Turned::ToDart,
+                },
+                pressed: Pressed::After,
+            },
+            5 => OperationKind::Spread {
+                line: Name::Drawn(line.id),
+                held: mark(dice, &line.edges),
+                cuts: (0..dice.below(3) as u16)
+                    .map(|k| SpreadCut {
+                        number: 3 * k,
+                        ends: [mark(dice, &line.edges), mark(dice, &line.edges)],
+                        openings: [dice.number(), Number::ZERO],
+                    })
+                    .collect(),
+                bridge: match dice.chance(50) {
+                    true => Bridge::Straight,
+                    false => Bridge::Smooth,
+                },
+            },
             0 => OperationKind::Diamond {
                 ends: [any(dice), any(dice)],
                 widest: dice.share(),

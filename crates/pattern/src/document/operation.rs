@@ -47,6 +47,74 @@ pub enum OperationKind {
         /// Both ends of the stretch, in the order of the line.
         ends: [Mark; 2],
     },
+    /// A dart that takes in less, and another that takes in the rest elsewhere: the panel is cut
+    /// from the new mouth to where the dart pivots, and one part is turned about that.
+    Pivot {
+        /// The dart: a dart or a pivot before this operation.
+        dart: OperationId,
+        /// The line.
+        line: LineName,
+        /// Where the new mouth opens.
+        mouth: Mark,
+        /// Plain share of the dart's angle that is moved there, from 0 to 1.
+        share: Number,
+        /// How far both darts then end before the place they pivot about [m].
+        back: Number,
+        /// Which part is turned.
+        turned: Turned,
+        /// The leg the new dart is pressed towards.
+        pressed: Pressed,
+    },
+    /// The panel cut apart along straight cuts and spread: the openings are cloth.
+    Spread {
+        /// The line.
+        line: LineName,
+        /// A place on it that stays where it is, and all that hangs together with it.
+        held: Mark,
+        /// Where it is cut.
+        cuts: Vec<SpreadCut>,
+        /// How the line goes across an opening.
+        bridge: Bridge,
+    },
+}
+
+/// Which part of a panel a pivot turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Turned {
+    /// The part from the dart along the outline as drawn to the new mouth.
+    #[default]
+    FromDart,
+    /// The part from the new mouth along the outline to the dart.
+    ToDart,
+}
+
+/// A cut along which a panel is spread.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SpreadCut {
+    /// Its number in the operation, by which what it makes is named: no two have the same.
+    pub number: u16,
+    /// Where it starts and ends, both on the line.
+    pub ends: [Mark; 2],
+    /// How far it opens at its start and its end [m]: where that is nothing it is a hinge.
+    pub openings: [Number; 2],
+}
+
+impl SpreadCut {
+    /// The largest number a cut may have: the corners at its openings are counted from four times
+    /// it.
+    pub const LARGEST: u16 = u16::MAX / 4;
+}
+
+/// How an outline goes across an opening.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bridge {
+    /// Straight.
+    #[default]
+    Straight,
+    /// In a curve that goes on from both sides.
+    Smooth,
 }
 
 /// The leg a dart is pressed towards once it is sewn.
@@ -102,6 +170,16 @@ impl OperationKind {
             }
             Self::Diamond { widest, intake, .. } => vec![widest, intake],
             Self::Fold { ends, .. } => ends.iter().filter_map(Mark::number).collect(),
+            Self::Pivot {
+                mouth, share, back, ..
+            } => mouth.number().into_iter().chain([share, back]).collect(),
+            Self::Spread { held, cuts, .. } => {
+                let of_cuts = cuts.iter().flat_map(|cut| {
+                    let marks = cut.ends.iter().filter_map(Mark::number);
+                    marks.chain(&cut.openings)
+                });
+                held.number().into_iter().chain(of_cuts).collect()
+            }
         }
     }
 
@@ -111,6 +189,30 @@ impl OperationKind {
             Self::Dart { mouth, .. } => vec![mouth],
             Self::Diamond { .. } => Vec::new(),
             Self::Fold { ends, .. } => ends.iter().collect(),
+            Self::Pivot { mouth, .. } => vec![mouth],
+            Self::Spread { held, cuts, .. } => {
+                let of_cuts = cuts.iter().flat_map(|cut| &cut.ends);
+                std::iter::once(held).chain(of_cuts).collect()
+            }
+        }
+    }
+
+    /// The line it is done on; nothing if it is inside.
+    pub fn line(&self) -> Option<LineName> {
+        match self {
+            Self::Dart { line, .. }
+            | Self::Fold { line, .. }
+            | Self::Pivot { line, .. }
+            | Self::Spread { line, .. } => Some(*line),
+            Self::Diamond { .. } => None,
+        }
+    }
+
+    /// The operation whose work it alters.
+    pub fn altered(&self) -> Option<OperationId> {
+        match self {
+            Self::Pivot { dart, .. } => Some(*dart),
+            _ => None,
         }
     }
 
@@ -133,6 +235,8 @@ impl OperationKind {
         match self {
             Self::Dart { .. } | Self::Diamond { .. } => "dart",
             Self::Fold { .. } => "fold",
+            Self::Pivot { .. } => "pivot",
+            Self::Spread { .. } => "spread",
         }
     }
 }

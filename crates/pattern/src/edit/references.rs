@@ -2,8 +2,7 @@
 
 use super::Entity;
 use crate::{
-    CornerName, LineName, Mark, Marker, Name, Names, Number, OperationKind, Panel, PartId, Pattern,
-    Place, Span,
+    CornerName, LineName, Mark, Marker, Name, Names, Number, Panel, PartId, Pattern, Place, Span,
 };
 use std::collections::BTreeSet;
 
@@ -133,19 +132,15 @@ fn panel_references(panel: &Panel, found: &mut Vec<PartId>) {
     }
     for operation in &panel.operations {
         found.extend(operation.kind.points().into_iter().map(PartId::from));
-        match &operation.kind {
-            OperationKind::Dart {
-                line: on, mouth, ..
-            } => {
-                line(*on, found);
-                mark(mouth, found);
-            }
-            OperationKind::Diamond { .. } => {}
-            OperationKind::Fold { line: on, ends } => {
-                line(*on, found);
-                ends.iter().for_each(|end| mark(end, found));
-            }
+        found.extend(operation.kind.altered().map(PartId::from));
+        if let Some(on) = operation.kind.line() {
+            line(on, found);
         }
+        operation
+            .kind
+            .marks()
+            .into_iter()
+            .for_each(|at| mark(at, found));
     }
     panel.numbers().into_iter().for_each(|n| number(n, found));
 }

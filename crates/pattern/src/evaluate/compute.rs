@@ -2,7 +2,7 @@
 
 use super::node::{Definition, Node, Value};
 use super::numbers::Computation;
-use super::{Evaluation, curves, panels, points, seams};
+use super::{Evaluation, curves, operations, points, seams};
 use crate::formula::Failure;
 use crate::{Code, Diagnostic, PartReference, Place, Severity};
 
@@ -129,7 +129,9 @@ impl Computation<'_> {
             Definition::Edge(panel, line, edge) => {
                 curves::edge(self, panel, &panel.lines[*line].edges[*edge]).map(Value::Path)
             }
-            Definition::Stage(panel, step) => panels::stage(self, panel, *step).map(Value::Stage),
+            Definition::Stage(panel, step) => {
+                operations::stage(self, panel, *step).map(Value::Stage)
+            }
             Definition::Seam(seam) => seams::seam(self, seam).map(Value::Seam),
         }
     }

@@ -14,8 +14,10 @@ mod markers;
 mod needs;
 mod node;
 mod numbers;
+mod operations;
 mod panels;
 mod points;
+mod reshape;
 mod seams;
 mod wearer;
 

@@ -163,6 +163,7 @@ impl<'d> Needs<'d> {
             PartReference::Stretch { panel, ends } => {
                 self.panels.push(*panel);
                 if finished {
+                    self.nodes.push(Node::Stage(*panel, None));
                     self.last_stage(*panel);
                 }
                 let panel = self.pattern.panel(*panel);

@@ -4,7 +4,10 @@ use super::Evaluation;
 use super::needs::drawn_stretch;
 use super::node::{Definition, Node, Value};
 use crate::formula::{Environment, Failure, Kind, Quantity, compute, kind};
-use crate::{Code, Diagnostic, EdgeName, Name, Number, PartReference, Place, VariableId, nearest};
+use crate::stage::{MarkValue, is_sewn};
+use crate::{
+    Code, CornerName, Diagnostic, Name, Number, PartReference, Place, VariableId, nearest,
+};
 use std::borrow::Cow;
 use toile_geometry::{Path, Vec2};
 
@@ -358,13 +361,24 @@ impl Environment for Reading<'_, '_> {
         };
         let last = found.operations.last().map(|o| o.id);
         let stage = self.0.stage(Node::Stage(*panel, last))?;
-        let Some(edges) = drawn_stretch(&found.lines, *ends) else {
+        let drawn = self.0.stage(Node::Stage(*panel, None))?;
+        let corners = ends.iter().map(|end| match end {
+            Name::Drawn(id) => Some(*id),
+            Name::Made { .. } => None,
+        });
+        let Some(corners) = corners.collect::<Option<Vec<_>>>() else {
             return self.length(part);
         };
-        let names: Vec<EdgeName> = edges.iter().map(|edge| Name::Drawn(edge.id)).collect();
-        let all = stage.lines.iter().flat_map(|line| &line.edges);
-        let own = all.filter(|edge| edge.half == 0 && names.contains(&edge.name));
-        Ok(own.map(|edge| edge.curve.length()).sum())
+        let has = |line: &&crate::Line| line.stretch([corners[0], corners[1]]).is_some();
+        let Some(line) = found.lines.iter().find(has) else {
+            return self.length(part);
+        };
+        let name = Name::Drawn(line.id);
+        let place = |end: CornerName| stage.placed(drawn, name, MarkValue::Corner(end));
+        let walked =
+            place(ends[0]).and_then(|from| stage.stretch(name, [from, place(ends[1])?], is_sewn));
+        // What lies on a fold is gone when all is done.
+        Ok(walked.map_or(0.0, |stretch| stage.stretch_length(0, &stretch)))
     }
 
     fn ends(&self, part: &PartReference) -> Result<[Vec2; 2], Failure> {

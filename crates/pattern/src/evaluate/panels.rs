@@ -1,56 +1,32 @@
-//! Stages of panels: as drawn, and after each operation.
+//! Panels as drawn; places of marks and notches on their stages.
 
 use super::node::Node;
 use super::numbers::{Computation, Want};
-use crate::stage::{
-    DartApex, DartError, DartMouth, FoldError, MarkValue, PlaceError, Placed, Spot, StageEdge,
-    StageLine, StageNotch, cut_dart, cut_diamond, unfold,
-};
+use crate::stage::{MarkValue, PlaceError, Placed, Spot, StageEdge, StageLine, StageNotch};
 use crate::{
-    Apex, Code, Corner, Diagnostic, Edge, Line, LineKind, LineName, Mark, Name, Notch, Operation,
-    OperationKind, Panel, Place, Stage,
+    Code, Corner, Diagnostic, Edge, Line, LineKind, LineName, Mark, Name, Notch, Panel, Place,
+    Stage,
 };
-use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// A stage of a panel; nothing if its outline or the stage before it cannot be drawn.
-pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Option<Arc<Stage>> {
-    if step == 0 {
-        return Drawing { c, panel }.drawn().map(Arc::new);
-    }
-    let before = step.checked_sub(2).map(|k| panel.operations[k].id);
-    let stage = c.stage(Node::Stage(panel.id, before)).cloned();
-    let operation = &panel.operations[step - 1];
-    let place = Place::Operation(panel.id, operation.id);
-    let stage = c.reported(stage, &place, "")?;
-    // An operation that cannot be done is left out, with an error.
-    let mut drawing = Drawing { c, panel };
-    let done = drawing.done(&stage, (step, operation));
-    let mut stage = done.map_or(stage, Arc::new);
-    let notches = drawing.notches(&stage, step);
-    if !notches.is_empty() {
-        Arc::make_mut(&mut stage).notches.extend(notches);
-    }
-    Some(stage)
-}
-
-struct Drawing<'c, 'e, 'p> {
-    c: &'c mut Computation<'e>,
-    panel: &'p Panel,
+/// Draws a panel's stages.
+pub(super) struct Drawing<'c, 'e, 'p> {
+    pub c: &'c mut Computation<'e>,
+    pub panel: &'p Panel,
 }
 
 impl Drawing<'_, '_, '_> {
-    fn words(&self, what: &str) -> String {
+    pub fn words(&self, what: &str) -> String {
         format!("panel {:?}, {what}", self.panel.name)
     }
 
-    fn error(&mut self, code: Code, place: Place, what: &str, hint: &str) {
+    pub fn error(&mut self, code: Code, place: Place, what: &str, hint: &str) {
         let message = self.words(what);
         let found = Diagnostic::error(code, place, message, hint);
         self.c.diagnostics.push(found);
     }
 
-    fn drawn(&mut self) -> Option<Stage> {
+    pub fn drawn(&mut self) -> Option<Stage> {
         let panel = self.panel;
         let place = Place::Panel(panel.id);
         let words = self.words("seam allowance");
@@ -91,7 +67,7 @@ impl Drawing<'_, '_, '_> {
 
     /// The notches that are placed when that many operations are done: on the first stage that has
     /// their corners.
-    fn notches(&mut self, stage: &Stage, step: usize) -> Vec<StageNotch> {
+    pub fn notches(&mut self, stage: &Stage, step: usize) -> Vec<StageNotch> {
         let panel = self.panel;
         let mut found = Vec::new();
         for notch in &panel.notches {
@@ -119,6 +95,7 @@ impl Drawing<'_, '_, '_> {
             kind: line.kind,
             edges,
             end,
+            twins: Vec::new(),
         })
     }
 
@@ -158,7 +135,7 @@ impl Drawing<'_, '_, '_> {
     }
 
     /// A mark with its number.
-    fn mark(&mut self, mark: &Mark, place: &Place, what: &str) -> Option<MarkValue> {
+    pub fn mark(&mut self, mark: &Mark, place: &Place, what: &str) -> Option<MarkValue> {
         Some(match mark {
             Mark::Corner(corner) => MarkValue::Corner(*corner),
             Mark::Along { from, distance } => {
@@ -181,7 +158,7 @@ impl Drawing<'_, '_, '_> {
     }
 
     /// Where a mark of the operation of a step is, on the first stage that has its corners.
-    fn first_spot(
+    pub fn first_spot(
         &mut self,
         (line, mark): (LineName, &Mark),
         step: usize,
@@ -208,7 +185,7 @@ impl Drawing<'_, '_, '_> {
 
     /// A place of the stage an operation is done on: a corner as it is there, any other mark as it
     /// was on the first stage that had its corners.
-    fn placed(
+    pub fn placed(
         &mut self,
         (line, mark): (LineName, &Mark),
         step: usize,
@@ -226,7 +203,7 @@ impl Drawing<'_, '_, '_> {
         }
     }
 
-    fn gone(&mut self, place: &Place, what: &str, part: &str) {
+    pub fn gone(&mut self, place: &Place, what: &str, part: &str) {
         self.c.diagnostics.push(Diagnostic::error(
             Code::MissingReference,
             place.clone(),
@@ -251,7 +228,7 @@ impl Drawing<'_, '_, '_> {
         }
     }
 
-    fn no_place(&mut self, error: PlaceError, place: &Place, what: &str) {
+    pub fn no_place(&mut self, error: PlaceError, place: &Place, what: &str) {
         let part = match error {
             PlaceError::NoLine => "its line".to_owned(),
             PlaceError::NoCorner(corner) => self.corner_words(corner),
@@ -286,155 +263,12 @@ impl Drawing<'_, '_, '_> {
         Some(StageNotch {
             id: notch.id,
             edge: spot.edge,
+            share: spot.share,
             half: 0,
             kind: notch.kind,
             point,
             inward: Vec2::new(-along.y, along.x) * turn,
         })
-    }
-
-    /// A stage after an operation; nothing if it cannot be done.
-    fn done(&mut self, stage: &Stage, (step, operation): (usize, &Operation)) -> Option<Stage> {
-        let place = Place::Operation(self.panel.id, operation.id);
-        match &operation.kind {
-            OperationKind::Dart { .. } => self.dart(stage, (step, operation), &place),
-            OperationKind::Diamond {
-                ends,
-                widest,
-                intake,
-            } => {
-                let what = self.words(&format!("dart {:?}", operation.name));
-                let ends = ends.map(|end| {
-                    let at = self.c.point_at(end);
-                    self.c.reported(at, &place, &what)
-                });
-                let widest = self.c.number(widest, Want::Plain, &place, &what);
-                let intake = self.c.number(intake, Want::Length, &place, &what);
-                let ([Some(a), Some(b)], Some(widest), Some(intake)) = (ends, widest, intake)
-                else {
-                    return None;
-                };
-                let done = cut_diamond(stage, operation.id, [a, b], widest, intake);
-                if done.is_none() {
-                    self.error(
-                        Code::DartTooWide,
-                        place,
-                        &format!("dart {:?} has no width or length", operation.name),
-                        "give it a width, two ends that are apart, and a widest place from 0 to 1",
-                    );
-                }
-                done
-            }
-            OperationKind::Fold { line, ends } => self.fold(stage, (step, *line), ends, &place),
-        }
-    }
-
-    fn dart(
-        &mut self,
-        stage: &Stage,
-        (step, operation): (usize, &Operation),
-        place: &Place,
-    ) -> Option<Stage> {
-        let OperationKind::Dart {
-            line,
-            mouth,
-            intake,
-            apex,
-            pressed,
-        } = &operation.kind
-        else {
-            return None;
-        };
-        let what = self.words(&format!("dart {:?}", operation.name));
-        let middle = self.first_spot((*line, mouth), step, (place, &what));
-        let intake = self.c.number(intake, Want::Length, place, &what);
-        let apex = match apex {
-            Apex::Depth(depth) => {
-                let depth = self.c.number(depth, Want::Length, place, &what);
-                depth.map(DartApex::Depth)
-            }
-            Apex::Point(point) => {
-                let at = self.c.point_at(*point);
-                self.c.reported(at, place, &what).map(DartApex::Point)
-            }
-        };
-        let (middle, intake, apex) = (middle?, intake?, apex?);
-        let done = match middle {
-            Ok(middle) => {
-                let mouth = DartMouth {
-                    by: operation.id,
-                    line: *line,
-                    middle,
-                    intake,
-                    apex,
-                    pressed: *pressed,
-                };
-                cut_dart(stage, &mouth)
-            }
-            Err(PlaceError::Beyond) => Err(DartError::TooWide),
-            Err(error) => Err(DartError::Place(error)),
-        };
-        match done {
-            Ok(stage) => return Some(stage),
-            Err(DartError::Place(error)) => self.no_place(error, place, &what),
-            Err(DartError::TooWide) => self.error(
-                Code::DartTooWide,
-                place.clone(),
-                &format!(
-                    "dart {:?} is {:.1} cm wide and does not fit on its edge",
-                    operation.name,
-                    intake * 100.0
-                ),
-                "make it narrower (and more than nothing), or move it along the edge",
-            ),
-            Err(DartError::Overlaps) => self.error(
-                Code::DartTooWide,
-                place.clone(),
-                "two darts of one edge overlap",
-                "move them apart or make them narrower",
-            ),
-        }
-        None
-    }
-
-    fn fold(
-        &mut self,
-        stage: &Stage,
-        (step, line): (usize, LineName),
-        ends: &[Mark; 2],
-        place: &Place,
-    ) -> Option<Stage> {
-        let what = self.words("fold");
-        let from = self.placed((line, &ends[0]), step, (place, &what))?;
-        let to = self.placed((line, &ends[1]), step, (place, &what))?;
-        match unfold(stage, line, [from, to]) {
-            Ok((stage, lost)) => {
-                for id in lost {
-                    let notch = self.panel.notches.iter().find(|notch| notch.id == id);
-                    let name = notch.map_or_else(|| id.to_string(), |n| format!("{:?}", n.name));
-                    self.error(
-                        Code::MissingReference,
-                        Place::Notch(self.panel.id, id),
-                        &format!("notch {name}: its edge is the fold"),
-                        "put it on another edge of this panel",
-                    );
-                }
-                Some(stage)
-            }
-            Err(FoldError::Place(error)) => {
-                self.no_place(error, place, &what);
-                None
-            }
-            Err(FoldError::NotStraight) => {
-                self.error(
-                    Code::BadFold,
-                    place.clone(),
-                    "the fold is not a straight edge with a length",
-                    "choose a straight edge of the outline, or none",
-                );
-                None
-            }
-        }
     }
 }
 
@@ -449,5 +283,5 @@ pub(super) fn has_made(stage: &Stage, panel: &Panel, mark: &Mark) -> bool {
     let makers = corners.iter().filter_map(|corner| corner.maker());
     makers
         .filter(|by| panel.step_of(*by).is_some())
-        .all(|by| stage.darts.iter().any(|dart| dart.by == by))
+        .all(|by| stage.done.contains(&by))
 }

@@ -3,8 +3,8 @@
 use super::node::{Node, SeamValue, SpanValue};
 use super::numbers::{Computation, Want};
 use super::panels::has_made;
-use crate::stage::{MarkValue, PlaceError, Placed, StageEdge, Stretch, reversed};
-use crate::{Code, Diagnostic, Line, Mark, Name, Panel, Place, Role, Seam, Span, Stage};
+use crate::stage::{MarkValue, PlaceError, Stretch, is_sewn, reversed};
+use crate::{Code, Diagnostic, Line, Mark, Name, Panel, Place, Seam, Span, Stage};
 use std::sync::Arc;
 
 /// The value of a seam; nothing if a span has no place.
@@ -101,7 +101,7 @@ fn locate(c: &mut Computation<'_>, seam: &Seam, span: &Span) -> Option<(SpanValu
         c.diagnostics.push(bad_span(seam));
         return None;
     }
-    let stretch = match stretch(c, (seam, span), &panel, [from, to])? {
+    let stretch = match stretch(c, (seam, span), (&panel, &finished), [from, to])? {
         Ok(stretch) if !stretch.is_empty() => stretch,
         Err(PlaceError::Beyond) | Ok(_) => {
             c.diagnostics.push(bad_span(seam));
@@ -126,7 +126,7 @@ fn locate(c: &mut Computation<'_>, seam: &Seam, span: &Span) -> Option<(SpanValu
         missing(c, seam, (message, hint));
         return None;
     }
-    let length = length(&finished, span.half, &stretch);
+    let length = finished.stretch_length(span.half, &stretch);
     if length <= 0.0 {
         let message = format!(
             "seam {name:?} names a place of panel {:?} on its fold or in the mouth of a dart",
@@ -145,57 +145,35 @@ fn locate(c: &mut Computation<'_>, seam: &Seam, span: &Span) -> Option<(SpanValu
     Some((value, length))
 }
 
-/// The edges of a span between its marks, each mark taken on the first stage that has its corners;
-/// nothing if that stage has not what was to be made, which is told there.
+/// The edges of a span between its marks when all operations are done, each mark taken on the first
+/// stage that has its corners; nothing if that stage has not what was to be made, which is told there.
 fn stretch(
     c: &mut Computation<'_>,
     (seam, span): (&Seam, &Span),
-    panel: &Panel,
+    (panel, finished): (&Panel, &Stage),
     marks: [MarkValue; 2],
 ) -> Option<Result<Stretch, PlaceError>> {
-    let steps = [&span.from, &span.to].map(|mark| panel.first_step(mark));
-    let [Some(from), Some(to)] = steps else {
-        return Some(Err(PlaceError::NoLine));
-    };
-    let mut stage_at = |step: usize| {
+    let mut places = Vec::with_capacity(2);
+    for (mark, value) in [&span.from, &span.to].into_iter().zip(marks) {
+        let Some(step) = panel.first_step(mark) else {
+            return Some(Err(PlaceError::NoLine));
+        };
         let after = step.checked_sub(1).map(|k| panel.operations[k].id);
-        let stage = c.stage(Node::Stage(panel.id, after)).cloned();
-        c.reported(stage, &Place::Seam(seam.id), "")
-    };
-    let stage = stage_at(from.max(to))?;
-    let mut places = marks.map(Placed::Mark);
-    for ((place, step), mark) in places
-        .iter_mut()
-        .zip([from, to])
-        .zip([&span.from, &span.to])
-    {
-        if !has_made(&stage, panel, mark) {
+        let first = c.stage(Node::Stage(panel.id, after)).cloned();
+        let first = c.reported(first, &Place::Seam(seam.id), "")?;
+        if !has_made(&first, panel, mark) {
             return None;
         }
-        if step < from.max(to)
-            && let Placed::Mark(value @ (MarkValue::Along(..) | MarkValue::Between(..))) = *place
-        {
-            match stage_at(step)?.spot(span.line, value) {
-                Ok(spot) => *place = Placed::Spot(spot),
-                Err(error) => return Some(Err(error)),
-            }
+        match finished.placed(&first, span.line, value) {
+            Ok(place) => places.push(place),
+            Err(error) => return Some(Err(error)),
         }
     }
-    if span.backwards {
-        places.reverse();
-    }
-    // Legs are sewn by their dart; the other halves are named by spans of their own.
-    let wanted = |edge: &StageEdge| {
-        let is_leg = matches!(
-            edge.name,
-            Name::Made {
-                role: Role::Leg,
-                ..
-            }
-        );
-        edge.half == 0 && !is_leg
+    let ends = match span.backwards {
+        true => [places[1], places[0]],
+        false => [places[0], places[1]],
     };
-    let found = stage.stretch(span.line, places, wanted);
+    let found = finished.stretch(span.line, ends, is_sewn);
     Some(found.map(|stretch| match span.backwards {
         true => reversed(stretch),
         false => stretch,
@@ -244,20 +222,4 @@ fn mark(c: &mut Computation<'_>, seam: &Seam, span: &Span, mark: &Mark) -> Optio
             }
         }
     })
-}
-
-/// Length of a stretch on a stage [m].
-fn length(stage: &Stage, half: u8, stretch: &Stretch) -> f64 {
-    let parts = stretch.iter().map(|&(name, from, to)| {
-        let (low, high) = (from.min(to), from.max(to));
-        let edges = stage.lines.iter().flat_map(|line| &line.edges);
-        let own = edges.filter(|edge| edge.name == name && edge.half == half);
-        own.map(|edge| {
-            let (a, b) = (edge.from.min(edge.to), edge.from.max(edge.to));
-            let covered = (b.min(high) - a.max(low)).max(0.0);
-            edge.curve.length() * covered / (b - a).max(1e-300)
-        })
-        .sum::<f64>()
-    });
-    parts.sum()
 }

@@ -85,6 +85,16 @@ pub enum OperationNumber {
     FoldStart(MarkNumber),
     /// Where a fold ends.
     FoldEnd(MarkNumber),
+    /// Share of a dart that a pivot moves.
+    Share,
+    /// How far a pivot sets the points of its darts back.
+    Back,
+    /// Where a spread panel stays as it is.
+    Held(MarkNumber),
+    /// Where the cut at that place in a spread starts or ends.
+    Cut(usize, SpanEnd, MarkNumber),
+    /// How far the cut at that place in a spread opens at its start or its end.
+    Opening(usize, SpanEnd),
 }
 
 /// An end of a span.
@@ -95,6 +105,16 @@ pub enum SpanEnd {
     From,
     /// Where it ends.
     To,
+}
+
+impl SpanEnd {
+    /// 0 for the start, 1 for the end.
+    fn index(self) -> usize {
+        match self {
+            Self::From => 0,
+            Self::To => 1,
+        }
+    }
 }
 
 /// A number that is there, or may be.
@@ -130,6 +150,13 @@ impl NumberPlace {
                 OperationNumber::Widest => "widest at",
                 OperationNumber::FoldStart(_) => "start",
                 OperationNumber::FoldEnd(_) => "end",
+                OperationNumber::Share => "share moved",
+                OperationNumber::Back => "set back",
+                OperationNumber::Held(_) => "held at",
+                OperationNumber::Cut(_, SpanEnd::From, _) => "cut from",
+                OperationNumber::Cut(_, SpanEnd::To, _) => "cut to",
+                OperationNumber::Opening(_, SpanEnd::From) => "opening at start",
+                OperationNumber::Opening(_, SpanEnd::To) => "opening at end",
             },
             Self::Ease(_) => "ease",
             Self::Span(_, _, _, SpanEnd::From, _) => "start",
@@ -154,11 +181,16 @@ impl NumberPlace {
             | Self::Ease(_) => Want::Length,
             Self::Notch(_, _, mark) | Self::Span(_, _, _, _, mark) => mark.want(),
             Self::Operation(_, _, number) => match number {
-                OperationNumber::Intake | OperationNumber::Depth => Want::Length,
-                OperationNumber::Widest => Want::Plain,
+                OperationNumber::Intake
+                | OperationNumber::Depth
+                | OperationNumber::Back
+                | OperationNumber::Opening(..) => Want::Length,
+                OperationNumber::Widest | OperationNumber::Share => Want::Plain,
                 OperationNumber::Mouth(mark)
                 | OperationNumber::FoldStart(mark)
-                | OperationNumber::FoldEnd(mark) => mark.want(),
+                | OperationNumber::FoldEnd(mark)
+                | OperationNumber::Held(mark)
+                | OperationNumber::Cut(_, _, mark) => mark.want(),
             },
         }
     }
@@ -330,7 +362,19 @@ fn in_rule(rule: &mut PointRule, number: PointNumber) -> Option<&mut Number> {
 
 fn in_operation(kind: &mut OperationKind, number: OperationNumber) -> Option<&mut Number> {
     match (number, kind) {
-        (OperationNumber::Mouth(number), OperationKind::Dart { mouth, .. }) => number.of(mouth),
+        (
+            OperationNumber::Mouth(number),
+            OperationKind::Dart { mouth, .. } | OperationKind::Pivot { mouth, .. },
+        ) => number.of(mouth),
+        (OperationNumber::Share, OperationKind::Pivot { share, .. }) => Some(share),
+        (OperationNumber::Back, OperationKind::Pivot { back, .. }) => Some(back),
+        (OperationNumber::Held(number), OperationKind::Spread { held, .. }) => number.of(held),
+        (OperationNumber::Cut(k, end, number), OperationKind::Spread { cuts, .. }) => {
+            number.of(&mut cuts.get_mut(k)?.ends[end.index()])
+        }
+        (OperationNumber::Opening(k, end), OperationKind::Spread { cuts, .. }) => {
+            Some(&mut cuts.get_mut(k)?.openings[end.index()])
+        }
         (
             OperationNumber::Intake,
             OperationKind::Dart { intake, .. } | OperationKind::Diamond { intake, .. },

@@ -5,7 +5,10 @@ use super::lookup::{after, refuse_faults};
 use super::moving::added;
 use super::number_place::{MarkNumber, NumberPlace, OperationNumber, PointNumber, Slot, SpanEnd};
 use super::seam::SeamSide;
-use crate::{Code, Edit, EditError, Evaluation, Number, PartId, Pattern, Place, SizeId, Want};
+use crate::{
+    Code, Edit, EditError, Evaluation, Number, OperationId, OperationKind, PartId, Pattern, Place,
+    SizeId, Want,
+};
 
 /// A number of a part, for an inspector.
 #[derive(Clone, Debug, PartialEq)]
@@ -184,6 +187,25 @@ pub(super) fn refuse_valueless(
     }
 }
 
+/// The numbers the cuts of a spread may have.
+fn cut_numbers(pattern: &Pattern, id: OperationId, marks: [MarkNumber; 2]) -> Vec<OperationNumber> {
+    let all = pattern.panels.iter().flat_map(|panel| &panel.operations);
+    let count = all.filter(|operation| operation.id == id).map(|operation| {
+        let OperationKind::Spread { cuts, .. } = &operation.kind else {
+            return 0;
+        };
+        cuts.len()
+    });
+    let mut numbers = Vec::new();
+    for k in 0..count.sum() {
+        for end in [SpanEnd::From, SpanEnd::To] {
+            numbers.extend(marks.map(|mark| OperationNumber::Cut(k, end, mark)));
+            numbers.push(OperationNumber::Opening(k, end));
+        }
+    }
+    numbers
+}
+
 /// Places at which a part may have a number.
 fn candidates(pattern: &Pattern, part: PartId) -> Vec<NumberPlace> {
     let marks = [MarkNumber::Distance, MarkNumber::Share];
@@ -231,6 +253,9 @@ fn candidates(pattern: &Pattern, part: PartId) -> Vec<NumberPlace> {
             ]);
             numbers.extend(marks.map(OperationNumber::FoldStart));
             numbers.extend(marks.map(OperationNumber::FoldEnd));
+            numbers.extend([OperationNumber::Share, OperationNumber::Back]);
+            numbers.extend(marks.map(OperationNumber::Held));
+            numbers.extend(cut_numbers(pattern, id, marks));
             let places = |panel| {
                 let numbers = numbers.into_iter();
                 numbers.map(move |number| NumberPlace::Operation(panel, id, number))

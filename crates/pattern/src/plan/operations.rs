@@ -1,4 +1,4 @@
-//! Puts darts, diamonds and folds on panels; adjusts, reorders and removes them.
+//! Puts operations on panels; adjusts, reorders and removes them.
 
 use super::impossible;
 use super::lookup::{self, after, refuse_faults};
@@ -10,8 +10,7 @@ use crate::{
 use std::sync::Arc;
 
 /// The edits that put an operation on a panel; and the operation. It is called by what it is:
-/// `dart`, `dart 2`. Darts go before the first fold, so that both halves have them; a fold comes
-/// last.
+/// `dart`, `dart 2`. It goes before the first fold, so that both halves have it; a fold comes last.
 ///
 /// # Errors
 /// The panel is not there or cannot be drawn; the operation cannot be done: its words say why.
@@ -30,9 +29,7 @@ pub fn add_operation(
     let end = changed.operations.len();
     let at = match kind {
         OperationKind::Fold { .. } => end,
-        OperationKind::Dart { .. } | OperationKind::Diamond { .. } => {
-            changed.operations.iter().position(fold).unwrap_or(end)
-        }
+        _ => changed.operations.iter().position(fold).unwrap_or(end),
     };
     let operation = Arc::new(Operation { id, name, kind });
     changed.operations.insert(at, operation);

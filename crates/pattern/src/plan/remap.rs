@@ -258,6 +258,34 @@ impl Remap {
                 *line = self.name(*line);
                 ends.iter_mut().for_each(|end| self.mark(end));
             }
+            OperationKind::Pivot {
+                dart,
+                line,
+                mouth,
+                share,
+                back,
+                turned: _,
+                pressed: _,
+            } => {
+                *dart = self.id(*dart);
+                *line = self.name(*line);
+                self.mark(mouth);
+                self.number(share);
+                self.number(back);
+            }
+            OperationKind::Spread {
+                line,
+                held,
+                cuts,
+                bridge: _,
+            } => {
+                *line = self.name(*line);
+                self.mark(held);
+                for cut in cuts {
+                    cut.ends.iter_mut().for_each(|end| self.mark(end));
+                    cut.openings.iter_mut().for_each(|n| self.number(n));
+                }
+            }
         }
     }
 

@@ -90,6 +90,7 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
     };
     let mut edges: Vec<StageEdge> = Vec::with_capacity(line.edges.len() + 3);
     let mut legs = Some(legs(dart.by, [open, close], apex));
+    let mut swallowed = None;
     for edge in &line.edges {
         let outside =
             edge.name != dart.middle.edge || edge.to <= from + 1e-12 || edge.from >= to - 1e-12;
@@ -103,6 +104,8 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
         }
         if (from - edge.from) * length > 1e-9 {
             edges.push(part(edge, edge.from, from, [edge.curve.start(), open]));
+        } else if legs.is_some() {
+            swallowed = edge.start;
         }
         edges.extend(legs.take().into_iter().flatten());
         if (edge.to - to) * length > 1e-9 {
@@ -115,17 +118,29 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
         }
     }
     line.edges = edges;
+    line.twins
+        .extend(swallowed.map(|corner| [corner, mouth(dart.by, 0)]));
+    let leg = line
+        .edges
+        .iter()
+        .position(|edge| edge.start == Some(mouth(dart.by, 0)));
+    let next = leg.map_or(0, |k| (k + 2) % line.edges.len());
+    if line.edges[next].start != Some(mouth(dart.by, 1)) {
+        line.call(next, mouth(dart.by, 1));
+    }
     result.darts.push(StageDart {
         by: dart.by,
         half: 0,
         mouth: [open, close],
         apex,
+        pivot: apex,
         pressed: dart.pressed,
     });
     Ok(result)
 }
 
-fn mouth(by: OperationId, index: u16) -> crate::CornerName {
+/// An end of a dart's mouth.
+pub(super) fn mouth(by: OperationId, index: u16) -> crate::CornerName {
     Name::Made {
         by,
         role: Role::Mouth,
@@ -133,7 +148,8 @@ fn mouth(by: OperationId, index: u16) -> crate::CornerName {
     }
 }
 
-fn legs(by: OperationId, [open, close]: [Vec2; 2], apex: Vec2) -> [StageEdge; 2] {
+/// Both legs of a dart, from the start of its mouth to its apex and on to the end of its mouth.
+pub(super) fn legs(by: OperationId, [open, close]: [Vec2; 2], apex: Vec2) -> [StageEdge; 2] {
     let made = |role, index| Name::Made { by, role, index };
     let ends = [(open, apex), (apex, close)];
     [0, 1].map(|k: u16| {
@@ -159,7 +175,7 @@ fn legs(by: OperationId, [open, close]: [Vec2; 2], apex: Vec2) -> [StageEdge; 2]
 }
 
 /// The part of an edge between two shares of its named edge.
-fn part(edge: &StageEdge, from: f64, to: f64, [start, end]: [Vec2; 2]) -> StageEdge {
+pub(super) fn part(edge: &StageEdge, from: f64, to: f64, [start, end]: [Vec2; 2]) -> StageEdge {
     let parameter = |share: f64| parameter(edge, share);
     let curve = edge.curve.between(parameter(from), parameter(to));
     StageEdge {
@@ -170,7 +186,7 @@ fn part(edge: &StageEdge, from: f64, to: f64, [start, end]: [Vec2; 2]) -> StageE
     }
 }
 
-fn parameter(edge: &StageEdge, share: f64) -> f64 {
+pub(super) fn parameter(edge: &StageEdge, share: f64) -> f64 {
     let local = (share - edge.from) / (edge.to - edge.from);
     edge.curve.parameter_at_length(local * edge.curve.length())
 }

@@ -55,6 +55,7 @@ pub(crate) fn cut_diamond(
         kind: LineKind::Hole,
         edges,
         end: None,
+        twins: Vec::new(),
     };
     result
         .lines
@@ -64,6 +65,7 @@ pub(crate) fn cut_diamond(
         half: 0,
         mouth: [middle + side, middle - side],
         apex: a,
+        pivot: a,
         pressed: Pressed::default(),
     });
     Some(result)

@@ -4,7 +4,7 @@ use super::{
     PlaceError, Placed, Stage, StageDart, StageEdge, StageLine, StageNotch, mirrored_edges,
     with_ends,
 };
-use crate::{LineKind, LineName, NotchId};
+use crate::{CornerName, LineKind, LineName, NotchId};
 use toile_geometry::{Curve, Vec2};
 
 /// Why a stage cannot be unfolded.
@@ -60,13 +60,14 @@ pub(crate) fn unfold(
         .iter()
         .filter(|notch| notch.half == 0 && folded.iter().any(|edge| edge.name == notch.edge));
     let lost: Vec<NotchId> = lost.map(|notch| notch.id).collect();
-    let whole = unfolded(stage, (line, edges), (start, end), &lost);
+    let corner = folded[0].start;
+    let whole = unfolded(stage, (line, edges, corner), (start, end), &lost);
     Ok((whole, lost))
 }
 
 fn unfolded(
     stage: &Stage,
-    (name, edges): (LineName, Vec<StageEdge>),
+    (name, edges, corner): (LineName, Vec<StageEdge>, Option<CornerName>),
     (start, end): (Vec2, Vec2),
     lost: &[NotchId],
 ) -> Stage {
@@ -78,6 +79,7 @@ fn unfolded(
     let mut other = mirrored_edges(&edges, mirror, bit, false);
     if let Some(first) = other.first_mut() {
         first.curve = with_ends(first.curve, start, first.curve.end());
+        first.start = corner;
     }
     if let Some(last) = other.last_mut() {
         last.curve = with_ends(last.curve, last.curve.start(), end);
@@ -128,6 +130,7 @@ fn unfolded(
             half: dart.half | bit,
             mouth: [reflect(dart.mouth[1]), reflect(dart.mouth[0])],
             apex: reflect(dart.apex),
+            pivot: reflect(dart.pivot),
             ..*dart
         })
         .collect();

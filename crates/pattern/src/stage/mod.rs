@@ -3,12 +3,19 @@
 mod dart;
 mod diamond;
 mod fold;
+mod motion;
+mod partition;
+mod pivot;
 mod place;
+mod spread;
 
 pub(crate) use dart::{DartApex, DartError, DartMouth, cut_dart};
 pub(crate) use diamond::cut_diamond;
 pub(crate) use fold::{FoldError, unfold};
-pub(crate) use place::{MarkValue, PlaceError, Placed, Spot, Stretch, reversed};
+pub(crate) use partition::CutError;
+pub(crate) use pivot::{PivotError, Pivoting, pivot_dart};
+pub(crate) use place::{MarkValue, PlaceError, Placed, Spot, Stretch, is_sewn, reversed};
+pub(crate) use spread::{SpreadAlong, SpreadError, Spreading, spread};
 
 use crate::{
     Corner, CornerName, EdgeName, LineKind, LineName, NotchId, NotchKind, OperationId, Pressed,
@@ -28,6 +35,8 @@ pub struct Stage {
     pub darts: Vec<StageDart>,
     /// Fold lines the stage was unfolded in: a point on each and its direction.
     pub folds: Vec<(Vec2, Vec2)>,
+    /// Operations that were done, in order.
+    pub done: Vec<OperationId>,
 }
 
 /// A line of a stage.
@@ -43,6 +52,8 @@ pub struct StageLine {
     pub edges: Vec<StageEdge>,
     /// The corner an open line ends at.
     pub end: Option<CornerName>,
+    /// Corners that lie where an edge starts that is called after another: the one, and the other.
+    pub twins: Vec<[CornerName; 2]>,
 }
 
 /// An edge of a stage: one curve, and the stretch of its named edge that it covers.
@@ -73,6 +84,8 @@ pub struct StageNotch {
     pub id: NotchId,
     /// The edge it is on.
     pub edge: EdgeName,
+    /// Share of that edge's arc length where it is.
+    pub share: f64,
     /// Which half it is on.
     pub half: u8,
     /// How it is cut.
@@ -94,6 +107,8 @@ pub struct StageDart {
     pub mouth: [Vec2; 2],
     /// Its point [m]; of a diamond the first end.
     pub apex: Vec2,
+    /// Where it is pivoted about [m]: its point as it was before that was set back.
+    pub pivot: Vec2,
     /// The leg it is pressed towards.
     pub pressed: Pressed,
 }
@@ -131,11 +146,12 @@ impl Stage {
             }
             points.extend(edge.curve.defining_points());
         }
+        numbers.extend(self.notches.iter().map(|n| n.share));
         points.extend(self.notches.iter().flat_map(|n| [n.point, n.inward]));
         points.extend(
             self.darts
                 .iter()
-                .flat_map(|d| [d.mouth[0], d.mouth[1], d.apex]),
+                .flat_map(|d| [d.mouth[0], d.mouth[1], d.apex, d.pivot]),
         );
         points.extend(self.folds.iter().flat_map(|f| [f.0, f.1]));
         numbers.extend(points.iter().flat_map(|p| [p.x, p.y]));
@@ -174,10 +190,12 @@ impl Stage {
                 .map(|dart| StageDart {
                     mouth: [flip(dart.mouth[1]), flip(dart.mouth[0])],
                     apex: flip(dart.apex),
+                    pivot: flip(dart.pivot),
                     ..*dart
                 })
                 .collect(),
             folds: self.folds.iter().map(|f| (flip(f.0), flip(f.1))).collect(),
+            done: self.done.clone(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Places and stretches on the lines of a stage.
 
 use super::{Stage, StageEdge, StageLine};
-use crate::{CornerName, EdgeName, LineName};
+use crate::{CornerName, EdgeName, LineName, Role};
 use toile_geometry::Vec2;
 
 /// A mark whose number is known.
@@ -49,24 +49,49 @@ pub(crate) enum PlaceError {
 const SLACK: f64 = 1e-9;
 
 impl Stage {
-    fn line(&self, name: LineName) -> Result<&StageLine, PlaceError> {
-        let mut lines = self.lines.iter();
-        let found = lines.find(|line| line.name == name && line.half == 0);
-        found.ok_or(PlaceError::NoLine)
+    /// What one of the lines of a name gives: a line that was cut is several.
+    fn of_line<T>(
+        &self,
+        name: LineName,
+        give: impl Fn(&StageLine) -> Result<T, PlaceError>,
+    ) -> Result<T, PlaceError> {
+        let mut error = PlaceError::NoLine;
+        let own = |line: &&StageLine| line.name == name && line.half == 0;
+        for line in self.lines.iter().filter(own) {
+            match give(line) {
+                Ok(found) => return Ok(found),
+                Err(other) if error == PlaceError::NoLine => error = other,
+                Err(_) => {}
+            }
+        }
+        Err(error)
     }
 
     /// Where a mark is on a line.
     pub(crate) fn spot(&self, line: LineName, mark: MarkValue) -> Result<Spot, PlaceError> {
-        let line = self.line(line)?;
-        let along = line.along(mark)?;
-        Ok(line.at(along, mark))
+        self.of_line(line, |line| Ok(line.at(line.along(mark)?, mark)))
+    }
+
+    /// Where a mark of an earlier stage is on this one: a corner that is still there is itself.
+    pub(crate) fn placed(
+        &self,
+        first: &Self,
+        line: LineName,
+        mark: MarkValue,
+    ) -> Result<Placed, PlaceError> {
+        let is_here = |corner| self.of_line(line, |line| line.corner(corner)).is_ok();
+        match mark {
+            MarkValue::Corner(corner) if is_here(corner) => Ok(Placed::Mark(mark)),
+            _ => first.spot(line, mark).map(Placed::Spot),
+        }
     }
 
     /// Place and direction of travel at a spot.
     pub(crate) fn at_spot(&self, line: LineName, spot: Spot) -> Option<(Vec2, Vec2)> {
-        let line = self.line(line).ok()?;
-        let edges = line.edges.iter().filter(|edge| edge.name == spot.edge);
-        let found = edges.clone().find(|edge| {
+        let own = |known: &&StageLine| known.name == line && known.half == 0;
+        let edges = self.lines.iter().filter(own).flat_map(|line| &line.edges);
+        let mut edges = edges.filter(|edge| edge.name == spot.edge);
+        let found = edges.find(|edge| {
             let (low, high) = (edge.from.min(edge.to), edge.from.max(edge.to));
             (low - SLACK..=high + SLACK).contains(&spot.share)
         });
@@ -84,10 +109,33 @@ impl Stage {
         [from, to]: [Placed; 2],
         wanted: impl Fn(&StageEdge) -> bool,
     ) -> Result<Stretch, PlaceError> {
-        let line = self.line(line)?;
-        let (start, end) = (line.placed(from)?, line.placed(to)?);
-        Ok(line.between(start, end, wanted))
+        self.of_line(line, |line| {
+            let (start, end) = (line.placed(from)?, line.placed(to)?);
+            Ok(line.between(start, end, &wanted))
+        })
     }
+
+    /// Length of a stretch on a half [m].
+    pub(crate) fn stretch_length(&self, half: u8, stretch: &Stretch) -> f64 {
+        let parts = stretch.iter().map(|&(name, from, to)| {
+            let (low, high) = (from.min(to), from.max(to));
+            let edges = self.lines.iter().flat_map(|line| &line.edges);
+            let own = edges.filter(|edge| edge.name == name && edge.half == half);
+            own.map(|edge| {
+                let (a, b) = (edge.from.min(edge.to), edge.from.max(edge.to));
+                let covered = (b.min(high) - a.max(low)).max(0.0);
+                edge.curve.length() * covered / (b - a).max(1e-300)
+            })
+            .sum::<f64>()
+        });
+        parts.sum()
+    }
+}
+
+/// Whether an edge is sewn by seams: legs are sewn by their dart, and other halves are named by
+/// spans of their own.
+pub(crate) fn is_sewn(edge: &StageEdge) -> bool {
+    edge.half == 0 && edge.name.role() != Some(Role::Leg)
 }
 
 /// A stretch walked the other way.
@@ -97,7 +145,7 @@ pub(crate) fn reversed(stretch: Stretch) -> Stretch {
 }
 
 impl StageLine {
-    fn length(&self) -> f64 {
+    pub(super) fn length(&self) -> f64 {
         self.edges.iter().map(|edge| edge.curve.length()).sum()
     }
 
@@ -107,21 +155,36 @@ impl StageLine {
 
     /// Arc length from the start of the line to a corner [m].
     fn corner(&self, corner: CornerName) -> Result<f64, PlaceError> {
+        let called = self.called(corner);
         let mut along = 0.0;
         for edge in &self.edges {
-            if edge.start == Some(corner) {
+            if edge.start == Some(called) {
                 return Ok(along);
             }
             along += edge.curve.length();
         }
-        let ends_there = !self.is_closed() && self.end == Some(corner);
+        let ends_there = !self.is_closed() && self.end == Some(called);
         match ends_there {
             true => Ok(along),
             false => Err(PlaceError::NoCorner(corner)),
         }
     }
 
-    fn placed(&self, place: Placed) -> Result<f64, PlaceError> {
+    /// What the corner is called that lies where a corner does.
+    fn called(&self, corner: CornerName) -> CornerName {
+        let mut called = corner;
+        // No chain of twins is longer than their list.
+        for _ in 0..self.twins.len() {
+            match self.twins.iter().find(|[known, _]| *known == called) {
+                Some([_, other]) => called = *other,
+                None => break,
+            }
+        }
+        called
+    }
+
+    /// Arc length from the start of the line to a place [m].
+    pub(super) fn placed(&self, place: Placed) -> Result<f64, PlaceError> {
         match place {
             Placed::Mark(mark) => self.along(mark),
             Placed::Spot(spot) => self.along_spot(spot),
@@ -219,7 +282,8 @@ impl StageLine {
 
     /// The edge that starts at a corner.
     fn named_from(&self, corner: CornerName) -> Option<EdgeName> {
-        let found = self.edges.iter().find(|edge| edge.start == Some(corner));
+        let called = self.called(corner);
+        let found = self.edges.iter().find(|edge| edge.start == Some(called));
         found.map(|edge| edge.name)
     }
 

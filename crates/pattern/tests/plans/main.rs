@@ -11,6 +11,7 @@ mod numbers;
 mod operations;
 mod remove;
 mod rename;
+mod reshape;
 mod seam;
 mod sequences;
 mod sizes;

@@ -1,0 +1,153 @@
+//! Reads operations of panels.
+
+use super::item::{FieldsOfKind, Item};
+use super::read::{Measure, Reader};
+use super::read_seam::{mark, name};
+use super::words::{BRIDGES, PRESSED, TURNED};
+use crate::FormatError;
+use toile_pattern::{Apex, Bridge, Number, Operation, OperationKind, Pressed, SpreadCut, Turned};
+
+type Read = for<'a> fn(&mut Reader<'a>, &Item<'a>) -> Result<OperationKind, FormatError>;
+
+/// What operations are called in files, and how each is read.
+const KINDS: [(&str, Read); 5] = [
+    ("dart", dart),
+    ("diamond", diamond),
+    ("fold", fold),
+    ("pivot", pivot),
+    ("spread", spread),
+];
+
+/// Reads an operation.
+pub fn operation<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Operation, FormatError> {
+    let own = ["id", "name"];
+    let known: Vec<&str> = own
+        .into_iter()
+        .chain(KINDS.iter().map(|kind| kind.0))
+        .collect();
+    let fields = item.object(&known, &mut reader.notes)?;
+    let words = KINDS.map(|kind| [kind.0]);
+    let kinds: Vec<FieldsOfKind<'_>> = words.iter().map(|word| (1, &word[..])).collect();
+    fields.of_one_kind(&own, &kinds)?;
+    let mut found = KINDS
+        .iter()
+        .filter_map(|(word, read)| Some((fields.get(word)?, read)));
+    let Some((item, read)) = found.next() else {
+        let words = words.map(|[word]| word).join(", ");
+        return Err(item.error(
+            "the operation is none that this version knows",
+            format!("give it one of {words}, or use a newer version"),
+        ));
+    };
+    let kind = read(reader, &item)?;
+    Ok(Operation {
+        id: reader.own(&fields.need("id")?)?,
+        name: fields.need("name")?.name()?.to_owned(),
+        kind,
+    })
+}
+
+fn dart<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
+    let known = &["line", "mouth", "intake", "depth", "apex", "pressed"];
+    let fields = item.object(known, &mut reader.notes)?;
+    fields.of_one_kind(&[], &[(1, &["apex"]), (1, &["depth"])])?;
+    Ok(OperationKind::Dart {
+        line: name(reader, &fields.need("line")?)?,
+        mouth: mark(reader, &fields.need("mouth")?)?,
+        intake: reader.number(&fields.need("intake")?, Measure::Length)?,
+        apex: match fields.get("apex") {
+            Some(apex) => Apex::Point(reader.reference(&apex)?),
+            None => Apex::Depth(reader.number(&fields.need("depth")?, Measure::Length)?),
+        },
+        pressed: pressed(fields.get("pressed"))?,
+    })
+}
+
+fn pressed(item: Option<Item<'_>>) -> Result<Pressed, FormatError> {
+    match item {
+        Some(pressed) => pressed.choice(PRESSED),
+        None => Ok(Pressed::default()),
+    }
+}
+
+fn diamond<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
+    let fields = item.object(&["ends", "widest", "intake"], &mut reader.notes)?;
+    Ok(OperationKind::Diamond {
+        ends: reader.references(&fields.need("ends")?)?,
+        widest: reader.number(&fields.need("widest")?, Measure::Plain)?,
+        intake: reader.number(&fields.need("intake")?, Measure::Length)?,
+    })
+}
+
+fn fold<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
+    let fields = item.object(&["line", "from", "to"], &mut reader.notes)?;
+    Ok(OperationKind::Fold {
+        line: name(reader, &fields.need("line")?)?,
+        ends: [
+            mark(reader, &fields.need("from")?)?,
+            mark(reader, &fields.need("to")?)?,
+        ],
+    })
+}
+
+fn pivot<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
+    let known = &[
+        "dart", "line", "mouth", "share", "back", "turned", "pressed",
+    ];
+    let fields = item.object(known, &mut reader.notes)?;
+    Ok(OperationKind::Pivot {
+        dart: reader.reference(&fields.need("dart")?)?,
+        line: name(reader, &fields.need("line")?)?,
+        mouth: mark(reader, &fields.need("mouth")?)?,
+        share: match fields.get("share") {
+            Some(share) => reader.number(&share, Measure::Plain)?,
+            None => Number::Value(1.0),
+        },
+        back: match fields.get("back") {
+            Some(back) => reader.number(&back, Measure::Length)?,
+            None => Number::ZERO,
+        },
+        turned: match fields.get("turned") {
+            Some(turned) => turned.choice(TURNED)?,
+            None => Turned::default(),
+        },
+        pressed: pressed(fields.get("pressed"))?,
+    })
+}
+
+fn spread<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
+    let fields = item.object(&["line", "held", "cuts", "bridge"], &mut reader.notes)?;
+    let mut cuts = Vec::new();
+    for item in fields.items("cuts")? {
+        cuts.push(spread_cut(reader, &item)?);
+    }
+    Ok(OperationKind::Spread {
+        line: name(reader, &fields.need("line")?)?,
+        held: mark(reader, &fields.need("held")?)?,
+        cuts,
+        bridge: match fields.get("bridge") {
+            Some(bridge) => bridge.choice(BRIDGES)?,
+            None => Bridge::default(),
+        },
+    })
+}
+
+fn spread_cut<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<SpreadCut, FormatError> {
+    let fields = item.object(&["number", "from", "to", "openings"], &mut reader.notes)?;
+    let number = fields.need("number")?;
+    let [start, end] = fields.need("openings")?.exactly()?;
+    Ok(SpreadCut {
+        number: u16::try_from(number.count()?)
+            .ok()
+            .filter(|number| *number <= SpreadCut::LARGEST)
+            .ok_or_else(|| number.error("there are not that many", "write a smaller number"))?,
+        ends: [
+            mark(reader, &fields.need("from")?)?,
+            mark(reader, &fields.need("to")?)?,
+        ],
+        openings: [
+            reader.number(&start, Measure::Length)?,
+            reader.number(&end, Measure::Length)?,
+        ],
+    })
+}

@@ -1,0 +1,182 @@
+//! Stages of panels: as drawn, and after each operation.
+
+use super::node::Node;
+use super::numbers::{Computation, Want};
+use super::panels::Drawing;
+use crate::stage::{
+    DartApex, DartError, DartMouth, FoldError, PlaceError, cut_dart, cut_diamond, unfold,
+};
+use crate::{Apex, Code, LineName, Mark, Operation, OperationKind, Panel, Place, Stage};
+use std::sync::Arc;
+
+/// A stage of a panel; nothing if its outline or the stage before it cannot be drawn.
+pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Option<Arc<Stage>> {
+    if step == 0 {
+        return Drawing { c, panel }.drawn().map(Arc::new);
+    }
+    let before = step.checked_sub(2).map(|k| panel.operations[k].id);
+    let stage = c.stage(Node::Stage(panel.id, before)).cloned();
+    let operation = &panel.operations[step - 1];
+    let place = Place::Operation(panel.id, operation.id);
+    let stage = c.reported(stage, &place, "")?;
+    // An operation that cannot be done is left out, with an error.
+    let mut drawing = Drawing { c, panel };
+    let done = drawing.done(&stage, (step, operation));
+    let mut stage = done.map_or(stage, |mut done| {
+        done.done.push(operation.id);
+        Arc::new(done)
+    });
+    let notches = drawing.notches(&stage, step);
+    if !notches.is_empty() {
+        Arc::make_mut(&mut stage).notches.extend(notches);
+    }
+    Some(stage)
+}
+
+impl Drawing<'_, '_, '_> {
+    /// A stage after an operation; nothing if it cannot be done.
+    fn done(&mut self, stage: &Stage, (step, operation): (usize, &Operation)) -> Option<Stage> {
+        let place = Place::Operation(self.panel.id, operation.id);
+        match &operation.kind {
+            OperationKind::Dart { .. } => self.dart(stage, (step, operation), &place),
+            OperationKind::Diamond {
+                ends,
+                widest,
+                intake,
+            } => {
+                let what = self.words(&format!("dart {:?}", operation.name));
+                let ends = ends.map(|end| {
+                    let at = self.c.point_at(end);
+                    self.c.reported(at, &place, &what)
+                });
+                let widest = self.c.number(widest, Want::Plain, &place, &what);
+                let intake = self.c.number(intake, Want::Length, &place, &what);
+                let ([Some(a), Some(b)], Some(widest), Some(intake)) = (ends, widest, intake)
+                else {
+                    return None;
+                };
+                let done = cut_diamond(stage, operation.id, [a, b], widest, intake);
+                if done.is_none() {
+                    self.error(
+                        Code::DartTooWide,
+                        place,
+                        &format!("dart {:?} has no width or length", operation.name),
+                        "give it a width, two ends that are apart, and a widest place from 0 to 1",
+                    );
+                }
+                done
+            }
+            OperationKind::Fold { line, ends } => self.fold(stage, (step, *line), ends, &place),
+            OperationKind::Pivot { .. } => self.pivot(stage, (step, operation), &place),
+            OperationKind::Spread { .. } => self.spread(stage, (step, operation), &place),
+        }
+    }
+
+    fn dart(
+        &mut self,
+        stage: &Stage,
+        (step, operation): (usize, &Operation),
+        place: &Place,
+    ) -> Option<Stage> {
+        let OperationKind::Dart {
+            line,
+            mouth,
+            intake,
+            apex,
+            pressed,
+        } = &operation.kind
+        else {
+            return None;
+        };
+        let what = self.words(&format!("dart {:?}", operation.name));
+        let middle = self.first_spot((*line, mouth), step, (place, &what));
+        let intake = self.c.number(intake, Want::Length, place, &what);
+        let apex = match apex {
+            Apex::Depth(depth) => {
+                let depth = self.c.number(depth, Want::Length, place, &what);
+                depth.map(DartApex::Depth)
+            }
+            Apex::Point(point) => {
+                let at = self.c.point_at(*point);
+                self.c.reported(at, place, &what).map(DartApex::Point)
+            }
+        };
+        let (middle, intake, apex) = (middle?, intake?, apex?);
+        let done = match middle {
+            Ok(middle) => {
+                let mouth = DartMouth {
+                    by: operation.id,
+                    line: *line,
+                    middle,
+                    intake,
+                    apex,
+                    pressed: *pressed,
+                };
+                cut_dart(stage, &mouth)
+            }
+            Err(PlaceError::Beyond) => Err(DartError::TooWide),
+            Err(error) => Err(DartError::Place(error)),
+        };
+        match done {
+            Ok(stage) => return Some(stage),
+            Err(DartError::Place(error)) => self.no_place(error, place, &what),
+            Err(DartError::TooWide) => self.error(
+                Code::DartTooWide,
+                place.clone(),
+                &format!(
+                    "dart {:?} is {:.1} cm wide and does not fit on its edge",
+                    operation.name,
+                    intake * 100.0
+                ),
+                "make it narrower (and more than nothing), or move it along the edge",
+            ),
+            Err(DartError::Overlaps) => self.error(
+                Code::DartTooWide,
+                place.clone(),
+                "two darts of one edge overlap",
+                "move them apart or make them narrower",
+            ),
+        }
+        None
+    }
+
+    fn fold(
+        &mut self,
+        stage: &Stage,
+        (step, line): (usize, LineName),
+        ends: &[Mark; 2],
+        place: &Place,
+    ) -> Option<Stage> {
+        let what = self.words("fold");
+        let from = self.placed((line, &ends[0]), step, (place, &what))?;
+        let to = self.placed((line, &ends[1]), step, (place, &what))?;
+        match unfold(stage, line, [from, to]) {
+            Ok((stage, lost)) => {
+                for id in lost {
+                    let notch = self.panel.notches.iter().find(|notch| notch.id == id);
+                    let name = notch.map_or_else(|| id.to_string(), |n| format!("{:?}", n.name));
+                    self.error(
+                        Code::MissingReference,
+                        Place::Notch(self.panel.id, id),
+                        &format!("notch {name}: its edge is the fold"),
+                        "put it on another edge of this panel",
+                    );
+                }
+                Some(stage)
+            }
+            Err(FoldError::Place(error)) => {
+                self.no_place(error, place, &what);
+                None
+            }
+            Err(FoldError::NotStraight) => {
+                self.error(
+                    Code::BadFold,
+                    place.clone(),
+                    "the fold is not a straight edge with a length",
+                    "choose a straight edge of the outline, or none",
+                );
+                None
+            }
+        }
+    }
+}

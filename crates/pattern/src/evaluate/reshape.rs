@@ -1,0 +1,236 @@
+//! Operations that cut a panel and move its parts: pivots and spreads.
+
+use super::numbers::Want;
+use super::panels::Drawing;
+use crate::stage::{
+    CutError, PivotError, Pivoting, SpreadAlong, SpreadError, Spreading, pivot_dart, spread,
+};
+use crate::{
+    Code, Diagnostic, LineName, Operation, OperationId, OperationKind, Place, SpreadCut, Stage,
+};
+
+impl Drawing<'_, '_, '_> {
+    /// A stage after a pivot; nothing if that cannot be done.
+    pub fn pivot(
+        &mut self,
+        stage: &Stage,
+        (step, operation): (usize, &Operation),
+        place: &Place,
+    ) -> Option<Stage> {
+        let OperationKind::Pivot {
+            dart,
+            line,
+            mouth,
+            share,
+            back,
+            turned,
+            pressed,
+        } = &operation.kind
+        else {
+            return None;
+        };
+        let what = self.words(&format!("pivot {:?}", operation.name));
+        let share = self.c.number(share, Want::Plain, place, &what);
+        let back = self.c.number(back, Want::Length, place, &what);
+        let is_there = self.is_done(stage, (step, *dart), (place, &what));
+        let mouth = self.placed((*line, mouth), step, (place, &what));
+        let (share, back, mouth) = (share?, back?, mouth?);
+        if !is_there {
+            return None;
+        }
+        let wish = Pivoting {
+            by: operation.id,
+            dart: *dart,
+            line: *line,
+            mouth,
+            share,
+            back,
+            turned: *turned,
+            pressed: *pressed,
+        };
+        let error = match pivot_dart(stage, &wish) {
+            Ok(stage) => return Some(stage),
+            Err(error) => error,
+        };
+        let (message, hint) = match error {
+            PivotError::Cut(error) => {
+                self.no_cut(
+                    error,
+                    place,
+                    &format!("{what}, from its mouth to the dart's point"),
+                );
+                return None;
+            }
+            PivotError::NoMouth => (
+                "the dart has no mouth in the outline".to_owned(),
+                "pivot a dart that is open on the outline, and not one that was closed before",
+            ),
+            PivotError::Share => (
+                format!("its share is {share:.3} and should be from 0 to 1"),
+                "give the share of the dart that is moved: 0.5 is half of it, 1 all",
+            ),
+            PivotError::OnDart => (
+                "its mouth lies on a dart".to_owned(),
+                "open it elsewhere on the outline",
+            ),
+            PivotError::LegsDiffer => (
+                "the legs of the dart are of different lengths, so that it does not close"
+                    .to_owned(),
+                "make the legs equal, or move a share of less than 1",
+            ),
+            PivotError::OnePoint => (
+                "both darts end in one point, where the panel would come apart".to_owned(),
+                "set their points back by a length above 0, or move the whole dart with a share of 1",
+            ),
+            PivotError::TooFarBack => (
+                format!("its darts are set back by {:.1} cm", back * 100.0),
+                "set them back by at least 0 and less than a leg is long",
+            ),
+        };
+        self.refused(Code::BadPivot, place, (&what, &message), hint);
+        None
+    }
+
+    /// A stage after a spread; nothing if that cannot be done.
+    pub fn spread(
+        &mut self,
+        stage: &Stage,
+        (step, operation): (usize, &Operation),
+        place: &Place,
+    ) -> Option<Stage> {
+        let OperationKind::Spread {
+            line,
+            held,
+            cuts,
+            bridge,
+        } = &operation.kind
+        else {
+            return None;
+        };
+        let what = self.words(&format!("spread {:?}", operation.name));
+        let held = self.placed((*line, held), step, (place, &what));
+        let mut known = Vec::with_capacity(cuts.len());
+        for cut in cuts {
+            let words = format!("{what}, cut {}", cut.number);
+            known.extend(self.cut(cut, (step, *line), (place, &words)));
+        }
+        let held = held.filter(|_| known.len() == cuts.len())?;
+        let wish = Spreading {
+            by: operation.id,
+            line: *line,
+            held,
+            cuts: known,
+            bridge: *bridge,
+        };
+        let error = match spread(stage, &wish) {
+            Ok(stage) => return Some(stage),
+            Err(error) => error,
+        };
+        let (message, hint) = match error {
+            SpreadError::Cut(number, error) => {
+                self.no_cut(error, place, &format!("{what}, cut {number}"));
+                return None;
+            }
+            SpreadError::Line(error) => {
+                self.no_cut(error, place, &what);
+                return None;
+            }
+            SpreadError::Negative(number) => (
+                format!("cut {number} opens by less than nothing"),
+                "give openings of at least 0; take cloth out with a dart",
+            ),
+            SpreadError::TooWide(number) => (
+                format!("the openings of cut {number} differ by more than twice its length"),
+                "make the cut longer or the openings more alike",
+            ),
+            SpreadError::Cross(one, other) => (
+                format!("cuts {one} and {other} cross or lie on each other"),
+                "move one of them, or cut in a spread of its own afterwards",
+            ),
+            SpreadError::OneEnd(one, other) => (
+                format!("cuts {one} and {other} open at one place"),
+                "move them apart, or open there by 0",
+            ),
+            SpreadError::Number(number) => (
+                format!("two cuts have the number {number}"),
+                "give each a number of its own",
+            ),
+            SpreadError::TooMany => (
+                format!("it has {} cuts", cuts.len()),
+                "divide them among several spreads, at most 64 each",
+            ),
+        };
+        self.refused(Code::BadCut, place, (&what, &message), hint);
+        None
+    }
+
+    fn cut(
+        &mut self,
+        cut: &SpreadCut,
+        (step, line): (usize, LineName),
+        (place, what): (&Place, &str),
+    ) -> Option<SpreadAlong> {
+        let [from, to] = [0, 1].map(|k| self.placed((line, &cut.ends[k]), step, (place, what)));
+        let [start, end] = [0, 1].map(|k: usize| {
+            let opening = &cut.openings[k];
+            self.c.number(opening, Want::Length, place, what)
+        });
+        Some(SpreadAlong {
+            number: cut.number,
+            ends: [from?, to?],
+            openings: [start?, end?],
+        })
+    }
+
+    /// Whether an operation was done before that step. It is told where it could not be.
+    fn is_done(
+        &mut self,
+        stage: &Stage,
+        (step, operation): (usize, OperationId),
+        (place, what): (&Place, &str),
+    ) -> bool {
+        match self.panel.step_of(operation) {
+            Some(own) if own < step => stage.done.contains(&operation),
+            Some(_) => {
+                self.refused(
+                    Code::MissingReference,
+                    place,
+                    (what, "its dart is made by this step or a later one"),
+                    "do the step that makes the dart first",
+                );
+                false
+            }
+            None => {
+                self.gone(place, what, "its dart");
+                false
+            }
+        }
+    }
+
+    fn refused(&mut self, code: Code, place: &Place, (what, message): (&str, &str), hint: &str) {
+        let message = format!("{what}: {message}");
+        let found = Diagnostic::error(code, place.clone(), message, hint);
+        self.c.diagnostics.push(found);
+    }
+
+    /// Says why a panel cannot be cut.
+    pub fn no_cut(&mut self, error: CutError, place: &Place, what: &str) {
+        let (message, hint) = match error {
+            CutError::Place(error) => return self.no_place(error, place, what),
+            CutError::Unfolded => (
+                "it would cut one half of a folded panel",
+                "do it before the fold, so that both halves have it",
+            ),
+            CutError::NoLength => ("the cut has no length", "choose two places that are apart"),
+            CutError::LeavesPanel => (
+                "the cut leaves the panel or crosses its outline",
+                "choose places between which the panel lies",
+            ),
+            CutError::ThroughHole => (
+                "the cut goes through a hole",
+                "lead it past the hole, or cut first and make the hole afterwards",
+            ),
+        };
+        self.refused(Code::BadCut, place, (what, message), hint);
+    }
+}

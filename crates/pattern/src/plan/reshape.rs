@@ -1,0 +1,227 @@
+//! Pivots darts and spreads panels: what the operations need that a wish leaves open is chosen.
+
+use super::impossible;
+use super::lookup;
+use super::operations::add_operation;
+use crate::stage::{MarkValue, is_sewn};
+use crate::{
+    Bridge, Edge, EdgeId, Edit, EditError, Evaluation, LineName, Mark, Name, Number, OperationId,
+    OperationKind, Panel, PanelId, Pressed, Role, SpreadCut, Turned,
+};
+
+/// A dart that is to be pivoted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PivotWish {
+    /// The dart: a dart or a pivot of the panel.
+    pub dart: OperationId,
+    /// The line and the place on it where the new mouth opens.
+    pub mouth: (LineName, Mark),
+    /// Plain share of the dart that is moved, from 0 to 1.
+    pub share: Number,
+    /// How far the points of both darts are set back [m].
+    pub back: Number,
+    /// Which part is turned; nothing for that without the fold, else the shorter one.
+    pub turned: Option<Turned>,
+}
+
+/// The edits that pivot a dart; and the operation. The new dart is pressed as a dart is at first.
+///
+/// # Errors
+/// The panel is not there or cannot be drawn; the dart cannot be pivoted so: the words say why.
+pub fn pivot_dart(
+    evaluation: &Evaluation,
+    panel: PanelId,
+    wish: PivotWish,
+) -> Result<(Vec<Edit>, OperationId), EditError> {
+    let owner = lookup::panel(evaluation.pattern(), panel)?;
+    let (line, mouth) = wish.mouth;
+    let turned = match wish.turned {
+        Some(turned) => turned,
+        None => freer_part(evaluation, owner, (wish.dart, line, &mouth)).unwrap_or_default(),
+    };
+    let kind = OperationKind::Pivot {
+        dart: wish.dart,
+        line,
+        mouth,
+        share: wish.share,
+        back: wish.back,
+        turned,
+        pressed: Pressed::default(),
+    };
+    add_operation(evaluation, panel, kind)
+}
+
+/// The part of a panel without its fold, else the shorter one; nothing if they cannot be told.
+fn freer_part(
+    evaluation: &Evaluation,
+    panel: &Panel,
+    (dart, line, mouth): (OperationId, LineName, &Mark),
+) -> Option<Turned> {
+    let operations = &panel.operations;
+    let folds = operations.iter().enumerate().filter_map(|(k, operation)| {
+        let OperationKind::Fold { ends, .. } = &operation.kind else {
+            return None;
+        };
+        Some((k, &ends[0]))
+    });
+    let fold = folds.clone().next();
+    let before = fold.map_or(operations.len(), |fold| fold.0);
+    let stage_at = |step: usize| {
+        let after = step.checked_sub(1).map(|k| operations[k].id);
+        evaluation.stage(panel.id, after)
+    };
+    let stage = stage_at(before)?;
+    let corner = |index: u16| {
+        let role = Role::Mouth;
+        MarkValue::Corner(Name::Made {
+            by: dart,
+            role,
+            index,
+        })
+    };
+    let placed = |mark: &Mark| {
+        let value = mark_value(evaluation, panel, mark)?;
+        let first = stage_at(panel.first_step(mark)?)?;
+        stage.placed(first, line, value).ok()
+    };
+    let place = |value| stage.placed(stage, line, value).ok();
+    let (old_end, new) = (place(corner(1))?, placed(mouth)?);
+    let way = |to| {
+        let stretch = stage.stretch(line, [old_end, to], is_sewn).ok()?;
+        Some(stage.stretch_length(0, &stretch))
+    };
+    let (own, all) = (way(new)?, way(place(corner(0))?)?);
+    let is_from_dart = match fold.and_then(|fold| way(placed(fold.1)?)) {
+        Some(to_fold) => to_fold >= own,
+        None => own <= 0.5 * all,
+    };
+    Some(match is_from_dart {
+        true => Turned::FromDart,
+        false => Turned::ToDart,
+    })
+}
+
+fn mark_value(evaluation: &Evaluation, panel: &Panel, mark: &Mark) -> Option<MarkValue> {
+    let number = |number: &Number, want| evaluation.number(number, want);
+    Some(match mark {
+        Mark::Corner(corner) => MarkValue::Corner(*corner),
+        Mark::Along { from, distance } => {
+            MarkValue::Along(*from, number(distance, crate::Want::Length)?)
+        }
+        Mark::Between { ends, share } => {
+            MarkValue::Between(*ends, number(share, crate::Want::Plain)?)
+        }
+        Mark::Notch(id) => match &panel.notch(*id)?.at {
+            Mark::Notch(_) => return None,
+            at => mark_value(evaluation, panel, at)?,
+        },
+    })
+}
+
+/// A panel that is to be spread.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpreadWish {
+    /// The line it is cut from and to.
+    pub line: LineName,
+    /// Where each cut starts and ends, and how far it opens there [m].
+    pub cuts: Vec<([Mark; 2], [Number; 2])>,
+    /// A place that stays where it is; nothing for the start of the fold, else of the line.
+    pub held: Option<Mark>,
+    /// How the outline goes across openings.
+    pub bridge: Bridge,
+}
+
+/// The edits that spread a panel; and the operation.
+///
+/// # Errors
+/// The panel is not there or cannot be drawn; there is no cut; it cannot be spread so: the words
+/// say why.
+pub fn spread_panel(
+    evaluation: &Evaluation,
+    panel: PanelId,
+    wish: SpreadWish,
+) -> Result<(Vec<Edit>, OperationId), EditError> {
+    let owner = lookup::panel(evaluation.pattern(), panel)?;
+    if wish.cuts.is_empty() {
+        return Err(impossible("there is no cut", "give one or more"));
+    }
+    let cuts = (0_u16..)
+        .zip(wish.cuts)
+        .map(|(number, (ends, openings))| SpreadCut {
+            number,
+            ends,
+            openings,
+        });
+    let kind = OperationKind::Spread {
+        line: wish.line,
+        held: match wish.held.or_else(|| usual_held(owner, wish.line)) {
+            Some(held) => held,
+            None => {
+                return Err(impossible(
+                    format!("panel {:?} has no such line", owner.name),
+                    "spread it along its outline",
+                ));
+            }
+        },
+        cuts: cuts.collect(),
+        bridge: wish.bridge,
+    };
+    add_operation(evaluation, panel, kind)
+}
+
+fn usual_held(panel: &Panel, line: LineName) -> Option<Mark> {
+    let fold = panel
+        .operations
+        .iter()
+        .find_map(|operation| match &operation.kind {
+            OperationKind::Fold { ends, line: own } if *own == line => Some(ends[0].clone()),
+            _ => None,
+        });
+    let drawn = || {
+        let mut lines = panel.lines.iter();
+        let found = lines.find(|known| Name::Drawn(known.id) == line)?;
+        found.edges.first().map(|edge| Mark::corner(edge.ends[0]))
+    };
+    fold.or_else(drawn)
+}
+
+/// Places for cuts from one edge of a panel to another, evenly: the panel falls into `count + 1`
+/// parts of equal width along both edges.
+///
+/// # Errors
+/// The panel or an edge is not there; the edges are of different lines, or one and the same.
+pub fn even_cuts(
+    evaluation: &Evaluation,
+    panel: PanelId,
+    [from, to]: [EdgeId; 2],
+    count: u16,
+) -> Result<(LineName, Vec<[Mark; 2]>), EditError> {
+    let owner = lookup::panel(evaluation.pattern(), panel)?;
+    let edge = |id: EdgeId| -> Result<&Edge, EditError> {
+        let missing = || EditError::Missing(format!("{id} of panel {:?}", owner.name));
+        owner.edge(id).ok_or_else(missing)
+    };
+    let (start, end) = (edge(from)?, edge(to)?);
+    let lines = [from, to].map(|id| owner.line_of(id).map(|line| line.id));
+    let [Some(line), Some(other)] = lines else {
+        return Err(EditError::Missing(format!(
+            "a line of panel {:?}",
+            owner.name
+        )));
+    };
+    if line != other || from == to {
+        return Err(impossible(
+            "the edges are not two of one line",
+            "choose two edges of the outline that lie across from each other",
+        ));
+    }
+    // Across a closed line edges run against each other.
+    let cuts = (1..=count).map(|k| {
+        let share = f64::from(k) / f64::from(count + 1);
+        [
+            Mark::between(start.ends, share),
+            Mark::between(end.ends, 1.0 - share),
+        ]
+    });
+    Ok((Name::Drawn(line), cuts.collect()))
+}

@@ -1,0 +1,97 @@
+//! Rigid motions of parts of a stage.
+
+use super::{StageDart, StageEdge, StageNotch};
+use toile_geometry::{Curve, Vec2};
+
+/// A turn about the origin, then a shift.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Motion {
+    /// Counter-clockwise [rad].
+    angle: f64,
+    shift: Vec2,
+}
+
+impl Motion {
+    /// What stays where it is, to the bit.
+    pub const NONE: Self = Self {
+        angle: 0.0,
+        shift: Vec2::new(0.0, 0.0),
+    };
+
+    /// The turn by an angle that takes one place to another.
+    pub fn taking(from: Vec2, to: Vec2, angle: f64) -> Self {
+        let turn = Self {
+            angle,
+            shift: Vec2::zeros(),
+        };
+        Self {
+            shift: to - turn.direction(from),
+            ..turn
+        }
+    }
+
+    /// The turn about a place.
+    pub fn about(centre: Vec2, angle: f64) -> Self {
+        Self::taking(centre, centre, angle)
+    }
+
+    /// First another motion, then this one.
+    pub fn after(self, first: Self) -> Self {
+        Self {
+            angle: self.angle + first.angle,
+            shift: self.point(first.shift),
+        }
+    }
+
+    fn is_none(self) -> bool {
+        self == Self::NONE
+    }
+
+    pub fn direction(self, v: Vec2) -> Vec2 {
+        if self.angle == 0.0 {
+            return v;
+        }
+        let (sin, cos) = self.angle.sin_cos();
+        Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+    }
+
+    pub fn point(self, p: Vec2) -> Vec2 {
+        match self.is_none() {
+            true => p,
+            false => self.direction(p) + self.shift,
+        }
+    }
+
+    pub fn curve(self, curve: Curve) -> Curve {
+        match self.is_none() {
+            true => curve,
+            false => curve.rotated(self.angle).translated(self.shift),
+        }
+    }
+
+    pub fn edge(self, edge: &StageEdge) -> StageEdge {
+        StageEdge {
+            curve: self.curve(edge.curve),
+            ..edge.clone()
+        }
+    }
+
+    pub fn notch(self, notch: StageNotch) -> StageNotch {
+        StageNotch {
+            point: self.point(notch.point),
+            inward: self.direction(notch.inward),
+            ..notch
+        }
+    }
+
+    /// A dart of whose mouth the start moves with this and the end with another.
+    pub fn dart(self, other: Self, dart: StageDart) -> StageDart {
+        let [start, end] = dart.mouth;
+        StageDart {
+            mouth: [self.point(start), other.point(end)],
+            apex: self.point(dart.apex),
+            pivot: self.point(dart.pivot),
+            ..dart
+        }
+    }
+}

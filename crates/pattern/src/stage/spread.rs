@@ -1,0 +1,326 @@
+//! Panels cut apart along straight cuts and spread.
+
+use super::motion::Motion;
+use super::partition::{CutError, SAME, check_cut, outline_of, partition, ring};
+use super::{PlaceError, Placed, Stage, StageEdge, StageLine, with_ends};
+use crate::{Bridge, Corner, LineName, Name, OperationId, Role};
+use toile_geometry::{Curve, Path, Vec2};
+
+/// A spread whose numbers are known.
+#[derive(Clone, Debug)]
+pub(crate) struct Spreading {
+    pub by: OperationId,
+    pub line: LineName,
+    /// A place of the part that stays.
+    pub held: Placed,
+    pub cuts: Vec<SpreadAlong>,
+    pub bridge: Bridge,
+}
+
+/// A cut whose numbers are known.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpreadAlong {
+    pub number: u16,
+    pub ends: [Placed; 2],
+    /// Opening at its start and its end [m].
+    pub openings: [f64; 2],
+}
+
+/// Why a panel cannot be spread.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum SpreadError {
+    /// Of the cut of that number.
+    Cut(u16, CutError),
+    /// The line or the place that stays is not there.
+    Line(CutError),
+    /// An opening is less than nothing.
+    Negative(u16),
+    /// The openings of a cut differ by more than twice its length.
+    TooWide(u16),
+    /// Two cuts cross, or lie on each other.
+    Cross(u16, u16),
+    /// Two cuts open at one place.
+    OneEnd(u16, u16),
+    /// Two cuts have one number.
+    Number(u16),
+    /// More cuts than are taken.
+    TooMany,
+}
+
+/// Most cuts of one operation: a part is named by a bit a cut.
+pub(crate) const MOST_CUTS: usize = 64;
+
+/// A cut between two places of the outline, each the number of an edge that starts there.
+struct Chord {
+    at: [usize; 2],
+    points: [Vec2; 2],
+    number: u16,
+    openings: [f64; 2],
+}
+
+/// A stage spread along cuts.
+pub(crate) fn spread(stage: &Stage, wish: &Spreading) -> Result<Stage, SpreadError> {
+    let outline = outline_of(stage, wish.line).map_err(SpreadError::Line)?;
+    let mut line = stage.lines[outline].clone();
+    if wish.cuts.len() > MOST_CUTS {
+        return Err(SpreadError::TooMany);
+    }
+    let lost = |error: PlaceError| CutError::Place(error);
+    let held = line
+        .placed(wish.held)
+        .map_err(|e| SpreadError::Line(lost(e)))?;
+    let mut places = Vec::with_capacity(wish.cuts.len());
+    for cut in &wish.cuts {
+        let place = |end: usize| line.placed(cut.ends[end]);
+        let of_cut = |error| SpreadError::Cut(cut.number, lost(error));
+        places.push([place(0).map_err(of_cut)?, place(1).map_err(of_cut)?]);
+    }
+    let mut all: Vec<f64> = places.iter().flatten().copied().collect();
+    all.sort_by(f64::total_cmp);
+    for along in all {
+        line.divide(along);
+    }
+    let chords: Vec<Chord> = wish
+        .cuts
+        .iter()
+        .zip(&places)
+        .map(|(cut, ends)| {
+            let at = ends.map(|along| line.divide(along));
+            Chord {
+                at,
+                points: at.map(|k| line.edges[k].curve.start()),
+                number: cut.number,
+                openings: cut.openings,
+            }
+        })
+        .collect();
+    check_chords(stage, outline, &chords)?;
+    let parts = Parts::of(&chords, &line, stage.turn(), held);
+    let parted: Vec<(StageEdge, usize)> = line
+        .edges
+        .iter()
+        .cloned()
+        .zip(parts.of_edge.iter().copied())
+        .collect();
+    let rings: Vec<Vec<Vec2>> = (0..parts.motions.len())
+        .map(|part| ring(parted.iter().filter(|own| own.1 == part).map(|own| &own.0)))
+        .collect();
+    let cuts: Vec<Path> = chords.iter().map(Chord::path).collect();
+    let everything = partition(stage, outline, &parted, (&cuts, &rings));
+    let line = bridged(line, &parts, &chords, wish);
+    Ok(everything.moved(stage, outline, line, &parts.motions))
+}
+
+impl Chord {
+    fn path(&self) -> Path {
+        let [start, end] = self.points;
+        Path::new(vec![Curve::Line { start, end }])
+    }
+
+    /// Whether an edge is in the part from the first of both ends along the outline to the other.
+    fn is_between(&self, edge: usize) -> bool {
+        let [a, b] = self.at;
+        (a.min(b)..a.max(b)).contains(&edge)
+    }
+
+    /// Whether the whole of another cut is there.
+    fn has_between(&self, other: &Self) -> bool {
+        let own = other.at.iter().find(|at| !self.at.contains(at));
+        own.is_some_and(|at| self.is_between(*at))
+    }
+
+    fn crosses(&self, other: &Self) -> bool {
+        let free: Vec<bool> = other
+            .at
+            .iter()
+            .filter(|at| !self.at.contains(at))
+            .map(|at| self.is_between(*at))
+            .collect();
+        free.is_empty() || free.len() == 2 && free[0] != free[1]
+    }
+
+    /// How the part beyond it moves against the one before it; `left` says whether that lies left
+    /// of the cut.
+    fn opened(&self, left: bool) -> Motion {
+        let [start, end] = self.points;
+        let way = end - start;
+        let [a, b] = self.openings;
+        let side = if left { 1.0 } else { -1.0 };
+        // An isosceles trapezoid: the cut twice, and both openings.
+        let half = ((a - b) / (2.0 * way.norm())).clamp(-1.0, 1.0).asin();
+        let axis = Motion::about(Vec2::zeros(), -side * half).direction(way.normalize());
+        let across = Vec2::new(-axis.y, axis.x) * side;
+        Motion::taking(start, start + across * a, -2.0 * side * half)
+    }
+}
+
+fn check_chords(stage: &Stage, outline: usize, chords: &[Chord]) -> Result<(), SpreadError> {
+    for (k, chord) in chords.iter().enumerate() {
+        let number = chord.number;
+        check_cut(stage, outline, &chord.path()).map_err(|e| SpreadError::Cut(number, e))?;
+        let [a, b] = chord.openings;
+        if a < 0.0 || b < 0.0 {
+            return Err(SpreadError::Negative(number));
+        }
+        if (a - b).abs() > 2.0 * (chord.points[1] - chord.points[0]).norm() {
+            return Err(SpreadError::TooWide(number));
+        }
+        for other in &chords[..k] {
+            if other.number == number {
+                return Err(SpreadError::Number(number));
+            }
+            if chord.crosses(other) {
+                return Err(SpreadError::Cross(other.number, number));
+            }
+            let opens = |chord: &Chord, at: usize| {
+                (0..2).any(|end| chord.at[end] == at && chord.openings[end] > SAME)
+            };
+            if chord
+                .at
+                .iter()
+                .any(|&at| opens(chord, at) && other.at.contains(&at) || opens(other, at))
+            {
+                return Err(SpreadError::OneEnd(other.number, number));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The parts between cuts.
+struct Parts {
+    /// Of each edge of the divided outline, its part.
+    of_edge: Vec<usize>,
+    /// How each part moves.
+    motions: Vec<Motion>,
+}
+
+impl Parts {
+    fn of(chords: &[Chord], line: &StageLine, turn: f64, held: f64) -> Self {
+        let key = |edge: usize| -> u64 {
+            let bits = chords.iter().enumerate();
+            bits.map(|(k, chord)| u64::from(chord.is_between(edge)) << k)
+                .sum()
+        };
+        let mut keys: Vec<u64> = Vec::new();
+        let of_edge = (0..line.edges.len())
+            .map(|edge| {
+                let own = key(edge);
+                keys.iter()
+                    .position(|known| *known == own)
+                    .unwrap_or_else(|| {
+                        keys.push(own);
+                        keys.len() - 1
+                    })
+            })
+            .collect();
+        let mut before = 0.0;
+        let ends = line.edges.iter().map(|edge| {
+            before += edge.curve.length();
+            before
+        });
+        let held = ends
+            .into_iter()
+            .position(|end| held < end - SAME)
+            .unwrap_or(0);
+        let still = key(held);
+        let motions = keys
+            .iter()
+            .map(|&own| motion(chords, (still, own), turn))
+            .collect();
+        Self { of_edge, motions }
+    }
+}
+
+/// How a part moves: over every cut between it and the part that stays, the nearest to that first.
+fn motion(chords: &[Chord], (still, own): (u64, u64), turn: f64) -> Motion {
+    let is_far = |k: usize| own >> k & 1 == 1;
+    let between: Vec<usize> = (0..chords.len())
+        .filter(|k| (still ^ own) >> k & 1 == 1)
+        .collect();
+    let depth = |k: usize| {
+        let others = between.iter().filter(|&&d| d != k);
+        let nearer = others.filter(|&&d| chords[d].has_between(&chords[k]) == is_far(d));
+        nearer.count()
+    };
+    let mut order: Vec<(usize, usize)> = between.iter().map(|&k| (depth(k), k)).collect();
+    order.sort_unstable();
+    order.iter().fold(Motion::NONE, |so_far, &(_, k)| {
+        let chord = &chords[k];
+        // Counter-clockwise, what lies between the start and the end is right of the cut.
+        let forwards = chord.at[0] < chord.at[1];
+        let left = (is_far(k) == forwards) != (turn > 0.0);
+        so_far.after(chord.opened(left))
+    })
+}
+
+/// The outline with every part moved, and openings bridged.
+fn bridged(mut line: StageLine, parts: &Parts, chords: &[Chord], wish: &Spreading) -> StageLine {
+    let count = line.edges.len();
+    let moved: Vec<StageEdge> = (0..count)
+        .map(|k| parts.motions[parts.of_edge[k]].edge(&line.edges[k]))
+        .collect();
+    let mut edges: Vec<StageEdge> = Vec::with_capacity(count + 2 * chords.len());
+    for (k, own) in moved.iter().enumerate() {
+        let before = &moved[(k + count - 1) % count];
+        let start = own.curve.start();
+        let here = chords.iter().flat_map(|chord| {
+            let ends = (0..2_u16).filter(|&end| chord.at[usize::from(end)] == k);
+            ends.map(|end| 2 * chord.number + end)
+        });
+        let mut own = own.clone();
+        let gap = start - before.curve.end();
+        let open = gap.norm() > SAME;
+        for opening in here {
+            let name = |corner: u16| Name::Made {
+                by: wish.by,
+                role: Role::Opening,
+                index: 2 * opening + corner,
+            };
+            line.call(k, name(1));
+            own.start = line.edges[k].start;
+            if !open {
+                line.twins.push([name(0), own.start.unwrap_or(name(1))]);
+                continue;
+            }
+            edges.push(StageEdge {
+                name: Name::Made {
+                    by: wish.by,
+                    role: Role::Opening,
+                    index: opening,
+                },
+                half: 0,
+                start: Some(name(0)),
+                from: 0.0,
+                to: 1.0,
+                curve: bridge(wish.bridge, before, &own),
+                allowance: before.allowance,
+                corner: Corner::Mitre,
+            });
+            own.corner = Corner::Mitre;
+        }
+        if !open {
+            own.curve = with_ends(own.curve, before.curve.end(), own.curve.end());
+        }
+        edges.push(own);
+    }
+    StageLine { edges, ..line }
+}
+
+/// From the end of an edge to the start of another.
+fn bridge(kind: Bridge, before: &StageEdge, after: &StageEdge) -> Curve {
+    let (start, end) = (before.curve.end(), after.curve.start());
+    let leaving = before.curve.derivative(1.0).try_normalize(1e-15);
+    let arriving = after.curve.derivative(0.0).try_normalize(1e-15);
+    match (kind, leaving, arriving) {
+        (Bridge::Smooth, Some(leaving), Some(arriving)) => {
+            let handle = (end - start).norm() / 3.0;
+            Curve::Cubic {
+                start,
+                controls: [start + leaving * handle, end - arriving * handle],
+                end,
+            }
+        }
+        _ => Curve::Line { start, end },
+    }
+}

@@ -1,0 +1,135 @@
+//! Tools that alter panels: darts pivoted, panels spread.
+
+use super::planning::{Planning, refuse};
+use super::slots::{Answer, Slot, SlotKind, SlotTool};
+use crate::canvas::selection::Item;
+use toile_pattern::plan::{self, PivotWish, SpreadWish};
+use toile_pattern::{Bridge, Name, Number, Want};
+
+/// Moves a dart, or a share of it, to another place of the outline.
+pub static PIVOT: SlotTool = SlotTool {
+    command: "Pivot dart",
+    slots: &[
+        Slot {
+            hint: "Click the dart to move",
+            kind: SlotKind::Operation,
+        },
+        Slot {
+            hint: "Click the outline where it goes to",
+            kind: SlotKind::OnLine,
+        },
+        Slot {
+            hint: "Type the share of it that is moved",
+            kind: SlotKind::Number {
+                label: "share",
+                want: Want::Plain,
+                usual: 1.0,
+                live: None,
+            },
+        },
+    ],
+    plan: |answers, reading| {
+        let [
+            Answer::Operation(panel, dart),
+            Answer::OnLine(on, _, at),
+            Answer::Number(share),
+        ] = answers
+        else {
+            return Err(refuse("nothing was given", "click a dart"));
+        };
+        if on != panel {
+            return Err(refuse(
+                "the new place is on another panel",
+                "click the outline of the dart's own panel",
+            ));
+        }
+        let near = super::panel::marked(reading, *panel, *at)?;
+        let mut planning = Planning::new(reading);
+        let wish = PivotWish {
+            dart: *dart,
+            mouth: (Name::Drawn(near.line), near.mark),
+            share: share.clone(),
+            back: Number::Value(0.0),
+            turned: None,
+        };
+        let id = planning.run(|evaluation| plan::pivot_dart(evaluation, *panel, wish))?;
+        Ok(planning.done("Pivot dart", [Item::Operation(*panel, id)]))
+    },
+};
+
+/// Cuts a panel from edge to edge and spreads the parts.
+pub static SPREAD: SlotTool = SlotTool {
+    command: "Spread",
+    slots: &[
+        Slot {
+            hint: "Click the edge that opens",
+            kind: SlotKind::Edge,
+        },
+        Slot {
+            hint: "Click the edge the cuts go to",
+            kind: SlotKind::Edge,
+        },
+        Slot {
+            hint: "Type how many cuts",
+            kind: SlotKind::Number {
+                label: "cuts",
+                want: Want::Plain,
+                usual: 3.0,
+                live: None,
+            },
+        },
+        Slot {
+            hint: "Type how far each opens",
+            kind: SlotKind::Number {
+                label: "opening",
+                want: Want::Length,
+                usual: 0.03,
+                live: None,
+            },
+        },
+        Slot {
+            hint: "Type how far each opens at the other edge; 0 is a hinge",
+            kind: SlotKind::Number {
+                label: "at the other edge",
+                want: Want::Length,
+                usual: 0.0,
+                live: None,
+            },
+        },
+    ],
+    plan: |answers, reading| {
+        let [
+            Answer::Edge(panel, from, _),
+            Answer::Edge(on, to, _),
+            Answer::Number(count),
+            Answer::Number(near),
+            Answer::Number(far),
+        ] = answers
+        else {
+            return Err(refuse("nothing was given", "click the edge that opens"));
+        };
+        if on != panel {
+            return Err(refuse(
+                "the edges are of two panels",
+                "click another edge of the same panel",
+            ));
+        }
+        let count = reading.evaluation.number(count, Want::Plain);
+        let count = count.filter(|count| (1.0..=100.0).contains(count));
+        let count = count.ok_or_else(|| refuse("a panel is cut 1 to 100 times", "type a count"))?;
+        let mut planning = Planning::new(reading);
+        let id = planning.run(|evaluation| {
+            let count = count.round() as u16;
+            let (line, cuts) = plan::even_cuts(evaluation, *panel, [*from, *to], count)?;
+            let openings = || [near.clone(), far.clone()];
+            let wish = SpreadWish {
+                line,
+                cuts: cuts.into_iter().map(|ends| (ends, openings())).collect(),
+                held: None,
+                bridge: Bridge::default(),
+            };
+            plan::spread_panel(evaluation, *panel, wish)
+        })?;
+        Ok(planning.done("Spread panel", [Item::Operation(*panel, id)]))
+    },
+};
