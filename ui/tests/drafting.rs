@@ -2,136 +2,14 @@
 //! a click, a whole drag, a key or chord, or a typed field with its Enter.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use egui::{Key, Modifiers, Pos2, Role, vec2};
-use egui_kittest::Harness;
+mod drafter;
+
+use drafter::Drafter;
+use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable;
 use toile_geometry::Vec2;
-use toile_pattern::{Evaluation, Pattern};
+use toile_pattern::Evaluation;
 use toile_session::{Command, Project, Session, Silent};
-use toile_ui::{Beginning, ToileApp};
-
-/// A window with its actions counted.
-struct Drafter {
-    window: Harness<'static, ToileApp>,
-    actions: usize,
-}
-
-impl Drafter {
-    fn new() -> Self {
-        Self::begun(Beginning::default())
-    }
-
-    /// A window with a pattern that is shipped.
-    fn opened(name: &str) -> Self {
-        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../patterns");
-        Self::begun(Beginning {
-            file: Some(folder.join(format!("{name}.toile.json"))),
-            folder: None,
-        })
-    }
-
-    fn begun(beginning: Beginning) -> Self {
-        let mut window = Harness::builder()
-            .with_size(vec2(1400.0, 900.0))
-            .with_theme(egui::Theme::Light)
-            .with_max_steps(20)
-            .with_step_dt(1.0 / 60.0)
-            .build_eframe(move |creation| {
-                let state = creation.wgpu_render_state.as_ref();
-                ToileApp::new(&creation.egui_ctx, state, beginning)
-            });
-        window.run();
-        Self { window, actions: 0 }
-    }
-
-    fn pattern(&self) -> Pattern {
-        (*self.window.state().session().project().pattern).clone()
-    }
-
-    fn evaluation(&self) -> Evaluation {
-        let project = self.window.state().session().project();
-        Evaluation::new(&project.pattern, project.drafted_to())
-    }
-
-    /// Presses a button or an entry of a menu that is open.
-    fn press(&mut self, name: &str) {
-        self.actions += 1;
-        self.window
-            .get_by_role_and_label(Role::Button, name)
-            .click();
-        self.window.run();
-    }
-
-    fn key(&mut self, key: Key) {
-        self.chord(Modifiers::NONE, key);
-    }
-
-    fn chord(&mut self, modifiers: Modifiers, key: Key) {
-        self.actions += 1;
-        self.window.key_press_modifiers(modifiers, key);
-        self.window.run();
-    }
-
-    /// Types text where the keys go, and takes it.
-    fn typed(&mut self, text: &str) {
-        self.actions += 1;
-        for c in text.chars() {
-            self.window.event(egui::Event::Text(c.to_string()));
-            self.window.run();
-        }
-        self.window.key_press(Key::Enter);
-        self.window.run();
-    }
-
-    /// Types text into the field of a name, and takes it.
-    fn enter(&mut self, field: &str, text: &str) {
-        let field = self.window.get_by_role_and_label(Role::TextInput, field);
-        field.focus();
-        self.window.run();
-        self.window.event(egui::Event::Text(text.into()));
-        self.window.run();
-        self.window.key_press(Key::Enter);
-        self.window.run();
-        self.actions += 1;
-    }
-
-    fn click(&mut self, at: Pos2) {
-        self.actions += 1;
-        self.window.hover_at(at);
-        self.window.run();
-        self.window.drag_at(at);
-        self.window.drop_at(at);
-        self.window.run();
-    }
-
-    fn hover(&mut self, at: Pos2) {
-        self.window.hover_at(at);
-        self.window.run();
-    }
-
-    /// Where a named part is seen.
-    fn part(&self, name: &str) -> Pos2 {
-        let part = self.window.get_by_role_and_label(Role::Button, name);
-        part.rect().center()
-    }
-
-    /// A place of the first sheet on the screen.
-    fn place(&self, x: f64, y: f64) -> Pos2 {
-        let view = self.window.get_by_label("Pattern view").rect();
-        let view_state = self.window.state().view();
-        let origin = view_state.sheet_origin();
-        view_state.screen(view, origin, Vec2::new(x, y))
-    }
-
-    fn point(&self, name: &str) -> Vec2 {
-        let pattern = self.pattern();
-        let found = pattern
-            .sheets
-            .iter()
-            .find_map(|sheet| sheet.point_named(name));
-        self.evaluation().point(found.unwrap().id).unwrap()
-    }
-}
 
 #[test]
 fn a_skirt_panel_with_a_dart_from_an_empty_window() {
@@ -275,17 +153,6 @@ fn lines_by_lengths_and_angles_become_constructions() {
     assert_eq!(drafter.pattern().panels.len(), 1, "{}", drafter.status());
     drafter.key(Key::Escape);
     assert!(drafter.window.query_by_label("No faults").is_some());
-}
-
-impl Drafter {
-    /// What the status line says.
-    fn status(&self) -> String {
-        let labels = self.window.query_all_by_role(Role::Label);
-        labels
-            .filter_map(|label| label.value())
-            .collect::<Vec<_>>()
-            .join(" | ")
-    }
 }
 
 #[test]
@@ -517,24 +384,4 @@ fn what_is_selected_is_moved_turned_mirrored_scaled_and_copied() {
     drafter.window.event(egui::Event::Paste(text.unwrap()));
     drafter.window.run();
     assert_eq!(drafter.pattern().panels.len(), 3, "{}", drafter.status());
-}
-
-impl Drafter {
-    /// Types text where the keys go.
-    fn type_text(&mut self, text: &str) {
-        for c in text.chars() {
-            self.window.event(egui::Event::Text(c.to_string()));
-            self.window.run();
-        }
-        self.actions += 1;
-    }
-
-    /// Ticks a box.
-    fn enter_choice(&mut self, name: &str) {
-        self.actions += 1;
-        self.window
-            .get_by_role_and_label(Role::CheckBox, name)
-            .click();
-        self.window.run();
-    }
 }

@@ -1,0 +1,166 @@
+//! A window that is drafted in by raw events, with its actions counted: an action is a click, a whole
+//! drag, a key or chord, or a typed field with its Enter.
+#![allow(dead_code)]
+
+use egui::{Key, Modifiers, Pos2, Role, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use toile_geometry::Vec2;
+use toile_pattern::{Evaluation, Pattern};
+use toile_ui::{Beginning, ToileApp};
+
+/// A window with its actions counted.
+pub struct Drafter {
+    /// The window.
+    pub window: Harness<'static, ToileApp>,
+    /// What was done.
+    pub actions: usize,
+}
+
+impl Drafter {
+    pub fn new() -> Self {
+        Self::begun(Beginning::default())
+    }
+
+    /// A window with a pattern that is shipped.
+    pub fn opened(name: &str) -> Self {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../patterns");
+        Self::begun(Beginning {
+            file: Some(folder.join(format!("{name}.toile.json"))),
+            folder: None,
+        })
+    }
+
+    pub fn begun(beginning: Beginning) -> Self {
+        let mut window = Harness::builder()
+            .with_size(vec2(1400.0, 900.0))
+            .with_theme(egui::Theme::Light)
+            .with_max_steps(20)
+            .with_step_dt(1.0 / 60.0)
+            .build_eframe(move |creation| {
+                let state = creation.wgpu_render_state.as_ref();
+                ToileApp::new(&creation.egui_ctx, state, beginning)
+            });
+        window.run();
+        Self { window, actions: 0 }
+    }
+
+    pub fn pattern(&self) -> Pattern {
+        (*self.window.state().session().project().pattern).clone()
+    }
+
+    pub fn evaluation(&self) -> Evaluation {
+        let project = self.window.state().session().project();
+        Evaluation::new(&project.pattern, project.drafted_to())
+    }
+
+    /// Presses a button or an entry of a menu that is open.
+    pub fn press(&mut self, name: &str) {
+        self.actions += 1;
+        self.window
+            .get_by_role_and_label(Role::Button, name)
+            .click();
+        self.window.run();
+    }
+
+    pub fn key(&mut self, key: Key) {
+        self.chord(Modifiers::NONE, key);
+    }
+
+    pub fn chord(&mut self, modifiers: Modifiers, key: Key) {
+        self.actions += 1;
+        self.window.key_press_modifiers(modifiers, key);
+        self.window.run();
+    }
+
+    /// Types text where the keys go, and takes it.
+    pub fn typed(&mut self, text: &str) {
+        self.actions += 1;
+        for c in text.chars() {
+            self.window.event(egui::Event::Text(c.to_string()));
+            self.window.run();
+        }
+        self.window.key_press(Key::Enter);
+        self.window.run();
+    }
+
+    /// Types text into the field of a name, and takes it.
+    pub fn enter(&mut self, field: &str, text: &str) {
+        let field = self.window.get_by_role_and_label(Role::TextInput, field);
+        field.focus();
+        self.window.run();
+        self.window.event(egui::Event::Text(text.into()));
+        self.window.run();
+        self.window.key_press(Key::Enter);
+        self.window.run();
+        self.actions += 1;
+    }
+
+    pub fn click(&mut self, at: Pos2) {
+        self.actions += 1;
+        self.window.hover_at(at);
+        self.window.run();
+        self.window.drag_at(at);
+        self.window.drop_at(at);
+        self.window.run();
+    }
+
+    pub fn hover(&mut self, at: Pos2) {
+        self.window.hover_at(at);
+        self.window.run();
+    }
+
+    /// Where a named part is seen.
+    pub fn part(&self, name: &str) -> Pos2 {
+        let part = self.window.get_by_role_and_label(Role::Button, name);
+        part.rect().center()
+    }
+
+    /// A place of the first sheet on the screen.
+    pub fn place(&self, x: f64, y: f64) -> Pos2 {
+        let view = self.window.get_by_label("Pattern view").rect();
+        let view_state = self.window.state().view();
+        let origin = view_state.sheet_origin();
+        view_state.screen(view, origin, Vec2::new(x, y))
+    }
+
+    pub fn point(&self, name: &str) -> Vec2 {
+        let pattern = self.pattern();
+        let found = pattern
+            .sheets
+            .iter()
+            .find_map(|sheet| sheet.point_named(name));
+        self.evaluation().point(found.unwrap().id).unwrap()
+    }
+}
+
+impl Drafter {
+    /// What the status line says.
+    pub fn status(&self) -> String {
+        let labels = self.window.query_all_by_role(Role::Label);
+        labels
+            .filter_map(|label| label.value())
+            .collect::<Vec<_>>()
+            .join(" | ")
+    }
+}
+
+impl Drafter {
+    /// Types text where the keys go.
+    pub fn type_text(&mut self, text: &str) {
+        for c in text.chars() {
+            self.window.event(egui::Event::Text(c.to_string()));
+            self.window.run();
+        }
+        self.actions += 1;
+    }
+
+    /// Ticks a box.
+    pub fn enter_choice(&mut self, name: &str) {
+        self.actions += 1;
+        self.window
+            .get_by_role_and_label(Role::CheckBox, name)
+            .click();
+        self.window.run();
+    }
+}
