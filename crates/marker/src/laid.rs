@@ -6,6 +6,7 @@ use crate::{Laying, MarkerError, Nested};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use toile_cut::CutPiece;
+use toile_geometry::Polygon;
 use toile_nesting::{Locked, Pose, Search, Side, Strip, Unplaced, clashes};
 use toile_pattern::{Marker, OrderedPiece, PiecePlacement};
 
@@ -46,13 +47,33 @@ pub struct WaitingPiece<'a> {
     pub cut: &'a Arc<CutPiece>,
 }
 
+/// Two pieces that overlap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PieceOverlap {
+    /// The pieces.
+    pub pieces: [OrderedPiece; 2],
+    /// What is cut twice, in the plane of the fabric [m].
+    pub region: Vec<Polygon>,
+}
+
+/// A piece that reaches beyond the usable fabric.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PieceOutside {
+    /// The piece.
+    pub piece: OrderedPiece,
+    /// Where.
+    pub side: Side,
+    /// By how much [m].
+    pub by: f64,
+}
+
 /// What keeps a marker from being cut as it lies, and what it comes to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MarkerState {
-    /// Pairs of pieces that overlap, and the shortest move that ends it [m].
-    pub overlaps: Vec<([OrderedPiece; 2], f64)>,
-    /// Pieces that reach beyond the usable fabric, where, and by how much [m].
-    pub outside: Vec<(OrderedPiece, Side, f64)>,
+    /// Pairs of pieces that overlap.
+    pub overlaps: Vec<PieceOverlap>,
+    /// Pieces that reach beyond the usable fabric.
+    pub outside: Vec<PieceOutside>,
     /// Pieces laid.
     pub laid: usize,
     /// Pieces that wait to be laid.
@@ -185,13 +206,18 @@ impl LaidMarker {
         let job = &self.pieces.job;
         let found = clashes(&job.items, self.strip(), &self.laid);
         let piece = |k: usize| self.marker.placements[self.sources[k]].piece;
-        let overlaps = found.overlaps.iter();
-        let outside = found.outside.iter();
+        let overlaps = found.overlaps.into_iter().map(|overlap| PieceOverlap {
+            pieces: overlap.pair.map(piece),
+            region: overlap.region,
+        });
+        let outside = found.outside.iter().map(|outside| PieceOutside {
+            piece: piece(outside.placement),
+            side: outside.side,
+            by: outside.by,
+        });
         MarkerState {
-            overlaps: overlaps.map(|o| (o.pair.map(piece), o.depth)).collect(),
-            outside: outside
-                .map(|o| (piece(o.placement), o.side, o.by))
-                .collect(),
+            overlaps: overlaps.collect(),
+            outside: outside.collect(),
             laid: self.laid.placements.len(),
             waiting: self.laid.unplaced.len(),
             length: found.length,

@@ -27,7 +27,9 @@ pub use file::{MarkerFormat, marker_files};
 pub use flaws::GivenFlaw;
 pub use follow::{Follow, Standing};
 pub use judging::{Judged, judge_file};
-pub use laid::{Found, LaidMarker, LaidPiece, MarkerState, Start, WaitingPiece};
+pub use laid::{
+    Found, LaidMarker, LaidPiece, MarkerState, PieceOutside, PieceOverlap, Start, WaitingPiece,
+};
 pub use laying::Laying;
 pub use nested::Nested;
 pub use options::NestOptions;

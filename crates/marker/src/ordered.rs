@@ -64,8 +64,7 @@ impl MarkerPieces {
                 label: name.map(|size| &*size.name).filter(|_| several),
             });
         }
-        let mut wanted = wanted_of(&garments, &options)?;
-        wanted.retain(|wanted| wanted.fabric == fabric.name);
+        let wanted = wanted_of(&garments, &options, Some(&fabric.name))?;
         if wanted.is_empty() {
             return Err(NestingError::NoItems.into());
         }
@@ -85,6 +84,15 @@ impl MarkerPieces {
             options,
             keys,
         })
+    }
+
+    /// Whether these are to the bit the pieces and the fabric of others.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.cloth == other.cloth
+            && self.order == other.order
+            && self.job.items == other.job.items
+            && self.job.pieces == other.job.pieces
+            && self.strip() == other.strip()
     }
 
     /// The fabric as it lies.

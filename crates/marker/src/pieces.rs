@@ -39,10 +39,12 @@ pub(crate) struct Wanted {
 }
 
 /// Everything that is to be cut, in the order of the drafts. Where pieces are matched, every
-/// garment's pieces stand alone, as each garment is matched in itself.
+/// garment's pieces stand alone, as each garment is matched in itself. If a fabric is named, what
+/// is cut from it alone.
 pub(crate) fn wanted_of(
     garments: &[Garments<'_>],
     options: &NestOptions,
+    only: Option<&str>,
 ) -> Result<Vec<Wanted>, MarkerError> {
     check_piece_names(garments, options)?;
     check_count(garments, options)?;
@@ -63,6 +65,17 @@ pub(crate) fn wanted_of(
                     continue;
                 };
                 let settings = options.piece(panel_name(garment, piece), &piece.name);
+                let fabric = settings.fabric.as_deref().unwrap_or(&own.name);
+                let also = settings.also.iter().flatten();
+                let also = also.filter(|(_, count)| piece.id.copy == 0 && **count > 0);
+                let cut_from = std::iter::once((fabric, 1));
+                let cut_from = cut_from.chain(also.map(|(fabric, count)| (&**fabric, *count)));
+                let cut_from: Vec<(&str, u32)> = cut_from
+                    .filter(|(fabric, _)| only.is_none_or(|only| only == *fabric))
+                    .collect();
+                if cut_from.is_empty() {
+                    continue;
+                }
                 let cut = cut_piece(garment, number, &settings)?;
                 let found = match piece.id.copy {
                     0 => cut.diagnostics(garment.pattern),
@@ -91,13 +104,11 @@ pub(crate) fn wanted_of(
                     cut: cut.clone(),
                     notes: notes_of(&found, garment.label),
                 };
-                let fabric = settings.fabric.as_deref().unwrap_or(&own.name);
-                all.push(wanted(fabric, 1));
-                for (fabric, &count) in settings.also.iter().flatten() {
-                    if piece.id.copy == 0 && count > 0 {
-                        all.push(wanted(fabric, count));
-                    }
-                }
+                all.extend(
+                    cut_from
+                        .iter()
+                        .map(|&(fabric, count)| wanted(fabric, count)),
+                );
             }
         }
     }

@@ -24,7 +24,7 @@ pub fn lay(
     follow: &mut Follow<'_>,
 ) -> Result<Vec<Laying>, MarkerError> {
     let mut groups: Vec<(String, Vec<Wanted>)> = Vec::new();
-    for wanted in wanted_of(garments, options)? {
+    for wanted in wanted_of(garments, options, None)? {
         match groups.iter_mut().find(|g| g.0 == wanted.fabric) {
             Some(group) => group.1.push(wanted),
             None => groups.push((wanted.fabric.clone(), vec![wanted])),

@@ -3,7 +3,7 @@
 
 use crate::referee::{beyond_limit, sides};
 use crate::{Item, Marker, PENETRATION_LIMIT, Side, Strip};
-use toile_geometry::PreparedPolygon;
+use toile_geometry::{Polygon, PreparedPolygon, intersection, total_area};
 
 /// Pieces that cannot be cut where they lie, and what the marker comes to. Placements are named by
 /// their index in the marker.
@@ -15,20 +15,20 @@ pub struct Clashes {
     pub outside: Vec<Outside>,
     /// Fabric used, end margins included \[m\].
     pub length: f64,
-    /// Area of the pieces over width times length between the end margins; above 1 where they
-    /// overlap.
+    /// Area of the pieces over width times length between the end margins, a plain ratio; above 1
+    /// where they overlap.
     pub efficiency: f64,
-    /// Area of the pieces over width times length.
+    /// Area of the pieces over width times length, a plain ratio.
     pub utilisation: f64,
 }
 
 /// Two pieces that overlap.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Overlap {
     /// The placements, the lower index first.
     pub pair: [usize; 2],
-    /// Length of the shortest move that ends it \[m\].
-    pub depth: f64,
+    /// What is cut twice, in the plane of the fabric \[m\].
+    pub region: Vec<Polygon>,
 }
 
 /// A piece that reaches beyond the usable fabric.
@@ -49,10 +49,19 @@ impl Clashes {
     }
 }
 
+/// Whether two outlines that share a region lie deeper in each other than the limit. A move d that
+/// parts them sweeps the whole region with the boundary of either, so area <= d * perimeter: where
+/// the area is larger the costly depth need not be known.
+fn is_deep([a, b]: [&PreparedPolygon; 2], region: &[Polygon]) -> bool {
+    let perimeter = a.polygon().perimeter().min(b.polygon().perimeter());
+    total_area(region) > 2.0 * PENETRATION_LIMIT * perimeter
+        || a.penetration_depth(b) > PENETRATION_LIMIT
+}
+
 /// Overlapping pairs and pieces off the fabric, by the referee's limits and exact predicates.
 /// Gaps, orientations, print and flaws are not looked at. Placements that name no item, or whose
-/// place is not finite, are passed over. Costs a sweep along the warp, and one exact test for each
-/// pair whose boxes meet.
+/// place is not finite, are passed over. Costs a sweep along the warp, an exact test for each
+/// pair whose boxes meet, and what each overlapping pair shares.
 pub fn clashes(items: &[Item], strip: &Strip, marker: &Marker) -> Clashes {
     let mut measured = marker.clone();
     measured.measure(items, strip);
@@ -90,11 +99,11 @@ pub fn clashes(items: &[Item], strip: &Strip, marker: &Marker) -> Clashes {
             if !one.bounds().overlaps(&outline.bounds()) || !one.overlaps(outline) {
                 continue;
             }
-            let depth = one.penetration_depth(outline);
-            if depth > PENETRATION_LIMIT {
+            let region = intersection(one.polygon(), outline.polygon());
+            if is_deep([one, outline], &region) {
                 found.overlaps.push(Overlap {
                     pair: [*k.min(other), *k.max(other)],
-                    depth,
+                    region,
                 });
             }
         }

@@ -84,7 +84,7 @@ pub use toile_interchange::{
 };
 pub use toile_marker::{
     Follow, Found, GivenFlaw, LaidMarker, LaidPiece, MarkerError, MarkerFormat, MarkerState,
-    NestOptions, Nested, Standing, Start, WaitingPiece,
+    NestOptions, Nested, PieceOutside, PieceOverlap, Standing, Start, WaitingPiece,
 };
 pub use toile_nesting::{Budget, Nap, Pose, Search, Side};
 pub use toile_pattern::Spread;

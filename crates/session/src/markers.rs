@@ -187,12 +187,12 @@ impl Session {
     pub fn adopt_marker(&mut self, found: FoundMarker) -> Result<Option<Vec<Event>>, SessionError> {
         let id = found.marker.id;
         let now = self.project.pattern.marker(id);
-        let is_same = now.is_some_and(|now| Arc::ptr_eq(now, &found.marker));
+        let is_same = now.is_some_and(|now| **now == *found.marker);
         if self.gesture.is_some() || !is_same {
             return Ok(None);
         }
         let pieces = self.derived.markers.pieces(&self.project, &found.marker)?;
-        if !Arc::ptr_eq(&pieces, &found.pieces) {
+        if !Arc::ptr_eq(&pieces, &found.pieces) && !pieces.is_same(&found.pieces) {
             return Ok(None);
         }
         let edits = plan::place_marker(&self.evaluation(), id, found.found.placements)?;

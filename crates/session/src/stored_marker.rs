@@ -74,12 +74,15 @@ pub fn nest_marker(
     Ok((nested, paths))
 }
 
+/// A file to write: its name and what is in it.
+type NamedFile = (String, Vec<u8>);
+
 /// A marker as it lies, in a few numbers and as files.
 fn written(
     session: &mut Session,
     id: MarkerId,
     formats: &[MarkerFormat],
-) -> Result<(Nested, Vec<(String, Vec<u8>)>), SessionError> {
+) -> Result<(Nested, Vec<NamedFile>), SessionError> {
     let laid = session.marker(id)?;
     let name = format!("{}, {}", session.project().pattern.name, laid.marker().name);
     let layings = [laid.laying()];

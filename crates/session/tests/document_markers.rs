@@ -170,7 +170,7 @@ fn a_marker_is_laid_moved_locked_undone_saved_and_reopened() {
     let moved = plan::move_pieces(&session.evaluation(), (id, &[back]), by).unwrap();
     edit(&mut session, moved);
     let overlapping = state(&mut session, id);
-    let pairs: Vec<_> = overlapping.overlaps.iter().map(|o| o.0).collect();
+    let pairs: Vec<_> = overlapping.overlaps.iter().map(|o| o.pieces).collect();
     assert!(
         pairs
             .iter()
@@ -190,9 +190,13 @@ fn a_marker_is_laid_moved_locked_undone_saved_and_reopened() {
     let kept = placements(&session, id);
     assert!(kept.iter().find(|laid| laid.piece == front).unwrap().locked);
     let as_it_lies = state(&mut session, id);
+    let steps = session.past().len();
     lay(&mut session, id, (Start::AsItLies, search(2)));
     assert!(state(&mut session, id).length <= as_it_lies.length + 1e-9);
-    undo(&mut session);
+    // Where nothing shorter was found there is no step.
+    while session.past().len() > steps {
+        undo(&mut session);
+    }
     assert_eq!(placements(&session, id), kept);
     for _ in 0..2 {
         undo(&mut session);
@@ -375,7 +379,7 @@ fn on_folded_fabric_pairs_are_laid_once_and_halves_on_the_fold() {
     assert!(twins > 0);
     lay(&mut session, id, (Start::Anew, search(1)));
     assert!(session.marker(id).unwrap().laying().verdict.is_sound());
-    assert_eq!(session.marker(id).unwrap().suspended().len(), twins);
+    assert!(session.marker(id).unwrap().suspended().is_empty());
     // Of no fabric at all.
     session
         .execute(
@@ -452,7 +456,8 @@ fn what_is_kept_of_a_marker_is_what_a_fresh_session_makes() {
     let id = marked(&mut session);
     lay(&mut session, id, (Start::Anew, search(1)));
     let size = session.project().pattern.size_named("M").unwrap().id;
-    let changes: [&dyn Fn(&Evaluation) -> Vec<Edit>; 4] = [
+    type Change<'a> = &'a dyn Fn(&Evaluation) -> Vec<Edit>;
+    let changes: [Change<'_>; 4] = [
         &|evaluation| plan::set_measurement(evaluation, size, "bust", Some(1.1)).unwrap(),
         &|evaluation| plan::rename(evaluation, size.into(), "Medium").unwrap(),
         &|evaluation| {

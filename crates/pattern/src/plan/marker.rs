@@ -7,7 +7,7 @@ use crate::{
     Edit, EditError, Entity, Evaluation, FabricId, Marker, MarkerCloth, MarkerId, OrderedPiece,
     OrderedSize, PiecePlacement,
 };
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
@@ -85,8 +85,9 @@ pub fn set_marker_cloth(
     put(Marker { cloth, ..marker })
 }
 
-/// The edits that lay all of a marker anew, as a search found it. Places of pieces that the order
-/// does not cut, or whose panel is gone, stay as they are.
+/// The edits that lay all of a marker anew, as a search found it. Locked pieces and those that the
+/// order does not cut, or whose panel is gone, keep their places; other pieces that are not given
+/// wait to be laid.
 ///
 /// # Errors
 /// The marker is not there; a piece is laid twice or nowhere; a locked piece would move.
@@ -97,17 +98,20 @@ pub fn place_marker(
 ) -> Result<Vec<Edit>, EditError> {
     let mut marker = found(evaluation, id)?.clone();
     let cut: HashSet<OrderedPiece> = evaluation.pattern().ordered_pieces(&marker).collect();
-    let new = |piece: OrderedPiece| placements.iter().find(|laid| laid.piece == piece);
-    for laid in &marker.placements {
-        let same = new(laid.piece).is_some_and(|new| {
-            (new.at, new.turn, new.flipped) == (laid.at, laid.turn, laid.flipped)
-        });
-        if laid.locked && !same && cut.contains(&laid.piece) {
-            return Err(locked(evaluation, laid.piece));
-        }
+    let new: HashMap<OrderedPiece, PiecePlacement> =
+        placements.iter().map(|laid| (laid.piece, *laid)).collect();
+    let moves = |laid: &&PiecePlacement| {
+        let new = new.get(&laid.piece);
+        let place = |laid: &PiecePlacement| (laid.at, laid.turn, laid.flipped);
+        laid.locked && new.is_some_and(|new| place(new) != place(laid))
+    };
+    if let Some(laid) = marker.placements.iter().find(moves) {
+        return Err(locked(evaluation, laid.piece));
     }
-    let stays = |laid: &PiecePlacement| !cut.contains(&laid.piece) && new(laid.piece).is_none();
-    marker.placements.retain(stays);
+    let stays = |laid: &PiecePlacement| laid.locked || !cut.contains(&laid.piece);
+    marker
+        .placements
+        .retain(|laid| stays(laid) && !new.contains_key(&laid.piece));
     marker.placements.extend(placements);
     put(marker)
 }
