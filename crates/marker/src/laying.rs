@@ -54,6 +54,18 @@ impl Laying {
         }
     }
 
+    /// What keeps it from being cut, in words.
+    pub fn faults(&self) -> Vec<String> {
+        let name = |k: usize| {
+            let laid = &self.marker.placements[k];
+            format!("\"{}\" {}", self.items[laid.item].name, laid.copy)
+        };
+        let violations = self.verdict.violations.iter();
+        violations
+            .map(|violation| violation.in_words(&name))
+            .collect()
+    }
+
     /// Area of the pieces that were laid, seam allowance included [m2].
     pub fn cut_area(&self) -> f64 {
         let area = |p: &toile_nesting::Placement| self.items[p.item].outline.area().abs();

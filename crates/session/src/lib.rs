@@ -21,6 +21,7 @@ mod hands;
 mod history;
 mod journal;
 mod judging;
+mod kept_markers;
 mod laying;
 mod live;
 mod markers;
@@ -77,7 +78,7 @@ pub use study::{RuleCost, rule_table, study_rules};
 pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
 pub use toile_body::{Description, Figure, Fit, PrimitiveEdit, ProportionBox, Scaling};
-pub use toile_cut::{CutList, CutListPiece, Shrinkage};
+pub use toile_cut::{CutList, CutListPiece, CutPiece, Drawing, Shrinkage, Stroke, StrokeKind};
 pub use toile_drape::Stage;
 pub use toile_interchange::{
     Lines, MarkerSettings, Paper, SizeChoice, Tile, Wanted, write_atomically,
@@ -86,7 +87,7 @@ pub use toile_marker::{
     Follow, Found, GivenFlaw, LaidMarker, LaidPiece, MarkerError, MarkerFormat, MarkerState,
     NestOptions, Nested, PieceOutside, PieceOverlap, Standing, Start, WaitingPiece,
 };
-pub use toile_nesting::{Budget, Nap, Pose, Search, Side};
+pub use toile_nesting::{Budget, Nap, Pose, Search, Side, Strip};
 pub use toile_pattern::Spread;
 pub use tools::{
     BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, convert, fit_mesh, make_body,

@@ -24,7 +24,8 @@ pub struct MarkerJob {
 }
 
 /// Searches for a marker of a pattern file, stores where its pieces lie in the file, and writes the
-/// marker. Returns a summary and the files written, the pattern's first if it was stored.
+/// marker. Returns a summary, with what keeps it from being cut among its notes, and the files written,
+/// the pattern's first if it was stored.
 ///
 /// # Errors
 /// The pattern cannot be read, is not in Toile's format or has what would be lost in storing; it
@@ -89,6 +90,7 @@ fn written(
     let mut files = Vec::new();
     let lost = marker_files((&name, formats), &layings, &mut files)?;
     let mut nested = layings[0].summary();
+    nested.notes.extend(layings[0].faults());
     nested.notes.extend(lost.into_iter().flatten());
     Ok((nested, files))
 }

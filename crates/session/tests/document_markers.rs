@@ -426,6 +426,24 @@ fn a_marker_of_a_file_is_stored_there_and_written() {
     assert_eq!(paths, [out.join("marker.svg"), out.join("marker.json")]);
     assert_eq!(std::fs::read(out.join("marker.json")).unwrap(), marker);
     assert_eq!(std::fs::read_to_string(&path).unwrap(), written);
+    // A piece moved onto another is told.
+    let [front, back] = ["front", "back"].map(|name| piece(&again, id, name));
+    let at = |piece| {
+        let laid = placements(&again, id);
+        laid.iter().find(|laid| laid.piece == piece).unwrap().at
+    };
+    let by = [at(front)[0] - at(back)[0], at(front)[1] - at(back)[1]];
+    let moved = plan::move_pieces(&again.evaluation(), (id, &[back]), by).unwrap();
+    edit(&mut again, moved);
+    let other = folder.path().join("moved.toile.json");
+    let save = Command::SavePattern {
+        path: other.clone(),
+    };
+    again.execute(save, &mut Silent).unwrap();
+    let (told, _) = nest_marker(&other, &stored, (&out, &mut Silent)).unwrap();
+    assert!(!told.sound);
+    let is_told = |note: &String| note.contains("front") && note.contains("overlap by");
+    assert!(told.notes.iter().any(is_told), "{:?}", told.notes);
     // Stopped before anything is found: nothing is written.
     let mut stop = |_: &str, _: f64, _: &str| ControlFlow::Break(());
     let stopped = nest_marker(&path, &job, (&out, &mut stop));
