@@ -232,9 +232,9 @@ impl ToileApp {
         let palette = Palette::of(ui.ctx());
         Grid::new("variables")
             .striped(true)
-            .num_columns(4)
+            .num_columns(5)
             .show(ui, |ui| {
-                for head in ["Name", "Number or formula", "Value", ""] {
+                for head in ["", "Name", "Number or formula", "Value", ""] {
                     ui.label(RichText::new(head).strong());
                 }
                 ui.end_row();

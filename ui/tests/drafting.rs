@@ -385,3 +385,68 @@ fn what_is_selected_is_moved_turned_mirrored_scaled_and_copied() {
     drafter.window.run();
     assert_eq!(drafter.pattern().panels.len(), 3, "{}", drafter.status());
 }
+
+#[test]
+fn hems_meet_hems_when_both_panels_are_drawn_alike() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Skirt");
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.4));
+    drafter.chord(Modifiers::SHIFT, Key::F);
+    drafter.click(drafter.part("Edge left of draft"));
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.click(drafter.part("Panel draft"));
+    drafter.chord(Modifiers::COMMAND, Key::D);
+    drafter.key(Key::F);
+    let pattern = drafter.pattern();
+    let [front, back] = &pattern.panels[..] else {
+        panic!("{}", drafter.status());
+    };
+    let side = |panel: &toile_pattern::Panel| {
+        let edge = panel.edges().find(|edge| edge.name.starts_with("right"));
+        format!("Edge {} of {}", edge.unwrap().name, panel.name)
+    };
+    let (first, second) = (side(front), side(back));
+    drafter.key(Key::S);
+    drafter.click(drafter.part(&first));
+    drafter.click(drafter.part(&second));
+    let evaluation = drafter.evaluation();
+    let pattern = drafter.pattern();
+    assert_eq!(pattern.seams.len(), 2, "{}", drafter.status());
+    for seam in &pattern.seams {
+        assert!(!toile_pattern::plan::is_upside_down(&evaluation, seam.id));
+        let halves = [0, 1].map(|side| seam.sides[side][0].half);
+        assert_ne!(halves[0], halves[1]);
+    }
+    // The fold is taken off by a click on its line.
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    let x = drafter.place(0.0, 0.3);
+    drafter.click(x);
+    drafter.key(Key::Delete);
+    let front = &drafter.pattern().panels[0];
+    assert!(front.operations.is_empty(), "{}", drafter.status());
+}
+
+#[test]
+fn an_edge_is_bent_through_a_place() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Bent");
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.chord(Modifiers::SHIFT, Key::B);
+    drafter.click(drafter.part("Edge top of draft"));
+    drafter.click(drafter.place(0.1, 0.27));
+    let pattern = drafter.pattern();
+    let evaluation = drafter.evaluation();
+    let edge = pattern.panels[0].edges().find(|edge| edge.name == "top");
+    let path = evaluation.edge(edge.unwrap().id).unwrap();
+    let middle = path.point(path.nearest(Vec2::new(0.1, 0.27)).unwrap());
+    assert!((middle - Vec2::new(0.1, 0.27)).norm() < 2e-3, "{middle}");
+    assert!(path.length() > 0.205);
+}

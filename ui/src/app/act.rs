@@ -45,6 +45,7 @@ impl ToileApp {
 
     /// Takes a tool in hand; a gesture of the one before is left.
     pub(crate) fn take(&mut self, tool: Tool) {
+        self.notice = Notice::default();
         self.leave_gesture();
         self.view.take(tool);
     }
@@ -59,6 +60,7 @@ impl ToileApp {
 
     pub(crate) fn deselect(&mut self) {
         self.stop_printing();
+        self.notice = Notice::default();
         match self.view.tool {
             Tool::Select => {
                 let outcome = self.view.step(&Event::Escape, &self.base);
@@ -102,6 +104,9 @@ impl ToileApp {
             self.commit(&label);
         }
         if let Some(selection) = outcome.select {
+            if !self.notice.is_news() {
+                self.notice = Notice::default();
+            }
             self.view.select(selection);
         }
         if let Some(words) = outcome.refusal {

@@ -12,6 +12,9 @@ use toile_session::Project;
 /// How far what is pasted lies beside where it was copied [m].
 const ASIDE: f64 = 0.02;
 
+/// Room between panels and their duplicate [m].
+const BESIDE: f64 = 0.05;
+
 impl ToileApp {
     fn selected_parts(&self) -> Vec<PartId> {
         let items = self.view.selection.items().iter();
@@ -120,7 +123,23 @@ impl ToileApp {
     }
 
     pub(crate) fn duplicate(&mut self) {
-        let pasted = plan::duplicate(&self.base, &self.selected_parts());
+        let parts = self.selected_parts();
+        let panels = self.view.selection.panels();
+        let pasted = match panels.len() == parts.len() {
+            // Beside the panels as they are seen, with their mirrored halves.
+            true => plan::copy(&self.base, &parts).and_then(|fragment| {
+                let scene = &self.view.scene;
+                let seen = panels.iter().filter_map(|id| scene.panel_scene(*id));
+                let bounds = seen.map(|panel| *panel.bounds()).reduce(|a, b| a.union(&b));
+                let width = bounds.map_or(0.0, |bounds| bounds.size().x);
+                let target = PasteTarget {
+                    sheet: None,
+                    offset: [width + BESIDE, 0.0],
+                };
+                plan::paste(&self.base, &fragment, target)
+            }),
+            false => plan::duplicate(&self.base, &parts),
+        };
         self.take_pasted(pasted, "Duplicate");
     }
 

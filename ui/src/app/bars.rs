@@ -24,6 +24,7 @@ const TOOL_BUTTONS: &[&[&str]] = &[
     &[
         "Trace",
         "Divide edge",
+        "Bend edge",
         "Dart",
         "Pivot dart",
         "Spread",

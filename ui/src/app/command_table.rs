@@ -20,10 +20,34 @@ pub fn named(name: &str) -> Option<&'static UiCommand> {
 pub struct KeysTaken {
     /// Text is typed: all but those with a command key.
     pub typing: bool,
+    /// A field for text has the focus: those it edits with too.
+    pub text: bool,
     /// A tool takes numbers: those a number begins with.
     pub numbers: bool,
     /// A tool is under way: Escape goes a step back in it.
     pub busy: bool,
+    /// A dialog is open: all of them.
+    pub modal: bool,
+}
+
+/// Whether a key with the command key is one of a field for text.
+fn edits_text(key: Key) -> bool {
+    use Key::{A, C, V, X, Y, Z};
+    matches!(key, A | C | V | X | Y | Z)
+}
+
+/// Whether a key types nothing.
+fn is_function(key: Key) -> bool {
+    use Key::{F1, F2, F3, F4, F5, F6, F7, F8, F9, F10, F11, F12};
+    matches!(
+        key,
+        F1 | F2 | F3 | F4 | F5 | F6 | F7 | F8 | F9 | F10 | F11 | F12
+    )
+}
+
+/// Whether a number or formula can begin with a character.
+pub fn begins_typing(c: char) -> bool {
+    c.is_ascii_digit() || matches!(c, '=' | '.' | ',' | '-' | '(')
 }
 
 /// Whether a number can begin with a key.
@@ -62,9 +86,18 @@ pub fn pressed(context: &egui::Context, keys: KeysTaken) -> Vec<&'static UiComma
     keyed.sort_by_key(|(_, key)| std::cmp::Reverse(modifiers(key)));
     let mut pressed = Vec::new();
     context.input_mut(|input| {
+        // Several letters may come in one frame: the first of a number or formula makes the others
+        // part of it.
+        let begun = keys.numbers
+            && input.events.iter().any(|event| match event {
+                egui::Event::Text(text) => text.starts_with(begins_typing),
+                _ => false,
+            });
         for (command, key) in keyed {
-            let plain = !key.modifiers.command;
-            let waits = keys.typing && plain
+            let plain = !key.modifiers.command && !is_function(key.logical_key);
+            let waits = keys.modal
+                || (keys.typing || begun) && plain
+                || keys.text && edits_text(key.logical_key)
                 || keys.numbers && plain && begins_number(key.logical_key)
                 || keys.busy && key.logical_key == Key::Escape;
             if !waits && input.consume_shortcut(&key) {

@@ -273,20 +273,20 @@ impl ToileApp {
                 state.laid + state.waiting
             );
         }
-        if let Some((pair, depth)) = state.overlaps.first() {
+        if let Some(overlap) = state.overlaps.first() {
             let pattern = self.base.pattern();
             words = format!(
-                "{words}; {} overlaps, the first of {} by {:.1} mm",
+                "{words}; {} overlaps, the first of {}: {:.1} cm2 are cut twice",
                 state.overlaps.len(),
-                pattern.piece_words(pair[0]),
-                1e3 * depth
+                pattern.piece_words(overlap.pieces[0]),
+                1e4 * overlap.region.iter().map(|part| part.area()).sum::<f64>()
             );
         }
-        if let Some((piece, _, by)) = state.outside.first() {
+        if let Some(outside) = state.outside.first() {
             words = format!(
                 "{words}; {} {:.1} mm off the fabric",
-                self.base.pattern().piece_words(*piece),
-                1e3 * by
+                self.base.pattern().piece_words(outside.piece),
+                1e3 * outside.by
             );
         }
         let is_wrong = !(state.overlaps.is_empty() && state.outside.is_empty());

@@ -385,8 +385,10 @@ impl ToileApp {
         let busy = self.view.is_busy();
         let keys = KeysTaken {
             typing,
+            text: self.types(&context),
             numbers: matches!(self.view.tool, Tool::Slots(_)),
             busy,
+            modal: self.dialog.is_some(),
         };
         for command in command_table::pressed(&context, keys) {
             if (command.when)(self) {

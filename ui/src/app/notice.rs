@@ -27,6 +27,11 @@ impl Notice {
         self.tone == Tone::Fault && !self.text.is_empty()
     }
 
+    /// Whether it only tells something.
+    pub fn is_news(&self) -> bool {
+        self.tone == Tone::News
+    }
+
     /// Good to know.
     pub fn news(text: impl Into<String>) -> Self {
         Self {

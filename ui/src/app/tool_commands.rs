@@ -147,6 +147,14 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::Panel,
+        "Bend edge",
+        key(SHIFT, Key::B),
+        "Bend an edge to an arc through a place",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&panel::BEND)),
+    ),
+    command(
+        Menu::Panel,
         "Dart",
         key(PLAIN, Key::D),
         "Take a dart out of an edge",

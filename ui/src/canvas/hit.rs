@@ -181,6 +181,11 @@ fn panel_hits(panel: &PanelScene, origin: Vec2, at: Vec2, reach: f64, ranked: &m
             found(4, Item::Operation(panel.id, *id), near);
         }
     }
+    if let (Some(step), Some(ends)) = (panel.fold_step, panel.fold)
+        && let Some(near) = nearest(&ends, there)
+    {
+        found(4, Item::Operation(panel.id, step), near);
+    }
     for edge in &shape.edges {
         let near = edge.lines.iter().filter_map(|line| nearest(line, there));
         if let Some(near) = near.min_by(|a, b| a.1.total_cmp(&b.1)) {

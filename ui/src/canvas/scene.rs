@@ -8,8 +8,8 @@ use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Path, Vec2};
 use toile_pattern::{
-    Curve, CurveId, CurveRule, Draft, Evaluation, Mark, Name, OperationKind, Panel, PanelId,
-    PointId, Sheet, SheetId, Stage,
+    Curve, CurveId, CurveRule, Draft, Evaluation, Mark, Name, OperationId, OperationKind, Panel,
+    PanelId, PointId, Sheet, SheetId, Stage,
 };
 
 /// Largest distance of a drawn curve from the true one [pixels].
@@ -118,6 +118,8 @@ pub struct PanelScene {
     pub shape: Arc<PanelShape>,
     /// Points its edges end at.
     pub corners: BTreeSet<PointId>,
+    /// The step that laid it on the fold.
+    pub fold_step: Option<OperationId>,
     /// Both ends of the fold line.
     pub fold: Option<[Vec2; 2]>,
     /// Whether it cannot be drawn now, and this is how it last was.
@@ -313,6 +315,11 @@ impl Scene {
             cut: cut_words(panel),
             corners: panel.edges().flat_map(|edge| edge.ends).collect(),
             shape,
+            fold_step: panel
+                .operations
+                .iter()
+                .find(|step| matches!(step.kind, OperationKind::Fold { .. }))
+                .map(|step| step.id),
             fold: fold(panel).and_then(|[a, b]| Some([place(a)?, place(b)?])),
             is_stale: now.is_none(),
         })

@@ -114,6 +114,34 @@ pub static NOTCH: SlotTool = SlotTool {
     },
 };
 
+/// An edge bent to an arc; its ends stay.
+pub static BEND: SlotTool = SlotTool {
+    command: "Bend edge",
+    slots: &[
+        Slot {
+            hint: "Click the edge to bend",
+            kind: SlotKind::Edge,
+        },
+        Slot {
+            hint: "Click a place it is to go through",
+            kind: SlotKind::Place(Fields::None),
+        },
+    ],
+    plan: |answers, reading| {
+        let [Answer::Edge(panel, edge, _), Answer::Place(through)] = answers else {
+            return Err(refuse("nothing was given", "click an edge"));
+        };
+        let owner = panel_of(reading, *panel)?;
+        let found = owner.edge(*edge);
+        let curve = found
+            .ok_or_else(|| refuse("the edge is gone", "click another"))?
+            .curve;
+        let mut planning = Planning::new(reading);
+        planning.run(|evaluation| Ok((plan::bend_curve(evaluation, curve, through.at)?, ())))?;
+        Ok(planning.done("Bend edge", [Item::Edge(*panel, *edge)]))
+    },
+};
+
 /// A corner on an edge.
 pub static DIVIDE: SlotTool = SlotTool {
     command: "Divide edge",

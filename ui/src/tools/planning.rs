@@ -26,6 +26,11 @@ impl Planning {
         }
     }
 
+    /// The pattern with the edits made so far.
+    pub fn evaluation(&self) -> &Evaluation {
+        &self.evaluation
+    }
+
     /// The edits that were made.
     pub fn edits(self) -> Vec<Edit> {
         self.edits

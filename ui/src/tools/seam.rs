@@ -48,6 +48,16 @@ fn sewn(chains: [&[ChainEdge]; 2], reading: &Reading<'_>) -> Result<Plan, EditEr
             )
         })?;
     }
+    // Hems meet hems: where both panels are drawn with the seam on the same side, the other half or
+    // copy of the second is what lies against the first.
+    let mut trial = Planning::new(reading);
+    let seam = trial.run(|evaluation| plan::sew(evaluation, [&first, &second], None))?;
+    if plan::is_upside_down(trial.evaluation(), seam)
+        && let Some(turned) = twins(pattern, &second)
+        && turned.iter().all(|edge| !first.contains(edge))
+    {
+        second = turned;
+    }
     let mut planning = Planning::new(reading);
     let mut seams = Vec::new();
     seams.push(planning.run(|evaluation| plan::sew(evaluation, [&first, &second], None))?);

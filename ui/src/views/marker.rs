@@ -242,6 +242,11 @@ impl MarkerView {
         if response.clicked() || response.drag_started() {
             response.request_focus();
         }
+        // Escape ends the drag too: what it showed is left, not taken.
+        if self.drag.is_some() && ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.drag = None;
+            actions.push(MarkerAction::Leave);
+        }
         let now = response.interact_pointer_pos();
         if let (Some((from, pieces)), Some(now)) = (self.drag.clone(), now) {
             let to = self.camera.table(view, ScreenPoint(now)).0;
@@ -346,10 +351,7 @@ impl MarkerView {
             actions.push(MarkerAction::TakeOff);
         }
         if pressed(Key::Escape) {
-            match self.drag.take() {
-                Some(_) => actions.push(MarkerAction::Leave),
-                None => self.selection.clear(),
-            }
+            self.selection.clear();
         }
         for (key, way) in [
             (Key::ArrowLeft, Vec2::new(-1.0, 0.0)),
@@ -412,6 +414,30 @@ impl MarkerView {
             };
             self.paint_piece(&painter, (view, palette), scene, shift);
         }
+        // What would be cut twice.
+        for part in self
+            .state
+            .overlaps
+            .iter()
+            .flat_map(|overlap| &overlap.region)
+        {
+            let rings: Vec<Vec<Vec2>> = part.rings().cloned().collect();
+            let shape = fill(&rings);
+            self.paint_fill(&painter, view, (&shape, palette.fault.gamma_multiply(0.7)));
+        }
+    }
+
+    fn paint_fill(&self, painter: &egui::Painter, view: Rect, (fill, colour): (&Fill, Color32)) {
+        let vertices = fill.points.iter().map(|p| Vertex {
+            pos: self.screen(view, Vec2::new(f64::from(p[0]), f64::from(p[1]))),
+            uv: egui::epaint::WHITE_UV,
+            color: colour,
+        });
+        painter.add(Mesh {
+            vertices: vertices.collect(),
+            indices: fill.indices.clone(),
+            ..Mesh::default()
+        });
     }
 
     fn paint_piece(
@@ -425,12 +451,12 @@ impl MarkerView {
             .state
             .overlaps
             .iter()
-            .any(|(pair, _)| pair.contains(&scene.piece))
+            .any(|overlap| overlap.pieces.contains(&scene.piece))
             || self
                 .state
                 .outside
                 .iter()
-                .any(|(piece, ..)| *piece == scene.piece);
+                .any(|outside| outside.piece == scene.piece);
         let selected = self.selection.contains(&scene.piece);
         let lit = selected || self.hover == Some(scene.piece);
         let (ground, line) = match () {

@@ -66,6 +66,8 @@ pub struct PatternView {
     pressed: Option<Pointer>,
     /// Where the pointer was told to be last, and what was held.
     told: Option<(Pos2, Held)>,
+    /// Whether keys went to another widget in the last frame.
+    was_typed_into: bool,
     wants_fit: bool,
     /// Size of the view that everything was fitted into, until it is panned or zoomed.
     fitted: Option<egui::Vec2>,
@@ -93,6 +95,7 @@ impl Default for PatternView {
             sheet: None,
             pressed: None,
             told: None,
+            was_typed_into: false,
             wants_fit: false,
             fitted: None,
         }
@@ -340,6 +343,10 @@ impl PatternView {
                 false => Event::Click(pointer),
             });
         }
+        // Escape ends the drag too: what it showed is left, not taken.
+        if self.pressed.is_some() && ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.pressed = None;
+        }
         if self.pressed.is_some()
             && (response.drag_stopped() || !ui.input(|input| input.pointer.primary_down()))
         {
@@ -353,7 +360,13 @@ impl PatternView {
         events
     }
 
-    fn keys(&self, ui: &Ui, response: &Response) -> Vec<Event> {
+    fn keys(&mut self, ui: &Ui, response: &Response) -> Vec<Event> {
+        // A key that ends the typing into a field is no key of the tool.
+        let typed_now = self.is_typed_into(ui);
+        let typed_before = std::mem::replace(&mut self.was_typed_into, typed_now);
+        if typed_before {
+            return Vec::new();
+        }
         if self.is_covered || self.is_typed_into(ui) {
             return Vec::new();
         }

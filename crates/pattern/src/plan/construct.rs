@@ -112,6 +112,31 @@ pub fn add_curve(
     Ok((additions.edits, id))
 }
 
+/// The edits that bend a curve to a circular arc through a place [m]; its ends stay.
+///
+/// # Errors
+/// The curve is not there; the place is not finite, or no arc between its ends leads through it.
+pub fn bend_curve(
+    evaluation: &Evaluation,
+    id: CurveId,
+    through: Vec2,
+) -> Result<Vec<Edit>, EditError> {
+    let found = evaluation.pattern().curve(id);
+    let (sheet, curve) = found.ok_or_else(|| EditError::Missing(id.to_string()))?;
+    let bulge = bulge_through(evaluation, curve.ends, through)?;
+    let mut bent = (**curve).clone();
+    bent.rule = match bulge.abs() < 1e-9 {
+        true => CurveRule::Line,
+        false => CurveRule::Arc {
+            bulge: Number::Value(bulge),
+        },
+    };
+    let edits = vec![Edit::Put(Entity::Curve(sheet.id, bent.into()))];
+    let after = after(evaluation, &edits)?;
+    refuse_faults(evaluation, &after, &[Place::Curve(id)])?;
+    Ok(edits)
+}
+
 /// The bulge of the arc between two points through a place. The chords to the place turn there by
 /// half the swept angle (inscribed angle theorem), and the bulge is the tangent of a quarter of it.
 fn bulge_through(

@@ -7,8 +7,12 @@ use super::{NearMark, impossible};
 use crate::evaluate::SpanValue;
 use crate::{
     EdgeId, Edit, EditError, Evaluation, LineId, Mark, Name, NotchId, NotchKind, OperationKind,
-    Panel, PanelId, Pattern,
+    Panel, PanelId, Pattern, SeamId, Span, Want,
 };
+use toile_geometry::Vec2;
+
+/// Sides of which less goes along the grain run across it.
+const STEEP: f64 = 0.5;
 
 /// A place that lies opposite another on a seam.
 #[derive(Clone, Debug, PartialEq)]
@@ -176,6 +180,33 @@ pub fn twin(pattern: &Pattern, edge: SewnEdge) -> Option<SewnEdge> {
             is_pair.then_some(SewnEdge { copy, ..edge })
         }
     }
+}
+
+/// Whether a seam sews an end that is up on one side to one that is down on the other, by the grain
+/// of their panels as drawn. Sides that run across the grain tell nothing, nor do those of panels
+/// that cannot be drawn.
+pub fn is_upside_down(evaluation: &Evaluation, seam: SeamId) -> bool {
+    let Some(seam) = evaluation.pattern().seam(seam) else {
+        return false;
+    };
+    let [one, two] = [0, 1].map(|side| rise(evaluation, &seam.sides[side]));
+    one.zip(two)
+        .is_some_and(|(one, two)| one * two < 0.0 && one.abs().min(two.abs()) > STEEP)
+}
+
+/// How much of the way from the start to the end of a side goes along the grain: 1 all of it
+/// upward, -1 downward.
+fn rise(evaluation: &Evaluation, side: &[Span]) -> Option<f64> {
+    let (first, last) = (side.first()?, side.last()?);
+    let place = |mark: &Mark| match mark {
+        Mark::Corner(Name::Drawn(id)) => evaluation.point(*id),
+        _ => None,
+    };
+    let way = place(&last.to)? - place(&first.from)?;
+    let panel = evaluation.pattern().panel(first.panel)?;
+    let grain = evaluation.number(&panel.grain, Want::Angle)?;
+    let along = Vec2::new(grain.cos(), grain.sin());
+    Some(way.try_normalize(1e-9)?.dot(&along))
 }
 
 fn is_folded(panel: &Panel) -> bool {

@@ -34,7 +34,7 @@ mod typed;
 
 pub use align::{Alignment, Axis, align, distribute};
 pub use chain::Chain;
-pub use construct::{CurveShape, add_curve, add_point, add_sheet};
+pub use construct::{CurveShape, add_curve, add_point, add_sheet, bend_curve};
 pub use crossings::mark_crossings;
 pub use divide::{divide_edge, join_edges};
 pub use figure::{Figure, FirstCorner, add_polygon, add_rectangle};
@@ -44,7 +44,7 @@ pub use marker::{
     set_marker_cloth, set_marker_order, take_off_pieces, turn_pieces,
 };
 pub use marks::{NearMark, nearest_mark};
-pub use matched::{Opposite, PanelNotch, add_matched_notches, opposites, twin};
+pub use matched::{Opposite, PanelNotch, add_matched_notches, is_upside_down, opposites, twin};
 pub use moving::move_point;
 pub use notch::{NotchRow, add_notch, add_notches, move_notch, remove_notch, set_notch_kind};
 pub use number_place::{MarkNumber, NumberPlace, OperationNumber, PointNumber, SpanEnd};
