@@ -1,7 +1,9 @@
 //! Words of the format that are fixed.
 
 use super::item::FieldsOfKind;
-use toile_pattern::{BodyPart, Bridge, Corner, Facing, LineKind, NotchKind, Pressed, Role, Turned};
+use toile_pattern::{
+    BodyPart, Bridge, Corner, Facing, LineKind, NotchKind, Pressed, Role, Side, Turned,
+};
 
 /// Version of the format this program writes.
 pub const VERSION: u32 = 2;
@@ -69,7 +71,11 @@ pub const ROLES: &[(&str, Role)] = &[
     ("mouth", Role::Mouth),
     ("diamond", Role::Diamond),
     ("opening", Role::Opening),
+    ("split", Role::Split),
 ];
+
+/// Names of the sides of a split.
+pub const SIDES: &[(&str, Side)] = &[("left", Side::Left), ("right", Side::Right)];
 
 /// Names of the parts that pivots turn.
 pub const TURNED: &[(&str, Turned)] =

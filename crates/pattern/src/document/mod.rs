@@ -1,13 +1,15 @@
 //! The document: what is edited, saved and undone.
 
 mod drawing;
+mod history;
 mod operation;
 mod panel;
 mod seam;
 mod sheet;
 
 pub use drawing::Drawing;
-pub use operation::{Apex, Bridge, Operation, OperationKind, Pressed, SpreadCut, Turned};
+pub(crate) use history::History;
+pub use operation::{Apex, Bridge, Operation, OperationKind, Pressed, Side, SpreadCut, Turned};
 pub use panel::{Corner, Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Source, WornRule};
 pub use seam::{Seam, Span};
 pub use sheet::{Curve, CurveRule, Knot, Point, PointRule, Sheet};

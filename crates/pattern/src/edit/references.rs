@@ -1,7 +1,9 @@
 //! What parts refer to.
 
 use super::Entity;
-use crate::{CornerName, LineName, Mark, Name, Names, Number, Panel, PartId, Pattern, Place, Span};
+use crate::{
+    CornerName, LineName, Mark, Name, Names, Number, Panel, PartId, Pattern, Place, Source, Span,
+};
 
 impl Entity {
     /// Every part it refers to.
@@ -101,7 +103,10 @@ fn span_references(span: &Span, found: &mut Vec<PartId>) {
 }
 
 fn panel_references(panel: &Panel, found: &mut Vec<PartId>) {
-    found.push(panel.sheet().into());
+    match panel.source {
+        Source::Traced(sheet) => found.push(sheet.into()),
+        Source::Side { of, split, .. } => found.extend([of.into(), PartId::from(split)]),
+    }
     found.push(panel.fabric.into());
     for edge in panel.edges() {
         found.push(edge.curve.into());
@@ -114,6 +119,7 @@ fn panel_references(panel: &Panel, found: &mut Vec<PartId>) {
     for operation in &panel.operations {
         found.extend(operation.kind.points().into_iter().map(PartId::from));
         found.extend(operation.kind.altered().map(PartId::from));
+        found.extend(operation.kind.curve().map(PartId::from));
         if let Some(on) = operation.kind.line() {
             line(on, found);
         }
