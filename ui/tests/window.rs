@@ -103,7 +103,7 @@ fn drag(window: &mut Window, from: Pos2, way: egui::Vec2) {
 fn point_at(window: &Window, panel: &str, point: &str) -> toile_geometry::Vec2 {
     let project = window.state().session().project();
     let panel = project.pattern.panel_named(panel).unwrap();
-    let sheet = project.pattern.sheet(panel.sheet()).unwrap();
+    let sheet = project.pattern.sheet(panel.sheet().unwrap()).unwrap();
     let id = sheet.point_named(point).unwrap().id;
     let evaluation = Evaluation::new(&project.pattern, project.drafted_to());
     evaluation.point(id).unwrap()

@@ -2,15 +2,15 @@
 
 use toile_pattern::{EdgeOrigin, Name, Panel};
 
-/// An edge of a panel, or what an operation made, in words.
-pub(crate) fn edge_words(panel: Option<&Panel>, origin: EdgeOrigin) -> String {
+/// An edge of a panel or of one it is a side of, or what an operation made, in words.
+pub(crate) fn edge_words(lineage: &[&Panel], origin: EdgeOrigin) -> String {
     match origin.name {
-        Name::Drawn(id) => match panel.and_then(|panel| panel.edge(id)) {
+        Name::Drawn(id) => match lineage.iter().find_map(|panel| panel.edge(id)) {
             Some(edge) => format!("edge {:?}", edge.name),
             None => id.to_string(),
         },
         Name::Made { by, .. } => {
-            let mut operations = panel.into_iter().flat_map(|panel| &panel.operations);
+            let mut operations = lineage.iter().flat_map(|panel| &panel.operations);
             match operations.find(|operation| operation.id == by) {
                 Some(operation) => format!("{} {:?}", operation.kind.word(), operation.name),
                 None => by.to_string(),

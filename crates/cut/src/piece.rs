@@ -407,7 +407,11 @@ fn texts(
 /// Why a seam line has no cut line, with the names of the edges.
 fn error_words((pattern, piece): (&Pattern, &Piece), seam: &NamedSeam, error: &CutError) -> String {
     let words = |index: EdgeIndex| match name_of(&seam.names, index) {
-        Some(origin) => edge_words(pattern.panel(piece.id.panel).map(|p| &**p), origin),
+        Some(origin) => {
+            let panel = pattern.panel(piece.id.panel);
+            let lineage = panel.map_or_else(Vec::new, |panel| pattern.lineage(panel));
+            edge_words(&lineage, origin)
+        }
         None => "an edge".to_owned(),
     };
     match error {

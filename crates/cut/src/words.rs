@@ -60,7 +60,8 @@ impl CutPiece {
         };
         let mut seen = BTreeSet::new();
         let mut found = Vec::new();
-        for said in self.findings.iter().filter_map(|f| self.said(panel, f)) {
+        let lineage = pattern.lineage(panel);
+        for said in self.findings.iter().filter_map(|f| self.said(&lineage, f)) {
             if !seen.insert(said.what.clone()) {
                 continue;
             }
@@ -81,9 +82,9 @@ impl CutPiece {
         found
     }
 
-    fn said(&self, panel: &Panel, finding: &Finding) -> Option<Said> {
+    fn said(&self, lineage: &[&Panel], finding: &Finding) -> Option<Said> {
         let words = |index: EdgeIndex| match self.edge(index) {
-            Some(origin) => edge_words(Some(panel), origin),
+            Some(origin) => edge_words(lineage, origin),
             None => "an edge".to_owned(),
         };
         let said = |severity, code, at: Option<EdgeIndex>, what, hint| Said {
@@ -147,7 +148,7 @@ impl CutPiece {
                 Some(*corner),
                 format!(
                     "{} is too sharp for its seam allowance, which would reach {} beyond it: it is cut off at {}",
-                    self.corner_words(panel, *corner),
+                    self.corner_words(lineage, *corner),
                     mm(*asked),
                     mm(*kept)
                 ),
@@ -159,7 +160,7 @@ impl CutPiece {
                 Some(*corner),
                 format!(
                     "{} is too blunt for its kind, which would reach {} beyond it: both cut lines run on until they meet",
-                    self.corner_words(panel, *corner),
+                    self.corner_words(lineage, *corner),
                     mm(*asked)
                 ),
                 "give the corner as a mitre",
@@ -202,7 +203,7 @@ impl CutPiece {
                     n => format!("falls into {n} parts, as its seam allowances meet"),
                 };
                 let line = match self.edge(edge).map(|edge| edge.name) {
-                    Some(Name::Drawn(id)) => panel.line_of(id),
+                    Some(Name::Drawn(id)) => lineage.iter().find_map(|own| own.line_of(id)),
                     _ => None,
                 };
                 let line = line.map_or("a hole".to_owned(), |line| format!("line {:?}", line.name));
@@ -216,8 +217,7 @@ impl CutPiece {
             }
             Finding::StraightCap { dart, fault } => {
                 let leg = self.darts.get(*dart).copied();
-                let name =
-                    leg.map_or_else(|| "a dart".to_owned(), |leg| edge_words(Some(panel), leg));
+                let name = leg.map_or_else(|| "a dart".to_owned(), |leg| edge_words(lineage, leg));
                 Said {
                     severity: Severity::Note,
                     code: Code::StraightDart,
@@ -233,7 +233,7 @@ impl CutPiece {
     }
 
     /// The corner at the start of an edge, by its two edges.
-    fn corner_words(&self, panel: &Panel, corner: EdgeIndex) -> String {
+    fn corner_words(&self, lineage: &[&Panel], corner: EdgeIndex) -> String {
         let count = self.names.get(corner.ring).map_or(1, Vec::len);
         let before = EdgeIndex {
             edge: (corner.edge + count - 1) % count,
@@ -242,7 +242,7 @@ impl CutPiece {
         let (Some(one), Some(other)) = (self.edge(before), self.edge(corner)) else {
             return "a corner".to_owned();
         };
-        let [mut a, mut b] = [one, other].map(|origin| edge_words(Some(panel), origin));
+        let [mut a, mut b] = [one, other].map(|origin| edge_words(lineage, origin));
         if a > b {
             std::mem::swap(&mut a, &mut b);
         }

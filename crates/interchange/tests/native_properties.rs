@@ -346,7 +346,8 @@ fn damaged_operations_are_refused_at_their_place() {
     };
     let pivot = r#""pivot": {"dart": 52, "line": 37, "mouth": 29, "share": 0.5, "back": 2}"#;
     let spread = r#""spread": {"line": 37, "held": 27, "cuts": [{"number": 3, "from": 28, "to": 29, "openings": [2, 0]}]}"#;
-    for whole in [pivot, spread] {
+    let split = r#""split": {"line": 37, "curve": 42}"#;
+    for whole in [pivot, spread, split] {
         let (pattern, notes) = with(whole).unwrap();
         assert!(notes.is_empty(), "{notes:?}");
         let (again, _) = read_pattern(&write_pattern(&pattern).unwrap()).unwrap();
@@ -357,6 +358,8 @@ fn damaged_operations_are_refused_at_their_place() {
         (pivot, "52", "29", "point 29"),
         (pivot, "0.5", "\"late +\"", "share"),
         (pivot, "\"back\": 2", "\"turned\": \"round\"", "round"),
+        (split, ", \"curve\": 42", "", "curve"),
+        (split, "42", "37", "line 37"),
         (spread, "\"held\": 27, ", "", "held"),
         (spread, "[2, 0]", "[2]", "openings"),
         (

@@ -91,6 +91,10 @@ impl Drafter<'_> {
     }
 
     fn panel(&mut self, panel: &Panel) {
+        // Its sides are cut in its place.
+        if panel.is_split() {
+            return;
+        }
         let place = Place::Panel(panel.id);
         let stage = self.evaluation.last_stage(panel).cloned();
         let worn = self.worn(panel);
@@ -229,7 +233,8 @@ impl Drafter<'_> {
                 continue;
             };
             let halves = 1_u8 << folds(panel);
-            for operation in &panel.operations {
+            let lineage = pattern.lineage(panel).into_iter().rev();
+            for operation in lineage.flat_map(|own| &own.operations) {
                 for half in 0..halves {
                     let leg = |leg: u16, reverse: bool| -> Option<Vec<DraftSpan>> {
                         let name = Name::Made {
@@ -249,7 +254,9 @@ impl Drafter<'_> {
                             vec![leg(0, false), leg(1, false)],
                             vec![leg(3, true), leg(2, true)],
                         ],
-                        OperationKind::Fold { .. } | OperationKind::Spread { .. } => continue,
+                        OperationKind::Fold { .. }
+                        | OperationKind::Spread { .. }
+                        | OperationKind::Split { .. } => continue,
                     };
                     let sides = sides.map(|legs| {
                         let legs: Option<Vec<_>> = legs.into_iter().collect();

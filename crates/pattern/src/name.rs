@@ -61,15 +61,19 @@ pub enum Role {
     /// What bridges an opening of a spread panel: that of cut n is 2n where the cut starts and
     /// 2n + 1 where it ends. Opening k has the corners 2k and 2k + 1.
     Opening,
+    /// Where a panel was split: corners 0 and 1 at the start and the end of the cut, which is edge
+    /// 0 of one side and, the other way, edge 1 of the other.
+    Split,
 }
 
 impl Role {
-    const WORDS: [(Self, &'static str); 5] = [
+    const WORDS: [(Self, &'static str); 6] = [
         (Self::Leg, "leg"),
         (Self::Apex, "apex"),
         (Self::Mouth, "mouth"),
         (Self::Diamond, "diamond"),
         (Self::Opening, "opening"),
+        (Self::Split, "split"),
     ];
 
     /// What it is called.

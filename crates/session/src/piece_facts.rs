@@ -113,6 +113,7 @@ pub fn piece_facts((pattern, draft): (&Pattern, &Draft), size: Option<&str>) -> 
         let how = (size, &CutOptions::default());
         let cut = CutPiece::new((pattern, draft), k, how).ok()?;
         let panel = pattern.panel(piece.id.panel)?;
+        let lineage = pattern.lineage(panel);
         let fabric = draft.fabrics.get(piece.fabric);
         Some(PieceFacts {
             name: piece.name.clone(),
@@ -125,10 +126,10 @@ pub fn piece_facts((pattern, draft): (&Pattern, &Draft), size: Option<&str>) -> 
             sewn: sewn_facts(piece, &cut),
             cut: region_facts(&cut.polygon()),
             edges: edges_of(piece)
-                .map(|edge| edge_facts(panel, edge))
+                .map(|edge| edge_facts(&lineage, edge))
                 .collect(),
-            notches: notches(panel, &cut),
-            darts: darts(panel, piece),
+            notches: notches(&lineage, &cut),
+            darts: darts(&lineage, piece),
         })
     });
     facts.collect()
@@ -182,20 +183,23 @@ fn sewn_facts(piece: &Piece, cut: &CutPiece) -> RegionFacts {
 }
 
 /// Name of an edge, or of the operation that made it.
-fn edge_name(panel: &Panel, origin: EdgeOrigin) -> String {
+fn edge_name(lineage: &[&Panel], origin: EdgeOrigin) -> String {
     let found = match origin.name {
-        Name::Drawn(id) => panel.edge(id).map(|edge| &edge.name),
+        Name::Drawn(id) => {
+            let edge = lineage.iter().find_map(|own| own.edge(id));
+            edge.map(|edge| &edge.name)
+        }
         Name::Made { by, .. } => {
-            let mut operations = panel.operations.iter();
+            let mut operations = lineage.iter().flat_map(|own| &own.operations);
             operations.find(|o| o.id == by).map(|o| &o.name)
         }
     };
     found.cloned().unwrap_or_default()
 }
 
-fn edge_facts(panel: &Panel, edge: &PieceEdge) -> EdgeFacts {
+fn edge_facts(lineage: &[&Panel], edge: &PieceEdge) -> EdgeFacts {
     EdgeFacts {
-        name: edge_name(panel, edge.origin),
+        name: edge_name(lineage, edge.origin),
         half: edge.origin.half,
         length_mm: edge.curve.length() * 1e3,
         allowance_mm: edge.seam_allowance * 1e3,
@@ -209,12 +213,12 @@ fn edge_facts(panel: &Panel, edge: &PieceEdge) -> EdgeFacts {
     }
 }
 
-fn notches(panel: &Panel, cut: &CutPiece) -> Vec<NotchFacts> {
+fn notches(lineage: &[&Panel], cut: &CutPiece) -> Vec<NotchFacts> {
     let notch = |notch: &toile_cut::CutNotch| {
-        let named = panel.notches.iter().find(|n| n.id == notch.id);
+        let named = lineage.iter().find_map(|own| own.notch(notch.id));
         NotchFacts {
             name: named.map_or_else(String::new, |n| n.name.clone()),
-            edge: edge_name(panel, notch.edge),
+            edge: edge_name(lineage, notch.edge),
             half: notch.edge.half,
             kind: match notch.kind {
                 NotchKind::Slit => "slit",
@@ -230,9 +234,10 @@ fn notches(panel: &Panel, cut: &CutPiece) -> Vec<NotchFacts> {
     cut.notches.iter().map(notch).collect()
 }
 
-fn darts(panel: &Panel, piece: &Piece) -> Vec<DartFacts> {
+fn darts(lineage: &[&Panel], piece: &Piece) -> Vec<DartFacts> {
     let dart = |dart: &toile_pattern::StageDart| {
-        let operation = panel.operations.iter().find(|o| o.id == dart.by);
+        let mut operations = lineage.iter().flat_map(|own| &own.operations);
+        let operation = operations.find(|o| o.id == dart.by);
         let is_leg = |edge: &&PieceEdge| {
             edge.origin.half == dart.half && edge.origin.leg().is_some_and(|leg| leg.0 == dart.by)
         };

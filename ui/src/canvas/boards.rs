@@ -51,7 +51,7 @@ impl Boards {
         let panels = pattern.panels.iter();
         self.panels = panels
             .filter_map(|panel| {
-                let sheet = self.sheets.get(&panel.sheet())?;
+                let sheet = self.sheets.get(&pattern.sheet_of(panel)?)?;
                 let own = panel.on_table.map_or_else(Vec2::zeros, Vec2::from);
                 Some((panel.id, sheet + own))
             })

@@ -227,7 +227,9 @@ impl Scene {
             shaping.extend(handles(curve).iter().map(|pair| pair[1]));
         }
         let panels = &evaluation.pattern().panels;
-        let own = panels.iter().filter(|panel| panel.sheet() == sheet.id);
+        let own = panels
+            .iter()
+            .filter(|panel| panel.sheet() == Some(sheet.id));
         corners.extend(own.clone().flat_map(|p| p.edges().flat_map(|e| e.ends)));
         let points = sheet.points.iter().filter_map(|point| {
             Some(PointScene {
@@ -310,7 +312,7 @@ impl Scene {
         let place = |id: PointId| evaluation.point(id);
         Some(PanelScene {
             id: panel.id,
-            sheet: panel.sheet(),
+            sheet: evaluation.pattern().sheet_of(panel)?,
             name: panel.name.clone(),
             cut: cut_words(panel),
             corners: panel.edges().flat_map(|edge| edge.ends).collect(),

@@ -181,7 +181,14 @@ pub static INNER_LINE: SlotTool = SlotTool {
         let mut planning = Planning::new(reading);
         let given = places(answers);
         let points = planning.points(&given)?;
-        let sheet = panel_of(reading, *panel)?.sheet();
+        let owner = panel_of(reading, *panel)?;
+        let side = || {
+            refuse(
+                "it is a side of another panel",
+                "draw on the panel that was split",
+            )
+        };
+        let sheet = owner.sheet().ok_or_else(side)?;
         let count = points.len();
         let mut curves = Vec::new();
         for k in 0..if closes { count } else { count - 1 } {

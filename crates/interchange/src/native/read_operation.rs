@@ -10,12 +10,13 @@ use toile_pattern::{Apex, Bridge, Number, Operation, OperationKind, Pressed, Spr
 type Read = for<'a> fn(&mut Reader<'a>, &Item<'a>) -> Result<OperationKind, FormatError>;
 
 /// What operations are called in files, and how each is read.
-const KINDS: [(&str, Read); 5] = [
+const KINDS: [(&str, Read); 6] = [
     ("dart", dart),
     ("diamond", diamond),
     ("fold", fold),
     ("pivot", pivot),
     ("spread", spread),
+    ("split", split),
 ];
 
 /// Reads an operation.
@@ -129,6 +130,14 @@ fn spread<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind,
             Some(bridge) => bridge.choice(BRIDGES)?,
             None => Bridge::default(),
         },
+    })
+}
+
+fn split<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
+    let fields = item.object(&["line", "curve"], &mut reader.notes)?;
+    Ok(OperationKind::Split {
+        line: name(reader, &fields.need("line")?)?,
+        curve: reader.reference(&fields.need("curve")?)?,
     })
 }
 

@@ -5,10 +5,29 @@ use super::json::Value;
 use super::read::{Measure, Reader};
 use super::read_operation::operation;
 use super::read_seam::mark;
-use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, WORN};
+use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, SIDES, WORN};
 use crate::FormatError;
 use std::sync::Arc;
-use toile_pattern::{Cut, Edge, Line, Notch, NotchKind, Number, Panel, WornRule};
+use toile_pattern::{Cut, Edge, Line, Notch, NotchKind, Number, Panel, SheetId, Source, WornRule};
+
+/// The sheet a panel is traced from, or the panel it is a side of.
+fn source<'a>(reader: &mut Reader<'a>, fields: &Object<'a>) -> Result<Source, FormatError> {
+    let Some(side) = fields.get("side") else {
+        return Ok(Source::Traced(reader.reference(&fields.need("sheet")?)?));
+    };
+    if let Some(sheet) = fields.get("sheet") {
+        return Err(sheet.error(
+            "a panel is traced from a sheet or a side of a panel, not both",
+            "keep sheet or side",
+        ));
+    }
+    let own = side.object(&["of", "split", "is"], &mut reader.notes)?;
+    Ok(Source::Side {
+        of: reader.reference(&own.need("of")?)?,
+        split: reader.reference(&own.need("split")?)?,
+        side: own.need("is")?.choice(SIDES)?,
+    })
+}
 
 /// Reads a panel.
 pub fn panel<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Panel, FormatError> {
@@ -16,6 +35,7 @@ pub fn panel<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Panel, Form
         "id",
         "name",
         "sheet",
+        "side",
         "fabric",
         "cut",
         "grain",
@@ -28,9 +48,12 @@ pub fn panel<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Panel, Form
     ];
     let fields = item.object(known, &mut reader.notes)?;
     let id = reader.own(&fields.need("id")?)?;
-    let sheet = reader.reference(&fields.need("sheet")?)?;
+    let source = source(reader, &fields)?;
     let fabric = reader.reference(&fields.need("fabric")?)?;
-    let mut panel = Panel::new(id, fields.need("name")?.name()?, sheet, fabric);
+    let mut panel = Panel {
+        source,
+        ..Panel::new(id, fields.need("name")?.name()?, SheetId::default(), fabric)
+    };
     if let Some(item) = fields.get("cut") {
         panel.cut = cut(reader, &item)?;
     }

@@ -2,7 +2,7 @@
 
 use super::item::FieldsOfKind;
 use toile_pattern::{
-    BodyPart, Bridge, Corner, Facing, LineKind, NapRule, NotchKind, Pressed, Role, Spread, Turned,
+    BodyPart, Bridge, Corner, Facing, LineKind, NapRule, NotchKind, Pressed, Role, Side, Spread, Turned,
 };
 
 /// Version of the format this program writes.
@@ -86,7 +86,11 @@ pub const ROLES: &[(&str, Role)] = &[
     ("mouth", Role::Mouth),
     ("diamond", Role::Diamond),
     ("opening", Role::Opening),
+    ("split", Role::Split),
 ];
+
+/// Names of the sides of a split.
+pub const SIDES: &[(&str, Side)] = &[("left", Side::Left), ("right", Side::Right)];
 
 /// Names of the parts that pivots turn.
 pub const TURNED: &[(&str, Turned)] =

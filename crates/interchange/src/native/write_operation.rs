@@ -85,6 +85,11 @@ pub fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, Fo
             }
             "spread"
         }
+        OperationKind::Split { line, curve } => {
+            own.put("line", name(*line));
+            own.put("curve", count(curve.0));
+            "split"
+        }
     };
     fields.put(kind, own.done());
     Ok(fields.done())

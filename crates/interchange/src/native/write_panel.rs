@@ -1,18 +1,27 @@
 //! Writes panels: lines and notches.
 
 use super::json::Value;
-use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, word};
+use super::words::{CORNERS, FACINGS, LINES, NOTCHES, PARTS, SIDES, word};
 use super::write::{Fields, Measure, Writer, count, list, named, plain_value, text};
 use super::write_operation::operation;
 use super::write_seam::mark;
 use crate::FormatError;
-use toile_pattern::{Cut, Edge, Line, Notch, NotchKind, Number, Panel, WornRule};
+use toile_pattern::{Cut, Edge, Line, Notch, NotchKind, Number, Panel, Source, WornRule};
 
 /// Writes a panel.
 pub fn panel(writer: &Writer<'_>, panel: &Panel) -> Result<Value, FormatError> {
     let what = format!("panel {:?}", panel.name);
     let mut fields = named(panel.id.0, &panel.name)?;
-    fields.put("sheet", count(panel.sheet().0));
+    match panel.source {
+        Source::Traced(sheet) => fields.put("sheet", count(sheet.0)),
+        Source::Side { of, split, side } => {
+            let mut own = Fields::default();
+            own.put("of", count(of.0));
+            own.put("split", count(split.0));
+            own.put("is", text(word(SIDES, &side)));
+            fields.put("side", own.done());
+        }
+    }
     fields.put("fabric", count(panel.fabric.0));
     if panel.cut != Cut::default() {
         fields.put("cut", cut(panel.cut));

@@ -400,7 +400,11 @@ fn details(dice: &mut Dice, drawing: &mut Drawing<'_>, points: &[PointId]) {
     }
     for k in 0..dice.below(4) {
         let line = lines[dice.below(lines.len())];
-        let kind = match dice.below(6) {
+        let kind = match dice.below(7) {
+            6 => OperationKind::Split {
+                line: Name::Drawn(line.id),
+                curve: line.edges[0].curve,
+            },
             4 => OperationKind::Pivot {
                 dart: match drawing.panel.operations.first() {
                     Some(known) => known.id,

@@ -1,6 +1,7 @@
 //! The document: what is edited, saved and undone.
 
 mod drawing;
+mod history;
 mod marker;
 mod operation;
 mod panel;
@@ -8,11 +9,12 @@ mod seam;
 mod sheet;
 
 pub use drawing::Drawing;
+pub(crate) use history::History;
 pub use marker::{
     Flaw, MOST_GARMENTS, Marker, MarkerCloth, MarkerFault, NapRule, OrderedPiece, OrderedSize,
     PiecePlacement, Print, Spread, USUAL_GAP, USUAL_SELVEDGE,
 };
-pub use operation::{Apex, Bridge, Operation, OperationKind, Pressed, SpreadCut, Turned};
+pub use operation::{Apex, Bridge, Operation, OperationKind, Pressed, Side, SpreadCut, Turned};
 pub use panel::{Corner, Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Source, WornRule};
 pub use seam::{Seam, Span};
 pub use sheet::{Curve, CurveRule, Knot, Point, PointRule, Sheet};

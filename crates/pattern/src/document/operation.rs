@@ -1,6 +1,6 @@
 //! Operations: kept steps of a panel.
 
-use crate::{LineName, Mark, Number, OperationId, PointId};
+use crate::{CurveId, LineName, Mark, Number, OperationId, PointId};
 use serde::{Deserialize, Serialize};
 
 /// A kept step of a panel.
@@ -76,6 +76,14 @@ pub enum OperationKind {
         /// How the line goes across an opening.
         bridge: Bridge,
     },
+    /// The panel cut in two along a curve: it is not cut itself then, the panels that are its
+    /// sides are.
+    Split {
+        /// The line.
+        line: LineName,
+        /// The curve, from the line to the line.
+        curve: CurveId,
+    },
 }
 
 /// Which part of a panel a pivot turns.
@@ -115,6 +123,16 @@ pub enum Bridge {
     Straight,
     /// In a curve that goes on from both sides.
     Smooth,
+}
+
+/// A side of a split panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Left of the curve.
+    Left,
+    /// Right of it.
+    Right,
 }
 
 /// The leg a dart is pressed towards once it is sewn.
@@ -180,6 +198,7 @@ impl OperationKind {
                 });
                 held.number().into_iter().chain(of_cuts).collect()
             }
+            Self::Split { .. } => Vec::new(),
         }
     }
 
@@ -194,6 +213,7 @@ impl OperationKind {
                 let of_cuts = cuts.iter().flat_map(|cut| &cut.ends);
                 std::iter::once(held).chain(of_cuts).collect()
             }
+            Self::Split { .. } => Vec::new(),
         }
     }
 
@@ -203,7 +223,8 @@ impl OperationKind {
             Self::Dart { line, .. }
             | Self::Fold { line, .. }
             | Self::Pivot { line, .. }
-            | Self::Spread { line, .. } => Some(*line),
+            | Self::Spread { line, .. }
+            | Self::Split { line, .. } => Some(*line),
             Self::Diamond { .. } => None,
         }
     }
@@ -212,6 +233,14 @@ impl OperationKind {
     pub fn altered(&self) -> Option<OperationId> {
         match self {
             Self::Pivot { dart, .. } => Some(*dart),
+            _ => None,
+        }
+    }
+
+    /// The curve it follows.
+    pub fn curve(&self) -> Option<CurveId> {
+        match self {
+            Self::Split { curve, .. } => Some(*curve),
             _ => None,
         }
     }
@@ -237,6 +266,7 @@ impl OperationKind {
             Self::Fold { .. } => "fold",
             Self::Pivot { .. } => "pivot",
             Self::Spread { .. } => "spread",
+            Self::Split { .. } => "split",
         }
     }
 }

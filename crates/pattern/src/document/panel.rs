@@ -2,7 +2,7 @@
 
 use crate::{
     BodyPart, CurveId, EdgeId, FabricId, Facing, LineId, Mark, NotchId, Number, Operation,
-    OperationId, PanelId, PointId, SheetId,
+    OperationId, PanelId, PointId, SheetId, Side,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -42,6 +42,15 @@ pub struct Panel {
 pub enum Source {
     /// Its lines follow curves of a sheet.
     Traced(SheetId),
+    /// It is a side of another panel, and follows that.
+    Side {
+        /// The panel.
+        of: PanelId,
+        /// The operation that splits it.
+        split: OperationId,
+        /// Which side.
+        side: Side,
+    },
 }
 
 /// A closed or open line of a panel.
@@ -183,19 +192,6 @@ impl Panel {
         self.notches.iter().find(|notch| notch.id == id)
     }
 
-    /// How many operations are done when the panel first has every corner a mark is placed by;
-    /// nothing if the panel has no operation that makes one.
-    pub fn first_step(&self, mark: &Mark) -> Option<usize> {
-        let at = match mark {
-            Mark::Notch(id) => &self.notch(*id)?.at,
-            own => own,
-        };
-        let makers = at.corners().into_iter().filter_map(|c| c.maker());
-        makers
-            .map(|by| self.step_of(by))
-            .try_fold(0, |first, step| Some(first.max(step?)))
-    }
-
     /// How many operations are done after one of them.
     pub fn step_of(&self, operation: OperationId) -> Option<usize> {
         let mut operations = self.operations.iter();
@@ -220,10 +216,12 @@ impl Panel {
         }
     }
 
-    /// The sheet its lines are traced from.
-    pub fn sheet(&self) -> SheetId {
-        let Source::Traced(sheet) = self.source;
-        sheet
+    /// The sheet its lines are traced from; nothing if it is a side of another panel.
+    pub fn sheet(&self) -> Option<SheetId> {
+        match self.source {
+            Source::Traced(sheet) => Some(sheet),
+            Source::Side { .. } => None,
+        }
     }
 
     /// The outline, if there is one.

@@ -2,7 +2,8 @@
 
 use super::Entity;
 use crate::{
-    CornerName, LineName, Mark, Marker, Name, Names, Number, Panel, PartId, Pattern, Place, Span,
+    CornerName, LineName, Mark, Marker, Name, Names, Number, Panel, PartId, Pattern, Place, Source,
+    Span,
 };
 use std::collections::BTreeSet;
 
@@ -120,7 +121,10 @@ fn marker_references(marker: &Marker, found: &mut Vec<PartId>) {
 }
 
 fn panel_references(panel: &Panel, found: &mut Vec<PartId>) {
-    found.push(panel.sheet().into());
+    match panel.source {
+        Source::Traced(sheet) => found.push(sheet.into()),
+        Source::Side { of, split, .. } => found.extend([of.into(), PartId::from(split)]),
+    }
     found.push(panel.fabric.into());
     for edge in panel.edges() {
         found.push(edge.curve.into());
@@ -133,6 +137,7 @@ fn panel_references(panel: &Panel, found: &mut Vec<PartId>) {
     for operation in &panel.operations {
         found.extend(operation.kind.points().into_iter().map(PartId::from));
         found.extend(operation.kind.altered().map(PartId::from));
+        found.extend(operation.kind.curve().map(PartId::from));
         if let Some(on) = operation.kind.line() {
             line(on, found);
         }

@@ -280,7 +280,7 @@ fn is_called_alike(a: &Panel, b: &Panel) -> bool {
             .map(|notch| (notch.id, notch.name.clone()))
             .collect()
     };
-    (a.id, &a.name, a.sheet()) == (b.id, &b.name, b.sheet())
+    (a.id, &a.name, a.source) == (b.id, &b.name, b.source)
         && lines(a) == lines(b)
         && edges(a) == edges(b)
         && notches(a) == notches(b)

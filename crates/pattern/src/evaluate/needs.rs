@@ -3,8 +3,8 @@
 use super::node::{Definition, Node};
 use crate::formula::{Names, Use};
 use crate::{
-    CornerName, Edge, Line, Mark, Name, Notch, Number, Panel, PanelId, PartReference, Pattern,
-    WornRule,
+    CornerName, Edge, History, Line, Mark, Name, Number, Panel, PanelId, PartReference, Pattern,
+    Source, WornRule,
 };
 
 /// Nodes a definition needs, and panels whose lines say which.
@@ -63,6 +63,9 @@ impl<'d> Needs<'d> {
                 self.nodes.extend(edge.ends.map(Node::Point));
             }
             Definition::Stage(panel, 0) => {
+                if let Source::Side { of, split, .. } = panel.source {
+                    self.nodes.push(Node::Stage(of, Some(split)));
+                }
                 self.nodes
                     .extend(panel.edges().map(|edge| Node::Edge(edge.id)));
                 self.numbers([&panel.grain, &panel.allowance]);
@@ -83,8 +86,9 @@ impl<'d> Needs<'d> {
                 self.numbers(operation.numbers());
                 self.nodes
                     .extend(operation.points().into_iter().map(Node::Point));
+                self.nodes.extend(operation.curve().map(Node::Curve));
                 for mark in operation.marks() {
-                    self.mark(panel, mark, *step);
+                    self.mark(panel, mark, Some(*step));
                 }
                 self.notches(panel, *step);
             }
@@ -93,8 +97,8 @@ impl<'d> Needs<'d> {
                     self.last_stage(span.panel);
                     self.nodes.push(Node::Stage(span.panel, None));
                     if let Some(panel) = self.pattern.panel(span.panel) {
-                        self.mark(panel, &span.from, usize::MAX);
-                        self.mark(panel, &span.to, usize::MAX);
+                        self.mark(panel, &span.from, None);
+                        self.mark(panel, &span.to, None);
                     }
                 }
                 self.numbers(seam.numbers());
@@ -104,25 +108,46 @@ impl<'d> Needs<'d> {
 
     /// What notches need that are placed when that many operations are done.
     fn notches(&mut self, panel: &Panel, step: usize) {
-        let own = |notch: &&Notch| panel.first_step(&notch.at).unwrap_or(0) == step;
-        self.numbers(
-            panel
-                .notches
-                .iter()
-                .filter(own)
-                .filter_map(|n| n.at.number()),
-        );
+        let history = self.history(panel);
+        for notch in &panel.notches {
+            let first = self
+                .pattern
+                .first_step(panel, &history, &notch.at)
+                .unwrap_or(0);
+            if first.max(history.base) == history.base + step {
+                self.mark(panel, &notch.at, Some(step));
+            }
+        }
     }
 
-    /// The number of a mark, and the stage it is placed on, if that comes before a step.
-    fn mark(&mut self, panel: &Panel, mark: &Mark, before: usize) {
-        if let Mark::Notch(id) = mark {
-            self.numbers(panel.notch(*id).and_then(|notch| notch.at.number()));
+    /// The stages a panel comes from, which follow from the panels it is a side of.
+    fn history(&mut self, panel: &Panel) -> History {
+        let parents = self.pattern.lineage(panel).into_iter().skip(1);
+        self.panels.extend(parents.map(|parent| parent.id));
+        if let Source::Side { of, .. } = panel.source {
+            self.panels.push(of);
         }
-        let first = panel.first_step(mark).filter(|&step| step < before);
-        let made = first.and_then(|step| panel.operations.get(step.checked_sub(1)?));
+        self.pattern.history(panel)
+    }
+
+    /// The number of a mark, and the stage it is placed on, if that comes before so many of the
+    /// panel's operations are done.
+    fn mark(&mut self, panel: &Panel, mark: &Mark, before: Option<usize>) {
+        let history = self.history(panel);
+        self.numbers(match mark {
+            Mark::Notch(id) => {
+                let notch = self.pattern.notch_of(panel, *id);
+                notch.and_then(|notch| notch.at.number())
+            }
+            own => own.number(),
+        });
+        let first = self.pattern.first_step(panel, &history, mark);
+        let before = before.map_or(usize::MAX, |step| history.base + step);
+        let stage = first
+            .filter(|&step| step < before)
+            .and_then(|step| history.stage(step));
         self.nodes
-            .extend(made.map(|o| Node::Stage(panel.id, Some(o.id))));
+            .extend(stage.map(|(panel, after)| Node::Stage(panel, after)));
     }
 
     fn numbers<'a>(&mut self, numbers: impl IntoIterator<Item = &'a Number>) {

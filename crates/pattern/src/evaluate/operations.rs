@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// A stage of a panel; nothing if its outline or the stage before it cannot be drawn.
 pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Option<Arc<Stage>> {
     if step == 0 {
-        return Drawing { c, panel }.drawn().map(Arc::new);
+        return Drawing::new(c, panel).drawn().map(Arc::new);
     }
     let before = step.checked_sub(2).map(|k| panel.operations[k].id);
     let stage = c.stage(Node::Stage(panel.id, before)).cloned();
@@ -20,9 +20,12 @@ pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Opti
     let place = Place::Operation(panel.id, operation.id);
     let stage = c.reported(stage, &place, "")?;
     // An operation that cannot be done is left out, with an error.
-    let mut drawing = Drawing { c, panel };
+    let mut drawing = Drawing::new(c, panel);
     let done = drawing.done(&stage, (step, operation));
     let mut stage = done.map_or(stage, |mut done| {
+        if !matches!(operation.kind, OperationKind::Split { .. }) {
+            done.sides.clear();
+        }
         done.done.push(operation.id);
         Arc::new(done)
     });
@@ -69,6 +72,7 @@ impl Drawing<'_, '_, '_> {
             OperationKind::Fold { line, ends } => self.fold(stage, (step, *line), ends, &place),
             OperationKind::Pivot { .. } => self.pivot(stage, (step, operation), &place),
             OperationKind::Spread { .. } => self.spread(stage, (step, operation), &place),
+            OperationKind::Split { line, curve } => self.split(stage, (operation, *line), *curve),
         }
     }
 

@@ -4,18 +4,43 @@ use super::node::Node;
 use super::numbers::{Computation, Want};
 use crate::stage::{MarkValue, PlaceError, Placed, Spot, StageEdge, StageLine, StageNotch};
 use crate::{
-    Code, Corner, Diagnostic, Edge, Line, LineKind, LineName, Mark, Name, Notch, Panel, Place,
-    Stage,
+    Code, Corner, Diagnostic, Edge, History, Line, LineKind, LineName, Mark, Name, Notch,
+    OperationId, Panel, PanelId, Pattern, Place, Side, Source, Stage,
 };
+use std::sync::Arc;
 use toile_geometry::Vec2;
 
 /// Draws a panel's stages.
 pub(super) struct Drawing<'c, 'e, 'p> {
     pub c: &'c mut Computation<'e>,
     pub panel: &'p Panel,
+    /// The stages the panel comes from.
+    pub history: History,
 }
 
-impl Drawing<'_, '_, '_> {
+impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
+    pub fn new(c: &'c mut Computation<'e>, panel: &'p Panel) -> Self {
+        let history = c.evaluation.pattern.history(panel);
+        Self { c, panel, history }
+    }
+
+    fn first_step(&self, mark: &Mark) -> Option<usize> {
+        let pattern = &self.c.evaluation.pattern;
+        pattern.first_step(self.panel, &self.history, mark)
+    }
+
+    fn has_made(&self, stage: &Stage, mark: &Mark) -> bool {
+        let pattern = &self.c.evaluation.pattern;
+        has_made(stage, (pattern, self.panel, &self.history), mark)
+    }
+
+    /// A stage the panel comes from.
+    fn past(&mut self, step: usize, place: &Place) -> Option<Arc<Stage>> {
+        let (panel, after) = self.history.stage(step)?;
+        let stage = self.c.stage(Node::Stage(panel, after)).cloned();
+        self.c.reported(stage, place, "")
+    }
+
     pub fn words(&self, what: &str) -> String {
         format!("panel {:?}, {what}", self.panel.name)
     }
@@ -52,6 +77,9 @@ impl Drawing<'_, '_, '_> {
         if !complete {
             return None;
         }
+        if let Source::Side { of, split, side } = panel.source {
+            stage = self.side((of, split, side), stage.grain, general.unwrap_or(0.0))?;
+        }
         if stage.outline().is_empty() {
             self.error(
                 Code::EmptyOutline,
@@ -61,7 +89,56 @@ impl Drawing<'_, '_, '_> {
             );
             return None;
         }
-        stage.notches = self.notches(&stage, 0);
+        let own = self.notches(&stage, 0);
+        stage.notches.extend(own);
+        Some(stage)
+    }
+
+    /// A side of another panel, with its own grain and the width of cloth outside the cut.
+    fn side(
+        &mut self,
+        (of, split, side): (PanelId, OperationId, Side),
+        grain: f64,
+        general: f64,
+    ) -> Option<Stage> {
+        let place = Place::Panel(self.panel.id);
+        let evaluation = self.c.evaluation;
+        let parent = evaluation.pattern.panel(of);
+        let hint = "undo its removal, or remove this panel";
+        let Some(parent) = parent else {
+            let what = format!("{of}, which it is a side of, is not there any more");
+            self.error(Code::MissingReference, place, &what, hint);
+            return None;
+        };
+        if parent.step_of(split).is_none() {
+            let what = format!(
+                "panel {:?} is not split any more as it was for it",
+                parent.name
+            );
+            self.error(Code::MissingReference, place, &what, hint);
+            return None;
+        }
+        let node = Node::Stage(of, Some(split));
+        let whole = self.c.stage(node).cloned();
+        let whole = self.c.reported(whole, &place, "")?;
+        let index = match side {
+            Side::Left => 0,
+            Side::Right => 1,
+        };
+        let Some(found) = whole.sides.get(index) else {
+            // Why it could not be split is told there.
+            self.c.cause = evaluation.index.get(&node).copied().unwrap_or(self.c.k);
+            return None;
+        };
+        let mut stage = Stage {
+            grain,
+            ..(**found).clone()
+        };
+        for edge in stage.lines.iter_mut().flat_map(|line| &mut line.edges) {
+            if edge.name.maker() == Some(split) {
+                edge.allowance = general;
+            }
+        }
         Some(stage)
     }
 
@@ -71,9 +148,11 @@ impl Drawing<'_, '_, '_> {
         let panel = self.panel;
         let mut found = Vec::new();
         for notch in &panel.notches {
-            if panel.first_step(&notch.at).unwrap_or(0) == step && has_made(stage, panel, &notch.at)
+            let first = self.first_step(&notch.at).unwrap_or(0);
+            if first.max(self.history.base) == self.history.base + step
+                && self.has_made(stage, &notch.at)
             {
-                found.extend(self.notch(stage, notch));
+                found.extend(self.notch(stage, (notch, first)));
             }
         }
         found
@@ -145,7 +224,8 @@ impl Drawing<'_, '_, '_> {
                 MarkValue::Between(*ends, self.c.number(share, Want::Plain, place, what)?)
             }
             Mark::Notch(id) => {
-                let notch = self.panel.notches.iter().find(|notch| notch.id == *id);
+                let pattern = &self.c.evaluation.pattern;
+                let notch = pattern.notch_of(self.panel, *id);
                 match notch.map(|notch| &notch.at) {
                     Some(at) if !matches!(at, Mark::Notch(_)) => self.mark(at, place, what)?,
                     _ => {
@@ -164,10 +244,9 @@ impl Drawing<'_, '_, '_> {
         step: usize,
         (place, what): (&Place, &str),
     ) -> Option<Result<Spot, PlaceError>> {
-        let panel = self.panel;
         let value = self.mark(mark, place, what)?;
-        let first = panel.first_step(mark).unwrap_or(0);
-        if first >= step {
+        let first = self.first_step(mark).unwrap_or(0);
+        if first >= self.history.base + step {
             self.c.diagnostics.push(Diagnostic::error(
                 Code::MissingReference,
                 place.clone(),
@@ -176,11 +255,9 @@ impl Drawing<'_, '_, '_> {
             ));
             return None;
         }
-        let after = first.checked_sub(1).map(|k| panel.operations[k].id);
-        let stage = self.c.stage(Node::Stage(panel.id, after)).cloned();
-        let stage = self.c.reported(stage, place, "")?;
+        let stage = self.past(first, place)?;
         // What was not made was told where it is made.
-        has_made(&stage, panel, mark).then(|| stage.spot(line, value))
+        self.has_made(&stage, mark).then(|| stage.spot(line, value))
     }
 
     /// A place of the stage an operation is done on: a corner as it is there, any other mark as it
@@ -219,8 +296,8 @@ impl Drawing<'_, '_, '_> {
                 None => id.to_string(),
             },
             Name::Made { by, .. } => {
-                let mut operations = self.panel.operations.iter();
-                match operations.find(|operation| operation.id == by) {
+                let pattern = &self.c.evaluation.pattern;
+                match pattern.operation_of(self.panel, by) {
                     Some(made) => format!("a corner of {} {:?}", made.kind.word(), made.name),
                     None => format!("a corner of {by}"),
                 }
@@ -237,12 +314,18 @@ impl Drawing<'_, '_, '_> {
         self.gone(place, what, &part);
     }
 
-    fn notch(&mut self, stage: &Stage, notch: &Notch) -> Option<StageNotch> {
+    /// A notch of whose mark a step of the panel's history has the corners first.
+    fn notch(&mut self, stage: &Stage, (notch, first): (&Notch, usize)) -> Option<StageNotch> {
         let place = Place::Notch(self.panel.id, notch.id);
         let what = self.words(&format!("notch {:?}", notch.name));
         let mark = self.mark(&notch.at, &place, &what)?;
         let line = Name::Drawn(notch.line);
-        let spot = match stage.spot(line, mark) {
+        // What the panel is a side of places it where it is cut from that.
+        let found = match first < self.history.base {
+            true => self.past(first, &place)?.spot(line, mark),
+            false => stage.spot(line, mark),
+        };
+        let spot = match found {
             Ok(spot) => spot,
             Err(PlaceError::Beyond) => {
                 self.c.diagnostics.push(Diagnostic::warning(
@@ -258,7 +341,10 @@ impl Drawing<'_, '_, '_> {
                 return None;
             }
         };
-        let (point, along) = stage.at_spot(line, spot)?;
+        let Some((point, along)) = stage.at_spot(line, spot) else {
+            self.no_place(PlaceError::Beyond, &place, &what);
+            return None;
+        };
         let turn = stage.turn();
         Some(StageNotch {
             id: notch.id,
@@ -274,14 +360,18 @@ impl Drawing<'_, '_, '_> {
 
 /// Whether a stage has what operations of the panel make of a mark's corners. It has not where one
 /// could not be done, which is told there.
-pub(super) fn has_made(stage: &Stage, panel: &Panel, mark: &Mark) -> bool {
+pub(super) fn has_made(
+    stage: &Stage,
+    (pattern, panel, history): (&Pattern, &Panel, &History),
+    mark: &Mark,
+) -> bool {
     let at = match mark {
-        Mark::Notch(id) => panel.notch(*id).map(|notch| &notch.at),
+        Mark::Notch(id) => pattern.notch_of(panel, *id).map(|notch| &notch.at),
         own => Some(own),
     };
     let corners = at.map_or_else(Vec::new, Mark::corners);
     let makers = corners.iter().filter_map(|corner| corner.maker());
     makers
-        .filter(|by| panel.step_of(*by).is_some())
+        .filter(|by| history.step_of(*by).is_some())
         .all(|by| stage.done.contains(&by))
 }

@@ -1,12 +1,15 @@
-//! Operations that cut a panel and move its parts: pivots and spreads.
+//! Operations that cut a panel apart: pivots, spreads and splits.
 
+use super::node::Node;
 use super::numbers::Want;
 use super::panels::Drawing;
 use crate::stage::{
-    CutError, PivotError, Pivoting, SpreadAlong, SpreadError, Spreading, pivot_dart, spread,
+    CutError, PivotError, Pivoting, SplitError, SpreadAlong, SpreadError, Spreading, pivot_dart,
+    split, spread,
 };
 use crate::{
-    Code, Diagnostic, LineName, Operation, OperationId, OperationKind, Place, SpreadCut, Stage,
+    Code, CurveId, Diagnostic, LineName, Operation, OperationId, OperationKind, Place, SpreadCut,
+    Stage,
 };
 
 impl Drawing<'_, '_, '_> {
@@ -182,6 +185,34 @@ impl Drawing<'_, '_, '_> {
         })
     }
 
+    /// A stage with both its sides; nothing if it cannot be split.
+    pub fn split(
+        &mut self,
+        stage: &Stage,
+        (operation, line): (&Operation, LineName),
+        curve: CurveId,
+    ) -> Option<Stage> {
+        let place = Place::Operation(self.panel.id, operation.id);
+        let what = self.words(&format!("split {:?}", operation.name));
+        let path = self.c.path(Node::Curve(curve)).cloned();
+        let path = self.c.reported(path, &place, &what)?;
+        match split(stage, (operation.id, line), &path) {
+            Ok(stage) => return Some(stage),
+            Err(SplitError::Cut(error)) => self.no_cut(error, &place, &what),
+            Err(SplitError::Meets(count)) => {
+                let message = match count {
+                    0 => "its curve does not meet the outline".to_owned(),
+                    1 => "its curve meets the outline in one place".to_owned(),
+                    count => format!("its curve meets the outline in {count} places"),
+                };
+                let hint =
+                    "draw the curve from one place of the outline to another, with ends on it";
+                self.refused(Code::BadCut, &place, (&what, &message), hint);
+            }
+        }
+        None
+    }
+
     /// Whether an operation was done before that step. It is told where it could not be.
     fn is_done(
         &mut self,
@@ -189,8 +220,8 @@ impl Drawing<'_, '_, '_> {
         (step, operation): (usize, OperationId),
         (place, what): (&Place, &str),
     ) -> bool {
-        match self.panel.step_of(operation) {
-            Some(own) if own < step => stage.done.contains(&operation),
+        match self.history.step_of(operation) {
+            Some(own) if own < self.history.base + step => stage.done.contains(&operation),
             Some(_) => {
                 self.refused(
                     Code::MissingReference,

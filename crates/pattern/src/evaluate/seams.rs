@@ -80,6 +80,14 @@ fn locate(c: &mut Computation<'_>, seam: &Seam, span: &Span) -> Option<(SpanValu
         missing(c, seam, (message, hint));
         return None;
     }
+    if panel.is_split() {
+        let message = format!(
+            "seam {name:?} names panel {:?}, which is split and not cut itself",
+            panel.name
+        );
+        missing(c, seam, (message, "sew the panels that are its sides"));
+        return None;
+    }
     let internal = |line: &&Line| Name::Drawn(line.id) == span.line && !line.is_closed();
     if let Some(line) = panel.lines.iter().find(internal) {
         c.diagnostics.push(Diagnostic::error(
@@ -153,15 +161,18 @@ fn stretch(
     (panel, finished): (&Panel, &Stage),
     marks: [MarkValue; 2],
 ) -> Option<Result<Stretch, PlaceError>> {
+    let evaluation = c.evaluation;
+    let pattern = &evaluation.pattern;
+    let history = pattern.history(panel);
     let mut places = Vec::with_capacity(2);
     for (mark, value) in [&span.from, &span.to].into_iter().zip(marks) {
-        let Some(step) = panel.first_step(mark) else {
+        let step = pattern.first_step(panel, &history, mark);
+        let Some((of, after)) = step.and_then(|step| history.stage(step)) else {
             return Some(Err(PlaceError::NoLine));
         };
-        let after = step.checked_sub(1).map(|k| panel.operations[k].id);
-        let first = c.stage(Node::Stage(panel.id, after)).cloned();
+        let first = c.stage(Node::Stage(of, after)).cloned();
         let first = c.reported(first, &Place::Seam(seam.id), "")?;
-        if !has_made(&first, panel, mark) {
+        if !has_made(&first, (pattern, panel, &history), mark) {
             return None;
         }
         match finished.placed(&first, span.line, value) {
@@ -205,7 +216,8 @@ fn mark(c: &mut Computation<'_>, seam: &Seam, span: &Span, mark: &Mark) -> Optio
         }
         Mark::Notch(id) => {
             let panel = c.evaluation.pattern.panel(span.panel);
-            let notch = panel.and_then(|panel| panel.notch(*id)).cloned();
+            let notch = panel.and_then(|panel| c.evaluation.pattern.notch_of(panel, *id));
+            let notch = notch.cloned();
             match notch {
                 Some(notch) if !matches!(notch.at, Mark::Notch(_)) => {
                     self::mark(c, seam, span, &notch.at)?

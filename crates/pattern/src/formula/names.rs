@@ -101,8 +101,10 @@ impl Names {
 
     fn panel(&mut self, panel: &Panel) {
         self.panels.put((), &panel.name, panel.id);
-        self.source.entry(panel.id).or_insert(panel.sheet());
-        self.traced.entry(panel.sheet()).or_insert(panel.id);
+        if let Some(sheet) = panel.sheet() {
+            self.source.entry(panel.id).or_insert(sheet);
+            self.traced.entry(sheet).or_insert(panel.id);
+        }
         let edges = self.edges.entry(panel.id).or_default();
         for edge in panel.edges() {
             edges.entry((*edge.name).into()).or_insert(edge.ends);

@@ -1,8 +1,8 @@
 //! Divides an edge at a new corner on its curve, and joins two edges at an old one: exact inverses
 //! in every size, since the curve stays.
 
-use super::impossible;
 use super::names::free_name;
+use super::{impossible, lookup};
 use crate::{
     Curve, CurveId, CurveRule, Edge, EdgeId, Edit, EditError, Entity, Evaluation, Number, Panel,
     PanelId, PartId, Place, Point, PointId, PointRule, Sheet,
@@ -24,9 +24,7 @@ pub fn divide_edge(
     let missing = |part: &dyn std::fmt::Display| EditError::Missing(part.to_string());
     let owner = pattern.panel(panel).ok_or_else(|| missing(&panel))?;
     let old = owner.edge(edge).ok_or_else(|| missing(&edge))?;
-    let sheet = pattern
-        .sheet(owner.sheet())
-        .ok_or_else(|| missing(&owner.sheet()))?;
+    let sheet = lookup::drawn_on(pattern, owner)?;
     let undrawn = || impossible("the edge cannot be drawn", "mend its formulas first");
     let path = evaluation.edge(edge).ok_or_else(undrawn)?;
     let curve = evaluation.curve(old.curve).ok_or_else(undrawn)?;
@@ -90,9 +88,7 @@ pub fn join_edges(
     let pattern = evaluation.pattern();
     let missing = |part: &dyn std::fmt::Display| EditError::Missing(part.to_string());
     let owner = pattern.panel(panel).ok_or_else(|| missing(&panel))?;
-    let sheet = pattern
-        .sheet(owner.sheet())
-        .ok_or_else(|| missing(&owner.sheet()))?;
+    let sheet = lookup::drawn_on(pattern, owner)?;
     let mut changed = (**owner).clone();
     let line = changed
         .lines

@@ -5,7 +5,7 @@ use super::number_place::NumberPlace;
 use super::numbers::numbers_of;
 use crate::{
     EditError, Entity, Evaluation, Fabric, Ids, Number, Panel, PartId, Pattern, Seam, Sheet,
-    SheetHead, Variable, Want,
+    SheetHead, Source, Variable, Want,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -156,12 +156,19 @@ fn closure(pattern: &Pattern, parts: &[PartId]) -> Result<BTreeSet<PartId>, Edit
     let sheets = |part: PartId| match part {
         PartId::Point(id) => pattern.point(id).map(|found| found.0.id),
         PartId::Curve(id) => pattern.curve(id).map(|found| found.0.id),
-        PartId::Panel(id) => pattern.panel(id).map(|panel| panel.sheet()),
+        PartId::Panel(id) => pattern.panel(id).and_then(|panel| pattern.sheet_of(panel)),
         _ => None,
     };
     while let Some(part) = open.pop() {
         if !chosen.insert(part) {
             continue;
+        }
+        // A side comes with the panel it is cut from.
+        if let PartId::Panel(id) = part
+            && let Some(Source::Side { of, .. }) = pattern.panel(id).map(|panel| panel.source)
+            && known.contains(&of.into())
+        {
+            open.extend(seeds(pattern, of.into())?);
         }
         let (Some(sheet), Some(entity)) = (sheets(part), entity(pattern, part)) else {
             continue;

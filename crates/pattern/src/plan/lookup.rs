@@ -34,6 +34,23 @@ pub(super) fn panel(pattern: &Pattern, id: PanelId) -> Result<&Arc<Panel>, EditE
     pattern.panel(id).ok_or_else(|| missing(&id))
 }
 
+/// The sheet a panel's own lines are drawn on.
+pub(super) fn drawn_on<'p>(
+    pattern: &'p Pattern,
+    panel: &Panel,
+) -> Result<&'p Arc<Sheet>, EditError> {
+    match panel.sheet() {
+        Some(id) => sheet(pattern, id),
+        None => Err(impossible(
+            format!(
+                "panel {:?} is a side of another and has no lines of its own",
+                panel.name
+            ),
+            "draw on the panel that was split",
+        )),
+    }
+}
+
 pub(super) fn line(panel: &Panel, id: LineId) -> Result<&Line, EditError> {
     panel.line(id).ok_or_else(|| missing(&id))
 }

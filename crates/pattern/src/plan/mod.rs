@@ -28,6 +28,7 @@ mod reshape;
 mod seam;
 mod select;
 mod sizes;
+mod split;
 mod trace;
 mod transform;
 mod typed;
@@ -61,6 +62,7 @@ pub use select::points_of;
 pub use sizes::{
     add_size, add_variable, remove_size, rename_pattern, set_base_size, set_measurement, set_unit,
 };
+pub use split::{Joined, SplitPanel, SplitWish, split_panel};
 pub use trace::{Holes, NewPanel, add_line, remove_line, trace_face, trace_panel};
 pub use transform::{Affine, Moved, move_points, transform_points};
 pub use typed::{number_text, read_number};

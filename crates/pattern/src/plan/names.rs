@@ -79,7 +79,7 @@ pub(super) fn sheet_owner(pattern: &Pattern, own: Option<&Sheet>, name: &str) ->
         return Some(format!("sheet {name:?}"));
     }
     let mut panels = pattern.panels.iter();
-    let is_foreign = |panel: &Panel| own.is_none_or(|own| own.id != panel.sheet());
+    let is_foreign = |panel: &Panel| own.is_none_or(|own| Some(own.id) != panel.sheet());
     panels
         .any(|panel| panel.name == name && is_foreign(panel))
         .then(|| format!("panel {name:?}"))
@@ -94,7 +94,7 @@ pub(super) fn panel_owner(pattern: &Pattern, own: &Panel, name: &str) -> Option<
     }
     let mut sheets = pattern.sheets.iter();
     sheets
-        .any(|sheet| sheet.name == name && sheet.id != own.sheet())
+        .any(|sheet| sheet.name == name && Some(sheet.id) != own.sheet())
         .then(|| format!("sheet {name:?}"))
 }
 

@@ -96,7 +96,7 @@ fn put(
     panel: Panel,
     operations: &[OperationId],
 ) -> Result<Vec<Edit>, EditError> {
-    refuse_foreign_points(evaluation, &panel)?;
+    refuse_foreign_parts(evaluation, &panel)?;
     let (id, name) = (panel.id, panel.name.clone());
     let edits = vec![Edit::Put(Entity::Panel(Arc::new(panel)))];
     let after = after(evaluation, &edits)?;
@@ -120,22 +120,31 @@ fn put(
     }
 }
 
-/// Operations end at points of the panel's own sheet: those of others lie elsewhere.
-fn refuse_foreign_points(evaluation: &Evaluation, panel: &Panel) -> Result<(), EditError> {
+/// Operations use points and curves of the panel's own sheet: those of others lie elsewhere.
+fn refuse_foreign_parts(evaluation: &Evaluation, panel: &Panel) -> Result<(), EditError> {
+    let pattern = evaluation.pattern();
+    let own = pattern.sheet_of(panel);
     let kinds = panel.operations.iter().map(|operation| &operation.kind);
-    for id in kinds.flat_map(OperationKind::points) {
-        // A point that is gone is told where it is missed.
-        if let Some((sheet, point)) = evaluation.pattern().point(id)
-            && sheet.id != panel.sheet()
-        {
-            return Err(impossible(
-                format!(
-                    "point {:?} is on sheet {:?}, which panel {:?} is not traced from",
-                    point.name, sheet.name, panel.name
-                ),
-                "choose a point of the panel's own sheet",
-            ));
-        }
+    // A part that is gone is told where it is missed.
+    let points = kinds
+        .clone()
+        .flat_map(OperationKind::points)
+        .filter_map(|id| {
+            let (sheet, point) = pattern.point(id)?;
+            Some((sheet, "point", &point.name))
+        });
+    let curves = kinds.filter_map(OperationKind::curve).filter_map(|id| {
+        let (sheet, curve) = pattern.curve(id)?;
+        Some((sheet, "curve", &curve.name))
+    });
+    match points.chain(curves).find(|found| own != Some(found.0.id)) {
+        Some((sheet, kind, name)) => Err(impossible(
+            format!(
+                "{kind} {name:?} is on sheet {:?}, which panel {:?} is not traced from",
+                sheet.name, panel.name
+            ),
+            format!("choose a {kind} of the panel's own sheet"),
+        )),
+        None => Ok(()),
     }
-    Ok(())
 }

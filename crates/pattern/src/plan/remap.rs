@@ -273,6 +273,10 @@ impl Remap {
                 self.number(share);
                 self.number(back);
             }
+            OperationKind::Split { line, curve } => {
+                *line = self.name(*line);
+                *curve = self.id(*curve);
+            }
             OperationKind::Spread {
                 line,
                 held,
@@ -291,8 +295,13 @@ impl Remap {
 
     fn panel(&self, panel: &mut Panel) {
         panel.id = self.id(panel.id);
-        let Source::Traced(sheet) = &mut panel.source;
-        *sheet = self.id(*sheet);
+        match &mut panel.source {
+            Source::Traced(sheet) => *sheet = self.id(*sheet),
+            Source::Side { of, split, side: _ } => {
+                *of = self.id(*of);
+                *split = self.id(*split);
+            }
+        }
         panel.fabric = self.id(panel.fabric);
         self.number(&mut panel.grain);
         self.number(&mut panel.allowance);

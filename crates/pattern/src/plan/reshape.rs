@@ -57,6 +57,8 @@ fn freer_part(
     panel: &Panel,
     (dart, line, mouth): (OperationId, LineName, &Mark),
 ) -> Option<Turned> {
+    let pattern = evaluation.pattern();
+    let history = pattern.history(panel);
     let operations = &panel.operations;
     let folds = operations.iter().enumerate().filter_map(|(k, operation)| {
         let OperationKind::Fold { ends, .. } = &operation.kind else {
@@ -81,7 +83,9 @@ fn freer_part(
     };
     let placed = |mark: &Mark| {
         let value = mark_value(evaluation, panel, mark)?;
-        let first = stage_at(panel.first_step(mark)?)?;
+        let step = pattern.first_step(panel, &history, mark)?;
+        let (of, after) = history.stage(step)?;
+        let first = evaluation.stage(of, after)?;
         stage.placed(first, line, value).ok()
     };
     let place = |value| stage.placed(stage, line, value).ok();
@@ -101,7 +105,8 @@ fn freer_part(
     })
 }
 
-fn mark_value(evaluation: &Evaluation, panel: &Panel, mark: &Mark) -> Option<MarkValue> {
+/// A mark with its number.
+pub(super) fn mark_value(evaluation: &Evaluation, panel: &Panel, mark: &Mark) -> Option<MarkValue> {
     let number = |number: &Number, want| evaluation.number(number, want);
     Some(match mark {
         Mark::Corner(corner) => MarkValue::Corner(*corner),
@@ -111,7 +116,7 @@ fn mark_value(evaluation: &Evaluation, panel: &Panel, mark: &Mark) -> Option<Mar
         Mark::Between { ends, share } => {
             MarkValue::Between(*ends, number(share, crate::Want::Plain)?)
         }
-        Mark::Notch(id) => match &panel.notch(*id)?.at {
+        Mark::Notch(id) => match &evaluation.pattern().notch_of(panel, *id)?.at {
             Mark::Notch(_) => return None,
             at => mark_value(evaluation, panel, at)?,
         },

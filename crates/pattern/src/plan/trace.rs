@@ -90,7 +90,7 @@ pub fn add_line(
             "add a hole or an internal line, or trace another panel",
         ));
     }
-    let sheet = lookup::sheet(pattern, changed.sheet())?;
+    let sheet = lookup::drawn_on(pattern, &changed)?;
     let found = wound(stretches(evaluation, sheet.id, chain, kind)?, kind)?;
     let mut ids = pattern.ids;
     let line = line(sheet, &found, (&changed, kind, name), &mut ids)?;

@@ -7,6 +7,7 @@ mod motion;
 mod partition;
 mod pivot;
 mod place;
+mod split;
 mod spread;
 
 pub(crate) use dart::{DartApex, DartError, DartMouth, cut_dart};
@@ -15,11 +16,13 @@ pub(crate) use fold::{FoldError, unfold};
 pub(crate) use partition::CutError;
 pub(crate) use pivot::{PivotError, Pivoting, pivot_dart};
 pub(crate) use place::{MarkValue, PlaceError, Placed, Spot, Stretch, is_sewn, reversed};
+pub(crate) use split::{SplitError, split};
 pub(crate) use spread::{SpreadAlong, SpreadError, Spreading, spread};
 
 use crate::{
     Corner, CornerName, EdgeName, LineKind, LineName, NotchId, NotchKind, OperationId, Pressed,
 };
+use std::sync::Arc;
 use toile_geometry::{Curve, Vec2};
 
 /// A panel after some of its operations.
@@ -37,6 +40,8 @@ pub struct Stage {
     pub folds: Vec<(Vec2, Vec2)>,
     /// Operations that were done, in order.
     pub done: Vec<OperationId>,
+    /// Left and right side, if the last operation split it.
+    pub sides: Vec<Arc<Stage>>,
 }
 
 /// A line of a stage.
@@ -160,7 +165,8 @@ impl Stage {
 
     /// Whether another stage is the same to the bit.
     pub fn is_same(&self, other: &Self) -> bool {
-        self == other && self.bits() == other.bits()
+        let mut sides = self.sides.iter().zip(&other.sides);
+        self == other && self.bits() == other.bits() && sides.all(|(a, b)| a.is_same(b))
     }
 
     /// The mirror image in the y axis: the other piece of a pair.
@@ -196,6 +202,11 @@ impl Stage {
                 .collect(),
             folds: self.folds.iter().map(|f| (flip(f.0), flip(f.1))).collect(),
             done: self.done.clone(),
+            sides: self
+                .sides
+                .iter()
+                .map(|side| Arc::new(side.mirror_image()))
+                .collect(),
         }
     }
 }

@@ -60,7 +60,7 @@ fn a_panel_pasted_beside_is_the_same_in_every_size() {
     let after = done(&pattern, &pasted.edits);
     assert!(pasted.loosened.is_empty(), "all of it is here");
     let copy = after.panel_named("front 2").unwrap();
-    let sheet = after.sheet(copy.sheet()).unwrap();
+    let sheet = after.sheet(copy.sheet().unwrap()).unwrap();
     assert_eq!((&*sheet.name, sheet.on_table), ("front 2", [0.6, 0.1]));
     assert_eq!(copy.operations[0].name, "dart");
     let Number::Formula(allowance) = &copy.allowance else {

@@ -15,6 +15,7 @@ mod reshape;
 mod seam;
 mod sequences;
 mod sizes;
+mod split;
 mod trace;
 mod transform;
 

@@ -126,7 +126,7 @@ fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditError> 
         apex,
         pressed: toile_pattern::Pressed::default(),
     };
-    match which % 37 {
+    match which % 42 {
         0 => add_sheet(evaluation, None, [*x, *y]).map(|done| done.0),
         1 | 2 => {
             let rule = rules[usize::from(n) % rules.len()].clone();
@@ -299,6 +299,44 @@ fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditError> 
             let curves = [c.curve(0), c.curve(1)];
             mark_crossings(evaluation, c.sheet(), curves).map(|done| done.0)
         }
+        36 => {
+            let (panel, dart) = c.operation();
+            let wish = PivotWish {
+                dart,
+                mouth: (Name::Drawn(line), share),
+                share: (*z).into(),
+                back: 0.004.into(),
+                turned: None,
+            };
+            pivot_dart(evaluation, panel, wish).map(|done| done.0)
+        }
+        37 | 38 => {
+            let (line, cuts) = even_cuts(evaluation, panel, [c.edge(2), c.edge(0)], n % 3 + 1)?;
+            let openings = [0.02, (*z).clamp(0.0, 0.01)].map(Number::from);
+            let cuts = cuts.into_iter().map(|cut| (cut, openings.clone()));
+            let wish = SpreadWish {
+                line,
+                cuts: cuts.collect(),
+                held: None,
+                bridge: Bridge::Smooth,
+            };
+            spread_panel(evaluation, panel, wish).map(|done| done.0)
+        }
+        39 | 40 => {
+            let panel = c.panel(1);
+            let owner = pattern
+                .panel(panel)
+                .and_then(|panel| pattern.lineage(panel).last().copied());
+            let line = owner
+                .and_then(|owner| owner.outline())
+                .map_or(line, |line| line.id);
+            let wish = SplitWish {
+                line: Name::Drawn(line),
+                curve: c.curve(0),
+                joined: Joined::Sewn,
+            };
+            split_panel(evaluation, panel, wish).map(|done| done.0)
+        }
         _ => {
             let near = nearest_mark(evaluation, panel, at)?;
             match n % 2 {
@@ -321,6 +359,18 @@ fn start() -> Pattern {
     let wish = (outline(&pattern, "front"), mark);
     let (edits, _) = add_notch(&evaluated(&pattern), front, wish, NotchKind::V).unwrap();
     pattern.apply(&edits).unwrap();
+    // Curves that panels may be split along.
+    for k in 0..2 {
+        let sheet = pattern.sheets[k].clone();
+        for (from, to) in [("left", "right"), ("bottom", "top")] {
+            let ends = [from, to].map(|name| {
+                let curve = sheet.curve_named(name).unwrap().id;
+                let share = 0.4.into();
+                dot(&mut pattern, sheet.id, PointRule::OnCurve { curve, share })
+            });
+            straight(&mut pattern, sheet.id, ends);
+        }
+    }
     let number = formula_in(&pattern, "length(back.right) / 10");
     let (edits, _) = add_variable(&evaluated(&pattern), None, number).unwrap();
     pattern.apply(&edits).unwrap();
@@ -356,5 +406,13 @@ proptest! {
         }
         let fresh = Evaluation::new(&pattern, &body);
         prop_assert_eq!(fresh.points(), evaluation.points());
+        prop_assert_eq!(fresh.diagnostics(), evaluation.diagnostics());
+        for panel in &pattern.panels {
+            let [now, anew] = [&evaluation, &fresh].map(|e| e.last_stage(panel));
+            prop_assert_eq!(now.is_some(), anew.is_some());
+            if let (Some(now), Some(anew)) = (now, anew) {
+                prop_assert!(now.is_same(anew), "panel {:?}", panel.name);
+            }
+        }
     }
 }

@@ -62,7 +62,7 @@ pub fn ends(pattern: &Pattern, panel: &str, name: &str) -> [PointId; 2] {
 /// A point of the sheet a panel is traced from.
 pub fn point(pattern: &Pattern, panel: &str, name: &str) -> PointId {
     let panel = pattern.panel_named(panel).unwrap();
-    let sheet = pattern.sheet(panel.sheet()).unwrap();
+    let sheet = pattern.sheet(panel.sheet().unwrap()).unwrap();
     sheet.point_named(name).unwrap().id
 }
 
