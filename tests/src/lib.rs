@@ -2,6 +2,8 @@
 
 #![allow(clippy::print_stdout)] // tests say what they skip
 
+pub mod losses;
+
 use std::path::{Path, PathBuf};
 
 /// The project's root folder.

@@ -29,6 +29,8 @@ pub struct Timed {
     pub cpu_s: Option<f64>,
     /// What else was counted: steps, residual, times of stages [s].
     pub counted: BTreeMap<String, f64>,
+    /// A table of its own.
+    pub report: Option<String>,
     /// Why it did not end.
     pub failure: Option<String>,
 }
@@ -54,6 +56,18 @@ enum Work {
     Contact(usize),
     /// The square of so many vertices a side that falls on the ball, kept from passing through itself.
     Touching(u32),
+    /// Points dragged in a large pattern and in those that ship, one thread.
+    Drag,
+}
+
+impl Work {
+    /// Threads it is given in turn.
+    fn threads(self) -> &'static [usize] {
+        match self {
+            Self::Drag => &THREADS[..1],
+            _ => &THREADS,
+        }
+    }
 }
 
 /// Frames of a benchmark of motion.
@@ -83,6 +97,7 @@ fn all() -> Vec<(String, Work)> {
             }
         }
     }
+    list.push(("drag".to_owned(), Work::Drag));
     list.push(("nest".to_owned(), Work::Nest));
     list.push(("nest-queries".to_owned(), Work::NestQueries));
     for (name, cells) in [("1k", 22), ("30k", 122), ("1m", 707)] {
@@ -148,7 +163,7 @@ pub fn bench(names: &[String], watcher: &mut dyn Watcher) -> Result<Vec<Timed>, 
         .collect();
     let mut found = Vec::new();
     for (k, (name, work)) in chosen.iter().enumerate() {
-        for threads in THREADS {
+        for &threads in work.threads() {
             let share = k as f64 / chosen.len() as f64;
             let detail = format!("{name}, {threads} threads");
             if watcher.progress("bench", share, &detail) == ControlFlow::Break(()) {
@@ -174,6 +189,7 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
         wall_s: 0.0,
         cpu_s: None,
         counted: BTreeMap::new(),
+        report: None,
         failure: None,
     };
     match work {
@@ -197,6 +213,7 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
         Work::DetectSheet(cells) => crate::detect::sheet(cells, &mut result)?,
         Work::DetectShirt(cuts) => crate::detect::shirt(cuts, &mut result)?,
         Work::Contact(cells) => crate::detect::cost(cells, &mut result)?,
+        Work::Drag => crate::drag::drag(&mut result)?,
         Work::Nest => crate::nest::nest(threads, &mut result)?,
         Work::NestQueries => crate::nest::queries(threads, &mut result)?,
     }
@@ -364,6 +381,9 @@ pub fn bench_table(found: &[Timed]) -> String {
                 .as_ref()
                 .map_or(String::new(), |f| format!("; {f}")),
         );
+    }
+    for report in found.iter().filter_map(|t| t.report.as_ref()) {
+        let _ = write!(text, "\n{report}");
     }
     text
 }

@@ -1,7 +1,6 @@
 //! Wall and processor time of one piece of work.
 
 use std::time::Instant;
-use toile_session::cpu_seconds;
 
 /// When a piece of work began.
 #[derive(Clone, Copy, Debug)]
@@ -34,17 +33,14 @@ impl Clock {
     }
 }
 
-/// Processor time of the threads of this process [s]: to the microsecond where the system tells
-/// it of each thread (Linux: the first field of `/proc/self/task/N/schedstat`, in nanoseconds).
+/// Processor time of the threads of this process [s]: to the nanosecond where the system has such a
+/// clock (POSIX `CLOCK_PROCESS_CPUTIME_ID`), else as it is told otherwise.
 fn processor_seconds() -> Option<f64> {
-    let exact = || -> Option<f64> {
-        let mut sum = 0.0;
-        for task in std::fs::read_dir("/proc/self/task").ok()? {
-            let text = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
-            let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
-            sum += 1e-9 * nanoseconds;
-        }
-        Some(sum)
-    };
-    exact().or_else(cpu_seconds)
+    #[cfg(unix)]
+    {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+        Some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
+    }
+    #[cfg(not(unix))]
+    toile_session::cpu_seconds()
 }

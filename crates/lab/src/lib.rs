@@ -9,6 +9,8 @@ mod chart_report;
 mod check;
 mod clock;
 mod detect;
+mod drag;
+mod drag_pattern;
 mod elastica;
 mod error;
 mod flat;

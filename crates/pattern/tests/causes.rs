@@ -52,6 +52,19 @@ fn seams_of_a_faulty_panel_have_its_cause() {
     assert_eq!((errors[0].code, &errors[0].place), (Code::Formula, &faulty));
 }
 
+/// Two spans of one side lie on a copy that is not cut any more: one cause, told once.
+#[test]
+fn a_copy_that_is_not_cut_is_told_once_a_seam() {
+    let mut pattern = sample();
+    let spans = ["right", "top"].map(|name| span(&pattern, "front", name));
+    alter_seam(&mut pattern, 0, |seam| seam.sides[0] = spans.to_vec());
+    alter(&mut pattern, 0, |panel| panel.cut.quantity = 0);
+    let seam = Place::Seam(pattern.seams[0].id);
+    let found = pattern.check(&Measurements::adult());
+    let own = found.iter().filter(|one| one.place == seam);
+    assert_eq!(own.count(), 1, "{found:#?}");
+}
+
 #[test]
 fn sewing_to_a_line_inside_is_refused_by_name() {
     let mut pattern = sample();

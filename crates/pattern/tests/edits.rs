@@ -501,6 +501,25 @@ fn a_moved_point_is_followed_by_its_dependants_alone() {
     assert_eq!(evaluation.update(&pattern, &body).computed, 0);
 }
 
+/// A formula that named a stretch of a panel once is not looked at when that panel changes later.
+#[test]
+fn what_named_a_panel_once_does_not_follow_it_any_more() {
+    let mut pattern = sample();
+    let body = Measurements::adult();
+    let number = formula_in(&pattern, "length(front.right)");
+    put_variable(&mut pattern, "side", number);
+    let mut kept = Evaluation::new(&pattern, &body);
+    let mut plain = (*pattern.variables[0]).clone();
+    plain.number = 0.5.into();
+    let edit = put(Entity::Variable(Arc::new(plain)));
+    pattern.apply(&[edit]).unwrap();
+    kept.update(&pattern, &body);
+    let mut fresh = Evaluation::new(&pattern, &body);
+    alter(&mut pattern, 0, |panel| panel.allowance = 0.02.into());
+    let updates = [&mut kept, &mut fresh].map(|e| e.update(&pattern, &body).computed);
+    assert_eq!(updates[0], updates[1]);
+}
+
 /// A curve and an edge may have the same name; a formula says which it means.
 #[test]
 fn curves_named_like_edges_are_told_apart() {

@@ -16,7 +16,7 @@ use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
 use toile_marker::{Garments, Laying};
 use toile_measure::Measurements;
-use toile_pattern::{Diagnostic, Draft, Evaluation, Panel, Pattern, Wearer};
+use toile_pattern::{Diagnostic, Draft, Evaluation, Panel, Pattern, Size, SizeId, Wearer};
 
 /// What a mannequin is made from.
 #[derive(Clone, PartialEq)]
@@ -51,12 +51,46 @@ struct KeptMannequin {
     skin: Arc<SurfaceTree>,
 }
 
+/// Whom a pattern is drafted for, and what that follows from: measurements that were not given are
+/// predicted, which takes longer than a small pattern.
+#[derive(Clone)]
+struct DraftedFor {
+    size: Option<String>,
+    body: BodyChoice,
+    sizes: Vec<Arc<Size>>,
+    base_size: Option<SizeId>,
+    wearer: Wearer,
+}
+
+impl DraftedFor {
+    fn of(project: &Project) -> Self {
+        Self {
+            size: project.size.clone(),
+            body: project.body.clone(),
+            sizes: project.pattern.sizes.clone(),
+            base_size: project.pattern.base_size,
+            wearer: project.drafted_to(),
+        }
+    }
+
+    fn holds_for(&self, project: &Project) -> bool {
+        let (known, now) = (&self.sizes, &project.pattern.sizes);
+        let mut pairs = known.iter().zip(now);
+        known.len() == now.len()
+            && pairs.all(|(a, b)| Arc::ptr_eq(a, b))
+            && self.base_size == project.pattern.base_size
+            && self.size == project.size
+            && self.body == project.body
+    }
+}
+
 /// Products of one project.
 #[derive(Clone, Default)]
 pub(crate) struct Derived {
     evaluation: Option<Arc<Evaluation>>,
-    /// The pattern and measurements it was last brought up to date with.
-    evaluated: Option<(Arc<Pattern>, Wearer)>,
+    /// The pattern it was last brought up to date with.
+    evaluated: Option<Arc<Pattern>>,
+    drafted_for: Option<DraftedFor>,
     draft: Option<Arc<Draft>>,
     diagnostics: Option<Arc<Vec<Diagnostic>>>,
     mannequin: Option<KeptMannequin>,
@@ -129,14 +163,16 @@ impl Derived {
 
     /// Every value of the pattern, brought up to date.
     pub fn evaluation(&mut self, project: &Project) -> Arc<Evaluation> {
-        let wearer = project.drafted_to();
+        let wearer = match self.drafted_for.take() {
+            Some(known) if known.holds_for(project) => &self.drafted_for.insert(known).wearer,
+            _ => &self.drafted_for.insert(DraftedFor::of(project)).wearer,
+        };
         let kept = self.evaluation.get_or_insert_with(Arc::default);
-        let is_new = self.evaluated.as_ref().is_none_or(|(pattern, known)| {
-            !Arc::ptr_eq(pattern, &project.pattern) || *known != wearer
-        });
-        if is_new {
-            Arc::make_mut(kept).update(&project.pattern, &wearer);
-            self.evaluated = Some((project.pattern.clone(), wearer));
+        let known = self.evaluated.as_ref();
+        let is_same = known.is_some_and(|known| Arc::ptr_eq(known, &project.pattern));
+        if !is_same || kept.wearer() != wearer {
+            Arc::make_mut(kept).update(&project.pattern, wearer);
+            self.evaluated = Some(project.pattern.clone());
         }
         kept.clone()
     }

@@ -3,7 +3,7 @@
 use super::Evaluation;
 use super::needs::Needs;
 use super::node::{Definition, Node, NodeState};
-use crate::{Panel, Pattern, Sheet};
+use crate::{Panel, PanelId, Pattern, Sheet};
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -144,8 +144,8 @@ impl Evaluation {
             return k;
         }
         let k = self.nodes.len() as u32;
-        self.index.insert(node, k);
-        self.nodes.push(NodeState {
+        Arc::make_mut(&mut self.index).insert(node, k);
+        self.nodes.push(Arc::new(NodeState {
             node,
             definition: match node {
                 Node::Word(_) => Definition::Word,
@@ -153,6 +153,7 @@ impl Evaluation {
             },
             needs: Vec::new(),
             needed_by: Vec::new(),
+            watches: Vec::new(),
             rank: 0,
             cycle: None,
             value: Err(k),
@@ -161,15 +162,14 @@ impl Evaluation {
             missing: false,
             by_name: false,
             diagnostics: Vec::new(),
-        });
+        }));
         k
     }
 
     fn define(&mut self, node: Node, definition: Definition, changed: &mut Vec<u32>) {
         let k = self.number_of(node);
-        let state = &mut self.nodes[k as usize];
-        if !state.definition.is(&definition) {
-            state.definition = definition;
+        if !self.nodes[k as usize].definition.is(&definition) {
+            self.state_mut(k).definition = definition;
             changed.push(k);
         }
     }
@@ -187,12 +187,31 @@ impl Evaluation {
         }
     }
 
+    /// Has a node's needs found again when the lines of these panels change, and of no others.
+    fn watch(&mut self, k: u32, panels: Vec<PanelId>) {
+        if self.nodes[k as usize].watches == panels {
+            return;
+        }
+        let old = std::mem::replace(&mut self.state_mut(k).watches, panels.clone());
+        let watchers = Arc::make_mut(&mut self.watchers);
+        for panel in old {
+            if let Some(nodes) = watchers.get_mut(&panel) {
+                nodes.remove(&k);
+            }
+        }
+        for panel in panels {
+            watchers.entry(panel).or_default().insert(k);
+        }
+    }
+
     /// Finds what a node needs. Whether that changed.
     pub(super) fn set_needs(&mut self, k: u32) -> bool {
         let definition = self.nodes[k as usize].definition.clone();
         let found = Needs::of(&definition, &self.pattern, &self.names);
         let (nodes, words, panels) = (found.nodes, found.words, found.panels);
-        self.nodes[k as usize].by_name = found.by_name;
+        if self.nodes[k as usize].by_name != found.by_name {
+            self.state_mut(k).by_name = found.by_name;
+        }
         let mut needs: Vec<u32> = nodes.iter().map(|&n| self.number_of(n)).collect();
         if let Node::Word(word) = self.nodes[k as usize].node {
             let variable = self.variable_called(&self.word_texts[word as usize]);
@@ -208,18 +227,16 @@ impl Evaluation {
         }
         needs.sort_unstable();
         needs.dedup();
-        for panel in panels {
-            self.watchers.entry(panel).or_default().insert(k);
-        }
+        self.watch(k, panels);
         if self.nodes[k as usize].needs == needs {
             return false;
         }
-        let old = std::mem::replace(&mut self.nodes[k as usize].needs, needs.clone());
+        let old = std::mem::replace(&mut self.state_mut(k).needs, needs.clone());
         for n in old {
-            self.nodes[n as usize].needed_by.retain(|&other| other != k);
+            self.state_mut(n).needed_by.retain(|&other| other != k);
         }
         for n in needs {
-            self.nodes[n as usize].needed_by.push(k);
+            self.state_mut(n).needed_by.push(k);
         }
         true
     }

@@ -4,8 +4,8 @@ use super::changes::is_renamed;
 use super::duplicates::duplicates;
 use super::node::{Definition, Node};
 use super::{Evaluation, Update, Wearer};
-use crate::Pattern;
 use crate::formula::Names;
+use crate::{Pattern, PointId};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
 use std::sync::Arc;
@@ -13,13 +13,40 @@ use std::sync::Arc;
 impl Evaluation {
     /// Brings all values up to date with a pattern and whom it is drafted for.
     pub fn update(&mut self, pattern: &Pattern, wearer: impl Into<Wearer>) -> Update {
-        let wearer = wearer.into();
+        let known = self.nodes.len();
+        let dirty = self.take_changes(pattern, Some(wearer.into()));
+        Update {
+            met: self.nodes.len() - known,
+            ..self.recompute(dirty)
+        }
+    }
+
+    /// Brings points and all that they need up to date with a pattern, and nothing else: for
+    /// planners, which look at places alone and then forget the evaluation.
+    pub(crate) fn update_points(&mut self, pattern: &Pattern, points: &[PointId]) {
+        let dirty = self.take_changes(pattern, None);
+        let nodes = points.iter().map(|&id| Node::Point(id));
+        let mut open: Vec<u32> = nodes.filter_map(|n| self.index.get(&n).copied()).collect();
+        let mut wanted = HashSet::new();
+        while let Some(k) = open.pop() {
+            if wanted.insert(k) {
+                open.extend(&self.nodes[k as usize].needs);
+            }
+        }
+        self.recompute_among(dirty, |k| wanted.contains(&k));
+    }
+
+    /// Takes over what changed, the wearer if there is another; the nodes to be computed for it.
+    fn take_changes(&mut self, pattern: &Pattern, wearer: Option<Wearer>) -> HashSet<u32> {
         self.revision += 1;
         let before = std::mem::replace(&mut self.pattern, pattern.clone());
-        let remeasured = self.wearer.measurements != wearer.measurements
-            || before.base_measurements() != pattern.base_measurements();
-        let resized = self.wearer.size != wearer.size;
-        self.wearer = wearer;
+        let mut remeasured = before.base_measurements() != pattern.base_measurements();
+        let mut resized = false;
+        if let Some(wearer) = wearer.filter(|wearer| *wearer != *self.wearer) {
+            remeasured |= self.wearer.measurements != wearer.measurements;
+            resized = self.wearer.size != wearer.size;
+            self.wearer = Arc::new(wearer);
+        }
         let mut dirty: HashSet<u32> = self.take_over(&before).into_iter().collect();
         let renamed = self.revision == 1 || is_renamed(&before, pattern);
         if renamed {
@@ -38,7 +65,7 @@ impl Evaluation {
         if resized {
             dirty.extend(0..self.nodes.len() as u32);
         }
-        self.recompute(dirty)
+        dirty
     }
 
     /// Finds what nodes need, and orders all anew if that changed.
@@ -123,10 +150,14 @@ impl Evaluation {
                         });
                 for w in component {
                     on_stack[w as usize] = false;
-                    let state = &mut self.nodes[w as usize];
+                    let cycle = if is_cycle { named } else { None };
+                    let known = &self.nodes[w as usize];
+                    if known.rank == rank && known.cycle == cycle {
+                        continue;
+                    }
+                    let state = self.state_mut(w);
                     state.rank = rank;
-                    let was = state.cycle;
-                    state.cycle = if is_cycle { named } else { None };
+                    let was = std::mem::replace(&mut state.cycle, cycle);
                     if was.is_some() && !is_cycle {
                         // Out of a cycle: to be computed like what is new.
                         state.changed = 0;
@@ -139,9 +170,14 @@ impl Evaluation {
 
     /// Recomputes nodes and what needs them, in order.
     fn recompute(&mut self, dirty: HashSet<u32>) -> Update {
+        self.recompute_among(dirty, |_| true)
+    }
+
+    /// The same for those nodes alone that are wanted.
+    fn recompute_among(&mut self, dirty: HashSet<u32>, wanted: impl Fn(u32) -> bool) -> Update {
         let mut update = Update::default();
-        let mut waiting: HashSet<u32> = dirty.clone();
-        let mut queue: BinaryHeap<Reverse<(u32, u32)>> = dirty
+        let mut waiting: HashSet<u32> = dirty.into_iter().filter(|&k| wanted(k)).collect();
+        let mut queue: BinaryHeap<Reverse<(u32, u32)>> = waiting
             .iter()
             .map(|&k| Reverse((self.nodes[k as usize].rank, k)))
             .collect();
@@ -150,7 +186,7 @@ impl Evaluation {
             update.computed += 1;
             let (value, diagnostics) = self.compute(k);
             let revision = self.revision;
-            let state = &mut self.nodes[k as usize];
+            let state = self.state_mut(k);
             state.diagnostics = diagnostics;
             // What needs a part tells its absence itself, but not its fault.
             let is_missing = matches!(state.definition, Definition::Missing);
@@ -173,7 +209,7 @@ impl Evaluation {
             update.changed += 1;
             for n in self.nodes[k as usize].needed_by.clone() {
                 let cyclic = self.nodes[n as usize].cycle.is_some();
-                if !cyclic && waiting.insert(n) {
+                if !cyclic && wanted(n) && waiting.insert(n) {
                     queue.push(Reverse((self.nodes[n as usize].rank, n)));
                 }
             }

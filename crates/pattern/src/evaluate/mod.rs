@@ -32,17 +32,17 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// Every value of a pattern for one wearer.
+/// Every value of a pattern for one wearer. A copy shares all that does not change in it.
 #[derive(Clone, Default)]
 pub struct Evaluation {
     pattern: Pattern,
-    wearer: Wearer,
-    nodes: Vec<NodeState>,
-    index: HashMap<Node, u32>,
+    wearer: Arc<Wearer>,
+    nodes: Vec<Arc<NodeState>>,
+    index: Arc<HashMap<Node, u32>>,
     words: HashMap<Box<str>, u32>,
     word_texts: Vec<Box<str>>,
     /// Nodes whose needs follow from the lines of a panel.
-    watchers: HashMap<crate::PanelId, HashSet<u32>>,
+    watchers: Arc<HashMap<crate::PanelId, HashSet<u32>>>,
     names: Arc<crate::formula::Names>,
     /// Parts whose ids or names are taken twice.
     duplicates: Vec<Diagnostic>,
@@ -56,6 +56,8 @@ pub struct Update {
     pub computed: usize,
     /// Nodes whose value changed.
     pub changed: usize,
+    /// Nodes met for the first time: new parts, and measurements and lost parts that formulas name.
+    pub met: usize,
 }
 
 impl Evaluation {
@@ -89,11 +91,13 @@ impl Evaluation {
     /// Everything found: faults of definitions, one a cause.
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
         // A word that nothing names any more is nobody's concern.
-        let is_used = |state: &&NodeState| match state.node {
+        let is_used = |state: &NodeState| match state.node {
             Node::Word(_) => !state.needed_by.is_empty(),
             _ => true,
         };
-        let mut order: Vec<&NodeState> = self.nodes.iter().filter(is_used).collect();
+        let states = self.nodes.iter().map(|state| &**state);
+        let told = states.filter(|state| !state.diagnostics.is_empty() && is_used(state));
+        let mut order: Vec<&NodeState> = told.collect();
         order.sort_by_key(|state| self.place_in_order(state));
         let own = order
             .iter()
@@ -192,7 +196,7 @@ impl Evaluation {
     }
 
     /// Adds a node and everything that needs it, by however many steps.
-    pub(crate) fn gather_dependants(&self, node: Node, found: &mut HashSet<Node>) {
+    pub fn gather_dependants(&self, node: Node, found: &mut HashSet<Node>) {
         let mut open: Vec<Node> = vec![node];
         while let Some(node) = open.pop() {
             if !found.insert(node) {
@@ -204,7 +208,12 @@ impl Evaluation {
     }
 
     fn state(&self, node: Node) -> Option<&NodeState> {
-        self.index.get(&node).map(|&k| &self.nodes[k as usize])
+        self.index.get(&node).map(|&k| &*self.nodes[k as usize])
+    }
+
+    /// A node to be changed: copied first if another evaluation shares it.
+    fn state_mut(&mut self, k: u32) -> &mut NodeState {
+        Arc::make_mut(&mut self.nodes[k as usize])
     }
 
     fn value(&self, node: Node) -> Option<&Value> {

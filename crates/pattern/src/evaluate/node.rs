@@ -97,6 +97,8 @@ pub(crate) struct NodeState {
     pub definition: Definition,
     pub needs: Vec<u32>,
     pub needed_by: Vec<u32>,
+    /// Panels from whose lines its needs follow.
+    pub watches: Vec<PanelId>,
     /// Place in the order: larger than that of everything it needs, but in a cycle.
     pub rank: u32,
     /// The component of a cycle it is in, named by one of its nodes.

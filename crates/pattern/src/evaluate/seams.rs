@@ -39,6 +39,14 @@ pub(super) fn seam(c: &mut Computation<'_>, seam: &Seam) -> Option<Arc<SeamValue
             ));
         }
     }
+    // Several spans may lack the same thing, which is told once.
+    let mut told: Vec<Diagnostic> = Vec::new();
+    for found in std::mem::take(&mut c.diagnostics) {
+        if !told.contains(&found) {
+            told.push(found);
+        }
+    }
+    c.diagnostics = told;
     complete.then(|| {
         Arc::new(SeamValue {
             ease,

@@ -102,6 +102,8 @@ pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result
     }
     // Points come after those they are constructed from.
     ordered.sort_by_key(|(rank, id, _)| (*rank, *id));
+    let points: Vec<PointId> = goals.iter().map(|goal| goal.0).collect();
+    let mut pattern = evaluation.pattern().clone();
     let mut work = evaluation.clone();
     let mut result = Moved::default();
     let mut first_refusal = None;
@@ -123,7 +125,8 @@ pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result
                 Err(refusal) => first_refusal = first_refusal.or(Some(refusal)),
             }
         }
-        work = lookup::after(&work, &edits)?;
+        pattern.apply(&edits)?;
+        work.update_points(&pattern, &points);
         result.edits.append(&mut edits);
         pending = later;
     }

@@ -6,6 +6,7 @@ mod sample;
 
 mod construct;
 mod copy;
+mod kept;
 mod notch;
 mod numbers;
 mod operations;

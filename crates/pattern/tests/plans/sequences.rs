@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use toile_pattern::plan::*;
 
 /// One wish: which planner, which parts, where.
-type Wish = (u8, [u16; 4], [f64; 3]);
+pub type Wish = (u8, [u16; 4], [f64; 3]);
 
 /// The part of that number among those of a kind; sometimes one that is not there.
 struct Chooser<'p> {
@@ -83,7 +83,7 @@ impl Chooser<'_> {
 }
 
 /// The edits a wish comes to.
-fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditError> {
+pub fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditError> {
     let pattern = evaluation.pattern();
     let (which, numbers, [x, y, z]) = wish;
     let parts: Vec<PartId> = pattern.parts().into_iter().map(|(id, _)| id).collect();
