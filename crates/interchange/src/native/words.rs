@@ -2,7 +2,8 @@
 
 use super::item::FieldsOfKind;
 use toile_pattern::{
-    BodyPart, Bridge, Corner, Facing, LineKind, NapRule, NotchKind, Pressed, Role, Side, Spread, Turned,
+    BodyPart, Bridge, Corner, Facing, LineKind, NapRule, NotchKind, Pressed, Role, Side, Spread,
+    Turned,
 };
 
 /// Version of the format this program writes.
