@@ -254,7 +254,10 @@ impl LaidMarker {
                 });
             }
         }
-        let from = (start == Start::AsItLies).then_some(&self.laid);
+        // Where nothing lies but what is locked, both ways begin alike.
+        let is_free = |&source: &usize| !self.marker.placements[source].locked;
+        let goes_on = start == Start::AsItLies && self.sources.iter().any(is_free);
+        let from = goes_on.then_some(&self.laid);
         let flag = follow.stop.clone();
         let mut stopped = false;
         let mut told = |standing: Standing| {

@@ -1,5 +1,6 @@
 //! A marker of a pattern file: searched for and stored in the file, or written as it is stored.
 
+use crate::export::File;
 use crate::laying::watched;
 use crate::markers::there_are;
 use crate::{
@@ -80,7 +81,7 @@ fn written(
     session: &mut Session,
     id: MarkerId,
     formats: &[MarkerFormat],
-) -> Result<(Nested, Vec<(String, Vec<u8>)>), SessionError> {
+) -> Result<(Nested, Vec<File>), SessionError> {
     let laid = session.marker(id)?;
     let name = format!("{}, {}", session.project().pattern.name, laid.marker().name);
     let layings = [laid.laying()];
