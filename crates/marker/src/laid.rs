@@ -80,10 +80,10 @@ pub struct MarkerState {
     pub waiting: usize,
     /// Fabric used, end margins included [m].
     pub length: f64,
-    /// Area of the pieces over width times length between the end margins; above 1 where they
+    /// Area of the pieces over width times length between the end margins, 0..=1; more where they
     /// overlap.
     pub efficiency: f64,
-    /// Area of the pieces over width times length.
+    /// Area of the pieces over width times length, 0..=1; more where they overlap.
     pub utilisation: f64,
     /// Price of the fabric, all plies together, if a metre's is known.
     pub cost: Option<f64>,
