@@ -80,10 +80,10 @@ pub struct MarkerState {
     pub waiting: usize,
     /// Fabric used, end margins included [m].
     pub length: f64,
-    /// Area of the pieces over width times length between the end margins; above 1 where they
+    /// Area of the pieces over width times length between the end margins, 0..=1; more where they
     /// overlap.
     pub efficiency: f64,
-    /// Area of the pieces over width times length.
+    /// Area of the pieces over width times length, 0..=1; more where they overlap.
     pub utilisation: f64,
     /// Price of the fabric, all plies together, if a metre's is known.
     pub cost: Option<f64>,
@@ -254,7 +254,10 @@ impl LaidMarker {
                 });
             }
         }
-        let from = (start == Start::AsItLies).then_some(&self.laid);
+        // Where nothing lies but what is locked, both ways begin alike.
+        let is_free = |&source: &usize| !self.marker.placements[source].locked;
+        let goes_on = start == Start::AsItLies && self.sources.iter().any(is_free);
+        let from = goes_on.then_some(&self.laid);
         let flag = follow.stop.clone();
         let mut stopped = false;
         let mut told = |standing: Standing| {

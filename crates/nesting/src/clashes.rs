@@ -15,10 +15,10 @@ pub struct Clashes {
     pub outside: Vec<Outside>,
     /// Fabric used, end margins included \[m\].
     pub length: f64,
-    /// Area of the pieces over width times length between the end margins, a plain ratio; above 1
-    /// where they overlap.
+    /// Area of the pieces over width times length between the end margins, 0..=1; more where they
+    /// overlap.
     pub efficiency: f64,
-    /// Area of the pieces over width times length, a plain ratio.
+    /// Area of the pieces over width times length, 0..=1; more where they overlap.
     pub utilisation: f64,
 }
 

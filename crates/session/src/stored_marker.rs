@@ -1,5 +1,6 @@
 //! A marker of a pattern file: searched for and stored in the file, or written as it is stored.
 
+use crate::export::File;
 use crate::laying::watched;
 use crate::markers::there_are;
 use crate::{
@@ -75,15 +76,12 @@ pub fn nest_marker(
     Ok((nested, paths))
 }
 
-/// A file to write: its name and what is in it.
-type NamedFile = (String, Vec<u8>);
-
 /// A marker as it lies, in a few numbers and as files.
 fn written(
     session: &mut Session,
     id: MarkerId,
     formats: &[MarkerFormat],
-) -> Result<(Nested, Vec<NamedFile>), SessionError> {
+) -> Result<(Nested, Vec<File>), SessionError> {
     let laid = session.marker(id)?;
     let name = format!("{}, {}", session.project().pattern.name, laid.marker().name);
     let layings = [laid.laying()];

@@ -130,6 +130,16 @@ fn a_marker_is_laid_moved_locked_undone_saved_and_reopened() {
     let empty = text(&session);
     let start = state(&mut session, id);
     assert_eq!((start.laid, start.waiting), (0, 12));
+    let run = |start: Start, session: &mut Session| {
+        let mut follow = Follow {
+            told: &mut |_| true,
+            stop: Arc::default(),
+        };
+        let job = session.marker_search(id).unwrap();
+        job.run((start, search(4)), &mut follow).unwrap().found
+    };
+    let anew = run(Start::Anew, &mut session);
+    assert_eq!(run(Start::AsItLies, &mut session), anew);
     let events = lay(&mut session, id, (Start::Anew, search(1)));
     assert_eq!(session.can_undo(), Some("Lay marker"));
     let told = events.iter().find_map(|event| match event {
@@ -467,6 +477,9 @@ fn a_marker_of_a_file_is_stored_there_and_written() {
     assert_eq!(std::fs::read_to_string(&path).unwrap(), unknown);
 }
 
+/// A planner's edits.
+type Change<'a> = &'a dyn Fn(&Evaluation) -> Vec<Edit>;
+
 /// The pieces of a marker follow every way of changing the pattern, as a fresh session says.
 #[test]
 fn what_is_kept_of_a_marker_is_what_a_fresh_session_makes() {
@@ -474,7 +487,6 @@ fn what_is_kept_of_a_marker_is_what_a_fresh_session_makes() {
     let id = marked(&mut session);
     lay(&mut session, id, (Start::Anew, search(1)));
     let size = session.project().pattern.size_named("M").unwrap().id;
-    type Change<'a> = &'a dyn Fn(&Evaluation) -> Vec<Edit>;
     let changes: [Change<'_>; 4] = [
         &|evaluation| plan::set_measurement(evaluation, size, "bust", Some(1.1)).unwrap(),
         &|evaluation| plan::rename(evaluation, size.into(), "Medium").unwrap(),
