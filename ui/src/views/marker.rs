@@ -1,6 +1,7 @@
 //! The marker view: pieces on their fabric, seen from above. It changes no document: it says what
 //! is done in it.
 
+use super::marker_piece::PieceScene;
 use crate::canvas::camera::{ScreenPoint, TableCamera, TablePoint};
 use crate::canvas::fill::{Fill, fill};
 use crate::theme::{self, Palette};
@@ -10,7 +11,7 @@ use egui::{
     Role, Sense, Shape, Stroke, Ui, WidgetInfo, vec2,
 };
 use std::collections::HashMap;
-use toile_cut::{Drawing, StrokeKind};
+use toile_cut::StrokeKind;
 use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::{MarkerId, OrderedPiece};
 use toile_session::{LaidMarker, MarkerState, Pose};
@@ -21,18 +22,6 @@ const GAP: f64 = 0.03;
 const LEAST_LETTERS: f32 = 7.0;
 /// Quarter of a turn [rad].
 const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
-
-/// A piece as drawn.
-#[derive(Clone, Debug)]
-struct PieceScene {
-    piece: OrderedPiece,
-    name: String,
-    drawing: Drawing,
-    fill: Fill,
-    pose: Pose,
-    locked: bool,
-    waits: bool,
-}
 
 /// Something that is done to a marker.
 #[derive(Clone, Debug, PartialEq)]
@@ -566,43 +555,5 @@ impl MarkerView {
             let selected = self.selection.contains(&scene.piece);
             response.widget_info(|| WidgetInfo::selected(Role::Button, true, selected, &words));
         }
-    }
-}
-
-impl PieceScene {
-    fn new(
-        piece: OrderedPiece,
-        name: &str,
-        pose: Pose,
-        draw: impl FnOnce(&dyn Fn(Vec2) -> Vec2, &[&str]) -> Drawing,
-    ) -> Self {
-        let drawing = draw(&|at| pose.apply(at), &[name]);
-        let rings = drawing.fill.as_ref();
-        let rings: Vec<Vec<Vec2>> = rings.map_or_else(Vec::new, |p| p.rings().cloned().collect());
-        Self {
-            piece,
-            name: name.to_owned(),
-            fill: fill(&rings),
-            drawing,
-            pose,
-            locked: false,
-            waits: false,
-        }
-    }
-
-    fn bounds(&self) -> Option<Bounds2> {
-        let polygon = self.drawing.fill.as_ref()?;
-        Some(polygon.bounds())
-    }
-
-    fn middle(&self) -> Vec2 {
-        let words = self.drawing.words.first().map(|words| words.at);
-        let bounds = self.bounds().map(|bounds| bounds.centre());
-        words.or(bounds).unwrap_or_else(Vec2::zeros)
-    }
-
-    /// A number by which pieces of one size look alike.
-    fn group(&self) -> u8 {
-        self.piece.size.map_or(0, |id| (id.0 % 7) as u8)
     }
 }

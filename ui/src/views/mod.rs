@@ -2,4 +2,5 @@
 
 pub mod garment;
 pub mod marker;
+mod marker_piece;
 pub mod pattern;
