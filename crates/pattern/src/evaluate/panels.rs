@@ -342,7 +342,10 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
             }
         };
         let Some((point, along)) = stage.at_spot(line, spot) else {
-            self.no_place(PlaceError::Beyond, &place, &what);
+            // An edge without a length is told as that.
+            if first < self.history.base {
+                self.no_place(PlaceError::Beyond, &place, &what);
+            }
             return None;
         };
         let turn = stage.turn();

@@ -491,3 +491,34 @@ fn a_smooth_bridge_goes_on_from_both_sides() {
     assert!((along(&edges[k - 1], 1.0) - along(&edges[k], 0.0)).norm() < 1e-12);
     assert!((along(&edges[k], 1.0) - along(&edges[k + 1], 0.0)).norm() < 1e-12);
 }
+
+#[test]
+fn numbers_of_pivots_and_spreads_are_shown_and_set() {
+    let (mut pattern, dart) = with_dart();
+    let wish = to_edge(&pattern, dart, "right", 0.5);
+    let pivoted = pivot(&mut pattern, wish);
+    let entries = plan::numbers_of(&evaluated(&pattern), pivoted.into());
+    let labels: Vec<&str> = entries.iter().map(|entry| entry.label).collect();
+    assert_eq!(labels, ["share", "share moved", "set back"]);
+    let edits = plan::set_number(&evaluated(&pattern), &entries[1].place, 0.25.into()).unwrap();
+    let pattern = done(&pattern, &edits);
+    let evaluation = evaluated(&pattern);
+    let front = pattern.panels[0].id;
+    let stage = |after| evaluation.stage(front, Some(after)).unwrap();
+    let (whole, new) = (found(stage(dart), dart), found(stage(pivoted), pivoted));
+    assert!((angle(&new) - 0.25 * angle(&whole)).abs() < 1e-12);
+
+    let mut pattern = sample();
+    let wish = flare(&pattern, 2, [0.04, 0.0]);
+    let by = spread(&mut pattern, wish);
+    let entries = plan::numbers_of(&evaluated(&pattern), by.into());
+    let labels: Vec<&str> = entries.iter().map(|entry| entry.label).collect();
+    let cut = ["cut from", "opening at start", "cut to", "opening at end"];
+    assert_eq!(labels, [cut, cut].concat());
+    let edits = plan::set_number(&evaluated(&pattern), &entries[5].place, 0.07.into()).unwrap();
+    let pattern = done(&pattern, &edits);
+    let evaluation = evaluated(&pattern);
+    let now = lengths(evaluation.last_stage(&pattern.panels[0]).unwrap());
+    assert!((now[&made(by, Role::Opening, 2)] - 0.07).abs() < 1e-12);
+    assert!((now[&made(by, Role::Opening, 0)] - 0.04).abs() < 1e-12);
+}
