@@ -451,3 +451,30 @@ fn an_edge_is_bent_through_a_place() {
     assert!((middle - Vec2::new(0.1, 0.27)).norm() < 2e-3, "{middle}");
     assert!(path.length() > 0.205);
 }
+
+#[test]
+fn keys_of_a_field_are_no_commands() {
+    let mut drafter = Drafter::opened("t-shirt");
+    drafter.click(drafter.part("Edge hem of front"));
+    let selected = drafter.window.state().view().selection.clone();
+    let field = drafter
+        .window
+        .get_by_role_and_label(Role::TextInput, "seam allowance");
+    field.focus();
+    drafter.window.run();
+    drafter.chord(Modifiers::COMMAND, Key::A);
+    assert_eq!(drafter.window.state().view().selection, selected);
+    // Enter belongs to the field, not to a tool that was in hand.
+    drafter.window.event(egui::Event::Text("4".into()));
+    drafter.window.run();
+    drafter.window.key_press(Key::Enter);
+    drafter.window.run();
+    let pattern = drafter.pattern();
+    let front = pattern.panel_named("front").unwrap();
+    let hem = front.edges().find(|edge| edge.name == "hem").unwrap();
+    let width = hem
+        .allowance
+        .as_ref()
+        .and_then(toile_pattern::Number::value);
+    assert_eq!(width, Some(0.04), "{}", drafter.status());
+}

@@ -98,6 +98,20 @@ fn a_marker_is_searched_for_moved_locked_and_undone() {
     assert_eq!(marker(&window).placements, found.placements);
     assert!(window.state().marker_view().state.overlaps.is_empty());
 
+    // Escape leaves a drag: nothing of it is taken.
+    let at = piece(&window, "Piece front");
+    window.hover_at(at);
+    window.run_ok();
+    window.drag_at(at);
+    window.run_ok();
+    window.hover_at(at + vec2(60.0, 30.0));
+    window.run_ok();
+    press(&mut window, Key::Escape);
+    window.drop_at(at + vec2(60.0, 30.0));
+    window.run_ok();
+    assert_eq!(marker(&window).placements, found.placements);
+    assert_eq!(window.state().session().past().len(), steps);
+
     // A locked piece stays.
     let front = piece(&window, "Piece front");
     window.hover_at(front);

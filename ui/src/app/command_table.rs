@@ -3,6 +3,7 @@
 use super::command::UiCommand;
 use super::document_commands::DOCUMENT_COMMANDS;
 use super::tool_commands::TOOL_COMMANDS;
+use crate::tools::number::begins_typing;
 use egui::{Key, KeyboardShortcut};
 
 /// All commands, in the order of their menus.
@@ -43,11 +44,6 @@ fn is_function(key: Key) -> bool {
         key,
         F1 | F2 | F3 | F4 | F5 | F6 | F7 | F8 | F9 | F10 | F11 | F12
     )
-}
-
-/// Whether a number or formula can begin with a character.
-pub fn begins_typing(c: char) -> bool {
-    c.is_ascii_digit() || matches!(c, '=' | '.' | ',' | '-' | '(')
 }
 
 /// Whether a number can begin with a key.

@@ -19,6 +19,11 @@ pub fn parse(text: &str, want: Want, evaluation: &Evaluation) -> Result<Number, 
     Ok(number)
 }
 
+/// Whether a number or formula can begin with a character.
+pub fn begins_typing(c: char) -> bool {
+    c.is_ascii_digit() || matches!(c, '=' | '.' | ',' | '-' | '(')
+}
+
 /// A value in words.
 pub fn show(value: f64, want: Want, unit: DisplayUnit) -> String {
     match want {

@@ -10,6 +10,7 @@ use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
 use crate::canvas::snap::snaps;
 use crate::theme::Palette;
+use crate::tools::number::begins_typing;
 use crate::tools::{Event, Held, Outcome, Pointer, Reading, State, Tool};
 use egui::{
     CursorIcon, EventFilter, Id, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui,
@@ -388,9 +389,7 @@ impl PatternView {
             input.events.retain(|event| {
                 let taken = match event {
                     egui::Event::Text(text) => {
-                        let begins = text.starts_with(|c: char| {
-                            c.is_ascii_digit() || matches!(c, '=' | '.' | ',' | '-' | '(')
-                        });
+                        let begins = text.starts_with(begins_typing);
                         let is_slots = matches!(self.tool, Tool::Slots(_));
                         let takes = is_slots && (typing || begins);
                         takes.then(|| Event::Text(text.clone()))
