@@ -293,16 +293,9 @@ impl ToileApp {
             Some((name, formula)) => (Some(name.trim()), formula),
             None => (None, text.as_str()),
         };
-        let planned = number::parse(formula, Want::Plain, &self.base)
-            .or_else(|_| {
-                // A length with its unit stays a formula: a bare value is a plain number.
-                toile_pattern::Formula::parse(formula.trim(), self.base.names())
-                    .map(Number::Formula)
-                    .map_err(|error| format!("{}: {}", error.message, error.hint))
-            })
-            .and_then(|number| {
-                plan::add_variable(&self.base, name, number).map_err(|error| error.to_string())
-            });
+        let planned = number::parse(formula, Want::Any, &self.base).and_then(|number| {
+            plan::add_variable(&self.base, name, number).map_err(|error| error.to_string())
+        });
         match planned {
             Ok((edits, _)) => {
                 if self.edit(Ok(edits), "Add variable") {

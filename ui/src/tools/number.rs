@@ -36,7 +36,7 @@ pub fn show(value: f64, want: Want, unit: DisplayUnit) -> String {
             format!("{} {}", trimmed(value / unit.metres(), digits), unit.sign())
         }
         Want::Angle => format!("{}\u{b0}", trimmed(value.to_degrees(), 2)),
-        Want::Plain => trimmed(value, 4),
+        Want::Plain | Want::Any => trimmed(value, 4),
     }
 }
 

@@ -25,6 +25,8 @@ pub enum Want {
     Plain,
     /// An angle [rad]: computed as a plain number, typed and shown in degrees.
     Angle,
+    /// Anything, as a variable is: a bare value is a plain number.
+    Any,
 }
 
 /// The computation of one node: reads values, collects what is wrong.
@@ -414,6 +416,7 @@ pub(crate) fn bounded(quantity: Quantity, want: Want) -> Result<f64, Failure> {
     let (wanted, limit, unit) = match want {
         Want::Length => (1, LONGEST, " m"),
         Want::Plain | Want::Angle => (0, LARGEST, ""),
+        Want::Any => (power, LARGEST, ""),
     };
     if !value.is_finite() {
         return Err(Failure::new(
@@ -425,7 +428,7 @@ pub(crate) fn bounded(quantity: Quantity, want: Want) -> Result<f64, Failure> {
     if power != wanted && !(value == 0.0 && power == 0) {
         let hint = match want {
             Want::Length => "give a unit, for example 2cm",
-            Want::Plain => "divide by a length, or leave the unit out",
+            Want::Plain | Want::Any => "divide by a length, or leave the unit out",
             Want::Angle => "give an angle, for example 45deg",
         };
         let (found, wanted) = (kind(power), kind(wanted));

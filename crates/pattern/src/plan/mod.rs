@@ -2,6 +2,7 @@
 
 mod additions;
 mod align;
+mod bare;
 mod bind;
 mod chain;
 mod construct;

@@ -167,7 +167,8 @@ impl NumberPlace {
     /// What the number must be. A variable may be anything.
     pub fn want(&self) -> Want {
         match self {
-            Self::Variable(_) | Self::Bulge(_) => Want::Plain,
+            Self::Variable(_) => Want::Any,
+            Self::Bulge(_) => Want::Plain,
             Self::Point(_, number) => match number {
                 PointNumber::X | PointNumber::Y | PointNumber::Distance => Want::Length,
                 PointNumber::Angle => Want::Angle,

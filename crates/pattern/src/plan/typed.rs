@@ -1,5 +1,6 @@
 //! Numbers as they are typed and shown: formulas, and bare numbers in the unit of the document.
 
+use super::bare::with_units;
 use super::impossible;
 use crate::formula::Operation;
 use crate::{DisplayUnit, EditError, Evaluation, Formula, Number, PartReference, Token, Want};
@@ -32,7 +33,8 @@ impl DisplayUnit {
 
 /// The number that a text means where something is wanted. Numbers without a unit mean the
 /// document's unit where a length is wanted, and degrees where an angle is; they become values. So
-/// does a single number with a unit; everything else stays a formula.
+/// does a single number with a unit; everything else stays a formula, in which a bare number beside
+/// a length or an angle gets its unit.
 ///
 /// # Errors
 /// The text is no formula; it names what is not there.
@@ -43,6 +45,13 @@ pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Nu
         impossible(message, error.hint)
     })?;
     refuse_unknown(&formula)?;
+    let formula = match is_bare(text) {
+        true => formula,
+        false => {
+            let written = with_units(evaluation, text, &formula, want);
+            Formula::parse(&written, evaluation.names()).unwrap_or(formula)
+        }
+    };
     let number = Number::Formula(formula.clone());
     let is_constant = formula
         .tokens()
@@ -57,7 +66,7 @@ pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Nu
         match want {
             Want::Length => return Ok(Number::Value(in_metres(text, value, unit))),
             Want::Angle => return Ok(Number::Value(value.to_radians())),
-            Want::Plain => {}
+            Want::Plain | Want::Any => {}
         }
     }
     let is_single = matches!(
@@ -68,6 +77,11 @@ pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Nu
             .collect::<Vec<_>>()[..],
         [Operation::Constant { .. }] | [Operation::Constant { .. }, Operation::Negate]
     );
+    // A length stays a formula where anything may stand, since a value there is a plain number.
+    let want = match want {
+        Want::Any => Want::Plain,
+        want => want,
+    };
     let value = evaluation.number(&number, want).filter(|_| is_single);
     Ok(value.map_or(number, Number::Value))
 }
@@ -137,7 +151,7 @@ fn value_text(evaluation: &Evaluation, value: f64, want: Want) -> String {
     let (value, sign) = match want {
         Want::Length => (value / unit.metres(), unit.sign()),
         Want::Angle => (value.to_degrees(), "deg"),
-        Want::Plain => (value, ""),
+        Want::Plain | Want::Any => (value, ""),
     };
     let digits = format!("{value:.DECIMALS$}");
     let short = match digits.contains('.') {

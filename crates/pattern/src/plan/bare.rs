@@ -1,0 +1,321 @@
+//! Bare numbers in formulas that are typed. Beside a length a number without a unit means the
+//! document's unit, beside an angle degrees: `waist / 4 + 2` is a quarter of the waist and 2 cm. The
+//! unit is written into the formula, so that a later change of the document's unit moves nothing.
+
+use crate::formula::{Function, Operation};
+use crate::{Evaluation, Formula, Want};
+use toile_measure::UnitKind;
+
+/// What a value is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Length,
+    Angle,
+    Plain,
+    Unknown,
+}
+
+/// A value of the formula.
+#[derive(Clone, Debug)]
+struct Value {
+    kind: Kind,
+    /// Columns of the bare numbers it is made of, if it is made of nothing else by adding and
+    /// choosing; a zero needs no unit and has no column.
+    bare: Option<Vec<usize>>,
+}
+
+impl Value {
+    fn of(kind: Kind) -> Self {
+        Self { kind, bare: None }
+    }
+}
+
+/// The text with units where it has bare numbers in the place of lengths and angles; the text as it
+/// is where it has none.
+pub(super) fn with_units(
+    evaluation: &Evaluation,
+    text: &str,
+    formula: &Formula,
+    want: Want,
+) -> String {
+    let mut units = Units {
+        evaluation,
+        text,
+        given: Vec::new(),
+    };
+    units.read(formula, want);
+    let mut given = units.given;
+    given.sort_unstable();
+    given.dedup();
+    let unit = evaluation.pattern().unit;
+    let mut written: Vec<char> = text.chars().collect();
+    for (column, kind) in given.into_iter().rev() {
+        let end = number_end(&written, column - 1);
+        let sign = match kind {
+            Kind::Angle => "deg",
+            _ => unit.sign(),
+        };
+        written.splice(end..end, sign.chars());
+    }
+    written.into_iter().collect()
+}
+
+/// The place after the digits of a number.
+fn number_end(text: &[char], start: usize) -> usize {
+    let mut end = start;
+    while let Some(c) = text.get(end) {
+        let sign_of_exponent =
+            matches!(c, '+' | '-') && end > start && matches!(text[end - 1], 'e' | 'E');
+        let exponent = matches!(c, 'e' | 'E')
+            && text
+                .get(end + 1)
+                .is_some_and(|next| next.is_ascii_digit() || matches!(next, '+' | '-'));
+        if !(c.is_ascii_digit() || *c == '.' || exponent || sign_of_exponent) {
+            break;
+        }
+        end += 1;
+    }
+    end
+}
+
+struct Units<'e> {
+    evaluation: &'e Evaluation,
+    text: &'e str,
+    /// Columns of numbers that get a unit, and which.
+    given: Vec<(usize, Kind)>,
+}
+
+impl Units<'_> {
+    /// Goes through the steps once, with kinds in place of values.
+    fn read(&mut self, formula: &Formula, want: Want) {
+        let mut stack: Vec<Value> = Vec::new();
+        // Steps at which the two branches of a condition meet.
+        let mut meets: Vec<usize> = Vec::new();
+        for (k, step) in formula.steps().iter().enumerate() {
+            self.meet(&mut stack, &mut meets, k);
+            let mut pop = || stack.pop().unwrap_or_else(|| Value::of(Kind::Unknown));
+            let value = match &step.operation {
+                Operation::Constant { value, power } => self.constant(step.column, *value, *power),
+                Operation::Variable(id) => Value::of(match self.evaluation.variable(*id) {
+                    Some((_, 1)) => Kind::Length,
+                    Some((_, 0)) => Kind::Plain,
+                    _ => Kind::Unknown,
+                }),
+                Operation::Word(name) => Value::of(self.measured(name)),
+                Operation::Length(_)
+                | Operation::Finished(_)
+                | Operation::Coordinate(..)
+                | Operation::Distance(..) => Value::of(Kind::Length),
+                Operation::Angle(_) | Operation::AngleBetween(..) => Value::of(Kind::Angle),
+                Operation::Negate => pop(),
+                Operation::Not => {
+                    pop();
+                    Value::of(Kind::Plain)
+                }
+                Operation::Add | Operation::Subtract => {
+                    let (second, first) = (pop(), pop());
+                    self.join([first, second])
+                }
+                Operation::Compare(_) | Operation::And | Operation::Or => {
+                    let (second, first) = (pop(), pop());
+                    self.join([first, second]);
+                    Value::of(Kind::Plain)
+                }
+                Operation::Multiply => {
+                    let (second, first) = (pop(), pop());
+                    Value::of(match [first.kind, second.kind] {
+                        [Kind::Plain, kind] | [kind, Kind::Plain] => kind,
+                        _ => Kind::Unknown,
+                    })
+                }
+                Operation::Divide => {
+                    let (second, first) = (pop(), pop());
+                    Value::of(match [first.kind, second.kind] {
+                        [kind, Kind::Plain] => kind,
+                        [Kind::Length, Kind::Length] => Kind::Plain,
+                        _ => Kind::Unknown,
+                    })
+                }
+                Operation::Call(function, count) => {
+                    let values: Vec<Value> = (0..*count).map(|_| pop()).collect();
+                    self.call(*function, values)
+                }
+                Operation::JumpUnless(_) => {
+                    pop();
+                    continue;
+                }
+                Operation::Jump(to) => {
+                    meets.push(*to);
+                    continue;
+                }
+            };
+            stack.push(value);
+        }
+        self.meet(&mut stack, &mut meets, formula.steps().len());
+        let wanted = match want {
+            Want::Length => Kind::Length,
+            Want::Angle => Kind::Angle,
+            Want::Plain | Want::Any => return,
+        };
+        if let Some(result) = stack.pop() {
+            self.join([result, Value::of(wanted)]);
+        }
+    }
+
+    fn meet(&mut self, stack: &mut Vec<Value>, meets: &mut Vec<usize>, step: usize) {
+        while meets.last() == Some(&step) {
+            meets.pop();
+            if let (Some(second), Some(first)) = (stack.pop(), stack.pop()) {
+                let joined = self.join([first, second]);
+                stack.push(joined);
+            }
+        }
+    }
+
+    fn call(&mut self, function: Function, values: Vec<Value>) -> Value {
+        match function {
+            Function::Minimum | Function::Maximum | Function::Hypotenuse | Function::Round => {
+                let joined = values.into_iter().reduce(|a, b| self.join([a, b]));
+                joined.unwrap_or_else(|| Value::of(Kind::Unknown))
+            }
+            Function::Absolute => values
+                .into_iter()
+                .next()
+                .unwrap_or_else(|| Value::of(Kind::Unknown)),
+            Function::SquareRoot => Value::of(Kind::Unknown),
+            Function::Sine | Function::Cosine | Function::Tangent => Value::of(Kind::Plain),
+            Function::ArcTangent2 => {
+                let _ = values.into_iter().reduce(|a, b| self.join([a, b]));
+                Value::of(Kind::Angle)
+            }
+        }
+    }
+
+    /// Values that must be of one kind: bare numbers among them take that of the other.
+    fn join(&mut self, [first, second]: [Value; 2]) -> Value {
+        let bare_of = |value: &Value| value.bare.clone().unwrap_or_default();
+        match [first.kind, second.kind] {
+            [kind @ (Kind::Length | Kind::Angle), Kind::Plain] => {
+                self.given
+                    .extend(bare_of(&second).iter().map(|&column| (column, kind)));
+                Value::of(kind)
+            }
+            [Kind::Plain, kind @ (Kind::Length | Kind::Angle)] => {
+                self.given
+                    .extend(bare_of(&first).iter().map(|&column| (column, kind)));
+                Value::of(kind)
+            }
+            [Kind::Plain, Kind::Plain] => Value {
+                kind: Kind::Plain,
+                bare: first.bare.zip(second.bare).map(|(mut all, more)| {
+                    all.extend(more);
+                    all
+                }),
+            },
+            [kind, other] if kind == other => Value::of(kind),
+            _ => Value::of(Kind::Unknown),
+        }
+    }
+
+    fn constant(&self, column: usize, value: f64, power: i8) -> Value {
+        if power != 0 {
+            return Value::of(if power == 1 {
+                Kind::Length
+            } else {
+                Kind::Unknown
+            });
+        }
+        let text: Vec<char> = self.text.chars().collect();
+        let end = number_end(&text, column - 1);
+        let unit: String = text[end.min(text.len())..]
+            .iter()
+            .skip_while(|c| c.is_whitespace())
+            .take_while(|c| c.is_alphabetic())
+            .collect();
+        match unit.as_str() {
+            "deg" | "rad" => Value::of(Kind::Angle),
+            _ => Value {
+                kind: Kind::Plain,
+                bare: Some(if value == 0.0 {
+                    Vec::new()
+                } else {
+                    vec![column]
+                }),
+            },
+        }
+    }
+
+    fn measured(&self, name: &str) -> Kind {
+        if let Some(known) = toile_measure::definition(name) {
+            return match known.kind {
+                UnitKind::Angle => Kind::Angle,
+                _ => Kind::Length,
+            };
+        }
+        let pattern = self.evaluation.pattern();
+        let base = pattern.base_measurements();
+        match base.and_then(|table| table.get(name)) {
+            Some(_) => Kind::Length,
+            None => Kind::Unknown,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Evaluation, Number, Pattern, Want, plan};
+    use toile_measure::{Measurements, Origin};
+
+    #[test]
+    fn a_bare_number_beside_a_length_or_an_angle_gets_its_unit() {
+        let mut wearer = Measurements::new();
+        for (name, value) in [("waist", 0.72), ("shoulder_incl", 0.37)] {
+            wearer.set(name, value, Origin::Asked).unwrap();
+        }
+        let evaluation = Evaluation::new(&Pattern::blank("A"), &wearer);
+        for (typed, kept, want) in [
+            ("waist/4+2", "waist/4+2cm", Want::Length),
+            ("2.5 + waist / 4", "2.5cm + waist / 4", Want::Length),
+            ("waist/4 + (1 + 2)", "waist/4 + (1cm + 2cm)", Want::Length),
+            ("waist - -3", "waist - -3cm", Want::Length),
+            ("max(waist/4, 20)", "max(waist/4, 20cm)", Want::Length),
+            ("round(waist/4, 0.5)", "round(waist/4, 0.5cm)", Want::Length),
+            (
+                "if(waist > 80, 2, 3.5)",
+                "if(waist > 80cm, 2cm, 3.5cm)",
+                Want::Length,
+            ),
+            (
+                "waist / 4 + if(waist > 80cm, 2, 3)",
+                "waist / 4 + if(waist > 80cm, 2cm, 3cm)",
+                Want::Length,
+            ),
+            ("90 - shoulder_incl", "90deg - shoulder_incl", Want::Angle),
+            (
+                "shoulder_incl * 0.9 + 5",
+                "shoulder_incl * 0.9 + 5deg",
+                Want::Angle,
+            ),
+            ("waist + 1e1", "waist + 1e1cm", Want::Length),
+            // A variable may be anything: only what stands beside a length is one.
+            ("waist/4 + 2", "waist/4 + 2cm", Want::Any),
+            // Factors, zeros and ratios have none.
+            ("waist * 2", "waist * 2", Want::Length),
+            ("max(waist, 0)", "max(waist, 0)", Want::Length),
+            ("waist / 72cm + 1", "waist / 72cm + 1", Want::Plain),
+            ("waist + 1 5/8in", "waist + 1 5/8in", Want::Length),
+            ("waist + 3 mm", "waist + 3 mm", Want::Length),
+        ] {
+            let number = plan::read_number(&evaluation, typed, want).unwrap();
+            let shown = plan::number_text(&evaluation, &number, want);
+            assert_eq!(shown, kept, "{typed}");
+            assert!(evaluation.number(&number, want).is_some(), "{typed}");
+            // What is shown may be typed again.
+            assert_eq!(plan::read_number(&evaluation, &shown, want), Ok(number));
+        }
+        // A sum with a plain variable or product is no length, and is refused where it is used.
+        let number = plan::read_number(&evaluation, "waist + 2 * 3", Want::Length).unwrap();
+        assert!(matches!(number, Number::Formula(_)));
+        assert!(evaluation.number(&number, Want::Length).is_none());
+    }
+}
