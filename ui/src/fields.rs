@@ -2,8 +2,12 @@
 
 use crate::theme::Palette;
 use egui::text::{CCursor, CCursorRange};
-use egui::{Color32, Response, RichText, TextEdit, Ui};
+use egui::{Color32, Key, Modifiers, Response, RichText, Sense, TextEdit, Ui};
 use std::collections::HashMap;
+use toile_pattern::Evaluation;
+
+/// How many names are proposed at once.
+const PROPOSED: usize = 8;
 
 /// A field for a line of text as wide as there is room.
 pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
@@ -38,6 +42,10 @@ pub struct TypedTexts {
     offered: Option<String>,
     /// Whether a click did.
     given: bool,
+    /// What that field is completed to by a click on the name under the pointer.
+    proposed: Option<String>,
+    /// What the field is completed to by the arrow downward.
+    first: Option<String>,
 }
 
 /// A text that is being typed, and what is wrong with it.
@@ -104,39 +112,78 @@ impl TypedTexts {
         entered
     }
 
-    /// The same for a number: a part that is clicked while it is typed into gives its length.
+    /// The same for a number: a part that is clicked while it is typed into gives its length, and
+    /// names that go on with what is typed are proposed under it.
     pub fn number_field(
         &mut self,
         ui: &mut Ui,
         (id, label): (egui::Id, egui::Id),
         shown: &str,
+        base: &Evaluation,
         preview: impl FnOnce(&str) -> Result<String, String>,
     ) -> Entered {
         let before = self.typed.get(&id).map(|typed| typed.text.clone());
+        if self.number == Some(id)
+            && let Some(text) = self.first.take()
+            && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::ArrowDown))
+        {
+            self.complete(ui, id, text);
+        }
         let entered = self.field(ui, (id, label), shown, preview);
         let has_focus = ui.memory(|memory| memory.has_focus(id));
         let clicked = ui.input(|input| input.pointer.any_pressed() || input.pointer.any_released());
-        if self.number == Some(id)
-            && !has_focus
-            && clicked
-            && let Some(words) = self.offered.take()
-        {
-            // What stood there before is replaced; what was typed goes on.
-            let begun = before.filter(|text| text != shown).unwrap_or_default();
-            let typed = self.typed.entry(id).or_default();
-            typed.text = begun + &words;
-            typed.fault.clear();
-            self.given = true;
-            ui.memory_mut(|memory| memory.request_focus(id));
-            self.put_cursor_last(ui, id);
-            return Entered::Nothing;
+        if self.number == Some(id) && !has_focus && clicked {
+            if let Some(text) = self.proposed.take() {
+                self.complete(ui, id, text);
+                self.given = true;
+                return Entered::Nothing;
+            }
+            if let Some(words) = self.offered.take() {
+                // What stood there before is replaced; what was typed goes on.
+                let begun = before.filter(|text| text != shown).unwrap_or_default();
+                self.complete(ui, id, begun + &words);
+                self.given = true;
+                return Entered::Nothing;
+            }
         }
         match has_focus {
             true => self.number = Some(id),
             false if self.number == Some(id) => self.number = None,
             false => {}
         }
+        if has_focus && self.typed.get(&id).is_some_and(|typed| typed.text != shown) {
+            self.propose(ui, id, base);
+        }
         entered
+    }
+
+    /// Names that go on with what is typed; the arrow downward takes the first, a click any.
+    fn propose(&mut self, ui: &mut Ui, id: egui::Id, base: &Evaluation) {
+        self.proposed = None;
+        self.first = None;
+        let Some(typed) = self.typed.get(&id) else {
+            return;
+        };
+        let found = base.names().completions(&typed.text);
+        self.first = found.first().map(|first| first.text.clone());
+        ui.horizontal_wrapped(|ui| {
+            for completion in found.into_iter().take(PROPOSED) {
+                let words = RichText::new(&completion.word).small();
+                let button = ui.add(egui::Button::new(words).small().sense(Sense::hover()));
+                if button.contains_pointer() {
+                    self.proposed = Some(completion.text);
+                }
+            }
+        });
+    }
+
+    /// Puts a text into a field that is typed into, and goes on there.
+    fn complete(&mut self, ui: &Ui, id: egui::Id, text: String) {
+        let typed = self.typed.entry(id).or_default();
+        typed.text = text;
+        typed.fault.clear();
+        ui.memory_mut(|memory| memory.request_focus(id));
+        self.put_cursor_last(ui, id);
     }
 
     fn put_cursor_last(&self, ui: &Ui, id: egui::Id) {

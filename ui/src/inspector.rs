@@ -166,7 +166,9 @@ impl ToileApp {
             let value = base.number_or_fault(&found, want)?;
             Ok(format!("= {}", number::show(value, want, unit)))
         };
-        let entered = self.typed.number_field(ui, (id, label), &shown, value);
+        let entered = self
+            .typed
+            .number_field(ui, (id, label), &shown, &self.base, value);
         if let Entered::Text(text) = entered {
             let planned = match text.is_empty() {
                 true => plan::clear_number(&self.base, &entry.place).map_err(|e| e.to_string()),

@@ -91,7 +91,9 @@ impl ToileApp {
             let value = base.number_or_fault(&found, want)?;
             Ok(format!("= {}", number::show(value, want, unit)))
         };
-        let entered = self.typed.number_field(ui, (id, label), &shown, value);
+        let entered = self
+            .typed
+            .number_field(ui, (id, label), &shown, &self.base, value);
         if let Entered::Text(text) = entered {
             let mut planning = Planning::of(&self.base);
             let planned = entries.iter().try_for_each(|entry| {

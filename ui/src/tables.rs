@@ -5,8 +5,8 @@ use crate::app::shows::Tab;
 use crate::fields::Entered;
 use crate::theme::Palette;
 use crate::tools::number;
-use egui::{Grid, Id, RichText, ScrollArea, Ui};
-use toile_measure::{CATALOGUE, Measurements, UnitKind, definition};
+use egui::{Color32, Grid, Id, RichText, ScrollArea, Ui};
+use toile_measure::{CATALOGUE, Definition, Measurements, UnitKind, definition};
 use toile_pattern::{Number, SizeId, Want, plan};
 use toile_session::Command;
 
@@ -25,6 +25,9 @@ const FIRST: &[&str] = &[
     "upper_arm",
     "wrist",
 ];
+
+/// How many measurements are proposed at once.
+const PROPOSED: usize = 5;
 
 impl ToileApp {
     pub(crate) fn show_tables(&mut self, ui: &mut Ui) {
@@ -70,6 +73,51 @@ impl ToileApp {
                 }
             }
         }
+        let mut chosen = None;
+        ui.horizontal_wrapped(|ui| {
+            if ui.button("Add size").clicked() {
+                self.add_size();
+            }
+            if pattern.sizes.is_empty() {
+                return;
+            }
+            let label = ui.label("New measurement").id;
+            let field = egui::TextEdit::singleline(&mut self.tables.new_measurement)
+                .hint_text("waist, or your own name")
+                .desired_width(180.0);
+            let response = ui.add(field).labelled_by(label);
+            let entered =
+                response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            let wanted = self.tables.new_measurement.trim().to_lowercase();
+            let found: Vec<&Definition> = match wanted.is_empty() {
+                true => Vec::new(),
+                false => CATALOGUE
+                    .iter()
+                    .filter(|known| {
+                        !names.iter().any(|name| name == known.name)
+                            && (known.name.contains(&wanted)
+                                || known.label.to_lowercase().contains(&wanted))
+                    })
+                    .collect(),
+            };
+            for known in found.iter().take(PROPOSED) {
+                let button = egui::Button::new(RichText::new(known.label).small()).small();
+                if ui.add(button).on_hover_text(known.meaning).clicked() {
+                    chosen = Some(known.name.to_owned());
+                }
+            }
+            if entered && !wanted.is_empty() {
+                let is_whole = |known: &&&Definition| {
+                    known.name == wanted || known.label.to_lowercase() == wanted
+                };
+                let whole = found.iter().find(is_whole);
+                // A single one that fits is meant; else it is a name of the pattern's own.
+                chosen = match (whole, &found[..]) {
+                    (Some(known), _) | (None, [known]) => Some(known.name.to_owned()),
+                    _ => Some(self.tables.new_measurement.trim().to_owned()),
+                };
+            }
+        });
         Grid::new("measurements").striped(true).show(ui, |ui| {
             ui.label(RichText::new("Measurement").strong());
             for size in &pattern.sizes {
@@ -90,30 +138,7 @@ impl ToileApp {
                 ui.end_row();
             }
         });
-        ui.horizontal(|ui| {
-            if ui.button("Add size").clicked() {
-                self.add_size();
-            }
-            if pattern.sizes.is_empty() {
-                return;
-            }
-            let label = ui.label("Add measurement").id;
-            let chosen = &mut self.tables.new_measurement;
-            let choice = egui::ComboBox::from_id_salt("new measurement")
-                .selected_text("choose")
-                .show_ui(ui, |ui| {
-                    for known in CATALOGUE
-                        .iter()
-                        .filter(|k| !names.iter().any(|n| n == k.name))
-                    {
-                        ui.selectable_value(chosen, known.name.to_owned(), known.label)
-                            .on_hover_text(known.meaning);
-                    }
-                });
-            choice.response.labelled_by(label);
-        });
-        let name = std::mem::take(&mut self.tables.new_measurement);
-        if !name.is_empty() {
+        if let Some(name) = chosen {
             self.add_measurement(&name);
         }
     }
@@ -223,30 +248,45 @@ impl ToileApp {
                 }
             }
         }
-        self.edit(Ok(edits), "Add measurement");
+        if self.edit(Ok(edits), "Add measurement") {
+            self.tables.new_measurement.clear();
+        }
     }
 
     /// A row a variable: name, number, value.
     fn variable_table(&mut self, ui: &mut Ui) {
         let pattern = self.base.pattern().clone();
         let palette = Palette::of(ui.ctx());
+        ui.horizontal(|ui| {
+            let label = ui.label("New variable").id;
+            let field = egui::TextEdit::singleline(&mut self.tables.new_variable)
+                .hint_text("ease = 2cm")
+                .desired_width(220.0);
+            let response = ui.add(field).labelled_by(label);
+            let entered =
+                response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            if ui.button("Add variable").clicked() || entered {
+                self.add_variable();
+            }
+        });
         Grid::new("variables")
             .striped(true)
             .num_columns(5)
             .show(ui, |ui| {
-                for head in ["", "Name", "Number or formula", "Value", ""] {
-                    ui.label(RichText::new(head).strong());
-                }
+                let heads = ["", "Variable name", "Number or formula", "Value", ""];
+                let heads = heads.map(|head| ui.label(RichText::new(head).strong()).id);
                 ui.end_row();
                 for variable in &pattern.variables {
-                    let label = ui.label("").id;
+                    // For those who hear the window: the field beside shows the name.
+                    let unseen = RichText::new(&variable.name).size(1.0);
+                    let label = ui.label(unseen.color(Color32::TRANSPARENT)).id;
                     let field = Id::unique(("variable name", variable.id));
                     let name = &variable.name;
                     ui.scope(|ui| {
                         ui.set_width(150.0);
                         let entered = self
                             .typed
-                            .field(ui, (field, label), name, |_| Ok(String::new()));
+                            .field(ui, (field, heads[1]), name, |_| Ok(String::new()));
                         if let Entered::Text(text) = entered {
                             let planned = plan::rename(&self.base, variable.id.into(), &text);
                             self.enter(planned, "Rename variable", (field, text));
@@ -272,18 +312,6 @@ impl ToileApp {
                     ui.end_row();
                 }
             });
-        ui.horizontal(|ui| {
-            let label = ui.label("New variable").id;
-            let field = egui::TextEdit::singleline(&mut self.tables.new_variable)
-                .hint_text("ease = 2cm")
-                .desired_width(220.0);
-            let response = ui.add(field).labelled_by(label);
-            let entered =
-                response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-            if ui.button("Add variable").clicked() || entered {
-                self.add_variable();
-            }
-        });
     }
 
     /// A variable from `name = formula`, or from a formula alone.

@@ -24,7 +24,7 @@ pub use document::*;
 pub use draft::*;
 pub use edit::{Edit, EditError, Entity, Head, SheetHead};
 pub use evaluate::{Evaluation, Node, Update, Want, Wearer};
-pub use formula::{FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Names, Token};
+pub use formula::{Completion, FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Names, Token};
 pub use ids::*;
 pub use name::*;
 pub use number::Number;

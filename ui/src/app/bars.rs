@@ -56,6 +56,42 @@ impl ToileApp {
         });
     }
 
+    /// The menu of a click with the other button: what can be done with what is selected.
+    pub(crate) fn canvas_menu(&mut self) {
+        let Some(canvas) = self.view.canvas.take() else {
+            return;
+        };
+        let selected = self.view.selection.items().first().copied();
+        let own: &[&str] = match selected {
+            Some(Item::Panel(_)) => &["Isolate", "Grain", "Mirror", "Turn"],
+            Some(Item::Edge(..)) => &[
+                "Add point",
+                "Bend edge",
+                "Dart",
+                "Fold",
+                "Notch",
+                "Seam",
+                "Select seam",
+            ],
+            Some(Item::Seam(_)) => &["Flip seam", "Matched notches"],
+            _ => &[],
+        };
+        canvas.context_menu(|ui| {
+            for names in [
+                own,
+                &["Cut", "Copy", "Paste", "Duplicate", "Delete"],
+                &["Undo", "Fit"],
+            ] {
+                for command in names.iter().filter_map(|name| named(name)) {
+                    if (command.when)(self) {
+                        self.menu_entry(ui, command);
+                    }
+                }
+                ui.separator();
+            }
+        });
+    }
+
     fn menu_entry(&mut self, ui: &mut Ui, command: &'static UiCommand) {
         let mut button = Button::new(command.name);
         if let Some(key) = command.key {

@@ -495,6 +495,7 @@ impl ToileApp {
         for outcome in self.view.show(ui, &base) {
             self.follow_outcome(outcome);
         }
+        self.canvas_menu();
         if seen(self) != before {
             // The bars were drawn before this was known.
             ui.ctx().request_repaint();

@@ -64,6 +64,8 @@ pub struct PatternView {
     pub pointer: Option<Vec2>,
     /// The sheet that is drawn on.
     pub sheet: Option<SheetId>,
+    /// What a menu may be opened on, unless a tool is at work.
+    pub canvas: Option<Response>,
     pressed: Option<Pointer>,
     /// Where the pointer was told to be last, and what was held.
     told: Option<(Pos2, Held)>,
@@ -94,6 +96,7 @@ impl Default for PatternView {
             state: State::default(),
             pointer: None,
             sheet: None,
+            canvas: None,
             pressed: None,
             told: None,
             was_typed_into: false,
@@ -235,6 +238,16 @@ impl PatternView {
             self.fitted = Some(view.size());
         }
         let mut outcomes = Vec::new();
+        self.canvas = (!self.is_busy()).then(|| response.clone());
+        if response.secondary_clicked()
+            && !self.is_busy()
+            && let Some(hit) = self.hover.filter(|hit| !self.selection.contains(hit.item))
+        {
+            outcomes.push(Outcome {
+                select: Some(Selection::one(hit.item)),
+                ..Outcome::default()
+            });
+        }
         if std::mem::take(&mut self.click_is_taken) {
             self.click_is_taken = ui.input(|input| input.pointer.primary_down());
             self.paint(ui, view, evaluation);

@@ -5,6 +5,7 @@
 //! recursion whatever its length.
 
 mod by_id;
+mod complete;
 mod compute;
 mod cursor;
 mod names;
@@ -12,6 +13,7 @@ mod parse;
 mod print;
 mod written;
 
+pub use complete::Completion;
 pub(crate) use compute::{Environment, Failure, Quantity, compute, kind};
 pub use names::Names;
 pub(crate) use written::Kind;

@@ -19,15 +19,15 @@ pub struct Names {
     pub(super) curves: Book<SheetId, CurveId>,
     pub(super) operations: Book<PanelId, OperationId>,
     /// Ends of the first edge of a name in each panel.
-    edges: BTreeMap<PanelId, BTreeMap<Box<str>, [PointId; 2]>>,
+    pub(super) edges: BTreeMap<PanelId, BTreeMap<Box<str>, [PointId; 2]>>,
     /// Name of the first edge with these ends in a panel.
     pub(super) spanned: BTreeMap<(PanelId, [PointId; 2]), Box<str>>,
     /// The sheet each panel is traced from.
-    source: BTreeMap<PanelId, SheetId>,
+    pub(super) source: BTreeMap<PanelId, SheetId>,
     /// The first panel traced from each sheet.
     pub(super) traced: BTreeMap<SheetId, PanelId>,
     /// Measurements in the tables of sizes.
-    measured: BTreeSet<Box<str>>,
+    pub(super) measured: BTreeSet<Box<str>>,
     /// Whether parts are written as `@` and their ids, which no renaming changes.
     pub(super) by_id: bool,
 }

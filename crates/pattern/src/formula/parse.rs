@@ -22,7 +22,7 @@ const FUNCTIONS: &[(&str, Function, usize, usize)] = &[
     ("round", Function::Round, 2, 2),
 ];
 
-const FUNCTION_NAMES: &str = "min, max, abs, sqrt, sin, cos, tan, atan2, hypot, round, if, \
+pub(super) const FUNCTION_NAMES: &str = "min, max, abs, sqrt, sin, cos, tan, atan2, hypot, round, if, \
                               length, finished, angle, distance, x, y";
 
 const COMPARISONS: &[(&str, Comparison)] = &[
