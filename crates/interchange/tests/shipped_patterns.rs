@@ -151,6 +151,16 @@ fn trousers_have_matching_seams_and_room_at_the_hips() {
             .sum();
         let ease = waist - body.get("waist").unwrap();
         assert!((0.015..0.03).contains(&ease), "{name}: waist ease {ease}");
+        let band = draft.pieces.iter().filter(|p| p.name == "waistband");
+        let [band] = &band.collect::<Vec<_>>()[..] else {
+            panic!("{name}: one waistband");
+        };
+        assert!(
+            (area(band) - waist * 0.035).abs() < 1e-9,
+            "{name}: the band is a strip as long as the waist"
+        );
+        let ends = [0, 1].map(|k| walked(draft, seam(draft, "waistband"), k));
+        assert!(ends.iter().all(|end| (end - 0.035).abs() < 1e-12), "{name}");
         let crotch = walked(draft, seam(draft, "front rise"), 0)
             + walked(draft, seam(draft, "back rise"), 0);
         assert!((0.6..0.95).contains(&crotch), "{name}: {crotch}");
