@@ -183,3 +183,88 @@ fn poncho_is_one_panel_with_a_hole_for_the_neck() {
         assert!(draft.fabrics[0].nap);
     }
 }
+
+/// Lengths of the stretches of a side of a seam, between the darts it crosses [m].
+fn stretches(draft: &Draft, seam: &DraftSeam, side: usize) -> Vec<f64> {
+    let piece = |span: &toile_pattern::DraftSpan| &draft.pieces[span.piece];
+    let length = |span| piece(span).outline[span.edge].curve.length();
+    let mut lengths: Vec<f64> = Vec::new();
+    let mut end: Option<toile_geometry::Vec2> = None;
+    for span in &seam.sides[side] {
+        let curve = &piece(span).outline[span.edge].curve;
+        let [from, to] = if span.from < span.to {
+            [curve.start(), curve.end()]
+        } else {
+            [curve.end(), curve.start()]
+        };
+        match (end, lengths.last_mut()) {
+            (Some(end), Some(last)) if (end - from).norm() < 1e-9 => *last += length(span),
+            _ => lengths.push(length(span)),
+        }
+        end = Some(to);
+    }
+    lengths
+}
+
+#[test]
+fn dress_has_darts_that_meet_at_the_waist_and_sides_that_true() {
+    let pattern = shipped("dress");
+    let drafts = drafts(&pattern);
+    assert_grows(&drafts);
+    for (name, body, draft) in &drafts {
+        assert_eq!(
+            draft.pieces.len(),
+            6,
+            "front, two backs, the same of the skirt"
+        );
+        assert!(draft.pieces.iter().all(|piece| piece.sewn));
+        for seam in &draft.seams {
+            let [a, b] = [0, 1].map(|k| walked(draft, seam, k));
+            assert!((a - b).abs() < 1e-9, "{name}, {}: {a} {b}", seam.name);
+        }
+        let darts = |panel: &str| {
+            let of = format!("of {panel}");
+            let is_dart = |seam: &&DraftSeam| matches!(seam.id, SeamOrigin::Dart { .. });
+            let all = draft.seams.iter().filter(is_dart);
+            all.filter(|seam| seam.name.contains(&of)).count()
+        };
+        let panels = ["front bodice", "back bodice", "front skirt", "back skirt"];
+        assert_eq!(panels.map(darts), [4, 4, 2, 4]);
+        let mut waist = 0.0;
+        for side in ["left", "right"] {
+            for half in ["front", "back"] {
+                let seam = seam(draft, &format!("{side} {half} waist"));
+                let [bodice, skirt] = [0, 1].map(|k| stretches(draft, seam, k));
+                let counts = if half == "front" { [2, 2] } else { [2, 3] };
+                assert_eq!([bodice.len(), skirt.len()], counts, "{name}, {}", seam.name);
+                // From the centre on: the darts meet where both first stretches end.
+                assert!((bodice[0] - skirt[0]).abs() < 1e-9, "{name}, {}", seam.name);
+                waist += bodice.iter().sum::<f64>();
+            }
+        }
+        let ease = waist - body.get("waist").unwrap();
+        assert!((ease - 0.04).abs() < 1e-9, "{name}: waist ease {ease}");
+        // A cone for the bust: a block for a B to D cup has 14 to 25 degrees.
+        let of_bust = |seam: &&DraftSeam| seam.name == "bust dart of front bodice";
+        let bust = draft.seams.iter().find(of_bust).unwrap();
+        let leg = |side: usize| &draft.pieces[0].outline[bust.sides[side][0].edge].curve;
+        let [a, b] = [0, 1].map(|k| leg(k).end() - leg(k).start());
+        let angle = a.perp(&-b).atan2(a.dot(&-b)).abs().to_degrees();
+        assert!(
+            (10.0..28.0).contains(&angle),
+            "{name}: bust dart of {angle} degrees"
+        );
+        let hips: f64 = draft.pieces[3..]
+            .iter()
+            .chain(&draft.pieces[3..4])
+            .map(|piece| {
+                let at = |p: toile_geometry::Vec2| (p.y + body.get("hips_line").unwrap()).abs();
+                let ends = piece.outline.iter().map(|edge| edge.curve.start());
+                let of_hips = ends.filter(|p| at(*p) < 1e-9).map(|p| p.x.abs());
+                of_hips.fold(0.0, f64::max)
+            })
+            .sum();
+        let ease = hips - body.get("hips").unwrap();
+        assert!((ease - 0.06).abs() < 1e-9, "{name}: hip ease {ease}");
+    }
+}
