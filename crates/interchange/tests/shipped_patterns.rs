@@ -244,7 +244,7 @@ fn dress_has_darts_that_meet_at_the_waist_and_sides_that_true() {
         }
         let ease = waist - body.get("waist").unwrap();
         assert!((ease - 0.04).abs() < 1e-9, "{name}: waist ease {ease}");
-        // A cone for the bust: a block for a B to D cup has 14 to 25 degrees.
+        // About the dart's own end the angle is a little wider than about the bust point.
         let of_bust = |seam: &&DraftSeam| seam.name == "bust dart of front bodice";
         let bust = draft.seams.iter().find(of_bust).unwrap();
         let leg = |side: usize| &draft.pieces[0].outline[bust.sides[side][0].edge].curve;
