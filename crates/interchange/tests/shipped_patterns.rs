@@ -1,6 +1,7 @@
 //! The patterns that ship: real drafts in every size, without a single finding.
 #![allow(clippy::unwrap_used)]
 
+use toile_geometry::Vec2;
 use toile_interchange::read_pattern;
 use toile_measure::Measurements;
 use toile_pattern::{Draft, DraftSeam, Pattern, Piece, SeamOrigin};
@@ -184,12 +185,11 @@ fn poncho_is_one_panel_with_a_hole_for_the_neck() {
     }
 }
 
-/// Lengths of the stretches of a side of a seam, between the darts it crosses [m].
-fn stretches(draft: &Draft, seam: &DraftSeam, side: usize) -> Vec<f64> {
+/// The stretches of a side of a seam between the darts it crosses: of each its length and the
+/// distance of its ends [m].
+fn stretches(draft: &Draft, seam: &DraftSeam, side: usize) -> Vec<[f64; 2]> {
     let piece = |span: &toile_pattern::DraftSpan| &draft.pieces[span.piece];
-    let length = |span| piece(span).outline[span.edge].curve.length();
-    let mut lengths: Vec<f64> = Vec::new();
-    let mut end: Option<toile_geometry::Vec2> = None;
+    let mut found: Vec<(f64, [Vec2; 2])> = Vec::new();
     for span in &seam.sides[side] {
         let curve = &piece(span).outline[span.edge].curve;
         let [from, to] = if span.from < span.to {
@@ -197,13 +197,16 @@ fn stretches(draft: &Draft, seam: &DraftSeam, side: usize) -> Vec<f64> {
         } else {
             [curve.end(), curve.start()]
         };
-        match (end, lengths.last_mut()) {
-            (Some(end), Some(last)) if (end - from).norm() < 1e-9 => *last += length(span),
-            _ => lengths.push(length(span)),
+        match found.last_mut() {
+            Some((length, ends)) if (ends[1] - from).norm() < 1e-9 => {
+                *length += curve.length();
+                ends[1] = to;
+            }
+            _ => found.push((curve.length(), [from, to])),
         }
-        end = Some(to);
     }
-    lengths
+    let both = |(length, [from, to]): (f64, [Vec2; 2])| [length, (to - from).norm()];
+    found.into_iter().map(both).collect()
 }
 
 #[test]
@@ -234,13 +237,22 @@ fn dress_has_darts_that_meet_at_the_waist_and_sides_that_true() {
         for side in ["left", "right"] {
             for half in ["front", "back"] {
                 let seam = seam(draft, &format!("{side} {half} waist"));
-                let [bodice, skirt] = [0, 1].map(|k| stretches(draft, seam, k));
+                let [bodice, skirt] =
+                    [0, 1].map(|k| stretches(draft, seam, k).into_iter().map(|[l, _]| l));
+                let [bodice, skirt]: [Vec<f64>; 2] = [bodice.collect(), skirt.collect()];
                 let counts = if half == "front" { [2, 2] } else { [2, 3] };
                 assert_eq!([bodice.len(), skirt.len()], counts, "{name}, {}", seam.name);
                 // From the centre on: the darts meet where both first stretches end.
                 assert!((bodice[0] - skirt[0]).abs() < 1e-9, "{name}, {}", seam.name);
                 waist += bodice.iter().sum::<f64>();
             }
+        }
+        // Above and below the bust dart the front's side is straight, as the back's is.
+        for side in ["left side", "right side"] {
+            let front = stretches(draft, seam(draft, side), 0);
+            assert_eq!(front.len(), 2, "{name}, {side}");
+            let bent = front.iter().map(|[length, chord]| length - chord);
+            assert!(bent.fold(0.0, f64::max) < 1e-9, "{name}, {side}: {front:?}");
         }
         let ease = waist - body.get("waist").unwrap();
         assert!((ease - 0.04).abs() < 1e-9, "{name}: waist ease {ease}");
@@ -258,7 +270,7 @@ fn dress_has_darts_that_meet_at_the_waist_and_sides_that_true() {
             .iter()
             .chain(&draft.pieces[3..4])
             .map(|piece| {
-                let at = |p: toile_geometry::Vec2| (p.y + body.get("hips_line").unwrap()).abs();
+                let at = |p: Vec2| (p.y + body.get("hips_line").unwrap()).abs();
                 let ends = piece.outline.iter().map(|edge| edge.curve.start());
                 let of_hips = ends.filter(|p| at(*p) < 1e-9).map(|p| p.x.abs());
                 of_hips.fold(0.0, f64::max)
