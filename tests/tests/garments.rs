@@ -7,21 +7,27 @@ use toile_drape::{GarmentRun, Stage};
 use toile_session::{Command, Figure, OtherGarment, Quality, Session, Silent};
 use toile_tests::{files_below, root, shared_data};
 
-/// Sews and drapes a pattern at preview quality and holds it to what every garment must meet.
-fn check(path: PathBuf) {
+/// Sews and drapes a pattern in a size, or the base size, at preview quality and holds it to what
+/// every garment must meet.
+fn check(path: PathBuf, size: Option<&str>) {
     let name = path
         .file_name()
-        .map(|n| n.to_string_lossy().into_owned())
+        .map(|n| format!("{}, {size:?}", n.to_string_lossy()))
         .unwrap_or_default();
     let mut session = Session::new();
-    for command in [
-        Command::OpenPattern { path },
-        Command::SetQuality {
+    let size = size.map(|name| Command::SetSize {
+        size: Some(name.to_owned()),
+    });
+    let commands = [
+        Some(Command::OpenPattern { path }),
+        size,
+        Some(Command::SetQuality {
             quality: Quality::Preview,
-        },
-        Command::Check,
-        Command::Nest,
-    ] {
+        }),
+        Some(Command::Check),
+        Some(Command::Nest),
+    ];
+    for command in commands.into_iter().flatten() {
         session
             .execute(command, &mut Silent)
             .unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -69,8 +75,22 @@ fn check(path: PathBuf) {
 #[test]
 fn shipped_patterns_are_worn() {
     let patterns = files_below(&root().join("patterns"), ".toile.json");
-    assert_eq!(patterns.len(), 4);
-    patterns.into_iter().for_each(check);
+    assert_eq!(patterns.len(), 5);
+    for path in patterns {
+        check(path, None);
+    }
+}
+
+#[test]
+fn the_smallest_and_largest_size_are_worn() {
+    for name in ["dress", "trousers"] {
+        for size in ["XS", "XXL"] {
+            check(
+                root().join(format!("patterns/{name}.toile.json")),
+                Some(size),
+            );
+        }
+    }
 }
 
 #[test]
@@ -78,7 +98,9 @@ fn foreign_patterns_are_worn() {
     let Some(data) = shared_data() else { return };
     let patterns = files_below(&data.join("garmentcode"), "_specification.json");
     assert!(!patterns.is_empty());
-    patterns.into_iter().for_each(check);
+    for path in patterns {
+        check(path, None);
+    }
 }
 
 #[test]

@@ -222,7 +222,7 @@ fn markers_of_a_ratio_keep_the_rules_given() {
 #[test]
 fn patterns_are_checked_converted_and_converted_back() {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["t-shirt", "gathered-skirt", "trousers", "poncho"] {
+    for name in ["t-shirt", "gathered-skirt", "trousers", "poncho", "dress"] {
         let pattern = patterns().join(format!("{name}.toile.json"));
         let pattern = pattern.to_str().unwrap();
         let output = toile(folder.path(), &["check", pattern]);

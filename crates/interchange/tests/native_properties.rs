@@ -10,7 +10,7 @@ use toile_interchange::{read_pattern, write_pattern};
 use toile_measure::Measurements;
 use toile_pattern::{Edit, PartId, Pattern, Seam, SeamOrigin, Severity};
 
-const SHIPPED: [(&str, &str); 4] = [
+const SHIPPED: [(&str, &str); 5] = [
     (
         "t-shirt",
         include_str!("../../../patterns/t-shirt.toile.json"),
@@ -27,6 +27,7 @@ const SHIPPED: [(&str, &str); 4] = [
         "poncho",
         include_str!("../../../patterns/poncho.toile.json"),
     ),
+    ("dress", include_str!("../../../patterns/dress.toile.json")),
 ];
 
 proptest! {

@@ -1,6 +1,7 @@
 //! The patterns that ship: real drafts in every size, without a single finding.
 #![allow(clippy::unwrap_used)]
 
+use toile_geometry::Vec2;
 use toile_interchange::read_pattern;
 use toile_measure::Measurements;
 use toile_pattern::{Draft, DraftSeam, Pattern, Piece, SeamOrigin};
@@ -151,6 +152,16 @@ fn trousers_have_matching_seams_and_room_at_the_hips() {
             .sum();
         let ease = waist - body.get("waist").unwrap();
         assert!((0.015..0.03).contains(&ease), "{name}: waist ease {ease}");
+        let band = draft.pieces.iter().filter(|p| p.name == "waistband");
+        let [band] = &band.collect::<Vec<_>>()[..] else {
+            panic!("{name}: one waistband");
+        };
+        assert!(
+            (area(band) - waist * 0.035).abs() < 1e-9,
+            "{name}: the band is a strip as long as the waist"
+        );
+        let ends = [0, 1].map(|k| walked(draft, seam(draft, "waistband"), k));
+        assert!(ends.iter().all(|end| (end - 0.035).abs() < 1e-12), "{name}");
         let crotch = walked(draft, seam(draft, "front rise"), 0)
             + walked(draft, seam(draft, "back rise"), 0);
         assert!((0.6..0.95).contains(&crotch), "{name}: {crotch}");
@@ -171,5 +182,101 @@ fn poncho_is_one_panel_with_a_hole_for_the_neck() {
         let neck = body.get("neck_w").unwrap() * std::f64::consts::PI;
         assert!(hole > neck && hole < neck * 1.6, "{name}: {hole}");
         assert!(draft.fabrics[0].nap);
+    }
+}
+
+/// The stretches of a side of a seam between the darts it crosses: of each its length and the
+/// distance of its ends [m].
+fn stretches(draft: &Draft, seam: &DraftSeam, side: usize) -> Vec<[f64; 2]> {
+    let piece = |span: &toile_pattern::DraftSpan| &draft.pieces[span.piece];
+    let mut found: Vec<(f64, [Vec2; 2])> = Vec::new();
+    for span in &seam.sides[side] {
+        let curve = &piece(span).outline[span.edge].curve;
+        let [from, to] = if span.from < span.to {
+            [curve.start(), curve.end()]
+        } else {
+            [curve.end(), curve.start()]
+        };
+        match found.last_mut() {
+            Some((length, ends)) if (ends[1] - from).norm() < 1e-9 => {
+                *length += curve.length();
+                ends[1] = to;
+            }
+            _ => found.push((curve.length(), [from, to])),
+        }
+    }
+    let both = |(length, [from, to]): (f64, [Vec2; 2])| [length, (to - from).norm()];
+    found.into_iter().map(both).collect()
+}
+
+#[test]
+fn dress_has_darts_that_meet_at_the_waist_and_sides_that_true() {
+    let pattern = shipped("dress");
+    let drafts = drafts(&pattern);
+    assert_grows(&drafts);
+    for (name, body, draft) in &drafts {
+        assert_eq!(
+            draft.pieces.len(),
+            6,
+            "front, two backs, the same of the skirt"
+        );
+        assert!(draft.pieces.iter().all(|piece| piece.sewn));
+        for seam in &draft.seams {
+            let [a, b] = [0, 1].map(|k| walked(draft, seam, k));
+            assert!((a - b).abs() < 1e-9, "{name}, {}: {a} {b}", seam.name);
+        }
+        let darts = |panel: &str| {
+            let of = format!("of {panel}");
+            let is_dart = |seam: &&DraftSeam| matches!(seam.id, SeamOrigin::Dart { .. });
+            let all = draft.seams.iter().filter(is_dart);
+            all.filter(|seam| seam.name.contains(&of)).count()
+        };
+        let panels = ["front bodice", "back bodice", "front skirt", "back skirt"];
+        assert_eq!(panels.map(darts), [4, 4, 2, 4]);
+        let mut waist = 0.0;
+        for side in ["left", "right"] {
+            for half in ["front", "back"] {
+                let seam = seam(draft, &format!("{side} {half} waist"));
+                let [bodice, skirt] =
+                    [0, 1].map(|k| stretches(draft, seam, k).into_iter().map(|[l, _]| l));
+                let [bodice, skirt]: [Vec<f64>; 2] = [bodice.collect(), skirt.collect()];
+                let counts = if half == "front" { [2, 2] } else { [2, 3] };
+                assert_eq!([bodice.len(), skirt.len()], counts, "{name}, {}", seam.name);
+                // From the centre on: the darts meet where both first stretches end.
+                assert!((bodice[0] - skirt[0]).abs() < 1e-9, "{name}, {}", seam.name);
+                waist += bodice.iter().sum::<f64>();
+            }
+        }
+        // Above and below the bust dart the front's side is straight, as the back's is.
+        for side in ["left side", "right side"] {
+            let front = stretches(draft, seam(draft, side), 0);
+            assert_eq!(front.len(), 2, "{name}, {side}");
+            let bent = front.iter().map(|[length, chord]| length - chord);
+            assert!(bent.fold(0.0, f64::max) < 1e-9, "{name}, {side}: {front:?}");
+        }
+        let ease = waist - body.get("waist").unwrap();
+        assert!((ease - 0.04).abs() < 1e-9, "{name}: waist ease {ease}");
+        // About the dart's own end the angle is a little wider than about the bust point.
+        let of_bust = |seam: &&DraftSeam| seam.name == "bust dart of front bodice";
+        let bust = draft.seams.iter().find(of_bust).unwrap();
+        let leg = |side: usize| &draft.pieces[0].outline[bust.sides[side][0].edge].curve;
+        let [a, b] = [0, 1].map(|k| leg(k).end() - leg(k).start());
+        let angle = a.perp(&-b).atan2(a.dot(&-b)).abs().to_degrees();
+        assert!(
+            (10.0..28.0).contains(&angle),
+            "{name}: bust dart of {angle} degrees"
+        );
+        let hips: f64 = draft.pieces[3..]
+            .iter()
+            .chain(&draft.pieces[3..4])
+            .map(|piece| {
+                let at = |p: Vec2| (p.y + body.get("hips_line").unwrap()).abs();
+                let ends = piece.outline.iter().map(|edge| edge.curve.start());
+                let of_hips = ends.filter(|p| at(*p) < 1e-9).map(|p| p.x.abs());
+                of_hips.fold(0.0, f64::max)
+            })
+            .sum();
+        let ease = hips - body.get("hips").unwrap();
+        assert!((ease - 0.06).abs() < 1e-9, "{name}: hip ease {ease}");
     }
 }

@@ -18,6 +18,7 @@ pub const SAMPLES: &[(&str, &str)] = &[
     ("sample:gathered-skirt", "Gathered skirt"),
     ("sample:trousers", "Trousers"),
     ("sample:poncho", "Poncho"),
+    ("sample:dress", "Dress"),
 ];
 
 /// Their files, in the same order.
@@ -26,6 +27,7 @@ const SAMPLE_TEXTS: &[&str] = &[
     include_str!("../../../patterns/gathered-skirt.toile.json"),
     include_str!("../../../patterns/trousers.toile.json"),
     include_str!("../../../patterns/poncho.toile.json"),
+    include_str!("../../../patterns/dress.toile.json"),
 ];
 
 fn sample(path: &Path) -> Option<&'static str> {

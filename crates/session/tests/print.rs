@@ -33,7 +33,7 @@ const CUT: f64 = 0.0005;
 const SEW: f64 = 0.0002;
 const JOIN: f64 = 0.000_15;
 
-const NAMES: [&str; 4] = ["gathered-skirt", "poncho", "t-shirt", "trousers"];
+const NAMES: [&str; 5] = ["dress", "gathered-skirt", "poncho", "t-shirt", "trousers"];
 
 fn pattern(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../patterns");

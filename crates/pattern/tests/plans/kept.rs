@@ -6,11 +6,12 @@ use super::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-const PATTERNS: [&str; 4] = [
+const PATTERNS: [&str; 5] = [
     include_str!("../../../../patterns/t-shirt.toile.json"),
     include_str!("../../../../patterns/gathered-skirt.toile.json"),
     include_str!("../../../../patterns/trousers.toile.json"),
     include_str!("../../../../patterns/poncho.toile.json"),
+    include_str!("../../../../patterns/dress.toile.json"),
 ];
 /// Runs, and edits of each.
 const RUNS: u64 = 500;
