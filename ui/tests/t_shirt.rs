@@ -263,7 +263,6 @@ impl Drafter {
                 self.key(Key::Enter);
             }
             self.key(Key::Escape);
-            self.key(Key::Escape);
             let pattern = self.pattern();
             let curve = pattern.sheets[0].curves.last().unwrap().clone();
             let CurveRule::Spline {

@@ -183,6 +183,17 @@ impl PatternView {
         self.selection = selection;
     }
 
+    /// Sheets whose points are seen: those of what is selected, and the one that is drawn on while a
+    /// tool is in hand.
+    fn open(&self) -> Vec<SheetId> {
+        let mut open = open_sheets(&self.scene, &self.selection);
+        let drawn = self.sheet.filter(|sheet| !open.contains(sheet));
+        if let Tool::Slots(_) = self.tool {
+            open.extend(drawn);
+        }
+        open
+    }
+
     /// Whether a gesture of the tool is under way.
     pub fn is_busy(&self) -> bool {
         self.tool.is_under_way(&self.state)
@@ -190,7 +201,7 @@ impl PatternView {
 
     /// Gives an event to the tool in hand.
     pub fn step(&mut self, event: &Event, evaluation: &Evaluation) -> Outcome {
-        let open = open_sheets(&self.scene, &self.selection);
+        let open = self.open();
         let (scene, boards) = (&self.base, &self.boards);
         let inside = |corners| inside_box((scene, boards), &open, corners);
         let reading = Reading {
@@ -433,7 +444,7 @@ impl PatternView {
 
     fn pointer_at(&self, view: Rect, at: Pos2, held: Held) -> Pointer {
         let table = self.camera.table(view, ScreenPoint(at)).0;
-        let open = open_sheets(&self.scene, &self.selection);
+        let open = self.open();
         let found = hits((&self.base, &self.boards), &open, table, self.camera.scale);
         let begun = match &self.state {
             State::Slots(state) => state.sheet(),
@@ -470,7 +481,7 @@ impl PatternView {
     }
 
     fn paint(&self, ui: &Ui, view: Rect, evaluation: &Evaluation) {
-        let open = open_sheets(&self.scene, &self.selection);
+        let open = self.open();
         let inside = |_| Vec::new();
         let reading = Reading {
             evaluation,
@@ -528,7 +539,7 @@ impl PatternView {
     /// Names points, edges and panels for assistive technology, and tells which was chosen there.
     /// Their nodes take no clicks: those go to the view under them, by place, as everyone's do.
     fn name_parts(&self, ui: &Ui, view: Rect, pattern: &Pattern) -> Option<Item> {
-        let open = open_sheets(&self.scene, &self.selection);
+        let open = self.open();
         let mut parts: Vec<(SheetId, Item, Pos2)> = Vec::new();
         for panel in &self.scene.panels {
             let origin = self.boards.panel(panel.id);
