@@ -193,8 +193,7 @@ impl Made {
         let id = self.panel.edge_named(edge).unwrap().id;
         let path = evaluated(&self.pattern).edge(id).unwrap().clone();
         let at = path.point(path.at_length(path.length() * share).unwrap());
-        let near = plan::nearest_mark(&evaluated(&self.pattern), self.panel.id, at).unwrap();
-        let owner = self.panel.edge(near.edge).unwrap().clone();
+        let owner = self.panel.edge(id).unwrap().clone();
         let sheet = self.panel.sheet().unwrap();
         let curve = evaluated(&self.pattern).curve(owner.curve).unwrap().clone();
         let share = curve.nearest(at).unwrap().along / curve.length();

@@ -179,6 +179,22 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::Panel,
+        "Split",
+        key(PLAIN, Key::K),
+        "Cut a panel in two along a straight line from edge to edge",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&alter::SPLIT)),
+    ),
+    command(
+        Menu::Panel,
+        "Split along",
+        key(SHIFT, Key::K),
+        "Cut a panel in two along a curve that is drawn across it",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&alter::SPLIT_ALONG)),
+    ),
+    command(
+        Menu::Panel,
         "Fold",
         key(SHIFT, Key::F),
         "Lay a straight edge on the fold of the cloth",

@@ -3,7 +3,7 @@
 use super::fill::{Fill, fill};
 use super::inside::{chord, roomiest};
 use toile_geometry::{Bounds2, Curve, Vec2, ring_area};
-use toile_pattern::{EdgeId, LineId, LineKind, Name, NotchId, OperationId, Stage, StageEdge};
+use toile_pattern::{EdgeId, LineId, LineKind, Name, NotchId, OperationId, Role, Stage, StageEdge};
 
 /// Part of the chord through the middle of a panel that the grainline takes.
 const GRAINLINE_SHARE: f64 = 0.62;
@@ -27,6 +27,8 @@ pub struct PanelShape {
     pub edges: Vec<EdgeShape>,
     /// Outline of the mirrored half.
     pub mirrored: Vec<Vec<Vec2>>,
+    /// Other edges that operations made, as where the panel was split, on the half that is drawn.
+    pub made: Vec<(OperationId, Vec<Vec2>)>,
     /// Legs of darts, with the operation that made them; of a mirrored half too.
     pub darts: Vec<(OperationId, bool, Vec<Vec2>)>,
     /// Lines inside of the half that is drawn.
@@ -78,6 +80,7 @@ impl PanelShape {
             rings: drawn,
             edges: Vec::new(),
             mirrored: Vec::new(),
+            made: Vec::new(),
             darts: Vec::new(),
             internal_lines: Vec::new(),
             notches: stage
@@ -103,8 +106,15 @@ impl PanelShape {
 
     fn edge(&mut self, edge: &StageEdge, line: Vec<Vec2>) {
         let id = match edge.name {
-            Name::Made { by, .. } => return self.darts.push((by, edge.half != 0, line)),
-            Name::Drawn(_) if edge.half != 0 => return self.mirrored.push(line),
+            Name::Made {
+                by,
+                role: Role::Leg,
+                ..
+            } => {
+                return self.darts.push((by, edge.half != 0, line));
+            }
+            _ if edge.half != 0 => return self.mirrored.push(line),
+            Name::Made { by, .. } => return self.made.push((by, line)),
             Name::Drawn(id) => id,
         };
         let length = edge.curve.length();
@@ -123,6 +133,11 @@ impl PanelShape {
                 lines: vec![line],
             }),
         }
+    }
+
+    /// Whether a place [m] lies on the half that is drawn.
+    pub fn contains(&self, at: Vec2) -> bool {
+        super::inside::contains(&self.rings, at)
     }
 
     /// The edge with that id.

@@ -1,10 +1,11 @@
-//! Tools that alter panels: darts pivoted, panels spread.
+//! Tools that alter panels: darts pivoted, panels spread and split.
 
 use super::planning::{Planning, refuse};
-use super::slots::{Answer, Slot, SlotKind, SlotTool};
+use super::slots::{Answer, Plan, Slot, SlotKind, SlotTool};
+use crate::canvas::scene::PanelScene;
 use crate::canvas::selection::Item;
-use toile_pattern::plan::{self, PivotWish, SpreadWish};
-use toile_pattern::{Bridge, Name, Number, Want};
+use toile_pattern::plan::{self, CurveShape, Joined, PivotWish, SplitWish, SpreadWish};
+use toile_pattern::{Bridge, CurveId, CurveRule, EditError, Name, Number, PanelId, Want};
 
 /// Moves a dart, or a share of it, to another place of the outline.
 pub static PIVOT: SlotTool = SlotTool {
@@ -133,3 +134,77 @@ pub static SPREAD: SlotTool = SlotTool {
         Ok(planning.done("Spread panel", [Item::Operation(*panel, id)]))
     },
 };
+
+/// Cuts a panel in two along a straight line.
+pub static SPLIT: SlotTool = SlotTool {
+    command: "Split",
+    slots: &[
+        Slot {
+            hint: "Click the outline where the cut starts",
+            kind: SlotKind::OnLine,
+        },
+        Slot {
+            hint: "Click the outline where it ends",
+            kind: SlotKind::OnLine,
+        },
+    ],
+    plan: |answers, reading| {
+        let [Answer::OnLine(panel, _, from), Answer::OnLine(on, _, to)] = answers else {
+            return Err(refuse("nothing was given", "click the outline"));
+        };
+        if on != panel {
+            return Err(refuse(
+                "the places are on two panels",
+                "click the outline of the same panel",
+            ));
+        }
+        let mut planning = Planning::new(reading);
+        let mut ends = Vec::with_capacity(2);
+        for at in [from, to] {
+            let near = super::panel::marked(reading, *panel, *at)?;
+            ends.push(planning.run(|evaluation| plan::point_at_mark(evaluation, *panel, near))?);
+        }
+        let sheet = reading.evaluation.pattern().panel(*panel);
+        let sheet = sheet.and_then(|panel| reading.evaluation.pattern().sheet_of(panel));
+        let sheet = sheet.ok_or_else(|| refuse("the panel is not there", "click another"))?;
+        let curve = planning.run(|evaluation| {
+            let shape = CurveShape::Rule(CurveRule::Line);
+            plan::add_curve(evaluation, (sheet, None), [ends[0], ends[1]], shape)
+        })?;
+        split(planning, *panel, curve)
+    },
+};
+
+/// Cuts a panel in two along a curve that is drawn across it.
+pub static SPLIT_ALONG: SlotTool = SlotTool {
+    command: "Split along",
+    slots: &[Slot {
+        hint: "Click the curve to cut along, where it lies on the panel",
+        kind: SlotKind::Curve,
+    }],
+    plan: |answers, reading| {
+        let Some(Answer::Curve(sheet, curve, at)) = answers.first() else {
+            return Err(refuse("nothing was given", "click a curve"));
+        };
+        let is_there = |panel: &&PanelScene| panel.sheet == *sheet && panel.shape.contains(*at);
+        let found = reading.scene.panels.iter().find(is_there);
+        let panel = found.ok_or_else(|| {
+            refuse(
+                "no panel lies under the curve there",
+                "click the curve where it lies on a panel that is traced from its sheet",
+            )
+        })?;
+        split(Planning::new(reading), panel.id, *curve)
+    },
+};
+
+fn split(mut planning: Planning, panel: PanelId, curve: CurveId) -> Result<Plan, EditError> {
+    let line = plan::outline_of(planning.evaluation(), panel)?;
+    let wish = SplitWish {
+        line,
+        curve,
+        joined: Joined::default(),
+    };
+    let made = planning.run(|evaluation| plan::split_panel(evaluation, panel, wish))?;
+    Ok(planning.done("Split panel", made.sides.map(Item::Panel)))
+}

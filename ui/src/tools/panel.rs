@@ -82,12 +82,10 @@ pub static FOLD: SlotTool = SlotTool {
             return Err(refuse("nothing was given", "click a straight edge"));
         };
         let owner = panel_of(reading, *panel)?;
-        let missing = || refuse("the edge is not there", "click another");
-        let line = owner.line_of(*edge).ok_or_else(missing)?;
-        let ends = owner.edge(*edge).ok_or_else(missing)?.ends;
+        let (line, ends) = plan::edge_ends(reading.evaluation, owner, *edge)?;
         let kind = OperationKind::Fold {
-            line: Name::Drawn(line.id),
-            ends: ends.map(Mark::corner),
+            line: Name::Drawn(line),
+            ends: ends.map(Mark::Corner),
         };
         operation(reading, *panel, kind, "Put on fold")
     },
@@ -131,8 +129,11 @@ pub static BEND: SlotTool = SlotTool {
         let [Answer::Edge(panel, edge, _), Answer::Place(through)] = answers else {
             return Err(refuse("nothing was given", "click an edge"));
         };
-        let owner = panel_of(reading, *panel)?;
-        let found = owner.edge(*edge);
+        let owner = reading
+            .evaluation
+            .pattern()
+            .owner_of(*panel, (*edge).into());
+        let found = owner.and_then(|owner| owner.edge(*edge));
         let curve = found
             .ok_or_else(|| refuse("the edge is gone", "click another"))?
             .curve;
@@ -273,18 +274,13 @@ pub static NOTCH_ROW: SlotTool = SlotTool {
             return Err(refuse("nothing was given", "click an edge"));
         };
         let owner = panel_of(reading, *panel)?;
-        let mut lines = owner.lines.iter();
-        let found = lines.find_map(|line| {
-            let edge = line.edges.iter().find(|known| known.id == *edge)?;
-            Some((line.id, edge.ends))
-        });
-        let (line, ends) = found.ok_or_else(|| refuse("the edge is gone", "click another"))?;
+        let (line, ends) = plan::edge_ends(reading.evaluation, owner, *edge)?;
         let count = reading.evaluation.number(count, Want::Plain);
         let count = count.filter(|count| (1.0..=100.0).contains(count));
         let count = count.ok_or_else(|| refuse("a row has 1 to 100 notches", "type a count"))?;
         let row = plan::NotchRow {
             line,
-            ends: ends.map(Name::Drawn),
+            ends,
             count: count.round() as u32,
         };
         let mut planning = Planning::new(reading);
@@ -309,11 +305,9 @@ pub(super) fn marked(
 ) -> Result<plan::NearMark, EditError> {
     let mut near = plan::nearest_mark(reading.evaluation, panel, at)?;
     if let Mark::Between { share, .. } = &mut near.mark
-        && let Some(path) = reading.evaluation.edge(near.edge)
         && let Some(value) = share.value()
     {
-        let length = path.length();
-        *share = Number::Value(tidy_share(value * length, length));
+        *share = Number::Value(tidy_share(value * near.length, near.length));
     }
     Ok(near)
 }

@@ -531,6 +531,12 @@ impl PatternView {
                 let at = self.screen(view, origin, *at);
                 parts.push((panel.sheet, Item::Notch(panel.id, *id), at));
             }
+            for (id, line) in &panel.shape.made {
+                if let Some((at, _)) = crate::canvas::along(line, 0.5) {
+                    let at = self.screen(view, origin, at);
+                    parts.push((panel.sheet, Item::Operation(panel.id, *id), at));
+                }
+            }
             for (id, mirrored, line) in &panel.shape.darts {
                 if let Some(at) = line.first().filter(|_| !mirrored) {
                     let at = self.screen(view, origin, *at);

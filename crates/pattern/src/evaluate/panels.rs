@@ -5,7 +5,7 @@ use super::numbers::{Computation, Want};
 use crate::stage::{MarkValue, PlaceError, Placed, Spot, StageEdge, StageLine, StageNotch};
 use crate::{
     Code, Corner, Diagnostic, Edge, History, Line, LineKind, LineName, Mark, Name, Notch,
-    OperationId, Panel, PanelId, Pattern, Place, Side, Source, Stage,
+    OperationId, Panel, PanelId, Pattern, Place, Role, Side, Source, Stage,
 };
 use std::sync::Arc;
 use toile_geometry::Vec2;
@@ -94,7 +94,8 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
         Some(stage)
     }
 
-    /// A side of another panel, with its own grain and the width of cloth outside the cut.
+    /// A side of another panel, with its own grain, and its own width of cloth outside edges that
+    /// have none of their own.
     fn side(
         &mut self,
         (of, split, side): (PanelId, OperationId, Side),
@@ -134,9 +135,25 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
             grain,
             ..(**found).clone()
         };
-        for edge in stage.lines.iter_mut().flat_map(|line| &mut line.edges) {
-            if edge.name.maker() == Some(split) {
-                edge.allowance = general;
+        let pattern = &evaluation.pattern;
+        for line in &mut stage.lines {
+            let mut before = general;
+            for edge in &mut line.edges {
+                let is_general = match edge.name {
+                    Name::Drawn(id) => {
+                        let owner = pattern.owner_of(self.panel.id, id.into());
+                        let own = owner.and_then(|owner| owner.edge(id));
+                        own.is_some_and(|own| own.allowance.is_none())
+                    }
+                    Name::Made { by, .. } => by == split,
+                };
+                match edge.name.role() {
+                    // An opening goes on as the edge before it.
+                    Some(Role::Opening) => edge.allowance = before,
+                    _ if is_general => edge.allowance = general,
+                    _ => {}
+                }
+                before = edge.allowance;
             }
         }
         Some(stage)

@@ -339,8 +339,10 @@ pub fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditErr
         }
         _ => {
             let near = nearest_mark(evaluation, panel, at)?;
-            match n % 2 {
-                0 => divide_edge(evaluation, (panel, near.edge), Some(at)).map(|done| done.0),
+            match near.edge {
+                Name::Drawn(edge) if n % 2 == 0 => {
+                    divide_edge(evaluation, (panel, edge), Some(at)).map(|done| done.0)
+                }
                 _ => join_edges(evaluation, (panel, ends[1])),
             }
         }
