@@ -219,14 +219,59 @@ fn sides_of_a_split_are_worked_on_as_panels() {
     drafter.key(Key::Escape);
     assert_eq!(side(&drafter).operations.len(), 1, "{}", drafter.status());
     assert!(drafter.evaluation().diagnostics().is_empty());
-    // A line inside is refused by name.
+    // A line inside is drawn on the side as it is finished.
     drafter.key(Key::I);
     drafter.click(drafter.part("Panel yoke"));
-    drafter.click(drafter.part("Panel yoke"));
-    drafter.click(drafter.part("Edge top of yoke"));
+    drafter.click(drafter.place(0.05, 0.2));
+    drafter.click(drafter.place(0.1, 0.25));
     drafter.key(Key::Enter);
-    let words = drafter.status();
-    assert!(words.contains("side of another panel"), "{words}");
+    drafter.key(Key::Escape);
+    assert_eq!(side(&drafter).lines.len(), 1, "{}", drafter.status());
+    assert!(drafter.evaluation().diagnostics().is_empty());
+    drafter.part("Line line of yoke");
+}
+
+#[test]
+fn a_line_is_drawn_on_a_panel_after_a_pivot_and_inserted() {
+    let mut drafter = panel();
+    drafter.key(Key::D);
+    drafter.click(drafter.part("Edge top of draft"));
+    drafter.typed("2");
+    drafter.typed("15");
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.chord(Modifiers::SHIFT, Key::E);
+    drafter.click(drafter.part("Dart of draft"));
+    drafter.click(drafter.part("Edge right of draft"));
+    drafter.key(Key::Enter);
+    drafter.key(Key::Escape);
+    drafter.chord(Modifiers::SHIFT, Key::I);
+    drafter.click(drafter.part("Panel draft"));
+    drafter.key(Key::Escape);
+    let pattern = drafter.pattern();
+    assert_eq!(pattern.sheets.len(), 2, "{}", drafter.status());
+    let on = pattern.sheets[1].on.unwrap();
+    assert_eq!(on.1, Some(pattern.panels[0].operations[1].id));
+    // Points and lines are drawn there with the usual tools, and snap to the panel's edges.
+    drafter.key(Key::L);
+    drafter.click(drafter.part("Edge left of draft"));
+    drafter.click(drafter.place(0.06, 0.1));
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    let pattern = drafter.pattern();
+    let [curve] = &pattern.sheets[1].curves[..] else {
+        panic!("{}", drafter.status());
+    };
+    let start = pattern.point(curve.ends[0]).unwrap().1;
+    let is_mark = matches!(start.rule, toile_pattern::PointRule::Mark { .. });
+    assert!(is_mark, "{:?}", start.rule);
+    drafter.key(Key::J);
+    let words = format!("Curve {} of {}", curve.name, pattern.sheets[1].name);
+    drafter.click(drafter.part(&words));
+    let panel = drafter.pattern().panels[0].clone();
+    assert_eq!(panel.lines.len(), 2, "{}", drafter.status());
+    assert_eq!(panel.operations.len(), 3);
+    assert!(drafter.window.query_by_label("No faults").is_some());
 }
 
 #[test]

@@ -151,6 +151,7 @@ impl Made {
                 };
                 made.operation = made.plan(row, |e, p| plan::add_operation(e, p, kind));
             }
+            "insert" => made.operation = made.insert(row),
             "fold" => made.fold(row),
             other => panic!("{other}"),
         }
@@ -204,6 +205,27 @@ impl Made {
         let planned = plan::add_point(&evaluated(&self.pattern), sheet, None, rule).unwrap();
         self.pattern.apply(&planned.0).unwrap();
         planned.1
+    }
+
+    /// A line from a place of the finished panel to another, drawn on it.
+    fn insert(&mut self, row: &Row) -> OperationId {
+        let sheet = self.plan(row, plan::open_sheet);
+        let ends = [0, 2].map(|k| {
+            let line = self.line();
+            let at = self.mark(row.words[k], row.number(k + 1));
+            let rule = PointRule::Mark { line, at };
+            self.plan(row, |e, _| plan::add_point(e, sheet, None, rule))
+        });
+        let shape = plan::CurveShape::Rule(CurveRule::Line);
+        let curve = self.plan(row, |e, _| plan::add_curve(e, (sheet, None), ends, shape));
+        let kind = (LineKind::Internal, None);
+        let chain = plan::Chain::Curves(&[curve]);
+        self.plan(row, |e, p| plan::add_line(e, p, kind, chain));
+        let mut steps = self.panel.operations.iter();
+        steps
+            .find(|step| step.kind.sheet() == Some(sheet))
+            .unwrap()
+            .id
     }
 
     /// The panel's own fold is put on it anew, else another one.
@@ -298,6 +320,19 @@ fn check_made(row: &Row, made: &Made, [before, after]: [&Stage; 2]) -> BTreeMap<
                     near(opening, row.metres(3 + usize::from(end)));
                 }
             }
+        }
+        "insert" => {
+            let edge = |k: usize| {
+                let id = Name::Drawn(made.panel.edge_named(row.words[k]).unwrap().id);
+                let own = after.outline().iter().filter(|edge| edge.name == id);
+                let curves = own.map(|edge| edge.curve).collect();
+                let path = toile_geometry::Path::new(curves);
+                path.point(path.at_length(path.length() * row.number(k + 1)).unwrap())
+            };
+            let line = made.panel.lines.last().unwrap();
+            assert_eq!(line.by, Some(made.operation), "{}", row.text);
+            let length = now[&Name::Drawn(line.edges[0].id)];
+            near(length, (edge(2) - edge(0)).norm());
         }
         "diamond" => {
             let width = found(after, made.operation).mouth;

@@ -2,8 +2,8 @@
 
 use crate::evaluate::{Evaluation, Wearer};
 use crate::{
-    Code, Diagnostic, Draft, DraftSeam, DraftSpan, Fabric, LineKind, Name, Pattern, Piece,
-    PieceEdge, PieceLine, Place, SeamOrigin,
+    Code, Diagnostic, Draft, DraftSeam, DraftSpan, Fabric, Name, Pattern, Piece, PieceEdge,
+    PieceLine, Place, SeamOrigin,
 };
 use toile_geometry::{Rings, Vec2};
 
@@ -382,7 +382,7 @@ impl PieceCheck<'_> {
     }
 
     fn check_hole(&mut self, k: usize, hole: &[PieceEdge], outline: f64, outer: &Rings) {
-        let place = self.hole_place(k);
+        let place = self.hole_place(hole);
         let area = swept(hole);
         if hole.is_empty() || area.abs() < 1e-10 {
             let words = format!("hole {} encloses nothing", k + 1);
@@ -403,17 +403,15 @@ impl PieceCheck<'_> {
     }
 
     /// The place of a hole of the piece.
-    fn hole_place(&self, k: usize) -> Place {
+    fn hole_place(&self, hole: &[PieceEdge]) -> Place {
         let id = self.piece.id.panel;
-        let lines = self
-            .pattern
-            .and_then(|p| p.panel(id))
-            .into_iter()
-            .flat_map(|p| &p.lines);
-        let mut holes = lines.filter(|line| line.kind == LineKind::Hole);
-        holes
-            .nth(k)
-            .map_or(Place::Panel(id), |line| Place::Line(id, line.id))
+        let edge = match hole.first().map(|edge| edge.origin.name) {
+            Some(Name::Drawn(edge)) => edge,
+            _ => return Place::Panel(id),
+        };
+        let owner = self.pattern.and_then(|p| p.owner_of(id, edge.into()));
+        let line = owner.and_then(|owner| Some((owner.id, owner.line_of(edge)?.id)));
+        line.map_or(Place::Panel(id), |(of, line)| Place::Line(of, line))
     }
 
     fn check_line(&mut self, line: &PieceLine, segments: &Rings) {

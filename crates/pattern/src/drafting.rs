@@ -256,7 +256,8 @@ impl Drafter<'_> {
                         ],
                         OperationKind::Fold { .. }
                         | OperationKind::Spread { .. }
-                        | OperationKind::Split { .. } => continue,
+                        | OperationKind::Split { .. }
+                        | OperationKind::Insert { .. } => continue,
                     };
                     let sides = sides.map(|legs| {
                         let legs: Option<Vec<_>> = legs.into_iter().collect();

@@ -227,6 +227,22 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::Panel,
+        "Draw on panel",
+        key(SHIFT, Key::I),
+        "Draw points and lines on a panel as it is finished: on a side of a split, after a pivot",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&panel::DRAW_ON)),
+    ),
+    command(
+        Menu::Panel,
+        "Insert line",
+        key(PLAIN, Key::J),
+        "Make a curve that is drawn a line of the panel it lies on",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&panel::INSERT_LINE)),
+    ),
+    command(
+        Menu::Panel,
         "Grain",
         key(PLAIN, Key::G),
         "Set the direction of the warp",

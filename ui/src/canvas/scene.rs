@@ -7,6 +7,7 @@ use super::seams::{SeamDrawing, draw_seams};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Path, Vec2};
+use toile_pattern::plan::{self, EdgePart};
 use toile_pattern::{
     Curve, CurveId, CurveRule, Draft, Evaluation, Name, OperationId, OperationKind, Panel, PanelId,
     PointId, Sheet, SheetId, Stage,
@@ -61,6 +62,10 @@ pub struct SheetScene {
     pub curves: Vec<CurveScene>,
     /// Whether no panel is traced from it.
     pub is_bare: bool,
+    /// The panel it lies on.
+    pub on: Option<PanelId>,
+    /// The edges of that panel's stage, to be snapped to.
+    pub edges: Vec<EdgePart>,
 }
 
 /// What a point is for.
@@ -165,7 +170,10 @@ impl Scene {
     pub fn isolate(&mut self, panels: &[PanelId]) {
         self.panels.retain(|panel| panels.contains(&panel.id));
         let sheets: Vec<SheetId> = self.panels.iter().map(|panel| panel.sheet).collect();
-        self.sheets.retain(|sheet| sheets.contains(&sheet.id));
+        self.sheets.retain(|sheet| match sheet.on {
+            Some(on) => panels.contains(&on),
+            None => sheets.contains(&sheet.id),
+        });
     }
 
     /// Whether there is nothing to see.
@@ -245,7 +253,15 @@ impl Scene {
                 },
             })
         });
-        let is_bare = own.count() == 0;
+        let is_bare = own.count() == 0 && sheet.on.is_none();
+        let laid = sheet.on.and_then(|(id, after)| {
+            let panel = evaluation.pattern().panel(id)?;
+            Some(plan::edge_parts(
+                evaluation,
+                panel,
+                evaluation.stage(id, after)?,
+            ))
+        });
         SheetScene {
             id: sheet.id,
             name: sheet.name.clone(),
@@ -266,6 +282,8 @@ impl Scene {
                 })
                 .collect(),
             is_bare,
+            on: sheet.on.map(|(panel, _)| panel),
+            edges: laid.unwrap_or_default(),
         }
     }
 

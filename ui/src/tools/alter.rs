@@ -1,11 +1,13 @@
 //! Tools that alter panels: darts pivoted, panels spread and split.
 
+use super::Reading;
 use super::planning::{Planning, refuse};
 use super::slots::{Answer, Plan, Slot, SlotKind, SlotTool};
 use crate::canvas::scene::PanelScene;
 use crate::canvas::selection::Item;
-use toile_pattern::plan::{self, CurveShape, Joined, PivotWish, SplitWish, SpreadWish};
-use toile_pattern::{Bridge, CurveId, CurveRule, EditError, Name, Number, PanelId, Want};
+use toile_geometry::Vec2;
+use toile_pattern::plan::{self, Joined, PivotWish, SplitWish, SpreadWish};
+use toile_pattern::{Bridge, CurveId, EditError, Name, Number, PanelId, SheetId, Want};
 
 /// Moves a dart, or a share of it, to another place of the outline.
 pub static PIVOT: SlotTool = SlotTool {
@@ -159,18 +161,9 @@ pub static SPLIT: SlotTool = SlotTool {
             ));
         }
         let mut planning = Planning::new(reading);
-        let mut ends = Vec::with_capacity(2);
-        for at in [from, to] {
-            let near = super::panel::marked(reading, *panel, *at)?;
-            ends.push(planning.run(|evaluation| plan::point_at_mark(evaluation, *panel, near))?);
-        }
-        let sheet = reading.evaluation.pattern().panel(*panel);
-        let sheet = sheet.and_then(|panel| reading.evaluation.pattern().sheet_of(panel));
-        let sheet = sheet.ok_or_else(|| refuse("the panel is not there", "click another"))?;
-        let curve = planning.run(|evaluation| {
-            let shape = CurveShape::Rule(CurveRule::Line);
-            plan::add_curve(evaluation, (sheet, None), [ends[0], ends[1]], shape)
-        })?;
+        let [from, to] = [from, to].map(|at| super::panel::marked(reading, *panel, *at));
+        let places = [from?, to?];
+        let curve = planning.run(|evaluation| plan::line_across(evaluation, *panel, places))?;
         split(planning, *panel, curve)
     },
 };
@@ -186,15 +179,8 @@ pub static SPLIT_ALONG: SlotTool = SlotTool {
         let Some(Answer::Curve(sheet, curve, at)) = answers.first() else {
             return Err(refuse("nothing was given", "click a curve"));
         };
-        let is_there = |panel: &&PanelScene| panel.sheet == *sheet && panel.shape.contains(*at);
-        let found = reading.scene.panels.iter().find(is_there);
-        let panel = found.ok_or_else(|| {
-            refuse(
-                "no panel lies under the curve there",
-                "click the curve where it lies on a panel that is traced from its sheet",
-            )
-        })?;
-        split(Planning::new(reading), panel.id, *curve)
+        let panel = panel_under(reading, (*sheet, *at))?;
+        split(Planning::new(reading), panel, *curve)
     },
 };
 
@@ -207,4 +193,25 @@ fn split(mut planning: Planning, panel: PanelId, curve: CurveId) -> Result<Plan,
     };
     let made = planning.run(|evaluation| plan::split_panel(evaluation, panel, wish))?;
     Ok(planning.done("Split panel", made.sides.map(Item::Panel)))
+}
+
+/// The panel that a place [m] of a sheet lies on: the one the sheet lies on, else one traced from it.
+pub(super) fn panel_under(
+    reading: &Reading<'_>,
+    (sheet, at): (SheetId, Vec2),
+) -> Result<PanelId, EditError> {
+    let drawn = reading.scene.sheet_scene(sheet);
+    let laid = drawn.and_then(|drawn| drawn.on);
+    let is_own = |panel: &PanelScene| match laid {
+        Some(on) => panel.id == on,
+        None => panel.sheet == sheet,
+    };
+    let is_there = |panel: &&PanelScene| is_own(panel) && panel.shape.contains(at);
+    let found = reading.scene.panels.iter().find(is_there);
+    found.map(|panel| panel.id).ok_or_else(|| {
+        refuse(
+            "no panel lies under the curve there",
+            "click the curve where it lies on a panel of its sheet",
+        )
+    })
 }

@@ -10,13 +10,14 @@ use toile_pattern::{Apex, Bridge, Number, Operation, OperationKind, Pressed, Spr
 type Read = for<'a> fn(&mut Reader<'a>, &Item<'a>) -> Result<OperationKind, FormatError>;
 
 /// What operations are called in files, and how each is read.
-const KINDS: [(&str, Read); 6] = [
+const KINDS: [(&str, Read); 7] = [
     ("dart", dart),
     ("diamond", diamond),
     ("fold", fold),
     ("pivot", pivot),
     ("spread", spread),
     ("split", split),
+    ("insert", insert),
 ];
 
 /// Reads an operation.
@@ -138,6 +139,13 @@ fn split<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, 
     Ok(OperationKind::Split {
         line: name(reader, &fields.need("line")?)?,
         curve: reader.reference(&fields.need("curve")?)?,
+    })
+}
+
+fn insert<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
+    let fields = item.object(&["sheet"], &mut reader.notes)?;
+    Ok(OperationKind::Insert {
+        sheet: reader.reference(&fields.need("sheet")?)?,
     })
 }
 

@@ -90,6 +90,10 @@ pub fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, Fo
             own.put("curve", count(curve.0));
             "split"
         }
+        OperationKind::Insert { sheet } => {
+            own.put("sheet", count(sheet.0));
+            "insert"
+        }
     };
     fields.put(kind, own.done());
     Ok(fields.done())

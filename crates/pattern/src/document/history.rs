@@ -134,6 +134,18 @@ impl Pattern {
 }
 
 impl Panel {
+    /// Whether operations moved parts of it from where they were drawn.
+    pub fn is_altered(&self) -> bool {
+        let mut kinds = self.operations.iter().map(|operation| &operation.kind);
+        let moves = |kind: &OperationKind| {
+            matches!(
+                kind,
+                OperationKind::Pivot { .. } | OperationKind::Spread { .. }
+            )
+        };
+        kinds.any(moves)
+    }
+
     /// Whether it is split into other panels, which are cut in its place.
     pub fn is_split(&self) -> bool {
         let mut kinds = self.operations.iter().map(|operation| &operation.kind);

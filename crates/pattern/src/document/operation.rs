@@ -1,6 +1,6 @@
 //! Operations: kept steps of a panel.
 
-use crate::{CurveId, LineName, Mark, Number, OperationId, PointId};
+use crate::{CurveId, LineName, Mark, Number, OperationId, PointId, SheetId};
 use serde::{Deserialize, Serialize};
 
 /// A kept step of a panel.
@@ -83,6 +83,12 @@ pub enum OperationKind {
         line: LineName,
         /// The curve, from the line to the line.
         curve: CurveId,
+    },
+    /// Lines of the panel that were drawn on a sheet which lies on the stage before this: holes and
+    /// internal lines that name this operation.
+    Insert {
+        /// The sheet.
+        sheet: SheetId,
     },
 }
 
@@ -198,7 +204,7 @@ impl OperationKind {
                 });
                 held.number().into_iter().chain(of_cuts).collect()
             }
-            Self::Split { .. } => Vec::new(),
+            Self::Split { .. } | Self::Insert { .. } => Vec::new(),
         }
     }
 
@@ -213,7 +219,7 @@ impl OperationKind {
                 let of_cuts = cuts.iter().flat_map(|cut| &cut.ends);
                 std::iter::once(held).chain(of_cuts).collect()
             }
-            Self::Split { .. } => Vec::new(),
+            Self::Split { .. } | Self::Insert { .. } => Vec::new(),
         }
     }
 
@@ -225,7 +231,7 @@ impl OperationKind {
             | Self::Pivot { line, .. }
             | Self::Spread { line, .. }
             | Self::Split { line, .. } => Some(*line),
-            Self::Diamond { .. } => None,
+            Self::Diamond { .. } | Self::Insert { .. } => None,
         }
     }
 
@@ -241,6 +247,14 @@ impl OperationKind {
     pub fn curve(&self) -> Option<CurveId> {
         match self {
             Self::Split { curve, .. } => Some(*curve),
+            _ => None,
+        }
+    }
+
+    /// The sheet whose lines it brings in.
+    pub fn sheet(&self) -> Option<SheetId> {
+        match self {
+            Self::Insert { sheet } => Some(*sheet),
             _ => None,
         }
     }
@@ -267,6 +281,7 @@ impl OperationKind {
             Self::Pivot { .. } => "pivot",
             Self::Spread { .. } => "spread",
             Self::Split { .. } => "split",
+            Self::Insert { .. } => "insert",
         }
     }
 }

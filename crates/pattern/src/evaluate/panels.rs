@@ -35,7 +35,7 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
     }
 
     /// A stage the panel comes from.
-    fn past(&mut self, step: usize, place: &Place) -> Option<Arc<Stage>> {
+    pub(super) fn past(&mut self, step: usize, place: &Place) -> Option<Arc<Stage>> {
         let (panel, after) = self.history.stage(step)?;
         let stage = self.c.stage(Node::Stage(panel, after)).cloned();
         self.c.reported(stage, place, "")
@@ -66,7 +66,8 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
         };
         let mut complete = true;
         for kind in [LineKind::Outline, LineKind::Hole, LineKind::Internal] {
-            for line in panel.lines.iter().filter(|line| line.kind == kind) {
+            let drawn = |line: &&Line| line.kind == kind && line.by.is_none();
+            for line in panel.lines.iter().filter(drawn) {
                 match self.line(line, general.unwrap_or(0.0)) {
                     Some(line) => stage.lines.push(line),
                     // Lines inside can be left out; their faults are told.
@@ -175,7 +176,7 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
         found
     }
 
-    fn line(&mut self, line: &Line, general: f64) -> Option<StageLine> {
+    pub(super) fn line(&mut self, line: &Line, general: f64) -> Option<StageLine> {
         let mut edges = Vec::with_capacity(line.edges.len());
         let mut complete = true;
         for edge in &line.edges {

@@ -65,7 +65,7 @@ pub fn nearest_mark(
 ///
 /// # Errors
 /// The panel is not there; operations moved the place away from where it was drawn, or made it.
-pub fn point_at_mark(
+pub(super) fn point_at_mark(
     evaluation: &Evaluation,
     panel: PanelId,
     near: NearMark,

@@ -19,6 +19,7 @@ mod names;
 mod notch;
 mod number_place;
 mod numbers;
+mod on_panel;
 mod on_stage;
 mod operations;
 mod paste;
@@ -45,7 +46,7 @@ pub use marker::{
     add_marker, flip_pieces, lock_pieces, move_pieces, place_marker, place_pieces, remove_marker,
     set_marker_cloth, set_marker_order, take_off_pieces, turn_pieces,
 };
-pub use marks::{NearMark, nearest_mark, point_at_mark};
+pub use marks::{NearMark, nearest_mark};
 pub use matched::{Opposite, PanelNotch, add_matched_notches, is_upside_down, opposites, twin};
 pub use moving::move_point;
 pub use notch::{NotchRow, add_notch, add_notches, move_notch, remove_notch, set_notch_kind};
@@ -53,7 +54,8 @@ pub use number_place::{MarkNumber, NumberPlace, OperationNumber, PointNumber, Sp
 pub use numbers::{
     NumberEntry, adjust_number, clear_number, number_at, numbers_of, set_number, set_number_in_size,
 };
-pub use on_stage::{edge_ends, outline_of};
+pub use on_panel::{line_across, open_sheet};
+pub use on_stage::{EdgePart, edge_ends, edge_parts, outline_of};
 pub use operations::{add_operation, move_operation, remove_operation, set_operation};
 pub use paste::{PasteTarget, Pasted, duplicate, insert_pattern, paste};
 pub use remove::{remove_parts, remove_point};

@@ -355,7 +355,21 @@ fn in_rule(rule: &mut PointRule, number: PointNumber) -> Option<&mut Number> {
         ) => Some(distance),
         (PointNumber::Along, PointRule::Between { along, .. }) => Some(along),
         (PointNumber::Aside, PointRule::Between { aside, .. }) => Some(aside),
-        (PointNumber::Share, PointRule::OnCurve { share, .. }) => Some(share),
+        (PointNumber::Share, PointRule::OnCurve { share, .. })
+        | (
+            PointNumber::Share,
+            PointRule::Mark {
+                at: Mark::Between { share, .. },
+                ..
+            },
+        ) => Some(share),
+        (
+            PointNumber::Distance,
+            PointRule::Mark {
+                at: Mark::Along { distance, .. },
+                ..
+            },
+        ) => Some(distance),
         _ => None,
     }
 }

@@ -6,7 +6,7 @@ use crate::{
     CornerName, EdgeId, EdgeName, EditError, Evaluation, LineId, LineKind, LineName, Mark, Name,
     Number, Panel, PanelId, PartId, Role, Stage, StageEdge, StageLine,
 };
-use toile_geometry::{Path, Vec2};
+use toile_geometry::{Curve, Path, Vec2};
 
 /// A place on an edge of a panel as it is finished.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +22,60 @@ pub(super) struct OnEdge {
     pub at: Vec2,
 }
 
-/// The place nearest to one of a finished panel [m] on those of its edges that are asked for; legs
-/// of darts and the other half of a fold are no edges here. Nothing if there is none.
+/// A part of an edge of a panel's stage: one curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgePart {
+    /// The line it is on.
+    pub line: LineId,
+    /// The edge.
+    pub edge: EdgeName,
+    /// The corners the whole edge runs between: as drawn if it was drawn.
+    pub ends: [CornerName; 2],
+    /// Shares of the edge's arc length where the part starts and ends.
+    pub shares: [f64; 2],
+    /// Its course [m].
+    pub curve: Curve,
+}
+
+/// The edges of a stage of a panel, part by part; legs of darts and the other half of a fold are no
+/// edges here.
+pub fn edge_parts(evaluation: &Evaluation, panel: &Panel, stage: &Stage) -> Vec<EdgePart> {
+    let mut parts = Vec::new();
+    for line in &stage.lines {
+        let Name::Drawn(id) = line.name else {
+            continue;
+        };
+        for (k, edge) in line.edges.iter().enumerate() {
+            let is_own = edge.half == 0 && edge.name.role() != Some(Role::Leg);
+            if let Some(ends) = ends_of(evaluation, panel, (line, k)).filter(|_| is_own) {
+                parts.push(EdgePart {
+                    line: id,
+                    edge: edge.name,
+                    ends,
+                    shares: [edge.from, edge.to],
+                    curve: edge.curve,
+                });
+            }
+        }
+    }
+    parts
+}
+
+impl EdgePart {
+    /// The place on it nearest to one [m], and its share of the whole edge's arc length; nothing if
+    /// it has no length.
+    pub fn nearest(&self, near: Vec2) -> Option<(Vec2, f64)> {
+        let path = Path::new(vec![self.curve]);
+        let place = path.nearest(near)?;
+        let length = path.length();
+        let [from, to] = self.shares;
+        let share = from + (to - from) * place.along / length;
+        (length > 0.0).then(|| (path.point(place), share))
+    }
+}
+
+/// The place nearest to one of a finished panel [m] on those of its edges that are asked for.
+/// Nothing if there is none.
 pub(super) fn nearest_edge(
     evaluation: &Evaluation,
     panel: &Panel,
@@ -31,45 +83,21 @@ pub(super) fn nearest_edge(
     wanted: impl Fn(EdgeName) -> bool,
 ) -> Option<OnEdge> {
     let stage = evaluation.last_stage(panel)?;
-    let mut best: Option<(f64, OnEdge)> = None;
-    for line in &stage.lines {
-        let Name::Drawn(id) = line.name else {
-            continue;
-        };
-        for (k, edge) in line.edges.iter().enumerate() {
-            let is_own = edge.half == 0 && edge.name.role() != Some(Role::Leg);
-            if !is_own || !wanted(edge.name) {
-                continue;
-            }
-            let path = Path::new(vec![edge.curve]);
-            let Some(place) = path.nearest(near) else {
-                continue;
-            };
-            let at = path.point(place);
-            let away = (at - near).norm();
-            if best.as_ref().is_some_and(|best| best.0 <= away) {
-                continue;
-            }
-            let own = path.length();
-            let local = if own > 0.0 { place.along / own } else { 0.0 };
-            let (Some(ends), covered) = (
-                ends_of(evaluation, panel, (line, k)),
-                (edge.to - edge.from).abs(),
-            ) else {
-                continue;
-            };
-            let found = OnEdge {
-                line: id,
-                edge: edge.name,
-                ends,
-                share: edge.from + (edge.to - edge.from) * local,
-                length: own / covered.max(1e-12),
-                at,
-            };
-            best = Some((away, found));
-        }
-    }
-    best.map(|best| best.1)
+    let parts = edge_parts(evaluation, panel, stage).into_iter();
+    let found = parts.filter(|part| wanted(part.edge)).filter_map(|part| {
+        let (at, share) = part.nearest(near)?;
+        Some(((at - near).norm(), part, at, share))
+    });
+    let (_, part, at, share) = found.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let covered = (part.shares[1] - part.shares[0]).abs();
+    Some(OnEdge {
+        line: part.line,
+        edge: part.edge,
+        ends: part.ends,
+        share,
+        length: part.curve.length() / covered.max(1e-12),
+        at,
+    })
 }
 
 /// The corners between which the whole of an edge runs that covers one of a line.

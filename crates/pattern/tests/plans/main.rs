@@ -9,6 +9,7 @@ mod copy;
 mod kept;
 mod notch;
 mod numbers;
+mod on_panel;
 mod operations;
 mod remove;
 mod rename;
