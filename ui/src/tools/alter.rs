@@ -1,13 +1,10 @@
 //! Tools that alter panels: darts pivoted, panels spread and split.
 
-use super::Reading;
-use super::planning::{Planning, refuse};
+use super::planning::{Planning, panel_under, refuse};
 use super::slots::{Answer, Plan, Slot, SlotKind, SlotTool};
-use crate::canvas::scene::PanelScene;
 use crate::canvas::selection::Item;
-use toile_geometry::Vec2;
 use toile_pattern::plan::{self, Joined, PivotWish, SplitWish, SpreadWish};
-use toile_pattern::{Bridge, CurveId, EditError, Name, Number, PanelId, SheetId, Want};
+use toile_pattern::{Bridge, CurveId, EditError, Name, Number, PanelId, Want};
 
 /// Moves a dart, or a share of it, to another place of the outline.
 pub static PIVOT: SlotTool = SlotTool {
@@ -193,25 +190,4 @@ fn split(mut planning: Planning, panel: PanelId, curve: CurveId) -> Result<Plan,
     };
     let made = planning.run(|evaluation| plan::split_panel(evaluation, panel, wish))?;
     Ok(planning.done("Split panel", made.sides.map(Item::Panel)))
-}
-
-/// The panel that a place [m] of a sheet lies on: the one the sheet lies on, else one traced from it.
-pub(super) fn panel_under(
-    reading: &Reading<'_>,
-    (sheet, at): (SheetId, Vec2),
-) -> Result<PanelId, EditError> {
-    let drawn = reading.scene.sheet_scene(sheet);
-    let laid = drawn.and_then(|drawn| drawn.on);
-    let is_own = |panel: &PanelScene| match laid {
-        Some(on) => panel.id == on,
-        None => panel.sheet == sheet,
-    };
-    let is_there = |panel: &&PanelScene| is_own(panel) && panel.shape.contains(at);
-    let found = reading.scene.panels.iter().find(is_there);
-    found.map(|panel| panel.id).ok_or_else(|| {
-        refuse(
-            "no panel lies under the curve there",
-            "click the curve where it lies on a panel of its sheet",
-        )
-    })
 }

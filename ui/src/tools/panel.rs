@@ -1,6 +1,6 @@
 //! Tools that work on panels: darts, folds, notches, points on edges, lines inside.
 
-use super::planning::{Planning, places, refuse};
+use super::planning::{Planning, panel_under, places, refuse};
 use super::slots::{Answer, Fields, Slot, SlotKind, SlotTool};
 use super::{Pointer, Reading};
 use crate::canvas::selection::Item;
@@ -256,7 +256,7 @@ pub static INSERT_LINE: SlotTool = SlotTool {
         let Some(Answer::Curve(sheet, curve, at)) = answers.first() else {
             return Err(refuse("nothing was given", "click a curve"));
         };
-        let panel = super::alter::panel_under(reading, (*sheet, *at))?;
+        let panel = panel_under(reading, (*sheet, *at))?;
         let mut planning = Planning::new(reading);
         let line = planning.run(|evaluation| {
             let kind = (LineKind::Internal, None);
