@@ -290,3 +290,38 @@ fn an_edge_of_a_side_is_dragged_with_the_panel_that_was_split() {
     assert!(drafter.point("C").y > 0.31, "{}", drafter.status());
     assert!(drafter.window.query_by_label("No faults").is_some());
 }
+
+#[test]
+fn pleats_are_folded_by_two_clicks_and_numbers() {
+    for (modifiers, key, taken) in [
+        (Modifiers::NONE, Key::Y, 2.0),
+        (Modifiers::SHIFT, Key::Y, 4.0),
+        (Modifiers::SHIFT, Key::J, 4.0),
+    ] {
+        let mut drafter = panel();
+        drafter.chord(modifiers, key);
+        drafter.click(drafter.part("Edge bottom of draft"));
+        drafter.click(drafter.part("Edge top of draft"));
+        drafter.typed("2");
+        drafter.typed("1.5");
+        drafter.key(Key::Escape);
+        assert_eq!(
+            drafter.pattern().panels[0].operations.len(),
+            1,
+            "{}",
+            drafter.status()
+        );
+        for name in ["top", "bottom"] {
+            assert!((length(&drafter, name) - 0.2).abs() < 1e-9, "{name}");
+        }
+        let stage = stage(&drafter);
+        let ends = stage.outline().iter().map(|edge| edge.curve.end().x);
+        let width = ends.clone().fold(f64::MIN, f64::max) - ends.fold(f64::MAX, f64::min);
+        assert!((width - 0.2 - 2.0 * taken * 0.015).abs() < 1e-9, "{width}");
+        drafter.part("Pleat of draft");
+        // Its depth is a number like any other.
+        drafter.enter("depth", "1");
+        let wide = drafter.evaluation();
+        assert!(wide.diagnostics().is_empty());
+    }
+}

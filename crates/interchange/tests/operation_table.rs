@@ -151,6 +151,28 @@ impl Made {
                 };
                 made.operation = made.plan(row, |e, p| plan::add_operation(e, p, kind));
             }
+            "pleat" => {
+                let edges = [0, 1].map(|k| made.panel.edge_named(row.words[k]).unwrap().id);
+                let count: u16 = row.words[2].parse().unwrap();
+                let (kind, pressed) = match row.words[4] {
+                    "left" => (PleatKind::Knife, Side::Left),
+                    "right" => (PleatKind::Knife, Side::Right),
+                    "box" => (PleatKind::Box, Side::Left),
+                    other => panic!("{other}"),
+                };
+                made.operation = made.plan(row, |e, p| {
+                    let (line, lines) = plan::even_cuts(e, p, edges, count)?;
+                    let wish = plan::PleatWish {
+                        line,
+                        lines,
+                        depth: row.metres(3).into(),
+                        kind,
+                        pressed,
+                        held: None,
+                    };
+                    plan::pleat_panel(e, p, wish)
+                });
+            }
             "insert" => made.operation = made.insert(row),
             "fold" => made.fold(row),
             other => panic!("{other}"),
@@ -321,6 +343,20 @@ fn check_made(row: &Row, made: &Made, [before, after]: [&Stage; 2]) -> BTreeMap<
                 }
             }
         }
+        "pleat" => {
+            // Both layers of every fold are equally long, so the pleat closes.
+            let count: u16 = row.words[2].parse().unwrap();
+            let folds = if row.words[4] == "box" { 2 } else { 1 };
+            for (pleat, end) in (0..count).flat_map(|n| [(n, 0), (n, 4)]) {
+                for fold in 0..folds {
+                    let layer = |k: u16| {
+                        now[&made_edge(made.operation, Role::Underlay, 8 * pleat + end + k)]
+                    };
+                    near(layer(2 * fold), layer(2 * fold + 1));
+                    assert!(layer(2 * fold) > row.metres(3) - EXACT, "{}", row.text);
+                }
+            }
+        }
         "insert" => {
             let edge = |k: usize| {
                 let id = Name::Drawn(made.panel.edge_named(row.words[k]).unwrap().id);
@@ -407,5 +443,49 @@ fn every_operation_does_on_every_shipped_panel_what_is_asked() {
     assert!(rows.len() >= 60, "{}", rows.len());
     for row in &rows {
         check(row);
+    }
+}
+
+/// The garment of a draft sewn together, flat.
+fn sewn(draft: &Draft) -> toile_assembly::Sanity {
+    let meshes = toile_assembly::mesh_pieces(draft, 0.02).unwrap();
+    let mut garment = toile_assembly::Garment {
+        stitches: meshes.stitches,
+        ..Default::default()
+    };
+    for mesh in &meshes.pieces {
+        let base = garment.flat.len() as u32;
+        garment.flat.extend(&mesh.points);
+        let triangles = mesh.triangles.iter();
+        let own = triangles.map(|t| t.map(|v| v + base));
+        garment.triangles.extend(own);
+    }
+    toile_assembly::sanity(draft, &garment)
+}
+
+#[test]
+fn pleated_panels_are_sewn_as_their_patterns_are() {
+    // Folds deeper than the edges of the mesh: narrower ones would fall together in it.
+    for words in [
+        "hem waist 2 40 left",
+        "hem waist 1 40 right",
+        "hem waist 2 30 box",
+    ] {
+        let row = Row {
+            text: words,
+            pattern: "gathered-skirt",
+            panel: "front",
+            operation: "pleat",
+            words: words.split(' ').collect(),
+        };
+        let before = sewn(&evaluated(&shipped(row.pattern)).draft().0);
+        let made = Made::of(&row);
+        let evaluation = evaluated(&made.pattern);
+        let errors = evaluation.check().into_iter();
+        let errors: Vec<_> = errors.filter(|d| d.severity == Severity::Error).collect();
+        assert!(errors.is_empty(), "{}: {errors:?}", row.text);
+        let report = sewn(&evaluation.draft().0);
+        let same = report.is_sound() && report.components == before.components;
+        assert!(same, "{}: {report:?}", row.text);
     }
 }

@@ -186,6 +186,11 @@ fn panel_hits(panel: &PanelScene, origin: Vec2, at: Vec2, reach: f64, ranked: &m
     {
         found(4, Item::Operation(panel.id, step), near);
     }
+    for (id, _, line) in &shape.creases {
+        if let Some(near) = nearest(line, there) {
+            found(5, Item::Operation(panel.id, *id), near);
+        }
+    }
     for (id, line) in &shape.made {
         if let Some(near) = nearest(line, there) {
             found(4, Item::Operation(panel.id, *id), near);

@@ -216,6 +216,19 @@ impl Picture<'_> {
         for (id, line) in &shape.internal_lines {
             dashed(line, Item::Line(panel.id, *id));
         }
+        for (id, is_placement, line) in &shape.creases {
+            let item = Item::Operation(panel.id, *id);
+            match is_placement {
+                true => dashed(line, item),
+                false => {
+                    let ink = match self.is_lit(item) {
+                        true => Stroke::new(2.4, self.palette.accent),
+                        false => pencil,
+                    };
+                    self.painter.line(self.line(origin, line), ink);
+                }
+            }
+        }
         for (id, _, line) in &shape.darts {
             dashed(line, Item::Operation(panel.id, *id));
         }

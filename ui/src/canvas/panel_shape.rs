@@ -31,6 +31,8 @@ pub struct PanelShape {
     pub made: Vec<(OperationId, Vec<Vec2>)>,
     /// Legs of darts, with the operation that made them; of a mirrored half too.
     pub darts: Vec<(OperationId, bool, Vec<Vec2>)>,
+    /// Lines that pleats are folded in, or laid to, with the operation that made them.
+    pub creases: Vec<(OperationId, bool, Vec<Vec2>)>,
     /// Lines inside of the half that is drawn.
     pub internal_lines: Vec<(LineId, Vec<Vec2>)>,
     /// Notches: place on the outline and unit direction inward.
@@ -82,6 +84,7 @@ impl PanelShape {
             mirrored: Vec::new(),
             made: Vec::new(),
             darts: Vec::new(),
+            creases: Vec::new(),
             internal_lines: Vec::new(),
             notches: stage
                 .notches
@@ -94,11 +97,17 @@ impl PanelShape {
             shape.edge(edge, polyline(&edge.curve));
         }
         for line in &stage.lines {
-            if let (LineKind::Internal, Name::Drawn(id)) = (line.kind, line.name)
-                && line.half == 0
-            {
-                let points = line.edges.iter().flat_map(|edge| polyline(&edge.curve));
-                shape.internal_lines.push((id, points.collect()));
+            if line.kind != LineKind::Internal || line.half != 0 {
+                continue;
+            }
+            let points = line.edges.iter().flat_map(|edge| polyline(&edge.curve));
+            match line.name {
+                Name::Drawn(id) => shape.internal_lines.push((id, points.collect())),
+                // Where a pleat is folded, and where it is laid to.
+                Name::Made { by, role, .. } => {
+                    let is_placement = role == Role::Placement;
+                    shape.creases.push((by, is_placement, points.collect()));
+                }
             }
         }
         shape

@@ -140,7 +140,9 @@ impl Panel {
         let moves = |kind: &OperationKind| {
             matches!(
                 kind,
-                OperationKind::Pivot { .. } | OperationKind::Spread { .. }
+                OperationKind::Pivot { .. }
+                    | OperationKind::Spread { .. }
+                    | OperationKind::Pleat { .. }
             )
         };
         kinds.any(moves)

@@ -60,7 +60,9 @@ pub use operations::{add_operation, move_operation, remove_operation, set_operat
 pub use paste::{PasteTarget, Pasted, duplicate, insert_pattern, paste};
 pub use remove::{remove_parts, remove_point};
 pub use rename::rename;
-pub use reshape::{PivotWish, SpreadWish, even_cuts, pivot_dart, spread_panel};
+pub use reshape::{
+    PivotWish, PleatWish, SpreadWish, even_cuts, pivot_dart, pleat_panel, spread_panel,
+};
 pub use seam::{SeamSide, SewnEdge, flip_side, remove_seam, sew};
 pub use select::points_of;
 pub use sizes::{

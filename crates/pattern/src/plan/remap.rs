@@ -281,6 +281,21 @@ impl Remap {
                 *line = self.name(*line);
                 *curve = self.id(*curve);
             }
+            OperationKind::Pleat {
+                line,
+                held,
+                pleats,
+                depth,
+                kind: _,
+                pressed: _,
+            } => {
+                *line = self.name(*line);
+                self.mark(held);
+                for pleat in pleats {
+                    pleat.ends.iter_mut().for_each(|end| self.mark(end));
+                }
+                self.number(depth);
+            }
             OperationKind::Insert { sheet } => *sheet = self.id(*sheet),
             OperationKind::Spread {
                 line,

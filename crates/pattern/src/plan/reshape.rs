@@ -7,7 +7,7 @@ use super::operations::add_operation;
 use crate::stage::{MarkValue, is_sewn};
 use crate::{
     Bridge, EdgeId, Edit, EditError, Evaluation, LineName, Mark, Name, Number, OperationId,
-    OperationKind, Panel, PanelId, Pressed, Role, SpreadCut, Turned,
+    OperationKind, Panel, PanelId, PleatKind, PleatLine, Pressed, Role, Side, SpreadCut, Turned,
 };
 
 /// A dart that is to be pivoted.
@@ -156,6 +156,60 @@ pub fn spread_panel(
         },
         cuts: cuts.collect(),
         bridge: wish.bridge,
+    };
+    add_operation(evaluation, panel, kind)
+}
+
+/// A panel that is to be pleated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PleatWish {
+    /// The line it is pleated from and to.
+    pub line: LineName,
+    /// Where each pleat starts and ends.
+    pub lines: Vec<[Mark; 2]>,
+    /// How deep a fold goes under [m].
+    pub depth: Number,
+    /// How it is folded.
+    pub kind: PleatKind,
+    /// The side of its line a knife pleat is pressed to.
+    pub pressed: Side,
+    /// A place that stays where it is; nothing for the start of the fold, else of the line.
+    pub held: Option<Mark>,
+}
+
+/// The edits that pleat a panel; and the operation.
+///
+/// # Errors
+/// The panel is not there or cannot be drawn; there is no line; it cannot be pleated so: the words
+/// say why.
+pub fn pleat_panel(
+    evaluation: &Evaluation,
+    panel: PanelId,
+    wish: PleatWish,
+) -> Result<(Vec<Edit>, OperationId), EditError> {
+    let owner = lookup::panel(evaluation.pattern(), panel)?;
+    if wish.lines.is_empty() {
+        return Err(impossible("there is no pleat", "give one or more"));
+    }
+    let held = wish
+        .held
+        .or_else(|| usual_held(evaluation, owner, wish.line));
+    let held = held.ok_or_else(|| {
+        impossible(
+            format!("panel {:?} has no such line", owner.name),
+            "pleat it along its outline",
+        )
+    })?;
+    let pleats = (0_u16..).zip(wish.lines);
+    let kind = OperationKind::Pleat {
+        line: wish.line,
+        held,
+        pleats: pleats
+            .map(|(number, ends)| PleatLine { number, ends })
+            .collect(),
+        depth: wish.depth,
+        kind: wish.kind,
+        pressed: wish.pressed,
     };
     add_operation(evaluation, panel, kind)
 }

@@ -11,6 +11,7 @@ mod notch;
 mod numbers;
 mod on_panel;
 mod operations;
+mod pleat;
 mod remove;
 mod rename;
 mod reshape;

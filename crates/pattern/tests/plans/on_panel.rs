@@ -108,7 +108,12 @@ fn a_line_drawn_after_a_pivot_is_inserted_there_in_every_size() {
             assert!(stage.lines.iter().all(|line| line.name != name));
         }
         let piece = &evaluation.draft().0.pieces[0];
-        assert!(piece.internal_lines.iter().any(|line| line.id == inserted));
+        assert!(
+            piece
+                .internal_lines
+                .iter()
+                .any(|line| line.name == Name::Drawn(inserted))
+        );
     }
 }
 

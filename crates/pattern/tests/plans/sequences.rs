@@ -126,7 +126,7 @@ pub fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditErr
         apex,
         pressed: toile_pattern::Pressed::default(),
     };
-    match which % 46 {
+    match which % 48 {
         0 => add_sheet(evaluation, None, [*x, *y]).map(|done| done.0),
         1 | 2 => {
             let rule = rules[usize::from(n) % rules.len()].clone();
@@ -298,6 +298,20 @@ pub fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditErr
         35 => {
             let curves = [c.curve(0), c.curve(1)];
             mark_crossings(evaluation, c.sheet(), curves).map(|done| done.0)
+        }
+        46 => {
+            let (line, lines) = even_cuts(evaluation, panel, [c.edge(2), c.edge(0)], n % 3 + 1)?;
+            let kinds = [PleatKind::Knife, PleatKind::Box, PleatKind::Inverted];
+            let sides = [Side::Left, Side::Right];
+            let wish = PleatWish {
+                line,
+                lines,
+                depth: (z * 0.05).into(),
+                kind: kinds[usize::from(n) % 3],
+                pressed: sides[usize::from(n) % 2],
+                held: None,
+            };
+            pleat_panel(evaluation, panel, wish).map(|done| done.0)
         }
         41 => open_sheet(evaluation, panel).map(|done| done.0),
         42 | 43 => {
