@@ -309,7 +309,9 @@ impl ToileApp {
 
     fn corner_choice(&mut self, ui: &mut Ui, panel: PanelId, id: toile_pattern::EdgeId) {
         let pattern = self.base.pattern().clone();
-        let Some(edge) = pattern.panel(panel).and_then(|panel| panel.edge(id)) else {
+        // Of a side the edges are those of the panel that was split.
+        let owner = pattern.owner_of(panel, id.into());
+        let Some((panel, edge)) = owner.and_then(|owner| Some((owner.id, owner.edge(id)?))) else {
             return;
         };
         let choices = [
@@ -347,8 +349,9 @@ impl ToileApp {
 
     fn notch_choice(&mut self, ui: &mut Ui, panel: PanelId, id: toile_pattern::NotchId) {
         let pattern = self.base.pattern().clone();
-        let notches = pattern.panel(panel).map(|panel| &panel.notches);
-        let Some(notch) = notches.and_then(|all| all.iter().find(|notch| notch.id == id)) else {
+        let owner = pattern.owner_of(panel, id.into());
+        let Some((panel, notch)) = owner.and_then(|owner| Some((owner.id, owner.notch(id)?)))
+        else {
             return;
         };
         let kinds = [

@@ -120,7 +120,8 @@ impl ToileApp {
     /// Numbers of the curve an edge follows.
     pub(crate) fn curve_numbers(&mut self, ui: &mut Ui, (panel, edge): (PanelId, EdgeId)) {
         let pattern = self.base.pattern();
-        let curve = pattern.panel(panel).and_then(|panel| panel.edge(edge));
+        let owner = pattern.owner_of(panel, edge.into());
+        let curve = owner.and_then(|owner| owner.edge(edge));
         let Some(curve) = curve.map(|edge| edge.curve) else {
             return;
         };

@@ -106,3 +106,222 @@ fn a_panel_is_spread_by_two_clicks_and_numbers() {
         .sum();
     assert!((around - (1.0 + 3.0 * 0.02)).abs() < 1e-6, "{around}");
 }
+
+/// A panel that was split from the middle of one side to the middle of the other.
+fn halved() -> Drafter {
+    let mut drafter = panel();
+    drafter.key(Key::K);
+    drafter.click(drafter.part("Edge left of draft"));
+    drafter.click(drafter.part("Edge right of draft"));
+    drafter.key(Key::Escape);
+    drafter
+}
+
+#[test]
+fn a_panel_is_split_by_two_clicks_and_its_sides_are_panels() {
+    let mut drafter = panel();
+    let before = drafter.pattern();
+    drafter.actions = 0;
+    drafter.key(Key::K);
+    drafter.click(drafter.part("Edge left of draft"));
+    drafter.click(drafter.part("Edge right of draft"));
+    assert_eq!(drafter.actions, 3);
+    let pattern = drafter.pattern();
+    assert_eq!(pattern.panels.len(), 3, "{}", drafter.status());
+    assert!(drafter.window.query_by_label("No faults").is_some());
+    // The sides are drawn in place of the panel, with the cut on both.
+    for side in ["draft left", "draft right"] {
+        drafter.part(&format!("Panel {side}"));
+        drafter.part(&format!("Split of {side}"));
+    }
+    assert!(drafter.window.query_by_label("Panel draft").is_none());
+    let evaluation = drafter.evaluation();
+    let height = |name: &str| -> f64 {
+        let panel = pattern.panel_named(name).unwrap();
+        let stage = evaluation.last_stage(panel).unwrap();
+        let ends = stage.outline().iter().map(|edge| edge.curve.end().y);
+        ends.clone().fold(f64::MIN, f64::max) - ends.fold(f64::MAX, f64::min)
+    };
+    for side in ["draft left", "draft right"] {
+        assert!((height(side) - 0.15).abs() < 1e-9, "{side}");
+    }
+    drafter.chord(Modifiers::COMMAND, Key::Z);
+    assert!(drafter.pattern().says_the_same(&before));
+}
+
+#[test]
+fn a_panel_is_split_along_a_curve() {
+    let mut drafter = panel();
+    drafter.key(Key::C);
+    for (x, y) in [(-0.02, 0.1), (0.1, 0.2), (0.22, 0.1)] {
+        drafter.click(drafter.place(x, y));
+    }
+    drafter.key(Key::Enter);
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.chord(Modifiers::SHIFT, Key::K);
+    drafter.click(drafter.place(0.1, 0.2));
+    assert_eq!(drafter.pattern().panels.len(), 3, "{}", drafter.status());
+    assert!(drafter.window.query_by_label("No faults").is_some());
+}
+
+#[test]
+fn sides_of_a_split_are_worked_on_as_panels() {
+    let mut drafter = halved();
+    let side = |drafter: &Drafter| {
+        let pattern = drafter.pattern();
+        let found = pattern.panel_named("yoke");
+        found.unwrap().clone()
+    };
+    drafter.click(drafter.part("Panel draft left"));
+    drafter.enter("Name", "yoke");
+    drafter.enter("grain", "45deg");
+    drafter.enter("seam allowance", "2");
+    let evaluation = drafter.evaluation();
+    let stage = evaluation.last_stage(&side(&drafter)).unwrap();
+    assert!((stage.grain.to_degrees() - 45.0).abs() < 1e-9);
+    // Its own width lies outside all edges that have none of their own.
+    for edge in stage.outline() {
+        assert!((edge.allowance - 0.02).abs() < 1e-12, "{:?}", edge.name);
+    }
+    // An edge of the side is that of the panel that was split.
+    drafter.key(Key::N);
+    drafter.click(drafter.part("Edge top of yoke"));
+    drafter.key(Key::Escape);
+    assert_eq!(side(&drafter).notches.len(), 1, "{}", drafter.status());
+    drafter.part("Notch 1 of yoke");
+    drafter.click(drafter.part("Edge right of yoke"));
+    drafter.enter("seam allowance", "3");
+    let evaluation = drafter.evaluation();
+    let stage = evaluation.last_stage(&side(&drafter)).unwrap();
+    let widest = stage.outline().iter().map(|edge| edge.allowance);
+    assert!((widest.fold(0.0, f64::max) - 0.03).abs() < 1e-12);
+    // A seam from side to side, a dart, a point on an edge: of the panel that was split.
+    drafter.key(Key::S);
+    drafter.click(drafter.part("Edge top of yoke"));
+    drafter.click(drafter.part("Edge bottom of draft right"));
+    drafter.key(Key::Escape);
+    assert_eq!(drafter.pattern().seams.len(), 2, "{}", drafter.status());
+    drafter.key(Key::D);
+    drafter.click(drafter.part("Edge bottom of draft right"));
+    drafter.typed("2");
+    drafter.typed("5");
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.part("Dart of draft right");
+    drafter.key(Key::B);
+    drafter.click(drafter.part("Edge top of yoke"));
+    drafter.key(Key::Escape);
+    assert_eq!(drafter.pattern().panels[0].edges().count(), 5);
+    // The stretch of an edge that is left on a side is laid on the fold.
+    drafter.chord(Modifiers::SHIFT, Key::F);
+    drafter.click(drafter.part("Edge left of yoke"));
+    drafter.key(Key::Escape);
+    assert_eq!(side(&drafter).operations.len(), 1, "{}", drafter.status());
+    assert!(drafter.evaluation().diagnostics().is_empty());
+    // A line inside is drawn on the side as it is finished.
+    drafter.key(Key::I);
+    drafter.click(drafter.part("Panel yoke"));
+    drafter.click(drafter.place(0.05, 0.2));
+    drafter.click(drafter.place(0.1, 0.25));
+    drafter.key(Key::Enter);
+    drafter.key(Key::Escape);
+    assert_eq!(side(&drafter).lines.len(), 1, "{}", drafter.status());
+    assert!(drafter.evaluation().diagnostics().is_empty());
+    drafter.part("Line line of yoke");
+}
+
+#[test]
+fn a_line_is_drawn_on_a_panel_after_a_pivot_and_inserted() {
+    let mut drafter = panel();
+    drafter.key(Key::D);
+    drafter.click(drafter.part("Edge top of draft"));
+    drafter.typed("2");
+    drafter.typed("15");
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.chord(Modifiers::SHIFT, Key::E);
+    drafter.click(drafter.part("Dart of draft"));
+    drafter.click(drafter.part("Edge right of draft"));
+    drafter.key(Key::Enter);
+    drafter.key(Key::Escape);
+    drafter.chord(Modifiers::SHIFT, Key::I);
+    drafter.click(drafter.part("Panel draft"));
+    drafter.key(Key::Escape);
+    let pattern = drafter.pattern();
+    assert_eq!(pattern.sheets.len(), 2, "{}", drafter.status());
+    let on = pattern.sheets[1].on.unwrap();
+    assert_eq!(on.1, Some(pattern.panels[0].operations[1].id));
+    // Points and lines are drawn there with the usual tools, and snap to the panel's edges.
+    drafter.key(Key::L);
+    drafter.click(drafter.part("Edge left of draft"));
+    drafter.click(drafter.place(0.06, 0.1));
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    let pattern = drafter.pattern();
+    let [curve] = &pattern.sheets[1].curves[..] else {
+        panic!("{}", drafter.status());
+    };
+    let start = pattern.point(curve.ends[0]).unwrap().1;
+    let is_mark = matches!(start.rule, toile_pattern::PointRule::Mark { .. });
+    assert!(is_mark, "{:?}", start.rule);
+    drafter.key(Key::J);
+    let words = format!("Curve {} of {}", curve.name, pattern.sheets[1].name);
+    drafter.click(drafter.part(&words));
+    let panel = drafter.pattern().panels[0].clone();
+    assert_eq!(panel.lines.len(), 2, "{}", drafter.status());
+    assert_eq!(panel.operations.len(), 3);
+    assert!(drafter.window.query_by_label("No faults").is_some());
+}
+
+#[test]
+fn an_edge_of_a_side_is_dragged_with_the_panel_that_was_split() {
+    let mut drafter = halved();
+    let from = drafter.part("Edge top of draft left");
+    let to = from - egui::vec2(0.0, 40.0);
+    drafter.window.hover_at(from);
+    drafter.window.run();
+    drafter.window.drag_at(from);
+    drafter.window.run();
+    drafter.window.hover_at(to);
+    drafter.window.run();
+    drafter.window.drop_at(to);
+    drafter.window.run();
+    assert!(drafter.point("C").y > 0.31, "{}", drafter.status());
+    assert!(drafter.window.query_by_label("No faults").is_some());
+}
+
+#[test]
+fn pleats_are_folded_by_two_clicks_and_numbers() {
+    for (modifiers, key, taken) in [
+        (Modifiers::NONE, Key::Y, 2.0),
+        (Modifiers::SHIFT, Key::Y, 4.0),
+        (Modifiers::SHIFT, Key::J, 4.0),
+    ] {
+        let mut drafter = panel();
+        drafter.chord(modifiers, key);
+        drafter.click(drafter.part("Edge bottom of draft"));
+        drafter.click(drafter.part("Edge top of draft"));
+        drafter.typed("2");
+        drafter.typed("1.5");
+        drafter.key(Key::Escape);
+        assert_eq!(
+            drafter.pattern().panels[0].operations.len(),
+            1,
+            "{}",
+            drafter.status()
+        );
+        for name in ["top", "bottom"] {
+            assert!((length(&drafter, name) - 0.2).abs() < 1e-9, "{name}");
+        }
+        let stage = stage(&drafter);
+        let ends = stage.outline().iter().map(|edge| edge.curve.end().x);
+        let width = ends.clone().fold(f64::MIN, f64::max) - ends.fold(f64::MAX, f64::min);
+        assert!((width - 0.2 - 2.0 * taken * 0.015).abs() < 1e-9, "{width}");
+        drafter.part("Pleat of draft");
+        // Its depth is a number like any other.
+        drafter.enter("depth", "1");
+        let wide = drafter.evaluation();
+        assert!(wide.diagnostics().is_empty());
+    }
+}

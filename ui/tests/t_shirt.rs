@@ -225,14 +225,12 @@ impl Drafter {
         self.press("Variables");
         for variable in variables {
             self.enter("New variable", variable);
-        }
-        self.key(Key::F8);
-        for variable in variables {
             let name = variable.split(" =").next().unwrap();
             let pattern = self.pattern();
             let found = pattern.variables.iter().find(|found| found.name == name);
             assert!(found.is_some(), "{variable}: {}", self.status());
         }
+        self.key(Key::F8);
     }
 
     fn draft(&mut self, piece: &Piece) {
@@ -303,9 +301,20 @@ impl Drafter {
             let mut edges = panel.edges();
             let found = edges
                 .find(|found| found.ends == [id(k), id(next)] || found.ends == [id(next), id(k)]);
-            let name = found.unwrap().name.clone();
-            self.click(self.part(&format!("Edge {name} of {}", piece.name)));
+            // Not in its middle, where a handle may lie.
+            let curve = self
+                .evaluation()
+                .curve(found.unwrap().curve)
+                .unwrap()
+                .clone();
+            let place = curve.at_length(0.22 * curve.length()).unwrap();
+            let at = curve.point(place);
+            self.click(self.place(at.x, at.y));
             self.enter("Name", edge);
+            let pattern = self.pattern();
+            let panel = pattern.panels.last().unwrap();
+            let named = panel.edges().any(|found| found.name == *edge);
+            assert!(named, "{edge}: {}", self.status());
         }
     }
 }

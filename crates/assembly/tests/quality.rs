@@ -112,7 +112,7 @@ fn internal_lines_are_edges_of_the_mesh() {
     let outline = polygon(&[[0.0, 0.0], [0.3, 0.0], [0.3, 0.3], [0.0, 0.3]]);
     let mut cloth = piece(0, "lined", outline, Worn::Automatic);
     cloth.internal_lines.push(PieceLine {
-        id: LineId(0),
+        name: toile_pattern::Name::Drawn(LineId(0)),
         curves: vec![Curve::Line {
             start: [0.05, 0.1].into(),
             end: [0.25, 0.2].into(),

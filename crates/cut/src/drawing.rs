@@ -5,7 +5,7 @@ use crate::label::{SMALLEST, Spot, roomiest_spot};
 use crate::piece::{CutPiece, PieceRing, PieceSegment};
 use std::f64::consts::FRAC_PI_2;
 use toile_geometry::{Polygon, Vec2};
-use toile_pattern::{CornerName, LineId, NotchId};
+use toile_pattern::{CornerName, LineName, NotchId};
 
 /// What a line is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -32,7 +32,7 @@ pub enum StrokeName {
     /// A closed line, each segment by name.
     Ring(Vec<PieceSegment>),
     /// A line of the panel.
-    Line(LineId),
+    Line(LineName),
     /// A notch.
     Notch(NotchId),
     /// A corner a dart made, and the half it is on.
@@ -111,7 +111,7 @@ impl CutPiece {
         rings(StrokeKind::Cut, &self.cut);
         rings(StrokeKind::Sew, &self.sew);
         for line in &self.inside {
-            let name = StrokeName::Line(line.id);
+            let name = StrokeName::Line(line.name);
             draw(StrokeKind::Inside, name, placed(&line.points), false);
         }
         for notch in &self.notches {

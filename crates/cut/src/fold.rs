@@ -121,7 +121,7 @@ impl CutPiece {
             half.cut_line(&line.points)
                 .into_iter()
                 .map(|points| InsideLine {
-                    id: line.id,
+                    name: line.name,
                     points,
                 })
         });

@@ -8,7 +8,7 @@ use crate::ring::FLATNESS;
 use crate::seams::{NamedSeam, Plane, seam_of};
 use crate::{CutError, CutRing, EdgeIndex, Finding, SeamEdge, SegmentKind};
 use toile_geometry::{Bounds2, Polygon, Vec2};
-use toile_pattern::{CornerName, Draft, EdgeOrigin, LineId, Name, Pattern, Piece, PieceId, Role};
+use toile_pattern::{CornerName, Draft, EdgeOrigin, LineName, Name, Pattern, Piece, PieceId, Role};
 
 /// What a segment of a cut piece's line is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -37,8 +37,8 @@ pub struct PieceRing {
 /// A line drawn inside a cut piece.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InsideLine {
-    /// The line of the panel.
-    pub id: LineId,
+    /// The line of the panel, or what an operation made.
+    pub name: LineName,
     /// Its corners \[m\].
     pub points: Vec<Vec2>,
 }
@@ -337,7 +337,7 @@ fn inside_lines(piece: &Piece, plane: &Plane) -> Vec<InsideLine> {
             points.extend(&part[usize::from(!points.is_empty()).min(part.len())..]);
         }
         InsideLine {
-            id: line.id,
+            name: line.name,
             points,
         }
     };

@@ -151,6 +151,29 @@ impl Made {
                 };
                 made.operation = made.plan(row, |e, p| plan::add_operation(e, p, kind));
             }
+            "pleat" => {
+                let edges = [0, 1].map(|k| made.panel.edge_named(row.words[k]).unwrap().id);
+                let count: u16 = row.words[2].parse().unwrap();
+                let (kind, pressed) = match row.words[4] {
+                    "left" => (PleatKind::Knife, Side::Left),
+                    "right" => (PleatKind::Knife, Side::Right),
+                    "box" => (PleatKind::Box, Side::Left),
+                    other => panic!("{other}"),
+                };
+                made.operation = made.plan(row, |e, p| {
+                    let (line, lines) = plan::even_cuts(e, p, edges, count)?;
+                    let wish = plan::PleatWish {
+                        line,
+                        lines,
+                        depth: row.metres(3).into(),
+                        kind,
+                        pressed,
+                        held: None,
+                    };
+                    plan::pleat_panel(e, p, wish)
+                });
+            }
+            "insert" => made.operation = made.insert(row),
             "fold" => made.fold(row),
             other => panic!("{other}"),
         }
@@ -193,8 +216,7 @@ impl Made {
         let id = self.panel.edge_named(edge).unwrap().id;
         let path = evaluated(&self.pattern).edge(id).unwrap().clone();
         let at = path.point(path.at_length(path.length() * share).unwrap());
-        let near = plan::nearest_mark(&evaluated(&self.pattern), self.panel.id, at).unwrap();
-        let owner = self.panel.edge(near.edge).unwrap().clone();
+        let owner = self.panel.edge(id).unwrap().clone();
         let sheet = self.panel.sheet().unwrap();
         let curve = evaluated(&self.pattern).curve(owner.curve).unwrap().clone();
         let share = curve.nearest(at).unwrap().along / curve.length();
@@ -205,6 +227,27 @@ impl Made {
         let planned = plan::add_point(&evaluated(&self.pattern), sheet, None, rule).unwrap();
         self.pattern.apply(&planned.0).unwrap();
         planned.1
+    }
+
+    /// A line from a place of the finished panel to another, drawn on it.
+    fn insert(&mut self, row: &Row) -> OperationId {
+        let sheet = self.plan(row, plan::open_sheet);
+        let ends = [0, 2].map(|k| {
+            let line = self.line();
+            let at = self.mark(row.words[k], row.number(k + 1));
+            let rule = PointRule::Mark { line, at };
+            self.plan(row, |e, _| plan::add_point(e, sheet, None, rule))
+        });
+        let shape = plan::CurveShape::Rule(CurveRule::Line);
+        let curve = self.plan(row, |e, _| plan::add_curve(e, (sheet, None), ends, shape));
+        let kind = (LineKind::Internal, None);
+        let chain = plan::Chain::Curves(&[curve]);
+        self.plan(row, |e, p| plan::add_line(e, p, kind, chain));
+        let mut steps = self.panel.operations.iter();
+        steps
+            .find(|step| step.kind.sheet() == Some(sheet))
+            .unwrap()
+            .id
     }
 
     /// The panel's own fold is put on it anew, else another one.
@@ -300,6 +343,33 @@ fn check_made(row: &Row, made: &Made, [before, after]: [&Stage; 2]) -> BTreeMap<
                 }
             }
         }
+        "pleat" => {
+            // Both layers of every fold are equally long, so the pleat closes.
+            let count: u16 = row.words[2].parse().unwrap();
+            let folds = if row.words[4] == "box" { 2 } else { 1 };
+            for (pleat, end) in (0..count).flat_map(|n| [(n, 0), (n, 4)]) {
+                for fold in 0..folds {
+                    let layer = |k: u16| {
+                        now[&made_edge(made.operation, Role::Underlay, 8 * pleat + end + k)]
+                    };
+                    near(layer(2 * fold), layer(2 * fold + 1));
+                    assert!(layer(2 * fold) > row.metres(3) - EXACT, "{}", row.text);
+                }
+            }
+        }
+        "insert" => {
+            let edge = |k: usize| {
+                let id = Name::Drawn(made.panel.edge_named(row.words[k]).unwrap().id);
+                let own = after.outline().iter().filter(|edge| edge.name == id);
+                let curves = own.map(|edge| edge.curve).collect();
+                let path = toile_geometry::Path::new(curves);
+                path.point(path.at_length(path.length() * row.number(k + 1)).unwrap())
+            };
+            let line = made.panel.lines.last().unwrap();
+            assert_eq!(line.by, Some(made.operation), "{}", row.text);
+            let length = now[&Name::Drawn(line.edges[0].id)];
+            near(length, (edge(2) - edge(0)).norm());
+        }
         "diamond" => {
             let width = found(after, made.operation).mouth;
             near((width[1] - width[0]).norm(), row.metres(4));
@@ -373,5 +443,49 @@ fn every_operation_does_on_every_shipped_panel_what_is_asked() {
     assert!(rows.len() >= 60, "{}", rows.len());
     for row in &rows {
         check(row);
+    }
+}
+
+/// The garment of a draft sewn together, flat.
+fn sewn(draft: &Draft) -> toile_assembly::Sanity {
+    let meshes = toile_assembly::mesh_pieces(draft, 0.02).unwrap();
+    let mut garment = toile_assembly::Garment {
+        stitches: meshes.stitches,
+        ..Default::default()
+    };
+    for mesh in &meshes.pieces {
+        let base = garment.flat.len() as u32;
+        garment.flat.extend(&mesh.points);
+        let triangles = mesh.triangles.iter();
+        let own = triangles.map(|t| t.map(|v| v + base));
+        garment.triangles.extend(own);
+    }
+    toile_assembly::sanity(draft, &garment)
+}
+
+#[test]
+fn pleated_panels_are_sewn_as_their_patterns_are() {
+    // Folds deeper than the edges of the mesh: narrower ones would fall together in it.
+    for words in [
+        "hem waist 2 40 left",
+        "hem waist 1 40 right",
+        "hem waist 2 30 box",
+    ] {
+        let row = Row {
+            text: words,
+            pattern: "gathered-skirt",
+            panel: "front",
+            operation: "pleat",
+            words: words.split(' ').collect(),
+        };
+        let before = sewn(&evaluated(&shipped(row.pattern)).draft().0);
+        let made = Made::of(&row);
+        let evaluation = evaluated(&made.pattern);
+        let errors = evaluation.check().into_iter();
+        let errors: Vec<_> = errors.filter(|d| d.severity == Severity::Error).collect();
+        assert!(errors.is_empty(), "{}: {errors:?}", row.text);
+        let report = sewn(&evaluation.draft().0);
+        let same = report.is_sound() && report.components == before.components;
+        assert!(same, "{}: {report:?}", row.text);
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::evaluate::{Evaluation, Wearer};
 use crate::{
-    Code, Diagnostic, Draft, DraftSeam, DraftSpan, Fabric, LineKind, Name, Pattern, Piece,
-    PieceEdge, PieceLine, Place, SeamOrigin,
+    Code, Diagnostic, Draft, DraftSeam, DraftSpan, Fabric, Name, OperationKind, Panel, Pattern,
+    Piece, PieceEdge, PieceLine, Place, SeamOrigin, Severity,
 };
 use toile_geometry::{Rings, Vec2};
 
@@ -39,7 +39,28 @@ impl Evaluation {
         for (seam, ease) in drafting.draft.seams.iter().zip(&drafting.eases) {
             check_seam(&drafting.draft, seam, *ease, &mut diagnostics);
         }
+        for panel in &self.pattern().panels {
+            note_pleats(panel, &mut diagnostics);
+        }
         diagnostics
+    }
+}
+
+/// Says that pleats are not pressed when they are draped.
+fn note_pleats(panel: &Panel, diagnostics: &mut Vec<Diagnostic>) {
+    for operation in &panel.operations {
+        if matches!(operation.kind, OperationKind::Pleat { .. }) {
+            diagnostics.push(Diagnostic::new(
+                Severity::Note,
+                Code::NotPressed,
+                Place::Operation(panel.id, operation.id),
+                format!(
+                    "panel {:?}, pleat {:?}: draped with its underlay loose, not folded and pressed",
+                    panel.name, operation.name
+                ),
+                "what is cut and sewn is right; in the drape the cloth of the pleat hangs open",
+            ));
+        }
     }
 }
 
@@ -382,7 +403,7 @@ impl PieceCheck<'_> {
     }
 
     fn check_hole(&mut self, k: usize, hole: &[PieceEdge], outline: f64, outer: &Rings) {
-        let place = self.hole_place(k);
+        let place = self.hole_place(hole);
         let area = swept(hole);
         if hole.is_empty() || area.abs() < 1e-10 {
             let words = format!("hole {} encloses nothing", k + 1);
@@ -403,24 +424,28 @@ impl PieceCheck<'_> {
     }
 
     /// The place of a hole of the piece.
-    fn hole_place(&self, k: usize) -> Place {
+    fn hole_place(&self, hole: &[PieceEdge]) -> Place {
         let id = self.piece.id.panel;
-        let lines = self
-            .pattern
-            .and_then(|p| p.panel(id))
-            .into_iter()
-            .flat_map(|p| &p.lines);
-        let mut holes = lines.filter(|line| line.kind == LineKind::Hole);
-        holes
-            .nth(k)
-            .map_or(Place::Panel(id), |line| Place::Line(id, line.id))
+        let edge = match hole.first().map(|edge| edge.origin.name) {
+            Some(Name::Drawn(edge)) => edge,
+            _ => return Place::Panel(id),
+        };
+        let owner = self.pattern.and_then(|p| p.owner_of(id, edge.into()));
+        let line = owner.and_then(|owner| Some((owner.id, owner.line_of(edge)?.id)));
+        line.map_or(Place::Panel(id), |(of, line)| Place::Line(of, line))
     }
 
     fn check_line(&mut self, line: &PieceLine, segments: &Rings) {
-        let place = Place::Line(self.piece.id.panel, line.id);
-        let panel = self.pattern.and_then(|p| p.panel(self.piece.id.panel));
-        let found = panel.and_then(|p| p.line(line.id));
-        let name = found.map_or_else(|| line.id.to_string(), |l| format!("{:?}", l.name));
+        let panel = self.piece.id.panel;
+        let (place, name) = match line.name {
+            Name::Drawn(id) => {
+                let owner = self.pattern.and_then(|p| p.owner_of(panel, id.into()));
+                let found = owner.and_then(|owner| owner.line(id));
+                let name = found.map_or_else(|| id.to_string(), |l| format!("{:?}", l.name));
+                (Place::Line(owner.map_or(panel, |owner| owner.id), id), name)
+            }
+            Name::Made { by, .. } => (Place::Operation(panel, by), by.to_string()),
+        };
         if !line.curves.iter().all(|curve| curve.is_finite()) {
             let words = format!("internal line {name} has a number that is not finite");
             self.error(Code::NotFinite, place, &words, "give finite numbers");

@@ -98,6 +98,8 @@ pub enum Code {
     UnknownField,
     /// The outline is too intricate to be checked within the budget.
     Unchecked,
+    /// A pleat is draped without being folded and pressed.
+    NotPressed,
 }
 
 /// Where it is.

@@ -2,7 +2,7 @@
 
 use crate::stage::StageDart;
 use crate::{
-    Corner, EdgeName, FabricId, LineId, Name, NotchId, NotchKind, OperationId, PanelId, Role,
+    Corner, EdgeName, FabricId, LineName, Name, NotchId, NotchKind, OperationId, PanelId, Role,
     SeamId,
 };
 use serde::{Deserialize, Serialize};
@@ -113,8 +113,9 @@ pub struct PieceEdge {
 /// A line inside a piece.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PieceLine {
-    /// Which internal line of the panel it is.
-    pub id: LineId,
+    /// Which internal line of the panel it is, or what an operation made: where a pleat is folded
+    /// and laid to.
+    pub name: LineName,
     /// Joined curves [m].
     pub curves: Vec<Curve>,
 }

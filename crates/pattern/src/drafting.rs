@@ -236,33 +236,21 @@ impl Drafter<'_> {
             let lineage = pattern.lineage(panel).into_iter().rev();
             for operation in lineage.flat_map(|own| &own.operations) {
                 for half in 0..halves {
-                    let leg = |leg: u16, reverse: bool| -> Option<Vec<DraftSpan>> {
-                        let name = Name::Made {
-                            by: operation.id,
-                            role: Role::Leg,
-                            index: leg,
-                        };
+                    let walked = |(role, index, reverse): Walked| -> Option<Vec<DraftSpan>> {
+                        let by = operation.id;
+                        let name = Name::Made { by, role, index };
                         let found = tracks.get(&EdgeOrigin { name, half })?.iter();
                         let (from, to) = if reverse { (1.0, 0.0) } else { (0.0, 1.0) };
                         Some(spans_on(*piece, found, from, to))
                     };
-                    let sides = match operation.kind {
-                        OperationKind::Dart { .. } | OperationKind::Pivot { .. } => {
-                            [vec![leg(0, false)], vec![leg(1, true)]]
-                        }
-                        OperationKind::Diamond { .. } => [
-                            vec![leg(0, false), leg(1, false)],
-                            vec![leg(3, true), leg(2, true)],
-                        ],
-                        OperationKind::Fold { .. }
-                        | OperationKind::Spread { .. }
-                        | OperationKind::Split { .. } => continue,
-                    };
-                    let sides = sides.map(|legs| {
-                        let legs: Option<Vec<_>> = legs.into_iter().collect();
-                        legs.map(|legs| legs.concat())
-                    });
-                    if let [Some(first), Some(second)] = sides {
+                    if let Some(sides) = closing(&operation.kind) {
+                        let sides = sides.map(|legs| {
+                            let legs: Option<Vec<_>> = legs.into_iter().map(walked).collect();
+                            legs.map(|legs| legs.concat())
+                        });
+                        let [Some(first), Some(second)] = sides else {
+                            continue;
+                        };
                         let owner = &self.drafting.draft.pieces[*piece].name;
                         seams.push(DraftSeam {
                             id: SeamOrigin::Dart {
@@ -333,6 +321,28 @@ impl Drafter<'_> {
     }
 }
 
+/// A made edge as a closing walks it: its role and index, and whether against its direction.
+type Walked = (Role, u16, bool);
+
+/// Both sides of the seam by which an operation closes what it made.
+fn closing(kind: &OperationKind) -> Option<[Vec<Walked>; 2]> {
+    let leg = |index: u16, reverse: bool| (Role::Leg, index, reverse);
+    match kind {
+        OperationKind::Dart { .. } | OperationKind::Pivot { .. } => {
+            Some([vec![leg(0, false)], vec![leg(1, true)]])
+        }
+        OperationKind::Diamond { .. } => Some([
+            vec![leg(0, false), leg(1, false)],
+            vec![leg(3, true), leg(2, true)],
+        ]),
+        OperationKind::Fold { .. }
+        | OperationKind::Spread { .. }
+        | OperationKind::Split { .. }
+        | OperationKind::Pleat { .. }
+        | OperationKind::Insert { .. } => None,
+    }
+}
+
 /// How many folds a panel is unfolded in.
 fn folds(panel: &Panel) -> u32 {
     let folds = panel
@@ -400,12 +410,9 @@ fn piece(id: PieceId, name: String, stage: &Stage, (fabric, worn): (usize, Worn)
         outline: edges(stage.outline()),
         holes: stage.holes().map(edges).collect(),
         internal_lines: inside
-            .filter_map(|line| match line.name {
-                Name::Drawn(id) => Some(PieceLine {
-                    id,
-                    curves: line.edges.iter().map(|edge| edge.curve).collect(),
-                }),
-                Name::Made { .. } => None,
+            .map(|line| PieceLine {
+                name: line.name,
+                curves: line.edges.iter().map(|edge| edge.curve).collect(),
             })
             .filter(|line| !line.curves.is_empty())
             .collect(),

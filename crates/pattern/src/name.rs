@@ -64,16 +64,27 @@ pub enum Role {
     /// Where a panel was split: corners 0 and 1 at the start and the end of the cut, which is edge
     /// 0 of one side and, the other way, edge 1 of the other.
     Split,
+    /// The underlay of a pleat where its line starts or ends: of pleat n edges 8n to 8n + 3 from
+    /// one part to the other where it starts, 8n + 4 to 8n + 7 where it ends, and likewise corners
+    /// 10n to 10n + 4 and 10n + 5 to 10n + 9.
+    Underlay,
+    /// A line a pleat is folded in: of pleat n lines 5n to 5n + 4 from one part to the other.
+    Crease,
+    /// A line that a fold of a pleat is laid to, numbered as creases are.
+    Placement,
 }
 
 impl Role {
-    const WORDS: [(Self, &'static str); 6] = [
+    const WORDS: [(Self, &'static str); 9] = [
         (Self::Leg, "leg"),
         (Self::Apex, "apex"),
         (Self::Mouth, "mouth"),
         (Self::Diamond, "diamond"),
         (Self::Opening, "opening"),
         (Self::Split, "split"),
+        (Self::Underlay, "underlay"),
+        (Self::Crease, "crease"),
+        (Self::Placement, "placement"),
     ];
 
     /// What it is called.

@@ -130,9 +130,10 @@ impl ToileApp {
     fn length_words(&self, item: Item) -> Option<String> {
         let part = match item {
             Item::Edge(panel, edge) => {
-                let ends = self.base.pattern().panel(panel)?.edge(edge)?.ends;
+                let owner = self.base.pattern().owner_of(panel, edge.into())?;
+                let ends = owner.edge(edge)?.ends;
                 PartReference::Stretch {
-                    panel,
+                    panel: owner.id,
                     ends: ends.map(Name::Drawn),
                 }
             }

@@ -28,6 +28,7 @@ const TOOL_BUTTONS: &[&[&str]] = &[
         "Dart",
         "Pivot dart",
         "Spread",
+        "Split",
         "Fold",
         "Notch",
         "Inner line",

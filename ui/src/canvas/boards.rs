@@ -25,15 +25,16 @@ impl Boards {
     /// Lays the sheets of a pattern that was just opened.
     pub fn open(&mut self, pattern: &Pattern, scene: &Scene) {
         self.moved.clear();
-        let first = pattern.sheets.first().map(|sheet| sheet.on_table);
-        let at_one_place = pattern
-            .sheets
-            .iter()
-            .all(|sheet| Some(sheet.on_table) == first);
-        if pattern.sheets.len() > 1 && at_one_place {
+        // Sheets on panels lie where these do.
+        let mut free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
+        let first = free.clone().next().map(|sheet| sheet.on_table);
+        let is_one = free.clone().count() < 2;
+        let at_one_place = free.all(|sheet| Some(sheet.on_table) == first);
+        if !is_one && at_one_place {
             let boxes: Vec<(SheetId, Bounds2)> = scene
                 .sheets
                 .iter()
+                .filter(|sheet| sheet.on.is_none())
                 .filter_map(|sheet| Some((sheet.id, bounds(sheet, scene)?)))
                 .collect();
             self.moved = rows(&boxes);
@@ -56,6 +57,12 @@ impl Boards {
                 Some((panel.id, sheet + own))
             })
             .collect();
+        for sheet in &pattern.sheets {
+            let panel = sheet.on.and_then(|(panel, _)| self.panels.get(&panel));
+            if let Some(place) = panel {
+                self.sheets.insert(sheet.id, *place);
+            }
+        }
     }
 
     /// The table place of a sheet's origin [m].

@@ -186,6 +186,16 @@ fn panel_hits(panel: &PanelScene, origin: Vec2, at: Vec2, reach: f64, ranked: &m
     {
         found(4, Item::Operation(panel.id, step), near);
     }
+    for (id, _, line) in &shape.creases {
+        if let Some(near) = nearest(line, there) {
+            found(5, Item::Operation(panel.id, *id), near);
+        }
+    }
+    for (id, line) in &shape.made {
+        if let Some(near) = nearest(line, there) {
+            found(4, Item::Operation(panel.id, *id), near);
+        }
+    }
     for edge in &shape.edges {
         let near = edge.lines.iter().filter_map(|line| nearest(line, there));
         if let Some(near) = near.min_by(|a, b| a.1.total_cmp(&b.1)) {
@@ -197,7 +207,7 @@ fn panel_hits(panel: &PanelScene, origin: Vec2, at: Vec2, reach: f64, ranked: &m
             found(5, Item::Line(panel.id, *id), near);
         }
     }
-    if super::inside::contains(&shape.rings, there) {
+    if shape.contains(there) {
         found(7, Item::Panel(panel.id), (there, 0.0));
     }
 }

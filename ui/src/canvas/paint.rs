@@ -216,6 +216,19 @@ impl Picture<'_> {
         for (id, line) in &shape.internal_lines {
             dashed(line, Item::Line(panel.id, *id));
         }
+        for (id, is_placement, line) in &shape.creases {
+            let item = Item::Operation(panel.id, *id);
+            match is_placement {
+                true => dashed(line, item),
+                false => {
+                    let ink = match self.is_lit(item) {
+                        true => Stroke::new(2.4, self.palette.accent),
+                        false => pencil,
+                    };
+                    self.painter.line(self.line(origin, line), ink);
+                }
+            }
+        }
         for (id, _, line) in &shape.darts {
             dashed(line, Item::Operation(panel.id, *id));
         }
@@ -251,15 +264,20 @@ impl Picture<'_> {
 
     fn outline(&self, panel: &PanelScene) {
         let origin = self.boards.panel(panel.id);
-        for edge in &panel.shape.edges {
-            let this = Item::Edge(panel.id, edge.id);
+        let draw = |this: Item, line: &[Vec2]| {
             let stroke = match () {
                 () if self.selection.contains(this) => Stroke::new(3.0, self.palette.accent),
                 () if self.hover == Some(this) => Stroke::new(2.4, self.palette.accent),
                 () => Stroke::new(1.6, self.palette.ink),
             };
+            self.painter.line(self.line(origin, line), stroke);
+        };
+        for (by, line) in &panel.shape.made {
+            draw(Item::Operation(panel.id, *by), line);
+        }
+        for edge in &panel.shape.edges {
             for line in &edge.lines {
-                self.painter.line(self.line(origin, line), stroke);
+                draw(Item::Edge(panel.id, edge.id), line);
             }
         }
         if let Some(fold) = panel.fold {
@@ -438,6 +456,6 @@ impl Picture<'_> {
 fn panel_fold_is_lit(panel: &PanelScene, selection: &Selection) -> bool {
     selection.items().iter().any(|item| {
         matches!(item, Item::Operation(of, id) if *of == panel.id
-            && !panel.shape.darts.iter().any(|(dart, ..)| dart == id))
+            && panel.fold_step == Some(*id))
     })
 }

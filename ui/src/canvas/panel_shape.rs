@@ -3,7 +3,7 @@
 use super::fill::{Fill, fill};
 use super::inside::{chord, roomiest};
 use toile_geometry::{Bounds2, Curve, Vec2, ring_area};
-use toile_pattern::{EdgeId, LineId, LineKind, Name, NotchId, OperationId, Stage, StageEdge};
+use toile_pattern::{EdgeId, LineId, LineKind, Name, NotchId, OperationId, Role, Stage, StageEdge};
 
 /// Part of the chord through the middle of a panel that the grainline takes.
 const GRAINLINE_SHARE: f64 = 0.62;
@@ -27,8 +27,12 @@ pub struct PanelShape {
     pub edges: Vec<EdgeShape>,
     /// Outline of the mirrored half.
     pub mirrored: Vec<Vec<Vec2>>,
+    /// Other edges that operations made, as where the panel was split, on the half that is drawn.
+    pub made: Vec<(OperationId, Vec<Vec2>)>,
     /// Legs of darts, with the operation that made them; of a mirrored half too.
     pub darts: Vec<(OperationId, bool, Vec<Vec2>)>,
+    /// Lines that pleats are folded in, or laid to, with the operation that made them.
+    pub creases: Vec<(OperationId, bool, Vec<Vec2>)>,
     /// Lines inside of the half that is drawn.
     pub internal_lines: Vec<(LineId, Vec<Vec2>)>,
     /// Notches: place on the outline and unit direction inward.
@@ -78,7 +82,9 @@ impl PanelShape {
             rings: drawn,
             edges: Vec::new(),
             mirrored: Vec::new(),
+            made: Vec::new(),
             darts: Vec::new(),
+            creases: Vec::new(),
             internal_lines: Vec::new(),
             notches: stage
                 .notches
@@ -91,11 +97,17 @@ impl PanelShape {
             shape.edge(edge, polyline(&edge.curve));
         }
         for line in &stage.lines {
-            if let (LineKind::Internal, Name::Drawn(id)) = (line.kind, line.name)
-                && line.half == 0
-            {
-                let points = line.edges.iter().flat_map(|edge| polyline(&edge.curve));
-                shape.internal_lines.push((id, points.collect()));
+            if line.kind != LineKind::Internal || line.half != 0 {
+                continue;
+            }
+            let points = line.edges.iter().flat_map(|edge| polyline(&edge.curve));
+            match line.name {
+                Name::Drawn(id) => shape.internal_lines.push((id, points.collect())),
+                // Where a pleat is folded, and where it is laid to.
+                Name::Made { by, role, .. } => {
+                    let is_placement = role == Role::Placement;
+                    shape.creases.push((by, is_placement, points.collect()));
+                }
             }
         }
         shape
@@ -103,8 +115,15 @@ impl PanelShape {
 
     fn edge(&mut self, edge: &StageEdge, line: Vec<Vec2>) {
         let id = match edge.name {
-            Name::Made { by, .. } => return self.darts.push((by, edge.half != 0, line)),
-            Name::Drawn(_) if edge.half != 0 => return self.mirrored.push(line),
+            Name::Made {
+                by,
+                role: Role::Leg,
+                ..
+            } => {
+                return self.darts.push((by, edge.half != 0, line));
+            }
+            _ if edge.half != 0 => return self.mirrored.push(line),
+            Name::Made { by, .. } => return self.made.push((by, line)),
             Name::Drawn(id) => id,
         };
         let length = edge.curve.length();
@@ -123,6 +142,11 @@ impl PanelShape {
                 lines: vec![line],
             }),
         }
+    }
+
+    /// Whether a place [m] lies on the half that is drawn.
+    pub fn contains(&self, at: Vec2) -> bool {
+        super::inside::contains(&self.rings, at)
     }
 
     /// The edge with that id.

@@ -7,9 +7,10 @@ use super::seams::{SeamDrawing, draw_seams};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Path, Vec2};
+use toile_pattern::plan::{self, EdgePart};
 use toile_pattern::{
-    Curve, CurveId, CurveRule, Draft, Evaluation, Mark, Name, OperationId, OperationKind, Panel,
-    PanelId, PointId, Sheet, SheetId, Stage,
+    Curve, CurveId, CurveRule, Draft, Evaluation, Name, OperationId, OperationKind, Panel, PanelId,
+    PointId, Sheet, SheetId, Stage,
 };
 
 /// Largest distance of a drawn curve from the true one [pixels].
@@ -20,7 +21,8 @@ const CURVE_TOLERANCE: f64 = 0.15;
 pub struct Scene {
     /// The sheets, in the pattern's order.
     pub sheets: Vec<SheetScene>,
-    /// The panels, in the pattern's order; those that never could be drawn are left out.
+    /// The panels, in the pattern's order; those that never could be drawn are left out, and those
+    /// that are split, whose sides are drawn.
     pub panels: Vec<PanelScene>,
     /// The seams, numbered from 1 in this order.
     pub seams: Vec<SeamDrawing>,
@@ -60,6 +62,10 @@ pub struct SheetScene {
     pub curves: Vec<CurveScene>,
     /// Whether no panel is traced from it.
     pub is_bare: bool,
+    /// The panel it lies on.
+    pub on: Option<PanelId>,
+    /// The edges of that panel's stage, to be snapped to.
+    pub edges: Vec<EdgePart>,
 }
 
 /// What a point is for.
@@ -150,6 +156,7 @@ impl Scene {
         self.panels = pattern
             .panels
             .iter()
+            .filter(|panel| !pattern.is_replaced(panel))
             .filter_map(|panel| self.panel(panel, evaluation, &mut shapes))
             .collect();
         // What is drawn no more is forgotten.
@@ -163,7 +170,10 @@ impl Scene {
     pub fn isolate(&mut self, panels: &[PanelId]) {
         self.panels.retain(|panel| panels.contains(&panel.id));
         let sheets: Vec<SheetId> = self.panels.iter().map(|panel| panel.sheet).collect();
-        self.sheets.retain(|sheet| sheets.contains(&sheet.id));
+        self.sheets.retain(|sheet| match sheet.on {
+            Some(on) => panels.contains(&on),
+            None => sheets.contains(&sheet.id),
+        });
     }
 
     /// Whether there is nothing to see.
@@ -243,7 +253,15 @@ impl Scene {
                 },
             })
         });
-        let is_bare = own.count() == 0;
+        let is_bare = own.count() == 0 && sheet.on.is_none();
+        let laid = sheet.on.and_then(|(id, after)| {
+            let panel = evaluation.pattern().panel(id)?;
+            Some(plan::edge_parts(
+                evaluation,
+                panel,
+                evaluation.stage(id, after)?,
+            ))
+        });
         SheetScene {
             id: sheet.id,
             name: sheet.name.clone(),
@@ -264,6 +282,8 @@ impl Scene {
                 })
                 .collect(),
             is_bare,
+            on: sheet.on.map(|(panel, _)| panel),
+            edges: laid.unwrap_or_default(),
         }
     }
 
@@ -309,20 +329,19 @@ impl Scene {
         };
         let shape = kept.shape.clone();
         shapes.insert(key, kept);
-        let place = |id: PointId| evaluation.point(id);
         Some(PanelScene {
             id: panel.id,
             sheet: evaluation.pattern().sheet_of(panel)?,
             name: panel.name.clone(),
             cut: cut_words(panel),
-            corners: panel.edges().flat_map(|edge| edge.ends).collect(),
+            corners: corners(panel, stage),
             shape,
             fold_step: panel
                 .operations
                 .iter()
                 .find(|step| matches!(step.kind, OperationKind::Fold { .. }))
                 .map(|step| step.id),
-            fold: fold(panel).and_then(|[a, b]| Some([place(a)?, place(b)?])),
+            fold: fold_line(stage),
             is_stale: now.is_none(),
         })
     }
@@ -357,27 +376,39 @@ fn handles(curve: &Curve) -> Vec<[PointId; 2]> {
     ends.into_iter().chain(inner).collect()
 }
 
-/// Both corners of the stretch that lies on the fold.
-fn fold(panel: &Panel) -> Option<[PointId; 2]> {
-    panel
-        .operations
-        .iter()
-        .find_map(|operation| match &operation.kind {
-            OperationKind::Fold {
-                ends: [Mark::Corner(Name::Drawn(a)), Mark::Corner(Name::Drawn(b))],
-                ..
-            } => Some([*a, *b]),
-            _ => None,
-        })
+/// Points the panel's edges end at; of a side those that lie on it.
+fn corners(panel: &Panel, stage: &Stage) -> BTreeSet<PointId> {
+    if panel.sheet().is_some() {
+        return panel.edges().flat_map(|edge| edge.ends).collect();
+    }
+    let edges = stage.lines.iter().flat_map(|line| &line.edges);
+    let starts = edges.filter_map(|edge| match edge.start {
+        Some(Name::Drawn(id)) => Some(id),
+        _ => None,
+    });
+    starts.collect()
+}
+
+/// Both ends of the line a stage is unfolded in: those of the half that is drawn.
+fn fold_line(stage: &Stage) -> Option<[Vec2; 2]> {
+    let ring = stage.outline();
+    let count = ring.len();
+    let begins = |k: &usize| ring[*k].half == 0 && ring[(k + count - 1) % count].half != 0;
+    let first = (0..count).find(begins)?;
+    let own = (first..first + count).take_while(|k| ring[k % count].half == 0);
+    let last = own.last()? % count;
+    Some([ring[last].curve.end(), ring[first].curve.start()])
 }
 
 fn cut_words(panel: &Panel) -> String {
-    match (panel.cut.quantity, panel.cut.mirrored, fold(panel)) {
+    let mut kinds = panel.operations.iter().map(|step| &step.kind);
+    let is_folded = kinds.any(|kind| matches!(kind, OperationKind::Fold { .. }));
+    match (panel.cut.quantity, panel.cut.mirrored, is_folded) {
         (0, ..) => "not cut".into(),
-        (1, _, None) => String::new(),
-        (1, _, Some(_)) => "cut on the fold".into(),
+        (1, _, false) => String::new(),
+        (1, _, true) => "cut on the fold".into(),
         (n, true, _) => format!("cut {n}, mirrored"),
-        (n, false, Some(_)) => format!("cut {n} on the fold"),
-        (n, false, None) => format!("cut {n}"),
+        (n, false, true) => format!("cut {n} on the fold"),
+        (n, false, false) => format!("cut {n}"),
     }
 }

@@ -66,22 +66,22 @@ impl Item {
                 format!("Curve {} of {}", sheet.curve(id)?.name, sheet.name)
             }
             Self::Edge(of, id) => {
-                let panel = panel(of)?;
-                format!("Edge {} of {}", panel.edge(id)?.name, panel.name)
+                let owner = pattern.owner_of(of, id.into())?;
+                format!("Edge {} of {}", owner.edge(id)?.name, panel(of)?.name)
             }
             Self::Line(of, id) => {
-                let panel = panel(of)?;
-                let line = panel.lines.iter().find(|line| line.id == id)?;
-                format!("Line {} of {}", line.name, panel.name)
+                let owner = pattern.owner_of(of, id.into())?;
+                format!("Line {} of {}", owner.line(id)?.name, panel(of)?.name)
             }
             Self::Notch(of, id) => {
-                let panel = panel(of)?;
-                let number = panel.notches.iter().position(|notch| notch.id == id)? + 1;
-                format!("Notch {number} of {}", panel.name)
+                let owner = pattern.owner_of(of, id.into())?;
+                let number = owner.notches.iter().position(|notch| notch.id == id)? + 1;
+                format!("Notch {number} of {}", panel(of)?.name)
             }
             Self::Operation(of, id) => {
                 let panel = panel(of)?;
-                let found = panel.operations.iter().find(|step| step.id == id)?;
+                let owner = pattern.owner_of(of, id.into())?;
+                let found = owner.operations.iter().find(|step| step.id == id)?;
                 let kind = found.kind.word();
                 let kind = kind[..1].to_uppercase() + &kind[1..];
                 match found.name.eq_ignore_ascii_case(&kind) {

@@ -2,7 +2,7 @@
 
 use super::scene::{CurveScene, PointRole, Scene, SheetScene};
 use toile_geometry::Vec2;
-use toile_pattern::{Number, PointId, PointRule, SheetId};
+use toile_pattern::{Mark, Name, Number, PointId, PointRule, SheetId};
 
 /// How near the pointer must be to a place to be drawn to it [pixels].
 const REACH: f64 = 9.0;
@@ -76,6 +76,7 @@ pub fn snaps(scene: &Scene, sheet: SheetId, at: Vec2, scale: f64) -> Vec<Placed>
         points(drawn, at, reach, &mut found);
         crossings(drawn, at, reach, &mut found);
         on_curves(drawn, at, reach, &mut found);
+        on_edges(drawn, at, reach, &mut found);
         levels(drawn, at, (LEVEL_REACH / scale, step), &mut found);
     }
     found.push(Placed {
@@ -196,6 +197,28 @@ fn on_curve(sheet: &SheetScene, curve: &CurveScene, share: f64, at: Vec2, words:
             share: Number::Value(share),
         }),
         words: format!("{words} {}", curve.name),
+    }
+}
+
+/// On edges of the panel that the sheet lies on.
+fn on_edges(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) {
+    let near = sheet.edges.iter().filter_map(|part| {
+        let (point, share) = part.nearest(at)?;
+        let away = (point - at).norm();
+        (away <= reach).then_some((away, part, point, share))
+    });
+    if let Some((_, part, point, share)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        let at = Mark::Between {
+            ends: part.ends,
+            share: Number::Value(share),
+        };
+        let line = Name::Drawn(part.line);
+        found.push(Placed {
+            sheet: sheet.id,
+            at: point,
+            spec: Spec::New(PointRule::Mark { line, at }),
+            words: "on the panel's edge".into(),
+        });
     }
 }
 

@@ -1,10 +1,11 @@
-//! Tools that alter panels: darts pivoted, panels spread.
+//! Tools that alter panels: darts pivoted, panels spread, pleated and split.
 
-use super::planning::{Planning, refuse};
-use super::slots::{Answer, Slot, SlotKind, SlotTool};
+use super::Reading;
+use super::planning::{Planning, panel_under, refuse};
+use super::slots::{Answer, Plan, Slot, SlotKind, SlotTool};
 use crate::canvas::selection::Item;
-use toile_pattern::plan::{self, PivotWish, SpreadWish};
-use toile_pattern::{Bridge, Name, Number, Want};
+use toile_pattern::plan::{self, Joined, PivotWish, PleatWish, SplitWish, SpreadWish};
+use toile_pattern::{Bridge, CurveId, EditError, Name, Number, PanelId, PleatKind, Side, Want};
 
 /// Moves a dart, or a share of it, to another place of the outline.
 pub static PIVOT: SlotTool = SlotTool {
@@ -133,3 +134,147 @@ pub static SPREAD: SlotTool = SlotTool {
         Ok(planning.done("Spread panel", [Item::Operation(*panel, id)]))
     },
 };
+
+/// Folds pleats that are pressed to the left of their lines.
+pub static KNIFE_PLEAT: SlotTool = SlotTool {
+    command: "Knife pleat",
+    slots: PLEAT_SLOTS,
+    plan: |answers, reading| pleat(answers, reading, PleatKind::Knife),
+};
+
+/// Folds pleats that stand as boxes on the right side.
+pub static BOX_PLEAT: SlotTool = SlotTool {
+    command: "Box pleat",
+    slots: PLEAT_SLOTS,
+    plan: |answers, reading| pleat(answers, reading, PleatKind::Box),
+};
+
+/// Folds pleats whose folds meet on the right side.
+pub static INVERTED_PLEAT: SlotTool = SlotTool {
+    command: "Inverted pleat",
+    slots: PLEAT_SLOTS,
+    plan: |answers, reading| pleat(answers, reading, PleatKind::Inverted),
+};
+
+const PLEAT_SLOTS: &[Slot] = &[
+    Slot {
+        hint: "Click the edge the pleats start at",
+        kind: SlotKind::Edge,
+    },
+    Slot {
+        hint: "Click the edge they go to; a knife pleat is pressed to the left on the way there",
+        kind: SlotKind::Edge,
+    },
+    Slot {
+        hint: "Type how many pleats",
+        kind: SlotKind::Number {
+            label: "pleats",
+            want: Want::Plain,
+            usual: 1.0,
+            live: None,
+        },
+    },
+    Slot {
+        hint: "Type how deep a fold goes under",
+        kind: SlotKind::Number {
+            label: "depth",
+            want: Want::Length,
+            usual: 0.03,
+            live: None,
+        },
+    },
+];
+
+fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<Plan, EditError> {
+    let [
+        Answer::Edge(panel, from, _),
+        Answer::Edge(on, to, _),
+        Answer::Number(count),
+        Answer::Number(depth),
+    ] = answers
+    else {
+        return Err(refuse("nothing was given", "click an edge"));
+    };
+    if on != panel {
+        return Err(refuse(
+            "the edges are of two panels",
+            "click another edge of the same panel",
+        ));
+    }
+    let count = reading.evaluation.number(count, Want::Plain);
+    let count = count.filter(|count| (1.0..=60.0).contains(count));
+    let count = count.ok_or_else(|| refuse("a panel has 1 to 60 pleats", "type a count"))?;
+    let mut planning = Planning::new(reading);
+    let id = planning.run(|evaluation| {
+        let count = count.round() as u16;
+        let (line, lines) = plan::even_cuts(evaluation, *panel, [*from, *to], count)?;
+        let wish = PleatWish {
+            line,
+            lines,
+            depth: depth.clone(),
+            kind,
+            pressed: Side::Left,
+            held: None,
+        };
+        plan::pleat_panel(evaluation, *panel, wish)
+    })?;
+    Ok(planning.done("Pleat panel", [Item::Operation(*panel, id)]))
+}
+
+/// Cuts a panel in two along a straight line.
+pub static SPLIT: SlotTool = SlotTool {
+    command: "Split",
+    slots: &[
+        Slot {
+            hint: "Click the outline where the cut starts",
+            kind: SlotKind::OnLine,
+        },
+        Slot {
+            hint: "Click the outline where it ends",
+            kind: SlotKind::OnLine,
+        },
+    ],
+    plan: |answers, reading| {
+        let [Answer::OnLine(panel, _, from), Answer::OnLine(on, _, to)] = answers else {
+            return Err(refuse("nothing was given", "click the outline"));
+        };
+        if on != panel {
+            return Err(refuse(
+                "the places are on two panels",
+                "click the outline of the same panel",
+            ));
+        }
+        let mut planning = Planning::new(reading);
+        let [from, to] = [from, to].map(|at| super::panel::marked(reading, *panel, *at));
+        let places = [from?, to?];
+        let curve = planning.run(|evaluation| plan::line_across(evaluation, *panel, places))?;
+        split(planning, *panel, curve)
+    },
+};
+
+/// Cuts a panel in two along a curve that is drawn across it.
+pub static SPLIT_ALONG: SlotTool = SlotTool {
+    command: "Split along",
+    slots: &[Slot {
+        hint: "Click the curve to cut along, where it lies on the panel",
+        kind: SlotKind::Curve,
+    }],
+    plan: |answers, reading| {
+        let Some(Answer::Curve(sheet, curve, at)) = answers.first() else {
+            return Err(refuse("nothing was given", "click a curve"));
+        };
+        let panel = panel_under(reading, (*sheet, *at))?;
+        split(Planning::new(reading), panel, *curve)
+    },
+};
+
+fn split(mut planning: Planning, panel: PanelId, curve: CurveId) -> Result<Plan, EditError> {
+    let line = plan::outline_of(planning.evaluation(), panel)?;
+    let wish = SplitWish {
+        line,
+        curve,
+        joined: Joined::default(),
+    };
+    let made = planning.run(|evaluation| plan::split_panel(evaluation, panel, wish))?;
+    Ok(planning.done("Split panel", made.sides.map(Item::Panel)))
+}

@@ -1,14 +1,15 @@
 //! Tools that work on panels: darts, folds, notches, points on edges, lines inside.
 
-use super::planning::{Planning, places, refuse};
+use super::planning::{Planning, panel_under, places, refuse};
 use super::slots::{Answer, Fields, Slot, SlotKind, SlotTool};
 use super::{Pointer, Reading};
 use crate::canvas::selection::Item;
+use crate::canvas::snap::Placed;
 use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::{
     Apex, CurveRule, Edit, EditError, Entity, LineKind, Mark, Name, NotchKind, Number,
-    OperationKind, Panel, PanelId, Pressed, Want,
+    OperationKind, Panel, PanelId, Pressed, SheetId, Want,
     plan::{self, Chain, CurveShape},
 };
 
@@ -82,12 +83,10 @@ pub static FOLD: SlotTool = SlotTool {
             return Err(refuse("nothing was given", "click a straight edge"));
         };
         let owner = panel_of(reading, *panel)?;
-        let missing = || refuse("the edge is not there", "click another");
-        let line = owner.line_of(*edge).ok_or_else(missing)?;
-        let ends = owner.edge(*edge).ok_or_else(missing)?.ends;
+        let (line, ends) = plan::edge_ends(reading.evaluation, owner, *edge)?;
         let kind = OperationKind::Fold {
-            line: Name::Drawn(line.id),
-            ends: ends.map(Mark::corner),
+            line: Name::Drawn(line),
+            ends: ends.map(Mark::Corner),
         };
         operation(reading, *panel, kind, "Put on fold")
     },
@@ -131,8 +130,11 @@ pub static BEND: SlotTool = SlotTool {
         let [Answer::Edge(panel, edge, _), Answer::Place(through)] = answers else {
             return Err(refuse("nothing was given", "click an edge"));
         };
-        let owner = panel_of(reading, *panel)?;
-        let found = owner.edge(*edge);
+        let owner = reading
+            .evaluation
+            .pattern()
+            .owner_of(*panel, (*edge).into());
+        let found = owner.and_then(|owner| owner.edge(*edge));
         let curve = found
             .ok_or_else(|| refuse("the edge is gone", "click another"))?
             .curve;
@@ -180,15 +182,27 @@ pub static INNER_LINE: SlotTool = SlotTool {
         let closes = matches!(answers.get(1), Some(Answer::Places(_, true)));
         let mut planning = Planning::new(reading);
         let given = places(answers);
-        let points = planning.points(&given)?;
         let owner = panel_of(reading, *panel)?;
-        let side = || {
-            refuse(
-                "it is a side of another panel",
-                "draw on the panel that was split",
-            )
+        let pattern = reading.evaluation.pattern();
+        let is_here = |sheet: SheetId| {
+            let on = pattern.sheet(sheet).and_then(|sheet| sheet.on);
+            on.is_some_and(|(of, _)| of == *panel)
         };
-        let sheet = owner.sheet().ok_or_else(side)?;
+        // What is drawn on a side, or where the panel was altered, lies on the finished panel.
+        let altered = owner.sheet().is_none() || owner.is_altered();
+        let sheet = match given.iter().find(|placed| is_here(placed.sheet)) {
+            Some(placed) => placed.sheet,
+            None if altered => planning.run(|evaluation| plan::open_sheet(evaluation, *panel))?,
+            None => owner.sheet().unwrap_or_default(),
+        };
+        let given: Vec<Placed> = given
+            .into_iter()
+            .map(|placed| match placed.sheet == sheet {
+                true => placed.clone(),
+                false => Placed::free(sheet, placed.at),
+            })
+            .collect();
+        let points = planning.points(&given.iter().collect::<Vec<_>>())?;
         let count = points.len();
         let mut curves = Vec::new();
         for k in 0..if closes { count } else { count - 1 } {
@@ -208,6 +222,47 @@ pub static INNER_LINE: SlotTool = SlotTool {
         })?;
         let label = if closes { "Add hole" } else { "Add inner line" };
         Ok(planning.done(label, [Item::Line(*panel, line)]))
+    },
+};
+
+/// A sheet on a panel as it is finished, to draw on.
+pub static DRAW_ON: SlotTool = SlotTool {
+    command: "Draw on panel",
+    slots: &[Slot {
+        hint: "Click the panel to draw on as it is finished",
+        kind: SlotKind::Panel,
+    }],
+    plan: |answers, reading| {
+        let Some(Answer::Panel(panel)) = answers.first() else {
+            return Err(refuse("nothing was given", "click a panel"));
+        };
+        let mut planning = Planning::new(reading);
+        let sheet = planning.run(|evaluation| plan::open_sheet(evaluation, *panel))?;
+        let drawn = planning.evaluation().pattern().sheet(sheet);
+        let points = drawn.into_iter().flat_map(|sheet| &sheet.points);
+        let items: Vec<Item> = points.map(|point| Item::Point(point.id)).collect();
+        Ok(planning.done("Draw on panel", items))
+    },
+};
+
+/// A curve that is drawn becomes a line of the panel it lies on.
+pub static INSERT_LINE: SlotTool = SlotTool {
+    command: "Insert line",
+    slots: &[Slot {
+        hint: "Click the curve that becomes a line of the panel it lies on",
+        kind: SlotKind::Curve,
+    }],
+    plan: |answers, reading| {
+        let Some(Answer::Curve(sheet, curve, at)) = answers.first() else {
+            return Err(refuse("nothing was given", "click a curve"));
+        };
+        let panel = panel_under(reading, (*sheet, *at))?;
+        let mut planning = Planning::new(reading);
+        let line = planning.run(|evaluation| {
+            let kind = (LineKind::Internal, None);
+            plan::add_line(evaluation, panel, kind, Chain::Curves(&[*curve]))
+        })?;
+        Ok(planning.done("Insert line", [Item::Line(panel, line)]))
     },
 };
 
@@ -273,18 +328,13 @@ pub static NOTCH_ROW: SlotTool = SlotTool {
             return Err(refuse("nothing was given", "click an edge"));
         };
         let owner = panel_of(reading, *panel)?;
-        let mut lines = owner.lines.iter();
-        let found = lines.find_map(|line| {
-            let edge = line.edges.iter().find(|known| known.id == *edge)?;
-            Some((line.id, edge.ends))
-        });
-        let (line, ends) = found.ok_or_else(|| refuse("the edge is gone", "click another"))?;
+        let (line, ends) = plan::edge_ends(reading.evaluation, owner, *edge)?;
         let count = reading.evaluation.number(count, Want::Plain);
         let count = count.filter(|count| (1.0..=100.0).contains(count));
         let count = count.ok_or_else(|| refuse("a row has 1 to 100 notches", "type a count"))?;
         let row = plan::NotchRow {
             line,
-            ends: ends.map(Name::Drawn),
+            ends,
             count: count.round() as u32,
         };
         let mut planning = Planning::new(reading);
@@ -309,11 +359,9 @@ pub(super) fn marked(
 ) -> Result<plan::NearMark, EditError> {
     let mut near = plan::nearest_mark(reading.evaluation, panel, at)?;
     if let Mark::Between { share, .. } = &mut near.mark
-        && let Some(path) = reading.evaluation.edge(near.edge)
         && let Some(value) = share.value()
     {
-        let length = path.length();
-        *share = Number::Value(tidy_share(value * length, length));
+        *share = Number::Value(tidy_share(value * near.length, near.length));
     }
     Ok(near)
 }

@@ -2,9 +2,11 @@
 
 use super::Reading;
 use super::slots::{Answer, Plan};
+use crate::canvas::scene::PanelScene;
 use crate::canvas::selection::{Item, Selection};
 use crate::canvas::snap::{Placed, Spec};
-use toile_pattern::{Edit, EditError, Evaluation, PointId, PointRule, SheetId, plan};
+use toile_geometry::Vec2;
+use toile_pattern::{Edit, EditError, Evaluation, PanelId, PointId, PointRule, SheetId, plan};
 
 /// Edits in the making.
 pub struct Planning {
@@ -146,4 +148,28 @@ pub fn places(answers: &[Answer]) -> Vec<&Placed> {
         }
     }
     found
+}
+
+/// The panel that a place [m] of a sheet lies on: the one the sheet lies on, else one traced from it.
+///
+/// # Errors
+/// No panel lies there.
+pub fn panel_under(
+    reading: &Reading<'_>,
+    (sheet, at): (SheetId, Vec2),
+) -> Result<PanelId, EditError> {
+    let drawn = reading.scene.sheet_scene(sheet);
+    let laid = drawn.and_then(|drawn| drawn.on);
+    let is_own = |panel: &PanelScene| match laid {
+        Some(on) => panel.id == on,
+        None => panel.sheet == sheet,
+    };
+    let is_there = |panel: &&PanelScene| is_own(panel) && panel.shape.contains(at);
+    let found = reading.scene.panels.iter().find(is_there);
+    found.map(|panel| panel.id).ok_or_else(|| {
+        refuse(
+            "no panel lies under the curve there",
+            "click the curve where it lies on a panel of its sheet",
+        )
+    })
 }

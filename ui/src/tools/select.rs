@@ -146,8 +146,8 @@ fn take_hold(hit: Hit, reading: &Reading<'_>) -> (Dragged, Option<Selection>) {
             false => vec![id],
         }),
         Item::Edge(panel, id) => {
-            let edge = reading.evaluation.pattern().panel(panel);
-            match edge.and_then(|panel| panel.edge(id)) {
+            let owner = reading.evaluation.pattern().owner_of(panel, id.into());
+            match owner.and_then(|owner| owner.edge(id)) {
                 Some(edge) => {
                     let points = plan::points_of(reading.evaluation, &[id.into()]);
                     Dragged::Points(points, edge.ends[0], hit.at)

@@ -450,7 +450,13 @@ impl PatternView {
             State::Slots(state) => state.sheet(),
             State::Select(_) => None,
         };
+        // While a sheet on a panel is drawn on, what is under the pointer there is drawn over.
+        let is_on = |id: &SheetId| {
+            let on = self.base.sheet_scene(*id).and_then(|sheet| sheet.on);
+            on.is_some() && found.iter().any(|hit| hit.item.panel() == on)
+        };
         let sheet = begun
+            .or(self.sheet.filter(is_on))
             .or(found.first().map(|hit| hit.sheet))
             .or(self.sheet)
             .unwrap_or(SheetId(0));
@@ -551,9 +557,21 @@ impl PatternView {
                     parts.push((panel.sheet, Item::Edge(panel.id, edge.id), at));
                 }
             }
+            for (id, line) in &panel.shape.internal_lines {
+                if let Some((at, _)) = crate::canvas::along(line, 0.5) {
+                    let at = self.screen(view, origin, at);
+                    parts.push((panel.sheet, Item::Line(panel.id, *id), at));
+                }
+            }
             for (id, at, _) in &panel.shape.notches {
                 let at = self.screen(view, origin, *at);
                 parts.push((panel.sheet, Item::Notch(panel.id, *id), at));
+            }
+            for (id, line) in &panel.shape.made {
+                if let Some((at, _)) = crate::canvas::along(line, 0.5) {
+                    let at = self.screen(view, origin, at);
+                    parts.push((panel.sheet, Item::Operation(panel.id, *id), at));
+                }
             }
             for (id, mirrored, line) in &panel.shape.darts {
                 if let Some(at) = line.first().filter(|_| !mirrored) {

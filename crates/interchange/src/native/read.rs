@@ -4,7 +4,7 @@ use super::item::{FieldsOfKind, Item, Written};
 use super::json::Value;
 use super::read_marker::marker;
 use super::read_panel::panel;
-use super::read_seam::seam;
+use super::read_seam::{mark, name, seam};
 use super::units::UNITS;
 use super::values::{fabric, measurements};
 use crate::FormatError;
@@ -35,6 +35,7 @@ const POINTS: &[FieldsOfKind<'_>] = &[
     (1, &["crossing"]),
     (1, &["foot", "in"]),
     (1, &["mirror", "in"]),
+    (1, &["mark", "line"]),
     (2, &["from", "offset"]),
     (2, &["from", "angle", "distance"]),
     (2, &["from", "toward", "distance"]),
@@ -332,7 +333,7 @@ impl<'a> Reader<'a> {
         let known = &[
             "id", "name", "at", "from", "offset", "angle", "distance", "to", "along", "aside",
             "toward", "curve", "share", "crossing", "curves", "line", "index", "foot", "mirror",
-            "in",
+            "in", "mark",
         ];
         let fields = item.object(known, &mut self.notes)?;
         fields.of_one_kind(&["id", "name"], POINTS)?;
@@ -354,6 +355,12 @@ impl<'a> Reader<'a> {
         if let Some(at) = fields.get("at") {
             let [x, y] = self.lengths(&at)?;
             return Ok(PointRule::At { x, y });
+        }
+        if let Some(at) = fields.get("mark") {
+            return Ok(PointRule::Mark {
+                line: name(self, &fields.need("line")?)?,
+                at: mark(self, &at)?,
+            });
         }
         if let Some(curves) = fields.get("curves") {
             return Ok(PointRule::CurveCrossing {
@@ -403,7 +410,7 @@ impl<'a> Reader<'a> {
         let Some(from) = fields.get("from") else {
             return Err(fields.item.error(
                 "the point has no place",
-                "give it at, from, curve, curves, crossing, foot or mirror",
+                "give it at, from, curve, curves, crossing, foot, mirror or mark",
             ));
         };
         let base = self.reference(&from)?;

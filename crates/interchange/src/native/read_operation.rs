@@ -3,20 +3,24 @@
 use super::item::{FieldsOfKind, Item};
 use super::read::{Measure, Reader};
 use super::read_seam::{mark, name};
-use super::words::{BRIDGES, PRESSED, TURNED};
+use super::words::{BRIDGES, PLEATS, PRESSED, SIDES, TURNED};
 use crate::FormatError;
-use toile_pattern::{Apex, Bridge, Number, Operation, OperationKind, Pressed, SpreadCut, Turned};
+use toile_pattern::{
+    Apex, Bridge, Number, Operation, OperationKind, PleatLine, Pressed, Side, SpreadCut, Turned,
+};
 
 type Read = for<'a> fn(&mut Reader<'a>, &Item<'a>) -> Result<OperationKind, FormatError>;
 
 /// What operations are called in files, and how each is read.
-const KINDS: [(&str, Read); 6] = [
+const KINDS: [(&str, Read); 8] = [
     ("dart", dart),
     ("diamond", diamond),
     ("fold", fold),
     ("pivot", pivot),
     ("spread", spread),
     ("split", split),
+    ("insert", insert),
+    ("pleat", pleat),
 ];
 
 /// Reads an operation.
@@ -141,15 +145,52 @@ fn split<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, 
     })
 }
 
+fn insert<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
+    let fields = item.object(&["sheet"], &mut reader.notes)?;
+    Ok(OperationKind::Insert {
+        sheet: reader.reference(&fields.need("sheet")?)?,
+    })
+}
+
+fn pleat<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<OperationKind, FormatError> {
+    let known = &["line", "held", "pleats", "depth", "kind", "pressed"];
+    let fields = item.object(known, &mut reader.notes)?;
+    let mut pleats = Vec::new();
+    for item in fields.items("pleats")? {
+        let fields = item.object(&["number", "from", "to"], &mut reader.notes)?;
+        let number = numbered(&fields.need("number")?, PleatLine::LARGEST)?;
+        let ends = [
+            mark(reader, &fields.need("from")?)?,
+            mark(reader, &fields.need("to")?)?,
+        ];
+        pleats.push(PleatLine { number, ends });
+    }
+    Ok(OperationKind::Pleat {
+        line: name(reader, &fields.need("line")?)?,
+        held: mark(reader, &fields.need("held")?)?,
+        pleats,
+        depth: reader.number(&fields.need("depth")?, Measure::Length)?,
+        kind: fields.need("kind")?.choice(PLEATS)?,
+        pressed: match fields.get("pressed") {
+            Some(side) => side.choice(SIDES)?,
+            None => Side::Left,
+        },
+    })
+}
+
+/// A number of a cut or pleat, up to the largest that may be.
+fn numbered(item: &Item<'_>, largest: u16) -> Result<u16, FormatError> {
+    let number = u16::try_from(item.count()?).ok();
+    let number = number.filter(|number| *number <= largest);
+    number.ok_or_else(|| item.error("there are not that many", "write a smaller number"))
+}
+
 fn spread_cut<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<SpreadCut, FormatError> {
     let fields = item.object(&["number", "from", "to", "openings"], &mut reader.notes)?;
     let number = fields.need("number")?;
     let [start, end] = fields.need("openings")?.exactly()?;
     Ok(SpreadCut {
-        number: u16::try_from(number.count()?)
-            .ok()
-            .filter(|number| *number <= SpreadCut::LARGEST)
-            .ok_or_else(|| number.error("there are not that many", "write a smaller number"))?,
+        number: numbered(&number, SpreadCut::LARGEST)?,
         ends: [
             mark(reader, &fields.need("from")?)?,
             mark(reader, &fields.need("to")?)?,

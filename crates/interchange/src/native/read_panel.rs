@@ -148,11 +148,15 @@ fn optional<'a>(
 }
 
 fn line<'a>(reader: &mut Reader<'a>, item: &Item<'a>) -> Result<Line, FormatError> {
-    let fields = item.object(&["id", "name", "kind", "edges"], &mut reader.notes)?;
+    let fields = item.object(&["id", "name", "kind", "by", "edges"], &mut reader.notes)?;
     let mut line = Line {
         id: reader.own(&fields.need("id")?)?,
         name: fields.need("name")?.name()?.to_owned(),
         kind: fields.need("kind")?.choice(LINES)?,
+        by: match fields.get("by") {
+            Some(by) => Some(reader.reference(&by)?),
+            None => None,
+        },
         edges: Vec::new(),
     };
     for item in fields.items("edges")? {

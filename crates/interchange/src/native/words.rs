@@ -2,8 +2,8 @@
 
 use super::item::FieldsOfKind;
 use toile_pattern::{
-    BodyPart, Bridge, Corner, Facing, LineKind, NapRule, NotchKind, Pressed, Role, Side, Spread,
-    Turned,
+    BodyPart, Bridge, Corner, Facing, LineKind, NapRule, NotchKind, PleatKind, Pressed, Role, Side,
+    Spread, Turned,
 };
 
 /// Version of the format this program writes.
@@ -56,6 +56,13 @@ pub const CORNERS: &[(&str, Corner)] = &[
 /// Names of the legs a dart is pressed towards.
 pub const PRESSED: &[(&str, Pressed)] = &[("before", Pressed::Before), ("after", Pressed::After)];
 
+/// Names of pleats.
+pub const PLEATS: &[(&str, PleatKind)] = &[
+    ("knife", PleatKind::Knife),
+    ("box", PleatKind::Box),
+    ("inverted", PleatKind::Inverted),
+];
+
 /// Names of notch kinds.
 pub const NOTCHES: &[(&str, NotchKind)] = &[
     ("slit", NotchKind::Slit),
@@ -88,6 +95,9 @@ pub const ROLES: &[(&str, Role)] = &[
     ("diamond", Role::Diamond),
     ("opening", Role::Opening),
     ("split", Role::Split),
+    ("underlay", Role::Underlay),
+    ("crease", Role::Crease),
+    ("placement", Role::Placement),
 ];
 
 /// Names of the sides of a split.

@@ -5,7 +5,7 @@ use super::units::{UNITS, write_degrees, write_length, write_plain};
 use super::words::{VERSION, word};
 use super::write_marker::marker;
 use super::write_panel::panel;
-use super::write_seam::seam;
+use super::write_seam::{mark, name, seam};
 use crate::FormatError;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
 use toile_pattern::{
@@ -288,6 +288,10 @@ impl Writer<'_> {
             PointRule::Foot { base, line } => {
                 fields.put("foot", count(base.0));
                 fields.put("in", counts(line.map(|id| id.0)));
+            }
+            PointRule::Mark { line, at } => {
+                fields.put("line", name(*line));
+                fields.put("mark", mark(self, at, &what)?);
             }
             PointRule::Mirrored { base, line } => {
                 fields.put("mirror", count(base.0));

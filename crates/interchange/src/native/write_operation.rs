@@ -1,11 +1,13 @@
 //! Writes operations of panels.
 
 use super::json::Value;
-use super::words::{BRIDGES, PRESSED, TURNED, word};
+use super::words::{BRIDGES, PLEATS, PRESSED, SIDES, TURNED, word};
 use super::write::{Fields, Measure, Writer, count, counts, list, named, text};
 use super::write_seam::{mark, name};
 use crate::FormatError;
-use toile_pattern::{Apex, Bridge, Number, Operation, OperationKind, Pressed, SpreadCut, Turned};
+use toile_pattern::{
+    Apex, Bridge, Number, Operation, OperationKind, Pressed, Side, SpreadCut, Turned,
+};
 
 /// Writes an operation.
 pub fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, FormatError> {
@@ -89,6 +91,36 @@ pub fn operation(writer: &Writer<'_>, operation: &Operation) -> Result<Value, Fo
             own.put("line", name(*line));
             own.put("curve", count(curve.0));
             "split"
+        }
+        OperationKind::Pleat {
+            line,
+            held,
+            pleats,
+            depth,
+            kind,
+            pressed,
+        } => {
+            own.put("line", name(*line));
+            own.put("held", mark(writer, held, &what)?);
+            let mut all = Vec::with_capacity(pleats.len());
+            for pleat in pleats {
+                let mut fields = Fields::default();
+                fields.put("number", count(u32::from(pleat.number)));
+                fields.put("from", mark(writer, &pleat.ends[0], &what)?);
+                fields.put("to", mark(writer, &pleat.ends[1], &what)?);
+                all.push(fields.done());
+            }
+            own.put_list("pleats", all);
+            own.put("depth", writer.number(depth, Measure::Length, &what)?);
+            own.put("kind", text(word(PLEATS, kind)));
+            if *pressed != Side::Left {
+                own.put("pressed", text(word(SIDES, pressed)));
+            }
+            "pleat"
+        }
+        OperationKind::Insert { sheet } => {
+            own.put("sheet", count(sheet.0));
+            "insert"
         }
     };
     fields.put(kind, own.done());

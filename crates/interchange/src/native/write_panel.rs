@@ -107,6 +107,7 @@ fn worn(writer: &Writer<'_>, worn: &WornRule, what: &str) -> Result<Value, Forma
 fn line(writer: &Writer<'_>, line: &Line) -> Result<Value, FormatError> {
     let mut fields = named(line.id.0, &line.name)?;
     fields.put("kind", text(word(LINES, &line.kind)));
+    fields.put_if("by", line.by.map(|by| count(by.0)));
     let edges: Result<Vec<_>, _> = line.edges.iter().map(|e| edge(writer, e)).collect();
     fields.put_list("edges", edges?);
     Ok(fields.done())

@@ -29,7 +29,7 @@ pub fn cut_piece(
         along: Vec2::new(inward[1], -inward[0]),
     }];
     piece.inside = vec![InsideLine {
-        id: LineId(0),
+        name: toile_pattern::Name::Drawn(LineId(0)),
         points: vec![Vec2::new(0.1, 0.3), Vec2::new(0.2, 0.3)],
     }];
     Arc::new(piece)

@@ -60,7 +60,10 @@ fn write_size(table: &mut String, pattern: &Pattern, name: &str, body: &Measurem
         }
         for inside in &piece.internal_lines {
             let panel = pattern.panel(piece.id.panel);
-            let named = panel.and_then(|p| p.line(inside.id));
+            let named = panel.and_then(|p| match inside.name {
+                Name::Drawn(id) => p.line(id),
+                Name::Made { .. } => None,
+            });
             let words = format!("line {:?}", named.map_or("", |l| &l.name));
             let places = inside
                 .curves

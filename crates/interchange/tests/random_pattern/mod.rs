@@ -400,7 +400,10 @@ fn details(dice: &mut Dice, drawing: &mut Drawing<'_>, points: &[PointId]) {
     }
     for k in 0..dice.below(4) {
         let line = lines[dice.below(lines.len())];
-        let kind = match dice.below(7) {
+        let kind = match dice.below(8) {
+            7 => OperationKind::Insert {
+                sheet: drawing.sheet.id,
+            },
             6 => OperationKind::Split {
                 line: Name::Drawn(line.id),
                 curve: line.edges[0].curve,

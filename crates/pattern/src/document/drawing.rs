@@ -66,6 +66,7 @@ impl<'i> Drawing<'i> {
             id,
             name: name.into(),
             kind,
+            by: None,
             edges,
         });
         id

@@ -1,7 +1,7 @@
 //! The stages a panel comes from: its own, and those of the panel it is a side of.
 
 use super::{OperationKind, Panel, Pattern, Source};
-use crate::{Mark, Notch, NotchId, Operation, OperationId, PanelId, SheetId};
+use crate::{Mark, Notch, NotchId, Operation, OperationId, PanelId, PartId, SheetId};
 use std::sync::Arc;
 
 /// The stages a panel comes from, in the order they are made.
@@ -55,6 +55,27 @@ impl Pattern {
         self.lineage(panel)
             .into_iter()
             .find_map(|own| own.notch(id))
+    }
+
+    /// The panel that an edge, line, notch or operation belongs to: the panel itself, or one it is a
+    /// side of; nothing if it is of none of them.
+    pub fn owner_of(&self, panel: PanelId, part: PartId) -> Option<&Panel> {
+        let has = |own: &Panel| match part {
+            PartId::Edge(id) => own.edge(id).is_some(),
+            PartId::Line(id) => own.line(id).is_some(),
+            PartId::Notch(id) => own.notch(id).is_some(),
+            PartId::Operation(id) => own.step_of(id).is_some(),
+            _ => false,
+        };
+        let lineage = self.lineage(self.panel(panel)?);
+        lineage.into_iter().find(|own| has(own))
+    }
+
+    /// Whether other panels, its sides, are cut in place of a panel.
+    pub fn is_replaced(&self, panel: &Panel) -> bool {
+        let is_side =
+            |other: &Arc<Panel>| matches!(other.source, Source::Side { of, .. } if of == panel.id);
+        panel.is_split() && self.panels.iter().any(is_side)
     }
 
     /// An operation of a panel or of one it is a side of.
@@ -113,6 +134,20 @@ impl Pattern {
 }
 
 impl Panel {
+    /// Whether operations moved parts of it from where they were drawn.
+    pub fn is_altered(&self) -> bool {
+        let mut kinds = self.operations.iter().map(|operation| &operation.kind);
+        let moves = |kind: &OperationKind| {
+            matches!(
+                kind,
+                OperationKind::Pivot { .. }
+                    | OperationKind::Spread { .. }
+                    | OperationKind::Pleat { .. }
+            )
+        };
+        kinds.any(moves)
+    }
+
     /// Whether it is split into other panels, which are cut in its place.
     pub fn is_split(&self) -> bool {
         let mut kinds = self.operations.iter().map(|operation| &operation.kind);

@@ -14,7 +14,9 @@ pub use marker::{
     Flaw, MOST_GARMENTS, Marker, MarkerCloth, MarkerFault, NapRule, OrderedPiece, OrderedSize,
     PiecePlacement, Print, Spread, USUAL_GAP, USUAL_SELVEDGE,
 };
-pub use operation::{Apex, Bridge, Operation, OperationKind, Pressed, Side, SpreadCut, Turned};
+pub use operation::{
+    Apex, Bridge, Operation, OperationKind, PleatKind, PleatLine, Pressed, Side, SpreadCut, Turned,
+};
 pub use panel::{Corner, Cut, Edge, Line, LineKind, Notch, NotchKind, Panel, Source, WornRule};
 pub use seam::{Seam, Span};
 pub use sheet::{Curve, CurveRule, Knot, Point, PointRule, Sheet};

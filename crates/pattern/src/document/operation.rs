@@ -1,6 +1,6 @@
 //! Operations: kept steps of a panel.
 
-use crate::{CurveId, LineName, Mark, Number, OperationId, PointId};
+use crate::{CurveId, LineName, Mark, Number, OperationId, PointId, SheetId};
 use serde::{Deserialize, Serialize};
 
 /// A kept step of a panel.
@@ -84,6 +84,28 @@ pub enum OperationKind {
         /// The curve, from the line to the line.
         curve: CurveId,
     },
+    /// Pleats: the panel is cut along straight lines and cloth is put between that folds under it.
+    Pleat {
+        /// The line.
+        line: LineName,
+        /// A place on it that stays where it is, and all that hangs together with it.
+        held: Mark,
+        /// Where it is folded.
+        pleats: Vec<PleatLine>,
+        /// How deep a fold goes under [m]: a knife pleat takes twice that of cloth, others four
+        /// times.
+        depth: Number,
+        /// How it is folded.
+        kind: PleatKind,
+        /// The side of its line that a knife pleat is pressed to: its underlay lies under that.
+        pressed: Side,
+    },
+    /// Lines of the panel that were drawn on a sheet which lies on the stage before this: holes and
+    /// internal lines that name this operation.
+    Insert {
+        /// The sheet.
+        sheet: SheetId,
+    },
 }
 
 /// Which part of a panel a pivot turns.
@@ -106,6 +128,34 @@ pub struct SpreadCut {
     pub ends: [Mark; 2],
     /// How far it opens at its start and its end [m]: where that is nothing it is a hinge.
     pub openings: [Number; 2],
+}
+
+/// A line along which a panel is pleated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PleatLine {
+    /// Its number in the operation, by which what it makes is named: no two have the same.
+    pub number: u16,
+    /// Where it starts and ends, both on the line.
+    pub ends: [Mark; 2],
+}
+
+impl PleatLine {
+    /// The largest number a pleat may have: the corners of its underlay are counted from ten times
+    /// it.
+    pub const LARGEST: u16 = u16::MAX / 10 - 1;
+}
+
+/// How a pleat is folded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PleatKind {
+    /// One fold, pressed to one side.
+    #[default]
+    Knife,
+    /// Two folds pressed away from each other: a box stands on the right side.
+    Box,
+    /// Two folds that meet on the right side.
+    Inverted,
 }
 
 impl SpreadCut {
@@ -198,7 +248,21 @@ impl OperationKind {
                 });
                 held.number().into_iter().chain(of_cuts).collect()
             }
-            Self::Split { .. } => Vec::new(),
+            Self::Pleat {
+                held,
+                pleats,
+                depth,
+                ..
+            } => {
+                let marks = pleats.iter().flat_map(|pleat| &pleat.ends);
+                let of_pleats = marks.filter_map(Mark::number);
+                held.number()
+                    .into_iter()
+                    .chain(of_pleats)
+                    .chain([depth])
+                    .collect()
+            }
+            Self::Split { .. } | Self::Insert { .. } => Vec::new(),
         }
     }
 
@@ -213,7 +277,11 @@ impl OperationKind {
                 let of_cuts = cuts.iter().flat_map(|cut| &cut.ends);
                 std::iter::once(held).chain(of_cuts).collect()
             }
-            Self::Split { .. } => Vec::new(),
+            Self::Pleat { held, pleats, .. } => {
+                let of_pleats = pleats.iter().flat_map(|pleat| &pleat.ends);
+                std::iter::once(held).chain(of_pleats).collect()
+            }
+            Self::Split { .. } | Self::Insert { .. } => Vec::new(),
         }
     }
 
@@ -224,8 +292,9 @@ impl OperationKind {
             | Self::Fold { line, .. }
             | Self::Pivot { line, .. }
             | Self::Spread { line, .. }
+            | Self::Pleat { line, .. }
             | Self::Split { line, .. } => Some(*line),
-            Self::Diamond { .. } => None,
+            Self::Diamond { .. } | Self::Insert { .. } => None,
         }
     }
 
@@ -241,6 +310,14 @@ impl OperationKind {
     pub fn curve(&self) -> Option<CurveId> {
         match self {
             Self::Split { curve, .. } => Some(*curve),
+            _ => None,
+        }
+    }
+
+    /// The sheet whose lines it brings in.
+    pub fn sheet(&self) -> Option<SheetId> {
+        match self {
+            Self::Insert { sheet } => Some(*sheet),
             _ => None,
         }
     }
@@ -267,6 +344,8 @@ impl OperationKind {
             Self::Pivot { .. } => "pivot",
             Self::Spread { .. } => "spread",
             Self::Split { .. } => "split",
+            Self::Insert { .. } => "insert",
+            Self::Pleat { .. } => "pleat",
         }
     }
 }

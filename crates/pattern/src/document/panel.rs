@@ -62,6 +62,8 @@ pub struct Line {
     pub name: String,
     /// What it is.
     pub kind: LineKind,
+    /// The operation that inserts it; nothing for a line of the panel as drawn.
+    pub by: Option<OperationId>,
     /// Its edges, in order.
     pub edges: Vec<Edge>,
 }

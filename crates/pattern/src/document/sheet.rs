@@ -1,6 +1,6 @@
 //! Sheets: drafting planes with points and curves.
 
-use crate::{CurveId, Number, OperationId, PanelId, PointId, SheetId};
+use crate::{CurveId, LineName, Mark, Number, OperationId, PanelId, PointId, SheetId};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -153,6 +153,13 @@ pub enum PointRule {
         /// The mirror.
         line: [PointId; 2],
     },
+    /// A place on a line of the panel that the sheet lies on, at that stage.
+    Mark {
+        /// The line.
+        line: LineName,
+        /// Where on it.
+        at: Mark,
+    },
 }
 
 impl PointRule {
@@ -170,7 +177,8 @@ impl PointRule {
             Self::At { .. }
             | Self::OnCurve { .. }
             | Self::AlongCurve { .. }
-            | Self::CurveCrossing { .. } => vec![],
+            | Self::CurveCrossing { .. }
+            | Self::Mark { .. } => vec![],
             Self::Offset { base, .. } | Self::Polar { base, .. } => vec![base],
             Self::Between { base, tip, .. } | Self::Toward { base, tip, .. } => vec![base, tip],
             Self::Crossing { first, second } => [first, second].concat(),
@@ -202,6 +210,7 @@ impl PointRule {
             Self::Between { along, aside, .. } => vec![along, aside],
             Self::Toward { distance, .. } | Self::AlongCurve { distance, .. } => vec![distance],
             Self::OnCurve { share, .. } => vec![share],
+            Self::Mark { at, .. } => at.number().into_iter().collect(),
             _ => vec![],
         }
     }

@@ -2,8 +2,8 @@
 
 use super::Entity;
 use crate::{
-    CornerName, LineName, Mark, Marker, Name, Names, Number, Panel, PartId, Pattern, Place, Source,
-    Span,
+    CornerName, LineName, Mark, Marker, Name, Names, Number, Panel, PartId, Pattern, Place,
+    PointRule, Source, Span,
 };
 use std::collections::BTreeSet;
 
@@ -25,6 +25,10 @@ impl Entity {
                 found.push((*sheet).into());
                 found.extend(point.rule.points().into_iter().map(PartId::from));
                 found.extend(point.rule.curves().into_iter().map(PartId::from));
+                if let PointRule::Mark { line: on, at } = &point.rule {
+                    line(*on, &mut found);
+                    mark(at, &mut found);
+                }
                 point
                     .rule
                     .numbers()
@@ -126,6 +130,7 @@ fn panel_references(panel: &Panel, found: &mut Vec<PartId>) {
         Source::Side { of, split, .. } => found.extend([of.into(), PartId::from(split)]),
     }
     found.push(panel.fabric.into());
+    found.extend(panel.lines.iter().filter_map(|l| l.by).map(PartId::from));
     for edge in panel.edges() {
         found.push(edge.curve.into());
         found.extend(edge.ends.map(PartId::from));
@@ -138,6 +143,7 @@ fn panel_references(panel: &Panel, found: &mut Vec<PartId>) {
         found.extend(operation.kind.points().into_iter().map(PartId::from));
         found.extend(operation.kind.altered().map(PartId::from));
         found.extend(operation.kind.curve().map(PartId::from));
+        found.extend(operation.kind.sheet().map(PartId::from));
         if let Some(on) = operation.kind.line() {
             line(on, found);
         }

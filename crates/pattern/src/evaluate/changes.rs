@@ -3,7 +3,7 @@
 use super::Evaluation;
 use super::needs::Needs;
 use super::node::{Definition, Node, NodeState};
-use crate::{Panel, PanelId, Pattern, Sheet};
+use crate::{Panel, PanelId, Pattern, Point, PointRule, Sheet};
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -12,6 +12,8 @@ impl Evaluation {
     pub(super) fn take_over(&mut self, before: &Pattern) -> Vec<u32> {
         let pattern = self.pattern.clone();
         let mut changed: Vec<u32> = Vec::new();
+        // Sheets that lie on another stage than before, or were not there.
+        let mut laid: Vec<Arc<Sheet>> = Vec::new();
         let same = |a: usize, b: usize, equal: &dyn Fn(usize) -> bool| a == b && (0..a).all(equal);
         if !same(pattern.variables.len(), before.variables.len(), &|k| {
             Arc::ptr_eq(&pattern.variables[k], &before.variables[k])
@@ -55,12 +57,21 @@ impl Evaluation {
                 .filter(|s| !old.contains(&Arc::as_ptr(s)))
                 .cloned()
                 .collect();
+            laid.extend(
+                gone.iter()
+                    .filter(|s| pattern.sheet(s.id).is_none())
+                    .cloned(),
+            );
             self.remove_missing(
                 nodes(&gone).into_iter(),
                 nodes(&come).into_iter(),
                 &mut changed,
             );
             for sheet in &come {
+                let was_on = before.sheet(sheet.id).map(|sheet| sheet.on);
+                if was_on != Some(sheet.on) {
+                    laid.push(sheet.clone());
+                }
                 for point in &sheet.points {
                     self.define(
                         Node::Point(point.id),
@@ -120,6 +131,17 @@ impl Evaluation {
                     &mut changed,
                 );
             }
+        }
+        for sheet in laid {
+            let marked = |point: &&Arc<Point>| matches!(point.rule, PointRule::Mark { .. });
+            let points = sheet.points.iter().filter(marked);
+            let inserts = pattern.panels.iter().flat_map(|panel| {
+                let own = panel.operations.iter();
+                let own = own.filter(|step| step.kind.sheet() == Some(sheet.id));
+                own.map(|step| Node::Stage(panel.id, Some(step.id)))
+            });
+            let nodes = points.map(|point| Node::Point(point.id)).chain(inserts);
+            changed.extend(nodes.filter_map(|node| self.index.get(&node)));
         }
         changed
     }

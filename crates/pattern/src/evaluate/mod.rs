@@ -14,6 +14,7 @@ mod markers;
 mod needs;
 mod node;
 mod numbers;
+mod on_stage;
 mod operations;
 mod panels;
 mod points;

@@ -3,8 +3,8 @@
 use super::node::{Definition, Node};
 use crate::formula::{Names, Use};
 use crate::{
-    CornerName, Edge, History, Line, Mark, Name, Number, Panel, PanelId, PartReference, Pattern,
-    Source, WornRule,
+    CornerName, Edge, History, Line, Mark, Name, Number, OperationId, Panel, PanelId,
+    PartReference, Pattern, PointId, PointRule, Source, WornRule,
 };
 
 /// Nodes a definition needs, and panels whose lines say which.
@@ -48,6 +48,9 @@ impl<'d> Needs<'d> {
                 self.nodes
                     .extend(rule.curves().into_iter().map(Node::Curve));
                 self.numbers(rule.numbers());
+                if let PointRule::Mark { at, .. } = rule {
+                    self.on_stage(point.id, at);
+                }
             }
             Definition::Curve(curve) => {
                 let rule = &curve.rule;
@@ -66,10 +69,8 @@ impl<'d> Needs<'d> {
                 if let Source::Side { of, split, .. } = panel.source {
                     self.nodes.push(Node::Stage(of, Some(split)));
                 }
-                self.nodes
-                    .extend(panel.edges().map(|edge| Node::Edge(edge.id)));
                 self.numbers([&panel.grain, &panel.allowance]);
-                self.numbers(panel.edges().filter_map(|e| e.allowance.as_ref()));
+                self.lines(panel, None);
                 self.notches(panel, 0);
                 if let WornRule::Wrapped {
                     level: Some(level), ..
@@ -87,6 +88,10 @@ impl<'d> Needs<'d> {
                 self.nodes
                     .extend(operation.points().into_iter().map(Node::Point));
                 self.nodes.extend(operation.curve().map(Node::Curve));
+                if operation.sheet().is_some() {
+                    self.number(&panel.allowance);
+                    self.lines(panel, Some(panel.operations[step - 1].id));
+                }
                 for mark in operation.marks() {
                     self.mark(panel, mark, Some(*step));
                 }
@@ -103,6 +108,29 @@ impl<'d> Needs<'d> {
                 }
                 self.numbers(seam.numbers());
             }
+        }
+    }
+
+    /// What the lines of a panel need that an operation inserts, or those that are drawn.
+    fn lines(&mut self, panel: &Panel, by: Option<OperationId>) {
+        let own = panel.lines.iter().filter(|line| line.by == by);
+        for edge in own.flat_map(|line| &line.edges) {
+            self.nodes.push(Node::Edge(edge.id));
+            self.numbers(edge.allowance.as_ref());
+        }
+    }
+
+    /// What a point needs that lies at a mark of the stage its sheet lies on.
+    fn on_stage(&mut self, point: PointId, at: &Mark) {
+        let on = self.pattern.point(point).and_then(|found| found.0.on);
+        let Some((panel, after)) = on else {
+            return;
+        };
+        self.panels.push(panel);
+        self.nodes.push(Node::Stage(panel, after));
+        if let Some(panel) = self.pattern.panel(panel) {
+            let own = after.and_then(|by| panel.step_of(by)).unwrap_or(0);
+            self.mark(panel, at, Some(own + 1));
         }
     }
 

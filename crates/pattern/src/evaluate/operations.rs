@@ -73,6 +73,8 @@ impl Drawing<'_, '_, '_> {
             OperationKind::Pivot { .. } => self.pivot(stage, (step, operation), &place),
             OperationKind::Spread { .. } => self.spread(stage, (step, operation), &place),
             OperationKind::Split { line, curve } => self.split(stage, (operation, *line), *curve),
+            OperationKind::Pleat { .. } => self.pleat(stage, (step, operation), &place),
+            OperationKind::Insert { sheet } => self.insert(stage, (step, operation.id), *sheet),
         }
     }
 

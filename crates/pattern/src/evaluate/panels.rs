@@ -5,7 +5,7 @@ use super::numbers::{Computation, Want};
 use crate::stage::{MarkValue, PlaceError, Placed, Spot, StageEdge, StageLine, StageNotch};
 use crate::{
     Code, Corner, Diagnostic, Edge, History, Line, LineKind, LineName, Mark, Name, Notch,
-    OperationId, Panel, PanelId, Pattern, Place, Side, Source, Stage,
+    OperationId, Panel, PanelId, Pattern, Place, Role, Side, Source, Stage,
 };
 use std::sync::Arc;
 use toile_geometry::Vec2;
@@ -35,7 +35,7 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
     }
 
     /// A stage the panel comes from.
-    fn past(&mut self, step: usize, place: &Place) -> Option<Arc<Stage>> {
+    pub(super) fn past(&mut self, step: usize, place: &Place) -> Option<Arc<Stage>> {
         let (panel, after) = self.history.stage(step)?;
         let stage = self.c.stage(Node::Stage(panel, after)).cloned();
         self.c.reported(stage, place, "")
@@ -66,7 +66,8 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
         };
         let mut complete = true;
         for kind in [LineKind::Outline, LineKind::Hole, LineKind::Internal] {
-            for line in panel.lines.iter().filter(|line| line.kind == kind) {
+            let drawn = |line: &&Line| line.kind == kind && line.by.is_none();
+            for line in panel.lines.iter().filter(drawn) {
                 match self.line(line, general.unwrap_or(0.0)) {
                     Some(line) => stage.lines.push(line),
                     // Lines inside can be left out; their faults are told.
@@ -94,7 +95,8 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
         Some(stage)
     }
 
-    /// A side of another panel, with its own grain and the width of cloth outside the cut.
+    /// A side of another panel, with its own grain, and its own width of cloth outside edges that
+    /// have none of their own.
     fn side(
         &mut self,
         (of, split, side): (PanelId, OperationId, Side),
@@ -134,9 +136,25 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
             grain,
             ..(**found).clone()
         };
-        for edge in stage.lines.iter_mut().flat_map(|line| &mut line.edges) {
-            if edge.name.maker() == Some(split) {
-                edge.allowance = general;
+        let pattern = &evaluation.pattern;
+        for line in &mut stage.lines {
+            let mut before = general;
+            for edge in &mut line.edges {
+                let is_general = match edge.name {
+                    Name::Drawn(id) => {
+                        let owner = pattern.owner_of(self.panel.id, id.into());
+                        let own = owner.and_then(|owner| owner.edge(id));
+                        own.is_some_and(|own| own.allowance.is_none())
+                    }
+                    Name::Made { by, .. } => by == split,
+                };
+                match edge.name.role() {
+                    // An opening goes on as the edge before it.
+                    Some(Role::Opening) => edge.allowance = before,
+                    _ if is_general => edge.allowance = general,
+                    _ => {}
+                }
+                before = edge.allowance;
             }
         }
         Some(stage)
@@ -158,7 +176,7 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
         found
     }
 
-    fn line(&mut self, line: &Line, general: f64) -> Option<StageLine> {
+    pub(super) fn line(&mut self, line: &Line, general: f64) -> Option<StageLine> {
         let mut edges = Vec::with_capacity(line.edges.len());
         let mut complete = true;
         for edge in &line.edges {

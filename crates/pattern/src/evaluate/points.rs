@@ -2,6 +2,7 @@
 
 use super::node::Node;
 use super::numbers::{Computation, Want, bounded_place};
+use super::on_stage;
 use crate::formula::Failure;
 use crate::{Code, Number, Place, Point, PointId, PointRule};
 use std::sync::Arc;
@@ -9,6 +10,9 @@ use toile_geometry::{Curve, Path, Vec2};
 
 /// The place of a point [m].
 pub(super) fn point(computation: &mut Computation<'_>, point: &Arc<Point>) -> Option<Vec2> {
+    if let PointRule::Mark { line, at } = &point.rule {
+        return on_stage::point(computation, point, (*line, at));
+    }
     let result = construct(computation, &point.rule).and_then(bounded_place);
     if result.is_ok() {
         return result.ok();
@@ -18,7 +22,7 @@ pub(super) fn point(computation: &mut Computation<'_>, point: &Arc<Point>) -> Op
 }
 
 impl Computation<'_> {
-    fn point_words(&self, point: &Point) -> String {
+    pub(super) fn point_words(&self, point: &Point) -> String {
         match self.evaluation.names.sheet_of_point(point.id) {
             Some(sheet) => format!("sheet {sheet:?}, point {:?}", point.name),
             None => format!("point {:?}", point.name),
@@ -42,6 +46,8 @@ impl Computation<'_> {
 fn construct(c: &mut Computation<'_>, rule: &PointRule) -> Result<Vec2, Failure> {
     match rule {
         PointRule::At { x, y } => c.vector(x, y),
+        // It is placed on a stage, not constructed.
+        PointRule::Mark { .. } => Err(same_place()),
         PointRule::Offset { base, x, y } => Ok(c.point_at(*base)? + c.vector(x, y)?),
         PointRule::Polar {
             base,

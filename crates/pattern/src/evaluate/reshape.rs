@@ -4,12 +4,12 @@ use super::node::Node;
 use super::numbers::Want;
 use super::panels::Drawing;
 use crate::stage::{
-    CutError, PivotError, Pivoting, SplitError, SpreadAlong, SpreadError, Spreading, pivot_dart,
-    split, spread,
+    CutError, MOST_CUTS, PivotError, Pivoting, Pleating, SplitError, SpreadAlong, SpreadError,
+    Spreading, pivot_dart, pleat, split, spread,
 };
 use crate::{
-    Code, CurveId, Diagnostic, LineName, Operation, OperationId, OperationKind, Place, SpreadCut,
-    Stage,
+    Bridge, Code, CurveId, Diagnostic, LineName, Operation, OperationId, OperationKind, Place,
+    PleatKind, PleatLine, SpreadCut, Stage,
 };
 
 impl Drawing<'_, '_, '_> {
@@ -125,19 +125,83 @@ impl Drawing<'_, '_, '_> {
             cuts: known,
             bridge: *bridge,
         };
-        let error = match spread(stage, &wish) {
-            Ok(stage) => return Some(stage),
-            Err(error) => error,
+        match spread(stage, &wish) {
+            Ok(stage) => Some(stage),
+            Err(error) => {
+                self.no_spread(error, place, &what);
+                None
+            }
+        }
+    }
+
+    /// A stage with pleats; nothing if they cannot be folded.
+    pub fn pleat(
+        &mut self,
+        stage: &Stage,
+        (step, operation): (usize, &Operation),
+        place: &Place,
+    ) -> Option<Stage> {
+        let OperationKind::Pleat {
+            line,
+            held,
+            pleats,
+            depth,
+            kind,
+            pressed,
+        } = &operation.kind
+        else {
+            return None;
         };
+        let what = self.words(&format!("pleat {:?}", operation.name));
+        let held = self.placed((*line, held), step, (place, &what));
+        let depth = self.c.number(depth, Want::Length, place, &what)?;
+        let folds = match kind {
+            PleatKind::Knife => 1.0,
+            PleatKind::Box | PleatKind::Inverted => 2.0,
+        };
+        let mut cuts = Vec::with_capacity(pleats.len());
+        for pleat in pleats {
+            let words = format!("{what}, line {}", pleat.number);
+            let ends = [0, 1].map(|k| self.placed((*line, &pleat.ends[k]), step, (place, &words)));
+            let [Some(from), Some(to)] = ends else {
+                continue;
+            };
+            cuts.push(SpreadAlong {
+                number: pleat.number,
+                ends: [from, to],
+                openings: [2.0 * folds * depth.max(0.0); 2],
+            });
+        }
+        let held = held.filter(|_| cuts.len() == pleats.len())?;
+        let spread = Spreading {
+            by: operation.id,
+            line: *line,
+            held,
+            cuts,
+            bridge: Bridge::Straight,
+        };
+        let wish = Pleating {
+            spread,
+            depth,
+            kind: *kind,
+            pressed: *pressed,
+        };
+        match pleat(stage, &wish) {
+            Ok(stage) => Some(stage),
+            Err(error) => {
+                self.no_spread(error, place, &what);
+                None
+            }
+        }
+    }
+
+    /// Says why a panel cannot be spread or pleated.
+    fn no_spread(&mut self, error: SpreadError, place: &Place, what: &str) {
         let (message, hint) = match error {
             SpreadError::Cut(number, error) => {
-                self.no_cut(error, place, &format!("{what}, cut {number}"));
-                return None;
+                return self.no_cut(error, place, &format!("{what}, cut {number}"));
             }
-            SpreadError::Line(error) => {
-                self.no_cut(error, place, &what);
-                return None;
-            }
+            SpreadError::Line(error) => return self.no_cut(error, place, what),
             SpreadError::Negative(number) => (
                 format!("cut {number} opens by less than nothing"),
                 "give openings of at least 0; take cloth out with a dart",
@@ -159,12 +223,23 @@ impl Drawing<'_, '_, '_> {
                 "give each a number of its own",
             ),
             SpreadError::TooMany => (
-                format!("it has {} cuts", cuts.len()),
-                "divide them among several spreads, at most 64 each",
+                format!("it has more than {MOST_CUTS} cuts"),
+                "divide them among several operations",
+            ),
+            SpreadError::Large(number, largest) => (
+                format!("{number} is too large a number for a cut"),
+                match largest {
+                    PleatLine::LARGEST => "give pleats numbers up to 6552",
+                    _ => "give cuts numbers up to 16383",
+                },
+            ),
+            SpreadError::NoDepth => ("its folds have no depth".to_owned(), "give a depth above 0"),
+            SpreadError::TooDeep(number) => (
+                format!("the outline beside pleat {number} does not reach as far as its fold"),
+                "make the pleats less deep, or move them away from corners and darts",
             ),
         };
-        self.refused(Code::BadCut, place, (&what, &message), hint);
-        None
+        self.refused(Code::BadCut, place, (what, &message), hint);
     }
 
     fn cut(

@@ -3,8 +3,8 @@
 use super::impossible;
 use super::lookup::{self, place};
 use crate::{
-    Curve, CurveId, Edge, EditError, Evaluation, Ids, LineKind, Panel, Point, PointId, PointRule,
-    Sheet, SheetId, Want,
+    Curve, CurveId, Edge, EditError, Evaluation, Ids, LineKind, Panel, Pattern, Point, PointId,
+    PointRule, Sheet, SheetId, Want,
 };
 use std::sync::Arc;
 use toile_geometry::Path;
@@ -19,6 +19,16 @@ pub enum Chain<'a> {
     Points(&'a [PointId]),
     /// Whole curves in order, each sharing an end with the next.
     Curves(&'a [CurveId]),
+}
+
+impl Chain<'_> {
+    /// The sheet its first part is on.
+    pub(super) fn sheet<'p>(&self, pattern: &'p Pattern) -> Option<&'p Arc<Sheet>> {
+        Some(match self {
+            Self::Points(points) => pattern.point(*points.first()?)?.0,
+            Self::Curves(curves) => pattern.curve(*curves.first()?)?.0,
+        })
+    }
 }
 
 /// A stretch of a curve from a point on it to another.

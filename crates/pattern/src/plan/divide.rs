@@ -2,16 +2,17 @@
 //! in every size, since the curve stays.
 
 use super::names::free_name;
+use super::on_stage::nearest_edge;
 use super::{impossible, lookup};
 use crate::{
-    Curve, CurveId, CurveRule, Edge, EdgeId, Edit, EditError, Entity, Evaluation, Number, Panel,
-    PanelId, PartId, Place, Point, PointId, PointRule, Sheet,
+    Curve, CurveId, CurveRule, Edge, EdgeId, Edit, EditError, Entity, Evaluation, Name, Number,
+    Panel, PanelId, PartId, Place, Point, PointId, PointRule, Sheet,
 };
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// The edits that put a corner on an edge at its place nearest to a point [m], or in its middle;
-/// and the corner.
+/// The edits that put a corner on an edge at its place nearest to a point of the finished panel [m],
+/// or in its middle; and the corner. On a side of a split the panel that was split gets it.
 ///
 /// # Errors
 /// The edge is not there or cannot be drawn, or the place is one of its ends.
@@ -22,7 +23,10 @@ pub fn divide_edge(
 ) -> Result<(Vec<Edit>, PointId), EditError> {
     let pattern = evaluation.pattern();
     let missing = |part: &dyn std::fmt::Display| EditError::Missing(part.to_string());
-    let owner = pattern.panel(panel).ok_or_else(|| missing(&panel))?;
+    let seen = pattern.panel(panel).ok_or_else(|| missing(&panel))?;
+    // Of a side the edges are those of the panel that was split.
+    let owner = pattern.owner_of(panel, edge.into());
+    let owner = owner.ok_or_else(|| missing(&edge))?;
     let old = owner.edge(edge).ok_or_else(|| missing(&edge))?;
     let sheet = lookup::drawn_on(pattern, owner)?;
     let undrawn = || impossible("the edge cannot be drawn", "mend its formulas first");
@@ -30,7 +34,14 @@ pub fn divide_edge(
     let curve = evaluation.curve(old.curve).ok_or_else(undrawn)?;
     let middle = path.at_length(0.5 * path.length()).ok_or_else(undrawn)?;
     let place = match near {
-        Some(near) => path.nearest(near).ok_or_else(undrawn)?,
+        Some(near) => {
+            let own = |name| name == Name::Drawn(edge);
+            match nearest_edge(evaluation, seen, near, own) {
+                Some(found) => path.at_length(found.share * path.length()),
+                None => path.nearest(near),
+            }
+            .ok_or_else(undrawn)?
+        }
         None => middle,
     };
     if place.along < 1e-9 * path.length() || place.along > (1.0 - 1e-9) * path.length() {
@@ -52,7 +63,7 @@ pub fn divide_edge(
             share: Number::Value(on_curve.along / curve.length()),
         },
     };
-    let mut changed = (**owner).clone();
+    let mut changed = owner.clone();
     let name = free_name(&format!("{} 2", old.name), |name| {
         owner.edge_named(name).is_some()
     });

@@ -4,8 +4,8 @@ use super::impossible;
 use super::number_place::NumberPlace;
 use super::numbers::numbers_of;
 use crate::{
-    EditError, Entity, Evaluation, Fabric, Ids, Number, Panel, PartId, Pattern, Seam, Sheet,
-    SheetHead, Source, Variable, Want,
+    EditError, Entity, Evaluation, Fabric, Ids, Number, Panel, PartId, Pattern, PointRule, Seam,
+    Sheet, SheetHead, Source, Variable, Want,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -104,7 +104,10 @@ pub fn copy(evaluation: &Evaluation, parts: &[PartId]) -> Result<Fragment, EditE
             .retain(|curve| chosen.contains(&curve.id.into()));
         let is_empty = copied.points.is_empty() && copied.curves.is_empty();
         if !is_empty || chosen.contains(&sheet.id.into()) {
-            copied.on = copied.on.filter(|on| chosen.contains(&on.0.into()));
+            let on = copied.on.filter(|on| chosen.contains(&on.0.into()));
+            if std::mem::replace(&mut copied.on, on) != on {
+                lay_free(evaluation, &mut copied);
+            }
             fragment.sheets.push(Arc::new(copied));
         }
     }
@@ -127,6 +130,15 @@ pub fn copy(evaluation: &Evaluation, parts: &[PartId]) -> Result<Fragment, EditE
     fragment.fabrics = pattern.fabrics.iter().filter(is_used).cloned().collect();
     look_outside(evaluation, &mut fragment);
     Ok(fragment)
+}
+
+/// Gives points at marks of a panel that is not copied their places as they are.
+fn lay_free(evaluation: &Evaluation, sheet: &mut Sheet) {
+    for point in &mut sheet.points {
+        if let (PointRule::Mark { .. }, Some(at)) = (&point.rule, evaluation.point(point.id)) {
+            Arc::make_mut(point).rule = PointRule::at(at.x, at.y);
+        }
+    }
 }
 
 /// A copy of all that a pattern has but its sizes.
@@ -169,6 +181,16 @@ fn closure(pattern: &Pattern, parts: &[PartId]) -> Result<BTreeSet<PartId>, Edit
             && known.contains(&of.into())
         {
             open.extend(seeds(pattern, of.into())?);
+        }
+        // So do sheets that it inserts.
+        if let PartId::Panel(id) = part {
+            let steps = pattern
+                .panel(id)
+                .into_iter()
+                .flat_map(|panel| &panel.operations);
+            for sheet in steps.filter_map(|step| step.kind.sheet()) {
+                open.extend(seeds(pattern, sheet.into())?);
+            }
         }
         let (Some(sheet), Some(entity)) = (sheets(part), entity(pattern, part)) else {
             continue;

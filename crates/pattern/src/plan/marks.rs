@@ -1,9 +1,13 @@
 //! From a place near a panel to a mark on one of its lines.
 
 use super::chain::ON_CURVE;
+use super::construct::add_point;
 use super::impossible;
 use super::lookup::{finite, panel};
-use crate::{EdgeId, EditError, Evaluation, LineId, Mark, PanelId};
+use super::on_stage::{nearest_edge, place_of};
+use crate::{
+    EdgeName, Edit, EditError, Evaluation, LineId, Mark, Name, PanelId, PointId, PointRule, Want,
+};
 use toile_geometry::Vec2;
 
 /// A mark and where it is.
@@ -12,14 +16,16 @@ pub struct NearMark {
     /// The line it is on.
     pub line: LineId,
     /// The edge it is on.
-    pub edge: EdgeId,
+    pub edge: EdgeName,
+    /// Length of that edge [m].
+    pub length: f64,
     /// The mark: a corner, or a share of the way along the edge.
     pub mark: Mark,
     /// Where it is [m].
     pub at: Vec2,
 }
 
-/// The mark nearest to a place [m] on the lines of a panel as drawn.
+/// The mark nearest to a place [m] on the lines of a panel as it is finished.
 ///
 /// # Errors
 /// The panel is not there or none of its edges can be drawn; the place is not finite.
@@ -30,41 +36,71 @@ pub fn nearest_mark(
 ) -> Result<NearMark, EditError> {
     finite("the place", &[near])?;
     let panel = self::panel(evaluation.pattern(), panel)?;
-    let mut best: Option<(f64, NearMark)> = None;
-    for line in &panel.lines {
-        for edge in &line.edges {
-            let path = evaluation.edge(edge.id);
-            let Some((path, place)) = path.and_then(|path| Some((path, path.nearest(near)?)))
-            else {
-                continue;
-            };
-            let at = path.point(place);
-            let away = (at - near).norm();
-            if best.as_ref().is_some_and(|best| best.0 <= away) {
-                continue;
-            }
-            let length = path.length();
-            let mark = match place.along {
-                along if along <= ON_CURVE => Mark::corner(edge.ends[0]),
-                along if along >= length - ON_CURVE => Mark::corner(edge.ends[1]),
-                along => Mark::between(edge.ends, along / length),
-            };
-            let (line, edge) = (line.id, edge.id);
-            best = Some((
-                away,
-                NearMark {
-                    line,
-                    edge,
-                    mark,
-                    at,
-                },
-            ));
-        }
-    }
-    best.map(|best| best.1).ok_or_else(|| {
+    let found = nearest_edge(evaluation, panel, near, |_| true).ok_or_else(|| {
         impossible(
             format!("panel {:?} has no edge that can be drawn", panel.name),
             "mend its outline first",
         )
+    })?;
+    let along = found.share * found.length;
+    let mark = match along {
+        along if along <= ON_CURVE => Mark::Corner(found.ends[0]),
+        along if along >= found.length - ON_CURVE => Mark::Corner(found.ends[1]),
+        _ => Mark::Between {
+            ends: found.ends,
+            share: found.share.into(),
+        },
+    };
+    Ok(NearMark {
+        line: found.line,
+        edge: found.edge,
+        length: found.length,
+        mark,
+        at: found.at,
     })
+}
+
+/// The edits that put a point of the panel's sheet at a mark, unless a corner is there; and the
+/// point. It stays there, whatever moves.
+///
+/// # Errors
+/// The panel is not there; operations moved the place away from where it was drawn, or made it.
+pub(super) fn point_at_mark(
+    evaluation: &Evaluation,
+    panel: PanelId,
+    near: NearMark,
+) -> Result<(Vec<Edit>, PointId), EditError> {
+    let owner = self::panel(evaluation.pattern(), panel)?;
+    let made = || {
+        impossible(
+            format!(
+                "operations of panel {:?} made or moved that place, which its sheet does not have",
+                owner.name
+            ),
+            "choose a place that lies where it was drawn",
+        )
+    };
+    let sheet = evaluation.pattern().sheet_of(owner).ok_or_else(made)?;
+    let here = place_of(evaluation, owner, (Name::Drawn(near.line), &near.mark));
+    let is_here = |at: Vec2| here.is_some_and(|here| (at - here).norm() <= ON_CURVE);
+    if let Mark::Corner(Name::Drawn(point)) = near.mark {
+        return match evaluation.point(point).is_some_and(is_here) {
+            true => Ok((Vec::new(), point)),
+            false => Err(made()),
+        };
+    }
+    let (Name::Drawn(edge), Mark::Between { share, .. }) = (near.edge, &near.mark) else {
+        return Err(made());
+    };
+    let drawn = evaluation.pattern().owner_of(panel, edge.into());
+    let curve = drawn.and_then(|owner| Some(owner.edge(edge)?.curve));
+    let rule = curve.and_then(|curve| {
+        let along = evaluation.edge(edge)?;
+        let share = evaluation.number(share, Want::Plain)?;
+        let at = along.point(along.at_length(share * along.length())?);
+        let path = evaluation.curve(curve)?;
+        let share = (path.nearest(at)?.along / path.length()).into();
+        is_here(at).then_some(PointRule::OnCurve { curve, share })
+    });
+    add_point(evaluation, sheet, None, rule.ok_or_else(made)?)
 }

@@ -131,7 +131,10 @@ pub fn add_matched_notches(
             "click on the edge between its corners",
         ));
     };
-    let others = opposites(evaluation, near.edge, share);
+    let others = match near.edge {
+        Name::Drawn(edge) => opposites(evaluation, edge, share),
+        Name::Made { .. } => Vec::new(),
+    };
     if others.is_empty() {
         return Err(impossible(
             "the edge is not sewn to anything there",
@@ -156,11 +159,11 @@ fn located(
     pattern: &Pattern,
     place: &Opposite,
 ) -> Result<(LineId, [crate::PointId; 2]), EditError> {
-    let panel = lookup::panel(pattern, place.panel)?;
-    let mut lines = panel.lines.iter();
-    let found = lines.find_map(|line| {
-        let edge = line.edges.iter().find(|edge| edge.id == place.edge)?;
-        Some((line.id, edge.ends))
+    lookup::panel(pattern, place.panel)?;
+    let owner = pattern.owner_of(place.panel, place.edge.into());
+    let found = owner.and_then(|owner| {
+        let line = owner.line_of(place.edge)?.id;
+        Some((line, owner.edge(place.edge)?.ends))
     });
     found.ok_or_else(|| EditError::Missing(place.edge.to_string()))
 }

@@ -20,6 +20,8 @@ mod names;
 mod notch;
 mod number_place;
 mod numbers;
+mod on_panel;
+mod on_stage;
 mod operations;
 mod paste;
 mod remap;
@@ -53,11 +55,15 @@ pub use number_place::{MarkNumber, NumberPlace, OperationNumber, PointNumber, Sp
 pub use numbers::{
     NumberEntry, adjust_number, clear_number, number_at, numbers_of, set_number, set_number_in_size,
 };
+pub use on_panel::{line_across, open_sheet};
+pub use on_stage::{EdgePart, edge_ends, edge_parts, outline_of};
 pub use operations::{add_operation, move_operation, remove_operation, set_operation};
 pub use paste::{PasteTarget, Pasted, duplicate, insert_pattern, paste};
 pub use remove::{remove_parts, remove_point};
 pub use rename::rename;
-pub use reshape::{PivotWish, SpreadWish, even_cuts, pivot_dart, spread_panel};
+pub use reshape::{
+    PivotWish, PleatWish, SpreadWish, even_cuts, pivot_dart, pleat_panel, spread_panel,
+};
 pub use seam::{SeamSide, SewnEdge, flip_side, remove_seam, sew};
 pub use select::points_of;
 pub use sizes::{

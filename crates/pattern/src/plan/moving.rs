@@ -2,10 +2,14 @@
 //! points keep their construction.
 
 use super::impossible;
-use crate::{Edit, EditError, Entity, Evaluation, Number, Point, PointId, PointRule};
+use crate::stage::{MarkValue, Placed};
+use crate::{
+    Edit, EditError, Entity, Evaluation, LineName, Mark, Name, Number, Point, PointId, PointRule,
+    Sheet, Want,
+};
 use std::f64::consts::TAU;
 use std::sync::Arc;
-use toile_geometry::Vec2;
+use toile_geometry::{Path, Vec2};
 
 /// The edits that move a point to `to` [m] as it is drawn now.
 ///
@@ -26,7 +30,7 @@ pub fn move_point(
     let found = evaluation.pattern().point(point);
     let (sheet, found) = found.ok_or_else(|| EditError::Missing(point.to_string()))?;
     let now = at(evaluation, point)?;
-    let rule = moved(evaluation, &found.rule, now, to)?;
+    let rule = moved(evaluation, (sheet, &found.rule), now, to)?;
     let moved = Point {
         rule,
         ..(**found).clone()
@@ -50,10 +54,10 @@ fn way(evaluation: &Evaluation, [base, tip]: [PointId; 2]) -> Result<Vec2, EditE
     ))
 }
 
-/// The rule with which a point that lies at `now` comes to `to` [m], or as near as it lets it.
+/// The rule with which a point of a sheet that lies at `now` comes to `to` [m], or as near as it lets it.
 pub(super) fn moved(
     evaluation: &Evaluation,
-    old: &PointRule,
+    (sheet, old): (&Sheet, &PointRule),
     now: Vec2,
     to: Vec2,
 ) -> Result<PointRule, EditError> {
@@ -138,11 +142,87 @@ pub(super) fn moved(
                 "move the points it is made from",
             ));
         }
+        PointRule::Mark { line, at } => PointRule::Mark {
+            line: *line,
+            at: moved_mark(evaluation, (sheet, *line, at), [now, to])?,
+        },
         PointRule::Mirrored { .. } => {
             return Err(impossible(
                 "the point is the mirror image of another",
                 "move the other point",
             ));
+        }
+    })
+}
+
+/// A mark of the stage a sheet lies on, moved along its line from the place nearest to one to that
+/// nearest to another [m].
+fn moved_mark(
+    evaluation: &Evaluation,
+    (sheet, line, mark): (&Sheet, LineName, &Mark),
+    [now, to]: [Vec2; 2],
+) -> Result<Mark, EditError> {
+    let pattern = evaluation.pattern();
+    let (corners, number) = match mark {
+        Mark::Corner(Name::Made { by, .. }) => {
+            let mut panels = pattern.panels.iter();
+            let found = panels.find_map(|panel| Some((panel, panel.step_of(*by)?)));
+            let words = found.map_or_else(String::new, |(panel, step)| {
+                let made = &panel.operations[step - 1];
+                let name = &made.name;
+                format!(
+                    ": operation {step}, {name:?}, of panel {:?} made it",
+                    panel.name
+                )
+            });
+            return Err(impossible(
+                format!("the point lies at a corner that was not drawn{words}"),
+                "change the numbers of that operation",
+            ));
+        }
+        Mark::Corner(Name::Drawn(_)) => {
+            return Err(impossible(
+                "the point lies at a corner of the panel",
+                "move that corner on the panel's own sheet",
+            ));
+        }
+        Mark::Notch(_) => {
+            return Err(impossible("the point lies at a notch", "move the notch"));
+        }
+        Mark::Along { from, distance } => ([*from; 2], distance),
+        Mark::Between { ends, share } => (*ends, share),
+    };
+    let lost = || impossible("its panel cannot be drawn", "mend that first");
+    let (of, after) = sheet.on.ok_or_else(lost)?;
+    let stage = evaluation.stage(of, after).ok_or_else(lost)?;
+    let edges = stage.lines.iter().filter(|l| l.name == line && l.half == 0);
+    let edges = edges
+        .flat_map(|line| &line.edges)
+        .filter(|edge| edge.half == 0);
+    let path = Path::new(edges.map(|edge| edge.curve).collect());
+    let along = |at: Vec2| path.nearest(at).map(|place| place.along);
+    let shift = along(to).zip(along(now)).map(|(to, now)| to - now);
+    let mut shift = shift.ok_or_else(lost)?;
+    // Round a closed line the nearer way.
+    if shift.abs() > 0.5 * path.length() {
+        shift -= path.length().copysign(shift);
+    }
+    let corner = |k: usize| Placed::Mark(MarkValue::Corner(corners[k]));
+    Ok(match mark {
+        Mark::Along { from, .. } => Mark::Along {
+            from: *from,
+            distance: added(number, shift),
+        },
+        _ => {
+            let way = stage.stretch(line, [corner(0), corner(1)], |edge| edge.half == 0);
+            let way = way.map_err(|_| lost())?;
+            let length = stage.stretch_length(0, &way).max(1e-12);
+            let now = evaluation.number(number, Want::Plain).ok_or_else(lost)?;
+            let share = (now + shift / length).clamp(0.0, 1.0);
+            Mark::Between {
+                ends: corners,
+                share: added(number, share - now),
+            }
         }
     })
 }

@@ -72,7 +72,7 @@ pub fn move_notch(
     (line, at): (LineId, Mark),
 ) -> Result<Vec<Edit>, EditError> {
     let (mut changed, k) = found(evaluation, panel, notch)?;
-    lookup::line(&changed, line)?;
+    line_of(evaluation, &changed, line)?;
     refuse_itself(&at, notch)?;
     changed.notches[k].line = line;
     changed.notches[k].at = at;
@@ -118,6 +118,13 @@ fn found(
     Ok(((**panel).clone(), at))
 }
 
+/// Refuses a line that is neither the panel's nor one of a panel it is a side of.
+fn line_of(evaluation: &Evaluation, panel: &Panel, line: LineId) -> Result<(), EditError> {
+    let owner = evaluation.pattern().owner_of(panel.id, line.into());
+    let missing = || EditError::Missing(line.to_string());
+    owner.map(|_| ()).ok_or_else(missing)
+}
+
 fn refuse_itself(at: &Mark, notch: NotchId) -> Result<(), EditError> {
     match at {
         Mark::Notch(id) if *id == notch => Err(impossible(
@@ -136,7 +143,7 @@ fn add(
 ) -> Result<(Vec<Edit>, Vec<NotchId>), EditError> {
     let pattern = evaluation.pattern();
     let mut changed = (**lookup::panel(pattern, panel)?).clone();
-    lookup::line(&changed, line)?;
+    line_of(evaluation, &changed, line)?;
     let mut ids = pattern.ids;
     let mut made = Vec::new();
     for at in marks {
@@ -162,7 +169,7 @@ fn put(evaluation: &Evaluation, panel: Panel, notches: &[NotchId]) -> Result<Vec
     let after = after(evaluation, &edits)?;
     let places: Vec<Place> = notches.iter().map(|&n| Place::Notch(id, n)).collect();
     refuse_faults(evaluation, &after, &places)?;
-    let drawn = after.stage(id, None);
+    let drawn = after.pattern().panel(id).and_then(|p| after.last_stage(p));
     let is_drawn = |notch: &NotchId| {
         drawn.is_some_and(|stage| stage.notches.iter().any(|known| known.id == *notch))
     };

@@ -356,7 +356,21 @@ fn in_rule(rule: &mut PointRule, number: PointNumber) -> Option<&mut Number> {
         ) => Some(distance),
         (PointNumber::Along, PointRule::Between { along, .. }) => Some(along),
         (PointNumber::Aside, PointRule::Between { aside, .. }) => Some(aside),
-        (PointNumber::Share, PointRule::OnCurve { share, .. }) => Some(share),
+        (PointNumber::Share, PointRule::OnCurve { share, .. })
+        | (
+            PointNumber::Share,
+            PointRule::Mark {
+                at: Mark::Between { share, .. },
+                ..
+            },
+        ) => Some(share),
+        (
+            PointNumber::Distance,
+            PointRule::Mark {
+                at: Mark::Along { distance, .. },
+                ..
+            },
+        ) => Some(distance),
         _ => None,
     }
 }
@@ -369,10 +383,17 @@ fn in_operation(kind: &mut OperationKind, number: OperationNumber) -> Option<&mu
         ) => number.of(mouth),
         (OperationNumber::Share, OperationKind::Pivot { share, .. }) => Some(share),
         (OperationNumber::Back, OperationKind::Pivot { back, .. }) => Some(back),
-        (OperationNumber::Held(number), OperationKind::Spread { held, .. }) => number.of(held),
+        (
+            OperationNumber::Held(number),
+            OperationKind::Spread { held, .. } | OperationKind::Pleat { held, .. },
+        ) => number.of(held),
         (OperationNumber::Cut(k, end, number), OperationKind::Spread { cuts, .. }) => {
             number.of(&mut cuts.get_mut(k)?.ends[end.index()])
         }
+        (OperationNumber::Cut(k, end, number), OperationKind::Pleat { pleats, .. }) => {
+            number.of(&mut pleats.get_mut(k)?.ends[end.index()])
+        }
+        (OperationNumber::Depth, OperationKind::Pleat { depth, .. }) => Some(depth),
         (OperationNumber::Opening(k, end), OperationKind::Spread { cuts, .. }) => {
             Some(&mut cuts.get_mut(k)?.openings[end.index()])
         }

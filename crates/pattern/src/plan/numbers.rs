@@ -187,15 +187,16 @@ pub(super) fn refuse_valueless(
     }
 }
 
-/// The numbers the cuts of a spread may have.
+/// The numbers the cuts of a spread or the lines of pleats may have.
 fn cut_numbers(pattern: &Pattern, id: OperationId, marks: [MarkNumber; 2]) -> Vec<OperationNumber> {
     let all = pattern.panels.iter().flat_map(|panel| &panel.operations);
-    let count = all.filter(|operation| operation.id == id).map(|operation| {
-        let OperationKind::Spread { cuts, .. } = &operation.kind else {
-            return 0;
-        };
-        cuts.len()
-    });
+    let count = all
+        .filter(|operation| operation.id == id)
+        .map(|operation| match &operation.kind {
+            OperationKind::Spread { cuts, .. } => cuts.len(),
+            OperationKind::Pleat { pleats, .. } => pleats.len(),
+            _ => 0,
+        });
     let mut numbers = Vec::new();
     for k in 0..count.sum() {
         for end in [SpanEnd::From, SpanEnd::To] {

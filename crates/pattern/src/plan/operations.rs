@@ -5,7 +5,7 @@ use super::lookup::{self, after, refuse_faults};
 use super::names::free_name;
 use crate::{
     Diagnostic, Edit, EditError, Entity, Evaluation, Operation, OperationId, OperationKind, Panel,
-    PanelId, Place, Severity,
+    PanelId, Place, Severity, SheetId,
 };
 use std::sync::Arc;
 
@@ -120,31 +120,58 @@ fn put(
     }
 }
 
-/// Operations use points and curves of the panel's own sheet: those of others lie elsewhere.
+/// Operations use points and curves of the panel's own sheet, or of one that lies on the stage
+/// before them: those of others lie elsewhere.
 fn refuse_foreign_parts(evaluation: &Evaluation, panel: &Panel) -> Result<(), EditError> {
-    let pattern = evaluation.pattern();
+    let mut pattern = evaluation.pattern().clone();
+    pattern.apply(&[Edit::Put(Entity::Panel(Arc::new(panel.clone())))])?;
     let own = pattern.sheet_of(panel);
-    let kinds = panel.operations.iter().map(|operation| &operation.kind);
-    // A part that is gone is told where it is missed.
-    let points = kinds
-        .clone()
-        .flat_map(OperationKind::points)
-        .filter_map(|id| {
+    for (step, operation) in (1..).zip(&panel.operations) {
+        // A part that is gone is told where it is missed.
+        let points = operation.kind.points().into_iter().filter_map(|id| {
             let (sheet, point) = pattern.point(id)?;
             Some((sheet, "point", &point.name))
         });
-    let curves = kinds.filter_map(OperationKind::curve).filter_map(|id| {
-        let (sheet, curve) = pattern.curve(id)?;
-        Some((sheet, "curve", &curve.name))
-    });
-    match points.chain(curves).find(|found| own != Some(found.0.id)) {
-        Some((sheet, kind, name)) => Err(impossible(
-            format!(
-                "{kind} {name:?} is on sheet {:?}, which panel {:?} is not traced from",
-                sheet.name, panel.name
-            ),
-            format!("choose a {kind} of the panel's own sheet"),
-        )),
-        None => Ok(()),
+        let curves = operation.kind.curve().into_iter().filter_map(|id| {
+            let (sheet, curve) = pattern.curve(id)?;
+            Some((sheet, "curve", &curve.name))
+        });
+        let is_foreign =
+            |sheet: SheetId| own != Some(sheet) && !pattern.lies_before(sheet, panel, step);
+        if let Some(sheet) = operation.kind.sheet()
+            && !pattern.lies_before(sheet, panel, step)
+            && was_laid(evaluation, panel.id, operation)
+        {
+            return Err(impossible(
+                format!(
+                    "insert {:?}: its sheet does not lie on the stage before it then",
+                    operation.name
+                ),
+                "do it right after the operation that its sheet lies on",
+            ));
+        }
+        let mut used = points.chain(curves);
+        if let Some((sheet, kind, name)) = used.find(|found| is_foreign(found.0.id)) {
+            return Err(impossible(
+                format!(
+                    "{kind} {name:?} is on sheet {:?}, which panel {:?} is not traced from",
+                    sheet.name, panel.name
+                ),
+                format!(
+                    "choose a {kind} of the panel's own sheet, or of one that lies on its last stage"
+                ),
+            ));
+        }
     }
+    Ok(())
+}
+
+/// Whether the sheet of an insert lies on the stage before it now.
+fn was_laid(evaluation: &Evaluation, panel: PanelId, insert: &Operation) -> bool {
+    let pattern = evaluation.pattern();
+    let found = pattern.panel(panel).and_then(|panel| {
+        let (sheet, step) = (insert.kind.sheet()?, panel.step_of(insert.id)?);
+        Some(pattern.lies_before(sheet, panel, step))
+    });
+    found == Some(true)
 }

@@ -172,6 +172,10 @@ impl Remap {
                 pair(line);
                 *curve = self.id(*curve);
             }
+            PointRule::Mark { line, at } => {
+                *line = self.name(*line);
+                self.mark(at);
+            }
             PointRule::Foot { base, line } | PointRule::Mirrored { base, line } => {
                 *base = self.id(*base);
                 pair(line);
@@ -277,6 +281,22 @@ impl Remap {
                 *line = self.name(*line);
                 *curve = self.id(*curve);
             }
+            OperationKind::Pleat {
+                line,
+                held,
+                pleats,
+                depth,
+                kind: _,
+                pressed: _,
+            } => {
+                *line = self.name(*line);
+                self.mark(held);
+                for pleat in pleats {
+                    pleat.ends.iter_mut().for_each(|end| self.mark(end));
+                }
+                self.number(depth);
+            }
+            OperationKind::Insert { sheet } => *sheet = self.id(*sheet),
             OperationKind::Spread {
                 line,
                 held,
@@ -307,6 +327,7 @@ impl Remap {
         self.number(&mut panel.allowance);
         for line in &mut panel.lines {
             line.id = self.id(line.id);
+            line.by = line.by.map(|by| self.id(by));
             for edge in &mut line.edges {
                 edge.id = self.id(edge.id);
                 edge.curve = self.id(edge.curve);

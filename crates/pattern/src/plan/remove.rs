@@ -166,6 +166,7 @@ fn thinned(
                 id,
                 name,
                 kind: line.kind,
+                by: line.by,
                 edges: edges.to_vec(),
             });
         }

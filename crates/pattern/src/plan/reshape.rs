@@ -2,11 +2,12 @@
 
 use super::impossible;
 use super::lookup;
+use super::on_stage::{edge_ends, mark_value};
 use super::operations::add_operation;
 use crate::stage::{MarkValue, is_sewn};
 use crate::{
-    Bridge, Edge, EdgeId, Edit, EditError, Evaluation, LineName, Mark, Name, Number, OperationId,
-    OperationKind, Panel, PanelId, Pressed, Role, SpreadCut, Turned,
+    Bridge, EdgeId, Edit, EditError, Evaluation, LineName, Mark, Name, Number, OperationId,
+    OperationKind, Panel, PanelId, PleatKind, PleatLine, Pressed, Role, Side, SpreadCut, Turned,
 };
 
 /// A dart that is to be pivoted.
@@ -105,24 +106,6 @@ fn freer_part(
     })
 }
 
-/// A mark with its number.
-pub(super) fn mark_value(evaluation: &Evaluation, panel: &Panel, mark: &Mark) -> Option<MarkValue> {
-    let number = |number: &Number, want| evaluation.number(number, want);
-    Some(match mark {
-        Mark::Corner(corner) => MarkValue::Corner(*corner),
-        Mark::Along { from, distance } => {
-            MarkValue::Along(*from, number(distance, crate::Want::Length)?)
-        }
-        Mark::Between { ends, share } => {
-            MarkValue::Between(*ends, number(share, crate::Want::Plain)?)
-        }
-        Mark::Notch(id) => match &evaluation.pattern().notch_of(panel, *id)?.at {
-            Mark::Notch(_) => return None,
-            at => mark_value(evaluation, panel, at)?,
-        },
-    })
-}
-
 /// A panel that is to be spread.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpreadWish {
@@ -159,7 +142,10 @@ pub fn spread_panel(
         });
     let kind = OperationKind::Spread {
         line: wish.line,
-        held: match wish.held.or_else(|| usual_held(owner, wish.line)) {
+        held: match wish
+            .held
+            .or_else(|| usual_held(evaluation, owner, wish.line))
+        {
             Some(held) => held,
             None => {
                 return Err(impossible(
@@ -174,7 +160,61 @@ pub fn spread_panel(
     add_operation(evaluation, panel, kind)
 }
 
-fn usual_held(panel: &Panel, line: LineName) -> Option<Mark> {
+/// A panel that is to be pleated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PleatWish {
+    /// The line it is pleated from and to.
+    pub line: LineName,
+    /// Where each pleat starts and ends.
+    pub lines: Vec<[Mark; 2]>,
+    /// How deep a fold goes under [m].
+    pub depth: Number,
+    /// How it is folded.
+    pub kind: PleatKind,
+    /// The side of its line a knife pleat is pressed to.
+    pub pressed: Side,
+    /// A place that stays where it is; nothing for the start of the fold, else of the line.
+    pub held: Option<Mark>,
+}
+
+/// The edits that pleat a panel; and the operation.
+///
+/// # Errors
+/// The panel is not there or cannot be drawn; there is no line; it cannot be pleated so: the words
+/// say why.
+pub fn pleat_panel(
+    evaluation: &Evaluation,
+    panel: PanelId,
+    wish: PleatWish,
+) -> Result<(Vec<Edit>, OperationId), EditError> {
+    let owner = lookup::panel(evaluation.pattern(), panel)?;
+    if wish.lines.is_empty() {
+        return Err(impossible("there is no pleat", "give one or more"));
+    }
+    let held = wish
+        .held
+        .or_else(|| usual_held(evaluation, owner, wish.line));
+    let held = held.ok_or_else(|| {
+        impossible(
+            format!("panel {:?} has no such line", owner.name),
+            "pleat it along its outline",
+        )
+    })?;
+    let pleats = (0_u16..).zip(wish.lines);
+    let kind = OperationKind::Pleat {
+        line: wish.line,
+        held,
+        pleats: pleats
+            .map(|(number, ends)| PleatLine { number, ends })
+            .collect(),
+        depth: wish.depth,
+        kind: wish.kind,
+        pressed: wish.pressed,
+    };
+    add_operation(evaluation, panel, kind)
+}
+
+fn usual_held(evaluation: &Evaluation, panel: &Panel, line: LineName) -> Option<Mark> {
     let fold = panel
         .operations
         .iter()
@@ -182,12 +222,12 @@ fn usual_held(panel: &Panel, line: LineName) -> Option<Mark> {
             OperationKind::Fold { ends, line: own } if *own == line => Some(ends[0].clone()),
             _ => None,
         });
-    let drawn = || {
-        let mut lines = panel.lines.iter();
-        let found = lines.find(|known| Name::Drawn(known.id) == line)?;
-        found.edges.first().map(|edge| Mark::corner(edge.ends[0]))
+    let first = || {
+        let stage = evaluation.stage(panel.id, None)?;
+        let found = stage.lines.iter().find(|known| known.name == line)?;
+        found.edges.first()?.start.map(Mark::Corner)
     };
-    fold.or_else(drawn)
+    fold.or_else(first)
 }
 
 /// Places for cuts from one edge of a panel to another, evenly: the panel falls into `count + 1`
@@ -202,31 +242,22 @@ pub fn even_cuts(
     count: u16,
 ) -> Result<(LineName, Vec<[Mark; 2]>), EditError> {
     let owner = lookup::panel(evaluation.pattern(), panel)?;
-    let edge = |id: EdgeId| -> Result<&Edge, EditError> {
-        let missing = || EditError::Missing(format!("{id} of panel {:?}", owner.name));
-        owner.edge(id).ok_or_else(missing)
-    };
-    let (start, end) = (edge(from)?, edge(to)?);
-    let lines = [from, to].map(|id| owner.line_of(id).map(|line| line.id));
-    let [Some(line), Some(other)] = lines else {
-        return Err(EditError::Missing(format!(
-            "a line of panel {:?}",
-            owner.name
-        )));
-    };
+    let (line, start) = edge_ends(evaluation, owner, from)?;
+    let (other, end) = edge_ends(evaluation, owner, to)?;
     if line != other || from == to {
         return Err(impossible(
             "the edges are not two of one line",
             "choose two edges of the outline that lie across from each other",
         ));
     }
+    let between = |ends, share: f64| Mark::Between {
+        ends,
+        share: share.into(),
+    };
     // Across a closed line edges run against each other.
     let cuts = (1..=count).map(|k| {
         let share = f64::from(k) / f64::from(count + 1);
-        [
-            Mark::between(start.ends, share),
-            Mark::between(end.ends, 1.0 - share),
-        ]
+        [between(start, share), between(end, 1.0 - share)]
     });
     Ok((Name::Drawn(line), cuts.collect()))
 }

@@ -3,8 +3,9 @@
 use super::impossible;
 use super::lookup::{self, after, refuse_faults};
 use super::names::{free_name, wished};
+use super::on_stage::edge_ends;
 use crate::{
-    Edge, EdgeId, Edit, EditError, Entity, Evaluation, Line, Mark, Name, Panel, PanelId, Pattern,
+    CornerName, EdgeId, Edit, EditError, Entity, Evaluation, LineId, Mark, Name, Panel, PanelId,
     Place, Seam, SeamId, Span,
 };
 use serde::{Deserialize, Serialize};
@@ -58,13 +59,13 @@ pub fn sew(
 ) -> Result<(Vec<Edit>, SeamId), EditError> {
     let pattern = evaluation.pattern();
     if let Some(edge) = sides[0].iter().find(|edge| sides[1].contains(edge)) {
-        let (_, _, found) = located(pattern, *edge)?;
+        let found = located(evaluation, *edge)?.edge;
         return Err(impossible(
             format!("edge {:?} would be sewn to itself", found.name),
             "choose another edge, or another copy of the panel",
         ));
     }
-    let runs = [runs(pattern, sides[0])?, runs(pattern, sides[1])?];
+    let runs = [runs(evaluation, sides[0])?, runs(evaluation, sides[1])?];
     let turned = orientations(&runs);
     let mut spans = [Vec::new(), Vec::new()];
     for side in 0..2 {
@@ -114,12 +115,19 @@ pub fn remove_seam(evaluation: &Evaluation, seam: SeamId) -> Result<Vec<Edit>, E
     Ok(vec![Edit::Remove(seam.into())])
 }
 
+/// An edge as it lies on its panel.
+struct RunEdge<'p> {
+    name: &'p str,
+    /// Its corners there.
+    ends: [CornerName; 2],
+}
+
 /// Edges of one copy and half of a panel that follow each other along one line.
 struct Run<'p> {
     panel: &'p Panel,
-    line: &'p Line,
+    line: LineId,
     first: SewnEdge,
-    edges: Vec<&'p Edge>,
+    edges: Vec<RunEdge<'p>>,
     /// Whether they are walked against the line; nothing if one edge does not tell.
     backwards: Option<bool>,
 }
@@ -141,7 +149,7 @@ impl Run<'_> {
     /// The span, walked clockwise or not unless the run itself tells how.
     fn span(&self, clockwise: bool) -> Span {
         let backwards = self.backwards.unwrap_or(clockwise != self.is_mirrored());
-        let (first, last) = (self.edges[0], self.edges[self.edges.len() - 1]);
+        let (first, last) = (&self.edges[0], &self.edges[self.edges.len() - 1]);
         let [from, to] = match backwards {
             false => [first.ends[0], last.ends[1]],
             true => [first.ends[1], last.ends[0]],
@@ -150,27 +158,38 @@ impl Run<'_> {
             panel: self.panel.id,
             copy: self.first.copy,
             half: self.first.half,
-            line: Name::Drawn(self.line.id),
-            from: Mark::corner(from),
-            to: Mark::corner(to),
+            line: Name::Drawn(self.line),
+            from: Mark::Corner(from),
+            to: Mark::Corner(to),
             backwards,
         }
     }
 }
 
-fn located(pattern: &Pattern, sewn: SewnEdge) -> Result<(&Panel, &Line, &Edge), EditError> {
+/// An edge with its panel and line.
+struct Located<'p> {
+    panel: &'p Panel,
+    line: LineId,
+    edge: RunEdge<'p>,
+}
+
+fn located(evaluation: &Evaluation, sewn: SewnEdge) -> Result<Located<'_>, EditError> {
+    let pattern = evaluation.pattern();
     let panel = lookup::panel(pattern, sewn.panel)?;
-    let missing = || EditError::Missing(format!("{} of panel {:?}", sewn.edge, panel.name));
-    let line = panel.line_of(sewn.edge).ok_or_else(missing)?;
-    let edge = panel.edge(sewn.edge).ok_or_else(missing)?;
-    Ok((panel, line, edge))
+    let (line, ends) = edge_ends(evaluation, panel, sewn.edge)?;
+    let owner = pattern.owner_of(sewn.panel, sewn.edge.into());
+    let edge = owner.and_then(|owner| owner.edge(sewn.edge));
+    let missing = || EditError::Missing(sewn.edge.to_string());
+    let name = &edge.ok_or_else(missing)?.name;
+    let edge = RunEdge { name, ends };
+    Ok(Located { panel, line, edge })
 }
 
 /// The runs of a chain.
-fn runs<'p>(pattern: &'p Pattern, chain: &[SewnEdge]) -> Result<Vec<Run<'p>>, EditError> {
+fn runs<'p>(evaluation: &'p Evaluation, chain: &[SewnEdge]) -> Result<Vec<Run<'p>>, EditError> {
     let mut runs: Vec<Run<'p>> = Vec::new();
     for (k, &sewn) in chain.iter().enumerate() {
-        let (panel, line, edge) = located(pattern, sewn)?;
+        let Located { panel, line, edge } = located(evaluation, sewn)?;
         if chain[..k].contains(&sewn) {
             return Err(impossible(
                 format!("edge {:?} is in the chain twice", edge.name),
@@ -191,7 +210,7 @@ fn runs<'p>(pattern: &'p Pattern, chain: &[SewnEdge]) -> Result<Vec<Run<'p>>, Ed
             });
             continue;
         };
-        let last = run.edges[run.edges.len() - 1];
+        let last = &run.edges[run.edges.len() - 1];
         let forwards = last.ends[1] == edge.ends[0];
         let against = last.ends[0] == edge.ends[1];
         let backwards = match (run.backwards, forwards, against) {
@@ -241,7 +260,7 @@ fn proposed(runs: &[Vec<Run<'_>>; 2]) -> String {
     let (Some(one), Some(two)) = (one, two) else {
         return "seam".into();
     };
-    let [a, b] = [one, two].map(|run| &run.edges[0].name);
+    let [a, b] = [one, two].map(|run| run.edges[0].name);
     match a == b {
         true => format!("{a} seam"),
         false => format!("{} {a} to {} {b}", one.panel.name, two.panel.name),

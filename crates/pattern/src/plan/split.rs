@@ -3,8 +3,8 @@
 use super::impossible;
 use super::lookup::{self, after};
 use super::names::free_name;
+use super::on_stage::mark_value;
 use super::operations::add_operation;
-use super::reshape::mark_value;
 use crate::stage::is_sewn;
 use crate::{
     CornerName, CurveId, Edit, EditError, Entity, Evaluation, Ids, LineName, Mark, Name, Operation,

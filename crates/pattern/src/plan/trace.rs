@@ -5,6 +5,7 @@ use super::face::face;
 use super::impossible;
 use super::lookup::{self, after, finite, refuse_faults};
 use super::names::{free_name, panel_owner, wished};
+use super::on_panel::inserted;
 use crate::{
     Edit, EditError, Entity, Evaluation, Fabric, FabricId, Ids, Line, LineId, LineKind, Panel,
     PanelId, Pattern, Place, Sheet, SheetId,
@@ -72,6 +73,8 @@ pub fn trace_face(
 
 /// The edits that add a hole or an internal line to a panel, along a chain of its sheet; and the
 /// line. Holes run clockwise whatever the chain does. Without a name it is called by what it is.
+/// A chain of a sheet that lies on a stage of the panel comes in right after that stage, by an
+/// operation that inserts the sheet.
 ///
 /// # Errors
 /// The chain is not there or follows two curves at once; a hole is open or encloses nothing; an
@@ -90,10 +93,19 @@ pub fn add_line(
             "add a hole or an internal line, or trace another panel",
         ));
     }
-    let sheet = lookup::drawn_on(pattern, &changed)?;
-    let found = wound(stretches(evaluation, sheet.id, chain, kind)?, kind)?;
     let mut ids = pattern.ids;
-    let line = line(sheet, &found, (&changed, kind, name), &mut ids)?;
+    let laid = chain
+        .sheet(pattern)
+        .filter(|sheet| sheet.on.is_some_and(|(of, _)| of == panel) && kind != LineKind::Outline);
+    let (sheet, by) = match laid {
+        Some(sheet) => (sheet, Some(inserted(&mut changed, sheet, &mut ids))),
+        None => (lookup::drawn_on(pattern, &changed)?, None),
+    };
+    let found = wound(stretches(evaluation, sheet.id, chain, kind)?, kind)?;
+    let line = Line {
+        by,
+        ..line(sheet, &found, (&changed, kind, name), &mut ids)?
+    };
     let id = line.id;
     changed.lines.push(line);
     let edits = vec![Edit::Put(Entity::Panel(Arc::new(changed)))];
@@ -203,6 +215,7 @@ fn line(
         id: ids.take(),
         name,
         kind,
+        by: None,
         edges: edges(sheet, stretches, panel, ids)?,
     })
 }

@@ -151,7 +151,7 @@ fn step(work: &Evaluation, id: PointId, goal: Vec2) -> Result<Option<Edit>, Edit
     if (goal - now).norm() <= 1e-3 * THERE {
         return Ok(None);
     }
-    let rule = moved(work, &found.rule, now, goal)?;
+    let rule = moved(work, (sheet, &found.rule), now, goal)?;
     if !rule.numbers().iter().all(|number| number.is_finite()) {
         return Err(impossible(
             format!("point {:?} would go too far", found.name),

@@ -7,6 +7,7 @@ mod motion;
 mod partition;
 mod pivot;
 mod place;
+mod pleat;
 mod split;
 mod spread;
 
@@ -16,8 +17,9 @@ pub(crate) use fold::{FoldError, unfold};
 pub(crate) use partition::CutError;
 pub(crate) use pivot::{PivotError, Pivoting, pivot_dart};
 pub(crate) use place::{MarkValue, PlaceError, Placed, Spot, Stretch, is_sewn, reversed};
+pub(crate) use pleat::{Pleating, pleat};
 pub(crate) use split::{SplitError, split};
-pub(crate) use spread::{SpreadAlong, SpreadError, Spreading, spread};
+pub(crate) use spread::{MOST_CUTS, SpreadAlong, SpreadError, Spreading, spread};
 
 use crate::{
     Corner, CornerName, EdgeName, LineKind, LineName, NotchId, NotchKind, OperationId, Pressed,

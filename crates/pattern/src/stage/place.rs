@@ -132,10 +132,10 @@ impl Stage {
     }
 }
 
-/// Whether an edge is sewn by seams: legs are sewn by their dart, and other halves are named by
-/// spans of their own.
+/// Whether an edge is sewn by seams: legs are sewn by their dart, underlays lie folded under, and
+/// other halves are named by spans of their own.
 pub(crate) fn is_sewn(edge: &StageEdge) -> bool {
-    edge.half == 0 && edge.name.role() != Some(Role::Leg)
+    edge.half == 0 && !matches!(edge.name.role(), Some(Role::Leg | Role::Underlay))
 }
 
 /// A stretch walked the other way.

@@ -3,7 +3,7 @@
 use super::motion::Motion;
 use super::partition::{CutError, SAME, check_cut, outline_of, partition, ring};
 use super::{PlaceError, Placed, Stage, StageEdge, StageLine, with_ends};
-use crate::{Bridge, Corner, LineName, Name, OperationId, Role};
+use crate::{Bridge, Corner, CornerName, LineName, Name, OperationId, Role, SpreadCut};
 use toile_geometry::{Curve, Path, Vec2};
 
 /// A spread whose numbers are known.
@@ -45,70 +45,201 @@ pub(crate) enum SpreadError {
     Number(u16),
     /// More cuts than are taken.
     TooMany,
+    /// A number is larger than what it makes can be counted from: the largest that may be.
+    Large(u16, u16),
+    /// The depth of pleats is not above nothing.
+    NoDepth,
+    /// The outline beside the pleat of that number turns back within the depth of a fold.
+    TooDeep(u16),
 }
 
 /// Most cuts of one operation: a part is named by a bit a cut.
 pub(crate) const MOST_CUTS: usize = 64;
 
 /// A cut between two places of the outline, each the number of an edge that starts there.
-struct Chord {
-    at: [usize; 2],
-    points: [Vec2; 2],
-    number: u16,
-    openings: [f64; 2],
+pub(super) struct Chord {
+    pub at: [usize; 2],
+    pub points: [Vec2; 2],
+    pub number: u16,
+    pub openings: [f64; 2],
 }
 
 /// A stage spread along cuts.
 pub(crate) fn spread(stage: &Stage, wish: &Spreading) -> Result<Stage, SpreadError> {
-    let outline = outline_of(stage, wish.line).map_err(SpreadError::Line)?;
-    let mut line = stage.lines[outline].clone();
-    if wish.cuts.len() > MOST_CUTS {
-        return Err(SpreadError::TooMany);
-    }
-    let lost = |error: PlaceError| CutError::Place(error);
-    let held = line
-        .placed(wish.held)
-        .map_err(|e| SpreadError::Line(lost(e)))?;
-    let mut places = Vec::with_capacity(wish.cuts.len());
-    for cut in &wish.cuts {
-        let place = |end: usize| line.placed(cut.ends[end]);
-        let of_cut = |error| SpreadError::Cut(cut.number, lost(error));
-        places.push([place(0).map_err(of_cut)?, place(1).map_err(of_cut)?]);
-    }
-    let mut all: Vec<f64> = places.iter().flatten().copied().collect();
-    all.sort_by(f64::total_cmp);
-    for along in all {
-        line.divide(along);
-    }
-    let chords: Vec<Chord> = wish
-        .cuts
-        .iter()
-        .zip(&places)
-        .map(|(cut, ends)| {
-            let at = ends.map(|along| line.divide(along));
-            Chord {
-                at,
-                points: at.map(|k| line.edges[k].curve.start()),
-                number: cut.number,
-                openings: cut.openings,
-            }
+    let open = CutOpen::of(stage, wish, SpreadCut::LARGEST)?;
+    open.moved(stage, |gap| {
+        let index = 2 * gap.chord.number + gap.end as u16;
+        let name = |corner: u16| Name::Made {
+            by: wish.by,
+            role: Role::Opening,
+            index: 2 * index + corner,
+        };
+        let edge = StageEdge {
+            name: Name::Made {
+                by: wish.by,
+                role: Role::Opening,
+                index,
+            },
+            half: 0,
+            start: Some(name(0)),
+            from: 0.0,
+            to: 1.0,
+            curve: bridge(wish.bridge, gap.before, gap.after),
+            allowance: gap.before.allowance,
+            corner: Corner::Mitre,
+        };
+        Ok(Crossed {
+            corners: [name(0), name(1)],
+            edges: vec![edge],
         })
-        .collect();
-    check_chords(stage, outline, &chords)?;
-    let parts = Parts::of(&chords, &line, stage.turn(), held);
-    let parted: Vec<(StageEdge, usize)> = line
-        .edges
-        .iter()
-        .cloned()
-        .zip(parts.of_edge.iter().copied())
-        .collect();
-    let rings: Vec<Vec<Vec2>> = (0..parts.motions.len())
-        .map(|part| ring(parted.iter().filter(|own| own.1 == part).map(|own| &own.0)))
-        .collect();
-    let cuts: Vec<Path> = chords.iter().map(Chord::path).collect();
-    let everything = partition(stage, outline, &parted, (&cuts, &rings));
-    let line = bridged(line, &parts, &chords, wish);
-    Ok(everything.moved(stage, outline, line, &parts.motions))
+    })
+}
+
+/// A stage cut along chords, and how its parts move.
+pub(super) struct CutOpen {
+    outline: usize,
+    /// The outline, divided where cuts start and end.
+    pub line: StageLine,
+    pub chords: Vec<Chord>,
+    parts: Parts,
+}
+
+/// Where a cut starts or ends: what the outline runs across there.
+pub(super) struct Gap<'g> {
+    pub chord: &'g Chord,
+    /// 0 where the cut starts, 1 where it ends.
+    pub end: usize,
+    /// The edge that starts there, as it was before.
+    pub at: usize,
+    /// The edge before the opening and the one after it, as moved.
+    pub before: &'g StageEdge,
+    pub after: &'g StageEdge,
+}
+
+/// What runs across an opening.
+pub(super) struct Crossed {
+    /// The corners it starts and ends at.
+    pub corners: [CornerName; 2],
+    pub edges: Vec<StageEdge>,
+}
+
+impl CutOpen {
+    /// `largest` is the largest number a cut may have.
+    pub fn of(stage: &Stage, wish: &Spreading, largest: u16) -> Result<Self, SpreadError> {
+        if let Some(cut) = wish.cuts.iter().find(|cut| cut.number > largest) {
+            return Err(SpreadError::Large(cut.number, largest));
+        }
+        let outline = outline_of(stage, wish.line).map_err(SpreadError::Line)?;
+        let mut line = stage.lines[outline].clone();
+        if wish.cuts.len() > MOST_CUTS {
+            return Err(SpreadError::TooMany);
+        }
+        let lost = |error: PlaceError| CutError::Place(error);
+        let held = line
+            .placed(wish.held)
+            .map_err(|e| SpreadError::Line(lost(e)))?;
+        let mut places = Vec::with_capacity(wish.cuts.len());
+        for cut in &wish.cuts {
+            let place = |end: usize| line.placed(cut.ends[end]);
+            let of_cut = |error| SpreadError::Cut(cut.number, lost(error));
+            places.push([place(0).map_err(of_cut)?, place(1).map_err(of_cut)?]);
+        }
+        let mut all: Vec<f64> = places.iter().flatten().copied().collect();
+        all.sort_by(f64::total_cmp);
+        for along in all {
+            line.divide(along);
+        }
+        let cuts = wish.cuts.iter().zip(&places);
+        let chords: Vec<Chord> = cuts
+            .map(|(cut, ends)| {
+                let at = ends.map(|along| line.divide(along));
+                Chord {
+                    at,
+                    points: at.map(|k| line.edges[k].curve.start()),
+                    number: cut.number,
+                    openings: cut.openings,
+                }
+            })
+            .collect();
+        check_chords(stage, outline, &chords)?;
+        let parts = Parts::of(&chords, &line, stage.turn(), held);
+        Ok(Self {
+            outline,
+            line,
+            chords,
+            parts,
+        })
+    }
+
+    /// How the part moves that an edge is on.
+    pub fn motion(&self, edge: usize) -> Motion {
+        self.parts.motions[self.parts.of_edge[edge]]
+    }
+
+    /// The stage with every part moved, and with what runs across openings.
+    pub fn moved(
+        &self,
+        stage: &Stage,
+        cross: impl Fn(&Gap<'_>) -> Result<Crossed, SpreadError>,
+    ) -> Result<Stage, SpreadError> {
+        let edges = self.line.edges.iter().cloned();
+        let parted: Vec<(StageEdge, usize)> =
+            edges.zip(self.parts.of_edge.iter().copied()).collect();
+        let rings: Vec<Vec<Vec2>> = (0..self.parts.motions.len())
+            .map(|part| ring(parted.iter().filter(|own| own.1 == part).map(|own| &own.0)))
+            .collect();
+        let cuts: Vec<Path> = self.chords.iter().map(Chord::path).collect();
+        let everything = partition(stage, self.outline, &parted, (&cuts, &rings));
+        let line = self.bridged(cross)?;
+        Ok(everything.moved(stage, self.outline, line, &self.parts.motions))
+    }
+
+    /// The outline with every part moved, and openings bridged.
+    fn bridged(
+        &self,
+        cross: impl Fn(&Gap<'_>) -> Result<Crossed, SpreadError>,
+    ) -> Result<StageLine, SpreadError> {
+        let mut line = self.line.clone();
+        let count = line.edges.len();
+        let moved: Vec<StageEdge> = (0..count)
+            .map(|k| self.motion(k).edge(&line.edges[k]))
+            .collect();
+        let mut edges: Vec<StageEdge> = Vec::with_capacity(count + 2 * self.chords.len());
+        for (k, own) in moved.iter().enumerate() {
+            let before = &moved[(k + count - 1) % count];
+            let mut next = own.clone();
+            let open = (own.curve.start() - before.curve.end()).norm() > SAME;
+            for chord in &self.chords {
+                for end in (0..2).filter(|&end| chord.at[end] == k) {
+                    let gap = Gap {
+                        chord,
+                        end,
+                        at: k,
+                        before,
+                        after: own,
+                    };
+                    let Crossed {
+                        corners: [first, last],
+                        edges: across,
+                    } = cross(&gap)?;
+                    line.call(k, last);
+                    next.start = line.edges[k].start;
+                    match open {
+                        true => {
+                            edges.extend(across);
+                            next.corner = Corner::Mitre;
+                        }
+                        false => line.twins.push([first, next.start.unwrap_or(last)]),
+                    }
+                }
+            }
+            if !open {
+                next.curve = with_ends(next.curve, before.curve.end(), next.curve.end());
+            }
+            edges.push(next);
+        }
+        Ok(StageLine { edges, ..line })
+    }
 }
 
 impl Chord {
@@ -252,59 +383,6 @@ fn motion(chords: &[Chord], (still, own): (u64, u64), turn: f64) -> Motion {
         let left = (is_far(k) == forwards) != (turn > 0.0);
         so_far.after(chord.opened(left))
     })
-}
-
-/// The outline with every part moved, and openings bridged.
-fn bridged(mut line: StageLine, parts: &Parts, chords: &[Chord], wish: &Spreading) -> StageLine {
-    let count = line.edges.len();
-    let moved: Vec<StageEdge> = (0..count)
-        .map(|k| parts.motions[parts.of_edge[k]].edge(&line.edges[k]))
-        .collect();
-    let mut edges: Vec<StageEdge> = Vec::with_capacity(count + 2 * chords.len());
-    for (k, own) in moved.iter().enumerate() {
-        let before = &moved[(k + count - 1) % count];
-        let start = own.curve.start();
-        let here = chords.iter().flat_map(|chord| {
-            let ends = (0..2_u16).filter(|&end| chord.at[usize::from(end)] == k);
-            ends.map(|end| 2 * chord.number + end)
-        });
-        let mut own = own.clone();
-        let gap = start - before.curve.end();
-        let open = gap.norm() > SAME;
-        for opening in here {
-            let name = |corner: u16| Name::Made {
-                by: wish.by,
-                role: Role::Opening,
-                index: 2 * opening + corner,
-            };
-            line.call(k, name(1));
-            own.start = line.edges[k].start;
-            if !open {
-                line.twins.push([name(0), own.start.unwrap_or(name(1))]);
-                continue;
-            }
-            edges.push(StageEdge {
-                name: Name::Made {
-                    by: wish.by,
-                    role: Role::Opening,
-                    index: opening,
-                },
-                half: 0,
-                start: Some(name(0)),
-                from: 0.0,
-                to: 1.0,
-                curve: bridge(wish.bridge, before, &own),
-                allowance: before.allowance,
-                corner: Corner::Mitre,
-            });
-            own.corner = Corner::Mitre;
-        }
-        if !open {
-            own.curve = with_ends(own.curve, before.curve.end(), own.curve.end());
-        }
-        edges.push(own);
-    }
-    StageLine { edges, ..line }
 }
 
 /// From the end of an edge to the start of another.

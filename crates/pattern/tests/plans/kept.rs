@@ -161,6 +161,13 @@ fn equals_fresh(kept: &Evaluation, what: &str) {
     assert_eq!(kept.names(), fresh.names(), "{what}");
 }
 
+/// A number for the stage a sheet lies on, which says what its points and inserts are drawn on.
+fn stage_of(sheet: &Sheet) -> usize {
+    sheet.on.map_or(1, |(panel, after)| {
+        2 + 3 * panel.0 as usize + 100_003 * after.map_or(0, |by| by.0 as usize)
+    })
+}
+
 /// Nodes whose definitions differ in two patterns.
 fn differing(before: &Pattern, now: &Pattern) -> BTreeSet<Node> {
     /// Each node with the address of what defines it.
@@ -177,7 +184,12 @@ fn differing(before: &Pattern, now: &Pattern) -> BTreeSet<Node> {
         );
         all.extend(pattern.seams.iter().map(|s| (Node::Seam(s.id), at(s))));
         for sheet in &pattern.sheets {
-            all.extend(sheet.points.iter().map(|p| (Node::Point(p.id), at(p))));
+            let laid = |p: &Arc<Point>| match p.rule {
+                PointRule::Mark { .. } => stage_of(sheet),
+                _ => 0,
+            };
+            let points = sheet.points.iter();
+            all.extend(points.map(|p| (Node::Point(p.id), at(p).wrapping_add(laid(p)))));
             all.extend(sheet.curves.iter().map(|c| (Node::Curve(c.id), at(c))));
         }
         for panel in &pattern.panels {
@@ -185,6 +197,12 @@ fn differing(before: &Pattern, now: &Pattern) -> BTreeSet<Node> {
             let after = panel.operations.iter().map(|o| Some(o.id));
             let stages = std::iter::once(None).chain(after);
             all.extend(stages.map(|after| (Node::Stage(panel.id, after), at(panel))));
+            for step in &panel.operations {
+                let sheet = step.kind.sheet().and_then(|id| pattern.sheet(id));
+                let laid = sheet.map_or(0, |sheet| stage_of(sheet));
+                let node = Node::Stage(panel.id, Some(step.id));
+                all.insert((node, at(panel).wrapping_add(laid)));
+            }
         }
         all
     }

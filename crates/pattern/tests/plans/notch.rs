@@ -141,7 +141,7 @@ fn places_lead_to_the_nearest_mark() {
     let found = plan::nearest_mark(&evaluation, panel, v(0.3, 0.7)).unwrap();
     assert_eq!(
         (found.line, found.edge),
-        (line, edge(&pattern, "front", "top"))
+        (line, Name::Drawn(edge(&pattern, "front", "top")))
     );
     let Mark::Between { ends, share } = &found.mark else {
         panic!("{found:?}");

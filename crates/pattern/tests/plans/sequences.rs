@@ -126,7 +126,7 @@ pub fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditErr
         apex,
         pressed: toile_pattern::Pressed::default(),
     };
-    match which % 42 {
+    match which % 48 {
         0 => add_sheet(evaluation, None, [*x, *y]).map(|done| done.0),
         1 | 2 => {
             let rule = rules[usize::from(n) % rules.len()].clone();
@@ -299,6 +299,45 @@ pub fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditErr
             let curves = [c.curve(0), c.curve(1)];
             mark_crossings(evaluation, c.sheet(), curves).map(|done| done.0)
         }
+        46 => {
+            let (line, lines) = even_cuts(evaluation, panel, [c.edge(2), c.edge(0)], n % 3 + 1)?;
+            let kinds = [PleatKind::Knife, PleatKind::Box, PleatKind::Inverted];
+            let sides = [Side::Left, Side::Right];
+            let wish = PleatWish {
+                line,
+                lines,
+                depth: (z * 0.05).into(),
+                kind: kinds[usize::from(n) % 3],
+                pressed: sides[usize::from(n) % 2],
+                held: None,
+            };
+            pleat_panel(evaluation, panel, wish).map(|done| done.0)
+        }
+        41 => open_sheet(evaluation, panel).map(|done| done.0),
+        42 | 43 => {
+            let (mut edits, sheet) = open_sheet(evaluation, panel)?;
+            let more = drawn_on(
+                &done(pattern, &edits),
+                (panel, sheet),
+                (Name::Drawn(line), &share),
+            )?;
+            edits.extend(more);
+            Ok(edits)
+        }
+        44 => {
+            let sheet = c.sheet();
+            let (Some(found), Some(owner)) = (pattern.sheet(sheet), pattern.panel(panel)) else {
+                return Ok(Vec::new());
+            };
+            let last = owner.operations.last().map(|step| step.id);
+            let on = (n % 3 > 0).then_some((panel, last.filter(|_| n % 3 == 1)));
+            Ok(vec![Edit::Put(Entity::Sheet(SheetHead {
+                id: sheet,
+                name: found.name.clone(),
+                on: found.on.and(on),
+                on_table: found.on_table,
+            }))])
+        }
         36 => {
             let (panel, dart) = c.operation();
             let wish = PivotWish {
@@ -339,12 +378,39 @@ pub fn wished(evaluation: &Evaluation, wish: &Wish) -> Result<Vec<Edit>, EditErr
         }
         _ => {
             let near = nearest_mark(evaluation, panel, at)?;
-            match n % 2 {
-                0 => divide_edge(evaluation, (panel, near.edge), Some(at)).map(|done| done.0),
+            match near.edge {
+                Name::Drawn(edge) if n % 2 == 0 => {
+                    divide_edge(evaluation, (panel, edge), Some(at)).map(|done| done.0)
+                }
                 _ => join_edges(evaluation, (panel, ends[1])),
             }
         }
     }
+}
+
+/// What draws a line on a sheet that lies on a panel, from one of its points to a mark, and inserts
+/// it.
+fn drawn_on(
+    pattern: &Pattern,
+    (panel, sheet): (PanelId, SheetId),
+    (line, at): (LineName, &Mark),
+) -> Result<Vec<Edit>, EditError> {
+    let rule = PointRule::Mark {
+        line,
+        at: at.clone(),
+    };
+    let (mut edits, end) = add_point(&evaluated(pattern), sheet, None, rule)?;
+    let work = done(pattern, &edits);
+    let start = work.sheet(sheet).and_then(|sheet| sheet.points.first());
+    let ends = [start.map_or(end, |point| point.id), end];
+    let shape = CurveShape::Rule(CurveRule::Line);
+    let (more, curve) = add_curve(&evaluated(&work), (sheet, None), ends, shape)?;
+    edits.extend(more.clone());
+    let work = done(&work, &more);
+    let kind = (LineKind::Internal, None);
+    let (more, _) = add_line(&evaluated(&work), panel, kind, Chain::Curves(&[curve]))?;
+    edits.extend(more);
+    Ok(edits)
 }
 
 fn start() -> Pattern {

@@ -164,6 +164,7 @@ pub fn put_line(
             id: line,
             name,
             kind,
+            by: None,
             edges,
         });
     });

@@ -170,6 +170,7 @@ impl Migration<'_> {
             id: line,
             name,
             kind,
+            by: None,
             edges: made,
         });
     }
@@ -312,6 +313,7 @@ impl Migration<'_> {
                 id: line,
                 name,
                 kind: LineKind::Internal,
+                by: None,
                 edges,
             });
         }

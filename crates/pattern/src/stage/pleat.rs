@@ -1,0 +1,283 @@
+//! Pleats: cloth put between the parts of a panel, shaped at its ends as what it is folded under.
+
+use super::motion::Motion;
+use super::spread::{Chord, Crossed, CutOpen, Gap};
+use super::{SpreadError, Spreading, Stage, StageEdge, StageLine};
+use crate::{Corner, CornerName, LineKind, Name, OperationId, PleatKind, PleatLine, Role, Side};
+use toile_geometry::{Curve, Vec2};
+
+/// Pleats whose numbers are known: the spread that makes room for them, and how they are folded.
+#[derive(Clone, Debug)]
+pub(crate) struct Pleating {
+    pub spread: Spreading,
+    /// How deep a fold goes under [m].
+    pub depth: f64,
+    pub kind: PleatKind,
+    pub pressed: Side,
+}
+
+/// A part of the outline beside a pleat.
+#[derive(Clone, Copy)]
+struct Piece {
+    curve: Curve,
+    allowance: f64,
+}
+
+/// Depths may differ by this along a line that runs square to the pleat [m].
+const SAME_DEPTH: f64 = 1e-9;
+
+/// A stage with pleats: its parts moved aside, underlays between, and the lines to fold in.
+pub(crate) fn pleat(stage: &Stage, wish: &Pleating) -> Result<Stage, SpreadError> {
+    if wish.depth <= SAME_DEPTH {
+        return Err(SpreadError::NoDepth);
+    }
+    let open = CutOpen::of(stage, &wish.spread, PleatLine::LARGEST)?;
+    let turn = stage.turn();
+    let by = wish.spread.by;
+    let mut result = open.moved(stage, |gap| underlay(&open, gap, (wish, turn)))?;
+    let outline = result
+        .lines
+        .iter()
+        .find(|line| line.name == wish.spread.line);
+    let creases: Vec<StageLine> = open
+        .chords
+        .iter()
+        .flat_map(|chord| creases(outline, (by, chord), folds(wish, (turn, 0))))
+        .collect();
+    result.lines.extend(creases);
+    Ok(result)
+}
+
+/// The folds of a pleat from the part before it along the outline to the one after it, where it
+/// starts or ends: whether each lies under the part before.
+fn folds(wish: &Pleating, (turn, end): (f64, usize)) -> Vec<bool> {
+    // Counter-clockwise, the part left of the line comes before it where it starts.
+    let left_is_before = (turn > 0.0) == (end == 0);
+    match wish.kind {
+        PleatKind::Knife => vec![(wish.pressed == Side::Left) == left_is_before],
+        PleatKind::Box | PleatKind::Inverted => vec![true, false],
+    }
+}
+
+fn corner(by: OperationId, gap: (u16, usize), k: usize) -> CornerName {
+    Name::Made {
+        by,
+        role: Role::Underlay,
+        index: 10 * gap.0 + 5 * gap.1 as u16 + k as u16,
+    }
+}
+
+/// What the outline runs along across a pleat. Folded, it lies on the outline beside the pleat.
+fn underlay(
+    open: &CutOpen,
+    gap: &Gap<'_>,
+    (wish, turn): (&Pleating, f64),
+) -> Result<Crossed, SpreadError> {
+    let (by, number) = (wish.spread.by, gap.chord.number);
+    let [start, end] = gap.chord.points;
+    let way = end - start;
+    let (from, to) = (gap.before.curve.end(), gap.after.curve.start());
+    let across = (to - from).try_normalize(1e-15);
+    let across = across.ok_or(SpreadError::NoDepth)?;
+    let count = open.line.edges.len();
+    let before = (gap.at + count - 1) % count;
+    let mut layers: Vec<Vec<Piece>> = Vec::new();
+    let mut origin = from;
+    for is_before in folds(wish, (turn, gap.end)) {
+        let motion = open.motion(if is_before { before } else { gap.at });
+        let way = motion.direction(way);
+        let beside = beside(open, gap, (is_before, wish.depth))?;
+        let twice = across * (2.0 * wish.depth);
+        // Where the part's own end of the outline lies now.
+        let at = if is_before { from } else { to };
+        let near: Vec<Piece> = beside.iter().map(|p| moved(*p, motion)).collect();
+        let back = |pieces: &[Piece]| -> Vec<Piece> {
+            let back = pieces.iter().rev();
+            back.map(|p| with(*p, p.curve.reversed())).collect()
+        };
+        let mirrored = |pieces: &[Piece]| -> Vec<Piece> {
+            let all = pieces.iter();
+            all.map(|p| with(*p, p.curve.reflected(at, way))).collect()
+        };
+        let shifted = |pieces: &[Piece], by: Vec2| -> Vec<Piece> {
+            let all = pieces.iter();
+            all.map(|p| with(*p, p.curve.translated(by))).collect()
+        };
+        match is_before {
+            true => {
+                layers.push(mirrored(&near));
+                layers.push(shifted(&back(&near), origin + twice - at));
+            }
+            false => {
+                layers.push(shifted(&near, origin - at));
+                layers.push(back(&mirrored(&near)));
+            }
+        }
+        origin += twice;
+    }
+    let mut edges: Vec<StageEdge> = Vec::new();
+    let last = layers.len();
+    for (k, layer) in layers.into_iter().enumerate() {
+        let name = Name::Made {
+            by,
+            role: Role::Underlay,
+            index: 8 * number + 4 * gap.end as u16 + k as u16,
+        };
+        let length: f64 = layer.iter().map(|piece| piece.curve.length()).sum();
+        let mut along = 0.0;
+        for (j, piece) in layer.into_iter().enumerate() {
+            let own = piece.curve.length();
+            edges.push(StageEdge {
+                name,
+                half: 0,
+                start: (j == 0).then(|| corner(by, (number, gap.end), k)),
+                from: along / length,
+                to: (along + own) / length,
+                curve: piece.curve,
+                allowance: piece.allowance,
+                corner: Corner::Mitre,
+            });
+            along += own;
+        }
+    }
+    join(&mut edges, [from, to]);
+    Ok(Crossed {
+        corners: [0, last].map(|k| corner(by, (number, gap.end), k)),
+        edges,
+    })
+}
+
+fn with(piece: Piece, curve: Curve) -> Piece {
+    Piece { curve, ..piece }
+}
+
+fn moved(piece: Piece, motion: Motion) -> Piece {
+    with(piece, motion.curve(piece.curve))
+}
+
+/// Puts the ends of a row of edges exactly where they belong, and each where the one before ends.
+fn join(edges: &mut [StageEdge], [from, to]: [Vec2; 2]) {
+    let count = edges.len();
+    let mut start = from;
+    for (k, edge) in edges.iter_mut().enumerate() {
+        let end = match k + 1 == count {
+            true => to,
+            false => edge.curve.end(),
+        };
+        edge.curve = super::with_ends(edge.curve, start, end);
+        start = end;
+    }
+}
+
+/// The outline beside a pleat, from where its line meets it to the depth of a fold, away from it.
+fn beside(
+    open: &CutOpen,
+    gap: &Gap<'_>,
+    (is_before, depth): (bool, f64),
+) -> Result<Vec<Piece>, SpreadError> {
+    let [start, end] = gap.chord.points;
+    let way = (end - start).normalize();
+    let origin = gap.chord.points[gap.end];
+    let count = open.line.edges.len();
+    let away = |p: Vec2| way.perp(&(p - origin));
+    let mut pieces = Vec::new();
+    let mut sign = 0.0;
+    for n in 0..count {
+        let edge = match is_before {
+            true => &open.line.edges[(gap.at + 2 * count - 1 - n) % count],
+            false => &open.line.edges[(gap.at + n) % count],
+        };
+        let curve = match is_before {
+            true => edge.curve.reversed(),
+            false => edge.curve,
+        };
+        if n == 0 {
+            sign = away(curve.point(1e-3)).signum();
+        }
+        let far = |t: f64| sign * away(curve.point(t));
+        // It must lead away from the pleat all the time, or it would be folded over itself.
+        let leads = (0..=32).all(|k| {
+            let t = f64::from(k) / 32.0;
+            far(t) > depth || sign * way.perp(&curve.derivative(t)) > -SAME_DEPTH
+        });
+        if !leads {
+            return Err(SpreadError::TooDeep(gap.chord.number));
+        }
+        let allowance = edge.allowance;
+        if far(1.0) < depth - SAME_DEPTH {
+            pieces.push(Piece { curve, allowance });
+            continue;
+        }
+        let (mut low, mut high) = (0.0_f64, 1.0_f64);
+        for _ in 0..80 {
+            let middle = 0.5 * (low + high);
+            match far(middle) < depth {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        let curve = match 1.0 - high < 1e-12 {
+            true => curve,
+            false => curve.between(0.0, high),
+        };
+        pieces.push(Piece { curve, allowance });
+        return Ok(pieces);
+    }
+    Err(SpreadError::TooDeep(gap.chord.number))
+}
+
+/// The lines a pleat is folded in, and that it is laid to, from its start to its end.
+fn creases(
+    outline: Option<&StageLine>,
+    (by, chord): (OperationId, &Chord),
+    folds: Vec<bool>,
+) -> Vec<StageLine> {
+    let edges = outline.map_or(&[][..], |line| &line.edges);
+    let layers = 2 * folds.len();
+    // Each layer starts at a corner, and the last ends where the next edge starts.
+    let ends = |end: usize| -> Vec<Vec2> {
+        let name = |k: usize| Name::Made {
+            by,
+            role: Role::Underlay,
+            index: 8 * chord.number + 4 * end as u16 + k as u16,
+        };
+        let of = |k: usize| edges.iter().filter(move |edge| edge.name == name(k));
+        let starts = (0..layers).filter_map(|k| Some(of(k).next()?.curve.start()));
+        let last = of(layers - 1).next_back().map(|edge| edge.curve.end());
+        starts.chain(last).collect()
+    };
+    let (from, mut to) = (ends(0), ends(1));
+    to.reverse();
+    let is_placement = |k: usize| match folds[..] {
+        [true] => k == 2,
+        [false] => k == 0,
+        _ => k == 2,
+    };
+    let pairs = from.into_iter().zip(to).enumerate();
+    pairs
+        .map(|(k, (start, end))| {
+            let role = match is_placement(k) {
+                true => Role::Placement,
+                false => Role::Crease,
+            };
+            let index = 5 * chord.number + k as u16;
+            StageLine {
+                name: Name::Made { by, role, index },
+                half: 0,
+                kind: LineKind::Internal,
+                edges: vec![StageEdge {
+                    name: Name::Made { by, role, index },
+                    half: 0,
+                    start: None,
+                    from: 0.0,
+                    to: 1.0,
+                    curve: Curve::Line { start, end },
+                    allowance: 0.0,
+                    corner: Corner::Mitre,
+                }],
+                end: None,
+                twins: Vec::new(),
+            }
+        })
+        .collect()
+}
