@@ -11,7 +11,7 @@ use crate::canvas::selection::{Item, Selection};
 use crate::canvas::snap::snaps;
 use crate::theme::Palette;
 use crate::tools::number::begins_typing;
-use crate::tools::{Event, Held, Outcome, Pointer, Reading, State, Tool};
+use crate::tools::{Event, Held, Outcome, Overlay, Pointer, Reading, State, Tool};
 use egui::{
     CursorIcon, EventFilter, Id, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui,
     WidgetInfo,
@@ -132,6 +132,8 @@ impl PatternView {
         self.tool = tool;
         self.state = tool.begin();
         self.pressed = None;
+        // A pointer that rests on the canvas is told to the new tool.
+        self.told = None;
     }
 
     /// Shows the whole pattern when it is next drawn.
@@ -211,6 +213,18 @@ impl PatternView {
             inside: &inside,
         };
         self.tool.hint(&self.state, &reading)
+    }
+
+    /// What the tool in hand draws over the pattern.
+    pub fn overlay(&self, evaluation: &Evaluation) -> Vec<Overlay> {
+        let inside = |_| Vec::new();
+        let reading = Reading {
+            evaluation,
+            scene: &self.scene,
+            selection: &self.selection,
+            inside: &inside,
+        };
+        self.tool.overlay(&self.state, &reading)
     }
 
     /// Draws the view, and tells what came of what is done in it. The evaluation is that before the
@@ -419,7 +433,11 @@ impl PatternView {
     }
 
     fn pointer_at(&self, view: Rect, at: Pos2, held: Held) -> Pointer {
-        let table = self.camera.table(view, ScreenPoint(at)).0;
+        self.pointer(self.camera.table(view, ScreenPoint(at)).0, held)
+    }
+
+    /// What a pointer at a place of the table [m] finds there.
+    pub fn pointer(&self, table: Vec2, held: Held) -> Pointer {
         let open = open_sheets(&self.scene, &self.selection);
         let found = hits((&self.base, &self.boards), &open, table, self.camera.scale);
         let begun = match &self.state {
@@ -458,14 +476,7 @@ impl PatternView {
 
     fn paint(&self, ui: &Ui, view: Rect, evaluation: &Evaluation) {
         let open = open_sheets(&self.scene, &self.selection);
-        let inside = |_| Vec::new();
-        let reading = Reading {
-            evaluation,
-            scene: &self.scene,
-            selection: &self.selection,
-            inside: &inside,
-        };
-        let overlay = self.tool.overlay(&self.state, &reading);
+        let overlay = self.overlay(evaluation);
         let hover = match self.tool {
             Tool::Select => self.hover.map(|hit| hit.item),
             Tool::Slots(_) => None,
@@ -512,29 +523,26 @@ impl PatternView {
         self.camera.screen(view, table).0
     }
 
-    /// Names points, edges and panels for assistive technology, and tells which was chosen there.
-    /// Their nodes take no clicks: those go to the view under them, by place, as everyone's do.
-    fn name_parts(&self, ui: &Ui, view: Rect, pattern: &Pattern) -> Option<Item> {
+    /// Points, edges, notches, darts, curves and panels that are shown, and where on the table [m].
+    /// A point that is seen twice is there twice.
+    pub fn parts(&self) -> Vec<(SheetId, Item, Vec2)> {
         let open = open_sheets(&self.scene, &self.selection);
-        let mut parts: Vec<(SheetId, Item, Pos2)> = Vec::new();
+        let mut parts = Vec::new();
         for panel in &self.scene.panels {
             let origin = self.boards.panel(panel.id);
-            let middle = self.screen(view, origin, panel.shape.middle);
-            parts.push((panel.sheet, Item::Panel(panel.id), middle));
+            let mut part = |item, at: Vec2| parts.push((panel.sheet, item, origin + at));
+            part(Item::Panel(panel.id), panel.shape.middle);
             for edge in &panel.shape.edges {
                 if let Some(middle) = edge.middle() {
-                    let at = self.screen(view, origin, middle);
-                    parts.push((panel.sheet, Item::Edge(panel.id, edge.id), at));
+                    part(Item::Edge(panel.id, edge.id), middle);
                 }
             }
             for (id, at, _) in &panel.shape.notches {
-                let at = self.screen(view, origin, *at);
-                parts.push((panel.sheet, Item::Notch(panel.id, *id), at));
+                part(Item::Notch(panel.id, *id), *at);
             }
             for (id, mirrored, line) in &panel.shape.darts {
                 if let Some(at) = line.first().filter(|_| !mirrored) {
-                    let at = self.screen(view, origin, *at);
-                    parts.push((panel.sheet, Item::Operation(panel.id, *id), at));
+                    part(Item::Operation(panel.id, *id), *at);
                 }
             }
         }
@@ -542,21 +550,29 @@ impl PatternView {
             let origin = self.boards.sheet(sheet.id);
             for curve in sheet.curves.iter().filter(|curve| !curve.is_traced) {
                 if let Some((middle, _)) = crate::canvas::along(&curve.line, 0.5) {
-                    let at = self.screen(view, origin, middle);
-                    parts.push((sheet.id, Item::Curve(curve.id), at));
+                    parts.push((sheet.id, Item::Curve(curve.id), origin + middle));
                 }
             }
         }
         for shown in shown_points(&self.scene, &self.boards, &open) {
-            let at = self.screen(view, shown.origin, shown.point.at);
+            let at = shown.origin + shown.point.at;
             parts.push((shown.sheet, Item::Point(shown.point.id), at));
         }
+        parts
+    }
+
+    /// Names points, edges and panels for assistive technology, and tells which was chosen there.
+    /// Their nodes take no clicks: those go to the view under them, by place, as everyone's do.
+    fn name_parts(&self, ui: &Ui, view: Rect, pattern: &Pattern) -> Option<Item> {
+        let open = open_sheets(&self.scene, &self.selection);
+        let mut parts = self.parts();
         if parts.len() > MOST_NAMED {
             parts.retain(|(sheet, ..)| open.contains(sheet));
         }
         let mut asked = None;
         let mut named = std::collections::BTreeSet::new();
         for (_, item, at) in parts {
+            let at = self.screen(view, Vec2::zeros(), at);
             // A point that is seen twice is named once.
             if !view.contains(at) || !named.insert(item) {
                 continue;
