@@ -29,10 +29,15 @@
 //!
 //! `soak losses [COUNT]` makes so many random deletions and changes of count (1000) in the shipped patterns, each undone and
 //! done again, replays the journals, and fails where a cause is told twice, anything stands without what it needs or comes back otherwise.
+//!
+//! `soak events [COUNT]` makes so many random events (100000) on the window's tools and its session, from the shipped patterns
+//! and the empty document, and fails where one panics, damages the document, or it cannot be undone, done again and replayed.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[path = "soak/cloth.rs"]
 mod cloth;
+#[path = "soak/document.rs"]
+mod document;
 #[path = "soak/layers.rs"]
 mod layers;
 #[path = "soak/rest.rs"]
@@ -52,7 +57,6 @@ use toile_geometry::Vec2;
 use toile_interchange::{read_jagua, write_atomically};
 use toile_nesting::{Marker, Placement, judge};
 use toile_session::Quality;
-use toile_tests::losses::CHANGES;
 use toile_tests::root;
 
 /// Samples of the bootstrap (Efron 1979).
@@ -532,29 +536,6 @@ fn quality_named(name: Option<&String>) -> Result<Quality, String> {
     found.ok_or(format!("there is no quality {name}"))
 }
 
-/// Random deletions and changes of count, a thousand or as many as are asked.
-fn losses(arguments: &[String]) -> Result<(), String> {
-    let count = match arguments {
-        [] => 1000,
-        [count] => count.parse().map_err(|_| format!("{count}: no number"))?,
-        _ => return Err("one number at the most".to_owned()),
-    };
-    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
-    let runs = u64::div_ceil(count, CHANGES as u64);
-    let failed: Vec<String> = (0..runs)
-        .filter_map(|seed| toile_tests::losses::losses(seed, folder.path()).err())
-        .collect();
-    println!(
-        "{} changes, {} of {runs} runs failed",
-        runs * CHANGES as u64,
-        failed.len()
-    );
-    match failed.is_empty() {
-        true => Ok(()),
-        false => Err(failed.join("\n")),
-    }
-}
-
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let done = match arguments.split_first() {
@@ -564,9 +545,10 @@ fn main() -> ExitCode {
         Some((first, rest)) if first == "sizes" => sizes::sizes(rest),
         Some((first, rest)) if first == "layers" => layers::layers(rest),
         Some((first, rest)) if first == "rest" => rest::rest(rest),
-        Some((first, rest)) if first == "losses" => losses(rest),
+        Some((first, rest)) if first == "losses" => document::losses(rest),
+        Some((first, rest)) if first == "events" => document::events(rest),
         _ => Err(
-            "say what: soak nest [OPTIONS] INSTANCE.json..., soak hard, soak tangles, soak sizes, soak layers, soak rest, soak losses"
+            "say what: soak nest [OPTIONS] INSTANCE.json..., soak hard, soak tangles, soak sizes, soak layers, soak rest, soak losses, soak events"
                 .to_owned(),
         ),
     };

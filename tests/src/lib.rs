@@ -2,7 +2,9 @@
 
 #![allow(clippy::print_stdout)] // tests say what they skip
 
+pub mod events;
 pub mod losses;
+pub mod random;
 
 use std::path::{Path, PathBuf};
 

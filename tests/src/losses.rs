@@ -1,6 +1,7 @@
 //! Random deletions and changes of count in the patterns that ship: one diagnostic a cause, what is
 //! lost is suspended and returns with undo, and the journal replayed gives the same document.
 
+use crate::random::Random;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,18 +18,6 @@ pub const CHANGES: usize = 10;
 const COUNTED: u32 = 1_000_000;
 /// Most times a panel is cut.
 const MOST_CUT: usize = 4;
-
-/// Random numbers by a seed (Steele, Lea and Flood 2014, SplitMix64).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) % end.max(1) as u64) as usize
-    }
-}
 
 /// What a state of the document comes to. The counter of ids, which an undo does not set back, is
 /// left out of the file.

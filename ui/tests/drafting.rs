@@ -123,6 +123,23 @@ fn a_skirt_panel_with_a_dart_from_an_empty_window() {
 }
 
 #[test]
+fn a_tool_taken_by_its_key_knows_where_the_pointer_rests() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Rest");
+    drafter.hover(drafter.place(0.1, 0.1));
+    drafter.key(Key::R);
+    for [across, up] in [["5", "7"], ["20", "60"]] {
+        drafter.type_text(across);
+        drafter.key(Key::Tab);
+        drafter.typed(up);
+    }
+    assert_eq!(drafter.pattern().panels.len(), 1, "{}", drafter.status());
+    let corner = drafter.point("A") - Vec2::new(0.05, 0.07);
+    assert!(corner.norm() < 1e-12, "{corner}");
+}
+
+#[test]
 fn lines_by_lengths_and_angles_become_constructions() {
     let mut drafter = Drafter::new();
     drafter.press("New pattern");

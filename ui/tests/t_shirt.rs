@@ -1,6 +1,6 @@
 //! The shipped T-shirt drafted in an empty window by tools alone: it drafts as the shipped one in all
 //! six sizes.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod drafter;
 
@@ -287,7 +287,7 @@ impl Drafter {
         self.click(self.place(middle.x, middle.y));
         self.key(Key::Escape);
         self.enter("Name", piece.name);
-        for (k, (edge, _)) in piece.edges.iter().enumerate() {
+        for (k, (edge, handles)) in piece.edges.iter().enumerate() {
             let next = (k + 1) % piece.corners.len();
             let pattern = self.pattern();
             let id = |k: usize| {
@@ -301,13 +301,14 @@ impl Drafter {
             let mut edges = panel.edges();
             let found = edges
                 .find(|found| found.ends == [id(k), id(next)] || found.ends == [id(next), id(k)]);
-            // Not in its middle, where a handle may lie.
+            // Not in the middle of a curve, where a handle may lie.
+            let share = if handles.is_some() { 0.3 } else { 0.5 };
             let curve = self
                 .evaluation()
                 .curve(found.unwrap().curve)
                 .unwrap()
                 .clone();
-            let place = curve.at_length(0.22 * curve.length()).unwrap();
+            let place = curve.at_length(share * curve.length()).unwrap();
             let at = curve.point(place);
             self.click(self.place(at.x, at.y));
             self.enter("Name", edge);

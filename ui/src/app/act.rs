@@ -62,10 +62,7 @@ impl ToileApp {
         self.stop_printing();
         self.notice = Notice::default();
         match self.view.tool {
-            Tool::Select => {
-                let outcome = self.view.step(&Event::Escape, &self.base);
-                self.follow_outcome(outcome);
-            }
+            Tool::Select => self.give(&Event::Escape),
             Tool::Slots(_) => self.take(Tool::Select),
         }
     }

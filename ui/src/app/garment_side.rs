@@ -11,6 +11,7 @@ const STRIP: f32 = 38.0;
 
 impl ToileApp {
     pub(crate) fn garment_side(&mut self, ui: &mut Ui) {
+        self.follow_body();
         Panel::top("drape")
             .frame(theme::bar(ui.ctx()))
             .resizable(false)
@@ -23,6 +24,22 @@ impl ToileApp {
         };
         self.stage.show(ui, empty);
         self.drape_progress(ui, view);
+    }
+
+    /// Has another mannequin made when the wearer is another.
+    fn follow_body(&mut self) {
+        let compared = self.body_of.as_ref().map(|(_, revision)| *revision);
+        if compared == Some(self.revision) || self.session.is_previewing() {
+            return;
+        }
+        let project = self.session.project();
+        let same = self.body_of.as_ref().is_some_and(|(of, _)| {
+            of.figure() == project.figure() && of.wearer() == project.wearer()
+        });
+        self.body_of = Some((project.clone(), self.revision));
+        if !same {
+            self.making.start_body(&self.session);
+        }
     }
 
     pub(crate) fn drape_strip(&mut self, ui: &mut Ui) {

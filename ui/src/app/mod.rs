@@ -28,7 +28,7 @@ mod welcome;
 use crate::fields::TypedTexts;
 use crate::gpu::solid::first_frame;
 use crate::theme;
-use crate::tools::Tool;
+use crate::tools::{Event as ToolEvent, Tool};
 use crate::views::garment::GarmentView;
 use crate::views::marker::MarkerView;
 use crate::views::pattern::PatternView;
@@ -90,7 +90,8 @@ pub struct ToileApp {
     pub(crate) revision: Option<u64>,
     octave: i32,
     checked: Option<u64>,
-    body_of: Option<Project>,
+    /// Whose mannequin is shown or being made, and the revision it was last compared at.
+    pub(crate) body_of: Option<(Project, Option<u64>)>,
     title: String,
 }
 
@@ -206,8 +207,24 @@ impl ToileApp {
         }
     }
 
+    /// Every value as before the gesture that is shown.
+    pub fn base(&self) -> &Evaluation {
+        &self.base
+    }
+
+    /// Why what was asked last was not done.
+    pub fn fault(&self) -> Option<&str> {
+        self.notice.is_fault().then_some(&*self.notice.text)
+    }
+
+    /// Gives an event to the tool in hand, as the canvas does.
+    pub fn give(&mut self, event: &ToolEvent) {
+        let outcome = self.view.step(event, &self.base);
+        self.follow_outcome(outcome);
+    }
+
     /// Gives a command to the session; says whether it was done. What came of it is shown.
-    pub(crate) fn execute(&mut self, command: Command) -> bool {
+    pub fn execute(&mut self, command: Command) -> bool {
         match self.session.execute(command, &mut Silent) {
             Ok(events) => {
                 self.hear(&events);
@@ -267,7 +284,6 @@ impl ToileApp {
                 if is_new && self.view.grading.is_some() {
                     self.view.grading = Some(self.graded());
                 }
-                self.follow_body();
                 self.follow_marker();
             }
         }
@@ -305,19 +321,6 @@ impl ToileApp {
     fn forget_recovery(&mut self) {
         if let Some(recovery) = &self.recovery {
             recovery.clear();
-        }
-    }
-
-    /// Has another mannequin made when the wearer is another.
-    fn follow_body(&mut self) {
-        let project = self.session.project();
-        let same = self
-            .body_of
-            .as_ref()
-            .is_some_and(|of| of.figure() == project.figure() && of.wearer() == project.wearer());
-        if !same && !project.pattern.sheets.is_empty() {
-            self.body_of = Some(project.clone());
-            self.making.start_body(&self.session);
         }
     }
 

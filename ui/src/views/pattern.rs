@@ -1,6 +1,8 @@
 //! The pattern view: pans and zooms, turns the pointer and keys into events of the tool in hand.
 //! It changes no document: it says what came of the events.
 
+mod input;
+
 use crate::canvas::boards::Boards;
 use crate::canvas::camera::{ScreenPoint, TableCamera};
 use crate::canvas::grading::Grading;
@@ -10,12 +12,8 @@ use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
 use crate::canvas::snap::snaps;
 use crate::theme::Palette;
-use crate::tools::number::begins_typing;
-use crate::tools::{Event, Held, Outcome, Pointer, Reading, State, Tool};
-use egui::{
-    CursorIcon, EventFilter, Id, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui,
-    WidgetInfo,
-};
+use crate::tools::{Event, Held, Outcome, Overlay, Pointer, Reading, State, Tool};
+use egui::{CursorIcon, Id, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use toile_geometry::Vec2;
 use toile_pattern::{Draft, Evaluation, PanelId, Pattern, SheetId};
 
@@ -135,6 +133,8 @@ impl PatternView {
         self.tool = tool;
         self.state = tool.begin();
         self.pressed = None;
+        // A pointer that rests on the canvas is told to the new tool.
+        self.told = None;
     }
 
     /// Shows the whole pattern when it is next drawn.
@@ -227,6 +227,18 @@ impl PatternView {
         self.tool.hint(&self.state, &reading)
     }
 
+    /// What the tool in hand draws over the pattern.
+    pub fn overlay(&self, evaluation: &Evaluation) -> Vec<Overlay> {
+        let inside = |_| Vec::new();
+        let reading = Reading {
+            evaluation,
+            scene: &self.scene,
+            selection: &self.selection,
+            inside: &inside,
+        };
+        self.tool.overlay(&self.state, &reading)
+    }
+
     /// Draws the view, and tells what came of what is done in it. The evaluation is that before the
     /// gesture that is shown.
     pub fn show(&mut self, ui: &mut Ui, evaluation: &Evaluation) -> Vec<Outcome> {
@@ -278,172 +290,17 @@ impl PatternView {
         outcomes
     }
 
-    /// Panning and zooming; says whether the primary button pans too.
-    fn navigate(&mut self, ui: &Ui, response: &Response) -> bool {
-        let with_space = response.contains_pointer()
-            && !self.is_typed_into(ui)
-            && ui.input(|input| input.key_down(Key::Space));
-        for button in [PointerButton::Middle, PointerButton::Secondary] {
-            if response.dragged_by(button) {
-                self.camera.pan(response.drag_delta());
-            }
-        }
-        if with_space && response.dragged_by(PointerButton::Primary) && self.pressed.is_none() {
-            self.camera.pan(response.drag_delta());
-        }
-        if let Some(at) = response.hover_pos() {
-            let (scroll, pinch) =
-                ui.input(|input| (input.smooth_scroll_delta.y, input.zoom_delta()));
-            let factor = f64::from(scroll / 240.0).exp2() * f64::from(pinch);
-            if factor != 1.0 {
-                self.camera.zoom(response.rect, ScreenPoint(at), factor);
-            }
-        }
-        with_space
-    }
-
-    /// Whether keys go to another widget.
-    fn is_typed_into(&self, ui: &Ui) -> bool {
-        let focused = ui.memory(|memory| memory.focused());
-        focused.is_some_and(|id| id != Self::id())
-    }
-
-    /// What was done since the last frame.
-    fn events(&mut self, ui: &Ui, response: &Response, panning: bool) -> Vec<Event> {
-        let mut events = Vec::new();
-        let held = ui.input(|input| Held {
-            shift: input.modifiers.shift,
-            command: input.modifiers.command,
-        });
-        let view = response.rect;
-        let hovered = response.hover_pos().filter(|_| !panning);
-        let was_there = self.pointer.is_some();
-        if response.drag_started_by(PointerButton::Primary)
-            && !panning
-            && let Some(from) = ui.input(|input| input.pointer.press_origin())
-        {
-            self.pressed = Some(self.pointer_at(view, from, held));
-        }
-        if response.clicked() || response.drag_started() {
-            response.request_focus();
-        }
-        match (&self.pressed, response.interact_pointer_pos()) {
-            (Some(from), Some(to)) => {
-                let from = from.clone();
-                let place = to;
-                let to = self.pointer_at(view, to, held);
-                self.pointer = Some(to.at);
-                if self.told.replace((place, held)) != Some((place, held)) {
-                    events.push(Event::Drag(from, to));
-                }
-            }
-            _ => match hovered {
-                Some(at) => {
-                    let pointer = self.pointer_at(view, at, held);
-                    self.hover = pointer.hit();
-                    self.under = pointer.hits.iter().map(|hit| hit.item).collect();
-                    self.pointer = Some(pointer.at);
-                    if self.told.replace((at, held)) != Some((at, held)) {
-                        events.push(Event::Hover(pointer));
-                    }
-                }
-                None => {
-                    self.hover = None;
-                    self.under.clear();
-                    self.pointer = None;
-                    self.told = None;
-                    if was_there {
-                        events.push(Event::Leave);
-                    }
-                }
-            },
-        }
-        if let Some(at) = response.interact_pointer_pos()
-            && !panning
-            && response.clicked()
-        {
-            let pointer = self.pointer_at(view, at, held);
-            events.push(match response.double_clicked() {
-                true => Event::DoubleClick(pointer),
-                false => Event::Click(pointer),
-            });
-        }
-        // Escape ends the drag too: what it showed is left, not taken.
-        if self.pressed.is_some() && ui.input(|input| input.key_pressed(Key::Escape)) {
-            self.pressed = None;
-        }
-        if self.pressed.is_some()
-            && (response.drag_stopped() || !ui.input(|input| input.pointer.primary_down()))
-        {
-            self.pressed = None;
-            events.push(Event::Drop);
-        }
-        if response.secondary_clicked() && self.is_busy() {
-            events.push(Event::Enter);
-        }
-        events.extend(self.keys(ui, response));
-        events
-    }
-
-    fn keys(&mut self, ui: &Ui, response: &Response) -> Vec<Event> {
-        // A key that ends the typing into a field is no key of the tool.
-        let typed_now = self.is_typed_into(ui);
-        let typed_before = std::mem::replace(&mut self.was_typed_into, typed_now);
-        if typed_before {
-            return Vec::new();
-        }
-        if self.is_covered || self.is_typed_into(ui) {
-            return Vec::new();
-        }
-        let takes_tab = matches!(self.tool, Tool::Slots(_));
-        if takes_tab {
-            response.request_focus();
-        }
-        // Keys of the canvas must not move the focus of the window.
-        let filter = EventFilter {
-            tab: takes_tab,
-            escape: true,
-            horizontal_arrows: true,
-            vertical_arrows: true,
-        };
-        ui.memory_mut(|memory| memory.set_focus_lock_filter(Self::id(), filter));
-        let typing = self.is_typing();
-        let mut events = Vec::new();
-        ui.input_mut(|input| {
-            input.events.retain(|event| {
-                let taken = match event {
-                    egui::Event::Text(text) => {
-                        let begins = text.starts_with(begins_typing);
-                        let is_slots = matches!(self.tool, Tool::Slots(_));
-                        let takes = is_slots && (typing || begins);
-                        takes.then(|| Event::Text(text.clone()))
-                    }
-                    egui::Event::Key {
-                        key, pressed: true, ..
-                    } => match key {
-                        Key::Enter => Some(Event::Enter),
-                        Key::Tab => Some(Event::Tab),
-                        Key::Backspace if typing => Some(Event::Backspace),
-                        Key::Escape => Some(Event::Escape),
-                        _ => None,
-                    },
-                    _ => None,
-                };
-                let is_taken = taken.is_some();
-                events.extend(taken);
-                !is_taken
-            });
-        });
-        events
-    }
-
     /// Whether a number of the tool in hand is being typed.
     pub fn is_typing(&self) -> bool {
         matches!(&self.state, State::Slots(state) if state.is_typing())
     }
 
     fn pointer_at(&self, view: Rect, at: Pos2, held: Held) -> Pointer {
-        let table = self.camera.table(view, ScreenPoint(at)).0;
+        self.pointer(self.camera.table(view, ScreenPoint(at)).0, held)
+    }
+
+    /// What a pointer at a place of the table [m] finds there.
+    pub fn pointer(&self, table: Vec2, held: Held) -> Pointer {
         let open = self.open();
         let found = hits((&self.base, &self.boards), &open, table, self.camera.scale);
         let begun = match &self.state {
@@ -488,14 +345,7 @@ impl PatternView {
 
     fn paint(&self, ui: &Ui, view: Rect, evaluation: &Evaluation) {
         let open = self.open();
-        let inside = |_| Vec::new();
-        let reading = Reading {
-            evaluation,
-            scene: &self.scene,
-            selection: &self.selection,
-            inside: &inside,
-        };
-        let overlay = self.tool.overlay(&self.state, &reading);
+        let overlay = self.overlay(evaluation);
         let hover = match self.tool {
             Tool::Select => self.hover.map(|hit| hit.item),
             Tool::Slots(_) => None,
@@ -542,41 +392,36 @@ impl PatternView {
         self.camera.screen(view, table).0
     }
 
-    /// Names points, edges and panels for assistive technology, and tells which was chosen there.
-    /// Their nodes take no clicks: those go to the view under them, by place, as everyone's do.
-    fn name_parts(&self, ui: &Ui, view: Rect, pattern: &Pattern) -> Option<Item> {
+    /// Points, edges, notches, darts, curves and panels that are shown, and where on the table [m].
+    /// A point that is seen twice is there twice.
+    pub fn parts(&self) -> Vec<(SheetId, Item, Vec2)> {
         let open = self.open();
-        let mut parts: Vec<(SheetId, Item, Pos2)> = Vec::new();
+        let mut parts = Vec::new();
         for panel in &self.scene.panels {
             let origin = self.boards.panel(panel.id);
-            let middle = self.screen(view, origin, panel.shape.middle);
-            parts.push((panel.sheet, Item::Panel(panel.id), middle));
+            let mut part = |item, at: Vec2| parts.push((panel.sheet, item, origin + at));
+            part(Item::Panel(panel.id), panel.shape.middle);
             for edge in &panel.shape.edges {
                 if let Some(middle) = edge.middle() {
-                    let at = self.screen(view, origin, middle);
-                    parts.push((panel.sheet, Item::Edge(panel.id, edge.id), at));
+                    part(Item::Edge(panel.id, edge.id), middle);
                 }
             }
             for (id, line) in &panel.shape.internal_lines {
                 if let Some((at, _)) = crate::canvas::along(line, 0.5) {
-                    let at = self.screen(view, origin, at);
-                    parts.push((panel.sheet, Item::Line(panel.id, *id), at));
+                    part(Item::Line(panel.id, *id), at);
                 }
             }
             for (id, at, _) in &panel.shape.notches {
-                let at = self.screen(view, origin, *at);
-                parts.push((panel.sheet, Item::Notch(panel.id, *id), at));
+                part(Item::Notch(panel.id, *id), *at);
             }
             for (id, line) in &panel.shape.made {
                 if let Some((at, _)) = crate::canvas::along(line, 0.5) {
-                    let at = self.screen(view, origin, at);
-                    parts.push((panel.sheet, Item::Operation(panel.id, *id), at));
+                    part(Item::Operation(panel.id, *id), at);
                 }
             }
             for (id, mirrored, line) in &panel.shape.darts {
                 if let Some(at) = line.first().filter(|_| !mirrored) {
-                    let at = self.screen(view, origin, *at);
-                    parts.push((panel.sheet, Item::Operation(panel.id, *id), at));
+                    part(Item::Operation(panel.id, *id), *at);
                 }
             }
         }
@@ -584,21 +429,29 @@ impl PatternView {
             let origin = self.boards.sheet(sheet.id);
             for curve in sheet.curves.iter().filter(|curve| !curve.is_traced) {
                 if let Some((middle, _)) = crate::canvas::along(&curve.line, 0.5) {
-                    let at = self.screen(view, origin, middle);
-                    parts.push((sheet.id, Item::Curve(curve.id), at));
+                    parts.push((sheet.id, Item::Curve(curve.id), origin + middle));
                 }
             }
         }
         for shown in shown_points(&self.scene, &self.boards, &open) {
-            let at = self.screen(view, shown.origin, shown.point.at);
+            let at = shown.origin + shown.point.at;
             parts.push((shown.sheet, Item::Point(shown.point.id), at));
         }
+        parts
+    }
+
+    /// Names points, edges and panels for assistive technology, and tells which was chosen there.
+    /// Their nodes take no clicks: those go to the view under them, by place, as everyone's do.
+    fn name_parts(&self, ui: &Ui, view: Rect, pattern: &Pattern) -> Option<Item> {
+        let open = self.open();
+        let mut parts = self.parts();
         if parts.len() > MOST_NAMED {
             parts.retain(|(sheet, ..)| open.contains(sheet));
         }
         let mut asked = None;
         let mut named = std::collections::BTreeSet::new();
         for (_, item, at) in parts {
+            let at = self.screen(view, Vec2::zeros(), at);
             // A point that is seen twice is named once.
             if !view.contains(at) || !named.insert(item) {
                 continue;

@@ -1,0 +1,357 @@
+#!/usr/bin/env python3
+"""Drafts in the built window by mouse and keys, on a display that nobody sees (Xvfb): two panels by
+typed numbers, a seam, a dart, a fold, a drag that is undone; saves, and holds the saved file against
+numbers that were reckoned beforehand. The last picture of the screen is kept in out/ci/window.png.
+
+usage: window.py TOILE_UI TOILE
+
+It waits for what is to be seen, a title or a file. How long the window takes to show what an input
+did is measured first: where an input may show nothing three times as long is waited.
+"""
+
+import contextlib
+import json
+import os
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import zlib
+
+SCREEN = (1400, 900)
+# Longest wait for anything [s]: software drawing on a slow machine.
+PATIENCE = 60.0
+# Between two looks at anything [s].
+INTERVAL = 0.04
+# What an answer to an input is given at least [s], and how many times the slowest so far is waited for
+# one that may not come.
+LEAST_ANSWER = 0.2
+ANSWERS = 3.0
+# Fill of a panel by day (ui/src/theme.rs), blue first as it lies in memory.
+CLOTH = b"\xfa\xfd\xfe"
+# How far a number may be from its closed form [mm], [cm2].
+WITHIN = 1e-6
+# Shortest run of it across that is taken for a panel [pixels].
+LEAST_RUN = 40
+PICTURE = pathlib.Path(__file__).resolve().parent.parent / "out/ci/window.png"
+
+
+class Fault(Exception):
+    """Something that is not as it should be."""
+
+
+def wait(words, ask):
+    """What `ask` gives once it gives something."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        found = ask()
+        if found:
+            return found
+        time.sleep(INTERVAL)
+    raise Fault(f"{words}: not within {PATIENCE:.0f} s")
+
+
+class Screen:
+    """A display in memory that is read as a file (X11's XWD format)."""
+
+    def __init__(self, folder):
+        self.file = folder / "Xvfb_screen0"
+        read, write = os.pipe()
+        self.server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-nolisten", "tcp", "-noreset", "-nocursor", "-fbdir", str(folder),
+             "-screen", "0", f"{SCREEN[0]}x{SCREEN[1]}x24"],
+            pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(write)
+        # It ends with the pipe if it cannot start.
+        with os.fdopen(read) as told:
+            number = told.readline().strip()
+        if not number:
+            raise Fault("no display: Xvfb did not start")
+        self.name = f":{number}"
+
+    def close(self):
+        self.server.terminate()
+        self.server.wait()
+
+    def picture(self):
+        return self.file.read_bytes()
+
+    def pixels(self):
+        """Rows of blue, green, red and a byte of nothing."""
+        data = self.picture()
+        head = struct.unpack(">25I", data[:100])
+        start, width, height, bits, row = head[0] + 12 * head[19], head[4], head[5], head[11], head[12]
+        if bits != 32:
+            raise Fault(f"the display has {bits} bits a pixel")
+        return [data[start + y * row:start + y * row + 4 * width] for y in range(height)]
+
+    def rest(self, seconds):
+        """Waits until nothing new was seen for so long: a cursor that blinks shows nothing new."""
+        seen, since = set(), time.monotonic()
+
+        def ask():
+            nonlocal since
+            now = zlib.crc32(self.picture())
+            if now not in seen:
+                seen.add(now)
+                since = time.monotonic()
+            return time.monotonic() - since >= seconds
+
+        wait("the picture comes to rest", ask)
+
+    def keep(self, to):
+        """Writes the picture as PNG."""
+        rows = self.pixels()
+        raw = b"".join(
+            b"\0" + bytes(byte for x in range(0, len(row), 4) for byte in (row[x + 2], row[x + 1], row[x]))
+            for row in rows)
+
+        def chunk(kind, data):
+            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+        head = struct.pack(">IIBBBBB", len(rows[0]) // 4, len(rows), 8, 2, 0, 0, 0)
+        to.parent.mkdir(parents=True, exist_ok=True)
+        to.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head)
+                       + chunk(b"IDAT", zlib.compress(raw, 6)) + chunk(b"IEND", b""))
+
+
+class Window:
+    """The window, by mouse and keys."""
+
+    def __init__(self, screen, program, home):
+        self.screen = screen
+        self.environment = {
+            **os.environ, "DISPLAY": screen.name, "HOME": str(home), "XDG_RUNTIME_DIR": str(home),
+            "XDG_STATE_HOME": str(home / "state"), "WGPU_BACKEND": "vulkan"}
+        self.environment.pop("WAYLAND_DISPLAY", None)
+        self.log = open(home / "window.log", "w+", encoding="utf-8")
+        self.process = subprocess.Popen([str(program)], env=self.environment, cwd=home,
+                                        stdout=self.log, stderr=self.log)
+        self.id = wait("a window opens", lambda: self.search("Toile"))
+        self.xdotool("windowmove", self.id, 0, 0)
+        self.xdotool("windowsize", self.id, *SCREEN)
+        self.xdotool("windowfocus", self.id)
+        self.xdotool("mousemove", SCREEN[0] // 2, SCREEN[1] // 2)
+        # How long an answer may take is seen by one that is sure to come: the list of findings.
+        self.screen.rest(1.0)
+        self.slowest = LEAST_ANSWER
+        for _ in range(4):
+            self.act("key", "F9", must="the list of findings is shown and hidden")
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait()
+
+    def xdotool(self, *words):
+        done = subprocess.run(["xdotool", *(str(word) for word in words)], env=self.environment,
+                              capture_output=True, text=True)
+        return done.stdout.strip() if done.returncode == 0 else ""
+
+    def search(self, title):
+        if self.process.poll() is not None:
+            self.log.seek(0)
+            raise Fault(f"the window has ended: {self.log.read().strip()}")
+        return self.xdotool("search", "--onlyvisible", "--name", title).split("\n")[0]
+
+    def titled(self, pattern):
+        """Waits for a title."""
+        def ask():
+            self.search("Toile")
+            return re.fullmatch(pattern, self.xdotool("getwindowname", self.id))
+        wait(f"the title {pattern!r}", ask)
+
+    def act(self, *words, must=None):
+        """An input, and what it shows: something if it must, which is then waited for."""
+        before, begun = self.screen.picture(), time.monotonic()
+        self.xdotool(*words)
+        patience = PATIENCE if must else ANSWERS * self.slowest
+
+        def ask():
+            return self.screen.picture() != before or time.monotonic() - begun > patience
+
+        wait(must or "an answer", ask)
+        if must:
+            self.slowest = max(self.slowest, time.monotonic() - begun)
+        self.screen.rest(self.slowest)
+
+    def key(self, *keys):
+        for key in keys:
+            self.act("key", key)
+
+    def type(self, text):
+        self.act("type", "--delay", 20, text)
+
+    def hover(self, at):
+        self.act("mousemove", *(round(k) for k in at))
+
+    def click(self, at):
+        self.hover(at)
+        self.act("click", 1)
+
+    def drag(self, from_, to):
+        self.hover(from_)
+        self.act("mousedown", 1)
+        for share in (0.3, 0.6, 1.0):
+            self.hover([a + share * (b - a) for a, b in zip(from_, to)])
+        self.act("mouseup", 1)
+
+    def panels(self, count):
+        """Where so many panels are seen, from the left: left, top, right, bottom."""
+        self.hover((SCREEN[0] // 2, SCREEN[1] - 40))
+
+        def ask():
+            boxes = []
+            runs = re.compile(b"(?s)(?:" + re.escape(CLOTH) + b".){%d,}" % LEAST_RUN)
+            for y, row in enumerate(self.screen.pixels()):
+                for run in runs.finditer(row):
+                    if run.start() % 4:
+                        continue
+                    left, right = run.start() // 4, run.end() // 4
+                    met = [box for box in boxes if left < box[2] and box[0] < right]
+                    for box in met:
+                        boxes.remove(box)
+                    met.append([left, y, right, y])
+                    boxes.append([min(box[0] for box in met), min(box[1] for box in met),
+                                  max(box[2] for box in met), max(box[3] for box in met)])
+            boxes = sorted(box for box in boxes if box[3] - box[1] > LEAST_RUN)
+            return boxes if len(boxes) == count else None
+
+        return wait(f"{count} panels are seen", ask)
+
+    def rectangle(self, corner, size):
+        """A panel of typed numbers [cm]."""
+        self.key("r")
+        for pair in (corner, size):
+            self.type(str(pair[0]))
+            self.key("Tab")
+            self.type(str(pair[1]))
+            self.key("Return")
+
+
+def middle(box, side):
+    left, top, right, bottom = box
+    return {"left": (left - 1, (top + bottom) / 2), "right": (right, (top + bottom) / 2),
+            "top": ((left + right) / 2, top - 1), "bottom": ((left + right) / 2, bottom)}[side]
+
+
+def saved(window, file, words, holds):
+    """Saves, and waits until the file holds something."""
+    def ask():
+        with contextlib.suppress(OSError, ValueError):
+            return holds(json.loads(file.read_text(encoding="utf-8")))
+        return False
+    window.key("ctrl+s")
+    wait(words, ask)
+
+
+def draft(window, file):
+    # An empty document.
+    window.titled("Toile")
+    window.key("F7", "ctrl+n", "ctrl+a")
+    window.type("Skirt")
+    window.key("Return")
+    window.titled("Skirt \N{EN DASH} Toile")
+    # Two panels of 20 x 60 cm, side by side.
+    window.rectangle((0, 0), (20, 60))
+    window.titled("Skirt \N{BULLET} \N{EN DASH} Toile")
+    window.rectangle((40, 0), (20, 60))
+    window.key("Escape", "Escape", "f")
+    left, right = window.panels(2)
+    # A file.
+    window.key("ctrl+shift+s", "ctrl+a")
+    window.type(str(file))
+    window.key("Return")
+    window.titled("Skirt \N{EN DASH} Toile")
+    saved(window, file, "two panels are saved", lambda saved: len(saved["panels"]) == 2)
+    # The side seam.
+    window.key("s")
+    window.click(middle(left, "right"))
+    window.click(middle(right, "left"))
+    window.key("Escape", "Escape")
+    saved(window, file, "a seam is saved", lambda saved: len(saved["seams"]) == 1)
+    # A dart of 2.5 x 11 cm in the left one's waist.
+    window.key("d")
+    window.click(middle(left, "top"))
+    for number in ("2.5", "11"):
+        window.type(number)
+        window.key("Return")
+    window.key("Escape", "Escape")
+    saved(window, file, "a dart is saved", lambda saved: '"dart"' in json.dumps(saved))
+    # The right one's centre on the fold.
+    window.key("shift+f")
+    window.click(middle(right, "right"))
+    window.key("Escape", "Escape")
+    saved(window, file, "a fold is saved", lambda saved: '"fold"' in json.dumps(saved))
+    window.titled("Skirt \N{EN DASH} Toile")
+    # A corner is dragged, and that is undone.
+    window.drag((left[0] - 1, left[3]), (left[0] - 60, left[3] + 25))
+    window.titled("Skirt \N{BULLET} \N{EN DASH} Toile")
+    window.key("ctrl+z")
+    window.titled("Skirt \N{EN DASH} Toile")
+
+
+def check(toile, file):
+    """Holds what the command line tells of the file against numbers of the drawing [mm], [cm2]."""
+    done = subprocess.run([str(toile), "--json", "check", str(file)], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise Fault(f"toile check: {done.stdout}{done.stderr}")
+    told = json.loads(done.stdout)
+    left, right = told["pieces"]
+    tops = sum(edge["length_mm"] for edge in left["edges"] if edge["name"] == "top")
+    seams = {seam["name"].split()[0]: seam["lengths_mm"] for seam in told["seams"]}
+    leg = (110.0 ** 2 + 12.5 ** 2) ** 0.5
+    numbers = {
+        "findings": (len(told["diagnostics"]), 0),
+        "pieces on the fold": ([left["folded"], right["folded"]].count(True), 1),
+        "area sewn of the left": (left["sewn"]["area_cm2"], 20.0 * 60.0 - 2.5 * 11.0 / 2.0),
+        "waist of the left": (tops, 200.0 - 25.0),
+        "width of the dart": (left["darts"][0]["width_mm"], 25.0),
+        "first leg of the dart": (left["darts"][0]["legs_mm"][0], leg),
+        "second leg of the dart": (left["darts"][0]["legs_mm"][1], leg),
+        "area cut of the right": (right["cut"]["area_cm2"], 40.0 * 60.0),
+        "outline cut of the right": (right["cut"]["outline_mm"], 2.0 * (400.0 + 600.0)),
+        "seams": (len(seams), 2),
+        "side seam, left": (seams["draft"][0], 600.0),
+        "side seam, right": (seams["draft"][1], 600.0),
+    }
+    wrong = [f"{name} is {number}, not {right}"
+             for name, (number, right) in numbers.items() if abs(number - right) > WITHIN]
+    if wrong:
+        raise Fault("; ".join(wrong))
+    return len(numbers)
+
+
+def main(arguments):
+    if len(arguments) != 2:
+        sys.exit(__doc__)
+    program, toile = (pathlib.Path(argument).resolve() for argument in arguments)
+    PICTURE.unlink(missing_ok=True)
+    for needed in (program, toile):
+        if not needed.is_file():
+            raise Fault(f"{needed} is not built")
+    with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
+        folder = pathlib.Path(folder)
+        file = folder / "skirt.toile.json"
+        screen = Screen(folder)
+        stack.callback(screen.close)
+        try:
+            window = Window(screen, program, folder)
+            stack.callback(window.close)
+            draft(window, file)
+            print(f"answers of {window.slowest:.2f} s; {check(toile, file)} numbers are as reckoned")
+        finally:
+            with contextlib.suppress(OSError, struct.error):
+                screen.keep(PICTURE)
+
+
+if __name__ == "__main__":
+    try:
+        main(sys.argv[1:])
+    except FileNotFoundError as missing:
+        sys.exit(f"window.py: {missing.filename} is not there: install xvfb and xdotool")
+    except Fault as fault:
+        seen = f"; the screen is in {PICTURE}" if PICTURE.is_file() else ""
+        sys.exit(f"window.py: {fault}{seen}")

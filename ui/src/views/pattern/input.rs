@@ -1,0 +1,168 @@
+//! The pattern view's input: pans and zooms, and turns pointer and keys into events of the tool.
+
+use super::PatternView;
+use crate::canvas::camera::ScreenPoint;
+use crate::tools::number::begins_typing;
+use crate::tools::{Event, Held, Tool};
+use egui::{EventFilter, Key, PointerButton, Response, Ui};
+
+impl PatternView {
+    /// Panning and zooming; says whether the primary button pans too.
+    pub(super) fn navigate(&mut self, ui: &Ui, response: &Response) -> bool {
+        let with_space = response.contains_pointer()
+            && !self.is_typed_into(ui)
+            && ui.input(|input| input.key_down(Key::Space));
+        for button in [PointerButton::Middle, PointerButton::Secondary] {
+            if response.dragged_by(button) {
+                self.camera.pan(response.drag_delta());
+            }
+        }
+        if with_space && response.dragged_by(PointerButton::Primary) && self.pressed.is_none() {
+            self.camera.pan(response.drag_delta());
+        }
+        if let Some(at) = response.hover_pos() {
+            let (scroll, pinch) =
+                ui.input(|input| (input.smooth_scroll_delta.y, input.zoom_delta()));
+            let factor = f64::from(scroll / 240.0).exp2() * f64::from(pinch);
+            if factor != 1.0 {
+                self.camera.zoom(response.rect, ScreenPoint(at), factor);
+            }
+        }
+        with_space
+    }
+
+    /// Whether keys go to another widget.
+    fn is_typed_into(&self, ui: &Ui) -> bool {
+        let focused = ui.memory(|memory| memory.focused());
+        focused.is_some_and(|id| id != Self::id())
+    }
+
+    /// What was done since the last frame.
+    pub(super) fn events(&mut self, ui: &Ui, response: &Response, panning: bool) -> Vec<Event> {
+        let mut events = Vec::new();
+        let held = ui.input(|input| Held {
+            shift: input.modifiers.shift,
+            command: input.modifiers.command,
+        });
+        let view = response.rect;
+        let hovered = response.hover_pos().filter(|_| !panning);
+        let was_there = self.pointer.is_some();
+        if response.drag_started_by(PointerButton::Primary)
+            && !panning
+            && let Some(from) = ui.input(|input| input.pointer.press_origin())
+        {
+            self.pressed = Some(self.pointer_at(view, from, held));
+        }
+        if response.clicked() || response.drag_started() {
+            response.request_focus();
+        }
+        match (&self.pressed, response.interact_pointer_pos()) {
+            (Some(from), Some(to)) => {
+                let from = from.clone();
+                let place = to;
+                let to = self.pointer_at(view, to, held);
+                self.pointer = Some(to.at);
+                if self.told.replace((place, held)) != Some((place, held)) {
+                    events.push(Event::Drag(from, to));
+                }
+            }
+            _ => match hovered {
+                Some(at) => {
+                    let pointer = self.pointer_at(view, at, held);
+                    self.hover = pointer.hit();
+                    self.under = pointer.hits.iter().map(|hit| hit.item).collect();
+                    self.pointer = Some(pointer.at);
+                    if self.told.replace((at, held)) != Some((at, held)) {
+                        events.push(Event::Hover(pointer));
+                    }
+                }
+                None => {
+                    self.hover = None;
+                    self.under.clear();
+                    self.pointer = None;
+                    self.told = None;
+                    if was_there {
+                        events.push(Event::Leave);
+                    }
+                }
+            },
+        }
+        if let Some(at) = response.interact_pointer_pos()
+            && !panning
+            && response.clicked()
+        {
+            let pointer = self.pointer_at(view, at, held);
+            events.push(match response.double_clicked() {
+                true => Event::DoubleClick(pointer),
+                false => Event::Click(pointer),
+            });
+        }
+        // Escape ends the drag too: what it showed is left, not taken.
+        if self.pressed.is_some() && ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.pressed = None;
+        }
+        if self.pressed.is_some()
+            && (response.drag_stopped() || !ui.input(|input| input.pointer.primary_down()))
+        {
+            self.pressed = None;
+            events.push(Event::Drop);
+        }
+        if response.secondary_clicked() && self.is_busy() {
+            events.push(Event::Enter);
+        }
+        events.extend(self.keys(ui, response));
+        events
+    }
+
+    fn keys(&mut self, ui: &Ui, response: &Response) -> Vec<Event> {
+        // A key that ends the typing into a field is no key of the tool.
+        let typed_now = self.is_typed_into(ui);
+        let typed_before = std::mem::replace(&mut self.was_typed_into, typed_now);
+        if typed_before {
+            return Vec::new();
+        }
+        if self.is_covered || self.is_typed_into(ui) {
+            return Vec::new();
+        }
+        let takes_tab = matches!(self.tool, Tool::Slots(_));
+        if takes_tab {
+            response.request_focus();
+        }
+        // Keys of the canvas must not move the focus of the window.
+        let filter = EventFilter {
+            tab: takes_tab,
+            escape: true,
+            horizontal_arrows: true,
+            vertical_arrows: true,
+        };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(Self::id(), filter));
+        let typing = self.is_typing();
+        let mut events = Vec::new();
+        ui.input_mut(|input| {
+            input.events.retain(|event| {
+                let taken = match event {
+                    egui::Event::Text(text) => {
+                        let begins = text.starts_with(begins_typing);
+                        let is_slots = matches!(self.tool, Tool::Slots(_));
+                        let takes = is_slots && (typing || begins);
+                        takes.then(|| Event::Text(text.clone()))
+                    }
+                    egui::Event::Key {
+                        key, pressed: true, ..
+                    } => match key {
+                        Key::Enter => Some(Event::Enter),
+                        Key::Tab => Some(Event::Tab),
+                        Key::Backspace if typing => Some(Event::Backspace),
+                        Key::Escape => Some(Event::Escape),
+                        _ => None,
+                    },
+                    _ => None,
+                };
+                let is_taken = taken.is_some();
+                events.extend(taken);
+                !is_taken
+            });
+        });
+        events
+    }
+}
