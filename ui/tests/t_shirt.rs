@@ -287,7 +287,7 @@ impl Drafter {
         self.click(self.place(middle.x, middle.y));
         self.key(Key::Escape);
         self.enter("Name", piece.name);
-        for (k, (edge, handles)) in piece.edges.iter().enumerate() {
+        for (k, (edge, _)) in piece.edges.iter().enumerate() {
             let next = (k + 1) % piece.corners.len();
             let pattern = self.pattern();
             let id = |k: usize| {
@@ -301,15 +301,20 @@ impl Drafter {
             let mut edges = panel.edges();
             let found = edges
                 .find(|found| found.ends == [id(k), id(next)] || found.ends == [id(next), id(k)]);
-            // Not in the middle of a curve, where a handle may lie.
-            let share = if handles.is_some() { 0.3 } else { 0.5 };
-            let curve = self
-                .evaluation()
-                .curve(found.unwrap().curve)
-                .unwrap()
-                .clone();
-            let place = curve.at_length(share * curve.length()).unwrap();
-            let at = curve.point(place);
+            // Where it is furthest from points, which would be chosen before it.
+            let evaluation = self.evaluation();
+            let curve = evaluation.curve(found.unwrap().curve).unwrap();
+            let points = pattern.sheets[0].points.iter();
+            let points: Vec<Vec2> = points.filter_map(|p| evaluation.point(p.id)).collect();
+            let away = |at: &Vec2| {
+                let all = points.iter().map(|point| (point - at).norm());
+                all.fold(f64::INFINITY, f64::min)
+            };
+            let places = (1..20).map(|k| curve.length() * f64::from(k) / 20.0);
+            let at = places
+                .map(|along| curve.point(curve.at_length(along).unwrap()))
+                .max_by(|a, b| away(a).total_cmp(&away(b)))
+                .unwrap();
             self.click(self.place(at.x, at.y));
             self.enter("Name", edge);
             let pattern = self.pattern();
