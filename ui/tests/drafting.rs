@@ -495,3 +495,33 @@ fn keys_of_a_field_are_no_commands() {
         .and_then(toile_pattern::Number::value);
     assert_eq!(width, Some(0.04), "{}", drafter.status());
 }
+
+#[test]
+fn names_are_proposed_while_a_formula_is_typed() {
+    let mut drafter = Drafter::opened("t-shirt");
+    drafter.click(drafter.part("Edge hem of front"));
+    let field = drafter
+        .window
+        .get_by_role_and_label(Role::TextInput, "seam allowance");
+    field.focus();
+    drafter.window.run();
+    drafter.window.event(egui::Event::Text("waist_l".into()));
+    drafter.window.run();
+    assert!(drafter.window.query_by_label("waist_line").is_some());
+    // The arrow downward takes it; a bare number beside it gets the document's unit.
+    drafter.window.key_press(Key::ArrowDown);
+    drafter.window.run();
+    drafter.window.event(egui::Event::Text(" / 20 + 1".into()));
+    drafter.window.run();
+    drafter.window.key_press(Key::Enter);
+    drafter.window.run();
+    let pattern = drafter.pattern();
+    let hem = pattern.panels[0].edges().find(|edge| edge.name == "hem");
+    let allowance = hem.unwrap().allowance.clone().unwrap();
+    let text = toile_pattern::plan::number_text(
+        &drafter.evaluation(),
+        &allowance,
+        toile_pattern::Want::Length,
+    );
+    assert_eq!(text, "waist_line / 20 + 1cm");
+}

@@ -1,5 +1,5 @@
 //! The shipped T-shirt drafted in an empty window by tools alone: it drafts as the shipped one in all
-//! six sizes.
+//! six sizes, is sewn, laid out, printed, saved, opened again and worn.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod drafter;
@@ -9,6 +9,7 @@ use egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable;
 use toile_geometry::Vec2;
 use toile_pattern::{CurveRule, Evaluation, Panel, Pattern};
+use toile_session::{Command, Silent};
 
 /// Measurements its formulas use, by the names of their rows.
 const MEASURED: &[&str] = &[
@@ -408,6 +409,19 @@ fn the_t_shirt_is_drafted_in_an_empty_window() {
     assert!(label.is_some(), "{:?}", drafter.window.state().findings());
     println!("{} actions", drafter.actions);
 
+    // Laid out on the fabric, and on paper.
+    drafter.key(Key::F10);
+    assert_eq!(drafter.pattern().markers.len(), 1, "{}", drafter.status());
+    drafter.press("Search marker");
+    let laid = |drafter: &Drafter| !drafter.pattern().markers[0].placements.is_empty();
+    drafter.wait(laid);
+    drafter.key(Key::F10);
+    let folder = tempfile::tempdir().unwrap();
+    let paper = folder.path().join("t-shirt.pdf");
+    drafter.chord(Modifiers::COMMAND, Key::P);
+    drafter.enter("File", &paper.display().to_string());
+    drafter.wait(|_| paper.exists());
+
     // Undone to empty and done again: the same document; replayed from the journal too.
     let end = drafter.pattern();
     let steps = drafter.window.state().session().past().len();
@@ -427,7 +441,6 @@ fn the_t_shirt_is_drafted_in_an_empty_window() {
     assert!(drafter.pattern().says_the_same(&end));
 
     // Saved, and opened again.
-    let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("t-shirt.toile.json");
     drafter.chord(Modifiers::COMMAND, Key::S);
     drafter.enter("File", &file.display().to_string());
@@ -437,4 +450,10 @@ fn the_t_shirt_is_drafted_in_an_empty_window() {
         folder: None,
     });
     assert!(again.pattern().says_the_same(&end));
+
+    // And worn.
+    let mut session = again.window.state().session().snapshot();
+    session.execute(Command::drape(), &mut Silent).unwrap();
+    let draped = session.draped().unwrap();
+    assert_eq!((draped.body_intersections, draped.components), (0, 1));
 }

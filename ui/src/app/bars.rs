@@ -74,21 +74,24 @@ impl ToileApp {
                 "Seam",
                 "Select seam",
             ],
+            Some(Item::Operation(..)) => &["Pivot dart"],
             Some(Item::Seam(_)) => &["Flip seam", "Matched notches"],
             _ => &[],
         };
         canvas.context_menu(|ui| {
-            for names in [
-                own,
-                &["Cut", "Copy", "Paste", "Duplicate", "Delete"],
-                &["Undo", "Fit"],
-            ] {
-                for command in names.iter().filter_map(|name| named(name)) {
-                    if (command.when)(self) {
-                        self.menu_entry(ui, command);
-                    }
+            let changes: &[&str] = &["Cut", "Copy", "Paste", "Duplicate", "Delete"];
+            let groups = [own, changes, &["Undo", "Fit"]].map(|names| {
+                let known = names.iter().filter_map(|name| named(name));
+                let possible = known.filter(|command| (command.when)(self));
+                possible.collect::<Vec<_>>()
+            });
+            for (k, group) in groups.iter().filter(|group| !group.is_empty()).enumerate() {
+                if k > 0 {
+                    ui.separator();
                 }
-                ui.separator();
+                for command in group {
+                    self.menu_entry(ui, command);
+                }
             }
         });
     }

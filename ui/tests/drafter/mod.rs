@@ -163,4 +163,16 @@ impl Drafter {
             .click();
         self.window.run();
     }
+
+    /// Waits for work that goes on beside the window.
+    pub fn wait(&mut self, done: impl Fn(&Self) -> bool) {
+        for _ in 0..6000 {
+            if done(self) {
+                return;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(10));
+            self.window.run_steps(1);
+        }
+        panic!("it never ended: {}", self.status());
+    }
 }
