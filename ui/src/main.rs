@@ -10,11 +10,7 @@ fn main() -> ExitCode {
         folder: toile_session::state_folder(),
     };
     let options = eframe::NativeOptions {
-        viewport: egui::ViewportBuilder::default()
-            .with_title("Toile")
-            .with_app_id("toile")
-            .with_inner_size([1400.0, 860.0])
-            .with_min_inner_size([760.0, 480.0]),
+        viewport: beginning.viewport(),
         renderer: eframe::Renderer::Wgpu,
         ..Default::default()
     };

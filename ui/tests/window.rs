@@ -610,5 +610,8 @@ fn the_other_button_opens_a_menu_on_what_is_under_it() {
     let entries = window.query_all_by_role_and_label(Role::Button, "Notch");
     assert_eq!(entries.count(), 2);
     let hem = window.get_by_role_and_label(Role::Button, "Edge hem of front");
-    assert_eq!(hem.accesskit_node().is_selected(), Some(true));
+    assert_eq!(
+        hem.accesskit_node().toggled(),
+        Some(egui::accesskit::Toggled::True)
+    );
 }

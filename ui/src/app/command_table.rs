@@ -25,8 +25,8 @@ pub struct KeysTaken {
     pub text: bool,
     /// A tool takes numbers: those a number begins with.
     pub numbers: bool,
-    /// A tool is under way: Escape goes a step back in it.
-    pub busy: bool,
+    /// Escape goes a step back in a tool that is under way, or closes a menu.
+    pub escape: bool,
     /// A dialog is open: all of them.
     pub modal: bool,
 }
@@ -95,7 +95,7 @@ pub fn pressed(context: &egui::Context, keys: KeysTaken) -> Vec<&'static UiComma
                 || (keys.typing || begun) && plain
                 || keys.text && edits_text(key.logical_key)
                 || keys.numbers && plain && begins_number(key.logical_key)
-                || keys.busy && key.logical_key == Key::Escape;
+                || keys.escape && key.logical_key == Key::Escape;
             if !waits && input.consume_shortcut(&key) {
                 pressed.push(command);
             }

@@ -63,7 +63,8 @@ impl ToileApp {
         });
         // A field for text gives up its focus by Escape first: here one press is enough.
         let escaped = context.input(|input| input.key_pressed(Key::Escape));
-        if matches!(answer, Answer::Stay) && (escaped || modal.should_close()) {
+        let closes = (escaped || modal.should_close()) && !self.menu_is_open;
+        if matches!(answer, Answer::Stay) && closes {
             answer = Answer::Leave;
         }
         match answer {

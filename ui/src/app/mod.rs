@@ -74,6 +74,8 @@ pub struct ToileApp {
     pub(crate) wants_clipboard: bool,
     pub(crate) notice: Notice,
     pub(crate) dialog: Option<Dialog>,
+    /// Whether a menu or a list to choose from was open when the frame began.
+    pub(crate) menu_is_open: bool,
     pub(crate) tables: Tables,
     pub(crate) typed: TypedTexts,
     pub(crate) shows: Shows,
@@ -126,6 +128,7 @@ impl ToileApp {
             wants_clipboard: false,
             notice: Notice::default(),
             dialog: None,
+            menu_is_open: false,
             tables: Tables::default(),
             typed: TypedTexts::default(),
             shows: preferences.shows,
@@ -385,13 +388,14 @@ impl ToileApp {
         let on_marker = context.memory(|memory| memory.has_focus(MarkerView::id()));
         let typing =
             self.types(&context) || self.view.is_typing() || self.dialog.is_some() || on_marker;
-        // While a tool is under way Escape is a step back of the tool, which the canvas takes.
-        let busy = self.view.is_busy();
+        // While a tool is under way Escape is a step back of the tool, which the canvas takes; while
+        // a menu is open it closes that.
+        self.menu_is_open = egui::Popup::is_any_open(&context);
         let keys = KeysTaken {
             typing,
             text: self.types(&context),
             numbers: matches!(self.view.tool, Tool::Slots(_)),
-            busy,
+            escape: self.menu_is_open || self.view.is_busy(),
             modal: self.dialog.is_some(),
         };
         for command in command_table::pressed(&context, keys) {
@@ -411,6 +415,7 @@ impl ToileApp {
         }
         self.parts(ui);
         self.preferences.set_shows(self.shows);
+        self.preferences.note_window(&context);
         self.show_dialog(&context);
         self.guard_closing(&context);
         if self.making.is_busy() || self.printing.is_some() || self.searching.is_some() {
@@ -493,7 +498,7 @@ impl ToileApp {
         let base = self.base.clone();
         self.view.allowances = self.shows.allowances;
         self.view.rulers = self.shows.rulers;
-        self.view.is_covered = self.dialog.is_some();
+        self.view.is_covered = self.dialog.is_some() || self.menu_is_open;
         self.view.click_is_taken |= self.typed.took_click();
         for outcome in self.view.show(ui, &base) {
             self.follow_outcome(outcome);
@@ -509,6 +514,10 @@ impl ToileApp {
 impl eframe::App for ToileApp {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.show(ui);
+    }
+
+    fn on_exit(&mut self) {
+        self.preferences.write_window();
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {

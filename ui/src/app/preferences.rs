@@ -1,11 +1,15 @@
 //! What the window keeps from one time to the next: recent files, the theme, its layout, the
-//! paper.
+//! paper, its size.
 
+use super::Beginning;
 use super::shows::Shows;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toile_session::Paper;
 
+/// Size of a window that was never opened before, and the least one has [logical pixels].
+const WINDOW: [f32; 2] = [1400.0, 860.0];
+const LEAST_WINDOW: [f32; 2] = [760.0, 480.0];
 /// Most recent files kept.
 const MOST_RECENT: usize = 10;
 
@@ -21,6 +25,10 @@ pub struct Preferences {
     pub shows: Shows,
     /// Name of the paper that was printed on last.
     pub paper: Option<String>,
+    /// Width and height of the window while it was last not as large as the screen [logical pixels].
+    pub window: Option<[f32; 2]>,
+    /// Whether it was as large as the screen.
+    pub fills_screen: bool,
     #[serde(skip)]
     file: Option<PathBuf>,
 }
@@ -100,6 +108,26 @@ impl Preferences {
         }
     }
 
+    /// Notes the size of the window, which is written when it closes.
+    pub fn note_window(&mut self, context: &egui::Context) {
+        self.fills_screen = context.input(|input| input.viewport().maximized.unwrap_or_default());
+        let size = context.content_rect().size();
+        if !self.fills_screen && size.x > 0.0 && size.y > 0.0 {
+            self.window = Some(size.into());
+        }
+    }
+
+    /// Writes the size of the window.
+    pub fn write_window(&self) {
+        self.write();
+    }
+
+    /// How large the window opens [logical pixels].
+    fn window(&self) -> [f32; 2] {
+        let [width, height] = self.window.unwrap_or(WINDOW);
+        [width.max(LEAST_WINDOW[0]), height.max(LEAST_WINDOW[1])]
+    }
+
     fn write(&self) {
         let (Some(file), Ok(text)) = (&self.file, serde_json::to_vec_pretty(self)) else {
             return;
@@ -108,5 +136,18 @@ impl Preferences {
         // Preferences that cannot be kept are no reason to disturb anybody.
         let _ = std::fs::create_dir_all(folder);
         let _ = toile_session::write_atomically(file, &text);
+    }
+}
+
+impl Beginning {
+    /// The window to open: as large as it was when it was closed last.
+    pub fn viewport(&self) -> egui::ViewportBuilder {
+        let preferences = Preferences::read(self.folder.as_deref());
+        egui::ViewportBuilder::default()
+            .with_title("Toile")
+            .with_app_id("toile")
+            .with_inner_size(preferences.window())
+            .with_min_inner_size(LEAST_WINDOW)
+            .with_maximized(preferences.fills_screen)
     }
 }

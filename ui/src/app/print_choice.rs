@@ -5,10 +5,10 @@ use super::answer::{Answer, main_button};
 use crate::fields::text_field;
 use crate::theme::Palette;
 use egui::{ComboBox, Grid, Key, RichText, Ui};
-use std::path::PathBuf;
 use toile_session::{Lines, Paper, PrintOptions, PrintSizes};
 
 /// What is asked before printing.
+#[derive(Clone, Debug)]
 pub struct PrintChoice {
     /// What and how.
     pub options: PrintOptions,
@@ -78,12 +78,10 @@ impl ToileApp {
             if main_button(ui, "Print") || entered {
                 match read_scale(&choice.scale) {
                     Some(scale) => {
-                        let options = PrintOptions {
-                            scale,
-                            ..choice.options.clone()
-                        };
-                        let to = PathBuf::from(choice.path.trim());
-                        answer = Answer::Do(Box::new(move |app| app.print(options, to)));
+                        choice.options.scale = scale;
+                        choice.fault.clear();
+                        let choice = choice.clone();
+                        answer = Answer::Do(Box::new(move |app| app.print(choice)));
                     }
                     None => choice.fault = "the scale is written as 1:1 or 1:4".into(),
                 }

@@ -11,7 +11,9 @@ use toile_session::{PrintOptions, PrintSizes, Printed, print_pattern};
 /// A print that is being made.
 pub struct Printing {
     job: Job<Printed>,
-    to: PathBuf,
+    /// What was asked, to be asked again where it fails.
+    choice: PrintChoice,
+    is_stopped: bool,
 }
 
 impl ToileApp {
@@ -40,17 +42,19 @@ impl ToileApp {
         })));
     }
 
-    pub(super) fn print(&mut self, options: PrintOptions, to: PathBuf) {
+    pub(super) fn print(&mut self, choice: PrintChoice) {
+        let options = choice.options.clone();
         self.preferences.set_paper(options.paper);
         let project = self.session.project().clone();
-        let path = to.clone();
+        let path = PathBuf::from(choice.path.trim());
         self.printing = Some(Printing {
             job: Job::start(move |follower| print_pattern((&project, &path), &options, follower)),
-            to,
+            choice,
+            is_stopped: false,
         });
     }
 
-    /// Tells of a print that has ended.
+    /// Tells of a print that has ended. One that failed is asked for again, with the reason.
     pub(super) fn follow_printing(&mut self) {
         let Some(printing) = &self.printing else {
             return;
@@ -64,10 +68,8 @@ impl ToileApp {
             Ok(printed) => {
                 let sheets = printed.tiles.len();
                 let plural = if sheets == 1 { "" } else { "s" };
-                let mut words = format!(
-                    "Printed {sheets} sheet{plural} to {}",
-                    printing.to.display()
-                );
+                let to = printing.choice.path.trim();
+                let mut words = format!("Printed {sheets} sheet{plural} to {to}");
                 for note in &printed.notes {
                     words = format!("{words}; {note}");
                 }
@@ -76,14 +78,22 @@ impl ToileApp {
                     false => Notice::warning(words),
                 }
             }
-            Err(words) => Notice::fault(words),
+            Err(fault) => {
+                if self.dialog.is_none() && !printing.is_stopped {
+                    let fault = fault.clone();
+                    let choice = printing.choice.clone();
+                    self.dialog = Some(Dialog::Print(Box::new(PrintChoice { fault, ..choice })));
+                }
+                Notice::fault(fault)
+            }
         };
         self.printing = None;
     }
 
     /// Stops the print that is being made.
     pub(super) fn stop_printing(&mut self) {
-        if let Some(printing) = &self.printing {
+        if let Some(printing) = &mut self.printing {
+            printing.is_stopped = true;
             printing.job.cancel();
         }
     }

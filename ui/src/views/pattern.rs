@@ -52,7 +52,7 @@ pub struct PatternView {
     pub grading: Option<Grading>,
     /// Whether the click that goes on was taken by a number that is typed elsewhere.
     pub click_is_taken: bool,
-    /// Whether a dialog lies over it, which all keys go to.
+    /// Whether a dialog or a menu lies over it, which all keys go to.
     pub is_covered: bool,
     /// The tool in hand.
     pub tool: Tool,

@@ -247,7 +247,7 @@ fn every_number_is_listed_read_and_set() {
             let text = match entry.want {
                 Want::Length => "0.03m",
                 Want::Angle => "30deg",
-                Want::Plain => "0.25",
+                Want::Plain | Want::Any => "0.25",
             };
             let number = read(&pattern, text, entry.want);
             let edits = match plan::set_number(&evaluation, &entry.place, number.clone()) {
