@@ -6,7 +6,7 @@ numbers that were reckoned beforehand. The last picture of the screen is kept in
 usage: window.py TOILE_UI TOILE
 
 It waits for what is to be seen, a title or a file. How long the window takes to show what an input
-did is measured first: where an input may show nothing three times as long is waited.
+did is measured first: where an input may show nothing twice as long is waited.
 """
 
 import contextlib
@@ -29,7 +29,7 @@ INTERVAL = 0.04
 # What an answer to an input is given at least [s], and how many times the slowest so far is waited for
 # one that may not come.
 LEAST_ANSWER = 0.2
-ANSWERS = 3.0
+ANSWERS = 2.0
 # Fill of a panel by day (ui/src/theme.rs), blue first as it lies in memory.
 CLOTH = b"\xfa\xfd\xfe"
 # How far a number may be from its closed form [mm], [cm2].
@@ -181,6 +181,10 @@ class Window:
         for key in keys:
             self.act("key", key)
 
+    def leave(self):
+        """Puts the tool down and selects nothing."""
+        self.key("Escape", "Escape")
+
     def type(self, text):
         self.act("type", "--delay", 20, text)
 
@@ -258,7 +262,8 @@ def draft(window, file):
     window.rectangle((0, 0), (20, 60))
     window.titled("Skirt \N{BULLET} \N{EN DASH} Toile")
     window.rectangle((40, 0), (20, 60))
-    window.key("Escape", "Escape", "f")
+    window.leave()
+    window.key("f")
     left, right = window.panels(2)
     # A file.
     window.key("ctrl+shift+s", "ctrl+a")
@@ -270,7 +275,7 @@ def draft(window, file):
     window.key("s")
     window.click(middle(left, "right"))
     window.click(middle(right, "left"))
-    window.key("Escape", "Escape")
+    window.leave()
     saved(window, file, "a seam is saved", lambda saved: len(saved["seams"]) == 1)
     # A dart of 2.5 x 11 cm in the left one's waist.
     window.key("d")
@@ -278,12 +283,12 @@ def draft(window, file):
     for number in ("2.5", "11"):
         window.type(number)
         window.key("Return")
-    window.key("Escape", "Escape")
+    window.leave()
     saved(window, file, "a dart is saved", lambda saved: '"dart"' in json.dumps(saved))
     # The right one's centre on the fold.
     window.key("shift+f")
     window.click(middle(right, "right"))
-    window.key("Escape", "Escape")
+    window.leave()
     saved(window, file, "a fold is saved", lambda saved: '"fold"' in json.dumps(saved))
     window.titled("Skirt \N{EN DASH} Toile")
     # A corner is dragged, and that is undone.
