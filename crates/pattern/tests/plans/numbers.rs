@@ -297,13 +297,16 @@ fn a_number_moves_what_it_should_in_every_size() {
     let pattern = sample();
     let p1 = point(&pattern, "front", "p1");
     let place = NumberPlace::Point(p1, PointNumber::X);
-    let number = read(&pattern, "bust / 2 + 3", Want::Length);
+    // Of which factor the unit is meant to be nobody can know.
+    let number = read(&pattern, "bust / 2 + 2 * 3", Want::Length);
     let told = refusal(plan::set_number(&evaluated(&pattern), &place, number));
     assert!(
         told.contains("a length is put together with a plain number"),
         "{told}"
     );
-    let number = read(&pattern, "bust / 2 + 3cm", Want::Length);
+    // A bare number beside a length has the document's unit.
+    let number = read(&pattern, "bust / 2 + 3", Want::Length);
+    assert_eq!(number, read(&pattern, "bust / 2 + 3cm", Want::Length));
     let edits = plan::set_number(&evaluated(&pattern), &place, number).unwrap();
     let after = done(&pattern, &edits);
     for body in bodies() {
