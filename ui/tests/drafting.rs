@@ -6,7 +6,7 @@ mod drafter;
 
 use drafter::Drafter;
 use egui::{Key, Modifiers, Role};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use toile_geometry::Vec2;
 use toile_pattern::Evaluation;
 use toile_session::{Command, Project, Session, Silent};
@@ -524,4 +524,30 @@ fn names_are_proposed_while_a_formula_is_typed() {
         toile_pattern::Want::Length,
     );
     assert_eq!(text, "waist_line / 20 + 1cm");
+}
+
+#[test]
+fn the_other_button_opens_a_menu_on_what_is_under_it() {
+    let drafter = Drafter::opened("t-shirt");
+    let at = drafter.part("Edge hem of front");
+    let mut window = drafter.window;
+    window.hover_at(at);
+    window.run();
+    for pressed in [true, false] {
+        window.event(egui::Event::PointerButton {
+            pos: at,
+            button: egui::PointerButton::Secondary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        window.run();
+    }
+    // The bar of tools has a notch too; the menu is the second.
+    let entries = window.query_all_by_role_and_label(Role::Button, "Notch");
+    assert_eq!(entries.count(), 2);
+    let hem = window.get_by_role_and_label(Role::Button, "Edge hem of front");
+    assert_eq!(
+        hem.accesskit_node().toggled(),
+        Some(egui::accesskit::Toggled::True)
+    );
 }

@@ -590,28 +590,3 @@ fn a_panel_is_shown_alone_and_with_the_others_again() {
     window.run();
     assert_eq!(shown(&window), 3);
 }
-
-#[test]
-fn the_other_button_opens_a_menu_on_what_is_under_it() {
-    let mut window = window(&t_shirt());
-    let at = place(&window, "Edge hem of front");
-    window.hover_at(at);
-    window.run();
-    for pressed in [true, false] {
-        window.event(egui::Event::PointerButton {
-            pos: at,
-            button: egui::PointerButton::Secondary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        });
-        window.run();
-    }
-    // The bar of tools has a notch too; the menu is the second.
-    let entries = window.query_all_by_role_and_label(Role::Button, "Notch");
-    assert_eq!(entries.count(), 2);
-    let hem = window.get_by_role_and_label(Role::Button, "Edge hem of front");
-    assert_eq!(
-        hem.accesskit_node().toggled(),
-        Some(egui::accesskit::Toggled::True)
-    );
-}
