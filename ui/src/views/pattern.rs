@@ -215,28 +215,24 @@ impl PatternView {
         outcome
     }
 
-    /// What a click does now.
-    pub fn hint(&self, evaluation: &Evaluation) -> String {
-        let inside = |_| Vec::new();
-        let reading = Reading {
+    /// What the tool in hand sees while it is only told of: nothing is chosen by a box.
+    fn reading<'a>(&'a self, evaluation: &'a Evaluation) -> Reading<'a> {
+        Reading {
             evaluation,
             scene: &self.scene,
             selection: &self.selection,
-            inside: &inside,
-        };
-        self.tool.hint(&self.state, &reading)
+            inside: &|_| Vec::new(),
+        }
+    }
+
+    /// What a click does now.
+    pub fn hint(&self, evaluation: &Evaluation) -> String {
+        self.tool.hint(&self.state, &self.reading(evaluation))
     }
 
     /// What the tool in hand draws over the pattern.
     pub fn overlay(&self, evaluation: &Evaluation) -> Vec<Overlay> {
-        let inside = |_| Vec::new();
-        let reading = Reading {
-            evaluation,
-            scene: &self.scene,
-            selection: &self.selection,
-            inside: &inside,
-        };
-        self.tool.overlay(&self.state, &reading)
+        self.tool.overlay(&self.state, &self.reading(evaluation))
     }
 
     /// Draws the view, and tells what came of what is done in it. The evaluation is that before the
