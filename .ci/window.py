@@ -3,7 +3,12 @@
 typed numbers, a seam, a dart, a fold, a drag that is undone; saves, and holds the saved file against
 numbers that were reckoned beforehand. The last picture of the screen is kept in out/ci/window.png.
 
-usage: window.py TOILE_UI TOILE
+Then the T-shirt is drafted from an empty window as the test of that name did it, input by input, and
+the saved file must be the same to the byte.
+
+usage: window.py TOILE_UI TOILE [WAY]
+
+WAY is what the test `t_shirt` wrote (target/tmp/t_shirt.way); beside it lies the file it saved.
 
 It waits for what is to be seen, a title or a file. How long the window takes to show what an input
 did is measured first: where an input may show nothing twice as long is waited.
@@ -329,27 +334,70 @@ def check(toile, file):
     return len(numbers)
 
 
-def main(arguments):
-    if len(arguments) != 2:
-        sys.exit(__doc__)
-    program, toile = (pathlib.Path(argument).resolve() for argument in arguments)
-    PICTURE.unlink(missing_ok=True)
-    for needed in (program, toile):
-        if not needed.is_file():
-            raise Fault(f"{needed} is not built")
+def go(window, way, folder):
+    """Gives a window the inputs of a way, one after another; says how many."""
+    lines = [line.replace("{folder}", str(folder)) for line in way.read_text(encoding="utf-8").splitlines()]
+    for line in lines:
+        kind, rest = line.split(" ", 1)
+        if kind == "click":
+            window.click([float(word) for word in rest.split()])
+        elif kind == "hover":
+            window.hover([float(word) for word in rest.split()])
+        elif kind == "key":
+            window.key(rest)
+        elif kind == "text":
+            window.type(rest)
+        else:
+            raise Fault(f"{way} has an input of no kind that is known: {line!r}")
+    return len(lines)
+
+
+def on_display(program, draft):
+    """Has a window drafted in on a display of its own; what `draft` gives of it and its folder."""
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
         folder = pathlib.Path(folder)
-        file = folder / "skirt.toile.json"
         screen = Screen(folder)
         stack.callback(screen.close)
         try:
             window = Window(screen, program, folder)
             stack.callback(window.close)
-            draft(window, file)
-            print(f"answers of {window.slowest:.2f} s; {check(toile, file)} numbers are as reckoned")
+            return draft(window, folder)
         finally:
             with contextlib.suppress(OSError, struct.error):
                 screen.keep(PICTURE)
+
+
+def skirt(toile):
+    def drafted(window, folder):
+        file = folder / "skirt.toile.json"
+        draft(window, file)
+        return f"answers of {window.slowest:.2f} s; {check(toile, file)} numbers are as reckoned"
+    return drafted
+
+
+def t_shirt(way):
+    def drafted(window, folder):
+        begun = time.monotonic()
+        count = go(window, way, folder)
+        file, end = folder / "t-shirt.toile.json", way.with_suffix(".toile.json")
+        wait("the T-shirt is saved", file.is_file)
+        if file.read_bytes() != end.read_bytes():
+            raise Fault(f"the T-shirt is not as the test drafted it ({end})")
+        return f"the T-shirt in {count} inputs, {time.monotonic() - begun:.0f} s: the same file"
+    return drafted
+
+
+def main(arguments):
+    if len(arguments) not in (2, 3):
+        sys.exit(__doc__)
+    program, toile, *ways = (pathlib.Path(argument).resolve() for argument in arguments)
+    PICTURE.unlink(missing_ok=True)
+    for needed in (program, toile, *ways):
+        if not needed.is_file():
+            raise Fault(f"{needed} is not built")
+    print(on_display(program, skirt(toile)))
+    for way in ways:
+        print(on_display(program, t_shirt(way)))
 
 
 if __name__ == "__main__":

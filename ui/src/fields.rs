@@ -24,12 +24,28 @@ pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
         before
     });
     if has_focus && !had_focus {
+        // One that is gone to by a key may be out of sight.
+        response.scroll_to_me(None);
         let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
         let mut state = output.state;
         state.cursor.set_char_range(Some(all));
         state.store(ui.ctx(), id);
     }
     response
+}
+
+/// A list to choose a value from, under a label; a value that is in no entry shows nothing.
+pub fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, of: &[(T, &str)], value: &mut T) {
+    let words = of.iter().find(|known| known.0 == *value);
+    let name = ui.label(label).id;
+    let list = egui::ComboBox::from_id_salt(label)
+        .selected_text(words.map_or("", |known| known.1))
+        .show_ui(ui, |ui| {
+            for (one, words) in of {
+                ui.selectable_value(value, *one, *words);
+            }
+        });
+    list.response.labelled_by(name);
 }
 
 /// Texts that are being typed into fields.

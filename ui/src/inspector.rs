@@ -2,14 +2,14 @@
 
 use crate::app::ToileApp;
 use crate::canvas::selection::Item;
-use crate::fields::Entered;
+use crate::fields::{Entered, choice};
 use crate::theme::Palette;
 use crate::tools::number;
 use egui::{ComboBox, Grid, RichText, Ui};
 use std::sync::Arc;
 use toile_pattern::plan::{self, NumberEntry};
 use toile_pattern::{
-    Corner, Edit, EditError, Entity, NotchKind, Number, Panel, PanelId, PartId, Want,
+    Corner, CurveId, Edit, EditError, Entity, NotchKind, Number, Panel, PanelId, PartId, Want,
 };
 
 impl ToileApp {
@@ -41,16 +41,9 @@ impl ToileApp {
             let planned = plan::rename_pattern(&self.base, &text);
             self.enter(planned, "Rename pattern", (id, text));
         }
-        let label = ui.label("Unit").id;
         let mut unit = pattern.unit;
-        let choice = ComboBox::from_id_salt("unit")
-            .selected_text(unit.sign())
-            .show_ui(ui, |ui| {
-                for one in [Millimetre, Centimetre, Metre, Inch] {
-                    ui.selectable_value(&mut unit, one, one.sign());
-                }
-            });
-        choice.response.labelled_by(label);
+        let units = [Millimetre, Centimetre, Metre, Inch].map(|unit| (unit, unit.sign()));
+        choice(ui, "Unit", &units, &mut unit);
         if unit != pattern.unit {
             let edits = plan::set_unit(&self.base, unit);
             self.edit(Ok(edits), "Change unit");
@@ -95,11 +88,16 @@ impl ToileApp {
             self.number_field(ui, &entry);
         }
         match item {
-            Item::Panel(panel) => self.panel_choices(ui, panel),
+            Item::Panel(panel) => {
+                self.panel_choices(ui, panel);
+                self.panel_steps(ui, panel);
+            }
+            Item::Operation(panel, step) => self.step_choices(ui, panel, step),
             Item::Edge(panel, edge) => {
                 self.corner_choice(ui, panel, edge);
                 self.curve_numbers(ui, (panel, edge));
             }
+            Item::Curve(curve) => self.handle_numbers(ui, curve),
             Item::Notch(panel, notch) => self.notch_choice(ui, panel, notch),
             _ => {}
         }
@@ -136,7 +134,12 @@ impl ToileApp {
 
     /// One number: its text, its value as it is typed, what is wrong with it.
     pub(crate) fn number_field(&mut self, ui: &mut Ui, entry: &NumberEntry) {
-        let label = ui.label(entry.label).id;
+        self.named_number_field(ui, entry, entry.label);
+    }
+
+    /// The same under a label of its own.
+    fn named_number_field(&mut self, ui: &mut Ui, entry: &NumberEntry, label: &str) {
+        let label = ui.label(label).id;
         self.number_text_field(ui, entry, label);
         let is_formula = entry
             .number
@@ -149,6 +152,28 @@ impl ToileApp {
             let unit = self.base.pattern().unit;
             let words = format!("= {}", number::show(value, entry.want, unit));
             ui.label(RichText::new(words).small().color(palette.ink_soft));
+        }
+    }
+
+    /// The numbers of the handles of a curve, so that all of them are set without looking for each.
+    pub(crate) fn handle_numbers(&mut self, ui: &mut Ui, curve: CurveId) {
+        let handles = match self.view.scene.curve(curve) {
+            Some((_, curve)) => curve.handles.clone(),
+            None => return,
+        };
+        for (k, [at, handle]) in handles.into_iter().enumerate() {
+            let Some((_, point)) = self.base.pattern().point(at) else {
+                continue;
+            };
+            let side = match k {
+                0 | 1 => "at",
+                _ if k % 2 == 0 => "before",
+                _ => "after",
+            };
+            let of = format!("of handle {side} {}", point.name);
+            for entry in plan::numbers_of(&self.base, handle.into()) {
+                self.named_number_field(ui, &entry, &format!("{} {of}", entry.label));
+            }
         }
     }
 
@@ -252,7 +277,6 @@ impl ToileApp {
             _ => (None, Facing::Front, None),
         };
         let before = (part, facing);
-        let label = ui.label("Worn on").id;
         let parts = [
             (None, "found by the program"),
             (Some(BodyPart::Trunk), "trunk"),
@@ -262,18 +286,8 @@ impl ToileApp {
             (Some(BodyPart::LeftLeg), "left leg"),
             (Some(BodyPart::RightLeg), "right leg"),
         ];
-        let words =
-            |of: Option<BodyPart>| parts.iter().find(|known| known.0 == of).map_or("", |k| k.1);
-        let choice = ComboBox::from_id_salt("worn")
-            .selected_text(words(part))
-            .show_ui(ui, |ui| {
-                for (one, words) in parts {
-                    ui.selectable_value(&mut part, one, words);
-                }
-            });
-        choice.response.labelled_by(label);
+        choice(ui, "Worn on", &parts, &mut part);
         if part.is_some() {
-            let label = ui.label("Side").id;
             let sides = [
                 (Facing::Front, "front"),
                 (Facing::Back, "back"),
@@ -282,18 +296,7 @@ impl ToileApp {
                 (Facing::Around, "all round"),
                 (Facing::Over, "over it"),
             ];
-            let words = sides
-                .iter()
-                .find(|known| known.0 == facing)
-                .map_or("", |k| k.1);
-            let choice = ComboBox::from_id_salt("facing")
-                .selected_text(words)
-                .show_ui(ui, |ui| {
-                    for (one, words) in sides {
-                        ui.selectable_value(&mut facing, one, words);
-                    }
-                });
-            choice.response.labelled_by(label);
+            choice(ui, "Side", &sides, &mut facing);
         }
         if (part, facing) != before {
             panel.worn = match part {
@@ -323,19 +326,7 @@ impl ToileApp {
             (Some(Corner::Mirrored), "mirrored, as a hem"),
         ];
         let mut corner = edge.corner;
-        let label = ui.label("Corner of allowance").id;
-        let words = choices
-            .iter()
-            .find(|known| known.0 == corner)
-            .map_or("", |k| k.1);
-        let choice = ComboBox::from_id_salt("corner")
-            .selected_text(words)
-            .show_ui(ui, |ui| {
-                for (one, words) in choices {
-                    ui.selectable_value(&mut corner, one, words);
-                }
-            });
-        choice.response.labelled_by(label);
+        choice(ui, "Corner of allowance", &choices, &mut corner);
         if corner != edge.corner {
             let edits = self.changed_panel(panel, |panel| {
                 let edges = panel.lines.iter_mut().flat_map(|line| &mut line.edges);
@@ -362,19 +353,7 @@ impl ToileApp {
             (NotchKind::Check, "check"),
         ];
         let mut kind = notch.kind;
-        let label = ui.label("Shape").id;
-        let words = kinds
-            .iter()
-            .find(|known| known.0 == kind)
-            .map_or("", |k| k.1);
-        let choice = ComboBox::from_id_salt("notch kind")
-            .selected_text(words)
-            .show_ui(ui, |ui| {
-                for (one, words) in kinds {
-                    ui.selectable_value(&mut kind, one, words);
-                }
-            });
-        choice.response.labelled_by(label);
+        choice(ui, "Shape", &kinds, &mut kind);
         if kind != notch.kind {
             self.edit(
                 plan::set_notch_kind(&self.base, (panel, id), kind),
@@ -394,6 +373,7 @@ fn name_of(pattern: &toile_pattern::Pattern, part: PartId) -> Option<String> {
         }
         PartId::Panel(id) => pattern.panel(id)?.name.clone(),
         PartId::Seam(id) => pattern.seam(id)?.name.clone(),
+        PartId::Sheet(id) => pattern.sheet(id)?.name.clone(),
         PartId::Edge(id) => {
             let mut panels = pattern.panels.iter();
             panels.find_map(|panel| panel.edge(id))?.name.clone()

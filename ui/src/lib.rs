@@ -10,6 +10,7 @@ mod fields;
 mod gpu;
 mod inspector;
 mod several;
+mod steps;
 mod tables;
 mod theme;
 mod tools;

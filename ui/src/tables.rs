@@ -106,7 +106,15 @@ impl ToileApp {
                     chosen = Some(known.name.to_owned());
                 }
             }
-            if entered && !wanted.is_empty() {
+            // One that is there already is gone to.
+            let is_there = |name: &&String| {
+                let label = definition(name).map(|known| known.label.to_lowercase());
+                name.to_lowercase() == wanted || label.is_some_and(|label| label == wanted)
+            };
+            if entered && let Some(name) = names.iter().find(is_there) {
+                self.tables.new_measurement.clear();
+                self.tables.entered_measurement = Some(name.clone());
+            } else if entered && !wanted.is_empty() {
                 let is_whole = |known: &&&Definition| {
                     known.name == wanted || known.label.to_lowercase() == wanted
                 };
@@ -181,6 +189,16 @@ impl ToileApp {
         let is_angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
         let want = if is_angle { Want::Angle } else { Want::Length };
         let id = Id::unique(("measurement", size, name));
+        let is_first = self
+            .base
+            .pattern()
+            .sizes
+            .first()
+            .is_some_and(|first| first.id == size);
+        if is_first && self.tables.entered_measurement.as_deref() == Some(name) {
+            self.tables.entered_measurement = None;
+            ui.memory_mut(|memory| memory.request_focus(id));
+        }
         let base = self.base.clone();
         let shown = value.map_or_else(String::new, |value| {
             plan::number_text(&base, &Number::Value(value), want)
@@ -250,6 +268,7 @@ impl ToileApp {
         }
         if self.edit(Ok(edits), "Add measurement") {
             self.tables.new_measurement.clear();
+            self.tables.entered_measurement = Some(name.to_owned());
         }
     }
 

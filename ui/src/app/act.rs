@@ -191,10 +191,18 @@ impl ToileApp {
     /// Removes what is selected.
     pub(crate) fn delete(&mut self) {
         let items = self.view.selection.items().to_vec();
-        let parts: Vec<PartId> = items.iter().map(|item| item.part()).collect();
+        let mut parts: Vec<PartId> = items.iter().map(|item| item.part()).collect();
+        // Panels are taken off the table with the sheet they are traced from.
+        let sheets = self.view.selection.sheets();
+        let panels = self.base.pattern().panels.iter();
+        let traced = panels.filter(|panel| panel.sheet().is_some_and(|id| sheets.contains(&id)));
+        let traced = traced.map(|panel| panel.id.into());
+        let traced: Vec<PartId> = traced.filter(|part| !parts.contains(part)).collect();
+        parts.extend(traced);
         let label = match (items.len(), items.first()) {
             (1, Some(Item::Point(_))) => "Delete point",
             (1, Some(Item::Panel(_))) => "Delete panel",
+            (1, Some(Item::Sheet(_))) => "Delete sheet",
             _ => "Delete",
         };
         self.edit(plan::remove_parts(&self.base, &parts), label);

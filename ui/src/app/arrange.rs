@@ -4,6 +4,7 @@ use super::ToileApp;
 use super::notice::Notice;
 use crate::canvas::selection::{Item, Selection};
 use std::path::Path;
+use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::plan::{self, Alignment, Axis, Fragment, PasteTarget, Pasted};
 use toile_pattern::{EditError, Evaluation, PartId, Pattern, PointId};
@@ -11,6 +12,9 @@ use toile_session::Project;
 
 /// How far what is pasted lies beside where it was copied [m].
 const ASIDE: f64 = 0.02;
+
+/// Room between a new sheet's origin and what is there [m]: a piece may be drawn to the left of it.
+const SHEETS_APART: f64 = 0.4;
 
 /// Room between panels and their duplicate [m].
 const BESIDE: f64 = 0.05;
@@ -26,6 +30,7 @@ impl ToileApp {
         let copied = plan::copy(&self.base, &self.selected_parts())
             .map_err(|error| error.to_string())
             .and_then(|fragment| {
+                let fragment = self.as_laid(fragment);
                 let text = serde_json::to_string(&fragment).map_err(|error| error.to_string())?;
                 Ok((fragment, text))
             });
@@ -38,6 +43,47 @@ impl ToileApp {
                 self.notice = Notice::fault(words);
                 None
             }
+        }
+    }
+
+    /// A copy whose sheets lie where they are seen, not where the document had them before they were
+    /// laid side by side.
+    fn as_laid(&self, mut fragment: Fragment) -> Fragment {
+        for sheet in &mut fragment.sheets {
+            let place = self.view.boards.sheet(sheet.id);
+            Arc::make_mut(sheet).on_table = place.into();
+        }
+        fragment
+    }
+
+    /// Adds an empty sheet beside what is there, and draws on it from now on. All sheets are then
+    /// laid where they are seen.
+    pub(crate) fn new_sheet(&mut self) {
+        let bounds = self.view.boards.bounds(&self.view.scene);
+        let place = bounds.map_or_else(Vec2::zeros, |bounds| {
+            Vec2::new(
+                bounds.max.x + SHEETS_APART,
+                0.5 * (bounds.min.y + bounds.max.y),
+            )
+        });
+        let free = self.base.pattern().sheets.iter();
+        let free = free.filter(|sheet| sheet.on.is_none());
+        let laid: Vec<_> = free
+            .map(|sheet| (sheet.id, self.view.boards.sheet(sheet.id).into()))
+            .collect();
+        let planned = plan::move_sheets(&self.base, &laid).and_then(|mut edits| {
+            let (added, sheet) = plan::add_sheet(&self.base, None, place.into())?;
+            edits.extend(added);
+            Ok((edits, sheet))
+        });
+        match planned {
+            Ok((edits, sheet)) => {
+                if self.edit(Ok(edits), "New sheet") {
+                    self.view.select(Selection::one(Item::Sheet(sheet)));
+                    self.view.fit();
+                }
+            }
+            Err(error) => self.say_fault(error.to_string()),
         }
     }
 
@@ -136,7 +182,7 @@ impl ToileApp {
                     sheet: None,
                     offset: [width + BESIDE, 0.0],
                 };
-                plan::paste(&self.base, &fragment, target)
+                plan::paste(&self.base, &self.as_laid(fragment), target)
             }),
             false => plan::duplicate(&self.base, &parts),
         };

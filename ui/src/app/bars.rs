@@ -191,11 +191,15 @@ impl ToileApp {
         ui.horizontal(|ui| {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 self.findings_button(ui);
-                if let Some(at) = self.view.pointer {
+                if let Some((sheet, at)) = self.view.pointer {
                     let unit = self.base.pattern().unit;
                     let [x, y] = [at.x, at.y].map(|v| number::show(v, Want::Length, unit));
                     let soft = Palette::of(ui.ctx()).ink_soft;
-                    ui.label(RichText::new(format!("x {x}   y {y}")).color(soft));
+                    // Of several sheets the one that is drawn on is told.
+                    let pattern = self.base.pattern();
+                    let sheet = pattern.sheet(sheet).filter(|_| pattern.sheets.len() > 1);
+                    let name = sheet.map_or_else(String::new, |sheet| format!("{}   ", sheet.name));
+                    ui.label(RichText::new(format!("{name}x {x}   y {y}")).color(soft));
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     let (words, colour) = self.status_words(Palette::of(ui.ctx()));

@@ -206,9 +206,9 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::Edit,
-        "Find command",
+        "Find",
         key(COMMAND, Key::K),
-        "Find a command by its name",
+        "Find a command, or a part of the pattern, by its name",
         always,
         ToileApp::ask_command,
     ),

@@ -101,7 +101,8 @@ impl ToileApp {
             pos2(view.right() - 12.0, view.bottom() - 10.0),
         );
         ui.scope_builder(egui::UiBuilder::new().max_rect(line), |ui| {
-            let words = RichText::new(words).color(palette.ink_soft);
+            // The ground behind the garment is light in both themes.
+            let words = RichText::new(words).color(theme::LIGHT.ink_soft);
             ui.add(egui::Label::new(words).truncate());
         });
     }

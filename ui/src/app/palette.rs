@@ -1,14 +1,24 @@
-//! Finding a command by its name.
+//! Finding a command, or a part of the pattern, by its name.
 
 use super::ToileApp;
 use super::answer::Answer;
 use super::command::UiCommand;
 use super::command_table::commands;
 use super::dialogs::Dialog;
+use crate::canvas::selection::{Item, Selection};
+use crate::tools::Tool;
 use egui::{Key, ScrollArea, Ui};
+use toile_pattern::Pattern;
 
-/// Most commands that are listed.
+/// Most commands and parts that are listed.
 const MOST: usize = 12;
+
+/// What was found.
+#[derive(Clone)]
+enum Found {
+    Command(&'static UiCommand),
+    Part(Item, String),
+}
 
 impl ToileApp {
     pub(crate) fn ask_command(&mut self) {
@@ -16,14 +26,14 @@ impl ToileApp {
     }
 
     pub(super) fn ask_find(&self, ui: &mut Ui, text: &mut String, chosen: &mut usize) -> Answer {
-        let label = ui.label("Find command").id;
+        let label = ui.label("Find a command, or a part of the pattern").id;
         let field = egui::TextEdit::singleline(text).desired_width(f32::INFINITY);
         let field = ui.add(field).labelled_by(label);
         field.request_focus();
         if field.changed() {
             *chosen = 0;
         }
-        let found = found(text);
+        let found = found(text, self.base.pattern());
         let last = found.len().saturating_sub(1);
         let (up, down, entered) = ui.input(|input| {
             (
@@ -37,62 +47,97 @@ impl ToileApp {
             (false, true) => (*chosen + 1).min(last),
             _ => (*chosen).min(last),
         };
-        let mut taken = found.get(*chosen).copied().filter(|_| entered);
+        let mut taken = found.get(*chosen).cloned().filter(|_| entered);
         ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
-            for (k, command) in found.iter().enumerate() {
-                let key = command.key.map(|key| ui.ctx().format_shortcut(&key));
-                let words = format!("{}   {}", command.name, key.unwrap_or_default());
-                let enabled = (command.when)(self);
+            for (k, one) in found.iter().enumerate() {
+                let (words, tip, enabled) = match one {
+                    Found::Command(command) => {
+                        let key = command.key.map(|key| ui.ctx().format_shortcut(&key));
+                        let words = format!("{}   {}", command.name, key.unwrap_or_default());
+                        (words, command.tip, (command.when)(self))
+                    }
+                    Found::Part(_, words) => (words.clone(), "Select it and show it", true),
+                };
                 ui.add_enabled_ui(enabled, |ui| {
                     let label = ui.selectable_label(k == *chosen, words);
-                    if label.on_hover_text(command.tip).clicked() {
-                        taken = Some(*command);
+                    if label.on_hover_text(tip).clicked() {
+                        taken = Some(one.clone());
                     }
                 });
             }
         });
-        match taken.filter(|command| (command.when)(self)) {
-            Some(command) => Answer::Do(Box::new(command.does)),
-            None => Answer::Stay,
+        match taken {
+            Some(Found::Command(command)) if (command.when)(self) => {
+                Answer::Do(Box::new(command.does))
+            }
+            Some(Found::Part(item, _)) => Answer::Do(Box::new(move |app| app.show_part(item))),
+            _ => Answer::Stay,
         }
+    }
+
+    /// Selects a part, and moves the table so that it is seen.
+    fn show_part(&mut self, item: Item) {
+        self.take(Tool::Select);
+        self.view.select(Selection::one(item));
+        self.view.reveal(item);
     }
 }
 
-/// Commands whose name or explanation has all words that are typed; those whose name begins so
-/// come first.
-fn found(text: &str) -> Vec<&'static UiCommand> {
+/// Commands whose name or explanation has all words that are typed, and parts whose name has; what
+/// begins so comes first. Nothing typed finds commands alone.
+fn found(text: &str, pattern: &Pattern) -> Vec<Found> {
     let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
-    let mut found: Vec<(u8, &UiCommand)> = commands()
-        .filter_map(|command| {
-            let name = command.name.to_lowercase();
-            let all = format!("{name} {}", command.tip.to_lowercase());
-            if !words.iter().all(|word| all.contains(word)) {
-                return None;
-            }
-            let (typed, first) = (words.join(" "), words.first().map_or("", String::as_str));
-            let rank = match () {
-                () if name.starts_with(&typed) => 0,
-                () if name.contains(first) => 1,
-                () => 2,
-            };
-            Some((rank, command))
-        })
-        .collect();
+    let (typed, first) = (words.join(" "), words.first().map_or("", String::as_str));
+    let has_all = |text: &str| words.iter().all(|word| text.contains(word));
+    let of_commands = commands().filter_map(|command| {
+        let name = command.name.to_lowercase();
+        let rank = match () {
+            () if !has_all(&format!("{name} {}", command.tip.to_lowercase())) => return None,
+            () if name.starts_with(&typed) => 0,
+            () if name.contains(first) => 2,
+            () => 4,
+        };
+        Some((rank, Found::Command(command)))
+    });
+    let parts = match words.is_empty() {
+        true => Vec::new(),
+        false => Item::all(pattern),
+    };
+    let of_parts = parts.into_iter().filter_map(|item| {
+        let words = item.words(pattern)?;
+        let low = words.to_lowercase();
+        // A part is looked for by its own name, or by what it is: "Panel front", "front".
+        let own = low.split_once(' ').map_or("", |found| found.1);
+        let rank = match () {
+            () if !has_all(&low) => return None,
+            () if low.starts_with(&typed) || own.starts_with(&typed) => 1,
+            () => 3,
+        };
+        Some((rank, Found::Part(item, words)))
+    });
+    let mut found: Vec<(u8, Found)> = of_commands.chain(of_parts).collect();
     found.sort_by_key(|(rank, _)| *rank);
-    found.into_iter().take(MOST).map(|(_, c)| c).collect()
+    found.into_iter().take(MOST).map(|(_, one)| one).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn names(text: &str) -> Vec<String> {
+        let found = found(text, &Pattern::new("none")).into_iter();
+        let names = found.map(|one| match one {
+            Found::Command(command) => command.name.to_owned(),
+            Found::Part(_, words) => words,
+        });
+        names.collect()
+    }
+
     #[test]
     fn commands_are_found_by_the_beginning_of_their_name_first() {
-        let names =
-            |text: &str| -> Vec<&str> { found(text).iter().map(|command| command.name).collect() };
         assert_eq!(names("dart")[0], "Dart");
         assert_eq!(names("save a")[0], "Save as");
-        assert!(names("warp").contains(&"Grain"));
+        assert!(names("warp").iter().any(|name| name == "Grain"));
         assert!(names("no such thing").is_empty());
         assert_eq!(names("").len(), MOST);
     }

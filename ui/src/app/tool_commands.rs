@@ -1,7 +1,7 @@
 //! Commands that take a tool in hand, and those of seams and the garment.
 
 use super::ToileApp;
-use super::command::{Menu, PLAIN, SHIFT, UiCommand, always, command, key};
+use super::command::{BOTH, Menu, PLAIN, SHIFT, UiCommand, always, command, key};
 use crate::tools::{Tool, alter, draw, panel, parts, seam};
 use crate::views::marker::{MarkerAction, MarkerView};
 use egui::Key;
@@ -16,6 +16,14 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         "Select, move, divide",
         always,
         |app| app.take(Tool::Select),
+    ),
+    command(
+        Menu::Draw,
+        "New sheet",
+        key(BOTH, Key::N),
+        "Add an empty sheet to draw the next piece on, with names of its own",
+        ToileApp::is_open,
+        ToileApp::new_sheet,
     ),
     command(
         Menu::Draw,

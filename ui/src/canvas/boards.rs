@@ -8,15 +8,18 @@ use toile_pattern::{PanelId, Pattern, SheetId};
 
 /// Room between sheets [m]: enough for seam numbers and names beside narrow panels.
 const GAP: f64 = 0.06;
+/// Half the width of what is shown of an empty sheet [m].
+const ROOM: f64 = 0.3;
 /// Width of the whole over its height that rows are broken for: about that of the view.
 const ASPECT: f64 = 1.15;
 
 /// Table places of the origins of sheets and panels.
 #[derive(Clone, Debug, Default)]
 pub struct Boards {
-    /// How far sheets were moved so that none covers another. It stays while a pattern is edited,
-    /// so that nothing jumps.
-    moved: BTreeMap<SheetId, Vec2>,
+    /// Sheets that were moved so that none covers another: the place the document gave, and the way
+    /// from there [m]. It stays while a pattern is edited, so that nothing jumps, until the document
+    /// gives another place.
+    moved: BTreeMap<SheetId, ([f64; 2], Vec2)>,
     sheets: BTreeMap<SheetId, Vec2>,
     panels: BTreeMap<PanelId, Vec2>,
 }
@@ -37,17 +40,23 @@ impl Boards {
                 .filter(|sheet| sheet.on.is_none())
                 .filter_map(|sheet| Some((sheet.id, bounds(sheet, scene)?)))
                 .collect();
-            self.moved = rows(&boxes);
+            let place = first.unwrap_or_default();
+            let moved = rows(&boxes).into_iter();
+            self.moved = moved.map(|(id, by)| (id, (place, by))).collect();
         }
         self.follow(pattern);
     }
 
     /// Follows a change of the pattern.
     pub fn follow(&mut self, pattern: &Pattern) {
-        let moved = |id: &SheetId| self.moved.get(id).copied().unwrap_or_default();
         let sheets = pattern.sheets.iter();
         self.sheets = sheets
-            .map(|sheet| (sheet.id, Vec2::from(sheet.on_table) + moved(&sheet.id)))
+            .map(|sheet| {
+                let moved = self.moved.get(&sheet.id);
+                let moved = moved.filter(|(from, _)| *from == sheet.on_table);
+                let by = moved.map_or_else(Vec2::zeros, |(_, by)| *by);
+                (sheet.id, Vec2::from(sheet.on_table) + by)
+            })
             .collect();
         let panels = pattern.panels.iter();
         self.panels = panels
@@ -89,7 +98,14 @@ impl Boards {
         let sheets = scene
             .sheets
             .iter()
-            .filter_map(|sheet| Some(moved(&sheet.bounds()?, self.sheet(sheet.id))));
+            .filter(|sheet| sheet.on.is_none())
+            .filter_map(|sheet| {
+                // Of several sheets an empty one is seen, with room to draw on.
+                let room = Vec2::new(ROOM, ROOM);
+                let is_seen = scene.sheets.len() > 1;
+                let room = is_seen.then(|| Bounds2::of([-room, room]));
+                Some(moved(&sheet.bounds().or(room)?, self.sheet(sheet.id)))
+            });
         let panels = scene.panels.iter();
         sheets
             .chain(panels.map(|panel| moved(panel.bounds(), self.panel(panel.id))))

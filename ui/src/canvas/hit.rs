@@ -1,9 +1,10 @@
-//! What is at a place of the table, the most wanted first: handle, point, notch, edge, inner line,
-//! curve, panel.
+//! What is at a place of the table, the most wanted first: handle, point, notch or name of a sheet,
+//! edge, inner line, curve, panel.
 
 use super::boards::Boards;
 use super::scene::{PanelScene, PointRole, Scene};
 use super::selection::{Item, Selection};
+use super::sheet_tag::{self, tagged};
 use toile_geometry::{Vec2, closest_on_segment};
 use toile_pattern::{PanelId, PointId, SheetId};
 
@@ -94,6 +95,7 @@ pub fn sheet_of(scene: &Scene, item: Item) -> Option<SheetId> {
     match item {
         Item::Point(id) => Some(scene.point(id)?.0.id),
         Item::Curve(id) => Some(scene.curve(id)?.0.id),
+        Item::Sheet(id) => Some(id),
         _ => Some(scene.panel_scene(item.panel()?)?.sheet),
     }
 }
@@ -125,6 +127,19 @@ pub fn hits(
                     away,
                 },
             ));
+        }
+    }
+    for sheet in tagged(scene, open) {
+        let origin = boards.sheet(sheet.id);
+        if let Some(away) = sheet_tag::distance(sheet, origin, at, scale) {
+            let hit = Hit {
+                item: Item::Sheet(sheet.id),
+                sheet: sheet.id,
+                at: Vec2::zeros(),
+                origin,
+                away,
+            };
+            ranked.push((3, hit));
         }
     }
     for panel in &scene.panels {

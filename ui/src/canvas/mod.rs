@@ -14,6 +14,7 @@ mod rulers;
 pub mod scene;
 pub mod seams;
 pub mod selection;
+pub mod sheet_tag;
 pub mod snap;
 
 pub use panel_shape::along;

@@ -8,6 +8,7 @@ use super::hit::{ShownPoint, shown_points};
 use super::rulers;
 use super::scene::{PanelScene, PointRole, Scene, SheetScene};
 use super::selection::{Item, Selection};
+use super::sheet_tag::tagged;
 use crate::theme::{self, Palette};
 use crate::tools::Overlay;
 use egui::epaint::Vertex;
@@ -85,6 +86,9 @@ impl Picture<'_> {
             }
         }
         self.handles();
+        for sheet in tagged(self.scene, self.open) {
+            self.sheet_tag(sheet);
+        }
         for shown in shown_points(self.scene, self.boards, self.open) {
             self.point(&shown);
         }
@@ -444,6 +448,11 @@ impl Picture<'_> {
             self.painter
                 .layout_no_wrap(text.to_owned(), theme::font(12.5), self.palette.on_accent);
         let ground = Align2::LEFT_CENTER.anchor_size(at, text.size() + vec2(12.0, 4.0));
+        // At the rim of the view it is moved inward.
+        let low = (self.view.max - ground.max).min(egui::Vec2::ZERO);
+        let ground = ground.translate(low);
+        let high = (self.view.min - ground.min).max(egui::Vec2::ZERO);
+        let ground = ground.translate(high);
         self.painter
             .rect_filled(ground, CornerRadius::same(4), ground_colour);
         let corner = Align2::CENTER_CENTER.align_size_within_rect(text.size(), ground);

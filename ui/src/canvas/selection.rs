@@ -2,6 +2,7 @@
 
 use toile_pattern::{
     CurveId, EdgeId, LineId, NotchId, OperationId, PanelId, PartId, Pattern, PointId, SeamId,
+    SheetId,
 };
 
 /// A part of the pattern that can be selected.
@@ -23,9 +24,35 @@ pub enum Item {
     Panel(PanelId),
     /// A seam.
     Seam(SeamId),
+    /// A whole sheet.
+    Sheet(SheetId),
 }
 
 impl Item {
+    /// Every part of a pattern: panels and what is of them, seams, sheets and what is on them.
+    pub fn all(pattern: &Pattern) -> Vec<Self> {
+        let mut all = Vec::new();
+        for panel in &pattern.panels {
+            let id = panel.id;
+            all.push(Self::Panel(id));
+            all.extend(panel.edges().map(|edge| Self::Edge(id, edge.id)));
+            all.extend(
+                panel
+                    .operations
+                    .iter()
+                    .map(|step| Self::Operation(id, step.id)),
+            );
+            all.extend(panel.notches.iter().map(|notch| Self::Notch(id, notch.id)));
+        }
+        all.extend(pattern.seams.iter().map(|seam| Self::Seam(seam.id)));
+        for sheet in &pattern.sheets {
+            all.push(Self::Sheet(sheet.id));
+            all.extend(sheet.points.iter().map(|point| Self::Point(point.id)));
+            all.extend(sheet.curves.iter().map(|curve| Self::Curve(curve.id)));
+        }
+        all
+    }
+
     /// The part of the document.
     pub fn part(self) -> PartId {
         match self {
@@ -37,6 +64,7 @@ impl Item {
             Self::Operation(_, id) => id.into(),
             Self::Panel(id) => id.into(),
             Self::Seam(id) => id.into(),
+            Self::Sheet(id) => id.into(),
         }
     }
 
@@ -48,7 +76,7 @@ impl Item {
             | Self::Notch(panel, _)
             | Self::Operation(panel, _)
             | Self::Panel(panel) => Some(panel),
-            Self::Point(_) | Self::Curve(_) | Self::Seam(_) => None,
+            Self::Point(_) | Self::Curve(_) | Self::Seam(_) | Self::Sheet(_) => None,
         }
     }
 
@@ -91,6 +119,7 @@ impl Item {
             }
             Self::Panel(id) => format!("Panel {}", panel(id)?.name),
             Self::Seam(id) => format!("Seam {}", pattern.seam(id)?.name),
+            Self::Sheet(id) => format!("Sheet {}", pattern.sheet(id)?.name),
         })
     }
 }
@@ -146,6 +175,15 @@ impl Selection {
             _ => None,
         });
         panels.collect()
+    }
+
+    /// The sheets that are selected whole.
+    pub fn sheets(&self) -> Vec<SheetId> {
+        let sheets = self.items.iter().filter_map(|item| match item {
+            Item::Sheet(id) => Some(*id),
+            _ => None,
+        });
+        sheets.collect()
     }
 
     /// Adds a part, or takes it away if it is there.

@@ -103,6 +103,8 @@ pub struct Reading<'a> {
     pub scene: &'a Scene,
     /// What is selected.
     pub selection: &'a Selection,
+    /// Where a sheet's origin was seen on the table before the gesture [m].
+    pub on_table: &'a dyn Fn(SheetId) -> Vec2,
     /// What lies inside a rectangle of the table [m].
     pub inside: &'a dyn Fn([Vec2; 2]) -> Vec<Item>,
 }
@@ -203,7 +205,7 @@ impl Tool {
     /// What is drawn over the pattern.
     pub fn overlay(self, state: &State, reading: &Reading<'_>) -> Vec<Overlay> {
         match (self, state) {
-            (Self::Select, State::Select(state)) => select::overlay(state),
+            (Self::Select, State::Select(state)) => select::overlay(state, reading),
             (Self::Slots(tool), State::Slots(state)) => slot_overlay::overlay(tool, state, reading),
             _ => Vec::new(),
         }

@@ -5,7 +5,11 @@ use crate::canvas::hit::Hit;
 use crate::canvas::selection::{Item, Selection};
 use std::sync::Arc;
 use toile_geometry::Vec2;
-use toile_pattern::{Edit, EditError, Entity, Panel, PanelId, PointId, plan};
+use toile_pattern::plan::{self, FormulaChange};
+use toile_pattern::{Edit, EditError, Entity, Panel, PanelId, PointId, SheetId};
+
+/// Sine of the angle up to which two handles lie on one line.
+const SMOOTH: f64 = 1e-3;
 
 /// What is going on.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,8 +17,8 @@ pub enum SelectState {
     /// Nothing.
     #[default]
     Idle,
-    /// Something is dragged.
-    Dragging(Dragged),
+    /// Something is dragged, and what becomes of the formulas that place it.
+    Dragging(Dragged, FormulaChange),
     /// A box is drawn from a place of the table to another [m].
     Boxing([Vec2; 2], bool),
 }
@@ -22,10 +26,12 @@ pub enum SelectState {
 /// What is dragged.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dragged {
-    /// Points, from where the one in hand was.
-    Points(Vec<PointId>, PointId, Vec2),
+    /// Points, and the one in hand.
+    Points(Vec<PointId>, PointId),
     /// Panels on the table.
     Panels(Vec<PanelId>),
+    /// Sheets on the table, with what lies on them.
+    Sheets(Vec<SheetId>),
     /// Something that is not moved by dragging, and why.
     Fixed(String),
 }
@@ -44,6 +50,13 @@ pub(super) fn step(
         }
         Event::DoubleClick(pointer) => (idle, double_click(pointer, reading)),
         Event::Drag(from, to) => drag(state, from, to, reading),
+        Event::Text(text) if text == "=" => match state {
+            SelectState::Dragging(dragged, change) => {
+                let state = SelectState::Dragging(dragged.clone(), change.next());
+                (state, Outcome::default())
+            }
+            _ => (state.clone(), Outcome::default()),
+        },
         Event::Drop => dropped(state, reading),
         Event::Escape => match state {
             SelectState::Idle => (idle, selecting(Selection::default())),
@@ -103,12 +116,12 @@ fn drag(
     reading: &Reading<'_>,
 ) -> (SelectState, Outcome) {
     let mut outcome = Outcome::default();
-    let dragged = match state {
+    let (dragged, change) = match state {
         SelectState::Boxing(..) => {
             let state = SelectState::Boxing([from.table, to.table], to.held.shift);
             return (state, outcome);
         }
-        SelectState::Dragging(dragged) => dragged.clone(),
+        SelectState::Dragging(dragged, change) => (dragged.clone(), *change),
         SelectState::Idle => match from.hit() {
             None => {
                 let state = SelectState::Boxing([from.table, to.table], to.held.shift);
@@ -117,15 +130,15 @@ fn drag(
             Some(hit) => {
                 let (dragged, select) = take_hold(hit, reading);
                 outcome.select = select;
-                dragged
+                (dragged, FormulaChange::default())
             }
         },
     };
-    match moved(&dragged, from, to, reading) {
+    match moved((&dragged, change), from, to, reading) {
         Ok(edits) => outcome.shown = Shown::Edits(edits),
         Err(error) => outcome.refusal = Some(error.to_string()),
     }
-    (SelectState::Dragging(dragged), outcome)
+    (SelectState::Dragging(dragged, change), outcome)
 }
 
 /// What a drag from a part moves: all of the selection if the part is in it, else the part, which
@@ -139,10 +152,14 @@ fn take_hold(hit: Hit, reading: &Reading<'_>) -> (Dragged, Option<Selection>) {
                 true => reading.selection.points(),
                 false => vec![id],
             };
-            Dragged::Points(points, id, hit.at)
+            Dragged::Points(points, id)
         }
         Item::Panel(id) => Dragged::Panels(match is_selected {
             true => reading.selection.panels(),
+            false => vec![id],
+        }),
+        Item::Sheet(id) => Dragged::Sheets(match is_selected {
+            true => reading.selection.sheets(),
             false => vec![id],
         }),
         Item::Edge(panel, id) => {
@@ -150,7 +167,7 @@ fn take_hold(hit: Hit, reading: &Reading<'_>) -> (Dragged, Option<Selection>) {
             match owner.and_then(|owner| owner.edge(id)) {
                 Some(edge) => {
                     let points = plan::points_of(reading.evaluation, &[id.into()]);
-                    Dragged::Points(points, edge.ends[0], hit.at)
+                    Dragged::Points(points, edge.ends[0])
                 }
                 None => Dragged::Fixed("the edge is not there".into()),
             }
@@ -160,7 +177,7 @@ fn take_hold(hit: Hit, reading: &Reading<'_>) -> (Dragged, Option<Selection>) {
             match sheets.find_map(|sheet| sheet.curve(id)) {
                 Some(curve) => {
                     let points = plan::points_of(reading.evaluation, &[id.into()]);
-                    Dragged::Points(points, curve.ends[0], hit.at)
+                    Dragged::Points(points, curve.ends[0])
                 }
                 None => Dragged::Fixed("the curve is not there".into()),
             }
@@ -173,7 +190,7 @@ fn take_hold(hit: Hit, reading: &Reading<'_>) -> (Dragged, Option<Selection>) {
 }
 
 fn moved(
-    dragged: &Dragged,
+    (dragged, change): (&Dragged, FormulaChange),
     from: &Pointer,
     to: &Pointer,
     reading: &Reading<'_>,
@@ -183,15 +200,22 @@ fn moved(
         way = straight(way);
     }
     match dragged {
-        Dragged::Points(points, held, _) => {
+        Dragged::Points(points, held) => {
             // The others move all the same; the one in hand says why it does not.
             if let Some(now) = reading.evaluation.point(*held).filter(|_| points.len() > 1) {
                 plan::move_point(reading.evaluation, *held, now + way)?;
             }
-            let goals: Vec<(PointId, Vec2)> = points
+            let mut goals: Vec<(PointId, Vec2)> = points
                 .iter()
                 .filter_map(|point| Some((*point, reading.evaluation.point(*point)? + way)))
                 .collect();
+            if let ([(point, to)], true) = (&goals[..], change != FormulaChange::Adjust) {
+                return plan::move_point_by(reading.evaluation, *point, *to, change);
+            }
+            if let ([(handle, to)], false) = (&goals[..], to.held.command) {
+                let opposite = turned_along(*handle, *to, reading);
+                goals.extend(opposite);
+            }
             Ok(plan::move_points(reading.evaluation, &goals)?.edits)
         }
         Dragged::Panels(panels) => {
@@ -206,11 +230,41 @@ fn moved(
             });
             Ok(moved.collect())
         }
+        Dragged::Sheets(sheets) => {
+            let to = sheets
+                .iter()
+                .map(|id| (*id, ((reading.on_table)(*id) + way).into()));
+            plan::move_sheets(reading.evaluation, &to.collect::<Vec<_>>())
+        }
         Dragged::Fixed(words) => Err(EditError::Impossible {
             message: "it cannot be dragged".into(),
             hint: words.clone(),
         }),
     }
+}
+
+/// The handle opposite to one that is moved to a place [m], where both lie on one line through their
+/// point: it turns along, so that the curve stays smooth there, and keeps its length. With its place.
+fn turned_along(handle: PointId, to: Vec2, reading: &Reading<'_>) -> Option<(PointId, Vec2)> {
+    let (sheet, _) = reading.scene.point(handle)?;
+    let pairs = || sheet.curves.iter().flat_map(|curve| &curve.handles);
+    let [anchor, _] = *pairs().find(|pair| pair[1] == handle)?;
+    let place = |id| reading.evaluation.point(id);
+    let at = place(anchor)?;
+    let own = place(handle)? - at;
+    let opposite = |&&[of, other]: &&[PointId; 2]| {
+        let way = match place(other) {
+            Some(other) => other - at,
+            None => return false,
+        };
+        let lengths = own.norm() * way.norm();
+        let is_straight = own.perp(&way).abs() <= SMOOTH * lengths && own.dot(&way) < 0.0;
+        of == anchor && other != handle && lengths > 0.0 && is_straight
+    };
+    let [_, other] = *pairs().find(opposite)?;
+    let length = (place(other)? - at).norm();
+    let way = (to - at).try_normalize(1e-9)?;
+    Some((other, at - way * length))
 }
 
 fn dropped(state: &SelectState, reading: &Reading<'_>) -> (SelectState, Outcome) {
@@ -227,12 +281,14 @@ fn dropped(state: &SelectState, reading: &Reading<'_>) -> (SelectState, Outcome)
             }
             outcome.select = Some(select);
         }
-        SelectState::Dragging(dragged) => {
+        SelectState::Dragging(dragged, _) => {
             let label = match dragged {
                 Dragged::Points(points, ..) if points.len() == 1 => "Move point",
                 Dragged::Points(..) => "Move points",
                 Dragged::Panels(panels) if panels.len() == 1 => "Move panel",
                 Dragged::Panels(_) => "Move panels",
+                Dragged::Sheets(sheets) if sheets.len() == 1 => "Move sheet",
+                Dragged::Sheets(_) => "Move sheets",
                 Dragged::Fixed(_) => return (SelectState::Idle, nothing_shown()),
             };
             outcome.commit_shown = Some(label.into());
@@ -249,11 +305,32 @@ fn straight(way: Vec2) -> Vec2 {
     }
 }
 
-pub(super) fn overlay(state: &SelectState) -> Vec<Overlay> {
+pub(super) fn overlay(state: &SelectState, reading: &Reading<'_>) -> Vec<Overlay> {
     match state {
+        SelectState::Dragging(Dragged::Points(points, held), change) if points.len() == 1 => {
+            formula_words(*held, *change, reading).into_iter().collect()
+        }
         SelectState::Boxing(corners, _) => vec![Overlay::Box(*corners)],
         _ => Vec::new(),
     }
+}
+
+/// What becomes of the formulas that place a point, beside it; nothing where none does and nothing
+/// else was chosen.
+fn formula_words(point: PointId, change: FormulaChange, reading: &Reading<'_>) -> Option<Overlay> {
+    let numbers = plan::numbers_of(reading.evaluation, point.into());
+    let mut numbers = numbers.iter().filter_map(|entry| entry.number.as_ref());
+    let words = match change {
+        FormulaChange::Adjust if numbers.any(|number| number.as_formula().is_some()) => {
+            "added to the formula; = for another choice"
+        }
+        FormulaChange::Adjust => return None,
+        FormulaChange::Variable => "the formula's variable changes; = for another choice",
+        FormulaChange::ThisSize => "in this size alone; = for another choice",
+        FormulaChange::Detach => "a number instead of the formula; = for another choice",
+    };
+    let (sheet, seen) = reading.scene.point(point)?;
+    Some(Overlay::Words(sheet.id, seen.at, words.into()))
 }
 
 pub(super) fn hint(state: &SelectState, reading: &Reading<'_>) -> String {
@@ -264,7 +341,11 @@ pub(super) fn hint(state: &SelectState, reading: &Reading<'_>) -> String {
         SelectState::Idle => "Click to select, Shift-click to add, drag to move or to draw a box; \
                               double-click an edge to add a point"
             .into(),
-        SelectState::Dragging(_) => "Shift keeps it level or upright; Esc leaves it".into(),
+        SelectState::Dragging(..) => {
+            "Shift keeps it level or upright; Ctrl moves a handle without the one opposite; Esc \
+             leaves it"
+                .into()
+        }
         SelectState::Boxing(..) => "Everything inside is selected; Shift adds".into(),
     }
 }

@@ -10,6 +10,7 @@ use crate::canvas::hit::{Hit, hits, inside_box, open_sheets, shown_points};
 use crate::canvas::paint::Picture;
 use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
+use crate::canvas::sheet_tag::tagged;
 use crate::canvas::snap::snaps;
 use crate::theme::Palette;
 use crate::tools::{Event, Held, Outcome, Overlay, Pointer, Reading, State, Tool};
@@ -36,6 +37,8 @@ pub struct PatternView {
     /// The same as before the gesture that is shown: what the pointer finds must not move away
     /// under it.
     base: Scene,
+    /// Where sheets and panels lay then.
+    base_boards: Boards,
     /// What is selected.
     pub selection: Selection,
     /// What is under the pointer.
@@ -58,8 +61,8 @@ pub struct PatternView {
     pub tool: Tool,
     /// How far it has come.
     pub state: State,
-    /// Where the pointer is, on the sheet that is drawn on [m].
-    pub pointer: Option<Vec2>,
+    /// Where the pointer is: the sheet that is drawn on there, and the place on it [m].
+    pub pointer: Option<(SheetId, Vec2)>,
     /// The sheet that is drawn on.
     pub sheet: Option<SheetId>,
     /// What a menu may be opened on, unless a tool is at work.
@@ -70,6 +73,8 @@ pub struct PatternView {
     /// Whether keys went to another widget in the last frame.
     was_typed_into: bool,
     wants_fit: bool,
+    /// A part that is to be seen.
+    revealed: Option<Item>,
     /// Size of the view that everything was fitted into, until it is panned or zoomed.
     fitted: Option<egui::Vec2>,
 }
@@ -81,6 +86,7 @@ impl Default for PatternView {
             boards: Boards::default(),
             scene: Scene::default(),
             base: Scene::default(),
+            base_boards: Boards::default(),
             selection: Selection::default(),
             hover: None,
             under: Vec::new(),
@@ -99,6 +105,7 @@ impl Default for PatternView {
             told: None,
             was_typed_into: false,
             wants_fit: false,
+            revealed: None,
             fitted: None,
         }
     }
@@ -113,6 +120,7 @@ impl PatternView {
     /// Lays out a pattern that was just opened, and shows all of it.
     pub fn opened(&mut self, pattern: &Pattern) {
         self.boards.open(pattern, &self.scene);
+        self.base_boards = self.boards.clone();
         self.selection = Selection::default();
         self.isolated.clear();
         self.sheet = pattern.sheets.first().map(|sheet| sheet.id);
@@ -142,6 +150,26 @@ impl PatternView {
         self.wants_fit = true;
     }
 
+    /// Shows a part in the middle of the view when it is next drawn, unless it is seen already.
+    pub fn reveal(&mut self, item: Item) {
+        self.revealed = Some(item);
+    }
+
+    /// Moves the table so that the part that was asked for is seen.
+    fn follow_revealed(&mut self, view: Rect) {
+        let Some(item) = self.revealed.take() else {
+            return;
+        };
+        let parts = self.parts();
+        let Some((.., at)) = parts.into_iter().find(|(_, known, _)| *known == item) else {
+            return;
+        };
+        if !view.contains(self.screen(view, Vec2::zeros(), at)) {
+            self.camera.centre = at;
+            self.fitted = None;
+        }
+    }
+
     /// Enlarges about the middle of the view.
     pub fn zoom(&mut self, factor: f64) {
         self.fitted = None;
@@ -164,10 +192,11 @@ impl PatternView {
         if !self.isolated.is_empty() {
             self.scene.isolate(&self.isolated);
         }
+        self.boards.follow(pattern);
         if !previews {
             self.base = self.scene.clone();
+            self.base_boards = self.boards.clone();
         }
-        self.boards.follow(pattern);
         self.selection.follow(pattern);
         if self.sheet.is_none_or(|id| pattern.sheet(id).is_none()) {
             self.sheet = pattern.sheets.first().map(|sheet| sheet.id);
@@ -204,10 +233,12 @@ impl PatternView {
         let open = self.open();
         let (scene, boards) = (&self.base, &self.boards);
         let inside = |corners| inside_box((scene, boards), &open, corners);
+        let on_table = |sheet| self.base_boards.sheet(sheet);
         let reading = Reading {
             evaluation,
             scene,
             selection: &self.selection,
+            on_table: &on_table,
             inside: &inside,
         };
         let (state, outcome) = self.tool.step(&self.state, event, &reading);
@@ -221,6 +252,7 @@ impl PatternView {
             evaluation,
             scene: &self.scene,
             selection: &self.selection,
+            on_table: &|_| Vec2::zeros(),
             inside: &|_| Vec::new(),
         }
     }
@@ -256,6 +288,7 @@ impl PatternView {
             self.wants_fit = false;
             self.fitted = Some(view.size());
         }
+        self.follow_revealed(view);
         let mut outcomes = Vec::new();
         self.canvas = (!self.is_busy()).then(|| response.clone());
         if response.secondary_clicked()
@@ -332,7 +365,7 @@ impl PatternView {
         let icon = match (self.tool, self.hover.map(|hit| hit.item)) {
             _ if panning => CursorIcon::Grab,
             (Tool::Slots(_), _) => CursorIcon::Crosshair,
-            (_, Some(Item::Point(_) | Item::Panel(_))) => CursorIcon::Move,
+            (_, Some(Item::Point(_) | Item::Panel(_) | Item::Sheet(_))) => CursorIcon::Move,
             (_, Some(_)) => CursorIcon::PointingHand,
             (_, None) => CursorIcon::Default,
         };
@@ -416,8 +449,9 @@ impl PatternView {
                 }
             }
             for (id, mirrored, line) in &panel.shape.darts {
-                if let Some(at) = line.first().filter(|_| !mirrored) {
-                    part(Item::Operation(panel.id, *id), *at);
+                // On its first leg: at the mouth the edge is as near.
+                if let Some((at, _)) = crate::canvas::along(line, 0.25).filter(|_| !mirrored) {
+                    part(Item::Operation(panel.id, *id), at);
                 }
             }
         }
@@ -428,6 +462,10 @@ impl PatternView {
                     parts.push((sheet.id, Item::Curve(curve.id), origin + middle));
                 }
             }
+        }
+        for sheet in tagged(&self.scene, &open) {
+            let origin = self.boards.sheet(sheet.id);
+            parts.push((sheet.id, Item::Sheet(sheet.id), origin));
         }
         for shown in shown_points(&self.scene, &self.boards, &open) {
             let at = shown.origin + shown.point.at;

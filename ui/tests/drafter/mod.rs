@@ -15,6 +15,9 @@ pub struct Drafter {
     pub window: Harness<'static, ToileApp>,
     /// What was done.
     pub actions: usize,
+    /// Every raw input, a line each, so that the way can be gone again with a mouse and keys on a
+    /// display: `click X Y`, `hover X Y` in pixels, `key CHORD` and `text TEXT`.
+    pub inputs: Vec<String>,
 }
 
 impl Drafter {
@@ -42,7 +45,11 @@ impl Drafter {
                 ToileApp::new(&creation.egui_ctx, state, beginning)
             });
         window.run();
-        Self { window, actions: 0 }
+        Self {
+            window,
+            actions: 0,
+            inputs: Vec::new(),
+        }
     }
 
     pub fn pattern(&self) -> Pattern {
@@ -56,11 +63,13 @@ impl Drafter {
 
     /// Presses a button or an entry of a menu that is open.
     pub fn press(&mut self, name: &str) {
-        self.actions += 1;
-        self.window
-            .get_by_role_and_label(Role::Button, name)
-            .click();
-        self.window.run();
+        self.click_on(Role::Button, name);
+    }
+
+    /// Clicks in the middle of something that is seen.
+    fn click_on(&mut self, role: Role, name: &str) {
+        let found = self.window.get_by_role_and_label(role, name);
+        self.click(found.rect().center());
     }
 
     pub fn key(&mut self, key: Key) {
@@ -69,35 +78,55 @@ impl Drafter {
 
     pub fn chord(&mut self, modifiers: Modifiers, key: Key) {
         self.actions += 1;
+        self.note_key(modifiers, key);
         self.window.key_press_modifiers(modifiers, key);
         self.window.run();
     }
 
+    fn note_key(&mut self, modifiers: Modifiers, key: Key) {
+        let held = [(modifiers.command, "ctrl+"), (modifiers.shift, "shift+")];
+        let held = held.map(|(is_held, word)| if is_held { word } else { "" });
+        let name = match key {
+            Key::Enter => "Return".to_owned(),
+            Key::Escape | Key::Tab | Key::Delete => format!("{key:?}"),
+            _ => key.name().to_owned(),
+        };
+        // A letter alone names its key; a capital would be one with Shift.
+        let name = match name.len() {
+            1 => name.to_lowercase(),
+            _ => name,
+        };
+        self.inputs.push(format!("key {}{name}", held.concat()));
+    }
+
     /// Types text where the keys go, and takes it.
     pub fn typed(&mut self, text: &str) {
-        self.actions += 1;
-        for c in text.chars() {
-            self.window.event(egui::Event::Text(c.to_string()));
-            self.window.run();
-        }
-        self.window.key_press(Key::Enter);
+        self.typed_and(text, Key::Enter);
+    }
+
+    /// Types text where the keys go, and ends it by a key: Enter, or Tab to go on to the next.
+    pub fn typed_and(&mut self, text: &str, end: Key) {
+        self.type_text(text);
+        self.note_key(Modifiers::NONE, end);
+        self.window.key_press(end);
         self.window.run();
     }
 
     /// Types text into the field of a name, and takes it.
     pub fn enter(&mut self, field: &str, text: &str) {
-        let field = self.window.get_by_role_and_label(Role::TextInput, field);
-        field.focus();
-        self.window.run();
-        self.window.event(egui::Event::Text(text.into()));
-        self.window.run();
-        self.window.key_press(Key::Enter);
-        self.window.run();
-        self.actions += 1;
+        // The click that enters it belongs to the field; one that has the keys already needs none.
+        let found = self.window.get_by_role_and_label(Role::TextInput, field);
+        if !found.is_focused() {
+            self.click_on(Role::TextInput, field);
+            self.actions -= 1;
+        }
+        self.typed(text);
     }
 
     pub fn click(&mut self, at: Pos2) {
         self.actions += 1;
+        let at = at.round();
+        self.inputs.push(format!("click {} {}", at.x, at.y));
         self.window.hover_at(at);
         self.window.run();
         self.window.drag_at(at);
@@ -106,6 +135,8 @@ impl Drafter {
     }
 
     pub fn hover(&mut self, at: Pos2) {
+        let at = at.round();
+        self.inputs.push(format!("hover {} {}", at.x, at.y));
         self.window.hover_at(at);
         self.window.run();
     }
@@ -148,6 +179,7 @@ impl Drafter {
 impl Drafter {
     /// Types text where the keys go.
     pub fn type_text(&mut self, text: &str) {
+        self.inputs.push(format!("text {text}"));
         for c in text.chars() {
             self.window.event(egui::Event::Text(c.to_string()));
             self.window.run();
@@ -157,11 +189,19 @@ impl Drafter {
 
     /// Ticks a box.
     pub fn enter_choice(&mut self, name: &str) {
-        self.actions += 1;
-        self.window
-            .get_by_role_and_label(Role::CheckBox, name)
-            .click();
-        self.window.run();
+        self.click_on(Role::CheckBox, name);
+    }
+
+    /// Keeps the inputs so far, and the file that was saved last, for `.ci/window.py`, which gives
+    /// them to the window on a display. The folder that was saved to is left open there.
+    pub fn keep_way(&self, name: &str, folder: &std::path::Path) {
+        let kept = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+        let open = |text: &str| text.replace(&folder.display().to_string(), "{folder}");
+        let lines: Vec<String> = self.inputs.iter().map(|line| open(line)).collect();
+        std::fs::write(kept.join(format!("{name}.way")), lines.join("\n") + "\n").unwrap();
+        let source = self.window.state().session().project().source.clone();
+        let end = kept.join(format!("{name}.toile.json"));
+        std::fs::copy(source.unwrap(), end).unwrap();
     }
 
     /// Waits for work that goes on beside the window.

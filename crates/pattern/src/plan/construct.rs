@@ -2,7 +2,7 @@
 
 use super::additions::Additions;
 use super::impossible;
-use super::lookup::{after, finite, place, refuse_faults};
+use super::lookup::{self, after, finite, place, refuse_faults};
 use super::names::{free_name, numbered_name, sheet_owner, wished};
 use crate::{
     CurveId, CurveRule, Edit, EditError, Entity, Evaluation, Knot, Number, Place, PointId,
@@ -53,6 +53,35 @@ pub fn add_sheet(
         on_table,
     };
     Ok((vec![Edit::Put(Entity::Sheet(head))], id))
+}
+
+/// The edits that lay sheets elsewhere on the table, each with its origin at a place [m]. What is
+/// traced from a sheet goes with it.
+///
+/// # Errors
+/// A sheet is not there, or lies on a panel and goes with that; a place is not finite.
+pub fn move_sheets(
+    evaluation: &Evaluation,
+    places: &[(SheetId, [f64; 2])],
+) -> Result<Vec<Edit>, EditError> {
+    let put = |&(id, on_table): &(SheetId, [f64; 2])| {
+        let sheet = lookup::sheet(evaluation.pattern(), id)?;
+        if sheet.on.is_some() {
+            return Err(impossible(
+                format!("sheet {:?} lies on a panel", sheet.name),
+                "move that panel",
+            ));
+        }
+        finite("the place of the sheet", &[on_table.into()])?;
+        let head = SheetHead {
+            id,
+            name: sheet.name.clone(),
+            on: None,
+            on_table,
+        };
+        Ok(Edit::Put(Entity::Sheet(head)))
+    };
+    places.iter().map(put).collect()
 }
 
 /// The edits that add a point to a sheet; and the point. Without a name it is called by the next
@@ -108,7 +137,7 @@ pub fn add_curve(
     let id = additions.curve(name, ends, rule)?;
     let after = after(evaluation, &additions.edits)?;
     refuse_faults(evaluation, &after, &[Place::Curve(id)])?;
-    super::lookup::path(&after, id)?;
+    lookup::path(&after, id)?;
     Ok((additions.edits, id))
 }
 

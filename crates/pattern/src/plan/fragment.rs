@@ -118,7 +118,7 @@ pub fn copy(evaluation: &Evaluation, parts: &[PartId]) -> Result<Fragment, EditE
         .collect();
     let is_whole = |seam: &&Arc<Seam>| {
         let mut spans = seam.spans();
-        chosen.contains(&seam.id.into()) && spans.all(|s| chosen.contains(&s.panel.into()))
+        spans.all(|span| chosen.contains(&span.panel.into()))
     };
     fragment.seams = pattern.seams.iter().filter(is_whole).cloned().collect();
     let variables = pattern.variables.iter();

@@ -10,6 +10,7 @@ mod crossings;
 mod divide;
 mod face;
 mod figure;
+mod formula_change;
 mod fragment;
 mod lookup;
 mod marker;
@@ -38,10 +39,11 @@ mod typed;
 
 pub use align::{Alignment, Axis, align, distribute};
 pub use chain::Chain;
-pub use construct::{CurveShape, add_curve, add_point, add_sheet, bend_curve};
+pub use construct::{CurveShape, add_curve, add_point, add_sheet, bend_curve, move_sheets};
 pub use crossings::mark_crossings;
 pub use divide::{divide_edge, join_edges};
 pub use figure::{Figure, FirstCorner, add_polygon, add_rectangle};
+pub use formula_change::{FormulaChange, move_point_by};
 pub use fragment::{Fragment, FragmentKind, Outside, OutsideValue, copy};
 pub use marker::{
     add_marker, flip_pieces, lock_pieces, move_pieces, place_marker, place_pieces, remove_marker,

@@ -7,13 +7,17 @@ use super::lookup::{self, after, finite, refuse_faults};
 use super::names::{free_name, panel_owner, wished};
 use super::on_panel::inserted;
 use crate::{
-    Edit, EditError, Entity, Evaluation, Fabric, FabricId, Ids, Line, LineId, LineKind, Panel,
-    PanelId, Pattern, Place, Sheet, SheetId,
+    Edit, EditError, Entity, Evaluation, Fabric, FabricId, Ids, Line, LineId, LineKind, Number,
+    Panel, PanelId, Pattern, Place, Sheet, SheetId,
 };
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// What a new panel is to be called and cut from.
+/// Seam allowance of the first panel of a pattern [m]: what most home patterns have.
+const ALLOWANCE: f64 = 0.01;
+
+/// What a new panel is to be called and cut from. Its seam allowance is that of the panel before it
+/// in the pattern, 1 cm if it is the first.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct NewPanel<'a> {
     /// Its name; nothing proposes that of its sheet.
@@ -146,6 +150,8 @@ fn traced(
     let (mut edits, fabric) = fabric(pattern, new.fabric, &mut ids)?;
     let mut panel = Panel::new(ids.take(), "", sheet.id, fabric);
     panel.name = panel_name(pattern, sheet, &panel, new.name)?;
+    let before = pattern.panels.last();
+    panel.allowance = before.map_or(Number::Value(ALLOWANCE), |before| before.allowance.clone());
     for (k, stretches) in lines.iter().enumerate() {
         let kind = match k {
             0 => LineKind::Outline,

@@ -325,3 +325,19 @@ fn sheets_have_names_of_their_own() {
     assert!(told.contains("which sheet \"sheet\" has"), "{told}");
     assert!(plan::add_sheet(&evaluation, None, [f64::NAN, 0.0]).is_err());
 }
+
+#[test]
+fn sheets_are_laid_elsewhere_and_nothing_else_changes() {
+    let pattern = super::sample::sample();
+    let sheet = pattern.sheets[0].id;
+    let edits = plan::move_sheets(&evaluated(&pattern), &[(sheet, [0.5, -0.25])]).unwrap();
+    let mut after = done(&pattern, &edits);
+    assert_eq!(after.sheets[0].on_table, [0.5, -0.25]);
+    let back = plan::move_sheets(&evaluated(&after), &[(sheet, pattern.sheets[0].on_table)]);
+    after = done(&after, &back.unwrap());
+    assert_eq!(after, pattern);
+    let nowhere = plan::move_sheets(&evaluated(&pattern), &[(sheet, [f64::NAN, 0.0])]);
+    assert!(refusal(nowhere).contains("finite"));
+    let gone = plan::move_sheets(&evaluated(&pattern), &[(SheetId(9999), [0.0, 0.0])]);
+    assert!(matches!(gone, Err(EditError::Missing(_))));
+}

@@ -6,6 +6,7 @@ mod sample;
 
 mod construct;
 mod copy;
+mod formula_change;
 mod kept;
 mod notch;
 mod numbers;

@@ -61,7 +61,7 @@ impl PatternView {
                 let from = from.clone();
                 let place = to;
                 let to = self.pointer_at(view, to, held);
-                self.pointer = Some(to.at);
+                self.pointer = Some((to.sheet, to.at));
                 if self.told.replace((place, held)) != Some((place, held)) {
                     events.push(Event::Drag(from, to));
                 }
@@ -71,7 +71,7 @@ impl PatternView {
                     let pointer = self.pointer_at(view, at, held);
                     self.hover = pointer.hit();
                     self.under = pointer.hits.iter().map(|hit| hit.item).collect();
-                    self.pointer = Some(pointer.at);
+                    self.pointer = Some((pointer.sheet, pointer.at));
                     if self.told.replace((at, held)) != Some((at, held)) {
                         events.push(Event::Hover(pointer));
                     }
@@ -138,13 +138,16 @@ impl PatternView {
         ui.memory_mut(|memory| memory.set_focus_lock_filter(Self::id(), filter));
         let typing = self.is_typing();
         let mut events = Vec::new();
+        let mut chosen = false;
         ui.input_mut(|input| {
             input.events.retain(|event| {
                 let taken = match event {
                     egui::Event::Text(text) => {
                         let begins = text.starts_with(begins_typing);
                         let is_slots = matches!(self.tool, Tool::Slots(_));
-                        let takes = is_slots && (typing || begins);
+                        let is_choice = text == "=" && self.pressed.is_some();
+                        let takes = is_slots && (typing || begins) || is_choice;
+                        chosen |= is_choice;
                         takes.then(|| Event::Text(text.clone()))
                     }
                     egui::Event::Key {
@@ -163,6 +166,11 @@ impl PatternView {
                 !is_taken
             });
         });
+        if chosen {
+            // What is dragged is shown by the new choice, though the pointer rests.
+            self.told = None;
+            ui.ctx().request_repaint();
+        }
         events
     }
 }

@@ -1,0 +1,184 @@
+//! Moves a point that formulas place: what becomes of the formulas is chosen.
+
+use super::impossible;
+use super::lookup::{after, place};
+use super::moving::{added, move_point};
+use super::number_place::Slot;
+use super::numbers::{number_at, numbers_of};
+use crate::formula::Token;
+use crate::{Edit, EditError, Entity, Evaluation, Number, PointId, Variable, VariableId};
+use std::sync::Arc;
+use toile_geometry::Vec2;
+
+/// Steps in which the value of a variable is found: one is enough where a formula is linear in it.
+const STEPS: usize = 12;
+/// How far a number may be from the one that is wanted [m], [rad] or plain.
+const THERE: f64 = 1e-12;
+/// How far a point may be from where it is moved to [m].
+const REACHED: f64 = 1e-9;
+/// Least change of a number with a variable by which it is found.
+const LEAST_SLOPE: f64 = 1e-6;
+
+/// What becomes of a formula when what it places is moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FormulaChange {
+    /// It stays, and something is added to it, in every size.
+    #[default]
+    Adjust,
+    /// It stays, and a variable that it names gets another value.
+    Variable,
+    /// It stays in the other sizes; in the one on show a value stands in its place. A plain value
+    /// stays in the other sizes too.
+    ThisSize,
+    /// A value stands in its place in every size.
+    Detach,
+}
+
+impl FormulaChange {
+    /// The next choice, round and round.
+    pub fn next(self) -> Self {
+        match self {
+            Self::Adjust => Self::Variable,
+            Self::Variable => Self::ThisSize,
+            Self::ThisSize => Self::Detach,
+            Self::Detach => Self::Adjust,
+        }
+    }
+}
+
+/// The edits that move a point to `to` [m] as it is drawn now, with formulas that place it changed
+/// as is chosen; see [`move_point`].
+///
+/// # Errors
+/// As [`move_point`]; there is no size, or no variable of the formula changes the number.
+pub fn move_point_by(
+    evaluation: &Evaluation,
+    point: PointId,
+    to: Vec2,
+    change: FormulaChange,
+) -> Result<Vec<Edit>, EditError> {
+    let edits = move_point(evaluation, point, to)?;
+    let (Some(Edit::Put(mut moved)), true) =
+        (edits.first().cloned(), change != FormulaChange::Adjust)
+    else {
+        return Ok(edits);
+    };
+    // A point on a line may not reach the place itself.
+    let goal = place(&after(evaluation, &edits)?, point)?;
+    let mut variables: Vec<(VariableId, Edit)> = Vec::new();
+    // The pattern with the variables that were changed so far: another number may name them too.
+    let mut work = evaluation.clone();
+    for entry in numbers_of(evaluation, point.into()) {
+        let want = entry.want;
+        let old = number_at(evaluation.pattern(), &entry.place);
+        let (Some(old), Some(Slot::Always(new))) = (old, entry.place.slot(&mut moved)) else {
+            continue;
+        };
+        if *new == old {
+            continue;
+        }
+        let value = evaluation.number(new, want).ok_or_else(|| {
+            impossible(
+                "a number of the point has no value",
+                "mend its formula first",
+            )
+        })?;
+        *new = match change {
+            FormulaChange::Adjust | FormulaChange::Detach => Number::Value(value),
+            FormulaChange::ThisSize => in_this_size(evaluation, old, value)?,
+            // A value names no variable: it is changed itself.
+            FormulaChange::Variable if old.as_formula().is_none() => continue,
+            FormulaChange::Variable => {
+                let taken: Vec<VariableId> = variables.iter().map(|found| found.0).collect();
+                let reach = |work: &Evaluation| work.number(&old, want);
+                let found = solve(&work, (&old, &taken), &reach, value)?;
+                work = after(&work, std::slice::from_ref(&found.1))?;
+                variables.push(found);
+                old
+            }
+        };
+    }
+    let variables = variables.into_iter().map(|found| found.1);
+    let edits: Vec<Edit> = variables.chain([Edit::Put(moved)]).collect();
+    let at = place(&after(evaluation, &edits)?, point)?;
+    match (at - goal).norm() <= REACHED {
+        true => Ok(edits),
+        false => Err(cannot()),
+    }
+}
+
+/// A number with a value of its own in the size on show.
+fn in_this_size(evaluation: &Evaluation, old: Number, value: f64) -> Result<Number, EditError> {
+    let size = evaluation.size().ok_or_else(|| {
+        impossible(
+            "the pattern has no size to change alone",
+            "add sizes, or press = for another choice",
+        )
+    })?;
+    let (usual, mut sizes) = match old {
+        Number::PerSize { usual, sizes } => (usual, sizes),
+        other => (Box::new(other), Vec::new()),
+    };
+    sizes.retain(|own| own.0 != size);
+    sizes.push((size, value));
+    Ok(Number::PerSize { usual, sizes })
+}
+
+/// The variable of a number, other than those that are taken, with whose new value the number
+/// reaches a target; and the edit that gives it. Found by secants.
+fn solve(
+    evaluation: &Evaluation,
+    (number, taken): (&Number, &[VariableId]),
+    reach: &dyn Fn(&Evaluation) -> Option<f64>,
+    target: f64,
+) -> Result<(VariableId, Edit), EditError> {
+    let pattern = evaluation.pattern();
+    let tokens = number
+        .as_formula()
+        .map_or(&[][..], |formula| formula.tokens());
+    for token in tokens {
+        let Token::Variable(id) = token else { continue };
+        let variable = pattern.variables.iter().find(|known| known.id == *id);
+        let (Some(variable), false) = (variable, taken.contains(id)) else {
+            continue;
+        };
+        let put = |by: f64| {
+            Edit::Put(Entity::Variable(Arc::new(Variable {
+                number: added(&variable.number, by),
+                ..(**variable).clone()
+            })))
+        };
+        let value = |by: f64| {
+            let work = after(evaluation, &[put(by)]).ok()?;
+            reach(&work).map(|value| value - target)
+        };
+        let scale = evaluation.variable(*id).map_or(0.0, |found| found.0.abs());
+        let (mut last, mut by) = (0.0, (1e-3 * scale).max(1e-3));
+        let (Some(mut last_miss), Some(mut miss)) = (value(last), value(by)) else {
+            continue;
+        };
+        for _ in 0..STEPS {
+            let slope = (miss - last_miss) / (by - last);
+            if !(slope.abs() > LEAST_SLOPE) {
+                break;
+            }
+            (last, last_miss) = (by, miss);
+            by -= miss / slope;
+            match value(by) {
+                Some(next) => miss = next,
+                None => break,
+            }
+            if miss.abs() <= THERE {
+                return Ok((*id, put(by)));
+            }
+        }
+    }
+    Err(cannot())
+}
+
+fn cannot() -> EditError {
+    impossible(
+        "no variable of the formula moves the point there",
+        "press = for another choice, or change the formula",
+    )
+}

@@ -1,0 +1,291 @@
+//! Sheets in the window, and what becomes of what is placed on them: handles that turn along, formulas
+//! of what is dragged.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+mod drafter;
+
+use drafter::Drafter;
+use egui::{Key, Modifiers, Pos2, Role, vec2};
+use egui_kittest::kittest::Queryable;
+use toile_geometry::Vec2;
+use toile_pattern::{CurveRule, Number, PointRule};
+
+impl Drafter {
+    fn drag(&mut self, from: Pos2, to: Pos2) {
+        self.begin_drag(from, to);
+        self.window.drop_at(to);
+        self.window.run();
+        self.actions += 1;
+    }
+
+    fn begin_drag(&mut self, from: Pos2, to: Pos2) {
+        self.window.hover_at(from);
+        self.window.run();
+        self.window.drag_at(from);
+        self.window.run();
+        for share in [0.3, 0.7, 1.0] {
+            self.window.hover_at(from + (to - from) * share);
+            self.window.run();
+        }
+    }
+
+    fn begin(&mut self) {
+        self.press("New pattern");
+        self.enter("Name", "Sheets");
+    }
+
+    fn draw_rectangle(&mut self) {
+        self.key(Key::R);
+        self.click(self.place(0.0, 0.0));
+        self.click(self.place(0.1, 0.1));
+        self.key(Key::Escape);
+        self.key(Key::Escape);
+    }
+}
+
+#[test]
+fn the_next_piece_is_drawn_on_a_sheet_of_its_own() {
+    let mut drafter = Drafter::new();
+    drafter.begin();
+    drafter.draw_rectangle();
+    assert_eq!(drafter.pattern().sheets.len(), 1);
+    drafter.chord(Modifiers::COMMAND | Modifiers::SHIFT, Key::N);
+    let pattern = drafter.pattern();
+    assert_eq!(pattern.sheets.len(), 2, "{}", drafter.status());
+    // It stands selected beside what is there, and is renamed as anything is.
+    let [first, second] = [&pattern.sheets[0], &pattern.sheets[1]];
+    assert!(
+        second.on_table[0] > first.on_table[0] + 0.1,
+        "{:?}",
+        second.on_table
+    );
+    drafter.enter("Name", "sleeve");
+    assert_eq!(drafter.pattern().sheets[1].name, "sleeve");
+    // It is drawn on, with names of its own: both pieces have a corner A.
+    drafter.draw_rectangle();
+    let pattern = drafter.pattern();
+    assert_eq!(pattern.panels.len(), 2, "{}", drafter.status());
+    assert!(
+        pattern
+            .sheets
+            .iter()
+            .all(|sheet| sheet.point_named("A").is_some())
+    );
+    assert_eq!(pattern.panels[1].sheet(), Some(pattern.sheets[1].id));
+    // The sheet is moved by its tag, with its panel.
+    drafter.key(Key::Escape);
+    drafter
+        .window
+        .get_by_role_and_label(Role::Button, "Point A of sleeve");
+    drafter.click(drafter.part("Panel draft"));
+    drafter.click(drafter.part("Point A of sleeve"));
+    let tag = drafter.part("Sheet sleeve") + vec2(20.0, -14.0);
+    let panel = drafter.part("Panel sleeve");
+    let before = drafter.pattern().sheets[1].on_table;
+    drafter.drag(tag, tag + vec2(30.0, 40.0));
+    let after = drafter.pattern().sheets[1].on_table;
+    assert!(
+        after[0] > before[0] && after[1] < before[1],
+        "{before:?} {after:?}"
+    );
+    let moved = drafter.part("Panel sleeve") - panel;
+    assert!((moved - vec2(30.0, 40.0)).length() < 1.0, "{moved:?}");
+    // It goes with its panel.
+    drafter.key(Key::Delete);
+    let pattern = drafter.pattern();
+    assert_eq!(
+        (pattern.sheets.len(), pattern.panels.len()),
+        (1, 1),
+        "{}",
+        drafter.status()
+    );
+    drafter.chord(Modifiers::COMMAND, Key::Z);
+    let pattern = drafter.pattern();
+    assert_eq!((pattern.sheets.len(), pattern.panels.len()), (2, 2));
+}
+
+#[test]
+fn a_sheet_of_a_shipped_pattern_is_added_where_it_is_seen_to_be_free() {
+    let mut drafter = Drafter::opened("t-shirt");
+    let before = drafter.part("Panel sleeve");
+    let sheets = drafter.pattern().sheets.len();
+    drafter.chord(Modifiers::COMMAND | Modifiers::SHIFT, Key::N);
+    assert_eq!(
+        drafter.pattern().sheets.len(),
+        sheets + 1,
+        "{}",
+        drafter.status()
+    );
+    // The others lie where they were seen, now by the document too: it is opened again as it is.
+    let places: Vec<[f64; 2]> = drafter
+        .pattern()
+        .sheets
+        .iter()
+        .map(|s| s.on_table)
+        .collect();
+    for (k, place) in places.iter().enumerate() {
+        assert!(!places[..k].contains(place), "{places:?}");
+    }
+    drafter.chord(Modifiers::COMMAND, Key::Z);
+    drafter.key(Key::F);
+    let after = drafter.part("Panel sleeve");
+    assert!((after - before).length() < 1.0, "{before:?} {after:?}");
+}
+
+#[test]
+fn the_opposite_handle_turns_along_and_ctrl_leaves_it() {
+    let mut drafter = Drafter::new();
+    drafter.begin();
+    drafter.key(Key::C);
+    for [x, y] in [[0.0, 0.0], [0.1, 0.05], [0.2, 0.0]] {
+        drafter.click(drafter.place(x, y));
+    }
+    drafter.key(Key::Enter);
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    let pattern = drafter.pattern();
+    let CurveRule::Spline { knots, .. } = &pattern.sheets[0].curves[0].rule else {
+        panic!("no spline");
+    };
+    let knot = knots[0].clone();
+    let seen = |drafter: &Drafter| {
+        let evaluation = drafter.evaluation();
+        [knot.before, knot.point, knot.after].map(|id| evaluation.point(id).unwrap())
+    };
+    let [_, middle, after] = seen(&drafter);
+    let length = (seen(&drafter)[0] - middle).norm();
+    let from = drafter.place(after.x, after.y);
+    let to = Vec2::new(after.x, after.y + 0.03);
+    drafter.drag(from, drafter.place(to.x, to.y));
+    let [before, middle, after] = seen(&drafter);
+    assert!((after - to).norm() < 1e-3, "{after}");
+    assert!((after - middle).perp(&(before - middle)).abs() < 1e-9);
+    assert!(((before - middle).norm() - length).abs() < 1e-9);
+    // With Ctrl one handle alone.
+    drafter
+        .window
+        .event(egui::Event::ModifiersChanged(Modifiers::COMMAND));
+    let from = drafter.place(after.x, after.y);
+    drafter.drag(from, drafter.place(after.x, after.y + 0.03));
+    drafter
+        .window
+        .event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    let [stayed, _, moved] = seen(&drafter);
+    assert!((stayed - before).norm() < 1e-9, "{stayed}");
+    assert!((moved - after).norm() > 0.02, "{moved}");
+}
+
+#[test]
+fn a_dragged_formula_is_adjusted_or_what_else_is_chosen() {
+    let mut drafter = Drafter::new();
+    drafter.begin();
+    drafter.key(Key::F8);
+    drafter.press("Add size");
+    drafter.press("Add size");
+    drafter.press("Variables");
+    drafter.enter("New variable", "width = 10cm");
+    drafter.key(Key::F8);
+    drafter.hover(drafter.place(0.1, 0.1));
+    drafter.key(Key::P);
+    drafter.type_text("=width * 2");
+    drafter.key(Key::Tab);
+    drafter.typed("5");
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    let number = |drafter: &Drafter| {
+        let pattern = drafter.pattern();
+        let PointRule::At { x, .. } = &pattern.sheets[0].points[0].rule else {
+            panic!("not by coordinates");
+        };
+        x.clone()
+    };
+    let was = number(&drafter);
+    assert!(matches!(was, Number::Formula(_)), "{was:?}");
+    let start = drafter.point("A");
+    for (presses, end) in [(0, 0.23), (1, 0.24), (2, 0.25), (3, 0.26)] {
+        let from = drafter.place(start.x, start.y);
+        let to = drafter.place(end, start.y);
+        drafter.begin_drag(from, to);
+        for _ in 0..presses {
+            drafter.window.event(egui::Event::Text("=".into()));
+            drafter.window.run();
+        }
+        drafter.window.drop_at(to);
+        drafter.window.run();
+        let at = drafter.point("A");
+        assert!((at.x - end).abs() < 1.5e-3, "{presses}: {at}");
+        let now = number(&drafter);
+        let pattern = drafter.pattern();
+        match presses {
+            0 => assert!(matches!(now, Number::Adjusted { .. }), "{now:?}"),
+            1 => {
+                assert_eq!(now, was);
+                let width = drafter.evaluation().variable(pattern.variables[0].id);
+                assert!((width.unwrap().0 - at.x / 2.0).abs() < 1e-12);
+            }
+            2 => assert!(
+                matches!(&now, Number::PerSize { usual, sizes } if **usual == was && sizes.len() == 1),
+                "{now:?}"
+            ),
+            _ => assert!(matches!(now, Number::Value(_)), "{now:?}"),
+        }
+        drafter.chord(Modifiers::COMMAND, Key::Z);
+        assert_eq!(number(&drafter), was);
+        assert_eq!(drafter.point("A"), start);
+    }
+}
+
+#[test]
+fn handles_of_a_selected_curve_take_numbers_beside_it() {
+    let mut drafter = Drafter::new();
+    drafter.begin();
+    drafter.key(Key::C);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.0));
+    drafter.key(Key::Enter);
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.click(drafter.part("Curve AB of draft"));
+    let before = drafter.actions;
+    for (field, text) in [
+        ("x of handle at A", "5"),
+        ("y of handle at A", "7"),
+        ("x of handle at B", "-4"),
+        ("y of handle at B", "2"),
+    ] {
+        drafter.enter(field, text);
+    }
+    assert_eq!(drafter.actions - before, 4);
+    let pattern = drafter.pattern();
+    let CurveRule::Spline { handles, .. } = &pattern.sheets[0].curves[0].rule else {
+        panic!("no spline");
+    };
+    let evaluation = drafter.evaluation();
+    let [a, b] = handles.map(|id| evaluation.point(id).unwrap());
+    let ends = [drafter.point("A"), drafter.point("B")];
+    assert!((a - ends[0] - Vec2::new(0.05, 0.07)).norm() < 1e-9, "{a}");
+    assert!((b - ends[1] - Vec2::new(-0.04, 0.02)).norm() < 1e-9, "{b}");
+}
+
+#[test]
+fn a_part_is_found_by_its_name_and_shown() {
+    let mut drafter = Drafter::opened("t-shirt");
+    // Far from everything.
+    for _ in 0..12 {
+        drafter.key(Key::Plus);
+    }
+    let is_seen = |drafter: &Drafter| {
+        drafter
+            .window
+            .query_by_role_and_label(Role::Button, "Panel sleeve")
+            .is_some()
+    };
+    assert!(!is_seen(&drafter));
+    drafter.chord(Modifiers::COMMAND, Key::K);
+    drafter.enter("Find a command, or a part of the pattern", "panel sle");
+    assert!(is_seen(&drafter), "{}", drafter.status());
+    let label = drafter
+        .window
+        .get_by_role_and_label(Role::TextInput, "Name");
+    assert_eq!(label.value().unwrap(), "sleeve");
+}
