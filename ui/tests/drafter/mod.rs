@@ -1,6 +1,8 @@
 //! A window that is drafted in by raw events, with its actions counted: an action is a click, a whole
-//! drag, a key or chord, or a typed field with its Enter.
+//! drag, a key or chord, or a typed field with the Enter or Tab that ends it.
 #![allow(dead_code)]
+
+mod counted;
 
 use egui::{Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::Harness;
@@ -15,6 +17,8 @@ pub struct Drafter {
     pub window: Harness<'static, ToileApp>,
     /// What was done.
     pub actions: usize,
+    /// How many of the typed fields had not the keys before, so that a hand clicks into them first.
+    pub reached: usize,
 }
 
 impl Drafter {
@@ -42,7 +46,11 @@ impl Drafter {
                 ToileApp::new(&creation.egui_ctx, state, beginning)
             });
         window.run();
-        Self { window, actions: 0 }
+        Self {
+            window,
+            actions: 0,
+            reached: 0,
+        }
     }
 
     pub fn pattern(&self) -> Pattern {
@@ -76,19 +84,38 @@ impl Drafter {
     /// Types text where the keys go, and takes it.
     pub fn typed(&mut self, text: &str) {
         self.actions += 1;
-        for c in text.chars() {
-            self.window.event(egui::Event::Text(c.to_string()));
-            self.window.run();
-        }
+        self.window.event(egui::Event::Text(text.into()));
+        self.window.run();
         self.window.key_press(Key::Enter);
+        self.window.run();
+    }
+
+    /// Types text where the keys go, and goes on to the next field by Tab.
+    pub fn typed_on(&mut self, text: &str) {
+        self.actions += 1;
+        self.window.event(egui::Event::Text(text.into()));
+        self.window.run();
+        self.window.key_press(Key::Tab);
+        self.window.run();
+    }
+
+    /// Types text into the field of a name, and goes on to the next field by Tab.
+    pub fn enter_on(&mut self, field: &str, text: &str) {
+        self.reach(field);
+        self.typed_on(text);
+    }
+
+    /// Gives the keys to the field of a name.
+    fn reach(&mut self, field: &str) {
+        let field = self.window.get_by_role_and_label(Role::TextInput, field);
+        self.reached += usize::from(!field.is_focused());
+        field.focus();
         self.window.run();
     }
 
     /// Types text into the field of a name, and takes it.
     pub fn enter(&mut self, field: &str, text: &str) {
-        let field = self.window.get_by_role_and_label(Role::TextInput, field);
-        field.focus();
-        self.window.run();
+        self.reach(field);
         self.window.event(egui::Event::Text(text.into()));
         self.window.run();
         self.window.key_press(Key::Enter);
@@ -102,6 +129,15 @@ impl Drafter {
         self.window.run();
         self.window.drag_at(at);
         self.window.drop_at(at);
+        self.window.run();
+    }
+
+    /// A click with Shift held.
+    pub fn shift_click(&mut self, at: Pos2) {
+        let held = egui::Event::ModifiersChanged;
+        self.window.event(held(Modifiers::SHIFT));
+        self.click(at);
+        self.window.event(held(Modifiers::NONE));
         self.window.run();
     }
 
