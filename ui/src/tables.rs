@@ -267,6 +267,8 @@ impl ToileApp {
                 response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             if ui.button("Add variable").clicked() || entered {
                 self.add_variable();
+                // The next is typed without reaching for the field again.
+                response.request_focus();
             }
         });
         Grid::new("variables")
