@@ -9,7 +9,7 @@ use egui::{ComboBox, Grid, RichText, Ui};
 use std::sync::Arc;
 use toile_pattern::plan::{self, NumberEntry};
 use toile_pattern::{
-    Corner, Edit, EditError, Entity, NotchKind, Number, Panel, PanelId, PartId, Want,
+    Corner, CurveId, Edit, EditError, Entity, NotchKind, Number, Panel, PanelId, PartId, Want,
 };
 
 impl ToileApp {
@@ -100,6 +100,7 @@ impl ToileApp {
                 self.corner_choice(ui, panel, edge);
                 self.curve_numbers(ui, (panel, edge));
             }
+            Item::Curve(curve) => self.handle_numbers(ui, curve),
             Item::Notch(panel, notch) => self.notch_choice(ui, panel, notch),
             _ => {}
         }
@@ -136,7 +137,12 @@ impl ToileApp {
 
     /// One number: its text, its value as it is typed, what is wrong with it.
     pub(crate) fn number_field(&mut self, ui: &mut Ui, entry: &NumberEntry) {
-        let label = ui.label(entry.label).id;
+        self.named_number_field(ui, entry, entry.label);
+    }
+
+    /// The same under a label of its own.
+    fn named_number_field(&mut self, ui: &mut Ui, entry: &NumberEntry, label: &str) {
+        let label = ui.label(label).id;
         self.number_text_field(ui, entry, label);
         let is_formula = entry
             .number
@@ -149,6 +155,28 @@ impl ToileApp {
             let unit = self.base.pattern().unit;
             let words = format!("= {}", number::show(value, entry.want, unit));
             ui.label(RichText::new(words).small().color(palette.ink_soft));
+        }
+    }
+
+    /// The numbers of the handles of a curve, so that all of them are set without looking for each.
+    pub(crate) fn handle_numbers(&mut self, ui: &mut Ui, curve: CurveId) {
+        let handles = match self.view.scene.curve(curve) {
+            Some((_, curve)) => curve.handles.clone(),
+            None => return,
+        };
+        for (k, [at, handle]) in handles.into_iter().enumerate() {
+            let Some((_, point)) = self.base.pattern().point(at) else {
+                continue;
+            };
+            let side = match k {
+                0 | 1 => "at",
+                _ if k % 2 == 0 => "before",
+                _ => "after",
+            };
+            let of = format!("of handle {side} {}", point.name);
+            for entry in plan::numbers_of(&self.base, handle.into()) {
+                self.named_number_field(ui, &entry, &format!("{} {of}", entry.label));
+            }
         }
     }
 

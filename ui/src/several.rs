@@ -132,5 +132,6 @@ impl ToileApp {
         for entry in entries {
             self.number_field(ui, &entry);
         }
+        self.handle_numbers(ui, curve);
     }
 }

@@ -32,3 +32,19 @@ fn variables_are_typed_one_after_another() {
     drafter.typed("3");
     assert_eq!(drafter.point("A"), Vec2::new(0.01, 0.03));
 }
+
+#[test]
+fn the_handles_of_a_curve_are_set_beside_it_one_after_another() {
+    let mut drafter = drawing();
+    drafter.key(Key::C);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.0));
+    drafter.key(Key::Enter);
+    drafter.enter_on("x of handle at A", "5");
+    drafter.typed_on("3");
+    drafter.typed_on("-4");
+    drafter.typed("2");
+    let away = |name: &str, x: f64, y: f64| (drafter.point(name) - Vec2::new(x, y)).norm();
+    assert!(away("h1", 0.05, 0.03) < 1e-12, "{}", drafter.status());
+    assert!(away("h2", 0.16, 0.02) < 1e-12, "{}", drafter.status());
+}
