@@ -48,3 +48,25 @@ fn the_handles_of_a_curve_are_set_beside_it_one_after_another() {
     assert!(away("h1", 0.05, 0.03) < 1e-12, "{}", drafter.status());
     assert!(away("h2", 0.16, 0.02) < 1e-12, "{}", drafter.status());
 }
+
+#[test]
+fn a_point_drawn_from_another_follows_it() {
+    let mut drafter = drawing();
+    drafter.hover(drafter.place(0.1, 0.2));
+    drafter.key(Key::P);
+    drafter.typed_on("0");
+    drafter.typed("0");
+    // By numbers, and by a click.
+    drafter.key(Key::U);
+    drafter.click(drafter.part("Point A of draft"));
+    drafter.typed_on("10");
+    drafter.typed("90");
+    drafter.click(drafter.part("Point A of draft"));
+    drafter.click(drafter.place(0.15, 0.1));
+    drafter.key(Key::Escape);
+    drafter.click(drafter.part("Point A of draft"));
+    drafter.enter("x", "3");
+    let away = |name: &str, x: f64, y: f64| (drafter.point(name) - Vec2::new(x, y)).norm();
+    assert!(away("B", 0.03, 0.1) < 1e-12, "{}", drafter.point("B"));
+    assert!(away("C", 0.18, 0.1) < 1e-12, "{}", drafter.point("C"));
+}

@@ -25,6 +25,42 @@ pub static POINT: SlotTool = SlotTool {
     },
 };
 
+/// A point at a distance and an angle from another; it follows the other.
+pub static POINT_FROM: SlotTool = SlotTool {
+    command: "Point from",
+    slots: &[
+        Slot {
+            hint: "Click the point to measure from",
+            kind: SlotKind::Place(Fields::None),
+        },
+        Slot {
+            hint: "Click where the new point is to be, or type its distance",
+            kind: SlotKind::Place(Fields::FromLast),
+        },
+    ],
+    plan: |answers, reading| {
+        let given = places(answers);
+        let (from, to) = (given[0], given[1]);
+        // A place that means nothing in particular is kept beside the other point too.
+        let way = to.at - from.at;
+        let beside = Placed {
+            spec: Spec::BesideLast {
+                x: way.x.into(),
+                y: way.y.into(),
+            },
+            ..to.clone()
+        };
+        let to = match to.spec {
+            Spec::New(PointRule::At { .. }) => &beside,
+            _ => to,
+        };
+        let mut planning = Planning::new(reading);
+        let points = planning.points(&[from, to])?;
+        let made = points.last().copied().map(Item::Point);
+        Ok(planning.done("Draw point", made))
+    },
+};
+
 /// A straight line; the next begins where it ends.
 pub static LINE: SlotTool = SlotTool {
     command: "Line",
