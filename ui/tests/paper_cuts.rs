@@ -70,3 +70,38 @@ fn a_point_drawn_from_another_follows_it() {
     assert!(away("B", 0.03, 0.1) < 1e-12, "{}", drafter.point("B"));
     assert!(away("C", 0.18, 0.1) < 1e-12, "{}", drafter.point("C"));
 }
+
+#[test]
+fn darts_and_notches_are_put_at_a_typed_distance_from_the_nearer_corner() {
+    let mut drafter = drawing();
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::N);
+    for (x, distance) in [(0.02, "5"), (0.18, "=4cm + 3cm")] {
+        drafter.hover(drafter.place(x, 0.3));
+        drafter.typed(distance);
+    }
+    drafter.key(Key::D);
+    drafter.hover(drafter.place(0.03, 0.0));
+    drafter.typed("8");
+    drafter.typed("2");
+    drafter.typed("10");
+    let pattern = drafter.pattern();
+    let evaluation = drafter.evaluation();
+    let stage = evaluation.last_stage(&pattern.panels[0]).unwrap();
+    let mut places: Vec<Vec2> = stage.notches.iter().map(|notch| notch.point).collect();
+    places.extend(stage.darts.iter().map(|dart| dart.apex));
+    let wanted = [[0.05, 0.3], [0.13, 0.3], [0.08, 0.1]].map(Vec2::from);
+    assert_eq!(places.len(), 3, "{}", drafter.status());
+    for (place, wanted) in places.iter().zip(wanted) {
+        assert!((place - wanted).norm() < 1e-12, "{place} is not {wanted}");
+    }
+    // Farther than the edge is long.
+    drafter.key(Key::N);
+    drafter.hover(drafter.place(0.02, 0.3));
+    drafter.typed("25");
+    let words = drafter.status();
+    assert!(words.contains("does not reach so far"), "{words}");
+    assert_eq!(drafter.pattern().panels[0].notches.len(), 2);
+}

@@ -1,6 +1,7 @@
 //! Tools: small state machines from what is done at the canvas to edits. They know the document's
 //! reading side and edits, never the toolkit of the window.
 
+mod along;
 pub mod alter;
 pub mod draw;
 pub mod number;
