@@ -343,6 +343,9 @@ def go(window, way, folder):
             window.click([float(word) for word in rest.split()])
         elif kind == "hover":
             window.hover([float(word) for word in rest.split()])
+        elif kind == "wheel":
+            window.hover([float(word) for word in rest.split()])
+            window.act("click", 5)
         elif kind == "key":
             window.key(rest)
         elif kind == "text":

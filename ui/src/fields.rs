@@ -16,14 +16,11 @@ pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
         .desired_width(f32::INFINITY);
     let output = field.show(ui);
     let response = output.response.response;
-    let memory = id.with("had focus");
-    let has_focus = response.has_focus();
-    let had_focus = ui.data_mut(|data| {
-        let before: bool = data.get_temp(memory).unwrap_or_default();
-        data.insert_temp(memory, has_focus);
-        before
-    });
-    if has_focus && !had_focus {
+    let had_focus = had_focus(ui, id);
+    if response.has_focus() {
+        note_focus(ui, id);
+    }
+    if response.has_focus() && !had_focus {
         // One that is gone to by a key may be out of sight.
         response.scroll_to_me(None);
         let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
@@ -32,6 +29,18 @@ pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
         state.store(ui.ctx(), id);
     }
     response
+}
+
+/// Whether a field had the focus in the frame before: one of a dialog that was closed since has not.
+fn had_focus(ui: &Ui, id: egui::Id) -> bool {
+    let frame: Option<u64> = ui.data(|data| data.get_temp(id.with("had focus")));
+    frame.is_some_and(|frame| frame + 1 >= ui.ctx().cumulative_frame_nr())
+}
+
+/// Notes that a field has the focus in this frame.
+fn note_focus(ui: &Ui, id: egui::Id) {
+    let frame = ui.ctx().cumulative_frame_nr();
+    ui.data_mut(|data| data.insert_temp(id.with("had focus"), frame));
 }
 
 /// A list to choose a value from, under a label; a value that is in no entry shows nothing.
@@ -212,7 +221,7 @@ impl TypedTexts {
         state.cursor.set_char_range(Some(last));
         state.store(ui.ctx(), id);
         // It had the focus all along: its text is not to be selected as if it were entered anew.
-        ui.data_mut(|data| data.insert_temp(id.with("had focus"), true));
+        note_focus(ui, id);
     }
 
     /// Whether a number is being typed, so that parts can be pointed at.

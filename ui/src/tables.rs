@@ -7,7 +7,7 @@ use crate::theme::Palette;
 use crate::tools::number;
 use egui::{Color32, Grid, Id, RichText, ScrollArea, Ui};
 use toile_measure::{CATALOGUE, Definition, Measurements, UnitKind, definition};
-use toile_pattern::{Number, SizeId, Want, plan};
+use toile_pattern::{Number, Pattern, SizeId, Want, plan};
 use toile_session::Command;
 
 /// Measurements that a size begins with.
@@ -41,13 +41,11 @@ impl ToileApp {
             }
         });
         ui.separator();
-        ScrollArea::both()
-            .auto_shrink([false, false])
-            .show(ui, |ui| match self.tables.tab {
-                Tab::Measurements => self.measurement_table(ui),
-                Tab::Variables => self.variable_table(ui),
-                Tab::History => self.history_table(ui),
-            });
+        match self.tables.tab {
+            Tab::Measurements => self.measurement_table(ui),
+            Tab::Variables => self.variable_table(ui),
+            Tab::History => scrolled(ui, |ui| self.history_table(ui)),
+        }
     }
 
     /// A row a measurement, a column a size.
@@ -126,13 +124,20 @@ impl ToileApp {
                 };
             }
         });
+        scrolled(ui, |ui| self.measurement_rows(ui, &pattern, &names));
+        if let Some(name) = chosen {
+            self.add_measurement(&name);
+        }
+    }
+
+    fn measurement_rows(&mut self, ui: &mut Ui, pattern: &Pattern, names: &[String]) {
         Grid::new("measurements").striped(true).show(ui, |ui| {
             ui.label(RichText::new("Measurement").strong());
             for size in &pattern.sizes {
                 self.size_head(ui, size.id, &size.name);
             }
             ui.end_row();
-            for name in &names {
+            for name in names {
                 let known = definition(name);
                 let label = ui.label(known.map_or(name.as_str(), |known| known.label));
                 let label = match known {
@@ -146,9 +151,6 @@ impl ToileApp {
                 ui.end_row();
             }
         });
-        if let Some(name) = chosen {
-            self.add_measurement(&name);
-        }
     }
 
     fn size_head(&mut self, ui: &mut Ui, id: SizeId, name: &str) {
@@ -195,7 +197,12 @@ impl ToileApp {
             .sizes
             .first()
             .is_some_and(|first| first.id == size);
-        if is_first && self.tables.entered_measurement.as_deref() == Some(name) {
+        // The Enter that asked for it would end the typing at once: it waits for the next frame.
+        let is_entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
+        let is_asked = self.tables.entered_measurement.as_deref() == Some(name);
+        if is_first && is_asked && is_entered {
+            ui.ctx().request_repaint();
+        } else if is_first && is_asked {
             self.tables.entered_measurement = None;
             ui.memory_mut(|memory| memory.request_focus(id));
         }
@@ -275,7 +282,6 @@ impl ToileApp {
     /// A row a variable: name, number, value.
     fn variable_table(&mut self, ui: &mut Ui) {
         let pattern = self.base.pattern().clone();
-        let palette = Palette::of(ui.ctx());
         ui.horizontal(|ui| {
             let label = ui.label("New variable").id;
             let field = egui::TextEdit::singleline(&mut self.tables.new_variable)
@@ -286,8 +292,15 @@ impl ToileApp {
                 response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             if ui.button("Add variable").clicked() || entered {
                 self.add_variable();
+                // The next is typed without reaching for the field again.
+                response.request_focus();
             }
         });
+        scrolled(ui, |ui| self.variable_rows(ui, &pattern));
+    }
+
+    fn variable_rows(&mut self, ui: &mut Ui, pattern: &Pattern) {
+        let palette = Palette::of(ui.ctx());
         Grid::new("variables")
             .striped(true)
             .num_columns(5)
@@ -388,4 +401,11 @@ impl ToileApp {
             self.execute(step);
         }
     }
+}
+
+/// Rows that are scrolled under what stands above them.
+fn scrolled(ui: &mut Ui, rows: impl FnOnce(&mut Ui)) {
+    ScrollArea::both()
+        .auto_shrink([false, false])
+        .show(ui, rows);
 }

@@ -35,6 +35,14 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::Draw,
+        "Point from",
+        key(PLAIN, Key::U),
+        "Draw a point at a distance and an angle from another",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&draw::POINT_FROM)),
+    ),
+    command(
+        Menu::Draw,
         "Line",
         key(PLAIN, Key::L),
         "Draw straight lines, each from where the last ends",

@@ -2,7 +2,7 @@
 
 use super::Reading;
 use super::planning::{Planning, panel_under, refuse};
-use super::slots::{Answer, Plan, Slot, SlotKind, SlotTool};
+use super::slots::{Answer, Fields, Plan, Slot, SlotKind, SlotTool};
 use crate::canvas::selection::Item;
 use toile_pattern::plan::{self, Joined, PivotWish, PleatWish, SplitWish, SpreadWish};
 use toile_pattern::{Bridge, CurveId, EditError, Name, Number, PanelId, PleatKind, Side, Want};
@@ -17,7 +17,7 @@ pub static PIVOT: SlotTool = SlotTool {
         },
         Slot {
             hint: "Click the outline where it goes to",
-            kind: SlotKind::OnLine,
+            kind: SlotKind::OnLine(Fields::Distance),
         },
         Slot {
             hint: "Type the share of it that is moved",
@@ -32,7 +32,7 @@ pub static PIVOT: SlotTool = SlotTool {
     plan: |answers, reading| {
         let [
             Answer::Operation(panel, dart),
-            Answer::OnLine(on, _, at),
+            Answer::OnLine(on, _, at, mark),
             Answer::Number(share),
         ] = answers
         else {
@@ -44,7 +44,7 @@ pub static PIVOT: SlotTool = SlotTool {
                 "click the outline of the dart's own panel",
             ));
         }
-        let near = super::panel::marked(reading, *panel, *at)?;
+        let near = super::panel::marked(reading, *panel, (*at, mark))?;
         let mut planning = Planning::new(reading);
         let wish = PivotWish {
             dart: *dart,
@@ -227,15 +227,19 @@ pub static SPLIT: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click the outline where the cut starts",
-            kind: SlotKind::OnLine,
+            kind: SlotKind::OnLine(Fields::None),
         },
         Slot {
             hint: "Click the outline where it ends",
-            kind: SlotKind::OnLine,
+            kind: SlotKind::OnLine(Fields::None),
         },
     ],
     plan: |answers, reading| {
-        let [Answer::OnLine(panel, _, from), Answer::OnLine(on, _, to)] = answers else {
+        let [
+            Answer::OnLine(panel, _, from, _),
+            Answer::OnLine(on, _, to, _),
+        ] = answers
+        else {
             return Err(refuse("nothing was given", "click the outline"));
         };
         if on != panel {
@@ -245,7 +249,7 @@ pub static SPLIT: SlotTool = SlotTool {
             ));
         }
         let mut planning = Planning::new(reading);
-        let [from, to] = [from, to].map(|at| super::panel::marked(reading, *panel, *at));
+        let [from, to] = [from, to].map(|at| super::panel::marked(reading, *panel, (*at, &None)));
         let places = [from?, to?];
         let curve = planning.run(|evaluation| plan::line_across(evaluation, *panel, places))?;
         split(planning, *panel, curve)

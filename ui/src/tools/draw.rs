@@ -1,8 +1,8 @@
 //! Tools that draw points and curves on a sheet, and whole figures.
 
-use super::Reading;
 use super::planning::{Planning, places, refuse};
 use super::slots::{Answer, Fields, Plan, Slot, SlotKind, SlotTool};
+use super::{Reading, along};
 use crate::canvas::selection::Item;
 use crate::canvas::snap::{Placed, Spec};
 use toile_geometry::Vec2;
@@ -22,6 +22,42 @@ pub static POINT: SlotTool = SlotTool {
         let mut planning = Planning::new(reading);
         let points = planning.points(&places(answers))?;
         Ok(planning.done("Draw point", points.into_iter().map(Item::Point)))
+    },
+};
+
+/// A point at a distance and an angle from another; it follows the other.
+pub static POINT_FROM: SlotTool = SlotTool {
+    command: "Point from",
+    slots: &[
+        Slot {
+            hint: "Click the point to measure from",
+            kind: SlotKind::Place(Fields::None),
+        },
+        Slot {
+            hint: "Click where the new point is to be, or type its distance",
+            kind: SlotKind::Place(Fields::FromLast),
+        },
+    ],
+    plan: |answers, reading| {
+        let given = places(answers);
+        let (from, to) = (given[0], given[1]);
+        // A place that means nothing in particular is kept beside the other point too.
+        let way = to.at - from.at;
+        let beside = Placed {
+            spec: Spec::BesideLast {
+                x: way.x.into(),
+                y: way.y.into(),
+            },
+            ..to.clone()
+        };
+        let to = match to.spec {
+            Spec::New(PointRule::At { .. }) => &beside,
+            _ => to,
+        };
+        let mut planning = Planning::new(reading);
+        let points = planning.points(&[from, to])?;
+        let made = points.last().copied().map(Item::Point);
+        Ok(planning.done("Draw point", made))
     },
 };
 
@@ -252,11 +288,11 @@ pub static ALONG: SlotTool = SlotTool {
             .evaluation
             .curve(*curve)
             .ok_or_else(|| refuse("the curve cannot be drawn", "mend its formulas first"))?;
-        let along = path.nearest(*at).map_or(0.0, |place| place.along);
+        let place = path.nearest(*at).map_or(0.0, |place| place.along);
         // A negative distance is measured from the far end.
-        let distance = match along > 0.5 * path.length() {
+        let distance = match place > 0.5 * path.length() {
             false => distance.clone(),
-            true => negated(distance, reading)?,
+            true => along::negated(distance, reading)?,
         };
         let rule = PointRule::AlongCurve {
             curve: *curve,
@@ -267,23 +303,6 @@ pub static ALONG: SlotTool = SlotTool {
         Ok(planning.done("Draw point on curve", [Item::Point(point)]))
     },
 };
-
-/// The number with its sign changed; a formula stays one.
-fn negated(number: &Number, reading: &Reading<'_>) -> Result<Number, EditError> {
-    match number.as_formula() {
-        None => {
-            let value = reading.evaluation.number(number, Want::Length);
-            Ok(Number::Value(-value.unwrap_or(0.0)))
-        }
-        Some(formula) => {
-            let names = reading.evaluation.names();
-            let text = format!("-({})", formula.text(names));
-            toile_pattern::Formula::parse(&text, names)
-                .map(Number::Formula)
-                .map_err(|error| refuse(&error.message, &error.hint))
-        }
-    }
-}
 
 /// The foot of the perpendicular from a point to the line through two.
 pub static FOOT: SlotTool = SlotTool {

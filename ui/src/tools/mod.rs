@@ -1,6 +1,7 @@
 //! Tools: small state machines from what is done at the canvas to edits. They know the document's
 //! reading side and edits, never the toolkit of the window.
 
+mod along;
 pub mod alter;
 pub mod draw;
 pub mod number;
@@ -103,6 +104,8 @@ pub struct Reading<'a> {
     pub scene: &'a Scene,
     /// What is selected.
     pub selection: &'a Selection,
+    /// The sheet that is drawn on where the pointer does not say which.
+    pub sheet: Option<SheetId>,
     /// Where a sheet's origin was seen on the table before the gesture [m].
     pub on_table: &'a dyn Fn(SheetId) -> Vec2,
     /// What lies inside a rectangle of the table [m].

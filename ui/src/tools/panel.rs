@@ -19,7 +19,7 @@ pub static DART: SlotTool = SlotTool {
     slots: &[
         Slot {
             hint: "Click the edge where the middle of the dart's mouth is",
-            kind: SlotKind::OnLine,
+            kind: SlotKind::OnLine(Fields::Distance),
         },
         Slot {
             hint: "Type the width of the mouth",
@@ -42,14 +42,14 @@ pub static DART: SlotTool = SlotTool {
     ],
     plan: |answers, reading| {
         let [
-            Answer::OnLine(panel, _, at),
+            Answer::OnLine(panel, _, at, mark),
             Answer::Number(intake),
             Answer::Number(depth),
         ] = answers
         else {
             return Err(refuse("nothing was given", "click an edge"));
         };
-        let near = marked(reading, *panel, *at)?;
+        let near = marked(reading, *panel, (*at, mark))?;
         let kind = OperationKind::Dart {
             line: Name::Drawn(near.line),
             mouth: near.mark,
@@ -64,7 +64,7 @@ pub static DART: SlotTool = SlotTool {
 /// How far the pointer is from the mouth of a dart [m].
 fn depth(answers: &[Answer], pointer: &Pointer) -> f64 {
     let mouth = answers.iter().find_map(|answer| match answer {
-        Answer::OnLine(_, _, at) => Some(*at),
+        Answer::OnLine(_, _, at, _) => Some(*at),
         _ => None,
     });
     let away = mouth.map_or(0.1, |mouth| (pointer.at - mouth).norm());
@@ -97,13 +97,13 @@ pub static NOTCH: SlotTool = SlotTool {
     command: "Notch",
     slots: &[Slot {
         hint: "Click the edge where the notch is",
-        kind: SlotKind::OnLine,
+        kind: SlotKind::OnLine(Fields::Distance),
     }],
     plan: |answers, reading| {
-        let Some(Answer::OnLine(panel, _, at)) = answers.first() else {
+        let Some(Answer::OnLine(panel, _, at, mark)) = answers.first() else {
             return Err(refuse("nothing was given", "click an edge"));
         };
-        let near = marked(reading, *panel, *at)?;
+        let near = marked(reading, *panel, (*at, mark))?;
         let mut planning = Planning::new(reading);
         let id = planning.run(|evaluation| {
             let place = (near.line, near.mark);
@@ -350,14 +350,18 @@ fn panel_of<'r>(reading: &Reading<'r>, id: PanelId) -> Result<&'r Arc<Panel>, Ed
     found.ok_or_else(|| refuse("the panel is not there", "click another"))
 }
 
-/// The mark of a panel's line nearest to a place, on a whole millimetre of its edge or in the middle
-/// if that is near.
+/// The mark of a panel's line nearest to a place: the one that was typed, else on a whole millimetre
+/// of its edge or in the middle if that is near.
 pub(super) fn marked(
     reading: &Reading<'_>,
     panel: PanelId,
-    at: Vec2,
+    (at, typed): (Vec2, &Option<Mark>),
 ) -> Result<plan::NearMark, EditError> {
     let mut near = plan::nearest_mark(reading.evaluation, panel, at)?;
+    if let Some(mark) = typed {
+        near.mark = mark.clone();
+        return Ok(near);
+    }
     if let Mark::Between { share, .. } = &mut near.mark
         && let Some(value) = share.value()
     {

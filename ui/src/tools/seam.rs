@@ -2,7 +2,7 @@
 
 use super::Reading;
 use super::planning::{Planning, refuse};
-use super::slots::{Answer, ChainEdge, Plan, Slot, SlotKind, SlotTool};
+use super::slots::{Answer, ChainEdge, Fields, Plan, Slot, SlotKind, SlotTool};
 use crate::canvas::selection::Item;
 use toile_pattern::plan::{self, SewnEdge};
 use toile_pattern::{EditError, NotchKind, Pattern};
@@ -90,13 +90,13 @@ pub static MATCHED_NOTCH: SlotTool = SlotTool {
     command: "Matched notches",
     slots: &[Slot {
         hint: "Click a sewn edge where notches are to meet",
-        kind: SlotKind::OnLine,
+        kind: SlotKind::OnLine(Fields::None),
     }],
     plan: |answers, reading| {
-        let Some(Answer::OnLine(panel, _, at)) = answers.first() else {
+        let Some(Answer::OnLine(panel, _, at, _)) = answers.first() else {
             return Err(refuse("nothing was given", "click a sewn edge"));
         };
-        let near = super::panel::marked(reading, *panel, *at)?;
+        let near = super::panel::marked(reading, *panel, (*at, &None))?;
         let mut planning = Planning::new(reading);
         let made = planning.run(|evaluation| {
             plan::add_matched_notches(evaluation, (*panel, near), NotchKind::Slit)

@@ -1,6 +1,8 @@
 //! What a tool of slots draws over the pattern, and what it says.
 
-use super::slots::{Answer, ChainEdge, SlotKind, SlotState, SlotTool, answer, fields, slot};
+use super::slots::{
+    Answer, ChainEdge, Fields, SlotKind, SlotState, SlotTool, answer, fields, slot,
+};
 use super::{Overlay, Reading, number};
 use toile_pattern::Want;
 
@@ -51,9 +53,12 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
                 ));
             }
         }
-        Ok(Answer::OnLine(_, _, at) | Answer::Edge(_, _, at) | Answer::Curve(_, _, at)) => {
+        Ok(Answer::OnLine(_, _, at, _) | Answer::Edge(_, _, at) | Answer::Curve(_, _, at)) => {
             if let Some(pointer) = &state.pointer {
                 marks.push(Overlay::Dot(pointer.sheet, at));
+                if !typed.is_empty() {
+                    marks.push(Overlay::Words(pointer.sheet, at, typed));
+                }
             }
         }
         Ok(Answer::Chain(chain)) => marks.extend(chain.last().map(edge)),
@@ -95,6 +100,9 @@ pub(super) fn hint(tool: &SlotTool, state: &SlotState) -> String {
         SlotKind::Number { .. } => ", or type it; Enter takes it; Esc goes a step back".to_owned(),
         SlotKind::Places => {
             "; type length or =formula, Tab angle; Enter ends; Esc goes a step back".to_owned()
+        }
+        SlotKind::OnLine(Fields::Distance) => {
+            "; or type its distance from the nearer corner, Enter; Esc goes a step back".to_owned()
         }
         SlotKind::Chain => {
             "; Shift-click to add the next edge of a chain; Esc goes a step back".into()

@@ -1,13 +1,13 @@
 //! Tools that are given one thing after another: a list of slots and a planner. One machine gives
 //! all of them hovering, typed numbers, snapping, steps back and hints.
 
-use super::number;
 use super::{Event, Outcome, Pointer, Reading, Shown};
+use super::{along, number};
 use crate::canvas::selection::{Item, Selection};
 use crate::canvas::snap::{Placed, Spec};
 use toile_geometry::Vec2;
 use toile_pattern::{
-    CurveId, EdgeId, Edit, EditError, Number, OperationId, PanelId, SheetId, Want,
+    CurveId, EdgeId, Edit, EditError, Mark, Number, OperationId, PanelId, SheetId, Want,
 };
 
 /// Steps of an angle while Shift is held [degrees].
@@ -40,8 +40,8 @@ pub enum SlotKind {
     Place(Fields),
     /// Several places; Enter or a click on the first ends them.
     Places,
-    /// A place on an outline, hole or inner line of a panel.
-    OnLine,
+    /// A place on an outline, hole or inner line of a panel, with numbers that may be typed for it.
+    OnLine(Fields),
     /// An edge of a panel.
     Edge,
     /// Edges one after another: Shift-clicks add, a click ends them.
@@ -72,6 +72,8 @@ pub enum SlotKind {
 pub enum Fields {
     /// None.
     None,
+    /// Distance along an edge from its nearer corner.
+    Distance,
     /// Coordinates on the sheet.
     Coordinates,
     /// Length and angle from the place before.
@@ -84,6 +86,7 @@ impl Fields {
     fn labels(self) -> &'static [(&'static str, Want)] {
         match self {
             Self::None => &[],
+            Self::Distance => &[("distance", Want::Length)],
             Self::Coordinates => &[("x", Want::Length), ("y", Want::Length)],
             Self::FromLast => &[("length", Want::Length), ("angle", Want::Angle)],
             Self::Size => &[("width", Want::Length), ("height", Want::Length)],
@@ -101,8 +104,8 @@ pub enum Answer {
     Place(Placed),
     /// Places, and whether the last joins the first.
     Places(Vec<Placed>, bool),
-    /// A place of a panel's line, on its sheet [m].
-    OnLine(PanelId, Item, Vec2),
+    /// A place of a panel's line, on its sheet [m]; and the mark there if a distance was typed.
+    OnLine(PanelId, Item, Vec2, Option<Mark>),
     /// An edge, and the place it was taken at [m].
     Edge(PanelId, EdgeId, Vec2),
     /// Edges one after another.
@@ -250,7 +253,7 @@ pub(super) fn step(
 /// Numbers that may be typed in a slot.
 pub(super) fn fields(kind: SlotKind) -> Vec<(&'static str, Want)> {
     match kind {
-        SlotKind::Place(fields) => fields.labels().to_vec(),
+        SlotKind::Place(fields) | SlotKind::OnLine(fields) => fields.labels().to_vec(),
         SlotKind::Places => Fields::FromLast.labels().to_vec(),
         SlotKind::Number { label, want, .. } => vec![(label, want)],
         _ => Vec::new(),
@@ -272,11 +275,18 @@ pub(super) fn answer(
     match kind {
         SlotKind::Place(fields) => Ok(Answer::Place(placed(fields, state, reading)?)),
         SlotKind::Places => Ok(Answer::Place(placed(Fields::FromLast, state, reading)?)),
-        SlotKind::OnLine => {
+        SlotKind::OnLine(_) => {
             let wanted = |item| matches!(item, Item::Edge(..) | Item::Line(..));
             let hit = hit(&wanted, "line of a panel")?;
             let panel = hit.item.panel().ok_or("there is no panel here")?;
-            Ok(Answer::OnLine(panel, hit.item, hit.at))
+            let typed = state.typed[0].trim();
+            let (Item::Edge(_, edge), false) = (hit.item, typed.is_empty()) else {
+                return Ok(Answer::OnLine(panel, hit.item, hit.at, None));
+            };
+            let distance = number::parse(typed, Want::Length, reading.evaluation)?;
+            let found = along::mark_along(reading, (panel, edge, hit.at), distance);
+            let (mark, at) = found.map_err(|error| error.to_string())?;
+            Ok(Answer::OnLine(panel, hit.item, at, Some(mark)))
         }
         SlotKind::Edge => {
             let found = hit(&|item| matches!(item, Item::Edge(..)), "edge of a panel")?;
@@ -362,6 +372,8 @@ fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Pl
     let pointed = pointer.map(|pointer| pointer.placed(state.snap).at);
     let sheet = last.map(|last| last.sheet);
     let sheet = sheet.or(pointer.map(|pointer| pointer.sheet));
+    // Numbers alone say where, though the pointer is elsewhere, as in the field of a name.
+    let sheet = sheet.or(reading.sheet);
     let sheet = sheet.ok_or("point at a sheet first")?;
     let origin = last.map_or_else(Vec2::zeros, |last| last.at);
     let way = pointed.map_or_else(Vec2::zeros, |at| at - origin);

@@ -238,6 +238,7 @@ impl PatternView {
             evaluation,
             scene,
             selection: &self.selection,
+            sheet: self.sheet,
             on_table: &on_table,
             inside: &inside,
         };
@@ -252,6 +253,7 @@ impl PatternView {
             evaluation,
             scene: &self.scene,
             selection: &self.selection,
+            sheet: self.sheet,
             on_table: &|_| Vec2::zeros(),
             inside: &|_| Vec::new(),
         }

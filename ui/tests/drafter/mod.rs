@@ -1,6 +1,8 @@
 //! A window that is drafted in by raw events, with its actions counted: an action is a click, a whole
-//! drag, a key or chord, or a typed field with its Enter.
+//! drag, a key or chord, or a typed field with the Enter or Tab that ends it.
 #![allow(dead_code)]
+
+mod counted;
 
 use egui::{Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::Harness;
@@ -16,8 +18,11 @@ pub struct Drafter {
     /// What was done.
     pub actions: usize,
     /// Every raw input, a line each, so that the way can be gone again with a mouse and keys on a
-    /// display: `click X Y`, `hover X Y` in pixels, `key CHORD` and `text TEXT`.
+    /// display: `click X Y`, `hover X Y` and `wheel X Y` (down by a notch) in pixels, `key CHORD` and
+    /// `text TEXT`.
     pub inputs: Vec<String>,
+    /// How many of the typed fields had not the keys before, so that a hand clicks into them first.
+    pub reached: usize,
 }
 
 impl Drafter {
@@ -49,6 +54,7 @@ impl Drafter {
             window,
             actions: 0,
             inputs: Vec::new(),
+            reached: 0,
         }
     }
 
@@ -112,14 +118,52 @@ impl Drafter {
         self.window.run();
     }
 
-    /// Types text into the field of a name, and takes it.
-    pub fn enter(&mut self, field: &str, text: &str) {
-        // The click that enters it belongs to the field; one that has the keys already needs none.
+    /// Types text into the field of a name, and goes on to the next field by Tab.
+    pub fn enter_on(&mut self, field: &str, text: &str) {
+        self.reach(field);
+        self.typed_and(text, Key::Tab);
+    }
+
+    /// Gives the keys to the field of a name, by a click that belongs to the field unless it has
+    /// them already.
+    fn reach(&mut self, field: &str) {
+        self.scroll_to(field);
         let found = self.window.get_by_role_and_label(Role::TextInput, field);
         if !found.is_focused() {
+            self.reached += 1;
             self.click_on(Role::TextInput, field);
             self.actions -= 1;
         }
+    }
+
+    /// Turns the wheel over the tables until a field of theirs is seen, as a hand does. Turning the
+    /// wheel is pointing.
+    fn scroll_to(&mut self, field: &str) {
+        for _ in 0..100 {
+            let found = self.window.get_by_role_and_label(Role::TextInput, field);
+            let at = found.rect().center();
+            let low = self.window.ctx.content_rect().bottom() - 40.0;
+            if at.y < low {
+                return;
+            }
+            let place = Pos2::new(at.x, low).round();
+            self.inputs.push(format!("wheel {} {}", place.x, place.y));
+            self.window.hover_at(place);
+            self.window.event(egui::Event::MouseWheel {
+                unit: egui::MouseWheelUnit::Line,
+                delta: vec2(0.0, -1.0),
+                phase: egui::TouchPhase::Move,
+                source: egui::MouseWheelSource::Wheel,
+                modifiers: Modifiers::NONE,
+            });
+            self.window.run();
+        }
+        panic!("{field:?} is out of reach");
+    }
+
+    /// Types text into the field of a name, and takes it.
+    pub fn enter(&mut self, field: &str, text: &str) {
+        self.reach(field);
         self.typed(text);
     }
 
@@ -131,6 +175,15 @@ impl Drafter {
         self.window.run();
         self.window.drag_at(at);
         self.window.drop_at(at);
+        self.window.run();
+    }
+
+    /// A click with Shift held.
+    pub fn shift_click(&mut self, at: Pos2) {
+        let held = egui::Event::ModifiersChanged;
+        self.window.event(held(Modifiers::SHIFT));
+        self.click(at);
+        self.window.event(held(Modifiers::NONE));
         self.window.run();
     }
 
@@ -180,10 +233,8 @@ impl Drafter {
     /// Types text where the keys go.
     pub fn type_text(&mut self, text: &str) {
         self.inputs.push(format!("text {text}"));
-        for c in text.chars() {
-            self.window.event(egui::Event::Text(c.to_string()));
-            self.window.run();
-        }
+        self.window.event(egui::Event::Text(text.into()));
+        self.window.run();
         self.actions += 1;
     }
 

@@ -1,0 +1,107 @@
+//! What once took several actions while a pattern was drafted in the window, and takes one now.
+#![allow(clippy::unwrap_used)]
+
+mod drafter;
+
+use drafter::Drafter;
+use egui::Key;
+use toile_geometry::Vec2;
+
+fn drawing() -> Drafter {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Cuts");
+    drafter
+}
+
+#[test]
+fn variables_are_typed_one_after_another() {
+    let mut drafter = drawing();
+    drafter.key(Key::F8);
+    drafter.press("Variables");
+    drafter.enter("New variable", "ease = 2cm");
+    drafter.typed("half = ease / 2");
+    let pattern = drafter.pattern();
+    let names: Vec<&str> = pattern.variables.iter().map(|v| &*v.name).collect();
+    assert_eq!(names, ["ease", "half"], "{}", drafter.status());
+    // Escape gives the keys back to the tools.
+    drafter.key(Key::Escape);
+    drafter.hover(drafter.place(0.1, 0.1));
+    drafter.key(Key::P);
+    drafter.typed_and("=half", Key::Tab);
+    drafter.typed("3");
+    assert_eq!(drafter.point("A"), Vec2::new(0.01, 0.03));
+}
+
+#[test]
+fn the_handles_of_a_curve_are_set_beside_it_one_after_another() {
+    let mut drafter = drawing();
+    drafter.key(Key::C);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.0));
+    drafter.key(Key::Enter);
+    drafter.enter_on("x of handle at A", "5");
+    drafter.typed_and("3", Key::Tab);
+    drafter.typed_and("-4", Key::Tab);
+    drafter.typed("2");
+    let away = |name: &str, x: f64, y: f64| (drafter.point(name) - Vec2::new(x, y)).norm();
+    assert!(away("h1", 0.05, 0.03) < 1e-12, "{}", drafter.status());
+    assert!(away("h2", 0.16, 0.02) < 1e-12, "{}", drafter.status());
+}
+
+#[test]
+fn a_point_drawn_from_another_follows_it() {
+    let mut drafter = drawing();
+    drafter.hover(drafter.place(0.1, 0.2));
+    drafter.key(Key::P);
+    drafter.typed_and("0", Key::Tab);
+    drafter.typed("0");
+    // By numbers, and by a click.
+    drafter.key(Key::U);
+    drafter.click(drafter.part("Point A of draft"));
+    drafter.typed_and("10", Key::Tab);
+    drafter.typed("90");
+    drafter.click(drafter.part("Point A of draft"));
+    drafter.click(drafter.place(0.15, 0.1));
+    drafter.key(Key::Escape);
+    drafter.click(drafter.part("Point A of draft"));
+    drafter.enter("x", "3");
+    let away = |name: &str, x: f64, y: f64| (drafter.point(name) - Vec2::new(x, y)).norm();
+    assert!(away("B", 0.03, 0.1) < 1e-12, "{}", drafter.point("B"));
+    assert!(away("C", 0.18, 0.1) < 1e-12, "{}", drafter.point("C"));
+}
+
+#[test]
+fn darts_and_notches_are_put_at_a_typed_distance_from_the_nearer_corner() {
+    let mut drafter = drawing();
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::N);
+    for (x, distance) in [(0.02, "5"), (0.18, "=4cm + 3cm")] {
+        drafter.hover(drafter.place(x, 0.3));
+        drafter.typed(distance);
+    }
+    drafter.key(Key::D);
+    drafter.hover(drafter.place(0.03, 0.0));
+    drafter.typed("8");
+    drafter.typed("2");
+    drafter.typed("10");
+    let pattern = drafter.pattern();
+    let evaluation = drafter.evaluation();
+    let stage = evaluation.last_stage(&pattern.panels[0]).unwrap();
+    let mut places: Vec<Vec2> = stage.notches.iter().map(|notch| notch.point).collect();
+    places.extend(stage.darts.iter().map(|dart| dart.apex));
+    let wanted = [[0.05, 0.3], [0.13, 0.3], [0.08, 0.1]].map(Vec2::from);
+    assert_eq!(places.len(), 3, "{}", drafter.status());
+    for (place, wanted) in places.iter().zip(wanted) {
+        assert!((place - wanted).norm() < 1e-12, "{place} is not {wanted}");
+    }
+    // Farther than the edge is long.
+    drafter.key(Key::N);
+    drafter.hover(drafter.place(0.02, 0.3));
+    drafter.typed("25");
+    let words = drafter.status();
+    assert!(words.contains("does not reach so far"), "{words}");
+    assert_eq!(drafter.pattern().panels[0].notches.len(), 2);
+}
