@@ -34,7 +34,7 @@ pub static POINT_FROM: SlotTool = SlotTool {
             kind: SlotKind::Place(Fields::None),
         },
         Slot {
-            hint: "Click where the new point is to be, or type its distance",
+            hint: "Click where the new point is to be",
             kind: SlotKind::NewPoint(Fields::FromLast),
         },
     ],
