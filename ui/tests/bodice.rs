@@ -160,11 +160,10 @@ impl Drafter {
         for [name, from, distance, angle] in points {
             self.click(self.part(&format!("Point {from} of draft")));
             self.typed_and(&format!("={distance}"), Key::Tab);
-            let before = self.pattern().sheets[0].points.len();
-            self.typed(&format!("={angle}"));
-            let points = self.pattern().sheets[0].points.len();
-            assert_eq!(points, before + 1, "{name}: {}", self.status());
-            self.name_drawn(name);
+            self.typed_and(&format!("={angle}"), Key::Tab);
+            self.typed(name);
+            let is_drawn = self.pattern().sheets[0].point_named(name).is_some();
+            assert!(is_drawn, "{name}: {}", self.status());
         }
     }
 
@@ -279,8 +278,8 @@ fn the_front_bodice_of_the_dress_is_drafted_by_tools() {
     drafter.hover(middle);
     for [name, x, y] in POINTS {
         drafter.typed_and(&format!("={x}"), Key::Tab);
-        drafter.typed(&format!("={y}"));
-        drafter.name_drawn(name);
+        drafter.typed_and(&format!("={y}"), Key::Tab);
+        drafter.typed(name);
     }
     drafter.key(Key::F);
     drafter.draw_points_from(FROM_POINTS);

@@ -105,3 +105,24 @@ fn darts_and_notches_are_put_at_a_typed_distance_from_the_nearer_corner() {
     assert!(words.contains("does not reach so far"), "{words}");
     assert_eq!(drafter.pattern().panels[0].notches.len(), 2);
 }
+
+#[test]
+fn a_point_is_named_as_it_is_drawn() {
+    let mut drafter = drawing();
+    drafter.hover(drafter.place(0.1, 0.2));
+    drafter.key(Key::P);
+    drafter.typed_and("5", Key::Tab);
+    drafter.typed_and("7", Key::Tab);
+    drafter.typed("tip");
+    let steps = drafter.window.state().session().past().len();
+    assert_eq!(drafter.point("tip"), Vec2::new(0.05, 0.07));
+    // A name that another point has is refused, with the point.
+    drafter.typed_and("1", Key::Tab);
+    drafter.typed_and("2", Key::Tab);
+    drafter.typed("tip");
+    let words = drafter.status();
+    assert!(words.contains("is taken"), "{words}");
+    drafter.key(Key::Escape);
+    assert_eq!(drafter.pattern().sheets[0].points.len(), 1);
+    assert_eq!(drafter.window.state().session().past().len(), steps);
+}

@@ -20,7 +20,7 @@ const TOOL_BUTTONS: &[&[&str]] = &[
     &["Select"],
     &["Point", "Line", "Curve", "Arc", "Polygon", "Rectangle"],
     &["Move", "Turn", "Mirror", "Scale", "Measure"],
-    &["Point along", "Perpendicular", "Mirror point"],
+    &["Point from", "Point along", "Perpendicular", "Mirror point"],
     &[
         "Trace",
         "Divide edge",

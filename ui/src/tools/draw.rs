@@ -7,7 +7,7 @@ use crate::canvas::selection::Item;
 use crate::canvas::snap::{Placed, Spec};
 use toile_geometry::Vec2;
 use toile_pattern::{
-    CurveRule, EditError, Number, PointRule, Want,
+    CurveRule, EditError, Number, PointId, PointRule, Want,
     plan::{self, Chain, CurveShape, Holes, NewPanel},
 };
 
@@ -16,12 +16,12 @@ pub static POINT: SlotTool = SlotTool {
     command: "Point",
     slots: &[Slot {
         hint: "Click where the point is to be",
-        kind: SlotKind::Place(Fields::Coordinates),
+        kind: SlotKind::NewPoint(Fields::Coordinates),
     }],
     plan: |answers, reading| {
         let mut planning = Planning::new(reading);
         let points = planning.points(&places(answers))?;
-        Ok(planning.done("Draw point", points.into_iter().map(Item::Point)))
+        drawn(planning, points, answers)
     },
 };
 
@@ -34,8 +34,8 @@ pub static POINT_FROM: SlotTool = SlotTool {
             kind: SlotKind::Place(Fields::None),
         },
         Slot {
-            hint: "Click where the new point is to be, or type its distance",
-            kind: SlotKind::Place(Fields::FromLast),
+            hint: "Click where the new point is to be",
+            kind: SlotKind::NewPoint(Fields::FromLast),
         },
     ],
     plan: |answers, reading| {
@@ -56,10 +56,22 @@ pub static POINT_FROM: SlotTool = SlotTool {
         };
         let mut planning = Planning::new(reading);
         let points = planning.points(&[from, to])?;
-        let made = points.last().copied().map(Item::Point);
-        Ok(planning.done("Draw point", made))
+        drawn(planning, points, answers)
     },
 };
+
+/// The last of some points under the name that was typed for it.
+fn drawn(
+    mut planning: Planning,
+    points: Vec<PointId>,
+    answers: &[Answer],
+) -> Result<Plan, EditError> {
+    let made = points.last().copied();
+    if let (Some(point), Some(Answer::NewPoint(_, Some(name)))) = (made, answers.last()) {
+        planning.run(|evaluation| Ok((plan::rename(evaluation, point.into(), name)?, ())))?;
+    }
+    Ok(planning.done("Draw point", made.map(Item::Point)))
+}
 
 /// A straight line; the next begins where it ends.
 pub static LINE: SlotTool = SlotTool {
@@ -322,7 +334,7 @@ pub static FOOT: SlotTool = SlotTool {
         },
     ],
     plan: |answers, reading| {
-        let made = |[base, from, to]: [toile_pattern::PointId; 3]| PointRule::Foot {
+        let made = |[base, from, to]: [PointId; 3]| PointRule::Foot {
             base,
             line: [from, to],
         };
@@ -348,7 +360,7 @@ pub static MIRROR: SlotTool = SlotTool {
         },
     ],
     plan: |answers, reading| {
-        let made = |[base, from, to]: [toile_pattern::PointId; 3]| PointRule::Mirrored {
+        let made = |[base, from, to]: [PointId; 3]| PointRule::Mirrored {
             base,
             line: [from, to],
         };
@@ -360,7 +372,7 @@ pub static MIRROR: SlotTool = SlotTool {
 fn constructed(
     answers: &[Answer],
     reading: &Reading<'_>,
-    rule: impl FnOnce([toile_pattern::PointId; 3]) -> PointRule,
+    rule: impl FnOnce([PointId; 3]) -> PointRule,
     label: &str,
 ) -> Result<Plan, EditError> {
     let mut planning = Planning::new(reading);

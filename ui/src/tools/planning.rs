@@ -142,7 +142,7 @@ pub fn places(answers: &[Answer]) -> Vec<&Placed> {
     let mut found = Vec::new();
     for answer in answers {
         match answer {
-            Answer::Place(placed) => found.push(placed),
+            Answer::Place(placed) | Answer::NewPoint(placed, _) => found.push(placed),
             Answer::Places(places, _) => found.extend(places),
             _ => {}
         }

@@ -28,7 +28,7 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
     let unit = reading.evaluation.pattern().unit;
     let typed = typed_words(kind, state);
     match answer(kind, state, reading) {
-        Ok(Answer::Place(placed)) => {
+        Ok(Answer::Place(placed) | Answer::NewPoint(placed, _)) => {
             let mut words = vec![placed.words.clone()];
             if let Some(last) = state.last_place() {
                 marks.push(Overlay::Line(placed.sheet, vec![last.at, placed.at]));
@@ -77,7 +77,7 @@ fn edge((panel, edge): &ChainEdge) -> Overlay {
     Overlay::Edge(*panel, *edge)
 }
 
-/// Numbers as they are typed, the one in hand with a bar.
+/// What is typed, the one in hand with a bar.
 fn typed_words(kind: SlotKind, state: &SlotState) -> String {
     if !state.is_typing() {
         return String::new();

@@ -38,6 +38,8 @@ pub struct Slot {
 pub enum SlotKind {
     /// A place of a sheet, with numbers that may be typed for it.
     Place(Fields),
+    /// A place of a new point, which may be typed a name after its numbers.
+    NewPoint(Fields),
     /// Several places; Enter or a click on the first ends them.
     Places,
     /// A place on an outline, hole or inner line of a panel, with numbers that may be typed for it.
@@ -102,6 +104,8 @@ pub type ChainEdge = (PanelId, EdgeId);
 pub enum Answer {
     /// A place.
     Place(Placed),
+    /// A place of a new point, and its name if one was typed.
+    NewPoint(Placed, Option<String>),
     /// Places, and whether the last joins the first.
     Places(Vec<Placed>, bool),
     /// A place of a panel's line, on its sheet [m]; and the mark there if a distance was typed.
@@ -143,8 +147,9 @@ pub struct SlotState {
     pub(super) places: Vec<Placed>,
     /// Edges of a chain that more are added to.
     pub(super) chain: Vec<ChainEdge>,
-    pub(super) typed: [String; 2],
-    /// The number that is typed.
+    /// What is typed: one or two numbers, and the name of a new point.
+    pub(super) typed: [String; 3],
+    /// Which of them is typed.
     pub(super) field: usize,
     /// The snap that is taken, counted from the best.
     snap: usize,
@@ -250,9 +255,10 @@ pub(super) fn step(
     (next, outcome)
 }
 
-/// Numbers that may be typed in a slot.
+/// What may be typed in a slot: numbers, and the name of a new point.
 pub(super) fn fields(kind: SlotKind) -> Vec<(&'static str, Want)> {
     match kind {
+        SlotKind::NewPoint(fields) => [fields.labels(), &[("name", Want::Any)]].concat(),
         SlotKind::Place(fields) | SlotKind::OnLine(fields) => fields.labels().to_vec(),
         SlotKind::Places => Fields::FromLast.labels().to_vec(),
         SlotKind::Number { label, want, .. } => vec![(label, want)],
@@ -274,6 +280,11 @@ pub(super) fn answer(
     };
     match kind {
         SlotKind::Place(fields) => Ok(Answer::Place(placed(fields, state, reading)?)),
+        SlotKind::NewPoint(fields) => {
+            let name = state.typed[2].trim();
+            let name = (!name.is_empty()).then(|| name.to_owned());
+            Ok(Answer::NewPoint(placed(fields, state, reading)?, name))
+        }
         SlotKind::Places => Ok(Answer::Place(placed(Fields::FromLast, state, reading)?)),
         SlotKind::OnLine(_) => {
             let wanted = |item| matches!(item, Item::Edge(..) | Item::Line(..));
