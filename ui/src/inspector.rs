@@ -101,6 +101,7 @@ impl ToileApp {
                 self.curve_numbers(ui, (panel, edge));
             }
             Item::Notch(panel, notch) => self.notch_choice(ui, panel, notch),
+            Item::Seam(seam) => self.seam_joints(ui, seam),
             _ => {}
         }
     }

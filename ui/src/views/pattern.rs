@@ -14,6 +14,7 @@ use crate::canvas::snap::snaps;
 use crate::theme::Palette;
 use crate::tools::{Event, Held, Outcome, Overlay, Pointer, Reading, State, Tool};
 use egui::{CursorIcon, Id, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::{Draft, Evaluation, PanelId, Pattern, SheetId};
 
@@ -157,7 +158,7 @@ impl PatternView {
     }
 
     /// Follows a change of the pattern or of the enlargement; `previews` while it is a gesture's.
-    pub fn follow(&mut self, evaluation: &Evaluation, draft: &Draft, previews: bool) {
+    pub fn follow(&mut self, evaluation: &Evaluation, draft: &Arc<Draft>, previews: bool) {
         let pattern = evaluation.pattern();
         self.scene.update(evaluation, draft, self.camera.octave());
         self.isolated.retain(|id| pattern.panel(*id).is_some());
@@ -207,6 +208,7 @@ impl PatternView {
         let reading = Reading {
             evaluation,
             scene,
+            boards,
             selection: &self.selection,
             inside: &inside,
         };
@@ -220,6 +222,7 @@ impl PatternView {
         Reading {
             evaluation,
             scene: &self.scene,
+            boards: &self.boards,
             selection: &self.selection,
             inside: &|_| Vec::new(),
         }
@@ -288,7 +291,11 @@ impl PatternView {
 
     /// Whether a number of the tool in hand is being typed.
     pub fn is_typing(&self) -> bool {
-        matches!(&self.state, State::Slots(state) if state.is_typing())
+        match &self.state {
+            State::Slots(state) => state.is_typing(),
+            State::Walk(state) => state.is_typing(),
+            State::Select(_) => false,
+        }
     }
 
     fn pointer_at(&self, view: Rect, at: Pos2, held: Held) -> Pointer {
@@ -301,7 +308,7 @@ impl PatternView {
         let found = hits((&self.base, &self.boards), &open, table, self.camera.scale);
         let begun = match &self.state {
             State::Slots(state) => state.sheet(),
-            State::Select(_) => None,
+            State::Select(_) | State::Walk(_) => None,
         };
         // While a sheet on a panel is drawn on, what is under the pointer there is drawn over.
         let is_on = |id: &SheetId| {
@@ -331,7 +338,7 @@ impl PatternView {
         }
         let icon = match (self.tool, self.hover.map(|hit| hit.item)) {
             _ if panning => CursorIcon::Grab,
-            (Tool::Slots(_), _) => CursorIcon::Crosshair,
+            (Tool::Slots(_) | Tool::Walk, _) => CursorIcon::Crosshair,
             (_, Some(Item::Point(_) | Item::Panel(_))) => CursorIcon::Move,
             (_, Some(_)) => CursorIcon::PointingHand,
             (_, None) => CursorIcon::Default,
@@ -344,7 +351,7 @@ impl PatternView {
         let overlay = self.overlay(evaluation);
         let hover = match self.tool {
             Tool::Select => self.hover.map(|hit| hit.item),
-            Tool::Slots(_) => None,
+            Tool::Slots(_) | Tool::Walk => None,
         };
         let known = |seam: &&crate::canvas::seams::SeamDrawing| {
             self.base.seams.iter().all(|old| old.id != seam.id)
