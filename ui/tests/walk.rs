@@ -7,10 +7,10 @@ mod drafter;
 use drafter::Drafter;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use toile_geometry::Vec2;
+use toile_geometry::{Vec2, closest_on_segment};
 use toile_pattern::plan;
 use toile_session::Command;
-use toile_ui::{Overlay, Tone};
+use toile_ui::{Going, Held, Overlay, Tone, ToolEvent};
 
 /// The T-shirt with the shoulder seam of the wearer's left selected and walked.
 fn walking() -> Drafter {
@@ -253,4 +253,56 @@ fn without_a_selection_an_edge_is_clicked() {
             .iter()
             .any(|(words, _)| words.contains("across left side"))
     );
+}
+
+#[test]
+fn whatever_is_done_the_document_stays_and_the_pieces_touch() {
+    let mut drafter = walking();
+    let before = drafter.pattern();
+    let evaluation = drafter.evaluation();
+    let mut seed: u32 = 7;
+    let mut next = |below: u32| {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (seed >> 16) % below
+    };
+    for _ in 0..400 {
+        let at = Vec2::new(
+            f64::from(next(100)) * 0.01 - 0.3,
+            f64::from(next(100)) * 0.01 - 0.8,
+        );
+        let state = drafter.window.state_mut();
+        let pointer = state.view().pointer(at, Held::default());
+        let event = match next(11) {
+            0 => ToolEvent::Hover(pointer),
+            1 => ToolEvent::Drag(pointer.clone(), pointer),
+            2 => ToolEvent::Click(pointer),
+            3 => ToolEvent::Go(Going::On),
+            4 => ToolEvent::Go(Going::Back),
+            5 => ToolEvent::Go([Going::ToStart, Going::ToEnd][next(2) as usize]),
+            6 => ToolEvent::Text(["3", ".", "-", "cm", "=waist", "("][next(6) as usize].into()),
+            7 => ToolEvent::Enter,
+            8 => ToolEvent::Backspace,
+            9 => ToolEvent::Tab,
+            _ => ToolEvent::Leave,
+        };
+        state.give(&event);
+        let marks = state.view().overlay(&evaluation);
+        let touch = marks.iter().find_map(|mark| match mark {
+            Overlay::Touch(at) => Some(*at),
+            _ => None,
+        });
+        let ring = marks.iter().find_map(|mark| match mark {
+            Overlay::Ghost(rings) => rings.first(),
+            _ => None,
+        });
+        let (touch, ring) = (touch.unwrap(), ring.unwrap());
+        let away = (0..ring.len()).map(|k| {
+            let side = [ring[k], ring[(k + 1) % ring.len()]];
+            (closest_on_segment(touch, side) - touch).norm()
+        });
+        let away = away.fold(f64::INFINITY, f64::min);
+        assert!(away < 1e-4, "{event:?}: {away}");
+    }
+    assert_eq!(drafter.pattern(), before);
+    assert_eq!(drafter.window.state().session().can_undo(), None);
 }

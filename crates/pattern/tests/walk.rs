@@ -30,6 +30,18 @@ fn near(a: Vec2, b: Vec2) -> bool {
     (a - b).norm() < 1e-9
 }
 
+/// Puts a notch on an edge of the k-th panel.
+fn put_notch(pattern: &mut Pattern, k: usize, (panel, edge): (&str, &str), share: f64) {
+    let notch = Notch {
+        id: pattern.ids.take(),
+        name: format!("{panel} {share}"),
+        line: outline(pattern, panel),
+        at: Mark::between(ends(pattern, panel, edge), share),
+        kind: NotchKind::Slit,
+    };
+    alter(pattern, k, |panel| panel.notches.push(notch));
+}
+
 /// Kinks at both ends [deg].
 fn kinks(joints: &[Option<Joint>; 2]) -> [f64; 2] {
     joints.map(|joint| joint.unwrap().kink.to_degrees())
@@ -156,6 +168,10 @@ fn a_dart_in_the_seam_is_passed_over_closed() {
         let x = if name == "p2" { 0.4 } else { 0.0 };
         place(&mut pattern, 1, name, PointRule::at(x, 0.56));
     }
+    // On the back opposite the dart, 4 mm and 12 mm above it.
+    for up in [0.28, 0.284, 0.292] {
+        put_notch(&mut pattern, 1, ("back", "left"), 1.0 - up / 0.56);
+    }
     let draft = drafted(&pattern);
     let walk = walk(&draft, "one side");
     assert!((walk.lengths()[0] - 0.56).abs() < 1e-12);
@@ -171,6 +187,10 @@ fn a_dart_in_the_seam_is_passed_over_closed() {
     let [start, end] = kinks(&joints);
     assert!(start.abs() < 1e-9 && end.abs() < 1e-9);
     assert!(joints[1].unwrap().step.abs() < 1e-12);
+    let partners: Vec<Option<f64>> = walk.notches().iter().map(|n| n.partner).collect();
+    assert!(partners[0].unwrap().abs() < 1e-9, "the dart: {partners:?}");
+    assert!((partners[1].unwrap() + 0.004).abs() < 1e-9, "{partners:?}");
+    assert_eq!(partners[2..], [None]);
     assert_eq!(walk.nearest(0, 0, v(0.5, 0.1)), Some(0.1));
     assert!((walk.nearest(0, 0, v(0.5, 0.4)).unwrap() - 0.36).abs() < 1e-12);
 }
@@ -303,22 +323,12 @@ fn what_is_gathered_is_spread_evenly_and_leaves_no_step() {
 #[test]
 fn notches_are_matched_with_those_opposite() {
     let mut pattern = sample();
-    let mut put = |k: usize, panel: &str, edge: &str, share: f64| {
-        let notch = Notch {
-            id: pattern.ids.take(),
-            name: format!("{panel} {share}"),
-            line: outline(&pattern, panel),
-            at: Mark::between(ends(&pattern, panel, edge), share),
-            kind: NotchKind::Slit,
-        };
-        alter(&mut pattern, k, |panel| panel.notches.push(notch));
-    };
-    // On the front 6, 30, 45 and 60 cm up; on the back, from the top down, 6 and 30.3 cm.
-    for share in [0.1, 0.5, 0.75, 1.0] {
-        put(0, "front", "right", share);
+    // On the front 6, 30, 30.7, 45 and 60 cm up; on the back 6 and 30.3 cm.
+    for share in [0.1, 0.5, 0.307 / 0.6, 0.75, 1.0] {
+        put_notch(&mut pattern, 0, ("front", "right"), share);
     }
     for share in [0.9, 1.0 - 0.303 / 0.6] {
-        put(1, "back", "left", share);
+        put_notch(&mut pattern, 1, ("back", "left"), share);
     }
     let draft = drafted(&pattern);
     let notches = walk(&draft, "one side").notches();
@@ -334,6 +344,7 @@ fn notches_are_matched_with_those_opposite() {
         [
             (0, 0.06, Some(0.0), true),
             (0, 0.3, Some(0.003), false),
+            (0, 0.307, None, false),
             (0, 0.45, None, false),
             (0, 0.6, Some(0.0), true),
             (1, 0.06, Some(0.0), true),

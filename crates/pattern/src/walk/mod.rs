@@ -49,8 +49,6 @@ pub struct Contact {
     pub pieces: [usize; 2],
     /// The place on each, in its own plane [m].
     pub places: [Vec2; 2],
-    /// Unit direction of the walk there on each, in its own plane.
-    pub directions: [Vec2; 2],
     /// Lays the piece that is moved on the one that stays: from the plane of the one to that of the
     /// other. It mirrors where the piece has to be turned over.
     pub laid: Affine,
@@ -136,7 +134,6 @@ impl<'d> Walk<'d> {
             along,
             pieces: at.map(|(run, ..)| run.span.piece),
             places,
-            directions,
             laid,
         }
     }

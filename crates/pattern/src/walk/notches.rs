@@ -1,8 +1,8 @@
 //! Notches along a seam, and whether they meet when it is sewn.
 
-use super::Walk;
+use super::{Run, Walk, WalkedSide};
 use crate::NotchId;
-use toile_geometry::Vec2;
+use toile_geometry::{Curve, Vec2};
 
 /// A notch has its partner within this distance along the seam [m].
 pub const NOTCH_REACH: f64 = 0.01;
@@ -25,8 +25,9 @@ pub struct WalkedNotch {
     /// Arc length from the start of its side [m].
     pub along: f64,
     /// How far its partner on the other side lies beyond the place opposite it, along that side [m];
-    /// nothing if none lies within [`NOTCH_REACH`] that is not nearer to another notch. The ends of
-    /// the other side are partners too.
+    /// nothing if none lies within [`NOTCH_REACH`] that is not nearer to another notch. Without a
+    /// notch the partner is an end of the other side that it meets, a dart that is closed there, or
+    /// where one piece of it ends and the next begins.
     pub partner: Option<f64>,
 }
 
@@ -51,19 +52,15 @@ impl Walk<'_> {
             };
             let partner = |k: usize| {
                 let goal = own[k].along * scale;
-                let end = if goal < 0.5 * lengths[1 - side] {
-                    0.0
-                } else {
-                    lengths[1 - side]
-                };
                 let other = nearest(own[k].along, others, scale);
                 let mutual = other.filter(|&j| {
                     nearest(others[j].along, own, 1.0 / scale).is_some_and(|back| back == k)
                 });
-                let apart = mutual.map(|j| others[j].along - goal);
-                let ends = (end - goal).abs() <= NOTCHES_MEET;
-                let apart = apart.or_else(|| ends.then_some(end - goal));
-                apart.filter(|apart| apart.abs() <= NOTCH_REACH)
+                let notch = mutual.map(|j| others[j].along - goal);
+                let within = |apart: Option<f64>, reach: f64| apart.filter(|a| a.abs() <= reach);
+                within(notch, NOTCH_REACH)
+                    .or_else(|| within(least(&[0.0, lengths[1 - side]], goal), NOTCHES_MEET))
+                    .or_else(|| within(least(&self.sides[1 - side].joins(), goal), NOTCH_REACH))
             };
             let found = (0..own.len()).map(|k| WalkedNotch {
                 partner: partner(k),
@@ -109,4 +106,25 @@ impl Walk<'_> {
         found.sort_by(|a, b| a.along.total_cmp(&b.along));
         found
     }
+}
+
+impl WalkedSide {
+    /// Arc lengths at which darts in it are closed, or one piece ends and the next begins [m].
+    fn joins(&self) -> Vec<f64> {
+        let is_join = |pair: &&[Run]| {
+            let [before, after] = [&pair[0], &pair[1]];
+            let ends = before.path.curves().last().map(Curve::end);
+            let starts = after.path.curves().first().map(Curve::start);
+            let gap = ends.zip(starts).map(|(a, b)| (b - a).norm());
+            before.span.piece != after.span.piece || gap.is_some_and(|gap| gap > ON_LINE)
+        };
+        let pairs = self.runs.windows(2).filter(is_join);
+        pairs.map(|pair| pair[1].start).collect()
+    }
+}
+
+/// How far the nearest of some places lies beyond a goal.
+fn least(places: &[f64], goal: f64) -> Option<f64> {
+    let away = places.iter().map(|place| place - goal);
+    away.min_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
