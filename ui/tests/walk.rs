@@ -159,6 +159,34 @@ fn tab_lets_the_other_piece_stay() {
 }
 
 #[test]
+fn what_keys_lead_to_is_brought_into_view() {
+    let mut drafter = walking();
+    drafter.key(Key::Home);
+    let view = drafter.window.get_by_label("Pattern view").rect();
+    let seen = |drafter: &Drafter| {
+        let state = drafter.window.state().view();
+        view.contains(state.screen(view, Vec2::zeros(), touch(drafter)))
+    };
+    let place = {
+        let state = drafter.window.state().view();
+        state.screen(view, Vec2::zeros(), touch(&drafter))
+    };
+    drafter.hover(place);
+    drafter.key(Key::Home);
+    for _ in 0..12 {
+        drafter.window.event(egui::Event::Zoom(1.4));
+        drafter.window.run();
+    }
+    assert!(seen(&drafter));
+    let centre = drafter.window.state().view().camera.centre;
+    drafter.key(Key::Tab);
+    assert_ne!(drafter.window.state().view().camera.centre, centre);
+    assert!(seen(&drafter), "the back lies elsewhere on the table");
+    drafter.key(Key::Tab);
+    assert!(seen(&drafter));
+}
+
+#[test]
 fn the_pointer_leads_along_the_seam_near_it_and_when_it_is_dragged() {
     let mut drafter = walking();
     drafter.key(Key::Home);

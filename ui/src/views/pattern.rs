@@ -277,6 +277,9 @@ impl PatternView {
         }
         for event in self.events(ui, &response, panning) {
             outcomes.push(self.step(&event, evaluation));
+            if matches!(event, Event::Tab | Event::Go(_) | Event::Enter) {
+                self.follow_walk(view, evaluation);
+            }
         }
         self.cursor(ui, panning, response.hovered());
         self.paint(ui, view, evaluation);
@@ -287,6 +290,21 @@ impl PatternView {
             });
         }
         outcomes
+    }
+
+    /// Where the pieces of a seam touch comes into the middle of the view if a key led out of it.
+    fn follow_walk(&mut self, view: Rect, evaluation: &Evaluation) {
+        let marks = self.overlay(evaluation);
+        let touch = marks.iter().find_map(|mark| match mark {
+            Overlay::Touch(at) => Some(*at),
+            _ => None,
+        });
+        if let Some(at) = touch
+            && !view.contains(self.screen(view, Vec2::zeros(), at))
+        {
+            self.camera.centre = at;
+            self.fitted = None;
+        }
     }
 
     /// Whether a number of the tool in hand is being typed.
