@@ -56,6 +56,13 @@ fn ghost(drafter: &Drafter) -> Vec<Vec2> {
     ghosts.next().unwrap()
 }
 
+/// How far the middle of the ghost's corners lies above a place [m]: beyond a shoulder line, while
+/// the piece that stays hangs below it.
+fn above(ring: &[Vec2], at: Vec2) -> f64 {
+    let sum: f64 = ring.iter().map(|corner| corner.y - at.y).sum();
+    sum / ring.len() as f64
+}
+
 /// How far the walk has come on the first piece, in words.
 fn told(drafter: &Drafter) -> String {
     let last = words(drafter).pop();
@@ -73,6 +80,7 @@ fn the_second_piece_lies_against_the_first_and_the_document_stays() {
         away.fold(f64::INFINITY, f64::min)
     };
     assert!(nearest(&ghost(&drafter)) < 1e-9, "its corner touches");
+    assert!(above(&ghost(&drafter), at) > 0.1);
     let told = words(&drafter);
     for line in ["armhole across left shoulder", "neck across left shoulder"] {
         assert!(
@@ -330,6 +338,7 @@ fn whatever_is_done_the_document_stays_and_the_pieces_touch() {
         });
         let away = away.fold(f64::INFINITY, f64::min);
         assert!(away < 1e-4, "{event:?}: {away}");
+        assert!(above(ring, touch) > 0.1, "{event:?}");
     }
     assert_eq!(drafter.pattern(), before);
     assert_eq!(drafter.window.state().session().can_undo(), None);
