@@ -99,6 +99,7 @@ impl ToileApp {
             }
             Item::Curve(curve) => self.handle_numbers(ui, curve),
             Item::Notch(panel, notch) => self.notch_choice(ui, panel, notch),
+            Item::Seam(seam) => self.seam_joints(ui, seam),
             _ => {}
         }
     }

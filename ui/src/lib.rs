@@ -20,5 +20,5 @@ pub use app::command::{Menu, UiCommand};
 pub use app::command_table::{commands, named};
 pub use app::{Beginning, ToileApp};
 pub use canvas::selection::{Item, Selection};
-pub use tools::{Event as ToolEvent, Held, Overlay, Pointer};
+pub use tools::{Event as ToolEvent, Going, Held, Overlay, Pointer, Tone};
 pub use views::pattern::PatternView;

@@ -39,6 +39,8 @@ pub struct Palette {
     pub fault: Color32,
     /// Warnings.
     pub warning: Color32,
+    /// What is as it should be.
+    pub good: Color32,
 }
 
 /// By day: paper, cloth and chalk.
@@ -60,6 +62,7 @@ pub const LIGHT: Palette = Palette {
     accent_soft: Color32::from_rgb(0xD3, 0xE6, 0xE6),
     fault: Color32::from_rgb(0xA8, 0x32, 0x2A),
     warning: Color32::from_rgb(0x85, 0x58, 0x0A),
+    good: Color32::from_rgb(0x2C, 0x6E, 0x3A),
 };
 
 /// By night.
@@ -81,6 +84,7 @@ pub const DARK: Palette = Palette {
     accent_soft: Color32::from_rgb(0x22, 0x4A, 0x4F),
     fault: Color32::from_rgb(0xF0, 0x8A, 0x7E),
     warning: Color32::from_rgb(0xE2, 0xB1, 0x5A),
+    good: Color32::from_rgb(0x86, 0xCB, 0x93),
 };
 
 /// Behind the garment.

@@ -147,7 +147,7 @@ fn the_opposite_handle_turns_along_and_ctrl_leaves_it() {
     let CurveRule::Spline { knots, .. } = &pattern.sheets[0].curves[0].rule else {
         panic!("no spline");
     };
-    let knot = knots[0].clone();
+    let knot = knots[0];
     let seen = |drafter: &Drafter| {
         let evaluation = drafter.evaluation();
         [knot.before, knot.point, knot.after].map(|id| evaluation.point(id).unwrap())

@@ -96,12 +96,15 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
     let errors = events
         .iter()
         .any(|e| matches!(e, Event::Checked { errors, .. } if *errors > 0));
-    let draft = session.draft();
+    let (draft, evaluation) = (session.draft(), session.evaluation());
     let project = session.project();
     let (pieces, seams) = match errors {
         false => {
             let of = (&*project.pattern, &*draft);
-            (piece_facts(of, project.size_name()), seam_facts(&draft))
+            (
+                piece_facts(of, project.size_name()),
+                seam_facts((&evaluation, &draft)),
+            )
         }
         true => (Vec::new(), Vec::new()),
     };

@@ -91,6 +91,19 @@ fn check_json_gives_every_piece_and_seam_in_numbers() {
     let seam = &report["seams"][0];
     near(&seam["lengths_mm"][0], legs, 1e-6);
     near(&seam["lengths_mm"][1], legs, 1e-6);
+    // Sewn shut, the dart of a straight edge leaves a dip by the angle it took.
+    let [joint] = seam["joints"].as_array().unwrap().as_slice() else {
+        panic!("one line crosses it, at its mouth: {seam}");
+    };
+    assert_eq!(joint["end"], "start");
+    assert_eq!(joint["edges"], serde_json::json!(["top", "top"]));
+    assert_eq!(joint["pieces"][0], joint["pieces"][1]);
+    near(
+        &joint["kink_deg"],
+        -2.0 * 0.25_f64.atan().to_degrees(),
+        1e-9,
+    );
+    near(&joint["step_mm"], 0.0, 1e-9);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Places in words, and the places of parts.
 
-use crate::{Panel, PanelId, PartId, Pattern, Place};
+use crate::{EdgeName, Name, Panel, PanelId, PartId, Pattern, Place};
 
 impl Pattern {
     /// A place in words, with the names of the parts.
@@ -70,6 +70,21 @@ impl Pattern {
             }
             Place::File { path, line, column } => {
                 format!("line {line}, column {column}, {path}")
+            }
+        }
+    }
+
+    /// The name of an edge of a panel, or of the operation that made it; nothing if it is not there.
+    pub fn edge_name(&self, panel: PanelId, name: EdgeName) -> Option<&str> {
+        let lineage = self.lineage(self.panel(panel)?);
+        match name {
+            Name::Drawn(id) => {
+                let edge = lineage.iter().find_map(|own| own.edge(id));
+                edge.map(|edge| &*edge.name)
+            }
+            Name::Made { by, .. } => {
+                let mut operations = lineage.iter().flat_map(|own| &own.operations);
+                operations.find(|o| o.id == by).map(|o| &*o.name)
             }
         }
     }

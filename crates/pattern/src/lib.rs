@@ -17,6 +17,7 @@ mod number;
 pub mod plan;
 mod stage;
 mod suggest;
+pub mod walk;
 
 pub use check::check_draft;
 pub use diagnostic::{Code, Diagnostic, Place, Severity};

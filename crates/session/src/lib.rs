@@ -65,7 +65,8 @@ pub use open::{
     read_input, read_pattern_text,
 };
 pub use piece_facts::{
-    DartFacts, EdgeFacts, NotchFacts, PieceFacts, RegionFacts, SeamFacts, piece_facts, seam_facts,
+    DartFacts, EdgeFacts, JointFacts, NotchFacts, PieceFacts, RegionFacts, SeamFacts, piece_facts,
+    seam_facts,
 };
 pub use printing::{PrintOptions, PrintSizes, Printed, print_job, print_pattern};
 pub use project::{Project, WornGarment};

@@ -4,8 +4,10 @@ use crate::report::span_length;
 use serde::Serialize;
 use toile_cut::{CutOptions, CutPiece, PieceRing};
 use toile_geometry::{Bounds2, Polygon, Vec2};
+use toile_pattern::walk::{Joint, Walk};
 use toile_pattern::{
-    Corner, Draft, EdgeOrigin, Name, NotchKind, Panel, Pattern, Piece, PieceEdge, Pressed,
+    Corner, Draft, DraftSeam, EdgeOrigin, Evaluation, NotchKind, Panel, PanelId, Pattern, Piece,
+    PieceEdge, Pressed,
 };
 
 /// A piece: places are in its own plane, seen from the right side of the cloth.
@@ -104,6 +106,23 @@ pub struct SeamFacts {
     pub lengths_mm: [f64; 2],
     /// Whether the longer side is gathered or eased on purpose.
     pub gathered: bool,
+    /// The lines that cross it at its ends.
+    pub joints: Vec<JointFacts>,
+}
+
+/// Two edges that go on into each other across a seam at one of its ends.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct JointFacts {
+    /// start or end.
+    pub end: &'static str,
+    /// Names of the edges, or of the operations that made them: on the first side, on the second.
+    pub edges: [String; 2],
+    /// Names of their pieces.
+    pub pieces: [String; 2],
+    /// By how much the line turns across the seam: above 0 a peak, below 0 a dip \[deg\].
+    pub kink_deg: f64,
+    /// How far the first piece reaches beyond the second at the end \[mm\].
+    pub step_mm: f64,
 }
 
 /// Every piece of a draft in numbers; pieces without a cut line are left out, as checks tell of them.
@@ -126,17 +145,17 @@ pub fn piece_facts((pattern, draft): (&Pattern, &Draft), size: Option<&str>) -> 
             sewn: sewn_facts(piece, &cut),
             cut: region_facts(&cut.polygon()),
             edges: edges_of(piece)
-                .map(|edge| edge_facts(&lineage, edge))
+                .map(|edge| edge_facts((pattern, panel.id), edge))
                 .collect(),
-            notches: notches(&lineage, &cut),
+            notches: notches((pattern, panel), &cut),
             darts: darts(&lineage, piece),
         })
     });
     facts.collect()
 }
 
-/// Every seam of a draft in numbers, darts' seams included.
-pub fn seam_facts(draft: &Draft) -> Vec<SeamFacts> {
+/// Every seam of an evaluation's draft in numbers, darts' seams included.
+pub fn seam_facts((evaluation, draft): (&Evaluation, &Draft)) -> Vec<SeamFacts> {
     let seams = draft.seams.iter().map(|seam| SeamFacts {
         name: seam.name.clone(),
         lengths_mm: [0, 1].map(|side| {
@@ -144,8 +163,23 @@ pub fn seam_facts(draft: &Draft) -> Vec<SeamFacts> {
             1e3 * spans.map(|span| span_length(draft, span)).sum::<f64>()
         }),
         gathered: seam.gathered,
+        joints: joints((evaluation, draft), seam),
     });
     seams.collect()
+}
+
+fn joints((evaluation, draft): (&Evaluation, &Draft), seam: &DraftSeam) -> Vec<JointFacts> {
+    let pattern = evaluation.pattern();
+    let facts = |joint: Joint| JointFacts {
+        end: ["start", "end"][joint.end],
+        edges: joint.names(pattern, draft),
+        pieces: joint.pieces.map(|k| draft.pieces[k].name.clone()),
+        kink_deg: joint.kink.to_degrees(),
+        step_mm: 1e3 * joint.step,
+    };
+    let walk = Walk::new(draft, seam);
+    let found = walk.map(|walk| walk.joints(evaluation.ease(seam.id)));
+    found.into_iter().flatten().flatten().map(facts).collect()
 }
 
 fn edges_of(piece: &Piece) -> impl Iterator<Item = &PieceEdge> {
@@ -183,23 +217,14 @@ fn sewn_facts(piece: &Piece, cut: &CutPiece) -> RegionFacts {
 }
 
 /// Name of an edge, or of the operation that made it.
-fn edge_name(lineage: &[&Panel], origin: EdgeOrigin) -> String {
-    let found = match origin.name {
-        Name::Drawn(id) => {
-            let edge = lineage.iter().find_map(|own| own.edge(id));
-            edge.map(|edge| &edge.name)
-        }
-        Name::Made { by, .. } => {
-            let mut operations = lineage.iter().flat_map(|own| &own.operations);
-            operations.find(|o| o.id == by).map(|o| &o.name)
-        }
-    };
-    found.cloned().unwrap_or_default()
+fn edge_name((pattern, panel): (&Pattern, PanelId), origin: EdgeOrigin) -> String {
+    let name = pattern.edge_name(panel, origin.name);
+    name.unwrap_or_default().to_owned()
 }
 
-fn edge_facts(lineage: &[&Panel], edge: &PieceEdge) -> EdgeFacts {
+fn edge_facts(of: (&Pattern, PanelId), edge: &PieceEdge) -> EdgeFacts {
     EdgeFacts {
-        name: edge_name(lineage, edge.origin),
+        name: edge_name(of, edge.origin),
         half: edge.origin.half,
         length_mm: edge.curve.length() * 1e3,
         allowance_mm: edge.seam_allowance * 1e3,
@@ -213,12 +238,13 @@ fn edge_facts(lineage: &[&Panel], edge: &PieceEdge) -> EdgeFacts {
     }
 }
 
-fn notches(lineage: &[&Panel], cut: &CutPiece) -> Vec<NotchFacts> {
+fn notches((pattern, panel): (&Pattern, &Panel), cut: &CutPiece) -> Vec<NotchFacts> {
+    let lineage = pattern.lineage(panel);
     let notch = |notch: &toile_cut::CutNotch| {
         let named = lineage.iter().find_map(|own| own.notch(notch.id));
         NotchFacts {
             name: named.map_or_else(String::new, |n| n.name.clone()),
-            edge: edge_name(lineage, notch.edge),
+            edge: edge_name((pattern, panel.id), notch.edge),
             half: notch.edge.half,
             kind: match notch.kind {
                 NotchKind::Slit => "slit",

@@ -63,7 +63,7 @@ impl ToileApp {
         self.notice = Notice::default();
         match self.view.tool {
             Tool::Select => self.give(&Event::Escape),
-            Tool::Slots(_) => self.take(Tool::Select),
+            Tool::Slots(_) | Tool::Walk => self.take(Tool::Select),
         }
     }
 
@@ -281,6 +281,10 @@ impl ToileApp {
 
     /// Moves what is selected by the arrow keys.
     pub(crate) fn nudge(&mut self, context: &egui::Context) {
+        // While a seam is walked they lead along it.
+        if matches!(self.view.tool, Tool::Walk) {
+            return;
+        }
         let items = self.view.selection.items().iter();
         let parts: Vec<PartId> = items.map(|item| item.part()).collect();
         let points = plan::points_of(&self.base, &parts);

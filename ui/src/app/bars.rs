@@ -34,7 +34,7 @@ const TOOL_BUTTONS: &[&[&str]] = &[
         "Inner line",
         "Grain",
     ],
-    &["Seam", "Matched notches"],
+    &["Seam", "Matched notches", "Walk seam"],
 ];
 
 impl ToileApp {
@@ -75,7 +75,7 @@ impl ToileApp {
                 "Select seam",
             ],
             Some(Item::Operation(..)) => &["Pivot dart"],
-            Some(Item::Seam(_)) => &["Flip seam", "Matched notches"],
+            Some(Item::Seam(_)) => &["Walk seam", "Flip seam", "Matched notches"],
             _ => &[],
         };
         canvas.context_menu(|ui| {
@@ -148,6 +148,7 @@ impl ToileApp {
         match self.view.tool {
             Tool::Select => "Select",
             Tool::Slots(tool) => tool.command,
+            Tool::Walk => "Walk seam",
         }
     }
 
@@ -222,7 +223,7 @@ impl ToileApp {
             };
             return (self.notice.text.clone(), colour);
         }
-        if let Tool::Slots(_) = self.view.tool {
+        if self.view.tool.takes_keys() {
             return (self.view.hint(&self.base), palette.ink);
         }
         if let Some(words) = self.view.hover.and_then(|hit| self.item_words(hit.item)) {

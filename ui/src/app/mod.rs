@@ -28,7 +28,7 @@ mod welcome;
 use crate::fields::TypedTexts;
 use crate::gpu::solid::first_frame;
 use crate::theme;
-use crate::tools::{Event as ToolEvent, Tool};
+use crate::tools::Event as ToolEvent;
 use crate::views::garment::GarmentView;
 use crate::views::marker::MarkerView;
 use crate::views::pattern::PatternView;
@@ -394,7 +394,7 @@ impl ToileApp {
         let keys = KeysTaken {
             typing,
             text: self.types(&context),
-            numbers: matches!(self.view.tool, Tool::Slots(_)),
+            numbers: self.view.tool.takes_keys(),
             escape: self.menu_is_open || self.view.is_busy(),
             modal: self.dialog.is_some(),
         };

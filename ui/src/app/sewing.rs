@@ -2,6 +2,10 @@
 
 use super::ToileApp;
 use crate::canvas::selection::{Item, Selection};
+use crate::theme::Palette;
+use crate::tools::walk::crossing_lines;
+use crate::tools::{Tone, Tool};
+use egui::{RichText, Ui};
 use toile_pattern::SeamId;
 use toile_pattern::plan::{self, SeamSide};
 use toile_session::Command;
@@ -20,6 +24,21 @@ impl ToileApp {
         !self.selected_seams().is_empty()
     }
 
+    pub(crate) fn has_seams(&self) -> bool {
+        !self.session.project().pattern.seams.is_empty()
+    }
+
+    /// Walks the selected seam, or that of the selected edge, or one that is clicked.
+    pub(crate) fn walk_seam(&mut self) {
+        if !self.has_seam() && self.has_edge() {
+            self.select_seam();
+            if !self.has_seam() {
+                return;
+            }
+        }
+        self.take(Tool::Walk);
+    }
+
     /// Sews the other ends of the second sides together.
     pub(crate) fn flip_seam(&mut self) {
         let mut edits = Vec::new();
@@ -31,6 +50,20 @@ impl ToileApp {
         }
         let label = "Flip seam".to_owned();
         self.execute(Command::Edit { edits, label });
+    }
+
+    /// How the edges beside a seam go on across it, in words.
+    pub(crate) fn seam_joints(&mut self, ui: &mut Ui, seam: SeamId) {
+        let palette = Palette::of(ui.ctx());
+        for (words, tone) in crossing_lines((&self.base, &self.view.scene.draft), seam) {
+            let colour = match tone {
+                Tone::Plain | Tone::Good => palette.ink_soft,
+                Tone::Warning => palette.warning,
+                Tone::Fault => palette.fault,
+            };
+            ui.label(RichText::new(words).color(colour));
+        }
+        self.command_button(ui, "Walk seam");
     }
 
     /// Selects the seams of the selected edge.

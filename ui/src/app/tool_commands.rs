@@ -322,6 +322,14 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
         ToileApp::select_seam,
     ),
     command(
+        Menu::Sew,
+        "Walk seam",
+        key(PLAIN, Key::W),
+        "Lay the two pieces of the selected seam on each other along it, and see what lines cross it",
+        ToileApp::has_seams,
+        ToileApp::walk_seam,
+    ),
+    command(
         Menu::Marker,
         "Show marker",
         key(PLAIN, Key::F10),

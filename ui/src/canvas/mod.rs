@@ -9,6 +9,7 @@ pub mod hit;
 mod inside;
 pub mod paint;
 mod paint_seams;
+mod paint_walk;
 mod panel_shape;
 mod rulers;
 pub mod scene;

@@ -80,7 +80,9 @@ impl Picture<'_> {
         for seam in &self.scene.seams {
             self.seam_numbers(seam);
         }
-        for seam in &self.scene.seams {
+        // While its pieces lie against each other it is seen what meets.
+        let is_walked = overlay.iter().any(|mark| matches!(mark, Overlay::Ghost(_)));
+        for seam in self.scene.seams.iter().filter(|_| !is_walked) {
             if self.fresh.contains(&seam.id) || self.is_lit(Item::Seam(seam.id)) {
                 self.seam_links(seam);
             }
@@ -95,6 +97,7 @@ impl Picture<'_> {
         for mark in overlay {
             self.overlay(mark);
         }
+        self.labels(overlay);
         if let Some(from) = self.rulers {
             rulers::paint(&self.painter, (self.view, &self.camera), from, self.palette);
         }
@@ -145,7 +148,7 @@ impl Picture<'_> {
         }
     }
 
-    fn filled(&self, origin: Vec2, fill: &Fill, colour: Color32, shift: egui::Vec2) {
+    pub(super) fn filled(&self, origin: Vec2, fill: &Fill, colour: Color32, shift: egui::Vec2) {
         let at = |p: &[f32; 2]| Vec2::new(f64::from(p[0]), f64::from(p[1]));
         let vertices = fill.points.iter().map(|p| Vertex {
             pos: self.seen(origin, at(p)) + shift,
@@ -425,7 +428,10 @@ impl Picture<'_> {
                 let at = self.seen(self.boards.sheet(*sheet), *at);
                 self.tag(at + vec2(12.0, 20.0), words);
             }
-            Overlay::Words(..) => {}
+            Overlay::Words(..) | Overlay::Label(..) => {}
+            Overlay::Ghost(_) | Overlay::Stroke(..) | Overlay::Pip(..) | Overlay::Touch(_) => {
+                self.on_table(mark);
+            }
             Overlay::Box(corners) => {
                 let [a, b] = corners.map(|at| self.seen(Vec2::zeros(), at));
                 let rect = Rect::from_two_pos(a, b);

@@ -28,6 +28,8 @@ pub struct Scene {
     pub seams: Vec<SeamDrawing>,
     /// Lines to cut along.
     pub cut_lines: CutLines,
+    /// The pieces and seams it was made from.
+    pub draft: Arc<Draft>,
     /// The finest enlargement it is drawn for: a power of two [pixels per metre].
     octave: i32,
     lines: HashMap<*const Path, KeptLine>,
@@ -135,7 +137,7 @@ pub struct PanelScene {
 impl Scene {
     /// Follows an evaluated pattern and its draft; curves are fine enough for an enlargement of
     /// two to the power of `octave` [pixels per metre].
-    pub fn update(&mut self, evaluation: &Evaluation, draft: &Draft, octave: i32) {
+    pub fn update(&mut self, evaluation: &Evaluation, draft: &Arc<Draft>, octave: i32) {
         if octave != self.octave {
             self.octave = octave;
             self.lines.clear();
@@ -164,6 +166,7 @@ impl Scene {
         self.shapes = shapes;
         self.seams = draw_seams(draft, self.tolerance());
         self.made += self.cut_lines.follow(pattern, draft);
+        self.draft = draft.clone();
     }
 
     /// Leaves out everything but some panels and the sheets they are traced from.

@@ -12,10 +12,13 @@ pub mod seam;
 mod select;
 mod slot_overlay;
 pub mod slots;
+pub mod walk;
 
 pub use planning::Planning;
 pub use select::SelectState;
+pub use walk::WalkState;
 
+use crate::canvas::boards::Boards;
 use crate::canvas::hit::Hit;
 use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
@@ -91,8 +94,23 @@ pub enum Event {
     Enter,
     /// One step back.
     Escape,
-    /// The next number, or the next snap.
+    /// The next number, the next snap, or the other side.
     Tab,
+    /// On or back along what the tool walks.
+    Go(Going),
+}
+
+/// Where a key leads along a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Going {
+    /// A step back.
+    Back,
+    /// A step on.
+    On,
+    /// To the start.
+    ToStart,
+    /// To the end.
+    ToEnd,
 }
 
 /// What a tool sees of the pattern.
@@ -102,12 +120,12 @@ pub struct Reading<'a> {
     pub evaluation: &'a Evaluation,
     /// How it is seen.
     pub scene: &'a Scene,
+    /// Where it lies on the table.
+    pub boards: &'a Boards,
     /// What is selected.
     pub selection: &'a Selection,
     /// The sheet that is drawn on where the pointer does not say which.
     pub sheet: Option<SheetId>,
-    /// Where a sheet's origin was seen on the table before the gesture [m].
-    pub on_table: &'a dyn Fn(SheetId) -> Vec2,
     /// What lies inside a rectangle of the table [m].
     pub inside: &'a dyn Fn([Vec2; 2]) -> Vec<Item>,
 }
@@ -125,6 +143,29 @@ pub enum Overlay {
     Words(SheetId, Vec2, String),
     /// A rectangle of the table.
     Box([Vec2; 2]),
+    /// A piece that is laid on the table while a tool is in hand: its rings [m].
+    Ghost(Vec<Vec<Vec2>>),
+    /// A line on the table.
+    Stroke(Vec<Vec2>, Tone),
+    /// A mark on a line of the table.
+    Pip(Vec2, Tone),
+    /// Where two pieces touch, on the table.
+    Touch(Vec2),
+    /// Words beside a place of the table.
+    Label(Vec2, String, Tone),
+}
+
+/// How something that is told is to be taken. It is told in words too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// Neither good nor bad.
+    Plain,
+    /// As it should be.
+    Good,
+    /// To be looked at.
+    Warning,
+    /// Wrong.
+    Fault,
 }
 
 /// What is shown of edits that are not made yet.
@@ -163,6 +204,8 @@ pub enum Tool {
     Select,
     /// Is given one thing after another, then does its work.
     Slots(&'static SlotTool),
+    /// Walks the selected seam.
+    Walk,
 }
 
 /// How far a tool has come.
@@ -172,6 +215,8 @@ pub enum State {
     Select(SelectState),
     /// Of [`Tool::Slots`].
     Slots(Box<SlotState>),
+    /// Of [`Tool::Walk`].
+    Walk(WalkState),
 }
 
 impl Default for State {
@@ -186,6 +231,7 @@ impl Tool {
         match self {
             Self::Select => State::default(),
             Self::Slots(_) => State::Slots(Box::default()),
+            Self::Walk => State::Walk(WalkState::default()),
         }
     }
 
@@ -200,6 +246,10 @@ impl Tool {
                 let (state, outcome) = slots::step(tool, state, event, reading);
                 (State::Slots(Box::new(state)), outcome)
             }
+            (Self::Walk, State::Walk(state)) => {
+                let (state, outcome) = walk::step(state, event, reading);
+                (State::Walk(state), outcome)
+            }
             // A state of another tool: begin anew.
             _ => self.step(&self.begin(), event, reading),
         }
@@ -210,6 +260,7 @@ impl Tool {
         match (self, state) {
             (Self::Select, State::Select(state)) => select::overlay(state, reading),
             (Self::Slots(tool), State::Slots(state)) => slot_overlay::overlay(tool, state, reading),
+            (Self::Walk, State::Walk(state)) => walk::overlay(state, reading),
             _ => Vec::new(),
         }
     }
@@ -219,6 +270,7 @@ impl Tool {
         match (self, state) {
             (Self::Select, State::Select(state)) => select::hint(state, reading),
             (Self::Slots(tool), State::Slots(state)) => slot_overlay::hint(tool, state),
+            (Self::Walk, State::Walk(state)) => walk::hint(state, reading),
             _ => String::new(),
         }
     }
@@ -228,7 +280,13 @@ impl Tool {
         match state {
             State::Select(state) => *state != SelectState::default(),
             State::Slots(state) => !state.is_empty(),
+            State::Walk(state) => state.is_typing(),
         }
+    }
+
+    /// Whether numbers, Tab and its other keys go to it.
+    pub fn takes_keys(self) -> bool {
+        !matches!(self, Self::Select)
     }
 }
 

@@ -233,7 +233,7 @@ fn moved(
         Dragged::Sheets(sheets) => {
             let to = sheets
                 .iter()
-                .map(|id| (*id, ((reading.on_table)(*id) + way).into()));
+                .map(|id| (*id, (reading.boards.sheet(*id) + way).into()));
             plan::move_sheets(reading.evaluation, &to.collect::<Vec<_>>())
         }
         Dragged::Fixed(words) => Err(EditError::Impossible {

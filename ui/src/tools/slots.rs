@@ -246,7 +246,7 @@ pub(super) fn step(
                 outcome.done = true;
             }
         }
-        Event::Drop => {}
+        Event::Drop | Event::Go(_) => {}
     }
     if outcome.commit.is_none() {
         outcome.shown = shown(tool, &next, reading);

@@ -15,6 +15,7 @@ use crate::canvas::snap::snaps;
 use crate::theme::Palette;
 use crate::tools::{Event, Held, Outcome, Overlay, Pointer, Reading, State, Tool};
 use egui::{CursorIcon, Id, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::{Draft, Evaluation, PanelId, Pattern, SheetId};
 
@@ -185,7 +186,7 @@ impl PatternView {
     }
 
     /// Follows a change of the pattern or of the enlargement; `previews` while it is a gesture's.
-    pub fn follow(&mut self, evaluation: &Evaluation, draft: &Draft, previews: bool) {
+    pub fn follow(&mut self, evaluation: &Evaluation, draft: &Arc<Draft>, previews: bool) {
         let pattern = evaluation.pattern();
         self.scene.update(evaluation, draft, self.camera.octave());
         self.isolated.retain(|id| pattern.panel(*id).is_some());
@@ -233,13 +234,12 @@ impl PatternView {
         let open = self.open();
         let (scene, boards) = (&self.base, &self.boards);
         let inside = |corners| inside_box((scene, boards), &open, corners);
-        let on_table = |sheet| self.base_boards.sheet(sheet);
         let reading = Reading {
             evaluation,
             scene,
+            boards: &self.base_boards,
             selection: &self.selection,
             sheet: self.sheet,
-            on_table: &on_table,
             inside: &inside,
         };
         let (state, outcome) = self.tool.step(&self.state, event, &reading);
@@ -252,9 +252,9 @@ impl PatternView {
         Reading {
             evaluation,
             scene: &self.scene,
+            boards: &self.boards,
             selection: &self.selection,
             sheet: self.sheet,
-            on_table: &|_| Vec2::zeros(),
             inside: &|_| Vec::new(),
         }
     }
@@ -309,6 +309,9 @@ impl PatternView {
         }
         for event in self.events(ui, &response, panning) {
             outcomes.push(self.step(&event, evaluation));
+            if matches!(event, Event::Tab | Event::Go(_) | Event::Enter) {
+                self.follow_walk(view, evaluation);
+            }
         }
         self.cursor(ui, panning, response.hovered());
         self.paint(ui, view, evaluation);
@@ -321,9 +324,28 @@ impl PatternView {
         outcomes
     }
 
+    /// Where the pieces of a seam touch comes into the middle of the view if a key led out of it.
+    fn follow_walk(&mut self, view: Rect, evaluation: &Evaluation) {
+        let marks = self.overlay(evaluation);
+        let touch = marks.iter().find_map(|mark| match mark {
+            Overlay::Touch(at) => Some(*at),
+            _ => None,
+        });
+        if let Some(at) = touch
+            && !view.contains(self.screen(view, Vec2::zeros(), at))
+        {
+            self.camera.centre = at;
+            self.fitted = None;
+        }
+    }
+
     /// Whether a number of the tool in hand is being typed.
     pub fn is_typing(&self) -> bool {
-        matches!(&self.state, State::Slots(state) if state.is_typing())
+        match &self.state {
+            State::Slots(state) => state.is_typing(),
+            State::Walk(state) => state.is_typing(),
+            State::Select(_) => false,
+        }
     }
 
     fn pointer_at(&self, view: Rect, at: Pos2, held: Held) -> Pointer {
@@ -336,7 +358,7 @@ impl PatternView {
         let found = hits((&self.base, &self.boards), &open, table, self.camera.scale);
         let begun = match &self.state {
             State::Slots(state) => state.sheet(),
-            State::Select(_) => None,
+            State::Select(_) | State::Walk(_) => None,
         };
         // While a sheet on a panel is drawn on, what is under the pointer there is drawn over.
         let is_on = |id: &SheetId| {
@@ -366,7 +388,7 @@ impl PatternView {
         }
         let icon = match (self.tool, self.hover.map(|hit| hit.item)) {
             _ if panning => CursorIcon::Grab,
-            (Tool::Slots(_), _) => CursorIcon::Crosshair,
+            (Tool::Slots(_) | Tool::Walk, _) => CursorIcon::Crosshair,
             (_, Some(Item::Point(_) | Item::Panel(_) | Item::Sheet(_))) => CursorIcon::Move,
             (_, Some(_)) => CursorIcon::PointingHand,
             (_, None) => CursorIcon::Default,
@@ -379,7 +401,7 @@ impl PatternView {
         let overlay = self.overlay(evaluation);
         let hover = match self.tool {
             Tool::Select => self.hover.map(|hit| hit.item),
-            Tool::Slots(_) => None,
+            Tool::Slots(_) | Tool::Walk => None,
         };
         let known = |seam: &&crate::canvas::seams::SeamDrawing| {
             self.base.seams.iter().all(|old| old.id != seam.id)

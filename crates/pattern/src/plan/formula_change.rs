@@ -159,7 +159,7 @@ fn solve(
         };
         for _ in 0..STEPS {
             let slope = (miss - last_miss) / (by - last);
-            if !(slope.abs() > LEAST_SLOPE) {
+            if slope.is_nan() || slope.abs() <= LEAST_SLOPE {
                 break;
             }
             (last, last_miss) = (by, miss);

@@ -55,6 +55,24 @@ impl Affine {
         Self::about(about, [Vec2::x() * x, Vec2::y() * y])
     }
 
+    /// First another map, then this one.
+    #[must_use]
+    pub fn after(&self, first: &Self) -> Self {
+        let turned = |v: Vec2| self.axes[0] * v.x + self.axes[1] * v.y;
+        Self {
+            axes: first.axes.map(turned),
+            origin: self.apply(first.origin),
+        }
+    }
+
+    /// The place whose image is a place [m]; its numbers are not finite if the map flattens the plane.
+    pub fn source(&self, image: Vec2) -> Vec2 {
+        let [x, y] = self.axes;
+        let way = image - self.origin;
+        let area = x.perp(&y);
+        Vec2::new(way.perp(&y), x.perp(&way)) / area
+    }
+
     /// The image of a place [m].
     pub fn apply(&self, place: Vec2) -> Vec2 {
         self.origin + self.axes[0] * place.x + self.axes[1] * place.y

@@ -3,7 +3,7 @@
 use super::PatternView;
 use crate::canvas::camera::ScreenPoint;
 use crate::tools::number::begins_typing;
-use crate::tools::{Event, Held, Tool};
+use crate::tools::{Event, Going, Held, Tool};
 use egui::{EventFilter, Key, PointerButton, Response, Ui};
 
 impl PatternView {
@@ -124,7 +124,7 @@ impl PatternView {
         if self.is_covered || self.is_typed_into(ui) {
             return Vec::new();
         }
-        let takes_tab = matches!(self.tool, Tool::Slots(_));
+        let takes_tab = self.tool.takes_keys();
         if takes_tab {
             response.request_focus();
         }
@@ -144,9 +144,8 @@ impl PatternView {
                 let taken = match event {
                     egui::Event::Text(text) => {
                         let begins = text.starts_with(begins_typing);
-                        let is_slots = matches!(self.tool, Tool::Slots(_));
                         let is_choice = text == "=" && self.pressed.is_some();
-                        let takes = is_slots && (typing || begins) || is_choice;
+                        let takes = self.tool.takes_keys() && (typing || begins) || is_choice;
                         chosen |= is_choice;
                         takes.then(|| Event::Text(text.clone()))
                     }
@@ -157,6 +156,7 @@ impl PatternView {
                         Key::Tab => Some(Event::Tab),
                         Key::Backspace if typing => Some(Event::Backspace),
                         Key::Escape => Some(Event::Escape),
+                        key if matches!(self.tool, Tool::Walk) => going(*key).map(Event::Go),
                         _ => None,
                     },
                     _ => None,
@@ -173,4 +173,15 @@ impl PatternView {
         }
         events
     }
+}
+
+/// Where a key leads along a seam that is walked.
+fn going(key: Key) -> Option<Going> {
+    Some(match key {
+        Key::ArrowLeft | Key::ArrowDown => Going::Back,
+        Key::ArrowRight | Key::ArrowUp => Going::On,
+        Key::Home => Going::ToStart,
+        Key::End => Going::ToEnd,
+        _ => return None,
+    })
 }

@@ -1,0 +1,246 @@
+//! The ends of a seam: how the edges of both pieces that leave it there go on across it.
+
+use super::{Run, Walk, cloth_is_left, rings};
+use crate::{Draft, EdgeOrigin, Pattern, Piece, PieceEdge, Role};
+use toile_geometry::{Curve, Vec2};
+
+/// A line that turns by no more than this across a seam is smooth [deg]. The line a hand draws to
+/// smooth it, from a centimetre before the seam to a centimetre after, lies 1 cm tan(1 deg) =
+/// 0.17 mm beside it: less than the width of a pencil's line.
+pub const SMOOTH: f64 = 2.0;
+/// A line that turns by more than this has a kink that is seen when it is sewn [deg]: smoothing it
+/// likewise takes 1 cm tan(3 deg) = 0.5 mm, by which the sides of a seam may differ too.
+pub const SLIGHT_KINK: f64 = 6.0;
+/// A corner that differs less from a straight line is none [rad]: the edge goes on past the seam.
+const STRAIGHT_ON: f64 = std::f64::consts::PI / 6.0;
+/// Shares of an edge that differ by less are one.
+const SAME_SHARE: f64 = 1e-9;
+
+/// What two edges come to that leave a seam at one of its ends, once the pieces are laid together
+/// there: a line that crosses the seam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joint {
+    /// The end of the seam: 0 its start, 1 its end.
+    pub end: usize,
+    /// The pieces, by their index in the draft.
+    pub pieces: [usize; 2],
+    /// The edges that leave it, on the piece of the first side and on that of the second.
+    pub edges: [EdgeOrigin; 2],
+    /// The corners of the seam, each in the plane of its piece [m].
+    pub corners: [Vec2; 2],
+    /// Unit directions in which the edges leave, each in the plane of its piece; darts between seam
+    /// and edge closed.
+    pub leaving: [Vec2; 2],
+    /// Angles of cloth between seam and edge [rad].
+    pub angles: [f64; 2],
+    /// By how much the line turns across the seam [rad], -pi to pi: 0 smooth, above it a peak that
+    /// points out of the cloth, below it a dip into the cloth.
+    pub kink: f64,
+    /// How far the first piece reaches beyond the second when both are laid together at the start of
+    /// the seam and walked without stretching either [m]: the difference of the sides that neither
+    /// ease nor gathers take in. 0 at the start.
+    pub step: f64,
+}
+
+/// How smooth a line is across a seam.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Smoothness {
+    /// It turns by no more than [`SMOOTH`].
+    Smooth,
+    /// It turns by no more than [`SLIGHT_KINK`].
+    Slight,
+    /// It turns by more.
+    Kink,
+}
+
+impl Joint {
+    /// How smooth the line is.
+    pub fn smoothness(&self) -> Smoothness {
+        let turn = self.kink.abs().to_degrees();
+        match () {
+            () if turn <= SMOOTH => Smoothness::Smooth,
+            () if turn <= SLIGHT_KINK => Smoothness::Slight,
+            () => Smoothness::Kink,
+        }
+    }
+
+    /// The names of the edges.
+    pub fn names(&self, pattern: &Pattern, draft: &Draft) -> [String; 2] {
+        [0, 1].map(|k| {
+            let piece = draft.pieces.get(self.pieces[k]);
+            let name = piece.and_then(|p| pattern.edge_name(p.id.panel, self.edges[k].name));
+            name.unwrap_or("edge").to_owned()
+        })
+    }
+
+    /// What the line is called: by the name of both edges if they share it, else by both names.
+    pub fn line(&self, pattern: &Pattern, draft: &Draft) -> String {
+        match self.names(pattern, draft) {
+            [one, other] if one == other => one,
+            [one, other] => format!("{one} to {other}"),
+        }
+    }
+}
+
+impl Walk<'_> {
+    /// The lines that cross the seam at its start and at its end; `ease` is how much longer one side
+    /// may be [m]. There is none where the edge of a side goes on past the end of the seam, by less
+    /// than 30 degrees from straight on, as where a slit begins or a third piece is sewn on.
+    pub fn joints(&self, ease: f64) -> [Option<Joint>; 2] {
+        [0, 1].map(|end| self.joint(end, ease))
+    }
+
+    fn joint(&self, end: usize, ease: f64) -> Option<Joint> {
+        let first = self.corner(0, end)?;
+        let second = self.corner(1, end)?;
+        let both = [first, second];
+        let angles = both.map(|corner| corner.angle);
+        let goes_on = |angle: f64| (angle - std::f64::consts::PI).abs() < STRAIGHT_ON;
+        if angles.iter().any(|angle| goes_on(*angle)) {
+            return None;
+        }
+        let turn = std::f64::consts::PI - angles[0] - angles[1];
+        let kink = turn.sin().atan2(turn.cos());
+        let [long, short] = self.lengths();
+        let left_over = match self.seam.gathered {
+            true => 0.0,
+            false => ((long - short).abs() - ease.max(0.0)).max(0.0) * (long - short).signum(),
+        };
+        Some(Joint {
+            end,
+            pieces: both.map(|corner| corner.piece),
+            edges: both.map(|corner| corner.edge),
+            corners: both.map(|corner| corner.at),
+            leaving: both.map(|corner| corner.leaving),
+            angles,
+            kink,
+            step: if end == 1 { left_over } else { 0.0 },
+        })
+    }
+
+    /// The corner of a side at an end of the seam; nothing if the seam ends within an edge.
+    fn corner(&self, side: usize, end: usize) -> Option<SeamCorner> {
+        let runs = &self.sides[side].runs;
+        let run = if end == 0 {
+            runs.first()?
+        } else {
+            runs.last()?
+        };
+        let piece = self.draft.pieces.get(run.span.piece)?;
+        let (into_seam, at) = into_run(run, end)?;
+        // The ring goes on from the seam forward or backward.
+        let forward = (run.span.to > run.span.from) == (end == 1);
+        let share = if end == 0 { run.span.from } else { run.span.to };
+        let wanted = if forward { 1.0 } else { 0.0 };
+        if (share - wanted).abs() > SAME_SHARE {
+            return None;
+        }
+        let (edge, leaving) = neighbour(piece, run.span.edge, forward)?;
+        let (arrives, goes) = match forward {
+            true => (-into_seam, leaving),
+            false => (-leaving, into_seam),
+        };
+        let turn = arrives.perp(&goes).atan2(arrives.dot(&goes));
+        let side = if cloth_is_left(piece) { 1.0 } else { -1.0 };
+        Some(SeamCorner {
+            piece: run.span.piece,
+            edge: edge.origin,
+            at,
+            leaving,
+            angle: std::f64::consts::PI - side * turn,
+        })
+    }
+}
+
+/// A corner of a piece at an end of a seam.
+#[derive(Clone, Copy)]
+struct SeamCorner {
+    piece: usize,
+    edge: EdgeOrigin,
+    at: Vec2,
+    leaving: Vec2,
+    angle: f64,
+}
+
+/// Unit direction from an end of a run into it, and the place of that end.
+fn into_run(run: &Run, end: usize) -> Option<(Vec2, Vec2)> {
+    let curves = run.path.curves();
+    Some(match end {
+        0 => {
+            let first = curves.first()?;
+            (leaving(first), first.start())
+        }
+        _ => {
+            let last = curves.last()?.reversed();
+            (leaving(&last), last.start())
+        }
+    })
+}
+
+/// The edge that comes next to another on its ring, and the unit direction in which it leaves.
+/// Darts between are closed: both legs are passed over, and what follows turned by their angle.
+/// Underlays of pleats lie folded under, with what follows parallel to what it was.
+fn neighbour(piece: &Piece, edge: usize, forward: bool) -> Option<(&PieceEdge, Vec2)> {
+    let mut before = 0;
+    let ring = rings(piece).find(|ring| {
+        let is_here = edge < before + ring.len();
+        if !is_here {
+            before += ring.len();
+        }
+        is_here
+    })?;
+    let count = ring.len();
+    let mut k = edge - before;
+    let mut closing = 0.0;
+    for _ in 0..count {
+        k = next(k, count, forward);
+        let found = &ring[k];
+        if found.origin.name.role() == Some(Role::Underlay) {
+            continue;
+        }
+        let Some((by, _)) = found.origin.leg() else {
+            let way = leaving(&walked(found, forward));
+            return Some((found, turned(way, closing)));
+        };
+        // The second leg is laid on the first, about the point of the dart where both meet.
+        let other = next(k, count, forward);
+        let is_pair = ring[other].origin.leg().is_some_and(|(own, _)| own == by);
+        if !is_pair || other == edge - before {
+            return None;
+        }
+        let there = walked(found, forward);
+        let back = walked(&ring[other], forward);
+        let [near, far] = [there.start() - there.end(), back.end() - back.start()];
+        closing += far.perp(&near).atan2(far.dot(&near));
+        k = other;
+    }
+    None
+}
+
+fn next(k: usize, count: usize, forward: bool) -> usize {
+    match forward {
+        true => (k + 1) % count,
+        false => (k + count - 1) % count,
+    }
+}
+
+/// The curve of an edge as it is walked, with its ring or against it.
+fn walked(edge: &PieceEdge, forward: bool) -> Curve {
+    match forward {
+        true => edge.curve,
+        false => edge.curve.reversed(),
+    }
+}
+
+fn turned(v: Vec2, angle: f64) -> Vec2 {
+    let (sin, cos) = angle.sin_cos();
+    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+}
+
+/// Unit direction in which a curve leaves its start; where it stands still there, towards a place a
+/// little further.
+fn leaving(curve: &Curve) -> Vec2 {
+    let own = curve.derivative(0.0).try_normalize(1e-12);
+    let further = || (curve.point(1e-3) - curve.start()).try_normalize(1e-15);
+    own.or_else(further).unwrap_or_else(Vec2::x)
+}

@@ -1,0 +1,241 @@
+//! Walking a seam: the pieces of its second side laid on those of its first along the seam line, place
+//! by place, and how the edges beside the seam go on across it.
+//!
+//! At every place both seam lines touch and are tangent, the cloth of the two pieces on opposite sides
+//! of the line, as it lies when the seam is sewn and pressed open. Mouths of darts in the seam are
+//! passed over, from leg to leg, as if the dart were closed.
+
+mod joint;
+mod notches;
+
+pub use joint::{Joint, SLIGHT_KINK, SMOOTH, Smoothness};
+pub use notches::{NOTCH_REACH, NOTCHES_MEET, WalkedNotch};
+
+use crate::plan::Affine;
+use crate::{Draft, DraftSeam, DraftSpan, Evaluation, Piece, PieceEdge, SeamOrigin};
+use toile_geometry::{Path, Vec2};
+
+/// A seam that can be walked.
+#[derive(Clone, Debug)]
+pub struct Walk<'d> {
+    draft: &'d Draft,
+    seam: &'d DraftSeam,
+    sides: [WalkedSide; 2],
+}
+
+/// One side of a seam in walking order, mouths of darts left out.
+#[derive(Clone, Debug)]
+struct WalkedSide {
+    runs: Vec<Run>,
+    /// Arc length of all runs [m].
+    length: f64,
+}
+
+/// A stretch of one edge, in walking order.
+#[derive(Clone, Debug)]
+struct Run {
+    span: DraftSpan,
+    path: Path,
+    /// Arc length from the start of the side to its start [m].
+    start: f64,
+}
+
+/// Where both sides of a seam touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Arc length from the start of each side [m].
+    pub along: [f64; 2],
+    /// The pieces that touch there, by their index in the draft.
+    pub pieces: [usize; 2],
+    /// The place on each, in its own plane [m].
+    pub places: [Vec2; 2],
+    /// Lays the piece that is moved on the one that stays: from the plane of the one to that of the
+    /// other. It mirrors where the piece has to be turned over.
+    pub laid: Affine,
+}
+
+/// The side of a seam whose piece stays while the other is laid against it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stays {
+    /// The first.
+    #[default]
+    First,
+    /// The second.
+    Second,
+}
+
+impl Stays {
+    /// The number of the side that stays, and of that which moves.
+    pub fn sides(self) -> [usize; 2] {
+        match self {
+            Self::First => [0, 1],
+            Self::Second => [1, 0],
+        }
+    }
+
+    /// The other.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::First => Self::Second,
+            Self::Second => Self::First,
+        }
+    }
+}
+
+impl Evaluation {
+    /// How much longer one side of a seam may be than the other [m].
+    pub fn ease(&self, seam: SeamOrigin) -> f64 {
+        match seam {
+            SeamOrigin::Seam(id) => self.seam_value(id).map_or(0.0, |value| value.ease),
+            SeamOrigin::Dart { .. } => 0.0,
+        }
+    }
+}
+
+impl<'d> Walk<'d> {
+    /// The walk of a seam of a draft; nothing if a span of it is not there or a side has no length.
+    pub fn new(draft: &'d Draft, seam: &'d DraftSeam) -> Option<Self> {
+        let [first, second] = [0, 1].map(|k| WalkedSide::new(draft, &seam.sides[k]));
+        Some(Self {
+            draft,
+            seam,
+            sides: [first?, second?],
+        })
+    }
+
+    /// Arc length of each side, mouths of darts left out [m].
+    pub fn lengths(&self) -> [f64; 2] {
+        [self.sides[0].length, self.sides[1].length]
+    }
+
+    /// Where both sides touch at an arc length of the first [m], clamped to it. The second has its
+    /// place in proportion to its length, so that ease is spread evenly, as seams are sewn.
+    pub fn contact(&self, along: f64, stays: Stays) -> Contact {
+        let [first, second] = self.lengths();
+        let along = along.clamp(0.0, first);
+        let along = [along, along / first * second];
+        let at = [0, 1].map(|k| self.sides[k].at(along[k]));
+        let places = at.map(|(_, place, _)| place);
+        let directions = at.map(|(_, _, direction)| direction);
+        // The cloth lies to the left of the walk on one piece and to the right on the other, or the
+        // one that is moved is turned over.
+        let left = [0, 1].map(|k| self.cloth_is_left(at[k].0));
+        let turned_over = left[0] == left[1];
+        let [base, moved] = stays.sides();
+        let laid = laying(
+            [
+                (places[base], directions[base]),
+                (places[moved], directions[moved]),
+            ],
+            turned_over,
+        );
+        Contact {
+            along,
+            pieces: at.map(|(run, ..)| run.span.piece),
+            places,
+            laid,
+        }
+    }
+
+    /// The arc length of the first side at the place of a piece's seam line that is nearest to a
+    /// point of its plane [m]; nothing if that side has no stretch on the piece.
+    pub fn nearest(&self, side: usize, piece: usize, to: Vec2) -> Option<f64> {
+        let own = self.sides[side].runs.iter();
+        let own = own.filter(|run| run.span.piece == piece);
+        let mut best: Option<(f64, f64)> = None;
+        for run in own {
+            let place = run.path.nearest(to)?;
+            let away = (run.path.point(place) - to).norm();
+            if best.is_none_or(|(least, _)| away < least) {
+                best = Some((away, run.start + place.along));
+            }
+        }
+        let along = best?.1;
+        Some(along / self.sides[side].length * self.sides[0].length)
+    }
+
+    /// The stretches of a side on their pieces, in walking order: index of the piece, and the seam
+    /// line in its plane [m].
+    pub fn lines(&self, side: usize) -> impl Iterator<Item = (usize, &Path)> {
+        let runs = self.sides[side].runs.iter();
+        runs.map(|run| (run.span.piece, &run.path))
+    }
+
+    /// Whether the cloth lies to the left of a run as it is walked.
+    fn cloth_is_left(&self, run: &Run) -> bool {
+        let is_forward = run.span.to > run.span.from;
+        let is_left = self.draft.pieces.get(run.span.piece);
+        is_left.is_none_or(cloth_is_left) == is_forward
+    }
+}
+
+/// Whether cloth lies to the left of the rings of a piece: its outline is wound counter-clockwise.
+fn cloth_is_left(piece: &Piece) -> bool {
+    let edges = piece.outline.iter();
+    edges.map(|edge| edge.curve.swept_area()).sum::<f64>() >= 0.0
+}
+
+/// The rings of a piece: its outline, then its holes.
+fn rings(piece: &Piece) -> impl Iterator<Item = &[PieceEdge]> {
+    let holes = piece.holes.iter().map(Vec::as_slice);
+    std::iter::once(piece.outline.as_slice()).chain(holes)
+}
+
+/// The edge of a span.
+fn edge_of<'d>(draft: &'d Draft, span: &DraftSpan) -> Option<&'d PieceEdge> {
+    let piece = draft.pieces.get(span.piece)?;
+    rings(piece).flatten().nth(span.edge)
+}
+
+/// The rigid map that lays one place and direction on another; turned over, left becomes right.
+fn laying([(to, along), (from, was)]: [(Vec2, Vec2); 2], turned_over: bool) -> Affine {
+    let left = |v: Vec2| Vec2::new(-v.y, v.x);
+    let side = if turned_over { -1.0 } else { 1.0 };
+    let image = |v: Vec2| along * v.dot(&was) + left(along) * (side * v.dot(&left(was)));
+    let axes = [image(Vec2::x()), image(Vec2::y())];
+    Affine {
+        axes,
+        origin: to - image(from),
+    }
+}
+
+impl WalkedSide {
+    fn new(draft: &Draft, spans: &[DraftSpan]) -> Option<Self> {
+        let mut runs = Vec::with_capacity(spans.len());
+        let mut length = 0.0;
+        for span in spans {
+            let whole = Path::new(vec![edge_of(draft, span)?.curve]);
+            let path = whole.between(span.from * whole.length(), span.to * whole.length());
+            let own = path.length();
+            if own > 0.0 {
+                runs.push(Run {
+                    span: *span,
+                    path,
+                    start: length,
+                });
+                length += own;
+            }
+        }
+        let can_be_walked = length.is_finite() && length > 0.0;
+        can_be_walked.then_some(Self { runs, length })
+    }
+
+    /// The run, place and direction at an arc length [m]. Where two runs meet they are those of the
+    /// second.
+    fn at(&self, along: f64) -> (&Run, Vec2, Vec2) {
+        let last = self.runs.len() - 1;
+        let k = self.runs.partition_point(|run| run.start <= along);
+        let run = &self.runs[k.saturating_sub(1).min(last)];
+        let place = run.path.at_length(along - run.start);
+        let at = place.map_or_else(Vec2::zeros, |place| run.path.point(place));
+        let own = place.and_then(|place| run.path.direction(place));
+        // Where the curve stands still, as with a handle at its end: the way of the whole run.
+        let chord = || {
+            let ends = run.path.curves().first().zip(run.path.curves().last());
+            ends.and_then(|(first, last)| (last.end() - first.start()).try_normalize(1e-15))
+        };
+        let direction = own.or_else(chord).unwrap_or_else(Vec2::x);
+        (run, at, direction)
+    }
+}

@@ -1,0 +1,130 @@
+//! Notches along a seam, and whether they meet when it is sewn.
+
+use super::{Run, Walk, WalkedSide};
+use crate::NotchId;
+use toile_geometry::{Curve, Vec2};
+
+/// A notch has its partner within this distance along the seam [m].
+pub const NOTCH_REACH: f64 = 0.01;
+/// Notches that are no farther apart meet [m]: the width of a notch as it is cut.
+pub const NOTCHES_MEET: f64 = 0.001;
+/// A notch this near to a seam line lies on it [m].
+const ON_LINE: f64 = 1e-6;
+
+/// A notch on a side of a seam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WalkedNotch {
+    /// The side: 0 or 1.
+    pub side: usize,
+    /// The piece, by its index in the draft.
+    pub piece: usize,
+    /// Which notch.
+    pub id: NotchId,
+    /// Where it lies in the plane of its piece [m].
+    pub at: Vec2,
+    /// Arc length from the start of its side [m].
+    pub along: f64,
+    /// How far its partner on the other side lies beyond the place opposite it, along that side [m];
+    /// nothing if none lies within [`NOTCH_REACH`] that is not nearer to another notch. Without a
+    /// notch the partner is an end of the other side that it meets, a dart that is closed there, or
+    /// where one piece of it ends and the next begins.
+    pub partner: Option<f64>,
+}
+
+impl WalkedNotch {
+    /// Whether it meets its partner.
+    pub fn meets(&self) -> bool {
+        self.partner
+            .is_some_and(|apart| apart.abs() <= NOTCHES_MEET)
+    }
+}
+
+impl Walk<'_> {
+    /// The notches of both sides in walking order, those of the first side first.
+    pub fn notches(&self) -> Vec<WalkedNotch> {
+        let [first, second] = [0, 1].map(|side| self.notches_of(side));
+        let lengths = self.lengths();
+        let partnered = |side: usize, own: &[WalkedNotch], others: &[WalkedNotch]| {
+            let scale = lengths[1 - side] / lengths[side];
+            let nearest = |from: f64, among: &[WalkedNotch], scale: f64| {
+                let distance = |k: &usize| (among[*k].along - from * scale).abs();
+                (0..among.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            };
+            let partner = |k: usize| {
+                let goal = own[k].along * scale;
+                let other = nearest(own[k].along, others, scale);
+                let mutual = other.filter(|&j| {
+                    nearest(others[j].along, own, 1.0 / scale).is_some_and(|back| back == k)
+                });
+                let notch = mutual.map(|j| others[j].along - goal);
+                let within = |apart: Option<f64>, reach: f64| apart.filter(|a| a.abs() <= reach);
+                within(notch, NOTCH_REACH)
+                    .or_else(|| within(least(&[0.0, lengths[1 - side]], goal), NOTCHES_MEET))
+                    .or_else(|| within(least(&self.sides[1 - side].joins(), goal), NOTCH_REACH))
+            };
+            let found = (0..own.len()).map(|k| WalkedNotch {
+                partner: partner(k),
+                ..own[k]
+            });
+            found.collect::<Vec<_>>()
+        };
+        let mut all = partnered(0, &first, &second);
+        all.extend(partnered(1, &second, &first));
+        all
+    }
+
+    /// The notches of one side, each once.
+    fn notches_of(&self, side: usize) -> Vec<WalkedNotch> {
+        let mut found: Vec<WalkedNotch> = Vec::new();
+        for run in &self.sides[side].runs {
+            let Some(piece) = self.draft.pieces.get(run.span.piece) else {
+                continue;
+            };
+            for notch in &piece.notches {
+                let Some(place) = run.path.nearest(notch.point) else {
+                    continue;
+                };
+                let is_on = (run.path.point(place) - notch.point).norm() <= ON_LINE;
+                let along = run.start + place.along;
+                let is_known = found.iter().any(|known| {
+                    known.id == notch.id
+                        && known.piece == run.span.piece
+                        && (known.along - along).abs() <= ON_LINE
+                });
+                if is_on && !is_known {
+                    found.push(WalkedNotch {
+                        side,
+                        piece: run.span.piece,
+                        id: notch.id,
+                        at: notch.point,
+                        along,
+                        partner: None,
+                    });
+                }
+            }
+        }
+        found.sort_by(|a, b| a.along.total_cmp(&b.along));
+        found
+    }
+}
+
+impl WalkedSide {
+    /// Arc lengths at which darts in it are closed, or one piece ends and the next begins [m].
+    fn joins(&self) -> Vec<f64> {
+        let is_join = |pair: &&[Run]| {
+            let [before, after] = [&pair[0], &pair[1]];
+            let ends = before.path.curves().last().map(Curve::end);
+            let starts = after.path.curves().first().map(Curve::start);
+            let gap = ends.zip(starts).map(|(a, b)| (b - a).norm());
+            before.span.piece != after.span.piece || gap.is_some_and(|gap| gap > ON_LINE)
+        };
+        let pairs = self.runs.windows(2).filter(is_join);
+        pairs.map(|pair| pair[1].start).collect()
+    }
+}
+
+/// How far the nearest of some places lies beyond a goal.
+fn least(places: &[f64], goal: f64) -> Option<f64> {
+    let away = places.iter().map(|place| place - goal);
+    away.min_by(|a, b| a.abs().total_cmp(&b.abs()))
+}

@@ -1,0 +1,465 @@
+//! Walks a seam: the pieces of one side laid on those of the other, moved along the seam line by
+//! pointer, keys or a typed distance. It changes no document.
+
+use super::number;
+use super::{Event, Going, Outcome, Overlay, Pointer, Reading, Tone};
+use crate::canvas::selection::{Item, Selection};
+use toile_geometry::{Curve, Vec2};
+use toile_pattern::plan::Affine;
+use toile_pattern::walk::{Contact, Joint, NOTCHES_MEET, Smoothness, Stays, Walk, WalkedNotch};
+use toile_pattern::{
+    DisplayUnit, Draft, DraftSeam, Evaluation, Pattern, Piece, SeamId, SeamOrigin, Want,
+};
+
+/// How far an arrow key goes [m].
+const STEP: f64 = 0.01;
+/// How near the pointer must come to the seam line to lead the walk [pixels].
+const REACH: f64 = 60.0;
+/// Curves are drawn this near to their course [m].
+const FLATNESS: f64 = 1e-4;
+/// A step is told from this on [m]: what seams may differ by without ease.
+const STEP_TOLD: f64 = 5e-4;
+/// Length of the lines that show how edges go on across the seam [m].
+const LEAVING: f64 = 0.03;
+/// Length of a notch [m].
+const NOTCH: f64 = 0.006;
+/// The contact is at an end of the seam from here on [m].
+const AT_END: f64 = 1e-3;
+
+/// How far the walk has come.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WalkState {
+    /// Arc length of the first side where the pieces touch [m].
+    along: f64,
+    stays: Stays,
+    typed: String,
+}
+
+impl WalkState {
+    /// Whether a distance is being typed.
+    pub fn is_typing(&self) -> bool {
+        !self.typed.is_empty()
+    }
+}
+
+/// The seam that is walked, as it is seen on the table.
+struct Seen<'r> {
+    pattern: &'r Pattern,
+    draft: &'r Draft,
+    seam: &'r DraftSeam,
+    walk: Walk<'r>,
+    /// How much longer one side may be [m].
+    ease: f64,
+    reading: &'r Reading<'r>,
+}
+
+/// The first seam that is selected.
+fn selected(reading: &Reading<'_>) -> Option<SeamId> {
+    let mut items = reading.selection.items().iter();
+    items.find_map(|item| match item {
+        Item::Seam(id) => Some(*id),
+        _ => None,
+    })
+}
+
+impl<'r> Seen<'r> {
+    fn new(reading: &'r Reading<'r>) -> Option<Self> {
+        let id = selected(reading)?;
+        let pattern = reading.evaluation.pattern();
+        let draft: &Draft = &reading.scene.draft;
+        let mut seams = draft.seams.iter();
+        let seam = seams.find(|seam| seam.id == SeamOrigin::Seam(id))?;
+        Some(Self {
+            pattern,
+            draft,
+            seam,
+            walk: Walk::new(draft, seam)?,
+            ease: reading.evaluation.ease(seam.id),
+            reading,
+        })
+    }
+
+    /// From the plane of a piece to the table. The other piece of a pair is seen as the panel is
+    /// drawn, of which it is the mirror image.
+    fn on_table(&self, piece: &Piece) -> Affine {
+        let moved = Affine::translation(self.reading.boards.panel(piece.id.panel));
+        let panel = self.pattern.panel(piece.id.panel);
+        let is_mirrored = panel.is_some_and(|p| p.cut.mirrored) && piece.id.copy % 2 == 1;
+        match is_mirrored {
+            true => moved.after(&Affine::reflection([Vec2::zeros(), Vec2::y()])),
+            false => moved,
+        }
+    }
+
+    fn piece(&self, contact: &Contact, side: usize) -> Option<&'r Piece> {
+        self.draft.pieces.get(contact.pieces[side])
+    }
+
+    /// Places where the pieces touch, from those of the piece that stays to the table; and from those
+    /// of the piece that is laid against it.
+    fn maps(&self, contact: &Contact, stays: Stays) -> Option<[Affine; 2]> {
+        let base = self.on_table(self.piece(contact, stays.sides()[0])?);
+        Some([base, base.after(&contact.laid)])
+    }
+
+    /// The arc length of the first side that a pointer leads to, and how far it is from there [m].
+    fn led(&self, at: &Pointer, stays: Stays) -> Option<(f64, f64)> {
+        let side = stays.sides()[0];
+        let mut best: Option<(f64, f64)> = None;
+        let mut done: Vec<usize> = Vec::new();
+        for (k, _) in self.walk.lines(side) {
+            if done.contains(&k) {
+                continue;
+            }
+            done.push(k);
+            let piece = self.draft.pieces.get(k)?;
+            let map = self.on_table(piece);
+            let own = map.source(at.table);
+            let along = self.walk.nearest(side, k, own)?;
+            let contact = self.walk.contact(along, stays);
+            let away = (map.apply(contact.places[side]) - at.table).norm();
+            if best.is_none_or(|(_, least)| away < least) {
+                best = Some((along, away));
+            }
+        }
+        best
+    }
+}
+
+/// The distance that is walked to: what is typed, if it can be read, else where the walk has come.
+fn along(state: &WalkState, reading: &Reading<'_>) -> Result<f64, String> {
+    if !state.is_typing() {
+        return Ok(state.along);
+    }
+    let read = number::parse(&state.typed, Want::Length, reading.evaluation)?;
+    let value = reading.evaluation.number(&read, Want::Length);
+    value.ok_or_else(|| "the formula has no value: mend it, or type a number".to_owned())
+}
+
+pub(super) fn step(
+    state: &WalkState,
+    event: &Event,
+    reading: &Reading<'_>,
+) -> (WalkState, Outcome) {
+    let mut next = state.clone();
+    let mut outcome = Outcome::default();
+    let Some(seen) = Seen::new(reading) else {
+        match event {
+            Event::Click(pointer) | Event::DoubleClick(pointer) => {
+                match seam_at(pointer, reading) {
+                    Some(seam) => outcome.select = Some(Selection::one(Item::Seam(seam))),
+                    None => outcome.refusal = Some("no seam is here: click a sewn edge".into()),
+                }
+            }
+            Event::Escape => outcome.done = true,
+            _ => {}
+        }
+        return (WalkState::default(), outcome);
+    };
+    let whole = seen.walk.lengths()[0];
+    match event {
+        Event::Hover(pointer) if !state.is_typing() => {
+            let near = seen.led(pointer, state.stays);
+            if let Some((along, _)) = near.filter(|(_, away)| *away <= REACH * pointer.pixel) {
+                next.along = along;
+            }
+        }
+        Event::Click(pointer) | Event::DoubleClick(pointer) | Event::Drag(_, pointer) => {
+            next.typed.clear();
+            if let Some((along, _)) = seen.led(pointer, state.stays) {
+                next.along = along;
+            }
+        }
+        Event::Text(text) => next.typed.push_str(text),
+        Event::Backspace => {
+            next.typed.pop();
+        }
+        Event::Enter if state.is_typing() => match along(state, reading) {
+            Ok(typed) if (0.0..=whole + 1e-9).contains(&typed) => {
+                next.along = typed;
+                next.typed.clear();
+            }
+            Ok(_) => {
+                let unit = seen.pattern.unit;
+                let whole = number::show(whole, Want::Length, unit);
+                outcome.refusal = Some(format!("the seam is {whole} long: type no more than that"));
+            }
+            Err(words) => outcome.refusal = Some(words),
+        },
+        Event::Escape if state.is_typing() => next.typed.clear(),
+        Event::Escape => outcome.done = true,
+        Event::Tab => next.stays = state.stays.other(),
+        Event::Go(way) => {
+            next.typed.clear();
+            next.along = match way {
+                Going::Back => state.along.min(whole) - STEP,
+                Going::On => state.along + STEP,
+                Going::ToStart => 0.0,
+                Going::ToEnd => whole,
+            };
+        }
+        Event::Hover(_) | Event::Enter | Event::Leave | Event::Drop => {}
+    }
+    next.along = next.along.clamp(0.0, whole);
+    (next, outcome)
+}
+
+/// The seam of the edge under the pointer.
+fn seam_at(pointer: &Pointer, reading: &Reading<'_>) -> Option<SeamId> {
+    let edges = pointer.hits.iter().filter_map(|hit| match hit.item {
+        Item::Edge(panel, edge) => Some((panel, Some(edge))),
+        _ => None,
+    });
+    let mut edges = edges;
+    edges.find_map(|edge| {
+        let mut seams = reading.scene.seams.iter();
+        let found = seams.find(|seam| {
+            let mut own = seam.stretches.iter();
+            own.any(|stretch| (stretch.panel, stretch.edge) == edge)
+        });
+        found.map(|seam| seam.id)
+    })
+}
+
+pub(super) fn overlay(state: &WalkState, reading: &Reading<'_>) -> Vec<Overlay> {
+    let Some(seen) = Seen::new(reading) else {
+        return Vec::new();
+    };
+    let told = along(state, reading);
+    let contact = seen
+        .walk
+        .contact(told.clone().unwrap_or(state.along), state.stays);
+    let Some(maps) = seen.maps(&contact, state.stays) else {
+        return Vec::new();
+    };
+    let mut marks = Vec::new();
+    ghost(&seen, (&contact, state.stays), &maps, &mut marks);
+    let joints = seen.walk.joints(seen.ease);
+    for joint in joints.iter().flatten() {
+        mark_joint(&seen, joint, (&contact, state.stays), &maps, &mut marks);
+    }
+    mark_notches(&seen, (&contact, state.stays), &maps, &mut marks);
+    let [base, _] = state.stays.sides();
+    let at = maps[0].apply(contact.places[base]);
+    marks.push(Overlay::Touch(at));
+    let mut words = contact_words(&seen, &contact);
+    if state.is_typing() {
+        let fault = told.err().unwrap_or_default();
+        words = format!("distance {}|  {fault}", state.typed);
+    }
+    marks.push(Overlay::Label(at, words.trim().to_owned(), Tone::Plain));
+    marks
+}
+
+/// The pieces' places on the seam, and how much farther one has gone.
+fn contact_words(seen: &Seen<'_>, contact: &Contact) -> String {
+    let unit = seen.pattern.unit;
+    let length = |length: f64| number::show(length, Want::Length, unit);
+    let [first, second] = contact.along;
+    let name = |side: usize| seen.piece(contact, side).map_or("", |piece| &piece.name);
+    let apart = first - second;
+    let difference = match apart.abs() {
+        d if d < 5e-5 => "no difference".to_owned(),
+        d => {
+            let farther = if apart > 0.0 { name(0) } else { name(1) };
+            format!(
+                "{farther} {} more",
+                number::show(d, Want::Length, DisplayUnit::Millimetre)
+            )
+        }
+    };
+    format!(
+        "{} {}, {} {}: {difference}",
+        name(0),
+        length(first),
+        name(1),
+        length(second)
+    )
+}
+
+/// The piece that is laid against the one that stays.
+fn ghost(
+    seen: &Seen<'_>,
+    (contact, stays): (&Contact, Stays),
+    [stays_at, laid]: &[Affine; 2],
+    marks: &mut Vec<Overlay>,
+) {
+    let [base, moved] = stays.sides();
+    let Some(piece) = seen.piece(contact, moved) else {
+        return;
+    };
+    let ring = |curves: &mut dyn Iterator<Item = &Curve>| -> Vec<Vec2> {
+        let points = curves.flat_map(|curve| curve.flatten(FLATNESS));
+        points.map(|at| laid.apply(at)).collect()
+    };
+    let outline = ring(&mut piece.outline.iter().map(|edge| &edge.curve));
+    let holes = piece.holes.iter();
+    let holes = holes.map(|hole| ring(&mut hole.iter().map(|edge| &edge.curve)));
+    marks.push(Overlay::Ghost(
+        std::iter::once(outline).chain(holes).collect(),
+    ));
+    for notch in &piece.notches {
+        let line = [notch.point, notch.point + notch.inward * NOTCH];
+        let line = line.map(|at| laid.apply(at)).to_vec();
+        marks.push(Overlay::Stroke(line, Tone::Plain));
+    }
+    for (side, map) in [(moved, laid), (base, stays_at)] {
+        for (_, path) in seen
+            .walk
+            .lines(side)
+            .filter(|(k, _)| *k == contact.pieces[side])
+        {
+            let line = path.flatten(FLATNESS);
+            let line = line.into_iter().map(|at| map.apply(at)).collect();
+            marks.push(Overlay::Stroke(line, Tone::Plain));
+        }
+    }
+}
+
+/// The colour of a line by its smoothness.
+fn joint_tone(joint: &Joint) -> Tone {
+    match joint.smoothness() {
+        Smoothness::Smooth => Tone::Good,
+        Smoothness::Slight => Tone::Warning,
+        Smoothness::Kink => Tone::Fault,
+    }
+}
+
+/// How a line goes on across a seam, in words.
+fn joint_words(joint: &Joint, (line, seam): (&str, &str)) -> String {
+    let degrees = joint.kink.to_degrees();
+    let turn = format!("{:.1}\u{b0}", degrees.abs());
+    let way = if degrees > 0.0 { "peak" } else { "dip" };
+    let how = match joint.smoothness() {
+        Smoothness::Smooth => format!("smooth ({turn})"),
+        Smoothness::Slight => format!("slight kink {turn}, a {way}"),
+        Smoothness::Kink => format!("kink {turn}, a {way}"),
+    };
+    let step = match joint.step.abs() > STEP_TOLD {
+        true => format!(", step {:.1} mm", 1e3 * joint.step.abs()),
+        false => String::new(),
+    };
+    format!("{line} across {seam}: {how}{step}")
+}
+
+/// The lines that cross a seam at its ends, in words.
+pub fn crossing_lines(
+    (evaluation, draft): (&Evaluation, &Draft),
+    seam: SeamId,
+) -> Vec<(String, Tone)> {
+    let pattern = evaluation.pattern();
+    let mut seams = draft.seams.iter();
+    let seam = seams.find(|known| known.id == SeamOrigin::Seam(seam));
+    let walk = seam.and_then(|seam| Some((seam, Walk::new(draft, seam)?)));
+    let Some((seam, walk)) = walk else {
+        return Vec::new();
+    };
+    let joints = walk.joints(evaluation.ease(seam.id));
+    let told = joints.iter().flatten().map(|joint| {
+        let line = joint.line(pattern, draft);
+        (joint_words(joint, (&line, &seam.name)), joint_tone(joint))
+    });
+    told.collect()
+}
+
+/// Words at the end of the seam; and where the pieces touch there, the directions in which the edges
+/// leave it.
+fn mark_joint(
+    seen: &Seen<'_>,
+    joint: &Joint,
+    (contact, stays): (&Contact, Stays),
+    maps: &[Affine; 2],
+    marks: &mut Vec<Overlay>,
+) {
+    let [base, moved] = stays.sides();
+    let Some(piece) = seen.draft.pieces.get(joint.pieces[base]) else {
+        return;
+    };
+    let corner = seen.on_table(piece).apply(joint.corners[base]);
+    let tone = joint_tone(joint);
+    let line = joint.line(seen.pattern, seen.draft);
+    let words = joint_words(joint, (&line, &seen.seam.name));
+    let whole = seen.walk.lengths()[0];
+    let goal = if joint.end == 0 { 0.0 } else { whole };
+    if (contact.along[0] - goal).abs() <= AT_END {
+        for (side, map) in [(base, &maps[0]), (moved, &maps[1])] {
+            let from = joint.corners[side];
+            let line = [from, from + joint.leaving[side] * LEAVING];
+            let line = line.map(|at| map.apply(at)).to_vec();
+            marks.push(Overlay::Stroke(line, tone));
+        }
+    }
+    marks.push(Overlay::Label(corner, words, tone));
+}
+
+/// Where notches of the piece that stays lie; those that do not meet their partner are told.
+fn mark_notches(
+    seen: &Seen<'_>,
+    (contact, stays): (&Contact, Stays),
+    maps: &[Affine; 2],
+    marks: &mut Vec<Overlay>,
+) {
+    let sides = stays.sides();
+    for notch in seen.walk.notches() {
+        if notch.piece != contact.pieces[notch.side] {
+            continue;
+        }
+        let map = if notch.side == sides[0] {
+            maps[0]
+        } else {
+            maps[1]
+        };
+        let at = map.apply(notch.at);
+        let name = notch_name(seen, &notch);
+        let (tone, words) = match notch.partner {
+            Some(apart) if apart.abs() <= NOTCHES_MEET => (Tone::Good, String::new()),
+            // Of a pair that is apart it is told once.
+            Some(_) if notch.side == 1 => (Tone::Warning, String::new()),
+            Some(apart) => {
+                let apart = 1e3 * apart.abs();
+                (
+                    Tone::Warning,
+                    format!("{name}: {apart:.1} mm from its partner"),
+                )
+            }
+            None => (Tone::Fault, format!("{name}: no partner")),
+        };
+        marks.push(Overlay::Pip(at, tone));
+        if !words.is_empty() {
+            marks.push(Overlay::Label(at, words, tone));
+        }
+    }
+}
+
+fn notch_name(seen: &Seen<'_>, notch: &WalkedNotch) -> String {
+    let piece = seen.draft.pieces.get(notch.piece);
+    let panel = piece.and_then(|piece| seen.pattern.panel(piece.id.panel));
+    let found = panel.and_then(|panel| {
+        let mut lineage = seen.pattern.lineage(panel).into_iter();
+        lineage.find_map(|own| own.notch(notch.id))
+    });
+    match (found, piece) {
+        (Some(found), Some(piece)) => format!("notch {} of {}", found.name, piece.name),
+        _ => "notch".into(),
+    }
+}
+
+pub(super) fn hint(state: &WalkState, reading: &Reading<'_>) -> String {
+    let Some(id) = selected(reading) else {
+        return "Click a sewn edge to walk its seam; Esc ends".into();
+    };
+    let Some(seen) = Seen::new(reading) else {
+        let pattern = reading.evaluation.pattern();
+        let name = pattern.seam(id).map_or("", |seam| &seam.name);
+        return format!(
+            "Seam {name} cannot be walked: mend its sides first; Esc puts the tool down"
+        );
+    };
+    let contact = seen.walk.contact(state.along, state.stays);
+    let stays = seen.piece(&contact, state.stays.sides()[0]);
+    let stays = stays.map_or("", |piece| &piece.name);
+    format!(
+        "{stays} stays: point or drag along its seam, or type a distance; arrow keys 1 cm, Home and \
+         End; Tab: the other piece stays; Esc ends"
+    )
+}
