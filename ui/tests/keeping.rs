@@ -64,6 +64,8 @@ fn a_print_that_failed_is_asked_for_again_with_the_reason() {
         .get_by_role_and_label(Role::TextInput, "File");
     assert_eq!(file.value(), Some(nowhere.display().to_string()));
     // Another place, and it is made.
+    // The keys come to its field in the next frame, with all of its text selected.
+    drafter.window.run();
     let paper = folder.path().join("poncho.pdf");
     drafter.enter("File", &paper.display().to_string());
     for _ in 0..3000 {
