@@ -180,25 +180,6 @@ impl Drafter {
         assert_eq!(steps, count, "{}", self.status());
     }
 
-    /// Where a curve is seen farthest from all points, which would be chosen before it.
-    fn along(&self, curve: CurveId) -> Pos2 {
-        let evaluation = self.evaluation();
-        let path = evaluation.curve(curve).unwrap();
-        let pattern = self.pattern();
-        let points = pattern.sheets[0].points.iter();
-        let points: Vec<Vec2> = points.filter_map(|p| evaluation.point(p.id)).collect();
-        let away = |at: &Vec2| {
-            let all = points.iter().map(|point| (point - at).norm());
-            all.fold(f64::INFINITY, f64::min)
-        };
-        let places = (1..20).map(|k| path.length() * f64::from(k) / 20.0);
-        let at = places
-            .map(|along| path.point(path.at_length(along).unwrap()))
-            .max_by(|a, b| away(a).total_cmp(&away(b)))
-            .unwrap();
-        self.place(at.x, at.y)
-    }
-
     /// The curve of the edge between two corners.
     fn curve_between(&self, ends: [&str; 2]) -> CurveId {
         let pattern = self.pattern();

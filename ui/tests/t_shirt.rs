@@ -291,21 +291,7 @@ impl Drafter {
             let mut edges = panel.edges();
             let found = edges
                 .find(|found| found.ends == [id(k), id(next)] || found.ends == [id(next), id(k)]);
-            // Where it is furthest from points, which would be chosen before it.
-            let evaluation = self.evaluation();
-            let curve = evaluation.curve(found.unwrap().curve).unwrap();
-            let points = pattern.sheets[0].points.iter();
-            let points: Vec<Vec2> = points.filter_map(|p| evaluation.point(p.id)).collect();
-            let away = |at: &Vec2| {
-                let all = points.iter().map(|point| (point - at).norm());
-                all.fold(f64::INFINITY, f64::min)
-            };
-            let places = (1..20).map(|k| curve.length() * f64::from(k) / 20.0);
-            let at = places
-                .map(|along| curve.point(curve.at_length(along).unwrap()))
-                .max_by(|a, b| away(a).total_cmp(&away(b)))
-                .unwrap();
-            self.click(self.place(at.x, at.y));
+            self.click(self.along(found.unwrap().curve));
             self.enter("Name", edge);
             let pattern = self.pattern();
             let panel = pattern.panels.last().unwrap();

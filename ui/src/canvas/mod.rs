@@ -9,6 +9,7 @@ pub mod hit;
 mod inside;
 pub mod paint;
 mod paint_seams;
+mod paint_sheet_tag;
 mod paint_walk;
 mod panel_shape;
 mod rulers;

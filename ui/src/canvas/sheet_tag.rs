@@ -1,11 +1,8 @@
 //! The tag of a sheet: a small cross at its origin with its name, by which the sheet is selected and
 //! moved. It is shown where there are several sheets and it can matter which one is drawn on.
 
-use super::paint::Picture;
 use super::scene::{Scene, SheetScene};
-use super::selection::Item;
-use crate::theme;
-use egui::{CornerRadius, Pos2, Rect, Stroke, pos2, vec2};
+use egui::{Pos2, Rect, pos2, vec2};
 use toile_geometry::Vec2;
 use toile_pattern::SheetId;
 
@@ -17,7 +14,7 @@ const HEIGHT: f32 = 18.0;
 /// [pixels].
 const LETTER: f32 = 6.8;
 /// Half the length of the lines of the cross [pixels].
-const CROSS: f32 = 8.0;
+pub(super) const CROSS: f32 = 8.0;
 
 /// The sheets whose tags are shown: of several free sheets those that nothing is traced from, and
 /// those that are open.
@@ -31,7 +28,7 @@ pub fn tagged<'s>(
 }
 
 /// The ground of a sheet's name, seen from its origin [pixels, Y down].
-fn ground(sheet: &SheetScene) -> Rect {
+pub(super) fn ground(sheet: &SheetScene) -> Rect {
     let letters = sheet.name.chars().count() as f32;
     let size = vec2(letters.mul_add(LETTER, 10.0), HEIGHT);
     Rect::from_min_size(pos2(GAP, -GAP - HEIGHT), size)
@@ -45,41 +42,4 @@ pub fn distance(sheet: &SheetScene, origin: Vec2, at: Vec2, scale: f64) -> Optio
     let on_cross = way.norm() <= f64::from(CROSS);
     let away = f64::from(ground(sheet).distance_to_pos(seen)).min(way.norm());
     (on_cross || ground(sheet).contains(seen)).then_some(away / scale)
-}
-
-impl Picture<'_> {
-    /// Paints the tag of a sheet.
-    pub(super) fn sheet_tag(&self, sheet: &SheetScene) {
-        let origin = self.seen(self.boards.sheet(sheet.id), Vec2::zeros());
-        let lit = self.is_lit(Item::Sheet(sheet.id));
-        let (fill, ink) = match lit {
-            true => (self.palette.accent, self.palette.on_accent),
-            false => (self.palette.panel, self.palette.ink_soft),
-        };
-        let line = if lit {
-            self.palette.accent
-        } else {
-            self.palette.ink_soft
-        };
-        let stroke = Stroke::new(1.4, line);
-        for way in [vec2(CROSS, 0.0), vec2(0.0, CROSS)] {
-            self.painter
-                .line_segment([origin - way, origin + way], stroke);
-        }
-        let ground = ground(sheet).translate(origin.to_vec2());
-        self.painter.rect(
-            ground,
-            CornerRadius::same(4),
-            fill,
-            Stroke::new(1.0, line),
-            egui::StrokeKind::Middle,
-        );
-        let text = self
-            .painter
-            .layout_no_wrap(sheet.name.clone(), theme::font(12.0), ink);
-        let place = ground.center() - text.size() * 0.5;
-        self.painter
-            .with_clip_rect(ground.intersect(self.painter.clip_rect()))
-            .galley(place, text, ink);
-    }
 }

@@ -1,7 +1,7 @@
 //! Distances along edges and curves, from whichever end is nearer.
 
 use super::Reading;
-use super::planning::refuse;
+use super::refusal::refuse;
 use toile_geometry::Vec2;
 use toile_pattern::{EdgeId, EditError, Mark, Number, PanelId, Want, plan};
 

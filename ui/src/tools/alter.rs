@@ -1,7 +1,8 @@
 //! Tools that alter panels: darts pivoted, panels spread, pleated and split.
 
 use super::Reading;
-use super::planning::{Planning, panel_under, refuse};
+use super::planning::{Planning, panel_under};
+use super::refusal::refuse;
 use super::slots::{Answer, Fields, Plan, Slot, SlotKind, SlotTool};
 use crate::canvas::selection::Item;
 use toile_pattern::plan::{self, Joined, PivotWish, PleatWish, SplitWish, SpreadWish};

@@ -1,6 +1,7 @@
 //! Tools that draw points and curves on a sheet, and whole figures.
 
-use super::planning::{Planning, places, refuse};
+use super::planning::{Planning, places};
+use super::refusal::refuse;
 use super::slots::{Answer, Fields, Plan, Slot, SlotKind, SlotTool};
 use super::{Reading, along};
 use crate::canvas::selection::Item;

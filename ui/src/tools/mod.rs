@@ -8,6 +8,7 @@ pub mod number;
 pub mod panel;
 pub mod parts;
 mod planning;
+mod refusal;
 pub mod seam;
 mod select;
 mod slot_overlay;

@@ -1,6 +1,7 @@
 //! Tools that work on panels: darts, folds, notches, points on edges, lines inside.
 
-use super::planning::{Planning, panel_under, places, refuse};
+use super::planning::{Planning, panel_under, places};
+use super::refusal::refuse;
 use super::slots::{Answer, Fields, Slot, SlotKind, SlotTool};
 use super::{Pointer, Reading};
 use crate::canvas::selection::Item;

@@ -1,6 +1,7 @@
 //! Tools that move, turn, mirror and scale what is selected, and one that measures.
 
-use super::planning::{places, refuse};
+use super::planning::places;
+use super::refusal::refuse;
 use super::slots::{Answer, Fields, Plan, Slot, SlotKind, SlotTool};
 use super::{Pointer, Reading, number};
 use toile_geometry::Vec2;

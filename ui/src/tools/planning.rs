@@ -1,6 +1,7 @@
 //! Several planners one after another, each seeing what those before it did.
 
 use super::Reading;
+use super::refusal::refuse;
 use super::slots::{Answer, Plan};
 use crate::canvas::scene::PanelScene;
 use crate::canvas::selection::{Item, Selection};
@@ -127,14 +128,6 @@ fn one_sheet(one: SheetId, other: SheetId) -> Result<(), EditError> {
         "the places are on two sheets",
         "stay on the sheet that was begun on",
     ))
-}
-
-/// A refusal with what is wrong and what to do.
-pub fn refuse(message: &str, hint: &str) -> EditError {
-    EditError::Impossible {
-        message: message.into(),
-        hint: hint.into(),
-    }
 }
 
 /// The places that were given, in order.

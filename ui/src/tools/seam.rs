@@ -1,7 +1,8 @@
 //! Tools that sew: chain to chain, and notches that meet.
 
 use super::Reading;
-use super::planning::{Planning, refuse};
+use super::planning::Planning;
+use super::refusal::refuse;
 use super::slots::{Answer, ChainEdge, Fields, Plan, Slot, SlotKind, SlotTool};
 use crate::canvas::selection::Item;
 use toile_pattern::plan::{self, SewnEdge};

@@ -8,7 +8,7 @@ use egui::{Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use toile_geometry::Vec2;
-use toile_pattern::{Evaluation, Pattern};
+use toile_pattern::{CurveId, Evaluation, Pattern};
 use toile_ui::{Beginning, ToileApp};
 
 /// A window with its actions counted.
@@ -206,6 +206,25 @@ impl Drafter {
         let view_state = self.window.state().view();
         let origin = view_state.sheet_origin();
         view_state.screen(view, origin, Vec2::new(x, y))
+    }
+
+    /// Where a curve is seen farthest from all points, which would be chosen before it.
+    pub fn along(&self, curve: CurveId) -> Pos2 {
+        let evaluation = self.evaluation();
+        let path = evaluation.curve(curve).unwrap();
+        let pattern = self.pattern();
+        let points = pattern.sheets[0].points.iter();
+        let points: Vec<Vec2> = points.filter_map(|p| evaluation.point(p.id)).collect();
+        let away = |at: &Vec2| {
+            let all = points.iter().map(|point| (point - at).norm());
+            all.fold(f64::INFINITY, f64::min)
+        };
+        let places = (1..20).map(|k| path.length() * f64::from(k) / 20.0);
+        let at = places
+            .map(|along| path.point(path.at_length(along).unwrap()))
+            .max_by(|a, b| away(a).total_cmp(&away(b)))
+            .unwrap();
+        self.place(at.x, at.y)
     }
 
     pub fn point(&self, name: &str) -> Vec2 {
