@@ -120,12 +120,12 @@ const CURVES: &[DrawnCurve] = &[
         ["underarm", "tip"],
         [
             [
-                "cos(bust_dart + 180deg) * (front_bust - shoulder_half) * 0.7",
-                "sin(bust_dart + 180deg) * (front_bust - shoulder_half) * 0.7",
+                "cos(angle(draft.waist_side, draft.underarm_closed) + bust_dart + 90deg) * (front_bust - shoulder_half) * 0.7",
+                "sin(angle(draft.waist_side, draft.underarm_closed) + bust_dart + 90deg) * (front_bust - shoulder_half) * 0.7",
             ],
             [
-                "cos(270deg - shoulder_incl * 0.6) * (armhole_level - shoulder_fall) * 0.5",
-                "sin(270deg - shoulder_incl * 0.6) * (armhole_level - shoulder_fall) * 0.5",
+                "cos(270deg - shoulder_incl) * (armhole_level - shoulder_fall) * 0.5",
+                "sin(270deg - shoulder_incl) * (armhole_level - shoulder_fall) * 0.5",
             ],
         ],
     ),
@@ -133,7 +133,10 @@ const CURVES: &[DrawnCurve] = &[
         "neck",
         ["neck_side", "neck_centre"],
         [
-            ["-neck_half * 0.05", "-neck_front_drop * 0.58"],
+            [
+                "-neck_front_drop * 0.58 * tan(shoulder_incl)",
+                "-neck_front_drop * 0.58",
+            ],
             ["neck_half * 0.58", "0"],
         ],
     ),

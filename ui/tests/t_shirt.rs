@@ -41,12 +41,13 @@ const VARIABLES: &[&str] = &[
 
 const SLEEVE_VARIABLES: &[&str] = &[
     "cap_height = (length(front.armhole) + length(back.armhole)) * 0.225",
-    "cap_stretch = 0.967",
+    "cap_stretch = 0.972",
     "cap_front = length(front.armhole) * cap_stretch",
     "cap_back = length(back.armhole) * cap_stretch",
     "sleeve_front = sqrt(cap_front * cap_front - cap_height * cap_height)",
     "sleeve_back = sqrt(cap_back * cap_back - cap_height * cap_height)",
     "sleeve_under = arm_length * 0.38 - cap_height",
+    "sleeve_taper = 0.7cm",
 ];
 
 /// A piece: its name, how far to the right it is drawn, its corners with their places, the edge
@@ -77,8 +78,8 @@ const FRONT: Piece = Piece {
             Some([
                 ["(shoulder_half - chest_quarter - front_more) * 0.8", "0"],
                 [
-                    "cos(270deg - shoulder_incl * 0.35) * (underarm_level - shoulder_fall) * 0.5",
-                    "sin(270deg - shoulder_incl * 0.35) * (underarm_level - shoulder_fall) * 0.5",
+                    "cos(270deg - shoulder_incl * 0.9) * (underarm_level - shoulder_fall) * 0.5",
+                    "sin(270deg - shoulder_incl * 0.9) * (underarm_level - shoulder_fall) * 0.5",
                 ],
             ]),
         ),
@@ -86,7 +87,10 @@ const FRONT: Piece = Piece {
         (
             "neck",
             Some([
-                ["-neck_half * 0.08", "-neck_front_drop * 0.58"],
+                [
+                    "-neck_front_drop * 0.58 * tan(shoulder_incl * 0.9)",
+                    "-neck_front_drop * 0.58",
+                ],
                 ["neck_half * 0.58", "0"],
             ]),
         ),
@@ -111,7 +115,10 @@ const BACK: Piece = Piece {
             "neck",
             Some([
                 ["-neck_half * 0.6", "0"],
-                ["neck_half * 0.15", "-neck_back_drop * 0.7"],
+                [
+                    "neck_back_drop * 0.7 * tan(shoulder_incl * 0.9)",
+                    "-neck_back_drop * 0.7",
+                ],
             ]),
         ),
         ("shoulder", None),
@@ -119,8 +126,8 @@ const BACK: Piece = Piece {
             "armhole",
             Some([
                 [
-                    "cos(shoulder_incl * 0.15 - 90deg) * (underarm_level - shoulder_fall) * 0.5",
-                    "sin(shoulder_incl * 0.15 - 90deg) * (underarm_level - shoulder_fall) * 0.5",
+                    "cos(shoulder_incl * 0.9 - 90deg) * (underarm_level - shoulder_fall) * 0.5",
+                    "sin(shoulder_incl * 0.9 - 90deg) * (underarm_level - shoulder_fall) * 0.5",
                 ],
                 ["(chest_quarter - shoulder_half) * 0.7", "0"],
             ]),
@@ -134,21 +141,33 @@ const SLEEVE: Piece = Piece {
     name: "sleeve",
     aside: "160cm",
     corners: &[
-        ("hem_front", "-sleeve_front + 1.5", "-sleeve_under"),
-        ("hem_back", "sleeve_back - 1.5", "-sleeve_under"),
+        ("hem_front", "-sleeve_front + sleeve_taper", "-sleeve_under"),
+        ("hem_back", "sleeve_back - sleeve_taper", "-sleeve_under"),
         ("underarm_back", "sleeve_back", "0"),
         ("top", "0cm", "cap_height"),
         ("underarm_front", "-sleeve_front", "0"),
     ],
     edges: &[
-        ("hem", None),
+        (
+            "hem",
+            Some([
+                [
+                    "(sleeve_front + sleeve_back - 2 * sleeve_taper) * 0.25",
+                    "(sleeve_front + sleeve_back - 2 * sleeve_taper) * 0.25 * sleeve_taper / sleeve_under",
+                ],
+                [
+                    "-(sleeve_front + sleeve_back - 2 * sleeve_taper) * 0.25",
+                    "(sleeve_front + sleeve_back - 2 * sleeve_taper) * 0.25 * sleeve_taper / sleeve_under",
+                ],
+            ]),
+        ),
         ("under_back", None),
         (
             "cap_back",
             Some([
                 [
-                    "-sleeve_back * 0.35 - cap_height * 0.18",
-                    "cap_height * 0.35 - sleeve_back * 0.18",
+                    "-(sleeve_back * 0.35 + cap_height * 0.18)",
+                    "(sleeve_back * 0.35 + cap_height * 0.18) * sleeve_taper / sleeve_under",
                 ],
                 [
                     "sleeve_back * 0.35 + cap_height * 0.21",
@@ -164,8 +183,8 @@ const SLEEVE: Piece = Piece {
                     "-cap_height * 0.35 + sleeve_front * 0.21",
                 ],
                 [
-                    "sleeve_front * 0.35 + cap_height * 0.2",
-                    "cap_height * 0.35 - sleeve_front * 0.2",
+                    "(sleeve_front * 0.35 + cap_height * 0.2)",
+                    "(sleeve_front * 0.35 + cap_height * 0.2) * sleeve_taper / sleeve_under",
                 ],
             ]),
         ),

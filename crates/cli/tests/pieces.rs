@@ -166,3 +166,40 @@ fn prints_are_written_and_told() {
     );
     assert!(folder.path().join("p.pdf").exists());
 }
+
+#[test]
+fn edges_of_the_shipped_patterns_go_on_across_their_seams() {
+    // Necklines, armholes, waists and hems turn by less than an eye sees [deg]. A straight edge with a
+    // dart in it, and the two side seams that meet a waist seam, turn on purpose.
+    let most = 4.5;
+    let mut walked = 0;
+    for name in ["t-shirt", "dress", "trousers", "gathered-skirt", "poncho"] {
+        for size in ["XS", "XXL"] {
+            let pattern = patterns().join(format!("{name}.toile.json"));
+            let pattern = pattern.to_str().unwrap();
+            let folder = tempfile::tempdir().unwrap();
+            let output = toile(folder.path(), &["check", pattern, "--size", size, "--json"]);
+            let report = report(&output);
+            assert_eq!(
+                report["diagnostics"],
+                serde_json::json!([]),
+                "{name} {size}"
+            );
+            let seams = report["seams"].as_array().unwrap();
+            walked += seams.len();
+            for seam in seams {
+                let sewn = seam["name"].as_str().unwrap();
+                if sewn.contains(" dart of ") {
+                    continue;
+                }
+                for joint in seam["joints"].as_array().unwrap() {
+                    let kink = joint["kink_deg"].as_f64().unwrap();
+                    let step = joint["step_mm"].as_f64().unwrap();
+                    let told = format!("{name} {size}, seam {sewn}: {joint}");
+                    assert!(kink.abs() < most && step.abs() < 0.1, "{told}");
+                }
+            }
+        }
+    }
+    assert!(walked > 100, "{walked} seams");
+}

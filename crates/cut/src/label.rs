@@ -8,6 +8,8 @@ const CELLS: u32 = 24;
 const LETTER: f64 = 0.55;
 /// Share of a free length that words take.
 const FILLED: f64 = 0.85;
+/// Share of the distance to the outline that lines of words take, one under another.
+const BAND: f64 = 0.9;
 /// Least height of letters \[m\].
 pub(crate) const SMALLEST: f64 = 0.003;
 
@@ -18,7 +20,7 @@ pub struct Spot {
     pub at: Vec2,
     /// Distance to the outline \[m\].
     pub room: f64,
-    /// Free length through the place along x and y \[m\].
+    /// Free length along x and y of lines of words from the place on \[m\].
     pub runs: [f64; 2],
 }
 
@@ -56,20 +58,38 @@ pub fn roomiest_spot(polygon: &Polygon) -> Spot {
     Spot {
         at,
         room,
-        runs: [0, 1].map(|axis| free_run(polygon, at, axis)),
+        runs: [0, 1].map(|axis| free_run(polygon, at, room, axis)),
     }
 }
 
-/// Twice the way from a point to the nearer side of the outline along an axis.
-fn free_run(polygon: &Polygon, at: Vec2, axis: usize) -> f64 {
+/// Twice the way from a point to the nearer side of the outline along an axis, in all the height
+/// that lines of words take: below the point where they run along x, right of it where they run upwards.
+fn free_run(polygon: &Polygon, at: Vec2, room: f64, axis: usize) -> f64 {
     let other = 1 - axis;
-    let crossed = |[a, b]: [Vec2; 2]| {
-        let spans = (a[other] <= at[other]) != (b[other] <= at[other]);
-        let share = (at[other] - a[other]) / (b[other] - a[other]);
-        spans.then(|| (a[axis] + (b[axis] - a[axis]) * share - at[axis]).abs())
+    let height = BAND * room;
+    let [low, high] = match axis {
+        0 => [at[other] - height, at[other]],
+        _ => [at[other], at[other] + height],
     };
-    2.0 * polygon
-        .edges()
-        .filter_map(crossed)
-        .fold(f64::INFINITY, f64::min)
+    let nearest = |[a, b]: [Vec2; 2]| {
+        let [from, to] = [
+            a[other].min(b[other]).max(low),
+            a[other].max(b[other]).min(high),
+        ];
+        if from > to {
+            return f64::INFINITY;
+        }
+        let place =
+            |level: f64| a[axis] + (b[axis] - a[axis]) * (level - a[other]) / (b[other] - a[other]);
+        let ends = match b[other] == a[other] {
+            true => [a[axis], b[axis]],
+            false => [from, to].map(place),
+        };
+        let [first, second] = ends.map(|end| end - at[axis]);
+        match first * second <= 0.0 {
+            true => 0.0,
+            false => first.abs().min(second.abs()),
+        }
+    };
+    2.0 * polygon.edges().map(nearest).fold(f64::INFINITY, f64::min)
 }

@@ -61,3 +61,35 @@ fn items_of_markers_are_the_cut_lines() {
     }
     assert!(compared > 50, "{compared} pieces");
 }
+
+#[test]
+fn words_of_pieces_stand_clear_of_seam_lines_and_darts() {
+    // Width of a letter over its height, about.
+    let letter = 0.55;
+    for path in patterns() {
+        let (pattern, _) = read_pattern(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        for size in &pattern.sizes {
+            let (draft, _) = pattern.resolve(&size.measurements);
+            for number in 0..draft.pieces.len() {
+                let how = (None, &CutOptions::default());
+                let cut = CutPiece::new((&pattern, &draft), number, how).unwrap();
+                let name = &draft.pieces[number].name;
+                let lines = [name.as_str(), &size.name, "cut 1 pair", "cotton"];
+                let drawing = cut.drawing(|p| p, &lines);
+                let sewn = cut.sewn();
+                assert_eq!(drawing.words.len(), lines.len());
+                for words in &drawing.words {
+                    let along = Vec2::new(words.angle.cos(), words.angle.sin());
+                    let up = Vec2::new(-along.y, along.x) * words.size;
+                    let half = along * (0.5 * letter * words.size * words.text.len() as f64);
+                    let corners = [-half, half, half + up, up - half].map(|p| words.at + p);
+                    let inside = corners.iter().all(|&corner| sewn.contains(corner));
+                    let label = EdgeTree::of(&Polygon::new(corners.to_vec()));
+                    let clear = label.distance(&EdgeTree::of(&sewn)) > 0.0;
+                    let told = format!("{} {}: {words:?}", pattern.name, size.name);
+                    assert!(inside && clear, "{told}");
+                }
+            }
+        }
+    }
+}
