@@ -11,24 +11,37 @@ const PROPOSED: usize = 8;
 
 /// A field for a line of text as wide as there is room.
 pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
+    let had_focus = had_focus(ui, id);
+    // What is typed in the very frame in which the field got the keys takes the place of all, too.
+    let given_focus = !had_focus && ui.memory(|memory| memory.has_focus(id));
+    if given_focus {
+        choose_all(ui, id, text);
+    }
+    let before = (!had_focus).then(|| text.clone());
     let field = TextEdit::singleline(text)
         .id(id)
         .desired_width(f32::INFINITY);
-    let output = field.show(ui);
-    let response = output.response.response;
-    let had_focus = had_focus(ui, id);
+    let response = field.show(ui).response.response;
     if response.has_focus() {
         note_focus(ui, id);
     }
     if response.has_focus() && !had_focus {
         // One that is gone to by a key may be out of sight.
         response.scroll_to_me(None);
-        let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
-        let mut state = output.state;
-        state.cursor.set_char_range(Some(all));
-        state.store(ui.ctx(), id);
+        // A click has put the cursor where it was.
+        if before.is_some_and(|before| before == *text) {
+            choose_all(ui, id, text);
+        }
     }
     response
+}
+
+/// Selects all that stands in a field.
+fn choose_all(ui: &Ui, id: egui::Id, text: &str) {
+    let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
+    let mut state = egui::text_edit::TextEditState::load(ui.ctx(), id).unwrap_or_default();
+    state.cursor.set_char_range(Some(all));
+    state.store(ui.ctx(), id);
 }
 
 /// Whether a field had the focus in the frame before: one of a dialog that was closed since has not.

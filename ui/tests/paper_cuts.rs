@@ -4,7 +4,7 @@
 mod drafter;
 
 use drafter::Drafter;
-use egui::Key;
+use egui::{Key, Modifiers};
 use toile_geometry::Vec2;
 
 fn drawing() -> Drafter {
@@ -125,4 +125,70 @@ fn a_point_is_named_as_it_is_drawn() {
     drafter.key(Key::Escape);
     assert_eq!(drafter.pattern().sheets[0].points.len(), 1);
     assert_eq!(drafter.window.state().session().past().len(), steps);
+}
+
+impl Drafter {
+    /// Characters that all come within one frame, as they do while a slow frame is drawn.
+    fn type_within_a_frame(&mut self, text: &str) {
+        let typed = text.chars().map(|c| egui::Event::Text(c.to_string()));
+        self.window.input_mut().events.extend(typed);
+        self.window.run();
+    }
+}
+
+#[test]
+fn nothing_is_lost_of_what_is_typed_within_one_frame() {
+    let mut drafter = drawing();
+    drafter.key(Key::P);
+    for (text, key) in [
+        ("=max(12cm, 3cm)", Key::Tab),
+        ("=7cm", Key::Tab),
+        ("hip", Key::Enter),
+    ] {
+        drafter.type_within_a_frame(text);
+        drafter.key(key);
+    }
+    let hip = drafter.point("hip");
+    assert!((hip - Vec2::new(0.12, 0.07)).norm() < 1e-12, "{hip}");
+    // A dialog's name is typed as it opens: nothing of it is left, nothing is lost.
+    let mut drafter = Drafter::new();
+    drafter.window.input_mut().events.push(egui::Event::Key {
+        key: Key::N,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: Modifiers::COMMAND,
+    });
+    drafter.window.step();
+    drafter.type_within_a_frame("Cape");
+    drafter.key(Key::Enter);
+    assert_eq!(drafter.pattern().name, "Cape");
+    // Neither is what goes on after the focus has moved: a row of numbers, sizes, the next name.
+    drafter.key(Key::F8);
+    drafter.press("Add size");
+    drafter.press("Add size");
+    drafter.enter("New measurement", "waist");
+    let key = |key| egui::Event::Key {
+        key,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    let text = |text: &str| egui::Event::Text(text.to_owned());
+    let row = [
+        text("84"),
+        key(Key::Tab),
+        text("9"),
+        text("2"),
+        key(Key::Enter),
+    ];
+    drafter.window.input_mut().events.extend(row);
+    drafter.window.run();
+    let sizes = drafter.pattern().sizes;
+    let waists: Vec<_> = sizes
+        .iter()
+        .map(|size| size.measurements.get("waist"))
+        .collect();
+    assert_eq!(waists, [Some(0.84), Some(0.92)]);
 }

@@ -38,7 +38,7 @@ fn edits_text(key: Key) -> bool {
 }
 
 /// Whether a key types nothing.
-fn is_function(key: Key) -> bool {
+pub(super) fn is_function(key: Key) -> bool {
     use Key::{F1, F2, F3, F4, F5, F6, F7, F8, F9, F10, F11, F12};
     matches!(
         key,

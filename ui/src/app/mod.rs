@@ -16,6 +16,7 @@ mod job;
 mod making;
 mod marker_side;
 mod notice;
+mod pacing;
 mod palette;
 mod preferences;
 mod print_choice;
@@ -111,6 +112,7 @@ impl ToileApp {
     /// Without a graphics card the 3D view says so, and all else works.
     pub fn new(context: &egui::Context, state: Option<&RenderState>, beginning: Beginning) -> Self {
         theme::apply(context);
+        context.add_plugin(pacing::Pacing::default());
         let preferences = Preferences::read(beginning.folder.as_deref());
         preferences.apply(context);
         let mut app = Self {

@@ -136,7 +136,8 @@ impl PatternView {
             vertical_arrows: true,
         };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(Self::id(), filter));
-        let typing = self.is_typing();
+        // Several characters may come in one frame: after the first the others are typed too.
+        let mut typing = self.is_typing();
         let mut events = Vec::new();
         let mut chosen = false;
         ui.input_mut(|input| {
@@ -145,7 +146,9 @@ impl PatternView {
                     egui::Event::Text(text) => {
                         let begins = text.starts_with(begins_typing);
                         let is_choice = text == "=" && self.pressed.is_some();
-                        let takes = self.tool.takes_keys() && (typing || begins) || is_choice;
+                        let is_typed = self.tool.takes_keys() && (typing || begins);
+                        let takes = is_typed || is_choice;
+                        typing |= is_typed;
                         chosen |= is_choice;
                         takes.then(|| Event::Text(text.clone()))
                     }
