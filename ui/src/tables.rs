@@ -5,7 +5,8 @@ use crate::app::shows::Tab;
 use crate::fields::Entered;
 use crate::theme::Palette;
 use crate::tools::number;
-use egui::{Color32, Grid, Id, RichText, ScrollArea, Ui};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Color32, Grid, Id, PopupCloseBehavior, RichText, ScrollArea, Ui};
 use toile_measure::{CATALOGUE, Definition, Measurements, UnitKind, definition};
 use toile_pattern::{Number, Pattern, SizeId, Want, plan};
 use toile_session::Command;
@@ -159,26 +160,34 @@ impl ToileApp {
             true => RichText::new(format!("{name} (base)")).strong(),
             false => RichText::new(name).strong(),
         };
-        let menu = ui.menu_button(words, |ui| {
+        // A click into its field must not close it.
+        let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        let (head, _) = MenuButton::new(words).config(stays).ui(ui, |ui| {
             let field = Id::unique(("size name", id));
-            let label = ui.label("Name").id;
+            let label = ui.label("Size name").id;
             let entered = self
                 .typed
                 .field(ui, (field, label), name, |_| Ok(String::new()));
+            if ui.memory(|memory| memory.focused().is_none()) {
+                ui.memory_mut(|memory| memory.request_focus(field));
+            }
             if let Entered::Text(text) = entered {
                 let planned = plan::rename(&self.base, id.into(), &text);
                 self.enter(planned, "Rename size", (field, text));
+                ui.close();
             }
             if ui.button("Make it the base size").clicked() {
                 let planned = plan::set_base_size(&self.base, Some(id));
                 self.edit(planned, "Choose base size");
+                ui.close();
             }
             if ui.button("Remove this size").clicked() {
                 let planned = plan::remove_size(&self.base, id);
                 self.edit(planned, "Remove size");
+                ui.close();
             }
         });
-        menu.response.on_hover_text("Rename or remove the size");
+        head.on_hover_text("Rename or remove the size");
     }
 
     fn measurement(
@@ -281,7 +290,6 @@ impl ToileApp {
 
     /// A row a variable: name, number, value.
     fn variable_table(&mut self, ui: &mut Ui) {
-        let pattern = self.base.pattern().clone();
         ui.horizontal(|ui| {
             let label = ui.label("New variable").id;
             let field = egui::TextEdit::singleline(&mut self.tables.new_variable)
@@ -296,6 +304,7 @@ impl ToileApp {
                 response.request_focus();
             }
         });
+        let pattern = self.base.pattern().clone();
         scrolled(ui, |ui| self.variable_rows(ui, &pattern));
     }
 
@@ -308,6 +317,7 @@ impl ToileApp {
                 let heads = ["", "Variable name", "Number or formula", "Value", ""];
                 let heads = heads.map(|head| ui.label(RichText::new(head).strong()).id);
                 ui.end_row();
+                let last = pattern.variables.last().map(|variable| variable.id);
                 for variable in &pattern.variables {
                     // For those who hear the window: the field beside shows the name.
                     let unseen = RichText::new(&variable.name).size(1.0);
@@ -336,7 +346,11 @@ impl ToileApp {
                         Some((value, _)) => number::show(value, Want::Plain, pattern.unit),
                         None => "no value".into(),
                     };
-                    ui.label(RichText::new(words).color(palette.ink_soft));
+                    let value = ui.label(RichText::new(words).color(palette.ink_soft));
+                    // What was just added is seen.
+                    if Some(variable.id) == last && std::mem::take(&mut self.tables.added) {
+                        value.scroll_to_me(None);
+                    }
                     if ui.button("Remove").clicked() {
                         let planned = plan::remove_parts(&self.base, &[variable.id.into()]);
                         self.edit(planned, "Remove variable");
@@ -360,6 +374,7 @@ impl ToileApp {
             Ok((edits, _)) => {
                 if self.edit(Ok(edits), "Add variable") {
                     self.tables.new_variable.clear();
+                    self.tables.added = true;
                 }
             }
             Err(words) => self.say_fault(words),

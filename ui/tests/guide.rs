@@ -1,0 +1,628 @@
+//! The way of `docs/GUIDE.md`, gone in an empty window by mouse and keys: what is typed is read from
+//! the guide. The dress is without fault in every size, its lines run on smoothly across all seams, and
+//! it drapes. Where `TOILE_SCREENS` names a folder and there is a graphics adapter, the pictures of
+//! the guide are written there:
+//!
+//!     TOILE_SCREENS=docs/screens cargo test --workspace --test guide
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+mod drafter;
+mod guide_text;
+mod screens;
+
+use drafter::Drafter;
+use egui::{Key, Modifiers, Pos2, Rect, Role, pos2, vec2};
+use egui_kittest::kittest::{NodeT, Queryable};
+use guide_text::{Section, section};
+use screens::{Part, Screens};
+use std::collections::BTreeSet;
+use toile_geometry::Vec2;
+use toile_pattern::walk::{Smoothness, Walk};
+use toile_pattern::{Evaluation, Panel};
+use toile_session::{Command, Project};
+use toile_ui::Beginning;
+
+/// Somebody who goes by the guide.
+struct Reader {
+    drafter: Drafter,
+    screens: Option<Screens>,
+    /// Pictures that were made.
+    shown: BTreeSet<&'static str>,
+    /// Names that were seen in the window.
+    seen: BTreeSet<String>,
+}
+
+impl Reader {
+    fn new() -> Self {
+        let (screens, renderer) = Screens::asked().unzip();
+        let drafter = Drafter::of_size(vec2(1200.0, 800.0), Beginning::default(), renderer);
+        Self {
+            drafter,
+            screens,
+            shown: BTreeSet::new(),
+            seen: BTreeSet::new(),
+        }
+    }
+
+    /// Makes a picture of a part of the window; notes what is named in it.
+    fn picture(&mut self, name: &'static str, part: Option<Rect>) {
+        self.shown.insert(name);
+        self.look();
+        if let Some(screens) = &self.screens {
+            screens.write(name, &[Part::of(&mut self.drafter.window, part)]);
+        }
+    }
+
+    /// Notes the names that stand in the window now.
+    fn look(&mut self) {
+        let nodes = self.drafter.window.query_all_by(|_| true);
+        for node in nodes {
+            let node = node.accesskit_node();
+            self.seen
+                .extend([node.label(), node.value()].into_iter().flatten());
+        }
+    }
+
+    fn view(&self) -> Rect {
+        self.drafter.window.get_by_label("Pattern view").rect()
+    }
+
+    /// Escape until no tool is in hand and nothing is selected.
+    fn put_down(&mut self) {
+        for _ in 0..4 {
+            self.drafter.key(Key::Escape);
+        }
+    }
+
+    fn point(&mut self, sheet: &str, name: &str) {
+        let at = self.drafter.part(&format!("Point {name} of {sheet}"));
+        self.drafter.click(at);
+    }
+
+    fn edge(&mut self, panel: &str, name: &str) {
+        let at = self.on_edge(panel, name, None);
+        self.drafter.click(at);
+    }
+
+    /// Where an edge of a panel is seen: farthest from all points, which would be chosen before it, on
+    /// the half at a corner if one is given.
+    fn on_edge(&self, panel: &str, edge: &str, corner: Option<&str>) -> Pos2 {
+        let pattern = self.drafter.pattern();
+        let evaluation = self.drafter.evaluation();
+        let panel: &Panel = pattern.panel_named(panel).unwrap();
+        let sheet = pattern.sheet(panel.sheet().unwrap()).unwrap();
+        let points = sheet.points.iter();
+        let points: Vec<Vec2> = points.filter_map(|p| evaluation.point(p.id)).collect();
+        let corner = corner.map(|name| {
+            evaluation
+                .point(sheet.point_named(name).unwrap().id)
+                .unwrap()
+        });
+        let edge = panel.edges().find(|found| found.name == edge).unwrap();
+        let path = evaluation.curve(edge.curve).unwrap();
+        let place = |k: i32| path.at_length(path.length() * f64::from(k) / 40.0).unwrap();
+        let mut places: Vec<Vec2> = (1..40).map(|k| path.point(place(k))).collect();
+        if let Some(corner) = corner {
+            places.sort_by(|a, b| (a - corner).norm().total_cmp(&(b - corner).norm()));
+            places.truncate(15);
+        }
+        let away = |at: &Vec2| {
+            let all = points.iter().map(|point| (point - at).norm());
+            all.fold(f64::INFINITY, f64::min)
+        };
+        let at = places
+            .into_iter()
+            .max_by(|a, b| away(a).total_cmp(&away(b)))
+            .unwrap();
+        let view = self.drafter.window.state().view();
+        view.screen(self.view(), view.boards.panel(panel.id), at)
+    }
+
+    /// Points by coordinates.
+    fn draw_points(&mut self, part: Section, number: usize) {
+        self.drafter.key(Key::P);
+        for row in part.table("point | x | y", number) {
+            let [name, x, y] = row[..] else {
+                panic!("{row:?}");
+            };
+            self.drafter.typed_and(&begun(x), Key::Tab);
+            self.drafter.typed_and(&begun(y), Key::Tab);
+            self.drafter.typed(name);
+            self.has_point(name);
+        }
+        self.drafter.key(Key::F);
+    }
+
+    /// Points from others.
+    fn draw_points_from(&mut self, part: Section, sheet: &str) {
+        self.drafter.key(Key::U);
+        for row in part.table("point | from | length | angle", 0) {
+            let [name, from, length, angle] = row[..] else {
+                panic!("{row:?}");
+            };
+            self.point(sheet, from);
+            self.drafter.typed_and(&begun(length), Key::Tab);
+            self.drafter.typed_and(&begun(angle), Key::Tab);
+            self.drafter.type_text(name);
+            if name == "dart_high" {
+                self.picture("point", None);
+            }
+            self.drafter.key(Key::Enter);
+            self.has_point(name);
+        }
+    }
+
+    fn has_point(&self, name: &str) {
+        let pattern = self.drafter.pattern();
+        let sheet = pattern.sheets.last().unwrap();
+        let found = sheet.point_named(name).is_some();
+        assert!(found, "{name}: {}", self.drafter.status());
+    }
+
+    fn draw_lines(&mut self, part: Section, sheet: &str) {
+        self.drafter.key(Key::L);
+        let mut last = "";
+        for row in part.table("line | from | to", 0) {
+            let [name, from, to] = row[..] else {
+                panic!("{row:?}");
+            };
+            if from != last {
+                self.drafter.key(Key::Escape);
+                self.drafter.key(Key::L);
+                self.point(sheet, from);
+            }
+            self.point(sheet, to);
+            self.name_curve(name);
+            last = to;
+        }
+    }
+
+    fn draw_curves(&mut self, part: Section, sheet: &str) {
+        self.drafter.key(Key::C);
+        let head = "curve | from | to | x at from | y at from | x at to | y at to";
+        for row in part.table(head, 0) {
+            let [name, from, to, x, y, last_x, last_y] = row[..] else {
+                panic!("{row:?}");
+            };
+            self.point(sheet, from);
+            self.point(sheet, to);
+            self.drafter.key(Key::Enter);
+            self.name_curve(name);
+            self.drafter.enter_on(&format!("x of handle at {from}"), x);
+            self.drafter.typed_and(y, Key::Tab);
+            self.drafter.typed_and(last_x, Key::Tab);
+            self.drafter.typed(last_y);
+            if (sheet, name) == ("draft", "armhole") {
+                self.picture("curve", None);
+            }
+        }
+    }
+
+    /// Names what was just drawn, which is selected.
+    fn name_curve(&mut self, name: &str) {
+        self.drafter.enter("Name", name);
+        let pattern = self.drafter.pattern();
+        let found = pattern.sheets.last().unwrap().curve_named(name);
+        assert!(found.is_some(), "{name}: {}", self.drafter.status());
+    }
+
+    /// Makes a panel of the lines round a place of the sheet that is drawn on.
+    fn trace(&mut self, part: Section, [x, y]: [f64; 2], name: &str) {
+        self.drafter.key(Key::T);
+        self.drafter.click(self.drafter.place(x, y));
+        self.drafter.enter("Name", part.says(name));
+        self.drafter.enter("seam allowance", part.says("1.5"));
+        let pattern = self.drafter.pattern();
+        let panel = pattern.panels.last().unwrap();
+        assert_eq!(panel.name, name, "{}", self.drafter.status());
+    }
+
+    /// Allowances of neck, armhole and hem of a panel.
+    fn allow(&mut self, part: Section, panel: &str) {
+        self.drafter.key(Key::V);
+        self.edge(panel, "armhole");
+        let neck = self.on_edge(panel, "neck", None);
+        self.drafter.shift_click(neck);
+        self.drafter.enter("seam allowance of all", part.says("1"));
+        self.edge(panel, "hem");
+        self.drafter.enter("seam allowance", part.says("4"));
+        self.choose("Corner of allowance", "mirrored, as a hem");
+    }
+
+    /// Chooses from a list; of a dialog's and the window's that of the dialog.
+    fn choose(&mut self, list: &str, choice: &str) {
+        let window = &self.drafter.window;
+        let found = window.query_all_by_role_and_label(Role::ComboBox, list);
+        let at = found.last().unwrap().rect().center();
+        self.drafter.click(at);
+        self.look();
+        let at = self.drafter.window.get_by_label(choice).rect().center();
+        self.drafter.click(at);
+    }
+}
+
+/// What is typed for a number: a formula begins with an equals sign.
+fn begun(text: &str) -> String {
+    match text.parse::<f64>() {
+        Ok(_) => text.to_owned(),
+        Err(_) => format!("={text}"),
+    }
+}
+
+#[test]
+fn the_guide_leads_from_an_empty_window_to_a_draped_dress() {
+    let mut reader = Reader::new();
+    begin(&mut reader);
+    measure(&mut reader);
+    draft_front(&mut reader);
+    draft_back(&mut reader);
+    sew(&mut reader);
+    is_clean_in_every_size(&mut reader);
+    let folder = tempfile::tempdir().unwrap();
+    lay(&mut reader);
+    save(&mut reader, folder.path());
+    print(&mut reader, folder.path());
+    wear(&mut reader);
+    says_what_is_there(&reader);
+    println!("{} actions", reader.drafter.actions);
+}
+
+fn begin(reader: &mut Reader) {
+    let part = section("What you see");
+    reader.picture("welcome", None);
+    reader.drafter.press("New pattern");
+    reader.look();
+    reader.drafter.enter("Name", part.says("Shift dress"));
+    reader.look();
+    reader.drafter.key(Key::F7);
+}
+
+fn measure(reader: &mut Reader) {
+    let part = section("Measurements");
+    let drafter = &mut reader.drafter;
+    drafter.key(Key::F8);
+    let sizes = ["S", "M", "L"];
+    for _ in sizes {
+        drafter.press("Add size");
+    }
+    for (k, name) in sizes.into_iter().enumerate() {
+        let was = &drafter.pattern().sizes[k].name;
+        let head = match k {
+            0 => format!("{was} (base)"),
+            _ => was.clone(),
+        };
+        drafter.press(&head);
+        drafter.typed(part.says(name));
+        assert_eq!(
+            drafter.pattern().sizes[k].name,
+            name,
+            "{}",
+            drafter.status()
+        );
+    }
+    for row in part.table("measurement | name in formulas | S | M | L", 0) {
+        let [label, name, s, m, l] = row[..] else {
+            panic!("{row:?}");
+        };
+        drafter.enter("New measurement", label);
+        drafter.typed_and(s, Key::Tab);
+        drafter.typed_and(m, Key::Tab);
+        drafter.typed(l);
+        let pattern = drafter.pattern();
+        for (size, typed) in pattern.sizes.iter().zip([s, m, l]) {
+            let typed: f64 = typed.parse().unwrap();
+            let now = size.measurements.get(name).unwrap();
+            let shown = if name == "shoulder_incl" {
+                now.to_degrees()
+            } else {
+                now * 100.0
+            };
+            assert!(
+                (shown - typed).abs() < 1e-9,
+                "{label}: {shown}, {}",
+                drafter.status()
+            );
+        }
+    }
+    reader.picture("measurements", None);
+    let drafter = &mut reader.drafter;
+    drafter.press("Variables");
+    for (k, line) in section("Variables").block().into_iter().enumerate() {
+        match k {
+            0 => drafter.enter("New variable", line),
+            _ => drafter.typed(line),
+        }
+        let name = line.split(" =").next().unwrap();
+        let pattern = drafter.pattern();
+        let found = pattern.variables.iter().find(|found| found.name == name);
+        assert!(found.is_some(), "{line}: {}", drafter.status());
+    }
+    reader.picture("variables", None);
+    reader.drafter.key(Key::Escape);
+    reader.drafter.key(Key::F8);
+}
+
+fn draft_front(reader: &mut Reader) {
+    let part = section("The front: points");
+    let middle = reader.view().center();
+    reader.drafter.hover(middle);
+    reader.draw_points(part, 0);
+    reader.draw_points_from(part, "draft");
+    reader.draw_points(part, 1);
+    let part = section("The front: lines and curves");
+    reader.draw_lines(part, "draft");
+    reader.draw_curves(part, "draft");
+
+    let part = section("The front: panel, allowance, dart, fold");
+    reader.trace(part, [0.1, -0.6], "front");
+    reader.allow(part, "front");
+    reader.edge("front", "centre");
+    reader.drafter.enter("seam allowance", part.says("0"));
+    reader.drafter.key(Key::D);
+    reader.edge("front", "mouth");
+    for number in [
+        "=distance(draft.dart_low, draft.dart_high)",
+        "=distance(draft.bust_point, draft.dart_low) * cos(bust_dart / 2) - 2.5cm",
+    ] {
+        reader.drafter.typed(part.says(number));
+    }
+    reader.drafter.chord(Modifiers::SHIFT, Key::F);
+    reader.edge("front", "centre");
+    reader.drafter.key(Key::N);
+    let at = reader.on_edge("front", "armhole", Some("underarm"));
+    reader.drafter.hover(at);
+    reader
+        .drafter
+        .typed(part.says("=length(front.armhole) * 0.4"));
+    reader.drafter.key(Key::G);
+    let at = reader.drafter.place(0.08, -0.7);
+    reader.drafter.click(at);
+    reader.drafter.click(at);
+    reader.drafter.typed_and(part.says("20"), Key::Tab);
+    reader.drafter.typed(part.says("90"));
+    let pattern = reader.drafter.pattern();
+    let front = pattern.panel_named("front").unwrap();
+    assert_eq!(
+        (front.operations.len(), front.notches.len()),
+        (2, 1),
+        "{}",
+        reader.drafter.status()
+    );
+    reader.put_down();
+    reader.drafter.key(Key::F);
+    reader.drafter.click(reader.drafter.part("Dart of front"));
+    reader.picture("dart", None);
+}
+
+fn draft_back(reader: &mut Reader) {
+    let part = section("The back");
+    reader.put_down();
+    reader
+        .drafter
+        .chord(Modifiers::COMMAND | Modifiers::SHIFT, Key::N);
+    reader.drafter.enter("Name", part.says("back"));
+    let view = reader.view();
+    reader
+        .drafter
+        .hover(pos2(view.right() - 20.0, view.center().y));
+    reader.draw_points(part, 0);
+    reader.draw_points_from(part, "back");
+    reader.draw_points(part, 1);
+    reader.draw_lines(part, "back");
+    reader.draw_curves(part, "back");
+    reader.trace(part, [-0.1, -0.6], "back");
+    reader.drafter.enter_choice("in mirrored pairs");
+    reader.allow(part, "back");
+    reader.drafter.key(Key::N);
+    let at = reader.on_edge("back", "centre", Some("neck_centre"));
+    reader.drafter.hover(at);
+    reader.drafter.typed(part.says("55"));
+    reader.put_down();
+    reader.drafter.key(Key::F);
+}
+
+fn sew(reader: &mut Reader) {
+    reader.drafter.key(Key::S);
+    reader.edge("front", "shoulder");
+    reader.edge("back", "shoulder");
+    let low = reader.on_edge("front", "side_low", None);
+    reader.drafter.shift_click(low);
+    reader.edge("front", "side_high");
+    reader.edge("back", "side");
+    reader.edge("back", "centre");
+    // Not a double click.
+    reader.drafter.window.run_steps(40);
+    reader.edge("back", "centre");
+    let seams = reader.drafter.pattern().seams.len();
+    assert_eq!(seams, 5, "{}", reader.drafter.status());
+    reader.put_down();
+    reader.edge("back", "side");
+    reader.drafter.chord(Modifiers::SHIFT, Key::X);
+    reader.picture("seams", None);
+    reader.put_down();
+    reader.drafter.chord(Modifiers::SHIFT, Key::N);
+    let at = reader.on_edge("back", "side", Some("hem_side"));
+    reader.drafter.click(at);
+    reader.put_down();
+    for edge in ["side", "shoulder"] {
+        let panel = if edge == "side" { "back" } else { "front" };
+        reader.edge(panel, edge);
+        reader.drafter.key(Key::Minus);
+        reader.drafter.key(Key::Minus);
+        reader.drafter.key(Key::W);
+        reader.drafter.key(Key::End);
+        if edge == "shoulder" {
+            reader.picture("walk", None);
+        }
+        reader.put_down();
+        reader.drafter.key(Key::F);
+    }
+}
+
+fn is_clean_in_every_size(reader: &mut Reader) {
+    let pattern = reader.drafter.pattern();
+    let mut crossing = 0;
+    for size in &pattern.sizes {
+        let chosen = Command::SetSize {
+            size: Some(size.name.clone()),
+        };
+        reader.drafter.window.state_mut().execute(chosen);
+        reader.drafter.window.run();
+        let findings = reader.drafter.window.state().findings();
+        assert!(findings.is_empty(), "{}: {findings:?}", size.name);
+        let project = Project {
+            pattern: pattern.clone().into(),
+            size: Some(size.name.clone()),
+            ..Project::default()
+        };
+        let evaluation = Evaluation::new(&pattern, project.drafted_to());
+        let (draft, found) = pattern.resolve(project.drafted_to());
+        assert!(found.is_empty(), "{}: {found:?}", size.name);
+        for seam in &draft.seams {
+            let walk = Walk::new(&draft, seam).unwrap();
+            for joint in walk.joints(evaluation.ease(seam.id)).into_iter().flatten() {
+                let line = joint.line(&pattern, &draft);
+                let told = (joint.smoothness(), joint.step.abs() < 1e-6);
+                let kink = joint.kink.to_degrees();
+                assert_eq!(
+                    told,
+                    (Smoothness::Smooth, true),
+                    "{}: {line}, {kink}",
+                    size.name
+                );
+                crossing += 1;
+            }
+        }
+    }
+    // Neck and armhole across both shoulders, armhole and hem across both sides, neck and hem across
+    // the centre back, the side across both darts.
+    assert_eq!(crossing, 3 * 12);
+    let base = Command::SetSize {
+        size: Some("S".into()),
+    };
+    reader.drafter.window.state_mut().execute(base);
+    reader.drafter.window.run();
+}
+
+fn save(reader: &mut Reader, folder: &std::path::Path) {
+    let file = folder.join("shift-dress.toile.json");
+    reader.drafter.chord(Modifiers::COMMAND, Key::S);
+    reader.look();
+    reader.drafter.enter("File", &file.display().to_string());
+    assert!(file.exists(), "{}", reader.drafter.status());
+    if let Some(kept) = std::env::var_os("TOILE_KEPT") {
+        std::fs::copy(&file, kept).unwrap();
+    }
+}
+
+/// All sizes, then the marker.
+fn lay(reader: &mut Reader) {
+    reader.drafter.chord(Modifiers::SHIFT, Key::G);
+    reader.picture("sizes", None);
+    reader.drafter.chord(Modifiers::SHIFT, Key::G);
+
+    let part = section("The marker");
+    reader.drafter.key(Key::F10);
+    for (size, count) in [("S", "1"), ("M", "1"), ("L", "0")] {
+        let role = Role::SpinButton;
+        let field = reader.drafter.window.get_by_role_and_label(role, size);
+        let at = field.rect().center();
+        reader.drafter.click(at);
+        reader.drafter.typed(part.says(count));
+    }
+    reader.choose("for", "2 s");
+    reader.drafter.press("Search marker");
+    let laid = |drafter: &Drafter| !drafter.pattern().markers[0].placements.is_empty();
+    reader.drafter.wait(laid);
+    reader.drafter.window.run();
+    let pattern = reader.drafter.pattern();
+    let ordered: u32 = pattern.markers[0]
+        .order
+        .iter()
+        .map(|row| row.quantity)
+        .sum();
+    assert_eq!((ordered, pattern.markers[0].placements.len()), (2, 6));
+    let state = &reader.drafter.window.state().marker_view().state;
+    assert!(
+        state.overlaps.is_empty() && state.outside.is_empty(),
+        "{state:?}"
+    );
+    reader.picture("marker", None);
+    reader.drafter.key(Key::F10);
+}
+
+fn print(reader: &mut Reader, folder: &std::path::Path) {
+    let paper = folder.join("shift-dress.pdf");
+    reader.drafter.chord(Modifiers::COMMAND, Key::P);
+    reader.choose("Size", "all, a layer each");
+    for (name, is_last) in [("shift-dress.pdf", false), (paper.to_str().unwrap(), true)] {
+        let field = reader
+            .drafter
+            .window
+            .get_by_role_and_label(Role::TextInput, "File");
+        let at = field.rect().center();
+        reader.drafter.click(at);
+        reader.drafter.chord(Modifiers::COMMAND, Key::A);
+        reader.drafter.type_text(name);
+        if is_last {
+            reader.drafter.key(Key::Enter);
+        } else {
+            reader.picture("print", None);
+        }
+    }
+    reader.drafter.wait(|_| paper.exists());
+}
+
+fn wear(reader: &mut Reader) {
+    reader.put_down();
+    reader.drafter.key(Key::F7);
+    reader.choose("Cloth", "coarse");
+    reader.drafter.key(Key::F5);
+    let hangs = |drafter: &Drafter| drafter.window.state().session().draped().is_some();
+    reader.drafter.wait(hangs);
+    let draped = reader.drafter.window.state().session().draped().unwrap();
+    assert_eq!((draped.body_intersections, draped.components), (0, 1));
+    reader.drafter.key(Key::F);
+    reader.picture("window", None);
+    let mut sides = Vec::new();
+    for key in [Key::Num1, Key::Num3, Key::Num2] {
+        reader.drafter.key(key);
+        reader.drafter.window.run_steps(4);
+        let view = reader
+            .drafter
+            .window
+            .get_by_label_contains("3D view")
+            .rect();
+        if reader.screens.is_some() {
+            sides.push(Part::of(&mut reader.drafter.window, Some(view)));
+        }
+    }
+    reader.shown.insert("drape");
+    if let Some(screens) = &reader.screens {
+        screens.write("drape", &sides);
+    }
+    reader.drafter.chord(Modifiers::COMMAND, Key::K);
+    reader.drafter.type_text("dart");
+    reader.picture("find", None);
+    reader.drafter.key(Key::Escape);
+    reader.drafter.chord(Modifiers::COMMAND, Key::K);
+    let field = "Find a command, or a part of the pattern";
+    reader.drafter.enter(field, "dark or light");
+    reader.drafter.window.run();
+    reader.picture("dark", None);
+}
+
+/// What the guide prints bold is a command, a menu or stood in the window; the pictures it shows are
+/// those that were made.
+fn says_what_is_there(reader: &Reader) {
+    let mut unknown = Vec::new();
+    for name in guide_text::bold() {
+        let known = reader.seen.contains(name) || toile_ui::named(name).is_some();
+        if !known {
+            unknown.push(name);
+        }
+    }
+    assert!(unknown.is_empty(), "the guide names {unknown:?}");
+    let told: BTreeSet<&str> = guide_text::pictures().into_iter().collect();
+    assert_eq!(told, reader.shown);
+}
