@@ -14,7 +14,7 @@ use drafter::Drafter;
 use egui::{Key, Modifiers, Pos2, Rect, Role, pos2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use guide_text::{Section, section};
-use screens::{Part, Screens};
+use screens::{Colours, Part, Screens};
 use std::collections::BTreeSet;
 use toile_geometry::Vec2;
 use toile_pattern::walk::{Smoothness, Walk};
@@ -49,8 +49,21 @@ impl Reader {
         self.shown.insert(name);
         self.look();
         if let Some(screens) = &self.screens {
-            screens.write(name, &[Part::of(&mut self.drafter.window, part)]);
+            let window = &mut self.drafter.window;
+            let is_shaded = part.is_none() && window.query_by_label_contains("3D view").is_some();
+            let colours = if is_shaded {
+                Colours::All
+            } else {
+                Colours::Few
+            };
+            screens.write(name, &[Part::of(window, part)], colours);
         }
+    }
+
+    fn picture_of_tables(&mut self, name: &'static str) {
+        let tab = self.drafter.window.get_by_label("Measurements").rect();
+        let tables = Rect::from_min_max(pos2(0.0, tab.top() - 6.0), pos2(700.0, 766.0));
+        self.picture(name, Some(tables));
     }
 
     /// Notes the names that stand in the window now.
@@ -72,6 +85,28 @@ impl Reader {
         for _ in 0..4 {
             self.drafter.key(Key::Escape);
         }
+    }
+
+    /// Draws the upper rim of the tables upward, and turns back to their first row.
+    fn enlarge_tables(&mut self) {
+        let tab = self.drafter.window.get_by_label("Measurements").rect();
+        let rim = pos2(600.0, tab.top() - 2.0);
+        self.drafter.drag(rim, pos2(600.0, 130.0));
+        let window = &mut self.drafter.window;
+        window.hover_at(pos2(300.0, 700.0));
+        window.run();
+        for _ in 0..40 {
+            window.event(egui::Event::MouseWheel {
+                unit: egui::MouseWheelUnit::Line,
+                delta: vec2(0.0, 1.0),
+                phase: egui::TouchPhase::Move,
+                source: egui::MouseWheelSource::Wheel,
+                modifiers: Modifiers::NONE,
+            });
+            window.run();
+        }
+        window.hover_at(pos2(600.0, 20.0));
+        window.run();
     }
 
     fn point(&mut self, sheet: &str, name: &str) {
@@ -140,6 +175,7 @@ impl Reader {
             let [name, from, length, angle] = row[..] else {
                 panic!("{row:?}");
             };
+            self.drafter.key(Key::F);
             self.point(sheet, from);
             self.drafter.typed_and(&begun(length), Key::Tab);
             self.drafter.typed_and(&begun(angle), Key::Tab);
@@ -223,6 +259,7 @@ impl Reader {
         self.edge(panel, "armhole");
         let neck = self.on_edge(panel, "neck", None);
         self.drafter.shift_click(neck);
+        self.look();
         self.drafter.enter("seam allowance of all", part.says("1"));
         self.edge(panel, "hem");
         self.drafter.enter("seam allowance", part.says("4"));
@@ -269,7 +306,8 @@ fn the_guide_leads_from_an_empty_window_to_a_draped_dress() {
 
 fn begin(reader: &mut Reader) {
     let part = section("What you see");
-    reader.picture("welcome", None);
+    let page = Rect::from_min_max(pos2(0.0, 0.0), pos2(1200.0, 420.0));
+    reader.picture("welcome", Some(page));
     reader.drafter.press("New pattern");
     reader.look();
     reader.drafter.enter("Name", part.says("Shift dress"));
@@ -324,7 +362,8 @@ fn measure(reader: &mut Reader) {
             );
         }
     }
-    reader.picture("measurements", None);
+    reader.enlarge_tables();
+    reader.picture_of_tables("measurements");
     let drafter = &mut reader.drafter;
     drafter.press("Variables");
     for (k, line) in section("Variables").block().into_iter().enumerate() {
@@ -337,7 +376,7 @@ fn measure(reader: &mut Reader) {
         let found = pattern.variables.iter().find(|found| found.name == name);
         assert!(found.is_some(), "{line}: {}", drafter.status());
     }
-    reader.picture("variables", None);
+    reader.picture_of_tables("variables");
     reader.drafter.key(Key::Escape);
     reader.drafter.key(Key::F8);
 }
@@ -390,6 +429,9 @@ fn draft_front(reader: &mut Reader) {
     );
     reader.put_down();
     reader.drafter.key(Key::F);
+    let middle = reader.drafter.part("Panel front");
+    reader.drafter.click(middle);
+    reader.look();
     reader.drafter.click(reader.drafter.part("Dart of front"));
     reader.picture("dart", None);
 }
@@ -411,6 +453,7 @@ fn draft_back(reader: &mut Reader) {
     reader.draw_lines(part, "back");
     reader.draw_curves(part, "back");
     reader.trace(part, [-0.1, -0.6], "back");
+    reader.look();
     reader.drafter.enter_choice("in mirrored pairs");
     reader.allow(part, "back");
     reader.drafter.key(Key::N);
@@ -567,7 +610,8 @@ fn print(reader: &mut Reader, folder: &std::path::Path) {
         if is_last {
             reader.drafter.key(Key::Enter);
         } else {
-            reader.picture("print", None);
+            let dialog = Rect::from_min_max(pos2(340.0, 230.0), pos2(860.0, 560.0));
+            reader.picture("print", Some(dialog));
         }
     }
     reader.drafter.wait(|_| paper.exists());
@@ -593,20 +637,27 @@ fn wear(reader: &mut Reader) {
             .window
             .get_by_label_contains("3D view")
             .rect();
+        let view = view.shrink2(vec2(10.0, 0.19 * view.height()));
         if reader.screens.is_some() {
             sides.push(Part::of(&mut reader.drafter.window, Some(view)));
         }
     }
     reader.shown.insert("drape");
     if let Some(screens) = &reader.screens {
-        screens.write("drape", &sides);
+        screens.write("drape", &sides, Colours::All);
     }
     reader.drafter.chord(Modifiers::COMMAND, Key::K);
     reader.drafter.type_text("dart");
-    reader.picture("find", None);
+    let field = "Find a command, or a part of the pattern";
+    let dialog = reader
+        .drafter
+        .window
+        .get_by_role_and_label(Role::TextInput, field);
+    let dialog = dialog.rect().expand2(vec2(40.0, 60.0));
+    let dialog = dialog.with_max_y(dialog.bottom() + 160.0);
+    reader.picture("find", Some(dialog));
     reader.drafter.key(Key::Escape);
     reader.drafter.chord(Modifiers::COMMAND, Key::K);
-    let field = "Find a command, or a part of the pattern";
     reader.drafter.enter(field, "dark or light");
     reader.drafter.window.run();
     reader.picture("dark", None);

@@ -200,6 +200,21 @@ impl Drafter {
         self.window.run();
     }
 
+    /// A drag from a place to another.
+    pub fn drag(&mut self, from: Pos2, to: Pos2) {
+        self.actions += 1;
+        self.window.hover_at(from);
+        self.window.run();
+        self.window.drag_at(from);
+        self.window.run();
+        for share in [0.3, 0.7, 1.0] {
+            self.window.hover_at(from + (to - from) * share);
+            self.window.run();
+        }
+        self.window.drop_at(to);
+        self.window.run();
+    }
+
     pub fn hover(&mut self, at: Pos2) {
         let at = at.round();
         self.inputs.push(format!("hover {} {}", at.x, at.y));

@@ -54,9 +54,11 @@ impl Section {
     }
 }
 
-/// Names the guide prints bold: those of commands, menus, fields and buttons.
+/// Names the guide prints bold: those of commands, menus, fields and buttons. The beginning of a
+/// paragraph, which ends with a full stop, is none.
 pub fn bold() -> Vec<&'static str> {
-    TEXT.split("**").skip(1).step_by(2).collect()
+    let all = TEXT.split("**").skip(1).step_by(2);
+    all.filter(|name| !name.ends_with('.')).collect()
 }
 
 /// Pictures the guide shows.

@@ -59,7 +59,7 @@ impl Screens {
     }
 
     /// Writes parts of the window side by side as a PNG.
-    pub fn write(&self, name: &str, parts: &[Part]) {
+    pub fn write(&self, name: &str, parts: &[Part], colours: Colours) {
         let height = parts.iter().map(|part| part.height).min().unwrap();
         let width: usize = parts.iter().map(|part| part.width).sum();
         let mut pixels = Vec::new();
@@ -68,16 +68,34 @@ impl Screens {
                 pixels.extend_from_slice(&part.pixels[y * part.width..][..part.width]);
             }
         }
-        let (palette, indices) = colours::reduced(&pixels);
         let file = std::fs::File::create(self.folder.join(format!("{name}.png"))).unwrap();
         let file = std::io::BufWriter::new(file);
         let mut encoder = png::Encoder::new(file, width as u32, height as u32);
-        encoder.set_color(png::ColorType::Indexed);
-        encoder.set_palette(palette.concat());
         encoder.set_compression(png::Compression::High);
+        let bytes = match colours {
+            Colours::All => {
+                encoder.set_color(png::ColorType::Rgb);
+                pixels.concat()
+            }
+            Colours::Few => {
+                let (palette, numbers) = colours::reduced(&pixels);
+                encoder.set_color(png::ColorType::Indexed);
+                encoder.set_palette(palette.concat());
+                numbers
+            }
+        };
         let mut writer = encoder.write_header().unwrap();
-        writer.write_image_data(&indices).unwrap();
+        writer.write_image_data(&bytes).unwrap();
     }
+}
+
+/// Colours of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Colours {
+    /// As they are: where something is shaded.
+    All,
+    /// At most 256, for a file half as large.
+    Few,
 }
 
 /// A part of the window as it is drawn.
