@@ -35,6 +35,7 @@ fn the_guide_leads_from_an_empty_window_to_a_draped_dress() {
     save(&mut reader, folder.path());
     print(&mut reader, folder.path());
     wear(&mut reader);
+    alter(&mut reader);
     says_what_is_there(&reader);
     println!("{} actions", reader.drafter.actions);
 }
@@ -393,6 +394,40 @@ fn wear(reader: &mut Reader) {
     reader.drafter.enter(field, "dark or light");
     reader.drafter.window.run();
     reader.picture("dark", None);
+    reader.drafter.chord(Modifiers::COMMAND, Key::K);
+    reader.drafter.enter(field, "dark or light");
+}
+
+/// Half of the dart goes to the hem, and back again.
+fn alter(reader: &mut Reader) {
+    let part = section("Altering a pattern");
+    let before = reader.drafter.pattern();
+    reader.put_down();
+    reader.drafter.key(Key::F7);
+    reader.drafter.key(Key::F);
+    reader.drafter.chord(Modifiers::SHIFT, Key::E);
+    let dart = reader.drafter.part("Dart of front");
+    reader.drafter.click(dart);
+    reader.edge("front", "hem");
+    reader.drafter.typed(part.says("0.5"));
+    assert_eq!(reader.drafter.window.state().fault(), None);
+    reader.look();
+    reader.put_down();
+    reader.drafter.key(Key::F);
+    let pattern = reader.drafter.pattern();
+    let front = pattern.panel_named("front").unwrap();
+    let stage = reader
+        .drafter
+        .evaluation()
+        .last_stage(front)
+        .unwrap()
+        .clone();
+    // Of both darts each half of the front has one.
+    assert_eq!((front.operations.len(), stage.darts.len()), (3, 4));
+    assert!(reader.drafter.evaluation().diagnostics().is_empty());
+    reader.picture("pivot", None);
+    reader.drafter.chord(Modifiers::COMMAND, Key::Z);
+    assert!(reader.drafter.pattern().says_the_same(&before));
 }
 
 /// What the guide prints bold is a command, a menu or stood in the window; the pictures it shows are

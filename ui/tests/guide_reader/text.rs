@@ -47,7 +47,7 @@ impl Section {
     }
 
     /// What is typed, which stands in the section in backticks.
-    pub fn says<'a>(self, typed: &'a str) -> &'a str {
+    pub fn says(self, typed: &str) -> &str {
         let stands = self.0.contains(&format!("`{typed}`"));
         assert!(stands, "the guide does not say `{typed}`");
         typed
