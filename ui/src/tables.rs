@@ -5,7 +5,8 @@ use crate::app::shows::Tab;
 use crate::fields::Entered;
 use crate::theme::Palette;
 use crate::tools::number;
-use egui::{Color32, Grid, Id, RichText, ScrollArea, Ui};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Button, Color32, Grid, Id, PopupCloseBehavior, RichText, ScrollArea, TextStyle, Ui};
 use toile_measure::{CATALOGUE, Definition, Measurements, UnitKind, definition};
 use toile_pattern::{Number, Pattern, SizeId, Want, plan};
 use toile_session::Command;
@@ -25,6 +26,10 @@ const FIRST: &[&str] = &[
     "upper_arm",
     "wrist",
 ];
+
+/// Width of a measurement's value, and the least of its name [pixels].
+const VALUE: f32 = 84.0;
+const LEAST_LABEL: f32 = 100.0;
 
 /// How many measurements are proposed at once.
 const PROPOSED: usize = 5;
@@ -124,33 +129,61 @@ impl ToileApp {
                 };
             }
         });
-        scrolled(ui, |ui| self.measurement_rows(ui, &pattern, &names));
+        self.measurement_rows(ui, &pattern, &names);
         if let Some(name) = chosen {
             self.add_measurement(&name);
         }
     }
 
+    /// The sizes, which stay in sight, and under them the rows.
     fn measurement_rows(&mut self, ui: &mut Ui, pattern: &Pattern, names: &[String]) {
-        Grid::new("measurements").striped(true).show(ui, |ui| {
-            ui.label(RichText::new("Measurement").strong());
-            for size in &pattern.sizes {
-                self.size_head(ui, size.id, &size.name);
-            }
-            ui.end_row();
-            for name in names {
-                let known = definition(name);
-                let label = ui.label(known.map_or(name.as_str(), |known| known.label));
-                let label = match known {
-                    Some(known) => label.on_hover_text(format!("{name}: {}", known.meaning)),
-                    None => label,
-                };
-                for size in &pattern.sizes {
-                    let value = size.measurements.get(name);
-                    self.measurement(ui, (size.id, label.id), name, value);
-                }
-                ui.end_row();
-            }
+        let label = |name: &str| {
+            let known = definition(name);
+            known.map_or_else(|| name.to_owned(), |known| known.label.to_owned())
+        };
+        let font = TextStyle::Body.resolve(ui.style());
+        let widths = names.iter().map(|name| {
+            let text = label(name);
+            let text = ui
+                .painter()
+                .layout_no_wrap(text, font.clone(), Color32::PLACEHOLDER);
+            text.size().x
         });
+        let width = widths.fold(LEAST_LABEL, f32::max);
+        ScrollArea::horizontal()
+            .auto_shrink([false, false])
+            .show(ui, |ui| {
+                Grid::new("sizes").show(ui, |ui| {
+                    named(ui, width, RichText::new("Measurement").strong());
+                    for size in &pattern.sizes {
+                        ui.scope(|ui| {
+                            ui.set_width(VALUE);
+                            self.size_head(ui, size.id, &size.name);
+                        });
+                    }
+                    ui.end_row();
+                });
+                let rows = ScrollArea::vertical().auto_shrink([true, false]);
+                rows.show(ui, |ui| {
+                    let grid = Grid::new("measurements").striped(true);
+                    grid.show(ui, |ui| {
+                        for name in names {
+                            let words = named(ui, width, label(name).into());
+                            let words = match definition(name) {
+                                Some(known) => {
+                                    words.on_hover_text(format!("{name}: {}", known.meaning))
+                                }
+                                None => words,
+                            };
+                            for size in &pattern.sizes {
+                                let value = size.measurements.get(name);
+                                self.measurement(ui, (size.id, words.id), name, value);
+                            }
+                            ui.end_row();
+                        }
+                    });
+                });
+            });
     }
 
     fn size_head(&mut self, ui: &mut Ui, id: SizeId, name: &str) {
@@ -159,26 +192,36 @@ impl ToileApp {
             true => RichText::new(format!("{name} (base)")).strong(),
             false => RichText::new(name).strong(),
         };
-        let menu = ui.menu_button(words, |ui| {
-            let field = Id::unique(("size name", id));
-            let label = ui.label("Name").id;
-            let entered = self
-                .typed
-                .field(ui, (field, label), name, |_| Ok(String::new()));
-            if let Entered::Text(text) = entered {
-                let planned = plan::rename(&self.base, id.into(), &text);
-                self.enter(planned, "Rename size", (field, text));
-            }
-            if ui.button("Make it the base size").clicked() {
-                let planned = plan::set_base_size(&self.base, Some(id));
-                self.edit(planned, "Choose base size");
-            }
-            if ui.button("Remove this size").clicked() {
-                let planned = plan::remove_size(&self.base, id);
-                self.edit(planned, "Remove size");
-            }
-        });
-        menu.response.on_hover_text("Rename or remove the size");
+        // A click into its field must not close it.
+        let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        let (head, _) = MenuButton::from_button(Button::new(words).truncate())
+            .config(stays)
+            .ui(ui, |ui| {
+                let field = Id::unique(("size name", id));
+                let label = ui.label("Size name").id;
+                let entered = self
+                    .typed
+                    .field(ui, (field, label), name, |_| Ok(String::new()));
+                if ui.memory(|memory| memory.focused().is_none()) {
+                    ui.memory_mut(|memory| memory.request_focus(field));
+                }
+                if let Entered::Text(text) = entered {
+                    let planned = plan::rename(&self.base, id.into(), &text);
+                    self.enter(planned, "Rename size", (field, text));
+                    ui.close();
+                }
+                if ui.button("Make it the base size").clicked() {
+                    let planned = plan::set_base_size(&self.base, Some(id));
+                    self.edit(planned, "Choose base size");
+                    ui.close();
+                }
+                if ui.button("Remove this size").clicked() {
+                    let planned = plan::remove_size(&self.base, id);
+                    self.edit(planned, "Remove size");
+                    ui.close();
+                }
+            });
+        head.on_hover_text("Rename or remove the size");
     }
 
     fn measurement(
@@ -211,7 +254,7 @@ impl ToileApp {
             plan::number_text(&base, &Number::Value(value), want)
         });
         ui.scope(|ui| {
-            ui.set_width(84.0);
+            ui.set_width(VALUE);
             let entered = self.typed.field(ui, (id, label), &shown, |text| {
                 number::parse(text, want, &base).map(|_| String::new())
             });
@@ -281,7 +324,6 @@ impl ToileApp {
 
     /// A row a variable: name, number, value.
     fn variable_table(&mut self, ui: &mut Ui) {
-        let pattern = self.base.pattern().clone();
         ui.horizontal(|ui| {
             let label = ui.label("New variable").id;
             let field = egui::TextEdit::singleline(&mut self.tables.new_variable)
@@ -296,6 +338,7 @@ impl ToileApp {
                 response.request_focus();
             }
         });
+        let pattern = self.base.pattern().clone();
         scrolled(ui, |ui| self.variable_rows(ui, &pattern));
     }
 
@@ -308,6 +351,7 @@ impl ToileApp {
                 let heads = ["", "Variable name", "Number or formula", "Value", ""];
                 let heads = heads.map(|head| ui.label(RichText::new(head).strong()).id);
                 ui.end_row();
+                let last = pattern.variables.last().map(|variable| variable.id);
                 for variable in &pattern.variables {
                     // For those who hear the window: the field beside shows the name.
                     let unseen = RichText::new(&variable.name).size(1.0);
@@ -336,7 +380,11 @@ impl ToileApp {
                         Some((value, _)) => number::show(value, Want::Plain, pattern.unit),
                         None => "no value".into(),
                     };
-                    ui.label(RichText::new(words).color(palette.ink_soft));
+                    let value = ui.label(RichText::new(words).color(palette.ink_soft));
+                    // What was just added is seen.
+                    if Some(variable.id) == last && std::mem::take(&mut self.tables.added) {
+                        value.scroll_to_me(None);
+                    }
                     if ui.button("Remove").clicked() {
                         let planned = plan::remove_parts(&self.base, &[variable.id.into()]);
                         self.edit(planned, "Remove variable");
@@ -360,6 +408,7 @@ impl ToileApp {
             Ok((edits, _)) => {
                 if self.edit(Ok(edits), "Add variable") {
                     self.tables.new_variable.clear();
+                    self.tables.added = true;
                 }
             }
             Err(words) => self.say_fault(words),
@@ -401,6 +450,15 @@ impl ToileApp {
             self.execute(step);
         }
     }
+}
+
+/// A label in a column of a width.
+fn named(ui: &mut Ui, width: f32, words: RichText) -> egui::Response {
+    let label = ui.scope(|ui| {
+        ui.set_min_width(width);
+        ui.label(words)
+    });
+    label.inner
 }
 
 /// Rows that are scrolled under what stands above them.

@@ -177,6 +177,7 @@ fn colour(visuals: &mut egui::Visuals, theme: Theme) {
     visuals.extreme_bg_color = palette.field;
     visuals.selection.bg_fill = palette.accent_soft;
     visuals.selection.stroke = Stroke::new(1.0, palette.accent);
+    visuals.hyperlink_color = palette.accent;
     visuals.warn_fg_color = palette.warning;
     visuals.error_fg_color = palette.fault;
     let radius = CornerRadius::same(5);

@@ -2,44 +2,14 @@
 //! one they are skipped, and say so.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use eframe::egui_wgpu::WgpuSetup;
-use eframe::wgpu::Backends;
+mod screens;
+
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use egui_kittest::wgpu::{WgpuTestRenderer, default_wgpu_setup};
+use screens::renderer;
 use std::path::Path;
-use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 use toile_ui::{Beginning, ToileApp};
-
-/// What a future of the graphics library gives: on a desktop they are ready when first asked.
-fn ready<T>(future: impl Future<Output = T>) -> T {
-    let mut future = std::pin::pin!(future);
-    let mut context = Context::from_waker(Waker::noop());
-    loop {
-        if let Poll::Ready(value) = future.as_mut().poll(&mut context) {
-            return value;
-        }
-        std::thread::yield_now();
-    }
-}
-
-/// A renderer on this machine's adapter, if there is one. OpenGL is left out: without a display
-/// it offers adapters that cannot draw.
-fn renderer() -> Option<WgpuTestRenderer> {
-    let backends = Backends::VULKAN | Backends::METAL | Backends::DX12;
-    let mut setup = default_wgpu_setup();
-    if let WgpuSetup::CreateNew(new) = &mut setup {
-        new.instance_descriptor.backends = backends;
-    }
-    let instance = ready(setup.new_instance());
-    let adapters = ready(instance.enumerate_adapters(backends));
-    if adapters.is_empty() {
-        println!("skipped: this machine has no graphics adapter");
-        return None;
-    }
-    Some(WgpuTestRenderer::from_setup(setup))
-}
 
 #[test]
 fn the_pattern_and_the_mannequin_are_drawn() {

@@ -11,13 +11,6 @@ use toile_geometry::Vec2;
 use toile_pattern::{CurveRule, Number, PointRule};
 
 impl Drafter {
-    fn drag(&mut self, from: Pos2, to: Pos2) {
-        self.begin_drag(from, to);
-        self.window.drop_at(to);
-        self.window.run();
-        self.actions += 1;
-    }
-
     fn begin_drag(&mut self, from: Pos2, to: Pos2) {
         self.window.hover_at(from);
         self.window.run();

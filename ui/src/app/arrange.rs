@@ -56,15 +56,12 @@ impl ToileApp {
         fragment
     }
 
-    /// Adds an empty sheet beside what is there, and draws on it from now on. All sheets are then
+    /// Adds an empty sheet beside what is there, level with the one that is drawn on, and draws on it from now on. All sheets are then
     /// laid where they are seen.
     pub(crate) fn new_sheet(&mut self) {
         let bounds = self.view.boards.bounds(&self.view.scene);
         let place = bounds.map_or_else(Vec2::zeros, |bounds| {
-            Vec2::new(
-                bounds.max.x + SHEETS_APART,
-                0.5 * (bounds.min.y + bounds.max.y),
-            )
+            Vec2::new(bounds.max.x + SHEETS_APART, self.view.sheet_origin().y)
         });
         let free = self.base.pattern().sheets.iter();
         let free = free.filter(|sheet| sheet.on.is_none());

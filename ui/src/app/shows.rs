@@ -39,6 +39,8 @@ pub struct Tables {
     pub tab: Tab,
     pub new_variable: String,
     pub new_measurement: String,
+    /// A variable was added and is to be seen.
+    pub added: bool,
     /// A measurement whose first value is to be typed next.
     pub entered_measurement: Option<String>,
 }

@@ -9,6 +9,8 @@ use toile_session::{Command, SAMPLES};
 
 /// Width of the page [pixels].
 const WIDTH: f32 = 520.0;
+/// Width of its two buttons beside each other [pixels].
+const BUTTONS: f32 = 204.0;
 
 impl ToileApp {
     pub(crate) fn welcome(&mut self, ui: &mut Ui) {
@@ -30,7 +32,7 @@ impl ToileApp {
                     ui.add_space(12.0);
                 }
                 ui.horizontal(|ui| {
-                    ui.add_space((ui.available_width() - 260.0).max(0.0) * 0.5);
+                    ui.add_space((ui.available_width() - BUTTONS).max(0.0) * 0.5);
                     if main_button(ui, "New pattern") {
                         self.ask_new();
                     }

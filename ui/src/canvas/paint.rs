@@ -5,7 +5,7 @@ use super::camera::{TableCamera, TablePoint};
 use super::fill::Fill;
 use super::grading::Grading;
 use super::hit::{ShownPoint, shown_points};
-use super::rulers;
+use super::rulers::{self, RULER};
 use super::scene::{PanelScene, PointRole, Scene, SheetScene};
 use super::selection::{Item, Selection};
 use super::sheet_tag::tagged;
@@ -24,6 +24,9 @@ const GRID_LEAST: f64 = 14.0;
 pub(super) const NUMBER_INSET: f64 = 16.0;
 /// Length of a notch [pixels].
 const NOTCH: f32 = 9.0;
+
+/// Room beside the longest line of a label [pixels].
+const LABEL_MARGIN: f32 = 24.0;
 
 /// Everything that is painted in one frame.
 pub struct Picture<'a> {
@@ -110,6 +113,12 @@ impl Picture<'_> {
         self.camera.screen(self.view, TablePoint(at + origin)).0
     }
 
+    /// The view without its rulers, where words are read.
+    pub(super) fn clear_view(&self) -> Rect {
+        let ruler = if self.rulers.is_some() { RULER } else { 0.0 };
+        Rect::from_min_max(self.view.min + vec2(ruler, ruler), self.view.max)
+    }
+
     pub(super) fn line(&self, origin: Vec2, line: &[Vec2]) -> Vec<Pos2> {
         line.iter().map(|at| self.seen(origin, *at)).collect()
     }
@@ -170,15 +179,17 @@ impl Picture<'_> {
             self.filled(origin, fill, shadow, vec2(1.5, 2.5));
         }
         let flat = egui::Vec2::ZERO;
-        let lit = self.is_lit(Item::Panel(panel.id));
-        let colour = match () {
-            () if panel.is_stale => self.palette.panel_stale,
-            () if lit => self.palette.accent_soft,
-            () => self.palette.panel,
-        };
         let mirrored = self.palette.panel_mirrored;
         self.filled(origin, &shape.mirrored_fill, mirrored, flat);
-        self.filled(origin, &shape.fill, colour, flat);
+        self.filled(origin, &shape.fill, self.cloth_colour(panel), flat);
+    }
+
+    fn cloth_colour(&self, panel: &PanelScene) -> Color32 {
+        match () {
+            () if panel.is_stale => self.palette.panel_stale,
+            () if self.is_lit(Item::Panel(panel.id)) => self.palette.accent_soft,
+            () => self.palette.panel,
+        }
     }
 
     /// Curves that no panel follows where it lies, as pencil lines.
@@ -301,7 +312,8 @@ impl Picture<'_> {
         }
     }
 
-    /// The panel's name and cut: inside where there is room, else under it.
+    /// The panel's name, and under it how it is cut where there is room for both: inside, in a gap of the
+    /// grainline; else the name alone, under the panel if it has no room inside.
     fn caption(&self, panel: &PanelScene) {
         let origin = self.boards.panel(panel.id);
         let layout = |text: &str, size: f32, colour| {
@@ -310,30 +322,38 @@ impl Picture<'_> {
         };
         let name = layout(&panel.name, 15.0, self.palette.ink);
         let cut = layout(&panel.cut, 12.0, self.palette.ink_soft);
-        let width = name.size().x.max(cut.size().x);
-        let second = if panel.cut.is_empty() {
-            0.0
-        } else {
-            cut.size().y
-        };
-        let height = name.size().y + second;
         let bounds = &panel.shape.drawn_bounds;
         let [low, high] = [bounds.min, bounds.max].map(|p| self.seen(origin, p));
         let room = 2.0 * NUMBER_INSET as f32;
-        let fits =
-            width + room + 16.0 < (high.x - low.x).abs() && height + room < (low.y - high.y).abs();
-        let middle = if fits {
-            self.seen(origin, panel.shape.middle)
-        } else {
-            Pos2::new((low.x + high.x) * 0.5, low.y + 8.0 + height * 0.5)
+        let fits = |size: egui::Vec2| {
+            size.x + room + 16.0 < (high.x - low.x).abs() && size.y + room < (low.y - high.y).abs()
         };
-        let top = middle - vec2(0.0, height * 0.5);
-        let centred = |width: f32, down: f32| top + vec2(-width * 0.5, down);
-        let (name_size, cut_size) = (name.size(), cut.size());
-        self.painter
-            .galley(centred(name_size.x, 0.0), name, self.palette.ink);
-        self.painter
-            .galley(centred(cut_size.x, name_size.y), cut, self.palette.ink_soft);
+        let both = vec2(
+            name.size().x.max(cut.size().x),
+            name.size().y + cut.size().y,
+        );
+        let (size, lines) = match fits(both) && !panel.cut.is_empty() {
+            true => (both, vec![name, cut]),
+            false => (name.size(), vec![name]),
+        };
+        let inside = fits(size);
+        let middle = match inside {
+            true => self.seen(origin, panel.shape.middle),
+            false => Pos2::new((low.x + high.x) * 0.5, low.y + 8.0 + size.y * 0.5),
+        };
+        if inside {
+            let ground = Rect::from_center_size(middle, size + vec2(4.0, 2.0));
+            self.painter
+                .rect_filled(ground, 0.0, self.cloth_colour(panel));
+        }
+        let mut top = middle - vec2(0.0, size.y * 0.5);
+        for line in lines {
+            let [width, height] = line.size().into();
+            let colour = self.palette.ink;
+            self.painter
+                .galley(top - vec2(width * 0.5, 0.0), line, colour);
+            top.y += height;
+        }
     }
 
     /// Lines from points to their handles, on sheets that are open.
@@ -450,14 +470,21 @@ impl Picture<'_> {
     }
 
     pub(super) fn label(&self, at: Pos2, text: &str, ground_colour: Color32) {
-        let text =
-            self.painter
-                .layout_no_wrap(text.to_owned(), theme::font(12.5), self.palette.on_accent);
-        let ground = Align2::LEFT_CENTER.anchor_size(at, text.size() + vec2(12.0, 4.0));
+        // A long formula is broken into lines rather than cut off.
+        let (font, most) = (theme::font(12.5), self.clear_view().width() - LABEL_MARGIN);
+        let text = text.to_owned();
+        let text = self
+            .painter
+            .layout(text, font, self.palette.on_accent, most);
+        // Its first line is level with the place.
+        let first = text.rows.first().map_or(0.0, |row| row.height());
+        let corner = at - vec2(0.0, 0.5 * first + 2.0);
+        let ground = Rect::from_min_size(corner, text.size() + vec2(12.0, 4.0));
         // At the rim of the view it is moved inward.
-        let low = (self.view.max - ground.max).min(egui::Vec2::ZERO);
+        let view = self.clear_view();
+        let low = (view.max - ground.max).min(egui::Vec2::ZERO);
         let ground = ground.translate(low);
-        let high = (self.view.min - ground.min).max(egui::Vec2::ZERO);
+        let high = (view.min - ground.min).max(egui::Vec2::ZERO);
         let ground = ground.translate(high);
         self.painter
             .rect_filled(ground, CornerRadius::same(4), ground_colour);

@@ -87,7 +87,7 @@ impl Picture<'_> {
                 Tone::Good | Tone::Warning | Tone::Fault => ABOVE,
             };
             let goal = at + way - vec2(0.0, size.y * 0.5);
-            let ground = clear(&placed, self.view.shrink(ROOM), (goal, size));
+            let ground = clear(&placed, self.clear_view().shrink(ROOM), (goal, size));
             placed.push(ground);
             let colour = self.toned(*tone);
             let near = ground.clamp(at);

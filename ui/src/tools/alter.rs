@@ -8,6 +8,10 @@ use crate::canvas::selection::Item;
 use toile_pattern::plan::{self, Joined, PivotWish, PleatWish, SplitWish, SpreadWish};
 use toile_pattern::{Bridge, CurveId, EditError, Name, Number, PanelId, PleatKind, Side, Want};
 
+/// How far the points of both darts are set back where a share of a dart is moved [m]: about as far
+/// as a dart ends before the bust point.
+const SET_BACK: f64 = 0.02;
+
 /// Moves a dart, or a share of it, to another place of the outline.
 pub static PIVOT: SlotTool = SlotTool {
     command: "Pivot dart",
@@ -46,12 +50,18 @@ pub static PIVOT: SlotTool = SlotTool {
             ));
         }
         let near = super::panel::marked(reading, *panel, (*at, mark))?;
+        // The points of two darts may not meet; how far they are set back is a number of the step.
+        let moved = reading.evaluation.number(share, Want::Plain);
+        let back = match moved.is_some_and(|moved| moved < 1.0) {
+            true => SET_BACK,
+            false => 0.0,
+        };
         let mut planning = Planning::new(reading);
         let wish = PivotWish {
             dart: *dart,
             mouth: (Name::Drawn(near.line), near.mark),
             share: share.clone(),
-            back: Number::Value(0.0),
+            back: Number::Value(back),
             turned: None,
         };
         let id = planning.run(|evaluation| plan::pivot_dart(evaluation, *panel, wish))?;

@@ -36,10 +36,12 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
                 words.push(number::show(way.norm(), Want::Length, unit));
                 words.push(number::show(way.y.atan2(way.x), Want::Angle, unit));
             }
-            words.push(typed);
             words.retain(|word| !word.is_empty());
+            let lines = [words.join("  "), typed];
+            let lines = lines.into_iter().filter(|line| !line.is_empty());
+            let lines = lines.collect::<Vec<_>>().join("\n");
             marks.push(Overlay::Dot(placed.sheet, placed.at));
-            marks.push(Overlay::Words(placed.sheet, placed.at, words.join("  ")));
+            marks.push(Overlay::Words(placed.sheet, placed.at, lines));
         }
         Ok(Answer::Number(given)) => {
             if let (Some(pointer), SlotKind::Number { label, want, .. }) = (&state.pointer, kind) {
@@ -77,7 +79,7 @@ fn edge((panel, edge): &ChainEdge) -> Overlay {
     Overlay::Edge(*panel, *edge)
 }
 
-/// What is typed, the one in hand with a bar.
+/// What is typed, a line each, the one in hand with a bar.
 fn typed_words(kind: SlotKind, state: &SlotState) -> String {
     if !state.is_typing() {
         return String::new();
@@ -87,7 +89,7 @@ fn typed_words(kind: SlotKind, state: &SlotState) -> String {
         let bar = if k == state.field { "|" } else { "" };
         format!("{label} {}{bar}", state.typed[k])
     });
-    words.collect::<Vec<_>>().join("   ")
+    words.collect::<Vec<_>>().join("\n")
 }
 
 pub(super) fn hint(tool: &SlotTool, state: &SlotState) -> String {

@@ -7,6 +7,7 @@ mod counted;
 use egui::{Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use egui_kittest::wgpu::WgpuTestRenderer;
 use toile_geometry::Vec2;
 use toile_pattern::{CurveId, Evaluation, Pattern};
 use toile_ui::{Beginning, ToileApp};
@@ -40,15 +41,27 @@ impl Drafter {
     }
 
     pub fn begun(beginning: Beginning) -> Self {
-        let mut window = Harness::builder()
-            .with_size(vec2(1400.0, 900.0))
+        Self::of_size(vec2(1400.0, 900.0), beginning, None)
+    }
+
+    /// A window of a size [logical pixels], drawn by a renderer if there is one.
+    pub fn of_size(
+        size: egui::Vec2,
+        beginning: Beginning,
+        renderer: Option<WgpuTestRenderer>,
+    ) -> Self {
+        let mut builder = Harness::builder()
+            .with_size(size)
             .with_theme(egui::Theme::Light)
             .with_max_steps(20)
-            .with_step_dt(1.0 / 60.0)
-            .build_eframe(move |creation| {
-                let state = creation.wgpu_render_state.as_ref();
-                ToileApp::new(&creation.egui_ctx, state, beginning)
-            });
+            .with_step_dt(1.0 / 60.0);
+        if let Some(renderer) = renderer {
+            builder = builder.renderer(renderer);
+        }
+        let mut window = builder.build_eframe(move |creation| {
+            let state = creation.wgpu_render_state.as_ref();
+            ToileApp::new(&creation.egui_ctx, state, beginning)
+        });
         window.run();
         Self {
             window,
@@ -184,6 +197,21 @@ impl Drafter {
         self.window.event(held(Modifiers::SHIFT));
         self.click(at);
         self.window.event(held(Modifiers::NONE));
+        self.window.run();
+    }
+
+    /// A drag from a place to another.
+    pub fn drag(&mut self, from: Pos2, to: Pos2) {
+        self.actions += 1;
+        self.window.hover_at(from);
+        self.window.run();
+        self.window.drag_at(from);
+        self.window.run();
+        for share in [0.3, 0.7, 1.0] {
+            self.window.hover_at(from + (to - from) * share);
+            self.window.run();
+        }
+        self.window.drop_at(to);
         self.window.run();
     }
 

@@ -6,10 +6,13 @@ use super::names::{free_name, wished};
 use super::on_stage::edge_ends;
 use crate::{
     CornerName, EdgeId, Edit, EditError, Entity, Evaluation, LineId, Mark, Name, Panel, PanelId,
-    Place, Seam, SeamId, Span,
+    Place, Role, Seam, SeamId, Span, StageEdge,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+
+/// What is left of an edge that a dart takes in is shorter [m].
+const LEAST_LENGTH: f64 = 1e-9;
 
 /// An edge of a copy and half of a panel, as it comes in a chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,6 +120,7 @@ pub fn remove_seam(evaluation: &Evaluation, seam: SeamId) -> Result<Vec<Edit>, E
 
 /// An edge as it lies on its panel.
 struct RunEdge<'p> {
+    id: EdgeId,
     name: &'p str,
     /// Its corners there.
     ends: [CornerName; 2],
@@ -181,7 +185,8 @@ fn located(evaluation: &Evaluation, sewn: SewnEdge) -> Result<Located<'_>, EditE
     let edge = owner.and_then(|owner| owner.edge(sewn.edge));
     let missing = || EditError::Missing(sewn.edge.to_string());
     let name = &edge.ok_or_else(missing)?.name;
-    let edge = RunEdge { name, ends };
+    let id = sewn.edge;
+    let edge = RunEdge { id, name, ends };
     Ok(Located { panel, line, edge })
 }
 
@@ -211,8 +216,9 @@ fn runs<'p>(evaluation: &'p Evaluation, chain: &[SewnEdge]) -> Result<Vec<Run<'p
             continue;
         };
         let last = &run.edges[run.edges.len() - 1];
-        let forwards = last.ends[1] == edge.ends[0];
-        let against = last.ends[0] == edge.ends[1];
+        let closed = |ends| is_closed_between(evaluation, panel, ends);
+        let forwards = last.ends[1] == edge.ends[0] || closed([last.id, edge.id]);
+        let against = last.ends[0] == edge.ends[1] || closed([edge.id, last.id]);
         let backwards = match (run.backwards, forwards, against) {
             (None | Some(false), true, _) => false,
             (None | Some(true), _, true) => true,
@@ -236,6 +242,24 @@ fn runs<'p>(evaluation: &'p Evaluation, chain: &[SewnEdge]) -> Result<Vec<Run<'p
         )),
         false => Ok(runs),
     }
+}
+
+/// Whether an edge goes on into another as the panel is finished, with nothing between them but darts:
+/// one may have taken in a whole edge that lay there.
+fn is_closed_between(evaluation: &Evaluation, panel: &Panel, edges: [EdgeId; 2]) -> bool {
+    let Some(stage) = evaluation.last_stage(panel) else {
+        return false;
+    };
+    let outline: Vec<_> = stage.outline().iter().filter(|e| e.half == 0).collect();
+    let [first, second] = edges.map(Name::Drawn);
+    let is_dart = |edge: &StageEdge| {
+        edge.name.role() == Some(Role::Leg) || edge.curve.length() < LEAST_LENGTH
+    };
+    (0..outline.len()).any(|k| {
+        let mut after = outline[k + 1..].iter().chain(&outline[..k]);
+        let next = after.find(|edge| !is_dart(edge));
+        outline[k].name == first && next.is_some_and(|edge| edge.name == second)
+    })
 }
 
 /// Whether each side is walked clockwise. Right sides together, two plies lie face to face, so one

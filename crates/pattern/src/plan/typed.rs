@@ -77,8 +77,9 @@ pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Nu
             .collect::<Vec<_>>()[..],
         [Operation::Constant { .. }] | [Operation::Constant { .. }, Operation::Negate]
     );
-    // A length stays a formula where anything may stand, since a value there is a plain number.
+    // What has a unit stays a formula where anything may stand, since a value there is a plain number.
     let want = match want {
+        Want::Any if !is_bare(text) => return Ok(number),
         Want::Any => Want::Plain,
         want => want,
     };

@@ -20,6 +20,17 @@ fn value(pattern: &Pattern, text: &str, want: Want) -> f64 {
 }
 
 #[test]
+fn what_is_typed_with_a_unit_where_anything_may_stand_is_shown_with_it() {
+    let pattern = sample();
+    let evaluation = evaluated(&pattern);
+    for typed in ["11deg", "-11deg", "6cm", "1 5/8in", "0.25", "-3"] {
+        let number = read(&pattern, typed, Want::Any);
+        let shown = plan::number_text(&evaluation, &number, Want::Any);
+        assert_eq!(shown, typed);
+    }
+}
+
+#[test]
 fn bare_numbers_mean_the_unit_of_the_document() {
     let mut pattern = sample();
     let bust = Measurements::adult().get("bust").unwrap();

@@ -1,6 +1,6 @@
 //! Seams between chains of edges.
 
-use super::sample::{alter, edge, fold, put_operation, sample};
+use super::sample::{alter, dart, edge, fold, put_operation, sample};
 use super::*;
 use toile_pattern::plan::{SeamSide, SewnEdge};
 
@@ -20,7 +20,7 @@ fn unsewn() -> Pattern {
     pattern
 }
 
-/// Start and end of both sides of the only seam, and the lengths of the sides [m].
+/// Start and end of both sides of the only seam but for darts, and the lengths of the sides [m].
 fn sides(pattern: &Pattern, body: &Measurements) -> [(Vec2, Vec2, f64); 2] {
     let (draft, found) = pattern.resolve(body);
     assert!(
@@ -28,7 +28,7 @@ fn sides(pattern: &Pattern, body: &Measurements) -> [(Vec2, Vec2, f64); 2] {
         "{found:?}"
     );
     [0, 1].map(|side| {
-        let spans = &draft.seams[0].sides[side];
+        let spans = &draft.seams.last().unwrap().sides[side];
         let walked: Vec<(Vec2, Vec2, f64)> = spans
             .iter()
             .map(|span| {
@@ -77,6 +77,31 @@ fn single_edges_are_sewn_with_right_sides_together() {
     assert_eq!(done(&flipped, &edits).seams, after.seams);
     let edits = plan::remove_seam(&evaluated(&after), seam).unwrap();
     assert!(done(&after, &edits).says_the_same(&pattern));
+}
+
+#[test]
+fn a_chain_goes_on_past_a_dart_that_takes_in_a_whole_edge() {
+    let mut pattern = unsewn();
+    // The front's right edge is the mouth of a dart: bottom and top meet when it is sewn.
+    let kind = dart(&pattern, "right", 0.5, 0.6, Apex::Depth(0.1.into()));
+    put_operation(&mut pattern, 0, "dart", kind);
+    let [bottom, top] = ["bottom", "top"].map(|name| sewn(&pattern, "front", name));
+    let back = sewn(&pattern, "back", "left");
+    for (chain, is_backwards) in [([bottom, top], false), ([top, bottom], true)] {
+        let (edits, seam) = plan::sew(&evaluated(&pattern), [&chain, &[back]], None).unwrap();
+        let after = done(&pattern, &edits);
+        let span = &after.seam(seam).unwrap().sides[0];
+        assert_eq!((span.len(), span[0].backwards), (1, is_backwards));
+        let [(_, _, length), _] = sides(&after, &Measurements::new());
+        assert!((length - 0.8).abs() < 1e-9, "{length}");
+    }
+    // One that leaves some of it lies between them.
+    let kind = dart(&pattern, "right", 0.5, 0.3, Apex::Depth(0.1.into()));
+    alter(&mut pattern, 0, |panel| panel.operations.clear());
+    put_operation(&mut pattern, 0, "dart", kind);
+    let refused = plan::sew(&evaluated(&pattern), [&[bottom, top], &[back]], None);
+    let words = refused.unwrap_err().to_string();
+    assert!(words.contains("do not follow each other"), "{words}");
 }
 
 #[test]
