@@ -7,7 +7,7 @@ use drafter::Drafter;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
-use toile_pattern::Stage;
+use toile_pattern::{LineKind, Stage};
 
 fn panel() -> Drafter {
     let mut drafter = Drafter::new();
@@ -326,4 +326,47 @@ fn pleats_are_folded_by_two_clicks_and_numbers() {
         let wide = drafter.evaluation();
         assert!(wide.diagnostics().is_empty());
     }
+}
+
+#[test]
+fn a_dart_with_two_points_is_taken_out_by_two_clicks_and_a_number() {
+    let mut drafter = panel();
+    drafter.actions = 0;
+    drafter.key(Key::O);
+    drafter.click(drafter.place(0.1, 0.08));
+    drafter.click(drafter.place(0.1, 0.24));
+    drafter.typed("2.4");
+    assert_eq!(drafter.actions, 4);
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    let hole = |drafter: &Drafter| {
+        let stage = stage(drafter);
+        let own = stage.lines.iter().find(|line| line.kind == LineKind::Hole);
+        own.unwrap()
+            .edges
+            .iter()
+            .map(|leg| leg.curve.length())
+            .sum::<f64>()
+    };
+    let legs = |half: f64, first: f64, second: f64| 2.0 * (half.hypot(first) + half.hypot(second));
+    assert!((hole(&drafter) - legs(0.012, 0.08, 0.08)).abs() < 1e-9);
+    // Its numbers are like any others, and it is sewn shut without a seam being drawn.
+    drafter.click(drafter.part("Dart of draft"));
+    drafter.enter("intake", "3");
+    drafter.enter("widest at", "0.25");
+    assert!((hole(&drafter) - legs(0.015, 0.04, 0.12)).abs() < 1e-9);
+    let evaluation = drafter.evaluation();
+    assert!(evaluation.diagnostics().is_empty());
+    // On nothing there is no dart.
+    let steps = drafter.window.state().session().past().len();
+    drafter.key(Key::O);
+    drafter.click(drafter.place(0.3, 0.08));
+    drafter.click(drafter.place(0.3, 0.24));
+    drafter.typed("2");
+    assert!(
+        drafter.status().contains("no panel lies there"),
+        "{}",
+        drafter.status()
+    );
+    assert_eq!(drafter.window.state().session().past().len(), steps);
 }

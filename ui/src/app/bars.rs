@@ -26,6 +26,7 @@ const TOOL_BUTTONS: &[&[&str]] = &[
         "Divide edge",
         "Bend edge",
         "Dart",
+        "Fisheye dart",
         "Pivot dart",
         "Spread",
         "Split",

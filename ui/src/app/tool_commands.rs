@@ -179,6 +179,14 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::Panel,
+        "Fisheye dart",
+        key(PLAIN, Key::O),
+        "Take a dart with two points out of the inside of a panel",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Slots(&panel::FISHEYE)),
+    ),
+    command(
+        Menu::Panel,
         "Pivot dart",
         key(SHIFT, Key::E),
         "Move a dart, or a share of it, to another place",

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::{
     Apex, CurveRule, Edit, EditError, Entity, LineKind, Mark, Name, NotchKind, Number,
-    OperationKind, Panel, PanelId, Pressed, SheetId, Want,
+    OperationKind, Panel, PanelId, PointId, Pressed, SheetId, Want,
     plan::{self, Chain, CurveShape},
 };
 
@@ -59,6 +59,45 @@ pub static DART: SlotTool = SlotTool {
             pressed: Pressed::default(),
         };
         operation(reading, *panel, kind, "Add dart")
+    },
+};
+
+/// A dart inside a panel, pointed at both ends.
+pub static FISHEYE: SlotTool = SlotTool {
+    command: "Fisheye dart",
+    slots: &[
+        Slot {
+            hint: "Click inside a panel where the dart begins",
+            kind: SlotKind::Place(Fields::Coordinates),
+        },
+        Slot {
+            hint: "Click where it ends",
+            kind: SlotKind::Place(Fields::FromLast),
+        },
+        Slot {
+            hint: "Type its width in the middle",
+            kind: SlotKind::Number {
+                label: "intake",
+                want: Want::Length,
+                usual: 0.02,
+                live: None,
+            },
+        },
+    ],
+    plan: |answers, reading| {
+        let [Answer::Place(a), Answer::Place(b), Answer::Number(intake)] = answers else {
+            return Err(refuse("nothing was given", "click inside a panel"));
+        };
+        let panel = panel_under(reading, (a.sheet, a.at))?;
+        let mut planning = Planning::new(reading);
+        let (_, points) = points_inside(&mut planning, reading, panel, &[a, b])?;
+        let kind = OperationKind::Diamond {
+            ends: [points[0], points[1]],
+            widest: Number::Value(0.5),
+            intake: intake.clone(),
+        };
+        let id = planning.run(|evaluation| plan::add_operation(evaluation, panel, kind))?;
+        Ok(planning.done("Add dart", [Item::Operation(panel, id)]))
     },
 };
 
@@ -182,28 +221,7 @@ pub static INNER_LINE: SlotTool = SlotTool {
         };
         let closes = matches!(answers.get(1), Some(Answer::Places(_, true)));
         let mut planning = Planning::new(reading);
-        let given = places(answers);
-        let owner = panel_of(reading, *panel)?;
-        let pattern = reading.evaluation.pattern();
-        let is_here = |sheet: SheetId| {
-            let on = pattern.sheet(sheet).and_then(|sheet| sheet.on);
-            on.is_some_and(|(of, _)| of == *panel)
-        };
-        // What is drawn on a side, or where the panel was altered, lies on the finished panel.
-        let altered = owner.sheet().is_none() || owner.is_altered();
-        let sheet = match given.iter().find(|placed| is_here(placed.sheet)) {
-            Some(placed) => placed.sheet,
-            None if altered => planning.run(|evaluation| plan::open_sheet(evaluation, *panel))?,
-            None => owner.sheet().unwrap_or_default(),
-        };
-        let given: Vec<Placed> = given
-            .into_iter()
-            .map(|placed| match placed.sheet == sheet {
-                true => placed.clone(),
-                false => Placed::free(sheet, placed.at),
-            })
-            .collect();
-        let points = planning.points(&given.iter().collect::<Vec<_>>())?;
+        let (sheet, points) = points_inside(&mut planning, reading, *panel, &places(answers))?;
         let count = points.len();
         let mut curves = Vec::new();
         for k in 0..if closes { count } else { count - 1 } {
@@ -345,6 +363,37 @@ pub static NOTCH_ROW: SlotTool = SlotTool {
         Ok(planning.done("Add row of notches", items))
     },
 };
+
+/// Points inside a panel, and the sheet they are put on: that of the panel, or, of a side or where the
+/// panel was altered, one that lies on the panel as it is finished.
+fn points_inside(
+    planning: &mut Planning,
+    reading: &Reading<'_>,
+    panel: PanelId,
+    given: &[&Placed],
+) -> Result<(SheetId, Vec<PointId>), EditError> {
+    let owner = panel_of(reading, panel)?;
+    let pattern = reading.evaluation.pattern();
+    let is_here = |sheet: SheetId| {
+        let on = pattern.sheet(sheet).and_then(|sheet| sheet.on);
+        on.is_some_and(|(of, _)| of == panel)
+    };
+    let altered = owner.sheet().is_none() || owner.is_altered();
+    let sheet = match given.iter().find(|placed| is_here(placed.sheet)) {
+        Some(placed) => placed.sheet,
+        None if altered => planning.run(|evaluation| plan::open_sheet(evaluation, panel))?,
+        None => owner.sheet().unwrap_or_default(),
+    };
+    let given: Vec<Placed> = given
+        .iter()
+        .map(|placed| match placed.sheet == sheet {
+            true => (*placed).clone(),
+            false => Placed::free(sheet, placed.at),
+        })
+        .collect();
+    let points = planning.points(&given.iter().collect::<Vec<_>>())?;
+    Ok((sheet, points))
+}
 
 fn panel_of<'r>(reading: &Reading<'r>, id: PanelId) -> Result<&'r Arc<Panel>, EditError> {
     let found = reading.evaluation.pattern().panel(id);

@@ -161,8 +161,8 @@ pub fn panel_under(
     let found = reading.scene.panels.iter().find(is_there);
     found.map(|panel| panel.id).ok_or_else(|| {
         refuse(
-            "no panel lies under the curve there",
-            "click the curve where it lies on a panel of its sheet",
+            "no panel lies there",
+            "click where a panel drawn on the same sheet lies",
         )
     })
 }
