@@ -12,3 +12,9 @@ fn what_is_deleted_at_random_suspends_what_needs_it_and_returns_with_undo() {
         .collect();
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
+
+#[test]
+fn a_variable_that_several_numbers_of_one_step_name_is_missed_once() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(losses(79, folder.path()), Ok(()));
+}

@@ -180,6 +180,16 @@ impl Computation<'_> {
                 message,
                 hint,
             }) => {
+                // Several numbers of one place that lack the same part have one cause.
+                let is_told = code == Code::MissingReference
+                    && self.diagnostics.iter().any(|told| {
+                        told.code == code
+                            && told.place == *place
+                            && told.message.ends_with(&message)
+                    });
+                if is_told {
+                    return None;
+                }
                 let message = match column {
                     Some(column) => format!("{what}: column {column}: {message}"),
                     None => format!("{what}: {message}"),
