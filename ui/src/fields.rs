@@ -1,15 +1,20 @@
 //! Text fields: what is typed into one that was just entered takes the place of what stands there.
 
 use crate::theme::Palette;
+use egui::text::LayoutJob;
 use egui::text::{CCursor, CCursorRange};
-use egui::{Color32, Key, Modifiers, Response, RichText, Sense, TextEdit, Ui};
+use egui::{
+    Color32, Galley, Key, Modifiers, Response, RichText, Sense, TextBuffer, TextEdit, TextStyle, Ui,
+};
 use std::collections::HashMap;
+use std::sync::Arc;
 use toile_pattern::Evaluation;
 
 /// How many names are proposed at once.
 const PROPOSED: usize = 8;
 
-/// A field for a line of text as wide as there is room.
+/// A field for a text as wide as there is room. A longer one is seen whole while it is typed into, in
+/// as many lines as it needs, and beside the pointer that rests on it.
 pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
     let had_focus = had_focus(ui, id);
     // What is typed in the very frame in which the field got the keys takes the place of all, too.
@@ -18,10 +23,20 @@ pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
         choose_all(ui, id, text);
     }
     let before = (!had_focus).then(|| text.clone());
-    let field = TextEdit::singleline(text)
+    let is_typed_into = ui.memory(|memory| memory.has_focus(id));
+    let mut lines = broken;
+    let mut field = TextEdit::singleline(text)
         .id(id)
         .desired_width(f32::INFINITY);
-    let response = field.show(ui).response.response;
+    if is_typed_into {
+        field = field.layouter(&mut lines);
+    }
+    let shown = field.show(ui);
+    let is_cut_off = shown.galley.size().x > shown.text_clip_rect.width() + 0.5;
+    let mut response = shown.response.response;
+    if is_cut_off {
+        response = response.on_hover_text(text.as_str());
+    }
     if response.has_focus() {
         note_focus(ui, id);
     }
@@ -34,6 +49,15 @@ pub fn text_field(ui: &mut Ui, id: egui::Id, text: &mut String) -> Response {
         }
     }
     response
+}
+
+/// Lays a text out in lines no longer than a width.
+fn broken(ui: &Ui, text: &dyn TextBuffer, width: f32) -> Arc<Galley> {
+    let font = TextStyle::Body.resolve(ui.style());
+    let colour = ui.visuals().text_color();
+    let mut job = LayoutJob::simple(text.as_str().to_owned(), font, colour, width);
+    job.keep_trailing_whitespace = true;
+    ui.fonts_mut(|fonts| fonts.layout_job(job))
 }
 
 /// Selects all that stands in a field.

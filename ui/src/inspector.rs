@@ -190,7 +190,12 @@ impl ToileApp {
         let value = |text: &str| -> Result<String, String> {
             let found = number::parse(text, want, &base)?;
             let value = base.number_or_fault(&found, want)?;
-            Ok(format!("= {}", number::show(value, want, unit)))
+            // What may be anything is told as what it is.
+            let told = match want {
+                Want::Any => base.kind(&found),
+                want => want,
+            };
+            Ok(format!("= {}", number::show(value, told, unit)))
         };
         let entered = self
             .typed

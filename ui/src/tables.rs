@@ -31,6 +31,10 @@ const FIRST: &[&str] = &[
 const VALUE: f32 = 84.0;
 const LEAST_LABEL: f32 = 100.0;
 
+/// Width of the name of a variable and of its formula [pixels].
+const NAME: f32 = 150.0;
+const FORMULA: f32 = 260.0;
+
 /// How many measurements are proposed at once.
 const PROPOSED: usize = 5;
 
@@ -339,18 +343,37 @@ impl ToileApp {
             }
         });
         let pattern = self.base.pattern().clone();
-        scrolled(ui, |ui| self.variable_rows(ui, &pattern));
+        ScrollArea::horizontal()
+            .auto_shrink([false, false])
+            .show(ui, |ui| self.variable_rows(ui, &pattern));
     }
 
+    /// The heads of the columns, which stay in sight, and under them the rows.
     fn variable_rows(&mut self, ui: &mut Ui, pattern: &Pattern) {
+        let heads = Grid::new("variable heads").num_columns(4).show(ui, |ui| {
+            let heads = [
+                ("", 0.0),
+                ("Variable name", NAME),
+                ("Number or formula", FORMULA),
+                ("Value", 0.0),
+            ];
+            let heads =
+                heads.map(|(head, width)| named(ui, width, RichText::new(head).strong()).id);
+            ui.end_row();
+            heads
+        });
+        let rows = ScrollArea::vertical().auto_shrink([true, false]);
+        rows.show(ui, |ui| {
+            self.variable_grid(ui, pattern, heads.inner[1]);
+        });
+    }
+
+    fn variable_grid(&mut self, ui: &mut Ui, pattern: &Pattern, name_head: Id) {
         let palette = Palette::of(ui.ctx());
         Grid::new("variables")
             .striped(true)
             .num_columns(5)
             .show(ui, |ui| {
-                let heads = ["", "Variable name", "Number or formula", "Value", ""];
-                let heads = heads.map(|head| ui.label(RichText::new(head).strong()).id);
-                ui.end_row();
                 let last = pattern.variables.last().map(|variable| variable.id);
                 for variable in &pattern.variables {
                     // For those who hear the window: the field beside shows the name.
@@ -359,25 +382,29 @@ impl ToileApp {
                     let field = Id::unique(("variable name", variable.id));
                     let name = &variable.name;
                     ui.scope(|ui| {
-                        ui.set_width(150.0);
+                        ui.set_width(NAME);
                         let entered = self
                             .typed
-                            .field(ui, (field, heads[1]), name, |_| Ok(String::new()));
+                            .field(ui, (field, name_head), name, |_| Ok(String::new()));
                         if let Entered::Text(text) = entered {
                             let planned = plan::rename(&self.base, variable.id.into(), &text);
                             self.enter(planned, "Rename variable", (field, text));
                         }
                     });
                     ui.scope(|ui| {
-                        ui.set_width(260.0);
+                        ui.set_width(FORMULA);
                         for entry in plan::numbers_of(&self.base, variable.id.into()) {
                             self.number_text_field(ui, &entry, label);
                         }
                     });
                     let value = self.base.variable(variable.id);
+                    let want = match value {
+                        Some((_, 1)) => Want::Length,
+                        _ if self.base.is_angle(variable.id) => Want::Angle,
+                        _ => Want::Plain,
+                    };
                     let words = match value {
-                        Some((value, 1)) => number::show(value, Want::Length, pattern.unit),
-                        Some((value, _)) => number::show(value, Want::Plain, pattern.unit),
+                        Some((value, _)) => number::show(value, want, pattern.unit),
                         None => "no value".into(),
                     };
                     let value = ui.label(RichText::new(words).color(palette.ink_soft));

@@ -41,6 +41,10 @@ pub struct Palette {
     pub warning: Color32,
     /// What is as it should be.
     pub good: Color32,
+    /// Behind the garment.
+    pub stage: Color32,
+    /// The floor under the mannequin's feet; at its rim it is as what is behind it.
+    pub floor: Color32,
 }
 
 /// By day: paper, cloth and chalk.
@@ -63,6 +67,8 @@ pub const LIGHT: Palette = Palette {
     fault: Color32::from_rgb(0xA8, 0x32, 0x2A),
     warning: Color32::from_rgb(0x85, 0x58, 0x0A),
     good: Color32::from_rgb(0x2C, 0x6E, 0x3A),
+    stage: Color32::from_rgb(0xE4, 0xE6, 0xE7),
+    floor: Color32::from_rgb(0xC4, 0xC6, 0xC7),
 };
 
 /// By night.
@@ -85,10 +91,12 @@ pub const DARK: Palette = Palette {
     fault: Color32::from_rgb(0xF0, 0x8A, 0x7E),
     warning: Color32::from_rgb(0xE2, 0xB1, 0x5A),
     good: Color32::from_rgb(0x86, 0xCB, 0x93),
+    stage: Color32::from_rgb(0x2A, 0x2D, 0x31),
+    floor: Color32::from_rgb(0x43, 0x47, 0x4C),
 };
 
-/// Behind the garment.
-pub const STAGE: Color32 = Color32::from_rgb(0xE4, 0xE6, 0xE7);
+/// How far to each side of the rim between two parts of the window it is taken hold of [pixels].
+pub const GRAB: f32 = 4.0;
 
 impl Palette {
     /// The colours of the theme a window is in.
@@ -155,6 +163,7 @@ pub fn apply(context: &egui::Context) {
             style.spacing.button_padding = vec2(8.0, 4.0);
             style.spacing.interact_size = vec2(40.0, 26.0);
             style.spacing.menu_margin = Margin::same(6);
+            style.interaction.resize_grab_radius_side = GRAB;
             colour(&mut style.visuals, theme);
         });
     }

@@ -226,8 +226,6 @@ fn sew(reader: &mut Reader) {
     for edge in ["side", "shoulder"] {
         let panel = if edge == "side" { "back" } else { "front" };
         reader.edge(panel, edge);
-        reader.drafter.key(Key::Minus);
-        reader.drafter.key(Key::Minus);
         reader.drafter.key(Key::W);
         reader.drafter.key(Key::End);
         if edge == "shoulder" {

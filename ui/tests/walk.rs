@@ -167,6 +167,32 @@ fn tab_lets_the_other_piece_stay() {
 }
 
 #[test]
+fn both_pieces_are_seen_from_the_beginning_and_the_table_stays() {
+    let mut drafter = Drafter::opened("t-shirt");
+    let edge = drafter.part("Edge shoulder of front");
+    drafter.click(edge);
+    drafter.chord(Modifiers::SHIFT, Key::X);
+    let before = drafter.window.state().view().camera;
+    drafter.key(Key::W);
+    let camera = drafter.window.state().view().camera;
+    assert!(camera != before && camera.scale <= before.scale);
+    let view = drafter.window.get_by_label("Pattern view").rect();
+    for key in [Key::Home, Key::ArrowRight, Key::End, Key::Tab, Key::Tab] {
+        drafter.key(key);
+        let state = drafter.window.state().view();
+        assert_eq!(state.camera, camera, "{key:?}");
+        if key != Key::Tab {
+            let mut ring = ghost(&drafter).into_iter();
+            assert!(ring.all(|at| view.contains(state.screen(view, Vec2::zeros(), at))));
+        }
+    }
+    // What is seen is left as it is.
+    drafter.key(Key::Escape);
+    drafter.key(Key::W);
+    assert_eq!(drafter.window.state().view().camera, camera);
+}
+
+#[test]
 fn what_keys_lead_to_is_brought_into_view() {
     let mut drafter = walking();
     drafter.key(Key::Home);

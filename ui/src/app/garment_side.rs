@@ -101,8 +101,7 @@ impl ToileApp {
             pos2(view.right() - 12.0, view.bottom() - 10.0),
         );
         ui.scope_builder(egui::UiBuilder::new().max_rect(line), |ui| {
-            // The ground behind the garment is light in both themes.
-            let words = RichText::new(words).color(theme::LIGHT.ink_soft);
+            let words = RichText::new(words).color(palette.ink_soft);
             ui.add(egui::Label::new(words).truncate());
         });
     }

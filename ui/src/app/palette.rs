@@ -7,7 +7,7 @@ use super::command_table::commands;
 use super::dialogs::Dialog;
 use crate::canvas::selection::{Item, Selection};
 use crate::tools::Tool;
-use egui::{Key, ScrollArea, Ui};
+use egui::{Button, Key, ScrollArea, Ui, vec2};
 use toile_pattern::Pattern;
 
 /// Most commands and parts that are listed.
@@ -50,20 +50,24 @@ impl ToileApp {
         let mut taken = found.get(*chosen).cloned().filter(|_| entered);
         ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
             for (k, one) in found.iter().enumerate() {
-                let (words, tip, enabled) = match one {
+                let (words, key, tip, enabled) = match one {
                     Found::Command(command) => {
-                        let key = command.key.map(|key| ui.ctx().format_shortcut(&key));
-                        let words = format!("{}   {}", command.name, key.unwrap_or_default());
-                        (words, command.tip, (command.when)(self))
+                        (command.name, command.key, command.tip, (command.when)(self))
                     }
-                    Found::Part(_, words) => (words.clone(), "Select it and show it", true),
+                    Found::Part(_, words) => (words.as_str(), None, "Select it and show it", true),
                 };
-                ui.add_enabled_ui(enabled, |ui| {
-                    let label = ui.selectable_label(k == *chosen, words);
-                    if label.on_hover_text(tip).clicked() {
-                        taken = Some(one.clone());
-                    }
+                let mut button = Button::selectable(k == *chosen, words);
+                if let Some(key) = key {
+                    button = button.shortcut_text(ui.ctx().format_shortcut(&key));
+                }
+                let button = button.min_size(vec2(ui.available_width(), 0.0));
+                let button = ui.add_enabled(enabled, button);
+                button.widget_info(|| {
+                    egui::WidgetInfo::selected(egui::Role::Button, enabled, k == *chosen, words)
                 });
+                if button.on_hover_text(tip).clicked() {
+                    taken = Some(one.clone());
+                }
             }
         });
         match taken {

@@ -39,8 +39,8 @@ pub struct ShownPoint<'s> {
     pub origin: Vec2,
 }
 
-/// Points that are shown: corners always, the others where nothing is traced yet or while something
-/// of their sheet is selected.
+/// Points that are shown: corners where an outline has them, the others where nothing is traced yet or
+/// while something of their sheet is selected.
 pub fn shown_points<'s>(
     scene: &'s Scene,
     boards: &Boards,
@@ -56,7 +56,7 @@ pub fn shown_points<'s>(
             .filter(|panel| panel.sheet == sheet.id && boards.is_apart(panel))
             .collect();
         for point in &sheet.points {
-            if is_open || point.role == PointRole::Corner {
+            if is_open || (point.role == PointRole::Corner && !point.is_left) {
                 shown.push(ShownPoint {
                     point,
                     sheet: sheet.id,
@@ -65,7 +65,8 @@ pub fn shown_points<'s>(
             }
             for panel in &apart {
                 let is_own = panel.corners.contains(&point.id);
-                if is_own {
+                let is_left = panel.left.contains(&point.id);
+                if is_own && !is_left {
                     shown.push(ShownPoint {
                         point,
                         sheet: sheet.id,

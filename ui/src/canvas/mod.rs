@@ -7,6 +7,7 @@ pub mod fill;
 pub mod grading;
 pub mod hit;
 mod inside;
+mod names;
 pub mod paint;
 mod paint_seams;
 mod paint_sheet_tag;

@@ -25,6 +25,9 @@ pub(super) const NUMBER_INSET: f64 = 16.0;
 /// Length of a notch [pixels].
 const NOTCH: f32 = 9.0;
 
+/// How much is seen of what steps of a panel led away from.
+const FAINT: f32 = 0.55;
+
 /// Room beside the longest line of a label [pixels].
 const LABEL_MARGIN: f32 = 24.0;
 
@@ -94,9 +97,11 @@ impl Picture<'_> {
         for sheet in tagged(self.scene, self.open) {
             self.sheet_tag(sheet);
         }
-        for shown in shown_points(self.scene, self.boards, self.open) {
-            self.point(&shown);
+        let points = shown_points(self.scene, self.boards, self.open);
+        for shown in &points {
+            self.point(shown);
         }
+        self.point_names(&points);
         for mark in overlay {
             self.overlay(mark);
         }
@@ -192,17 +197,25 @@ impl Picture<'_> {
         }
     }
 
-    /// Curves that no panel follows where it lies, as pencil lines.
+    /// Curves that no panel follows where it lies, as pencil lines; faint those that steps of its panel
+    /// led away from, while its sheet is open.
     fn curves(&self, sheet: &SheetScene) {
         let origin = self.boards.sheet(sheet.id);
+        let is_open = self.open.contains(&sheet.id);
+        let is_left = |end: &Vec2| {
+            let mut left = sheet.points.iter().filter(|point| point.is_left);
+            left.any(|point| (point.at - end).norm() < 1e-9)
+        };
         for curve in &sheet.curves {
             let lit = self.is_lit(Item::Curve(curve.id));
-            if curve.is_traced && !lit {
-                continue;
-            }
-            let stroke = match lit {
-                true => Stroke::new(2.6, self.palette.accent),
-                false => Stroke::new(1.3, self.palette.ink_soft),
+            let ends = [curve.line.first(), curve.line.last()];
+            let stroke = match () {
+                () if lit => Stroke::new(2.6, self.palette.accent),
+                () if !curve.is_traced => Stroke::new(1.3, self.palette.ink_soft),
+                () if is_open && ends.into_iter().flatten().any(is_left) => {
+                    Stroke::new(1.0, self.palette.pencil.gamma_multiply(FAINT))
+                }
+                () => continue,
             };
             self.painter.line(self.line(origin, &curve.line), stroke);
         }
@@ -386,9 +399,10 @@ impl Picture<'_> {
             true => self.palette.accent,
             false => self.palette.field,
         };
-        let edge = match lit {
-            true => self.palette.accent,
-            false => self.palette.ink,
+        let edge = match () {
+            () if lit => self.palette.accent,
+            () if shown.point.is_left => self.palette.pencil.gamma_multiply(FAINT),
+            () => self.palette.ink,
         };
         let radius = if lit { 4.5 } else { 3.2 };
         let stroke = Stroke::new(1.4, edge);
@@ -407,18 +421,6 @@ impl Picture<'_> {
                     self.painter.line_segment([at - way, at + way], stroke);
                 }
             }
-        }
-        let is_open = self.open.contains(&shown.sheet) || self.scene.panels.is_empty();
-        if lit {
-            self.tag(at + vec2(10.0, -14.0), &shown.point.name);
-        } else if is_open && shown.point.role != PointRole::Handle {
-            self.painter.text(
-                at + vec2(6.0, -6.0),
-                Align2::LEFT_BOTTOM,
-                &shown.point.name,
-                theme::font(11.5),
-                self.palette.ink_soft,
-            );
         }
     }
 
@@ -465,11 +467,12 @@ impl Picture<'_> {
     }
 
     /// A small label beside something.
-    fn tag(&self, at: Pos2, text: &str) {
-        self.label(at, text, self.palette.accent);
+    pub(super) fn tag(&self, at: Pos2, text: &str) -> Rect {
+        self.label(at, text, self.palette.accent)
     }
 
-    pub(super) fn label(&self, at: Pos2, text: &str, ground_colour: Color32) {
+    /// Paints a label, and says where.
+    pub(super) fn label(&self, at: Pos2, text: &str, ground_colour: Color32) -> Rect {
         // A long formula is broken into lines rather than cut off.
         let (font, most) = (theme::font(12.5), self.clear_view().width() - LABEL_MARGIN);
         let text = text.to_owned();
@@ -491,6 +494,7 @@ impl Picture<'_> {
         let corner = Align2::CENTER_CENTER.align_size_within_rect(text.size(), ground);
         self.painter
             .galley(corner.min, text, self.palette.on_accent);
+        ground
     }
 }
 

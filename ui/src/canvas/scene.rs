@@ -16,6 +16,9 @@ use toile_pattern::{
 /// Largest distance of a drawn curve from the true one [pixels].
 const CURVE_TOLERANCE: f64 = 0.15;
 
+/// How near the end of a line lies to the corner that it is [m].
+const AT_CORNER: f64 = 1e-6;
+
 /// Everything the canvas draws of a pattern.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
@@ -92,6 +95,8 @@ pub struct PointScene {
     pub at: Vec2,
     /// What it is for.
     pub role: PointRole,
+    /// Whether it is a corner that no outline has where it lies: steps of its panels moved it.
+    pub is_left: bool,
 }
 
 /// A curve as drawn.
@@ -126,6 +131,8 @@ pub struct PanelScene {
     pub shape: Arc<PanelShape>,
     /// Points its edges end at.
     pub corners: BTreeSet<PointId>,
+    /// Those of them that its steps moved: nothing that is seen ends where they are drawn.
+    pub left: BTreeSet<PointId>,
     /// The step that laid it on the fold.
     pub fold_step: Option<OperationId>,
     /// Both ends of the fold line.
@@ -161,12 +168,26 @@ impl Scene {
             .filter(|panel| !pattern.is_replaced(panel))
             .filter_map(|panel| self.panel(panel, evaluation, &mut shapes))
             .collect();
+        self.leave_points();
         // What is drawn no more is forgotten.
         self.lines = lines;
         self.shapes = shapes;
         self.seams = draw_seams(draft, self.tolerance());
         self.made += self.cut_lines.follow(pattern, draft);
         self.draft = draft.clone();
+    }
+
+    /// Notes the points that no panel has as a corner where they lie.
+    fn leave_points(&mut self) {
+        for sheet in &mut self.sheets {
+            for point in &mut sheet.points {
+                let of_sheet = self.panels.iter().filter(|panel| panel.sheet == sheet.id);
+                let mut own = of_sheet
+                    .filter(|panel| panel.corners.contains(&point.id))
+                    .peekable();
+                point.is_left = own.peek().is_some() && own.all(|p| p.left.contains(&point.id));
+            }
+        }
     }
 
     /// Leaves out everything but some panels and the sheets they are traced from.
@@ -254,6 +275,7 @@ impl Scene {
                     id if shaping.contains(&id) => PointRole::Handle,
                     _ => PointRole::Construction,
                 },
+                is_left: false,
             })
         });
         let is_bare = own.count() == 0 && sheet.on.is_none();
@@ -332,12 +354,14 @@ impl Scene {
         };
         let shape = kept.shape.clone();
         shapes.insert(key, kept);
+        let corners = corners(panel, stage);
         Some(PanelScene {
             id: panel.id,
             sheet: evaluation.pattern().sheet_of(panel)?,
             name: panel.name.clone(),
             cut: cut_words(panel),
-            corners: corners(panel, stage),
+            left: left(&corners, stage, evaluation),
+            corners,
             shape,
             fold_step: panel
                 .operations
@@ -390,6 +414,18 @@ fn corners(panel: &Panel, stage: &Stage) -> BTreeSet<PointId> {
         _ => None,
     });
     starts.collect()
+}
+
+/// Of some corners those that lie where no line of the stage has an end.
+fn left(corners: &BTreeSet<PointId>, stage: &Stage, evaluation: &Evaluation) -> BTreeSet<PointId> {
+    let edges = stage.lines.iter().flat_map(|line| &line.edges);
+    let ends = edges.flat_map(|edge| [edge.curve.start(), edge.curve.end()]);
+    let ends: Vec<Vec2> = ends.collect();
+    let is_left = |id: &&PointId| {
+        let at = evaluation.point(**id);
+        at.is_some_and(|at| ends.iter().all(|end| (end - at).norm() > AT_CORNER))
+    };
+    corners.iter().filter(is_left).copied().collect()
 }
 
 /// Both ends of the line a stage is unfolded in: those of the half that is drawn.

@@ -3,9 +3,9 @@
 
 use super::orbit::Orbit;
 use super::solid::{CORNER_FLOATS, Corner};
-use crate::theme;
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
+use egui::Color32;
 
 /// Samples a pixel: every adapter of WebGPU's baseline has 4.
 const SAMPLES: u32 = 4;
@@ -110,11 +110,12 @@ impl StageRenderer {
         into.buffer = Some(buffer);
     }
 
-    /// Draws triangles and lines as seen by the eye and returns the image, of that size [pixels].
+    /// Draws triangles and lines before a ground of a colour, as seen by the eye, and returns the
+    /// image, of that size [pixels].
     pub fn draw(
         &mut self,
         orbit: &Orbit,
-        size: [u32; 2],
+        (size, ground): ([u32; 2], Color32),
         triangles: &[&CornerBuffer],
         lines: &CornerBuffer,
     ) -> egui::TextureId {
@@ -128,7 +129,7 @@ impl StageRenderer {
         {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("stage"),
-                color_attachments: &[Some(target.colour())],
+                color_attachments: &[Some(target.colour(ground))],
                 depth_stencil_attachment: Some(target.depth()),
                 ..Default::default()
             });
@@ -211,8 +212,8 @@ impl StageRenderer {
 }
 
 impl Target {
-    fn colour(&self) -> wgpu::RenderPassColorAttachment<'_> {
-        let [red, green, blue, _] = theme::STAGE.to_normalized_gamma_f32().map(f64::from);
+    fn colour(&self, ground: Color32) -> wgpu::RenderPassColorAttachment<'_> {
+        let [red, green, blue, _] = ground.to_normalized_gamma_f32().map(f64::from);
         wgpu::RenderPassColorAttachment {
             view: &self.samples,
             depth_slice: None,

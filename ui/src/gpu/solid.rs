@@ -1,5 +1,6 @@
 //! Meshes as the 3D view draws them: corners with normals and colours, and seam lines.
 
+use crate::theme::Palette;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_geometry::{Vec3, triangle_area};
@@ -61,8 +62,6 @@ fn linear(srgb: f64) -> f32 {
 const LINEN: [f64; 3] = [0.80, 0.765, 0.715];
 /// Radius of the floor [m].
 const FLOOR: f64 = 0.75;
-/// Colour under the feet and at the rim, sRGB; the rim is the background's.
-const FLOOR_COLOURS: [[f64; 3]; 2] = [[0.77, 0.775, 0.78], [0.894, 0.902, 0.906]];
 /// Neighbouring panels of one cloth differ by this much lightness, so that seams are seen.
 const PANEL_SHADES: [f64; 3] = [1.0, 0.93, 1.05];
 
@@ -93,29 +92,27 @@ fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     normals
 }
 
-/// The mannequin on its floor.
+/// The mannequin.
 pub fn mannequin(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Corner> {
     let normals = normals(positions, triangles);
     let colour = LINEN.map(linear);
-    let mut corners: Vec<Corner> = triangles
-        .iter()
-        .flatten()
-        .map(|&v| {
-            Corner::new(
-                positions[v as usize],
-                normals[v as usize],
-                colour,
-                Finish::Solid,
-            )
-        })
-        .collect();
-    corners.extend(floor());
-    corners
+    let corners = triangles.iter().flatten().map(|&v| {
+        Corner::new(
+            positions[v as usize],
+            normals[v as usize],
+            colour,
+            Finish::Solid,
+        )
+    });
+    corners.collect()
 }
 
-/// A disc that fades into the background.
-fn floor() -> Vec<Corner> {
-    let [middle, rim] = FLOOR_COLOURS.map(|colour| colour.map(linear));
+/// A disc that fades into what is behind it.
+pub fn floor(palette: &Palette) -> Vec<Corner> {
+    let [middle, rim] = [palette.floor, palette.stage].map(|colour| {
+        let [red, green, blue, _] = colour.to_array();
+        [red, green, blue].map(|share| linear(f64::from(share) / 255.0))
+    });
     let count = 64;
     let at = |k: usize| {
         let angle = std::f64::consts::TAU * k as f64 / count as f64;

@@ -4,7 +4,7 @@
 use super::number;
 use super::{Event, Going, Outcome, Overlay, Pointer, Reading, Tone};
 use crate::canvas::selection::{Item, Selection};
-use toile_geometry::{Curve, Vec2};
+use toile_geometry::{Bounds2, Curve, Vec2};
 use toile_pattern::plan::Affine;
 use toile_pattern::walk::{Contact, Joint, NOTCHES_MEET, Smoothness, Stays, Walk, WalkedNotch};
 use toile_pattern::{
@@ -54,7 +54,7 @@ struct Seen<'r> {
 }
 
 /// The first seam that is selected.
-fn selected(reading: &Reading<'_>) -> Option<SeamId> {
+pub fn selected(reading: &Reading<'_>) -> Option<SeamId> {
     let mut items = reading.selection.items().iter();
     items.find_map(|item| match item {
         Item::Seam(id) => Some(*id),
@@ -124,6 +124,25 @@ impl<'r> Seen<'r> {
         }
         best
     }
+}
+
+/// The least rectangle of the table round the piece that stays and the other where it lies at both
+/// ends of the selected seam [m].
+pub fn room(state: &WalkState, reading: &Reading<'_>) -> Option<Bounds2> {
+    let seen = Seen::new(reading)?;
+    let sides = state.stays.sides();
+    let mut places: Vec<Vec2> = Vec::new();
+    for along in [0.0, seen.walk.lengths()[0]] {
+        let contact = seen.walk.contact(along, state.stays);
+        let maps = seen.maps(&contact, state.stays)?;
+        for (side, map) in sides.into_iter().zip(maps) {
+            let piece = seen.piece(&contact, side)?;
+            let outline = piece.outline.iter();
+            let points = outline.flat_map(|edge| edge.curve.flatten(FLATNESS));
+            places.extend(points.map(|at| map.apply(at)));
+        }
+    }
+    Some(Bounds2::of(places))
 }
 
 /// The distance that is walked to: what is typed, if it can be read, else where the walk has come.

@@ -1,9 +1,9 @@
 //! The 3D view: mannequin and garment, seen by an eye that goes round them.
 
 use crate::gpu::orbit::Orbit;
-use crate::gpu::solid::{ClothLook, ClothSolid, Corner, mannequin};
+use crate::gpu::solid::{ClothLook, ClothSolid, Corner, floor, mannequin};
 use crate::gpu::{CornerBuffer, StageRenderer};
-use crate::theme;
+use crate::theme::{self, Palette};
 use eframe::egui_wgpu::RenderState;
 use egui::{Align2, CursorIcon, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use toile_geometry::{TriangleMesh, Vec3};
@@ -18,6 +18,7 @@ pub struct GarmentView {
     body: Vec<Corner>,
     body_bounds: Option<[Vec3; 2]>,
     body_buffer: CornerBuffer,
+    floor_buffer: CornerBuffer,
     look: Option<ClothLook>,
     cloth: ClothSolid,
     cloth_buffer: CornerBuffer,
@@ -42,6 +43,7 @@ struct Stale {
 struct Drawn {
     orbit: Orbit,
     size: [u32; 2],
+    theme: egui::Theme,
     id: egui::TextureId,
 }
 
@@ -105,7 +107,14 @@ impl GarmentView {
     /// Draws the view and takes what is done in it.
     pub fn show(&mut self, ui: &mut Ui, empty: &str) {
         let view = ui.available_rect_before_wrap();
-        let response = ui.allocate_rect(view, Sense::click_and_drag());
+        // The rims of the parts beside it stay free to be taken hold of.
+        let inner = view.shrink(theme::GRAB);
+        let response = ui.interact(
+            inner,
+            ui.scope_id().with("3D view"),
+            Sense::click_and_drag(),
+        );
+        ui.advance_cursor_after_rect(view);
         response.widget_info(|| {
             let words = match self.vertices {
                 0 => "3D view".to_owned(),
@@ -124,7 +133,8 @@ impl GarmentView {
             self.wants_fit = false;
             self.fitted = Some(view.size());
         }
-        ui.painter().rect_filled(view, 0.0, theme::STAGE);
+        let palette = Palette::of(ui.ctx());
+        ui.painter().rect_filled(view, 0.0, palette.stage);
         let words = match &self.renderer {
             None => "This computer offers no graphics card or driver for the 3D view",
             Some(_) if !self.has_body() => empty,
@@ -137,7 +147,7 @@ impl GarmentView {
                 Align2::CENTER_CENTER,
                 words,
                 theme::font(14.5),
-                theme::LIGHT.ink_soft,
+                palette.ink_soft,
             );
         }
     }
@@ -171,7 +181,10 @@ impl GarmentView {
         };
         let pixels = view.size() * ui.ctx().pixels_per_point();
         let size = [pixels.x, pixels.y].map(|x| x.round().clamp(1.0, 8192.0) as u32);
-        let fresh = !self.stale.body && !self.stale.cloth;
+        let theme = ui.ctx().theme();
+        let palette = Palette::of(ui.ctx());
+        let is_same_theme = self.drawn.is_some_and(|drawn| drawn.theme == theme);
+        let fresh = !self.stale.body && !self.stale.cloth && is_same_theme;
         let kept = self
             .drawn
             .filter(|drawn| fresh && drawn.orbit == self.orbit && drawn.size == size);
@@ -185,14 +198,22 @@ impl GarmentView {
                     renderer.upload(&self.cloth.corners, &mut self.cloth_buffer);
                     renderer.upload(&self.cloth.lines, &mut self.line_buffer);
                 }
+                if !is_same_theme {
+                    renderer.upload(&floor(palette), &mut self.floor_buffer);
+                }
                 self.stale = Stale::default();
-                let solids = [&self.body_buffer, &self.cloth_buffer];
-                renderer.draw(&self.orbit, size, &solids, &self.line_buffer)
+                // Nobody stands on the floor before there is a mannequin.
+                let floor = (!self.body.is_empty()).then_some(&self.floor_buffer);
+                let solids = [&self.body_buffer, &self.cloth_buffer].into_iter();
+                let solids: Vec<_> = solids.chain(floor).collect();
+                let image = (size, palette.stage);
+                renderer.draw(&self.orbit, image, &solids, &self.line_buffer)
             }
         };
         self.drawn = Some(Drawn {
             orbit: self.orbit,
             size,
+            theme,
             id,
         });
         let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));

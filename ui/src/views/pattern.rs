@@ -12,12 +12,12 @@ use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
 use crate::canvas::sheet_tag::tagged;
 use crate::canvas::snap::snaps;
-use crate::theme::Palette;
-use crate::tools::{Event, Held, Outcome, Overlay, Pointer, Reading, State, Tool};
+use crate::theme::{GRAB, Palette};
+use crate::tools::{Event, Held, Outcome, Overlay, Pointer, Reading, State, Tool, walk};
 use egui::{CursorIcon, Id, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use std::sync::Arc;
 use toile_geometry::Vec2;
-use toile_pattern::{Draft, Evaluation, PanelId, Pattern, SheetId};
+use toile_pattern::{Draft, Evaluation, PanelId, Pattern, SeamId, SheetId};
 
 /// Enlargement by one press of a zoom key.
 pub const ZOOM_STEP: f64 = 1.25;
@@ -78,6 +78,8 @@ pub struct PatternView {
     revealed: Option<Item>,
     /// Size of the view that everything was fitted into, until it is panned or zoomed.
     fitted: Option<egui::Vec2>,
+    /// The seam that room was made for when its walk began.
+    walked: Option<SeamId>,
 }
 
 impl Default for PatternView {
@@ -108,6 +110,7 @@ impl Default for PatternView {
             wants_fit: false,
             revealed: None,
             fitted: None,
+            walked: None,
         }
     }
 }
@@ -273,7 +276,9 @@ impl PatternView {
     /// gesture that is shown.
     pub fn show(&mut self, ui: &mut Ui, evaluation: &Evaluation) -> Vec<Outcome> {
         let view = ui.available_rect_before_wrap();
-        let response = ui.interact(view, Self::id(), Sense::click_and_drag());
+        // The rims of the parts beside it stay free to be taken hold of.
+        let inner = view.shrink(GRAB);
+        let response = ui.interact(inner, Self::id(), Sense::click_and_drag());
         ui.advance_cursor_after_rect(view);
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Pattern view"));
         let camera = self.camera;
@@ -291,6 +296,7 @@ impl PatternView {
             self.fitted = Some(view.size());
         }
         self.follow_revealed(view);
+        self.make_room(ui, view, evaluation);
         let mut outcomes = Vec::new();
         self.canvas = (!self.is_busy()).then(|| response.clone());
         if response.secondary_clicked()
@@ -322,6 +328,35 @@ impl PatternView {
             });
         }
         outcomes
+    }
+
+    /// When a walk begins, the table is moved away so far that both pieces are seen wherever it leads.
+    /// While it goes on the table stays.
+    fn make_room(&mut self, ui: &Ui, view: Rect, evaluation: &Evaluation) {
+        let State::Walk(state) = &self.state else {
+            self.walked = None;
+            return;
+        };
+        let reading = self.reading(evaluation);
+        let seam = walk::selected(&reading);
+        if seam == self.walked || view.width() <= 50.0 {
+            return;
+        }
+        let room = walk::room(state, &reading);
+        self.walked = seam;
+        let Some(room) = room else {
+            return;
+        };
+        let mut corners = [room.min, room.max].into_iter();
+        if corners.all(|at| view.contains(self.screen(view, Vec2::zeros(), at))) {
+            return;
+        }
+        let scale = self.camera.scale;
+        self.camera.fit(view, &room);
+        // What is seen small enough is moved alone.
+        self.camera.scale = self.camera.scale.min(scale);
+        self.fitted = None;
+        ui.ctx().request_repaint();
     }
 
     /// Where the pieces of a seam touch comes into the middle of the view if a key led out of it.

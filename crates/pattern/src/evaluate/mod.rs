@@ -184,6 +184,11 @@ impl Evaluation {
         }
     }
 
+    /// Whether a variable is an angle, whose value is [rad].
+    pub fn is_angle(&self, id: crate::VariableId) -> bool {
+        matches!(self.value(Node::Variable(id)), Some(Value::Number(quantity)) if quantity.is_angle)
+    }
+
     pub(crate) fn seam_value(&self, id: crate::SeamId) -> Option<&Arc<SeamValue>> {
         match self.value(Node::Seam(id))? {
             Value::Seam(value) => Some(value),

@@ -121,7 +121,9 @@ impl Value {
     pub fn is_same(&self, other: &Self) -> bool {
         let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
         match (self, other) {
-            (Self::Number(a), Self::Number(b)) => a.power == b.power && same(a.value, b.value),
+            (Self::Number(a), Self::Number(b)) => {
+                same(a.value, b.value) && (a.power, a.is_angle) == (b.power, b.is_angle)
+            }
             (Self::Point(a), Self::Point(b)) => same(a.x, b.x) && same(a.y, b.y),
             (Self::Path(a), Self::Path(b)) => Arc::ptr_eq(a, b) || is_same_path(a, b),
             (Self::Stage(a), Self::Stage(b)) => Arc::ptr_eq(a, b) || a.is_same(b),

@@ -59,6 +59,17 @@ impl Evaluation {
         value.ok_or_else(|| fault.unwrap_or_else(|| "it has no value yet".into()))
     }
 
+    /// What the value of a number is that may be anything, as a variable's: a length, an angle, else
+    /// plain.
+    pub fn kind(&self, number: &Number) -> Want {
+        let mut computation = Computation::new(self);
+        match computation.variable(number) {
+            Ok(Quantity { power: 1, .. }) => Want::Length,
+            Ok(Quantity { is_angle: true, .. }) => Want::Angle,
+            _ => Want::Plain,
+        }
+    }
+
     /// The value of a length that is no node's own [m], and what is wrong with it.
     pub(crate) fn length_of(
         &self,
@@ -76,8 +87,11 @@ impl Evaluation {
         let value = given.or_else(base)?;
         let known = toile_measure::definition(name);
         let is_angle = known.is_some_and(|known| known.kind == toile_measure::UnitKind::Angle);
-        let power = i8::from(!is_angle);
-        Some((Quantity { value, power }, given.is_none()))
+        let quantity = match is_angle {
+            true => Quantity::angle(value),
+            false => Quantity::length(value),
+        };
+        Some((quantity, given.is_none()))
     }
 
     /// The variable that a word names which is no measurement.
@@ -95,18 +109,23 @@ impl Evaluation {
         place: &Place,
         what: &str,
     ) -> (Option<f64>, Vec<Diagnostic>) {
-        let mut computation = Computation {
-            evaluation: self,
-            k: 0,
-            diagnostics: Vec::new(),
-            cause: 0,
-        };
+        let mut computation = Computation::new(self);
         let value = computation.number(number, want, place, what);
         (value, computation.diagnostics)
     }
 }
 
-impl Computation<'_> {
+impl<'e> Computation<'e> {
+    /// The computation of what is no node's own.
+    fn new(evaluation: &'e Evaluation) -> Self {
+        Self {
+            evaluation,
+            k: 0,
+            diagnostics: Vec::new(),
+            cause: 0,
+        }
+    }
+
     /// The value of a number; a fault is reported at `place`, `what` names the number in words.
     pub fn number(
         &mut self,
@@ -125,9 +144,10 @@ impl Computation<'_> {
     }
 
     pub fn quantity(&mut self, number: &Number, want: Want) -> Result<Quantity, Failure> {
-        let plain = |value: f64| Quantity {
-            value,
-            power: i8::from(want == Want::Length),
+        let plain = |value: f64| match want {
+            Want::Length => Quantity::length(value),
+            Want::Angle => Quantity::angle(value),
+            Want::Plain | Want::Any => Quantity::plain(value),
         };
         match number {
             Number::Value(value) => Ok(plain(*value)),
@@ -157,8 +177,8 @@ impl Computation<'_> {
         let found = self.quantity(number, Want::Plain)?;
         match number {
             Number::PerSize { usual, .. } => Ok(Quantity {
-                power: self.variable(usual)?.power,
-                ..found
+                value: found.value,
+                ..self.variable(usual)?
             }),
             _ => Ok(found),
         }
@@ -422,7 +442,7 @@ impl Environment for Reading<'_, '_> {
 
 /// Refuses wrong dimensions and numbers beyond any garment.
 pub(crate) fn bounded(quantity: Quantity, want: Want) -> Result<f64, Failure> {
-    let Quantity { value, power } = quantity;
+    let Quantity { value, power, .. } = quantity;
     let (wanted, limit, unit) = match want {
         Want::Length => (1, LONGEST, " m"),
         Want::Plain | Want::Angle => (0, LARGEST, ""),
@@ -458,7 +478,7 @@ pub(crate) fn bounded(quantity: Quantity, want: Want) -> Result<f64, Failure> {
 /// A place within the bounds of a garment.
 pub(crate) fn bounded_place(place: Vec2) -> Result<Vec2, Failure> {
     for value in [place.x, place.y] {
-        bounded(Quantity { value, power: 1 }, Want::Length)?;
+        bounded(Quantity::length(value), Want::Length)?;
     }
     Ok(place)
 }

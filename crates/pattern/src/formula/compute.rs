@@ -11,6 +11,8 @@ use toile_geometry::Vec2;
 pub(crate) struct Quantity {
     pub value: f64,
     pub power: i8,
+    /// Whether a plain number is an angle [rad], which is told in degrees. Nothing is refused by it.
+    pub is_angle: bool,
 }
 
 /// Why a formula has no value.
@@ -97,10 +99,7 @@ pub(crate) fn compute(
                 at = *to;
                 continue;
             }
-            Operation::Constant { value, power } => Quantity {
-                value: *value,
-                power: *power,
-            },
+            Operation::Constant(quantity) => *quantity,
             Operation::Variable(id) => environment.variable(*id).map_err(here)?,
             Operation::Word(name) => environment.measurement(name).map_err(here)?,
             Operation::Length(part) => length(environment.length(part).map_err(here)?),
@@ -122,7 +121,7 @@ pub(crate) fn compute(
                 let [a] = pop(&mut stack);
                 Quantity {
                     value: -a.value,
-                    power: a.power,
+                    ..a
                 }
             }
             Operation::Not => {
@@ -175,12 +174,39 @@ pub(crate) fn compute(
     Ok(result)
 }
 
+impl Quantity {
+    /// A length [m].
+    pub fn length(value: f64) -> Self {
+        Self {
+            power: 1,
+            ..Self::plain(value)
+        }
+    }
+
+    /// A plain number.
+    pub fn plain(value: f64) -> Self {
+        Self {
+            value,
+            power: 0,
+            is_angle: false,
+        }
+    }
+
+    /// An angle [rad].
+    pub fn angle(value: f64) -> Self {
+        Self {
+            is_angle: true,
+            ..Self::plain(value)
+        }
+    }
+}
+
 fn length(value: f64) -> Quantity {
-    Quantity { value, power: 1 }
+    Quantity::length(value)
 }
 
 fn plain(value: f64) -> Quantity {
-    Quantity { value, power: 0 }
+    Quantity::plain(value)
 }
 
 fn truth(holds: bool) -> Quantity {
@@ -189,7 +215,7 @@ fn truth(holds: bool) -> Quantity {
 
 fn direction([a, b]: [Vec2; 2]) -> Quantity {
     let way = b - a;
-    plain(way.y.atan2(way.x))
+    Quantity::angle(way.y.atan2(way.x))
 }
 
 fn compare(comparison: Comparison, a: f64, b: f64) -> bool {
@@ -225,7 +251,11 @@ fn common_power(a: Quantity, b: Quantity) -> Option<i8> {
 
 fn like(a: Quantity, b: Quantity, value: f64) -> Arithmetic {
     match common_power(a, b) {
-        Some(power) => Ok(Quantity { value, power }),
+        Some(power) => Ok(Quantity {
+            value,
+            power,
+            is_angle: a.is_angle || b.is_angle,
+        }),
         None => Err((
             format!("{} is put together with {}", kind(a.power), kind(b.power)),
             "give the plain number a unit, for example 2cm",
@@ -241,9 +271,11 @@ fn product(a: Quantity, b: Quantity) -> Arithmetic {
             "a length may be multiplied by plain numbers only, if the result is a length",
         ));
     }
+    // An angle times a length is an arc.
     Ok(Quantity {
         value: a.value * b.value,
         power,
+        is_angle: power == 0 && a.is_angle != b.is_angle,
     })
 }
 
@@ -257,13 +289,14 @@ fn quotient(a: Quantity, b: Quantity) -> Arithmetic {
     product(
         a,
         Quantity {
-            value: 1.0,
             power: -b.power,
+            ..plain(1.0)
         },
     )
     .map(|q| Quantity {
         value: a.value / b.value,
-        power: q.power,
+        is_angle: q.is_angle && !b.is_angle,
+        ..q
     })
 }
 
@@ -288,7 +321,7 @@ fn call(function: Function, values: &[Quantity]) -> Arithmetic {
         Function::Maximum => extreme(f64::max),
         Function::Absolute => Ok(Quantity {
             value: values[0].value.abs(),
-            power: values[0].power,
+            ..values[0]
         }),
         Function::SquareRoot => square_root(values[0]),
         Function::Sine => Ok(plain(angle("sin")?.sin())),
@@ -296,7 +329,7 @@ fn call(function: Function, values: &[Quantity]) -> Arithmetic {
         Function::Tangent => Ok(plain(angle("tan")?.tan())),
         Function::ArcTangent2 => {
             like(values[0], values[1], 0.0)?;
-            Ok(plain(values[0].value.atan2(values[1].value)))
+            Ok(Quantity::angle(values[0].value.atan2(values[1].value)))
         }
         Function::Hypotenuse => like(values[0], values[1], values[0].value.hypot(values[1].value)),
         Function::Round => round(values[0], values[1]),
@@ -327,8 +360,8 @@ fn square_root(a: Quantity) -> Arithmetic {
         ));
     }
     Ok(Quantity {
-        value: a.value.sqrt(),
         power: a.power / 2,
+        ..plain(a.value.sqrt())
     })
 }
 
@@ -379,6 +412,26 @@ mod tests {
 
     fn value(text: &str) -> Result<Quantity, Failure> {
         compute(&Formula::parse(text, &Names::default()).unwrap(), &Body)
+    }
+
+    #[test]
+    fn angles_are_known_through_arithmetic() {
+        for (text, is_angle) in [
+            ("30deg", true),
+            ("atan2(bust, 1m) - 90deg", true),
+            ("2 * -angle(f.e) / 3 + 0.1", true),
+            ("max(abs(30deg), 0.2)", true),
+            ("if(1, 1rad, 2)", true),
+            ("slope", false),
+            ("sin(30deg)", false),
+            ("30deg / 10deg", false),
+            ("1 / 30deg", false),
+            ("30deg * 1m", false),
+            ("30deg < 1", false),
+            ("bust / 1m", false),
+        ] {
+            assert_eq!(value(text).unwrap().is_angle, is_angle, "{text}");
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Reads the words and numbers of a formula's text, one after another.
 
-use super::{FormulaError, RESERVED};
+use super::{FormulaError, Quantity, RESERVED};
 use std::cell::Cell;
 
 /// A formula's text and the byte that is read next.
@@ -96,11 +96,11 @@ impl<'a> Cursor<'a> {
         rest.iter().take_while(|b| b.is_ascii_digit()).count()
     }
 
-    /// A number with its unit: the value in metres or radians, and its power of length.
-    pub fn constant(&mut self) -> Result<(f64, i8), FormulaError> {
+    /// A number with its unit, in metres or radians.
+    pub fn constant(&mut self) -> Result<Quantity, FormulaError> {
         if let Some((value, end)) = self.inch_fraction() {
             self.at += end;
-            return Ok((value * 0.0254, 1));
+            return Ok(Quantity::length(value * 0.0254));
         }
         let bytes = self.rest().as_bytes();
         let mut end = self.digits(0);
@@ -118,11 +118,11 @@ impl<'a> Cursor<'a> {
             .parse()
             .map_err(|_| self.error_here("is not a number", "write digits, for example 2.5cm"))?;
         self.at += end;
-        let (value, power) = self.unit(number)?;
-        if !value.is_finite() {
+        let constant = self.unit(number)?;
+        if !constant.value.is_finite() {
             return Err(self.error("the number is too large", "write a smaller one"));
         }
-        Ok((value, power))
+        Ok(constant)
     }
 
     /// `5/8in` or `1 5/8in`: inches, and the bytes it takes. Anything else is no such number.
@@ -151,21 +151,21 @@ impl<'a> Cursor<'a> {
     }
 
     /// Applies the unit that follows a number, if one does.
-    fn unit(&mut self, number: f64) -> Result<(f64, i8), FormulaError> {
+    fn unit(&mut self, number: f64) -> Result<Quantity, FormulaError> {
         let before = self.at;
         self.skip_space();
         let end = word_length(self.rest());
-        let (value, power) = match &self.rest()[..end] {
+        let constant = match &self.rest()[..end] {
             "" | "and" | "or" => {
                 self.at = before;
-                return Ok((number, 0));
+                return Ok(Quantity::plain(number));
             }
-            "m" => (number, 1),
-            "cm" => (number / 100.0, 1),
-            "mm" => (number / 1000.0, 1),
-            "in" => (number * 0.0254, 1),
-            "deg" => (number.to_radians(), 0),
-            "rad" => (number, 0),
+            "m" => Quantity::length(number),
+            "cm" => Quantity::length(number / 100.0),
+            "mm" => Quantity::length(number / 1000.0),
+            "in" => Quantity::length(number * 0.0254),
+            "deg" => Quantity::angle(number.to_radians()),
+            "rad" => Quantity::angle(number),
             other => {
                 let message = format!("{other:?} is not a unit");
                 return Err(
@@ -174,7 +174,7 @@ impl<'a> Cursor<'a> {
             }
         };
         self.at += end;
-        Ok((value, power))
+        Ok(constant)
     }
 
     /// A name, plain or quoted, and whether it was quoted.

@@ -85,11 +85,8 @@ pub(crate) struct Step {
 /// What a step does to the stack.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Operation {
-    /// Pushes a number; `power` 1 is a length.
-    Constant {
-        value: f64,
-        power: i8,
-    },
+    /// Pushes a number.
+    Constant(Quantity),
     /// Pushes a variable.
     Variable(VariableId),
     /// Pushes a measurement.

@@ -231,8 +231,8 @@ impl Parser<'_> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => {
                 let column = self.cursor.column();
-                let (value, power) = self.cursor.constant()?;
-                self.push(column, Operation::Constant { value, power });
+                let constant = self.cursor.constant()?;
+                self.push(column, Operation::Constant(constant));
                 Ok(())
             }
             Some('?') => self.lost(),

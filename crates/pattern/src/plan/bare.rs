@@ -2,7 +2,7 @@
 //! document's unit, beside an angle degrees: `waist / 4 + 2` is a quarter of the waist and 2 cm. The
 //! unit is written into the formula, so that a later change of the document's unit moves nothing.
 
-use crate::formula::{Function, Operation};
+use crate::formula::{Function, Operation, Quantity};
 use crate::{Evaluation, Formula, Want};
 use toile_measure::UnitKind;
 
@@ -40,7 +40,6 @@ pub(super) fn with_units(
 ) -> String {
     let mut units = Units {
         evaluation,
-        text,
         given: Vec::new(),
     };
     units.read(formula, want);
@@ -80,7 +79,6 @@ fn number_end(text: &[char], start: usize) -> usize {
 
 struct Units<'e> {
     evaluation: &'e Evaluation,
-    text: &'e str,
     /// Columns of numbers that get a unit, and which.
     given: Vec<(usize, Kind)>,
 }
@@ -95,9 +93,10 @@ impl Units<'_> {
             self.meet(&mut stack, &mut meets, k);
             let mut pop = || stack.pop().unwrap_or_else(|| Value::of(Kind::Unknown));
             let value = match &step.operation {
-                Operation::Constant { value, power } => self.constant(step.column, *value, *power),
+                Operation::Constant(constant) => self.constant(step.column, *constant),
                 Operation::Variable(id) => Value::of(match self.evaluation.variable(*id) {
                     Some((_, 1)) => Kind::Length,
+                    Some(_) if self.evaluation.is_angle(*id) => Kind::Angle,
                     Some((_, 0)) => Kind::Plain,
                     _ => Kind::Unknown,
                 }),
@@ -125,6 +124,8 @@ impl Units<'_> {
                     let (second, first) = (pop(), pop());
                     Value::of(match [first.kind, second.kind] {
                         [Kind::Plain, kind] | [kind, Kind::Plain] => kind,
+                        // An arc.
+                        [Kind::Angle, Kind::Length] | [Kind::Length, Kind::Angle] => Kind::Length,
                         _ => Kind::Unknown,
                     })
                 }
@@ -132,7 +133,8 @@ impl Units<'_> {
                     let (second, first) = (pop(), pop());
                     Value::of(match [first.kind, second.kind] {
                         [kind, Kind::Plain] => kind,
-                        [Kind::Length, Kind::Length] => Kind::Plain,
+                        [Kind::Length, Kind::Length] | [Kind::Angle, Kind::Angle] => Kind::Plain,
+                        [Kind::Length, Kind::Angle] => Kind::Length,
                         _ => Kind::Unknown,
                     })
                 }
@@ -217,24 +219,11 @@ impl Units<'_> {
         }
     }
 
-    fn constant(&self, column: usize, value: f64, power: i8) -> Value {
-        if power != 0 {
-            return Value::of(if power == 1 {
-                Kind::Length
-            } else {
-                Kind::Unknown
-            });
-        }
-        let text: Vec<char> = self.text.chars().collect();
-        let end = number_end(&text, column - 1);
-        let unit: String = text[end.min(text.len())..]
-            .iter()
-            .skip_while(|c| c.is_whitespace())
-            .take_while(|c| c.is_alphabetic())
-            .collect();
-        match unit.as_str() {
-            "deg" | "rad" => Value::of(Kind::Angle),
-            _ => Value {
+    fn constant(&self, column: usize, constant: Quantity) -> Value {
+        match constant {
+            Quantity { power: 1, .. } => Value::of(Kind::Length),
+            Quantity { is_angle: true, .. } => Value::of(Kind::Angle),
+            Quantity { value, .. } => Value {
                 kind: Kind::Plain,
                 bare: Some(if value == 0.0 {
                     Vec::new()

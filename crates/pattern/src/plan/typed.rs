@@ -75,7 +75,7 @@ pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Nu
             .iter()
             .map(|step| &step.operation)
             .collect::<Vec<_>>()[..],
-        [Operation::Constant { .. }] | [Operation::Constant { .. }, Operation::Negate]
+        [Operation::Constant(_)] | [Operation::Constant(_), Operation::Negate]
     );
     // What has a unit stays a formula where anything may stand, since a value there is a plain number.
     let want = match want {

@@ -1,0 +1,166 @@
+//! What the window shows: angles in degrees, long formulas whole, the heads of a table that is
+//! scrolled, corners where an outline has them; and that the rims of its parts are taken hold of.
+#![allow(clippy::unwrap_used)]
+
+mod drafter;
+
+use drafter::Drafter;
+use egui::{Key, Modifiers, Rect, Role, vec2};
+use egui_kittest::kittest::{NodeT, Queryable};
+
+/// A new pattern with the table of variables open.
+fn with_variables(variables: &[&str]) -> Drafter {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Shown");
+    drafter.key(Key::F8);
+    drafter.press("Variables");
+    for variable in variables {
+        drafter.enter("New variable", variable);
+    }
+    assert_eq!(drafter.pattern().variables.len(), variables.len());
+    drafter
+}
+
+fn rect(drafter: &Drafter, role: Role, name: &str) -> Rect {
+    let found = drafter.window.get_by_role_and_label(role, name);
+    found.rect()
+}
+
+#[test]
+fn variables_that_are_angles_are_told_in_degrees() {
+    let mut drafter = with_variables(&[
+        "slope = 30deg",
+        "flare = atan2(1cm, 1cm)",
+        "steep = flare + 15",
+        "wide = 3cm / 2",
+        "ratio = slope / 4deg",
+    ]);
+    let told = |drafter: &Drafter, words: &str| {
+        let all = drafter.status();
+        assert!(all.split(" | ").any(|told| told == words), "{words}: {all}");
+    };
+    for words in ["30\u{b0}", "45\u{b0}", "60\u{b0}", "1.5 cm", "7.5"] {
+        told(&drafter, words);
+    }
+    // So is what is typed, before it is entered.
+    drafter.click(rect(&drafter, Role::TextInput, "steep").center());
+    drafter.type_text("flare / 2");
+    told(&drafter, "= 22.5\u{b0}");
+    drafter.key(Key::Escape);
+    drafter.click(rect(&drafter, Role::TextInput, "wide").center());
+    drafter.type_text("30cm / 4");
+    told(&drafter, "= 7.5 cm");
+}
+
+#[test]
+fn a_long_formula_is_seen_whole_when_it_has_the_keys() {
+    let formula = "max(1cm + 2cm + 3cm, 4cm + 5cm) + hypot(3cm, 4cm) + round(12.34cm, 5mm)";
+    let mut drafter = with_variables(&[&format!("long = {formula}"), "short = 2cm"]);
+    let field = |drafter: &Drafter, name: &str| rect(drafter, Role::TextInput, name);
+    let one_line = field(&drafter, "short").height();
+    assert!((field(&drafter, "long").height() - one_line).abs() < 0.1);
+    // All of it is told beside a pointer that rests there.
+    let told = |drafter: &Drafter| drafter.status().split(" | ").any(|told| told == formula);
+    drafter.hover(field(&drafter, "long").center());
+    drafter.window.run_steps(90);
+    assert!(told(&drafter));
+    drafter.click(field(&drafter, "long").center());
+    assert!(field(&drafter, "long").height() > 1.6 * one_line);
+    // Enter takes it as ever, and Tab goes on.
+    let before = drafter.pattern();
+    drafter.key(Key::Enter);
+    assert!((field(&drafter, "long").height() - one_line).abs() < 0.1);
+    assert_eq!(drafter.pattern(), before);
+    drafter.enter("long", "1cm + 1cm");
+    assert_eq!(drafter.pattern().variables.len(), 2);
+    drafter.enter_on("long", formula);
+    assert!((field(&drafter, "long").height() - one_line).abs() < 0.1);
+    let pattern = drafter.pattern();
+    let now = drafter.evaluation().variable(pattern.variables[0].id);
+    assert!((now.unwrap().0 - 0.265).abs() < 1e-9, "{now:?}");
+}
+
+#[test]
+fn the_heads_of_the_variables_stay_while_the_rows_are_scrolled() {
+    let mut drafter = with_variables(&["first = 1cm"]);
+    let head = |drafter: &Drafter| rect(drafter, Role::Label, "Number or formula");
+    let before = head(&drafter);
+    for k in 0..12 {
+        drafter.enter("New variable", &format!("v{k} = {k}cm"));
+    }
+    assert_eq!(head(&drafter), before);
+    let first = rect(&drafter, Role::TextInput, "first");
+    assert!(first.bottom() < before.top(), "it is scrolled");
+    let last = rect(&drafter, Role::TextInput, "v11");
+    let low = drafter.window.ctx.content_rect().bottom();
+    assert!(last.top() >= before.bottom() && last.bottom() < low);
+    // It stands under its head.
+    assert!((last.left() - before.left()).abs() < 1.0);
+}
+
+#[test]
+fn rims_are_taken_hold_of_from_both_sides() {
+    let mut drafter = Drafter::opened("t-shirt");
+    drafter.key(Key::F8);
+    let view = |drafter: &Drafter| drafter.window.get_by_label("Pattern view").rect();
+    for side in [-3.0, 3.0] {
+        let before = view(&drafter);
+        let rim = before.right_center() + vec2(4.0, 30.0);
+        let from = rim + vec2(side, 0.0);
+        drafter.drag(from, from - vec2(40.0, 0.0));
+        let width = view(&drafter).width();
+        assert!(
+            (width - before.width() + 40.0).abs() < 6.0,
+            "{side}: {width}"
+        );
+        let before = view(&drafter);
+        let rim = before.center_bottom() + vec2(-200.0, 4.0);
+        let from = rim + vec2(0.0, side);
+        drafter.drag(from, from - vec2(0.0, 30.0));
+        let height = view(&drafter).height();
+        assert!((height - before.height() + 30.0).abs() < 6.0, "{side}");
+    }
+    assert!(drafter.window.state().view().selection.is_empty());
+}
+
+#[test]
+fn corners_that_a_step_moved_are_seen_only_with_their_sheet() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Pivoted");
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.click(drafter.place(-0.05, -0.05));
+    let points = |drafter: &Drafter| {
+        let parts = drafter.window.query_all_by_role(Role::Button);
+        let labels = parts.filter_map(|part| part.accesskit_node().label());
+        labels.filter(|label| label.starts_with("Point ")).count()
+    };
+    // Beside the tool, which the window calls a point too.
+    let tools = points(&drafter) - 4;
+    drafter.key(Key::D);
+    drafter.click(drafter.part("Edge top of draft"));
+    drafter.typed("2");
+    drafter.typed("15");
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.click(drafter.place(-0.05, -0.05));
+    assert_eq!(points(&drafter) - tools, 4, "a dart leaves them");
+    drafter.chord(Modifiers::SHIFT, Key::E);
+    drafter.click(drafter.part("Dart of draft"));
+    drafter.click(drafter.part("Edge right of draft"));
+    drafter.key(Key::Enter);
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.click(drafter.place(-0.05, -0.05));
+    assert!(drafter.window.state().view().selection.is_empty());
+    let seen = points(&drafter) - tools;
+    assert!((2..4).contains(&seen), "{seen}");
+    // With the panel all are there, to be taken hold of.
+    drafter.click(drafter.part("Panel draft"));
+    assert_eq!(points(&drafter) - tools, 4);
+}
