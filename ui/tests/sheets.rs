@@ -9,6 +9,7 @@ use egui::{Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::kittest::Queryable;
 use toile_geometry::Vec2;
 use toile_pattern::{CurveRule, Number, PointRule};
+use toile_ui::Beginning;
 
 impl Drafter {
     fn begin_drag(&mut self, from: Pos2, to: Pos2) {
@@ -281,4 +282,36 @@ fn a_part_is_found_by_its_name_and_shown() {
         .window
         .get_by_role_and_label(Role::TextInput, "Name");
     assert_eq!(label.value().unwrap(), "sleeve");
+}
+
+#[test]
+fn sheets_of_which_one_was_moved_are_opened_again_as_they_were_seen() {
+    let names = ["Panel front", "Panel back", "Panel sleeve"];
+    let mut drafter = Drafter::opened("t-shirt");
+    let before = names.map(|name| drafter.part(name));
+    drafter.click(drafter.part("Point top of sleeve"));
+    let tag = drafter.part("Sheet sleeve") + vec2(20.0, -14.0);
+    drafter.drag(tag, tag + vec2(0.0, 40.0));
+    // One that is selected is moved by arrow keys as by the pointer.
+    drafter.click(tag + vec2(0.0, 40.0));
+    drafter.chord(Modifiers::SHIFT, Key::ArrowDown);
+    let moved = names.map(|name| drafter.part(name));
+    for k in 0..2 {
+        assert!((moved[k] - before[k]).length() < 0.1, "{}", names[k]);
+    }
+    assert!((moved[2] - before[2]).y > 40.5, "{before:?} {moved:?}");
+    drafter.key(Key::F);
+    let seen = names.map(|name| drafter.part(name));
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("moved.toile.json");
+    std::fs::write(&file, drafter.saved()).unwrap();
+    let mut again = Drafter::begun(Beginning {
+        file: Some(file),
+        folder: None,
+    });
+    again.key(Key::F);
+    for (name, seen) in names.iter().zip(seen) {
+        let found = again.part(name);
+        assert!((found - seen).length() < 1.0, "{name}: {seen:?} {found:?}");
+    }
 }

@@ -169,12 +169,13 @@ fn prints_are_written_and_told() {
 
 #[test]
 fn edges_of_the_shipped_patterns_go_on_across_their_seams() {
-    // Necklines, armholes, waists and hems turn by less than an eye sees [deg]. A straight edge with a
-    // dart in it, and the two side seams that meet a waist seam, turn on purpose.
-    let most = 4.5;
+    // Necklines, armholes, waists and hems turn by less than what a walk tells as a kink [deg]. A straight
+    // edge with a dart in it turns on purpose, and the dress's side seam where it meets the waist seam.
+    let most = 2.0;
+    let meets_waist = serde_json::json!(["side", "side_hip"]);
     let mut walked = 0;
     for name in ["t-shirt", "dress", "trousers", "gathered-skirt", "poncho"] {
-        for size in ["XS", "XXL"] {
+        for size in ["XS", "S", "M", "L", "XL", "XXL"] {
             let pattern = patterns().join(format!("{name}.toile.json"));
             let pattern = pattern.to_str().unwrap();
             let folder = tempfile::tempdir().unwrap();
@@ -193,6 +194,9 @@ fn edges_of_the_shipped_patterns_go_on_across_their_seams() {
                     continue;
                 }
                 for joint in seam["joints"].as_array().unwrap() {
+                    if name == "dress" && joint["edges"] == meets_waist {
+                        continue;
+                    }
                     let kink = joint["kink_deg"].as_f64().unwrap();
                     let step = joint["step_mm"].as_f64().unwrap();
                     let told = format!("{name} {size}, seam {sewn}: {joint}");
@@ -201,5 +205,5 @@ fn edges_of_the_shipped_patterns_go_on_across_their_seams() {
             }
         }
     }
-    assert!(walked > 100, "{walked} seams");
+    assert!(walked > 300, "{walked} seams");
 }

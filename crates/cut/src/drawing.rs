@@ -1,7 +1,7 @@
 //! What is drawn of a cut piece: lines, areas and words by kind. Prints, markers, their files and
 //! the window draw a piece from this alone.
 
-use crate::label::{SMALLEST, Spot, roomiest_spot};
+use crate::label::{GAP, LINES, SMALLEST, Spot, roomiest_spot};
 use crate::piece::{CutPiece, PieceRing, PieceSegment};
 use std::f64::consts::FRAC_PI_2;
 use toile_geometry::{Polygon, Vec2};
@@ -212,10 +212,10 @@ fn words_at(spot: &Spot, lines: &[&str]) -> Vec<Words> {
     };
     // All lines lie between the spot and the outline.
     let heights = 1.0 + LINE_STEP * LATER_LINES * (lines.len() - 1) as f64;
-    let first = first.min(0.85 * spot.room / heights).max(SMALLEST);
+    let first = first.min(LINES * spot.room / heights).max(SMALLEST);
     let angle = if upright { FRAC_PI_2 } else { 0.0 };
     let down = Vec2::new(angle.sin(), -angle.cos());
-    let mut below = spot.room * 0.05 + first;
+    let mut below = spot.room * GAP + first;
     let mut words = Vec::with_capacity(lines.len());
     for (k, line) in lines.iter().enumerate() {
         let size = if k == 0 { first } else { first * LATER_LINES };

@@ -8,8 +8,10 @@ const CELLS: u32 = 24;
 const LETTER: f64 = 0.55;
 /// Share of a free length that words take.
 const FILLED: f64 = 0.85;
-/// Share of the distance to the outline that lines of words take, one under another.
-const BAND: f64 = 0.9;
+/// How far below their place words begin, over the distance to the outline.
+pub(crate) const GAP: f64 = 0.05;
+/// Height of all lines of words, one under another, over that distance.
+pub(crate) const LINES: f64 = 0.85;
 /// Least height of letters \[m\].
 pub(crate) const SMALLEST: f64 = 0.003;
 
@@ -66,7 +68,7 @@ pub fn roomiest_spot(polygon: &Polygon) -> Spot {
 /// that lines of words take: below the point where they run along x, right of it where they run upwards.
 fn free_run(polygon: &Polygon, at: Vec2, room: f64, axis: usize) -> f64 {
     let other = 1 - axis;
-    let height = BAND * room;
+    let height = (GAP + LINES) * room;
     let [low, high] = match axis {
         0 => [at[other] - height, at[other]],
         _ => [at[other], at[other] + height],

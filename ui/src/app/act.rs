@@ -4,10 +4,11 @@ use super::ToileApp;
 use super::notice::Notice;
 use crate::canvas::grading::Grading;
 use crate::canvas::selection::{Item, Selection};
+use crate::tools::select::move_sheets;
 use crate::tools::{Event, Outcome, Shown, Tool};
 use egui::{Key, Modifiers};
 use toile_geometry::Vec2;
-use toile_pattern::{Edit, EditError, Evaluation, Name, PartId, PartReference, plan};
+use toile_pattern::{Edit, EditError, Evaluation, Name, PartId, PartReference, SheetId, plan};
 use toile_session::{Command, Project};
 
 /// Largest distance of the outlines of other sizes from the true ones [m].
@@ -288,7 +289,13 @@ impl ToileApp {
         let items = self.view.selection.items().iter();
         let parts: Vec<PartId> = items.map(|item| item.part()).collect();
         let points = plan::points_of(&self.base, &parts);
-        if points.is_empty() || self.view.is_typing() || self.types(context) {
+        let sheets = parts.iter().filter_map(|part| match part {
+            PartId::Sheet(id) => Some(*id),
+            _ => None,
+        });
+        let sheets: Vec<SheetId> = sheets.collect();
+        let moves_sheets = !sheets.is_empty() && sheets.len() == parts.len();
+        if (points.is_empty() && !moves_sheets) || self.view.is_typing() || self.types(context) {
             return;
         }
         let way = context.input_mut(|input| {
@@ -310,6 +317,11 @@ impl ToileApp {
             way
         });
         if way == Vec2::zeros() {
+            return;
+        }
+        if moves_sheets {
+            let moved = move_sheets(&self.base, &self.view.boards, &sheets, way);
+            self.edit(moved, "Move sheet");
             return;
         }
         let map = plan::Affine::translation(way);

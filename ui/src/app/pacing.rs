@@ -22,7 +22,11 @@ impl Plugin for Pacing {
     }
 
     fn input_hook(&mut self, context: &Context, input: &mut RawInput) {
-        self.waiting.append(&mut input.events.drain(..).collect());
+        for event in input.events.drain(..) {
+            if !self.is_repeated(&event) {
+                self.waiting.push_back(event);
+            }
+        }
         if !std::mem::take(&mut self.rests) {
             let last = self.waiting.iter().position(may_move_focus);
             let count = last.map_or(self.waiting.len(), |last| last + 1);
@@ -32,6 +36,32 @@ impl Plugin for Pacing {
         if self.rests || !self.waiting.is_empty() {
             context.request_repaint();
         }
+    }
+}
+
+impl Pacing {
+    /// Whether an event is the press of a key that waits already and was not let go since: a key that
+    /// is held down does no more than there are frames for, and nothing after it is let go.
+    fn is_repeated(&self, event: &Event) -> bool {
+        let Event::Key {
+            key, pressed: true, ..
+        } = event
+        else {
+            return false;
+        };
+        let mut presses = self
+            .waiting
+            .iter()
+            .rev()
+            .filter_map(|waiting| match waiting {
+                Event::Key {
+                    key: other,
+                    pressed,
+                    ..
+                } if other == key => Some(*pressed),
+                _ => None,
+            });
+        may_move_focus(event) && presses.next() == Some(true)
     }
 }
 

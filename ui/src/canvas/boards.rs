@@ -19,7 +19,7 @@ pub struct Boards {
     /// Sheets that were moved so that none covers another: the place the document gave, and the way
     /// from there [m]. It stays while a pattern is edited, so that nothing jumps, until the document
     /// gives another place.
-    moved: BTreeMap<SheetId, ([f64; 2], Vec2)>,
+    shifted: BTreeMap<SheetId, ([f64; 2], Vec2)>,
     sheets: BTreeMap<SheetId, Vec2>,
     panels: BTreeMap<PanelId, Vec2>,
 }
@@ -27,7 +27,7 @@ pub struct Boards {
 impl Boards {
     /// Lays the sheets of a pattern that was just opened.
     pub fn open(&mut self, pattern: &Pattern, scene: &Scene) {
-        self.moved.clear();
+        self.shifted.clear();
         // Sheets on panels lie where these do.
         let mut free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
         let first = free.clone().next().map(|sheet| sheet.on_table);
@@ -42,7 +42,7 @@ impl Boards {
                 .collect();
             let place = first.unwrap_or_default();
             let moved = rows(&boxes).into_iter();
-            self.moved = moved.map(|(id, by)| (id, (place, by))).collect();
+            self.shifted = moved.map(|(id, by)| (id, (place, by))).collect();
         }
         self.follow(pattern);
     }
@@ -52,7 +52,7 @@ impl Boards {
         let sheets = pattern.sheets.iter();
         self.sheets = sheets
             .map(|sheet| {
-                let moved = self.moved.get(&sheet.id);
+                let moved = self.shifted.get(&sheet.id);
                 let moved = moved.filter(|(from, _)| *from == sheet.on_table);
                 let by = moved.map_or_else(Vec2::zeros, |(_, by)| *by);
                 (sheet.id, Vec2::from(sheet.on_table) + by)
@@ -77,6 +77,15 @@ impl Boards {
     /// The table place of a sheet's origin [m].
     pub fn sheet(&self, id: SheetId) -> Vec2 {
         self.sheets.get(&id).copied().unwrap_or_default()
+    }
+
+    /// Sheets that are seen elsewhere than where the document has them, with the places [m] they are
+    /// seen at. As soon as the document says where one of several sheets lies it has to say it of all.
+    pub fn laid_apart(&self, pattern: &Pattern) -> Vec<(SheetId, [f64; 2])> {
+        let free = pattern.sheets.iter().filter(|sheet| sheet.on.is_none());
+        let seen = free.map(|sheet| (sheet, <[f64; 2]>::from(self.sheet(sheet.id))));
+        let apart = seen.filter(|(sheet, place)| *place != sheet.on_table);
+        apart.map(|(sheet, place)| (sheet.id, place)).collect()
     }
 
     /// The table place of a panel's origin [m].

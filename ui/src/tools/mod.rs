@@ -10,7 +10,7 @@ pub mod parts;
 mod planning;
 mod refusal;
 pub mod seam;
-mod select;
+pub(crate) mod select;
 mod slot_overlay;
 pub mod slots;
 pub mod walk;

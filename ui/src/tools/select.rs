@@ -1,12 +1,13 @@
 //! Selects by click and by box; drags points and whole panels; divides an edge by a double click.
 
 use super::{Event, Outcome, Overlay, Pointer, Reading, Shown, chosen};
+use crate::canvas::boards::Boards;
 use crate::canvas::hit::Hit;
 use crate::canvas::selection::{Item, Selection};
 use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::plan::{self, FormulaChange};
-use toile_pattern::{Edit, EditError, Entity, Panel, PanelId, PointId, SheetId};
+use toile_pattern::{Edit, EditError, Entity, Evaluation, Panel, PanelId, PointId, SheetId};
 
 /// Sine of the angle up to which two handles lie on one line.
 const SMOOTH: f64 = 1e-3;
@@ -230,17 +231,29 @@ fn moved(
             });
             Ok(moved.collect())
         }
-        Dragged::Sheets(sheets) => {
-            let to = sheets
-                .iter()
-                .map(|id| (*id, (reading.boards.sheet(*id) + way).into()));
-            plan::move_sheets(reading.evaluation, &to.collect::<Vec<_>>())
-        }
+        Dragged::Sheets(sheets) => move_sheets(reading.evaluation, reading.boards, sheets, way),
         Dragged::Fixed(words) => Err(EditError::Impossible {
             message: "it cannot be dragged".into(),
             hint: words.clone(),
         }),
     }
+}
+
+/// The edits that move sheets by a way [m] on the table; the others stay where they are seen.
+///
+/// # Errors
+/// A sheet is not there, or lies on a panel.
+pub fn move_sheets(
+    evaluation: &Evaluation,
+    boards: &Boards,
+    sheets: &[SheetId],
+    way: Vec2,
+) -> Result<Vec<Edit>, EditError> {
+    let mut places = boards.laid_apart(evaluation.pattern());
+    places.retain(|(id, _)| !sheets.contains(id));
+    let moved = sheets.iter().map(|id| (*id, boards.sheet(*id) + way));
+    places.extend(moved.map(|(id, place)| (id, place.into())));
+    plan::move_sheets(evaluation, &places)
 }
 
 /// The handle opposite to one that is moved to a place [m], where both lie on one line through their

@@ -24,6 +24,7 @@ impl Evaluation {
             evaluation: self,
             k,
             diagnostics: Vec::new(),
+            missed: Vec::new(),
             cause: k,
         };
         let value = computation.value(&state.definition);

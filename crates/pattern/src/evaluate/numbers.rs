@@ -35,6 +35,9 @@ pub(crate) struct Computation<'e> {
     /// The node.
     pub k: u32,
     pub diagnostics: Vec<Diagnostic>,
+    /// What was missed so far, and where: several numbers of one place that lack the same part have
+    /// one cause.
+    pub missed: Vec<(Place, String)>,
     /// The node whose fault keeps this one from having a value.
     pub cause: u32,
 }
@@ -122,6 +125,7 @@ impl<'e> Computation<'e> {
             evaluation,
             k: 0,
             diagnostics: Vec::new(),
+            missed: Vec::new(),
             cause: 0,
         }
     }
@@ -200,15 +204,12 @@ impl<'e> Computation<'e> {
                 message,
                 hint,
             }) => {
-                // Several numbers of one place that lack the same part have one cause.
-                let is_told = code == Code::MissingReference
-                    && self.diagnostics.iter().any(|told| {
-                        told.code == code
-                            && told.place == *place
-                            && told.message.ends_with(&message)
-                    });
-                if is_told {
-                    return None;
+                if code == Code::MissingReference {
+                    let missed = (place.clone(), message.clone());
+                    if self.missed.contains(&missed) {
+                        return None;
+                    }
+                    self.missed.push(missed);
                 }
                 let message = match column {
                     Some(column) => format!("{what}: column {column}: {message}"),

@@ -12,10 +12,11 @@ use toile_geometry::Vec2;
 
 /// Steps in which the value of a variable is found: one is enough where a formula is linear in it.
 const STEPS: usize = 12;
-/// How far a number may be from the one that is wanted [m], [rad] or plain.
-const THERE: f64 = 1e-12;
+/// How far a number may be from the one that is wanted [m], [rad] or plain: well below what a point may
+/// be off, as several numbers place a point.
+const NUMBER_TOLERANCE: f64 = 1e-12;
 /// How far a point may be from where it is moved to [m].
-const REACHED: f64 = 1e-9;
+const POINT_TOLERANCE: f64 = 1e-9;
 /// Least change of a number with a variable by which it is found.
 const LEAST_SLOPE: f64 = 1e-6;
 
@@ -101,7 +102,7 @@ pub fn move_point_by(
     let variables = variables.into_iter().map(|found| found.1);
     let edits: Vec<Edit> = variables.chain([Edit::Put(moved)]).collect();
     let at = place(&after(evaluation, &edits)?, point)?;
-    match (at - goal).norm() <= REACHED {
+    match (at - goal).norm() <= POINT_TOLERANCE {
         true => Ok(edits),
         false => Err(cannot()),
     }
@@ -125,7 +126,7 @@ fn in_this_size(evaluation: &Evaluation, old: Number, value: f64) -> Result<Numb
 }
 
 /// The variable of a number, other than those that are taken, with whose new value the number
-/// reaches a target; and the edit that gives it. Found by secants.
+/// reaches a target; and the edit that gives it. Found by the secant method.
 fn solve(
     evaluation: &Evaluation,
     (number, taken): (&Number, &[VariableId]),
@@ -168,7 +169,7 @@ fn solve(
                 Some(next) => miss = next,
                 None => break,
             }
-            if miss.abs() <= THERE {
+            if miss.abs() <= NUMBER_TOLERANCE {
                 return Ok((*id, put(by)));
             }
         }

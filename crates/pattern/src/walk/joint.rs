@@ -101,10 +101,10 @@ impl Walk<'_> {
         }
         let turn = std::f64::consts::PI - angles[0] - angles[1];
         let kink = turn.sin().atan2(turn.cos());
-        let [long, short] = self.lengths();
+        let [first, second] = self.lengths();
         let left_over = match self.seam.gathered {
             true => 0.0,
-            false => ((long - short).abs() - ease.max(0.0)).max(0.0) * (long - short).signum(),
+            false => ((first - second).abs() - ease.max(0.0)).max(0.0) * (first - second).signum(),
         };
         Some(Joint {
             end,
