@@ -155,6 +155,8 @@ pub fn apply(context: &egui::Context) {
             style.spacing.button_padding = vec2(8.0, 4.0);
             style.spacing.interact_size = vec2(40.0, 26.0);
             style.spacing.menu_margin = Margin::same(6);
+            // What goes on beyond a rim is seen to, though the pointer is elsewhere.
+            style.spacing.scroll.dormant_handle_opacity = 0.6;
             colour(&mut style.visuals, theme);
         });
     }

@@ -2,10 +2,11 @@
 
 use super::ToileApp;
 use super::notice::Notice;
+use crate::canvas::scene::PanelScene;
 use crate::canvas::selection::{Item, Selection};
 use std::path::Path;
 use std::sync::Arc;
-use toile_geometry::Vec2;
+use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::plan::{self, Alignment, Axis, Fragment, PasteTarget, Pasted};
 use toile_pattern::{EditError, Evaluation, PartId, Pattern, PointId};
 use toile_session::Project;
@@ -173,17 +174,46 @@ impl ToileApp {
             true => plan::copy(&self.base, &parts).and_then(|fragment| {
                 let scene = &self.view.scene;
                 let seen = panels.iter().filter_map(|id| scene.panel_scene(*id));
-                let bounds = seen.map(|panel| *panel.bounds()).reduce(|a, b| a.union(&b));
-                let width = bounds.map_or(0.0, |bounds| bounds.size().x);
+                let bounds = seen
+                    .map(|panel| self.on_table(panel))
+                    .reduce(|a, b| a.union(&b));
                 let target = PasteTarget {
                     sheet: None,
-                    offset: [width + BESIDE, 0.0],
+                    offset: [bounds.map_or(0.0, |bounds| self.free_aside(&bounds)), 0.0],
                 };
                 plan::paste(&self.base, &self.as_laid(fragment), target)
             }),
             false => plan::duplicate(&self.base, &parts),
         };
         self.take_pasted(pasted, "Duplicate");
+    }
+
+    /// Least rectangle round a panel on the table [m].
+    fn on_table(&self, panel: &PanelScene) -> Bounds2 {
+        let place = self.view.boards.panel(panel.id);
+        let bounds = panel.bounds();
+        Bounds2 {
+            min: bounds.min + place,
+            max: bounds.max + place,
+        }
+    }
+
+    /// How far to the right of its place something of these bounds lies on no panel [m].
+    fn free_aside(&self, bounds: &Bounds2) -> f64 {
+        let panels = self.view.scene.panels.iter();
+        let mut panels: Vec<Bounds2> = panels.map(|panel| self.on_table(panel)).collect();
+        panels.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
+        let mut aside = bounds.size().x + BESIDE;
+        for panel in panels {
+            let is_beside = panel.min.y < bounds.max.y && bounds.min.y < panel.max.y;
+            let is_under = panel.min.x < bounds.max.x + aside + BESIDE
+                && bounds.min.x + aside < panel.max.x + BESIDE;
+            // What lies touching the room that is left is passed too.
+            if is_beside && is_under && panel.max.x > bounds.max.x {
+                aside = panel.max.x + BESIDE - bounds.min.x;
+            }
+        }
+        aside
     }
 
     /// Makes what was pasted, selects it, and says which numbers are no formulas any more.

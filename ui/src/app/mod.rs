@@ -462,7 +462,7 @@ impl ToileApp {
             Panel::bottom("marker")
                 .frame(frame)
                 .resizable(true)
-                .default_size(height * 0.4)
+                .default_size(height * 0.55)
                 .size_range(140.0..=(height * 0.8).max(140.0))
                 .show(ui, |ui| self.marker_side(ui));
         }
