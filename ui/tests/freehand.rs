@@ -360,3 +360,28 @@ fn a_seam_is_named_by_what_its_edges_share() {
     assert_eq!(pattern.seams.len(), 1, "{}", drafter.status());
     assert_eq!(pattern.seams[0].name, "side seam");
 }
+
+#[test]
+fn a_typed_rectangle_grows_to_the_side_of_the_pointer() {
+    let mut drafter = drawing();
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.1, 0.2));
+    drafter.hover(drafter.place(0.2, -0.1));
+    drafter.typed_and("38", Key::Tab);
+    drafter.typed("=40cm + 2cm");
+    let corner = drafter.point("C");
+    let wanted = toile_geometry::Vec2::new(0.48, -0.22);
+    assert!((corner - wanted).norm() < 1e-12, "{corner}");
+}
+
+#[test]
+fn what_a_deletion_leaves_at_fault_is_told() {
+    let mut drafter = Drafter::opened("t-shirt");
+    drafter.click(drafter.part("Panel front"));
+    drafter.key(Key::Delete);
+    let words = drafter.status();
+    assert!(
+        words.contains("cap_height") && words.contains("error"),
+        "{words}"
+    );
+}

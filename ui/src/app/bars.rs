@@ -150,7 +150,7 @@ impl ToileApp {
             let spacing = ui.spacing_mut();
             spacing.item_spacing.y = TOOL_GAP;
             spacing.interact_size.y = height;
-            spacing.button_padding.y = 0.0;
+            spacing.button_padding = egui::vec2(4.0, 0.0);
             for (k, group) in TOOL_BUTTONS.iter().enumerate() {
                 if k > 0 {
                     ui.add(egui::Separator::default().spacing(TOOL_RULE));

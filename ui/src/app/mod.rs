@@ -295,7 +295,9 @@ impl ToileApp {
         // Checks may take longer than a frame: they wait until a gesture is over.
         if self.checked != self.revision && !self.session.is_previewing() {
             self.checked = self.revision;
-            self.findings = self.session.diagnostics();
+            let found = self.session.diagnostics();
+            let before = std::mem::replace(&mut self.findings, found);
+            self.tell_new_fault(&before);
         }
         self.keep_unsaved();
     }

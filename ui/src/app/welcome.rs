@@ -105,9 +105,10 @@ impl ToileApp {
                 }
             });
         }
-        // Enter takes the only one.
+        // Enter takes the only one, unless another button has the keys.
         let entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
-        if entered && dropped.is_none() && self.abandoned.len() == 1 {
+        let is_free = ui.memory(|memory| memory.focused().is_none());
+        if entered && is_free && self.abandoned.len() == 1 {
             taken = Some(0);
         }
         if let Some(k) = dropped {

@@ -97,7 +97,9 @@ fn typed_words(kind: SlotKind, state: &SlotState) -> String {
         return String::new();
     }
     let labels = fields(kind);
-    let words = labels.iter().enumerate().map(|(k, (label, _))| {
+    let is_told = |k: &usize| !state.naming || *k == state.field || !state.typed[*k].is_empty();
+    let told = labels.iter().enumerate().filter(|(k, _)| is_told(k));
+    let words = told.map(|(k, (label, _))| {
         let bar = if k == state.field { "|" } else { "" };
         format!("{label} {}{bar}", state.typed[k])
     });

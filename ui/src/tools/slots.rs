@@ -1,6 +1,7 @@
 //! Tools that are given one thing after another: a list of slots and a planner. One machine gives
 //! all of them hovering, typed numbers, snapping, steps back and hints.
 
+use super::toward::{to_side, turned};
 use super::{Event, Outcome, Pointer, Reading, Shown};
 use super::{along, number};
 use crate::canvas::selection::{Item, Selection};
@@ -9,9 +10,6 @@ use toile_geometry::Vec2;
 use toile_pattern::{
     CurveId, EdgeId, Edit, EditError, Mark, Number, OperationId, PanelId, SheetId, Want,
 };
-
-/// Steps of an angle while Shift is held [degrees].
-const TURN: f64 = 15.0;
 
 /// The field of a name.
 const NAME: &str = "name";
@@ -157,7 +155,7 @@ pub struct SlotState {
     /// Which of them is typed.
     pub(super) field: usize,
     /// Whether the name was begun by its sign.
-    naming: bool,
+    pub(super) naming: bool,
     /// The name that was typed before the last of several places.
     pub(super) named: String,
     /// The snap that is taken, counted from the best.
@@ -450,7 +448,10 @@ fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Pl
         }
         Fields::Size if last.is_some() => {
             // A rectangle grows to the side the pointer is on.
-            let signed = |number: Option<Number>, way: f64| or_pointed(number, way);
+            let signed = |number: Option<Number>, way: f64| match number {
+                Some(number) => to_side(number, way, (state, reading)),
+                None => or_pointed(None, way),
+            };
             let (x, y) = (signed(first, way.x)?, signed(second, way.y)?);
             let to = Vec2::new(value(&x, Want::Length)?, value(&y, Want::Length)?);
             Ok(Placed {
@@ -471,28 +472,6 @@ fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Pl
                 words: String::new(),
             })
         }
-    }
-}
-
-/// The place at the pointer's distance from the last, in a direction of whole steps.
-fn turned(last: &Placed, pointer: &Pointer, free: Placed) -> Placed {
-    let way = free.at - last.at;
-    let step = TURN.to_radians();
-    let angle = (way.y.atan2(way.x) / step).round() * step;
-    let unit = Vec2::new(angle.cos(), angle.sin());
-    let far = way.dot(&unit);
-    let far = match pointer.held.command {
-        true => far,
-        false => crate::canvas::snap::rounded(far, 0.001),
-    };
-    Placed {
-        sheet: last.sheet,
-        at: last.at + unit * far,
-        spec: Spec::FromLast {
-            distance: Number::Value(far),
-            angle: Number::Value(angle),
-        },
-        words: format!("at {:.0}\u{b0}", angle.to_degrees()),
     }
 }
 
