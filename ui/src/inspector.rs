@@ -121,10 +121,20 @@ impl ToileApp {
                 self.enter(planned, "Rename", (id, text));
             }
         }
-        for entry in plan::numbers_of(&self.base, item.part()) {
-            self.number_field(ui, &entry);
+        let entries = plan::numbers_of(&self.base, item.part());
+        for (k, entry) in entries.iter().enumerate() {
+            // Of several of one name, as the cuts of pleats, each has its number.
+            let is_same = |other: &&NumberEntry| other.label == entry.label;
+            let label = match entries.iter().filter(is_same).count() {
+                1 => entry.label.to_owned(),
+                _ => {
+                    let before = entries[..k].iter().filter(is_same).count();
+                    format!("{} {}", entry.label, before + 1)
+                }
+            };
+            self.named_number_field(ui, entry, &label);
             if let (Item::Edge(panel, _), None) = (item, &entry.number) {
-                self.tell_of_panel(ui, panel, &entry);
+                self.tell_of_panel(ui, panel, entry);
             }
         }
         match item {

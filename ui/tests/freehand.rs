@@ -385,3 +385,80 @@ fn what_a_deletion_leaves_at_fault_is_told() {
         "{words}"
     );
 }
+
+#[test]
+fn each_cut_of_pleats_has_a_field_of_its_own() {
+    let mut drafter = drawing();
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.3, 0.3));
+    drafter.key(Key::Y);
+    drafter.click(drafter.place(0.15, 0.3));
+    drafter.click(drafter.place(0.15, 0.0));
+    drafter.typed("2");
+    drafter.typed("3");
+    drafter.key(Key::Escape);
+    drafter.enter("cut from 2", "0.7");
+    drafter.enter("cut to 1", "0.6");
+    assert!(
+        drafter.status().contains("cut from 1"),
+        "{}",
+        drafter.status()
+    );
+}
+
+#[test]
+fn no_corner_is_painted_over_what_is_said_of_a_seam() {
+    let mut drafter = drawing();
+    for x in [0.0, 0.13] {
+        drafter.key(Key::R);
+        drafter.click(drafter.place(x, 0.0));
+        drafter.click(drafter.place(x + 0.1, 0.2));
+    }
+    drafter.key(Key::S);
+    drafter.click(drafter.place(0.1, 0.1));
+    drafter.click(drafter.place(0.13, 0.1));
+    let shapes = painted(&drafter);
+    let (at, words) = shapes
+        .iter()
+        .enumerate()
+        .find_map(|(k, shape)| match shape {
+            Shape::Text(text) if text.galley.text() == "same length" => {
+                Some((k, text.visual_bounding_rect()))
+            }
+            _ => None,
+        })
+        .unwrap();
+    let over = shapes[at..].iter().filter(|shape| match shape {
+        Shape::Rect(rect) => rect.rect.width() < 15.0 && rect.rect.intersects(words),
+        _ => false,
+    });
+    assert_eq!(over.count(), 0);
+}
+
+#[test]
+fn what_is_selected_differs_from_what_is_pointed_at() {
+    let mut drafter = drawing();
+    for x in [0.0, 0.13] {
+        drafter.key(Key::R);
+        drafter.click(drafter.place(x, 0.0));
+        drafter.click(drafter.place(x + 0.1, 0.2));
+    }
+    drafter.key(Key::V);
+    drafter.click(drafter.place(0.05, 0.05));
+    drafter.hover(drafter.place(0.16, 0.05));
+    let style = drafter.window.ctx.style_of(egui::Theme::Light);
+    let soft = style.visuals.selection.bg_fill;
+    let filled = |drafter: &Drafter| {
+        let shapes = painted(drafter);
+        let of = shapes.iter().filter(|shape| match shape {
+            Shape::Mesh(mesh) => {
+                let is_soft = |vertex: &egui::epaint::Vertex| vertex.color == soft;
+                !mesh.vertices.is_empty() && mesh.vertices.iter().all(is_soft)
+            }
+            _ => false,
+        });
+        of.count()
+    };
+    assert_eq!(filled(&drafter), 1);
+}

@@ -166,7 +166,7 @@ impl ToileApp {
                         .frame_when_inactive(in_hand)
                         .truncate()
                         .min_size(egui::vec2(ui.available_width(), height))
-                        .shortcut_text(key.unwrap_or_default());
+                        .shortcut_text(RichText::new(key.unwrap_or_default()).small());
                     self.command_widget(ui, command, button, None);
                 }
             }
