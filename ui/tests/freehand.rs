@@ -320,7 +320,9 @@ fn the_menu_marks_what_is_on_show() {
 #[test]
 fn a_seam_is_named_by_what_its_edges_share() {
     let mut drafter = drawing();
-    let outlines: [(&[(f64, f64, &str)], f64); 2] = [
+    // Corners, each with the name of the line that starts there.
+    type Outline = [(f64, f64, &'static str)];
+    let outlines: [(&Outline, f64); 2] = [
         (
             &[
                 (0.0, 0.0, "side_low"),
