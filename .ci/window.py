@@ -3,12 +3,13 @@
 typed numbers, a seam, a dart, a fold, a drag that is undone; saves, and holds the saved file against
 numbers that were reckoned beforehand. The last picture of the screen is kept in out/ci/window.png.
 
-With a WAY the T-shirt is then drafted from an empty window as the test of that name did it, input by
-input, and the saved file must be the same to the byte. It is gone a second time, slower, before it is a fault.
+With a RECORD of inputs the T-shirt is then drafted from an empty window as the test of that name did it,
+input by input, and the saved file must be the same to the byte. It is replayed a second time, slower, before
+it is a fault.
 
-usage: window.py TOILE_UI TOILE [WAY]
+usage: window.py TOILE_UI TOILE [RECORD]
 
-WAY is what the test `t_shirt` wrote (target/tmp/t_shirt.way); beside it lies the file it saved.
+RECORD is what the test `t_shirt` wrote (target/tmp/t_shirt.way); beside it lies the file it saved.
 
 It waits for what is to be seen, a title or a file. How long the window takes to show what an input
 did is measured first: where an input may show nothing twice as long is waited.
@@ -35,8 +36,8 @@ INTERVAL = 0.04
 # one that may not come.
 LEAST_ANSWER = 0.2
 ANSWERS = 2.0
-# Pace of a way: how long the picture is at rest before the next input, over the slowest answer. A way is
-# gone at the first pace, and at the slower one if that was too fast for the machine.
+# Pace of a replay: how long the picture is at rest before the next input, over the slowest answer. Inputs are
+# replayed at the first pace, and at the slower one if that was too fast for the machine.
 PACES = (0.4, 1.0)
 # Fill of a panel by day (ui/src/theme.rs), blue first as it lies in memory.
 CLOTH = b"\xfa\xfd\xfe"
@@ -336,10 +337,10 @@ def check(toile, file):
     return len(numbers)
 
 
-def go(window, way, folder, pace):
-    """Gives a window the inputs of a way, one after another at a pace; says how many."""
+def replay(window, record, folder, pace):
+    """Gives a window the inputs of a record, one after another at a pace; says how many."""
     window.pace = pace
-    lines = [line.replace("{folder}", str(folder)) for line in way.read_text(encoding="utf-8").splitlines()]
+    lines = [line.replace("{folder}", str(folder)) for line in record.read_text(encoding="utf-8").splitlines()]
     for line in lines:
         kind, rest = line.split(" ", 1)
         if kind == "click":
@@ -354,12 +355,12 @@ def go(window, way, folder, pace):
         elif kind == "text":
             window.type(rest)
         else:
-            raise Fault(f"{way} has an input of no kind that is known: {line!r}")
+            raise Fault(f"{record} has an input of no kind that is known: {line!r}")
     return len(lines)
 
 
-def on_display(program, draft):
-    """Has a window drafted in on a display of its own; what `draft` gives of it and its folder."""
+def on_display(program, work):
+    """Opens a window on a display of its own; what `work` gives of it and its folder."""
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
         folder = pathlib.Path(folder)
         screen = Screen(folder)
@@ -367,7 +368,7 @@ def on_display(program, draft):
         try:
             window = Window(screen, program, folder)
             stack.callback(window.close)
-            return draft(window, folder)
+            return work(window, folder)
         finally:
             with contextlib.suppress(OSError, struct.error):
                 screen.keep(PICTURE)
@@ -381,11 +382,11 @@ def skirt(toile):
     return drafted
 
 
-def t_shirt(way, pace):
+def t_shirt(record, pace):
     def drafted(window, folder):
         begun = time.monotonic()
-        count = go(window, way, folder, pace)
-        file, end = folder / "t-shirt.toile.json", way.with_suffix(".toile.json")
+        count = replay(window, record, folder, pace)
+        file, end = folder / "t-shirt.toile.json", record.with_suffix(".toile.json")
         wait("the T-shirt is saved", file.is_file)
         if file.read_bytes() != end.read_bytes():
             raise Fault(f"the T-shirt is not as the test drafted it ({end})")
@@ -396,20 +397,20 @@ def t_shirt(way, pace):
 def main(arguments):
     if len(arguments) not in (2, 3):
         sys.exit(__doc__)
-    program, toile, *ways = (pathlib.Path(argument).resolve() for argument in arguments)
+    program, toile, *records = (pathlib.Path(argument).resolve() for argument in arguments)
     PICTURE.unlink(missing_ok=True)
-    for needed in (program, toile, *ways):
+    for needed in (program, toile, *records):
         if not needed.is_file():
             raise Fault(f"{needed} is not built")
     print(on_display(program, skirt(toile)))
-    for way in ways:
+    for record in records:
         fast, slow = PACES
         try:
-            print(on_display(program, t_shirt(way, fast)))
+            print(on_display(program, t_shirt(record, fast)))
         except Fault as fault:
             # A fault of the program comes again.
             print(f"once more, slower: {fault}")
-            print(on_display(program, t_shirt(way, slow)))
+            print(on_display(program, t_shirt(record, slow)))
 
 
 if __name__ == "__main__":

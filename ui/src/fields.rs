@@ -4,7 +4,8 @@ use crate::theme::Palette;
 use egui::text::LayoutJob;
 use egui::text::{CCursor, CCursorRange};
 use egui::{
-    Color32, Galley, Key, Modifiers, Response, RichText, Sense, TextBuffer, TextEdit, TextStyle, Ui,
+    Color32, Galley, Key, Modifiers, Response, RichText, Sense, TextBuffer, TextEdit, TextStyle,
+    Ui, vec2,
 };
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -229,9 +230,13 @@ impl TypedTexts {
         let found = base.names().completions(&typed.text);
         self.first = found.first().map(|first| first.text.clone());
         ui.horizontal_wrapped(|ui| {
+            let spacing = ui.spacing_mut();
+            spacing.item_spacing = vec2(4.0, 4.0);
+            spacing.interact_size.y = 0.0;
+            spacing.button_padding = vec2(5.0, 2.0);
             for completion in found.into_iter().take(PROPOSED) {
                 let words = RichText::new(&completion.word).small();
-                let button = ui.add(egui::Button::new(words).small().sense(Sense::hover()));
+                let button = ui.add(egui::Button::new(words).sense(Sense::hover()));
                 if button.contains_pointer() {
                     self.proposed = Some(completion.text);
                 }

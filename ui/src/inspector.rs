@@ -41,6 +41,7 @@ impl ToileApp {
             let planned = plan::rename_pattern(&self.base, &text);
             self.enter(planned, "Rename pattern", (id, text));
         }
+        self.sheet_name(ui);
         let mut unit = pattern.unit;
         let units = [Millimetre, Centimetre, Metre, Inch].map(|unit| (unit, unit.sign()));
         choice(ui, "Unit", &units, &mut unit);
@@ -50,13 +51,49 @@ impl ToileApp {
         }
         ui.separator();
         let soft = Palette::of(ui.ctx()).ink_soft;
-        let words = format!(
-            "{} panels, {} seams, {} sizes",
-            pattern.panels.len(),
-            pattern.seams.len(),
-            pattern.sizes.len()
-        );
+        let counted = |count: usize, word: &str| match count {
+            1 => format!("1 {word}"),
+            _ => format!("{count} {word}s"),
+        };
+        let words = [
+            counted(pattern.panels.len(), "panel"),
+            counted(pattern.seams.len(), "seam"),
+            counted(pattern.sizes.len(), "size"),
+        ];
+        let words = words.join(", ");
         ui.label(RichText::new(words).color(soft));
+    }
+
+    /// Under a number of an edge that is left out: the panel's, which holds instead.
+    fn tell_of_panel(&self, ui: &mut Ui, panel: PanelId, left_out: &NumberEntry) {
+        let entries = plan::numbers_of(&self.base, panel.into());
+        let same = entries.iter().find(|entry| entry.label == left_out.label);
+        let number = same.and_then(|entry| entry.number.as_ref());
+        if let Some(value) = number.and_then(|n| self.base.number(n, left_out.want)) {
+            let unit = self.base.pattern().unit;
+            let words = number::show(value, left_out.want, unit);
+            let colour = Palette::of(ui.ctx()).ink_soft;
+            let words = RichText::new(format!("{words}, as the panel"));
+            ui.label(words.small().color(colour));
+        }
+    }
+
+    /// The name of the sheet that is drawn on: formulas name its points by it.
+    fn sheet_name(&mut self, ui: &mut Ui) {
+        let pattern = self.base.pattern().clone();
+        let drawn_on = self.view.sheet.and_then(|id| pattern.sheet(id));
+        let Some(sheet) = drawn_on.or(pattern.sheets.first()) else {
+            return;
+        };
+        let label = ui.label("Sheet that is drawn on").id;
+        let id = egui::Id::unique(("sheet name", sheet.id));
+        let entered = self
+            .typed
+            .field(ui, (id, label), &sheet.name, |_| Ok(String::new()));
+        if let Entered::Text(text) = entered {
+            let planned = plan::rename(&self.base, sheet.id.into(), &text);
+            self.enter(planned, "Rename sheet", (id, text));
+        }
     }
 
     fn inspect(&mut self, ui: &mut Ui, item: Item) {
@@ -84,8 +121,21 @@ impl ToileApp {
                 self.enter(planned, "Rename", (id, text));
             }
         }
-        for entry in plan::numbers_of(&self.base, item.part()) {
-            self.number_field(ui, &entry);
+        let entries = plan::numbers_of(&self.base, item.part());
+        for (k, entry) in entries.iter().enumerate() {
+            // Of several of one name, as the cuts of pleats, each has its number.
+            let is_same = |other: &&NumberEntry| other.label == entry.label;
+            let label = match entries.iter().filter(is_same).count() {
+                1 => entry.label.to_owned(),
+                _ => {
+                    let before = entries[..k].iter().filter(is_same).count();
+                    format!("{} {}", entry.label, before + 1)
+                }
+            };
+            self.named_number_field(ui, entry, &label);
+            if let (Item::Edge(panel, _), None) = (item, &entry.number) {
+                self.tell_of_panel(ui, panel, entry);
+            }
         }
         match item {
             Item::Panel(panel) => {

@@ -164,6 +164,8 @@ pub fn apply(context: &egui::Context) {
             style.spacing.interact_size = vec2(40.0, 26.0);
             style.spacing.menu_margin = Margin::same(6);
             style.interaction.resize_grab_radius_side = GRAB;
+            // What goes on beyond a rim is seen to, though the pointer is elsewhere.
+            style.spacing.scroll.dormant_handle_opacity = 0.6;
             colour(&mut style.visuals, theme);
         });
     }

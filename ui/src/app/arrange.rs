@@ -2,12 +2,13 @@
 
 use super::ToileApp;
 use super::notice::Notice;
+use crate::canvas::scene::PanelScene;
 use crate::canvas::selection::{Item, Selection};
 use std::path::Path;
 use std::sync::Arc;
-use toile_geometry::Vec2;
+use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::plan::{self, Alignment, Axis, Fragment, PasteTarget, Pasted};
-use toile_pattern::{EditError, Evaluation, PartId, Pattern, PointId};
+use toile_pattern::{Edit, EditError, Entity, Evaluation, PartId, Pattern, PointId};
 use toile_session::Project;
 
 /// How far what is pasted lies beside where it was copied [m].
@@ -56,18 +57,14 @@ impl ToileApp {
         fragment
     }
 
-    /// Adds an empty sheet beside what is there, level with the one that is drawn on, and draws on it from now on. All sheets are then
-    /// laid where they are seen.
+    /// Adds an empty sheet beside what is there, level with the one that is drawn on, and draws on it from
+    /// now on. All sheets are then laid where they are seen.
     pub(crate) fn new_sheet(&mut self) {
         let bounds = self.view.boards.bounds(&self.view.scene);
         let place = bounds.map_or_else(Vec2::zeros, |bounds| {
             Vec2::new(bounds.max.x + SHEETS_APART, self.view.sheet_origin().y)
         });
-        let free = self.base.pattern().sheets.iter();
-        let free = free.filter(|sheet| sheet.on.is_none());
-        let laid: Vec<_> = free
-            .map(|sheet| (sheet.id, self.view.boards.sheet(sheet.id).into()))
-            .collect();
+        let laid = self.view.boards.laid_apart(self.base.pattern());
         let planned = plan::move_sheets(&self.base, &laid).and_then(|mut edits| {
             let (added, sheet) = plan::add_sheet(&self.base, None, place.into())?;
             edits.extend(added);
@@ -173,17 +170,46 @@ impl ToileApp {
             true => plan::copy(&self.base, &parts).and_then(|fragment| {
                 let scene = &self.view.scene;
                 let seen = panels.iter().filter_map(|id| scene.panel_scene(*id));
-                let bounds = seen.map(|panel| *panel.bounds()).reduce(|a, b| a.union(&b));
-                let width = bounds.map_or(0.0, |bounds| bounds.size().x);
+                let bounds = seen
+                    .map(|panel| self.on_table(panel))
+                    .reduce(|a, b| a.union(&b));
                 let target = PasteTarget {
                     sheet: None,
-                    offset: [width + BESIDE, 0.0],
+                    offset: [bounds.map_or(0.0, |bounds| self.free_aside(&bounds)), 0.0],
                 };
                 plan::paste(&self.base, &self.as_laid(fragment), target)
             }),
             false => plan::duplicate(&self.base, &parts),
         };
         self.take_pasted(pasted, "Duplicate");
+    }
+
+    /// Least rectangle round a panel on the table [m].
+    fn on_table(&self, panel: &PanelScene) -> Bounds2 {
+        let place = self.view.boards.panel(panel.id);
+        let bounds = panel.bounds();
+        Bounds2 {
+            min: bounds.min + place,
+            max: bounds.max + place,
+        }
+    }
+
+    /// How far to the right of its place something of these bounds lies on no panel [m].
+    fn free_aside(&self, bounds: &Bounds2) -> f64 {
+        let panels = self.view.scene.panels.iter();
+        let mut panels: Vec<Bounds2> = panels.map(|panel| self.on_table(panel)).collect();
+        panels.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
+        let mut aside = bounds.size().x + BESIDE;
+        for panel in panels {
+            let is_beside = panel.min.y < bounds.max.y && bounds.min.y < panel.max.y;
+            let is_under = panel.min.x < bounds.max.x + aside + BESIDE
+                && bounds.min.x + aside < panel.max.x + BESIDE;
+            // What lies touching the room that is left is passed too.
+            if is_beside && is_under && panel.max.x > bounds.max.x {
+                aside = panel.max.x + BESIDE - bounds.min.x;
+            }
+        }
+        aside
     }
 
     /// Makes what was pasted, selects it, and says which numbers are no formulas any more.
@@ -195,7 +221,20 @@ impl ToileApp {
                 return;
             }
         };
-        if !self.edit(Ok(pasted.edits), label) {
+        // A sheet that comes to them says where it lies: then the others have to say it too.
+        let brings_sheets = pasted
+            .edits
+            .iter()
+            .any(|edit| matches!(edit, Edit::Put(Entity::Sheet(_))));
+        let laid = match brings_sheets {
+            true => self.view.boards.laid_apart(self.base.pattern()),
+            false => Vec::new(),
+        };
+        let edits = plan::move_sheets(&self.base, &laid).map(|mut edits| {
+            edits.extend(pasted.edits);
+            edits
+        });
+        if !self.edit(edits, label) {
             return;
         }
         let selection = select_pasted(self.base.pattern(), &pasted.parts);

@@ -15,6 +15,13 @@ use toile_session::Command;
 /// Width of the tool bar [pixels].
 pub const TOOLS: f32 = 186.0;
 
+/// Heights of its buttons, where there is little room and where there is enough [pixels].
+const TOOL_HEIGHTS: [f32; 2] = [18.0, 26.0];
+/// Between two of its buttons [pixels].
+const TOOL_GAP: f32 = 1.0;
+/// Height of the rule between two groups [pixels].
+const TOOL_RULE: f32 = 5.0;
+
 /// Buttons of the tool bar, in groups.
 const TOOL_BUTTONS: &[&[&str]] = &[
     &["Select"],
@@ -98,11 +105,26 @@ impl ToileApp {
     }
 
     fn menu_entry(&mut self, ui: &mut Ui, command: &'static UiCommand) {
-        let mut button = Button::new(command.name);
+        let mut button = Button::new(command.name).selected(self.is_on(command.name));
         if let Some(key) = command.key {
             button = button.shortcut_text(ui.ctx().format_shortcut(&key));
         }
         self.command_widget(ui, command, button, None);
+    }
+
+    /// Whether what a command shows or hides is on show.
+    fn is_on(&self, name: &str) -> bool {
+        match name {
+            "Rulers" => self.shows.rulers,
+            "Isolate" => !self.view.isolated.is_empty(),
+            "All sizes" => self.view.grading.is_some(),
+            "Tables" => self.shows.tables,
+            "Findings" => self.shows.findings,
+            "Garment view" => self.shows.garment,
+            "Allowance" => self.shows.allowances,
+            "Show marker" => self.shows.marker,
+            _ => false,
+        }
     }
 
     /// A button of the menu bar; those of the history tell the step.
@@ -120,11 +142,19 @@ impl ToileApp {
     }
 
     pub(crate) fn tool_bar(&mut self, ui: &mut Ui) {
+        // The buttons are as high as there is room for all of them.
+        let rules = (TOOL_BUTTONS.len() - 1) as f32 * (TOOL_RULE + TOOL_GAP);
+        let count: usize = TOOL_BUTTONS.iter().map(|group| group.len()).sum();
+        let room = (ui.available_height() - rules) / count as f32 - TOOL_GAP;
+        let height = room.floor().clamp(TOOL_HEIGHTS[0], TOOL_HEIGHTS[1]);
         egui::ScrollArea::vertical().show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = 2.0;
+            let spacing = ui.spacing_mut();
+            spacing.item_spacing.y = TOOL_GAP;
+            spacing.interact_size.y = height;
+            spacing.button_padding = egui::vec2(4.0, 0.0);
             for (k, group) in TOOL_BUTTONS.iter().enumerate() {
                 if k > 0 {
-                    ui.separator();
+                    ui.add(egui::Separator::default().spacing(TOOL_RULE));
                 }
                 for name in *group {
                     let Some(command) = named(name) else {
@@ -134,10 +164,10 @@ impl ToileApp {
                     let key = command.key.map(|key| ui.ctx().format_shortcut(&key));
                     let button = Button::new(*name)
                         .selected(in_hand)
-                        .frame_when_inactive(false)
+                        .frame_when_inactive(in_hand)
                         .truncate()
-                        .min_size(egui::vec2(ui.available_width(), 0.0))
-                        .shortcut_text(key.unwrap_or_default());
+                        .min_size(egui::vec2(ui.available_width(), height))
+                        .shortcut_text(RichText::new(key.unwrap_or_default()).small());
                     self.command_widget(ui, command, button, None);
                 }
             }

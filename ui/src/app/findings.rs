@@ -1,6 +1,7 @@
 //! What is found wrong with the pattern, and where.
 
 use super::ToileApp;
+use super::notice::Notice;
 use crate::canvas::selection::{Item, Selection};
 use crate::theme::Palette;
 use egui::{Button, Color32, RichText, Ui};
@@ -36,6 +37,17 @@ impl ToileApp {
         let tip = "List what is found wrong with the pattern";
         if ui.add(button).on_hover_text(tip).clicked() {
             self.shows.findings = !self.shows.findings;
+        }
+    }
+
+    /// Says what went wrong by the step that was made, unless a refusal is told.
+    pub(super) fn tell_new_fault(&mut self, before: &[Diagnostic]) {
+        let is_new =
+            |found: &&Diagnostic| found.severity == Severity::Error && !before.contains(found);
+        if !self.notice.is_fault()
+            && let Some(found) = self.findings.iter().find(is_new)
+        {
+            self.notice = Notice::fault(found.to_string());
         }
     }
 

@@ -3,6 +3,7 @@
 use super::ToileApp;
 use super::job::Job;
 use super::notice::Notice;
+use crate::fields::Entered;
 use crate::theme::Palette;
 use crate::tools::number;
 use crate::views::marker::{MarkerAction, MarkerView};
@@ -11,6 +12,8 @@ use toile_pattern::plan;
 use toile_pattern::{Edit, EditError, Marker, MarkerId, OrderedSize, PiecePlacement, SizeId, Want};
 use toile_session::{Follow, FoundMarker, Search, SessionError, Start, Watcher};
 
+/// Width of the field of its name [pixels].
+const NAME_WIDTH: f32 = 110.0;
 /// Seconds a search may take.
 const SECONDS: [f64; 4] = [2.0, 10.0, 60.0, 300.0];
 
@@ -122,6 +125,18 @@ impl ToileApp {
             self.marker_view.chosen = Some(chosen);
             self.marker_view.fit();
             self.follow_marker();
+        }
+        let label = ui.label("called").id;
+        let size = egui::vec2(NAME_WIDTH, ui.spacing().interact_size.y);
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let id = egui::Id::unique(("marker name", marker.id));
+        let entered = ui.allocate_ui_with_layout(size, layout, |ui| {
+            let nothing = |_: &str| Ok(String::new());
+            self.typed.field(ui, (id, label), &marker.name, nothing)
+        });
+        if let Entered::Text(text) = entered.inner {
+            let planned = plan::rename(&self.base, marker.id.into(), &text);
+            self.enter(planned, "Rename marker", (id, text));
         }
         self.command_button(ui, "New marker");
         self.command_button(ui, "Remove marker");
@@ -386,12 +401,18 @@ impl ToileApp {
             Err(error) => return self.say_fault(error.to_string()),
         };
         let how = (Start::Anew, Search::seconds(self.search_choice.seconds));
+        let unit = self.base.pattern().unit;
         self.shows.marker = true;
         self.searching = Some(Searching {
             job: Job::start(move |follower| {
                 let stop = follower.stop_flag().ok_or(SessionError::Cancelled)?;
                 let mut told = |standing: &toile_session::Standing| {
-                    let mut words = standing.words();
+                    let mut words = match standing.length {
+                        Some(length) => {
+                            format!("{} of fabric", number::show(length, Want::Length, unit))
+                        }
+                        None => standing.words(),
+                    };
                     if let Some(efficiency) = standing.efficiency {
                         words = format!("{words}, {:.1} %", 100.0 * efficiency);
                     }

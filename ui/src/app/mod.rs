@@ -295,7 +295,9 @@ impl ToileApp {
         // Checks may take longer than a frame: they wait until a gesture is over.
         if self.checked != self.revision && !self.session.is_previewing() {
             self.checked = self.revision;
-            self.findings = self.session.diagnostics();
+            let found = self.session.diagnostics();
+            let before = std::mem::replace(&mut self.findings, found);
+            self.tell_new_fault(&before);
         }
         self.keep_unsaved();
     }
@@ -462,7 +464,7 @@ impl ToileApp {
             Panel::bottom("marker")
                 .frame(frame)
                 .resizable(true)
-                .default_size(height * 0.4)
+                .default_size(height * 0.55)
                 .size_range(140.0..=(height * 0.8).max(140.0))
                 .show(ui, |ui| self.marker_side(ui));
         }

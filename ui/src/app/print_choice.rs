@@ -12,6 +12,10 @@ use toile_session::{Lines, Paper, PrintOptions, PrintSizes};
 pub struct PrintChoice {
     /// What and how.
     pub options: PrintOptions,
+    /// Names of the panels that are selected.
+    pub selected: Vec<String>,
+    /// Whether only those are printed.
+    pub only_selected: bool,
     /// The scale as it is typed, as in 1:4.
     pub scale: String,
     /// The file it goes to.
@@ -68,6 +72,10 @@ impl ToileApp {
             ui.end_row();
         });
         ui.checkbox(&mut choice.options.halves, "Halves of pieces on the fold");
+        if !choice.selected.is_empty() {
+            let words = format!("Only what is selected: {}", choice.selected.join(", "));
+            ui.checkbox(&mut choice.only_selected, words);
+        }
         if !choice.fault.is_empty() {
             let colour = Palette::of(ui.ctx()).fault;
             ui.label(RichText::new(&choice.fault).color(colour));
@@ -79,6 +87,10 @@ impl ToileApp {
                 match read_scale(&choice.scale) {
                     Some(scale) => {
                         choice.options.scale = scale;
+                        choice.options.pieces = match choice.only_selected {
+                            true => choice.selected.clone(),
+                            false => Vec::new(),
+                        };
                         choice.fault.clear();
                         let choice = choice.clone();
                         answer = Answer::Do(Box::new(move |app| app.print(choice)));

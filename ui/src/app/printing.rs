@@ -36,10 +36,21 @@ impl ToileApp {
                 paper: self.preferences.paper(),
                 ..PrintOptions::default()
             },
+            selected: self.selected_panels(),
+            only_selected: false,
             scale: "1:1".into(),
             path: path.display().to_string(),
             fault: String::new(),
         })));
+    }
+
+    /// Names of the panels that are selected, or have a part that is.
+    fn selected_panels(&self) -> Vec<String> {
+        let pattern = self.base.pattern();
+        let items = self.view.selection.items();
+        let is_selected = |id| items.iter().any(|item| item.panel() == Some(id));
+        let panels = pattern.panels.iter().filter(|panel| is_selected(panel.id));
+        panels.map(|panel| panel.name.clone()).collect()
     }
 
     pub(super) fn print(&mut self, choice: PrintChoice) {

@@ -31,14 +31,21 @@ impl ToileApp {
                     ui.label(RichText::new(words).color(palette.fault));
                     ui.add_space(12.0);
                 }
+                // As wide as its buttons came out, so that it lies in the middle.
+                let buttons = egui::Id::unique("welcome buttons");
+                let known: Option<f32> = ui.data(|data| data.get_temp(buttons));
                 ui.horizontal(|ui| {
-                    ui.add_space((ui.available_width() - BUTTONS).max(0.0) * 0.5);
+                    let width = known.unwrap_or(BUTTONS);
+                    ui.add_space((ui.available_width() - width).max(0.0) * 0.5);
+                    let left = ui.next_widget_position().x;
                     if main_button(ui, "New pattern") {
                         self.ask_new();
                     }
                     if ui.button("Open a file\u{2026}").clicked() {
                         self.ask_open();
                     }
+                    let width = ui.min_rect().right() - left;
+                    ui.data_mut(|data| data.insert_temp(buttons, width));
                 });
                 ui.add_space(20.0);
                 if !self.preferences.recent.is_empty() {
@@ -83,7 +90,11 @@ impl ToileApp {
                 ui.label(RichText::new(&document.name).strong());
                 let age = document.kept.and_then(|kept| kept.elapsed().ok());
                 if let Some(age) = age {
-                    let words = format!("{} minutes ago", age.as_secs() / 60);
+                    let words = match age.as_secs() / 60 {
+                        0 => "just now".to_owned(),
+                        1 => "a minute ago".to_owned(),
+                        minutes => format!("{minutes} minutes ago"),
+                    };
                     ui.label(RichText::new(words).color(palette.ink_soft));
                 }
                 if main_button(ui, "Recover") {
@@ -93,6 +104,12 @@ impl ToileApp {
                     dropped = Some(k);
                 }
             });
+        }
+        // Enter takes the only one, unless another button has the keys.
+        let entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
+        let is_free = ui.memory(|memory| memory.focused().is_none());
+        if entered && is_free && self.abandoned.len() == 1 {
+            taken = Some(0);
         }
         if let Some(k) = dropped {
             let document = self.abandoned.remove(k);

@@ -61,6 +61,9 @@ pub struct Picture<'a> {
     pub palette: &'a Palette,
 }
 
+/// Share of the colour of what is selected in that of what is under the pointer.
+const HOVERED: f32 = 0.4;
+
 impl Picture<'_> {
     /// Paints the table, the pattern, and what a tool draws over it.
     pub fn paint(&self, overlay: &[Overlay]) {
@@ -86,13 +89,6 @@ impl Picture<'_> {
         for seam in &self.scene.seams {
             self.seam_numbers(seam);
         }
-        // While its pieces lie against each other it is seen what meets.
-        let is_walked = overlay.iter().any(|mark| matches!(mark, Overlay::Ghost(_)));
-        for seam in self.scene.seams.iter().filter(|_| !is_walked) {
-            if self.fresh.contains(&seam.id) || self.is_lit(Item::Seam(seam.id)) {
-                self.seam_links(seam);
-            }
-        }
         self.handles();
         for sheet in tagged(self.scene, self.open) {
             self.sheet_tag(sheet);
@@ -100,6 +96,13 @@ impl Picture<'_> {
         let points = shown_points(self.scene, self.boards, self.open);
         for shown in &points {
             self.point(shown);
+        }
+        // While its pieces lie against each other it is seen what meets.
+        let is_walked = overlay.iter().any(|mark| matches!(mark, Overlay::Ghost(_)));
+        for seam in self.scene.seams.iter().filter(|_| !is_walked) {
+            if self.fresh.contains(&seam.id) || self.is_lit(Item::Seam(seam.id)) {
+                self.seam_links(seam);
+            }
         }
         self.point_names(&points);
         for mark in overlay {
@@ -192,7 +195,12 @@ impl Picture<'_> {
     fn cloth_colour(&self, panel: &PanelScene) -> Color32 {
         match () {
             () if panel.is_stale => self.palette.panel_stale,
-            () if self.is_lit(Item::Panel(panel.id)) => self.palette.accent_soft,
+            () if self.selection.contains(Item::Panel(panel.id)) => self.palette.accent_soft,
+            // Under the pointer it is not yet selected.
+            () if self.is_lit(Item::Panel(panel.id)) => {
+                let (plain, soft) = (self.palette.panel, self.palette.accent_soft);
+                plain.lerp_to_gamma(soft, HOVERED)
+            }
             () => self.palette.panel,
         }
     }

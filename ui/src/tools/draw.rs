@@ -17,7 +17,7 @@ pub static POINT: SlotTool = SlotTool {
     command: "Point",
     slots: &[Slot {
         hint: "Click where the point is to be",
-        kind: SlotKind::NewPoint(Fields::Coordinates),
+        kind: SlotKind::Named(Fields::Coordinates),
     }],
     plan: |answers, reading| {
         let mut planning = Planning::new(reading);
@@ -36,7 +36,7 @@ pub static POINT_FROM: SlotTool = SlotTool {
         },
         Slot {
             hint: "Click where the new point is to be",
-            kind: SlotKind::NewPoint(Fields::FromLast),
+            kind: SlotKind::Named(Fields::FromLast),
         },
     ],
     plan: |answers, reading| {
@@ -68,10 +68,20 @@ fn drawn(
     answers: &[Answer],
 ) -> Result<Plan, EditError> {
     let made = points.last().copied();
-    if let (Some(point), Some(Answer::NewPoint(_, Some(name)))) = (made, answers.last()) {
+    if let (Some(point), Some(Answer::Named(_, Some(name)))) = (made, answers.last()) {
         planning.run(|evaluation| Ok((plan::rename(evaluation, point.into(), name)?, ())))?;
     }
     Ok(planning.done("Draw point", made.map(Item::Point)))
+}
+
+/// The name that was typed for what is drawn.
+fn name(answers: &[Answer]) -> Option<&str> {
+    match answers.last()? {
+        Answer::Named(_, name) | Answer::Places(_, _, name) | Answer::Inside(_, _, name) => {
+            name.as_deref()
+        }
+        _ => None,
+    }
 }
 
 /// A straight line; the next begins where it ends.
@@ -84,7 +94,7 @@ pub static LINE: SlotTool = SlotTool {
         },
         Slot {
             hint: "Click where it ends",
-            kind: SlotKind::Place(Fields::FromLast),
+            kind: SlotKind::Named(Fields::FromLast),
         },
     ],
     plan: |answers, reading| {
@@ -95,7 +105,7 @@ pub static LINE: SlotTool = SlotTool {
         let sheet = given[0].sheet;
         let curve = planning.run(|evaluation| {
             let shape = CurveShape::Rule(CurveRule::Line);
-            plan::add_curve(evaluation, (sheet, None), ends, shape)
+            plan::add_curve(evaluation, (sheet, name(answers)), ends, shape)
         })?;
         let end = Placed {
             spec: Spec::Point(ends[1]),
@@ -115,7 +125,7 @@ pub static POLYGON: SlotTool = SlotTool {
         kind: SlotKind::Places,
     }],
     plan: |answers, reading| {
-        let Some(Answer::Places(_, closes)) = answers.first() else {
+        let Some(Answer::Places(_, closes, _)) = answers.first() else {
             return Err(refuse("nothing was given", "click at least two places"));
         };
         let mut planning = Planning::new(reading);
@@ -138,7 +148,10 @@ pub static POLYGON: SlotTool = SlotTool {
                     evaluation,
                     sheet,
                     Chain::Curves(&curves),
-                    NewPanel::default(),
+                    NewPanel {
+                        name: name(answers),
+                        ..NewPanel::default()
+                    },
                 )
             })?;
             return Ok(planning.done("Draw panel", [Item::Panel(panel)]));
@@ -161,7 +174,7 @@ pub static ARC: SlotTool = SlotTool {
         },
         Slot {
             hint: "Click a place it goes through",
-            kind: SlotKind::Place(Fields::None),
+            kind: SlotKind::Named(Fields::None),
         },
     ],
     plan: |answers, reading| {
@@ -171,7 +184,12 @@ pub static ARC: SlotTool = SlotTool {
         let (sheet, through) = (given[0].sheet, given[2].at);
         let curve = planning.run(|evaluation| {
             let shape = CurveShape::ArcThrough(through);
-            plan::add_curve(evaluation, (sheet, None), [points[0], points[1]], shape)
+            plan::add_curve(
+                evaluation,
+                (sheet, name(answers)),
+                [points[0], points[1]],
+                shape,
+            )
         })?;
         Ok(planning.done("Draw arc", [Item::Curve(curve)]))
     },
@@ -191,7 +209,8 @@ pub static SPLINE: SlotTool = SlotTool {
         let ends = planning.points(&[first, last])?;
         let shape = smooth(&given.iter().map(|placed| placed.at).collect::<Vec<_>>());
         let curve = planning.run(|evaluation| {
-            plan::add_curve(evaluation, (first.sheet, None), [ends[0], ends[1]], shape)
+            let named = (first.sheet, name(answers));
+            plan::add_curve(evaluation, named, [ends[0], ends[1]], shape)
         })?;
         Ok(planning.done("Draw curve", [Item::Curve(curve)]))
     },
@@ -235,7 +254,7 @@ pub static RECTANGLE: SlotTool = SlotTool {
         },
         Slot {
             hint: "Click the opposite corner",
-            kind: SlotKind::Place(Fields::Size),
+            kind: SlotKind::Named(Fields::Size),
         },
     ],
     plan: |answers, reading| {
@@ -249,7 +268,11 @@ pub static RECTANGLE: SlotTool = SlotTool {
         let corner = planning.point(from, None)?;
         let figure = planning.run(|evaluation| {
             let corner = (plan::FirstCorner::Point(corner), size);
-            plan::add_rectangle(evaluation, from.sheet, corner, Some(NewPanel::default()))
+            let panel = NewPanel {
+                name: name(answers),
+                ..NewPanel::default()
+            };
+            plan::add_rectangle(evaluation, from.sheet, corner, Some(panel))
         })?;
         let panel = figure.panel.map(Item::Panel);
         Ok(planning.done("Draw rectangle", panel))
@@ -264,12 +287,16 @@ pub static TRACE: SlotTool = SlotTool {
         kind: SlotKind::Inside,
     }],
     plan: |answers, reading| {
-        let Some(Answer::Inside(sheet, at)) = answers.first() else {
+        let Some(Answer::Inside(sheet, at, _)) = answers.first() else {
             return Err(refuse("nothing was given", "click inside closed lines"));
         };
         let mut planning = Planning::new(reading);
         let panel = planning.run(|evaluation| {
-            plan::trace_face(evaluation, *sheet, (*at, Holes::Cut), NewPanel::default())
+            let panel = NewPanel {
+                name: name(answers),
+                ..NewPanel::default()
+            };
+            plan::trace_face(evaluation, *sheet, (*at, Holes::Cut), panel)
         })?;
         Ok(planning.done("Trace panel", [Item::Panel(panel)]))
     },

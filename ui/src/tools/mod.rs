@@ -13,6 +13,7 @@ pub mod seam;
 pub(crate) mod select;
 mod slot_overlay;
 pub mod slots;
+mod toward;
 pub mod walk;
 
 pub use planning::Planning;

@@ -219,7 +219,7 @@ pub static INNER_LINE: SlotTool = SlotTool {
         let Some(Answer::Panel(panel)) = answers.first() else {
             return Err(refuse("nothing was given", "click a panel"));
         };
-        let closes = matches!(answers.get(1), Some(Answer::Places(_, true)));
+        let closes = matches!(answers.get(1), Some(Answer::Places(_, true, _)));
         let mut planning = Planning::new(reading);
         let (sheet, points) = points_inside(&mut planning, reading, *panel, &places(answers))?;
         let count = points.len();

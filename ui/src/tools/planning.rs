@@ -135,8 +135,8 @@ pub fn places(answers: &[Answer]) -> Vec<&Placed> {
     let mut found = Vec::new();
     for answer in answers {
         match answer {
-            Answer::Place(placed) | Answer::NewPoint(placed, _) => found.push(placed),
-            Answer::Places(places, _) => found.extend(places),
+            Answer::Place(placed) | Answer::Named(placed, _) => found.push(placed),
+            Answer::Places(places, ..) => found.extend(places),
             _ => {}
         }
     }

@@ -12,7 +12,7 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
     for answer in &state.answers {
         match answer {
             Answer::Place(placed) => marks.push(Overlay::Dot(placed.sheet, placed.at)),
-            Answer::Places(places, _) => {
+            Answer::Places(places, ..) => {
                 marks.extend(places.iter().map(|p| Overlay::Dot(p.sheet, p.at)));
             }
             Answer::Chain(chain) => marks.extend(chain.iter().map(edge)),
@@ -28,14 +28,23 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
     let unit = reading.evaluation.pattern().unit;
     let typed = typed_words(kind, state);
     match answer(kind, state, reading) {
-        Ok(Answer::Place(placed) | Answer::NewPoint(placed, _)) => {
+        Ok(Answer::Place(placed) | Answer::Named(placed, _)) => {
             let mut words = vec![placed.words.clone()];
             if let Some(last) = state.last_place() {
-                marks.push(Overlay::Line(placed.sheet, vec![last.at, placed.at]));
                 let way = placed.at - last.at;
-                words.push(number::show(way.norm(), Want::Length, unit));
-                words.push(number::show(way.y.atan2(way.x), Want::Angle, unit));
+                let length = |length: f64| number::show(length, Want::Length, unit);
+                match kind {
+                    SlotKind::Named(Fields::Size) => {
+                        words.push(format!("{} x {}", length(way.x.abs()), length(way.y.abs())));
+                    }
+                    _ => {
+                        marks.push(Overlay::Line(placed.sheet, vec![last.at, placed.at]));
+                        words.push(length(way.norm()));
+                        words.push(number::show(way.y.atan2(way.x), Want::Angle, unit));
+                    }
+                }
             }
+            words.push(state.named.clone());
             words.retain(|word| !word.is_empty());
             let lines = [words.join("  "), typed];
             let lines = lines.into_iter().filter(|line| !line.is_empty());
@@ -63,6 +72,9 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
                 }
             }
         }
+        Ok(Answer::Inside(sheet, at, _)) if !typed.is_empty() => {
+            marks.push(Overlay::Words(sheet, at, typed));
+        }
         Ok(Answer::Chain(chain)) => marks.extend(chain.last().map(edge)),
         Ok(_) => {}
         Err(words) => {
@@ -85,7 +97,9 @@ fn typed_words(kind: SlotKind, state: &SlotState) -> String {
         return String::new();
     }
     let labels = fields(kind);
-    let words = labels.iter().enumerate().map(|(k, (label, _))| {
+    let is_told = |k: &usize| !state.naming || *k == state.field || !state.typed[*k].is_empty();
+    let told = labels.iter().enumerate().filter(|(k, _)| is_told(k));
+    let words = told.map(|(k, (label, _))| {
         let bar = if k == state.field { "|" } else { "" };
         format!("{label} {}{bar}", state.typed[k])
     });
@@ -99,10 +113,17 @@ pub(super) fn hint(tool: &SlotTool, state: &SlotState) -> String {
     let slot = slot(tool, state);
     let labels: Vec<&str> = fields(slot.kind).iter().map(|(label, _)| *label).collect();
     let keys = match slot.kind {
+        // Some numbers are shown at the pointer; the others are only typed.
+        SlotKind::Number { .. } if slot.hint.starts_with("Type") => {
+            "; Enter takes it; Esc goes a step back".to_owned()
+        }
         SlotKind::Number { .. } => ", or type it; Enter takes it; Esc goes a step back".to_owned(),
         SlotKind::Places => {
-            "; type length or =formula, Tab angle; Enter ends; Esc goes a step back".to_owned()
+            "; type length or =formula, Tab angle, or 'name; Enter ends; Esc goes a step back"
+                .to_owned()
         }
+        SlotKind::Inside => "; 'name before it names it; Esc goes a step back".to_owned(),
+        SlotKind::Named(Fields::None) => "; 'name before it names it; Esc goes a step back".into(),
         SlotKind::OnLine(Fields::Distance) => {
             "; or type its distance from the nearer corner, Enter; Esc goes a step back".to_owned()
         }
@@ -111,8 +132,12 @@ pub(super) fn hint(tool: &SlotTool, state: &SlotState) -> String {
         }
         _ if labels.is_empty() => "; Esc goes a step back".to_owned(),
         _ => format!(
-            "; or type {} (a formula begins with =), Enter; Tab next snap, Shift level, {} free",
+            "; or type {} (a formula begins with ={}), Enter; Tab next snap, Shift level, {} free",
             labels.join(", Tab, "),
+            match slot.kind {
+                SlotKind::Named(_) => ", a name with '",
+                _ => "",
+            },
             if cfg!(target_os = "macos") {
                 "Cmd"
             } else {

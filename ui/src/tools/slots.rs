@@ -1,6 +1,7 @@
 //! Tools that are given one thing after another: a list of slots and a planner. One machine gives
 //! all of them hovering, typed numbers, snapping, steps back and hints.
 
+use super::toward::{to_side, turned};
 use super::{Event, Outcome, Pointer, Reading, Shown};
 use super::{along, number};
 use crate::canvas::selection::{Item, Selection};
@@ -10,8 +11,10 @@ use toile_pattern::{
     CurveId, EdgeId, Edit, EditError, Mark, Number, OperationId, PanelId, SheetId, Want,
 };
 
-/// Steps of an angle while Shift is held [degrees].
-const TURN: f64 = 15.0;
+/// The field of a name.
+const NAME: &str = "name";
+/// What begins a name where nothing else is typed: names stand in it in formulas too.
+pub const NAME_SIGN: char = '\'';
 
 /// A tool of slots.
 #[derive(Debug)]
@@ -38,9 +41,9 @@ pub struct Slot {
 pub enum SlotKind {
     /// A place of a sheet, with numbers that may be typed for it.
     Place(Fields),
-    /// A place of a new point, which may be typed a name after its numbers.
-    NewPoint(Fields),
-    /// Several places; Enter or a click on the first ends them.
+    /// A place that ends what is drawn, which may be typed a name after the numbers.
+    Named(Fields),
+    /// Several places, and a name for what runs through them; Enter or a click on the first ends them.
     Places,
     /// A place on an outline, hole or inner line of a panel, with numbers that may be typed for it.
     OnLine(Fields),
@@ -54,7 +57,7 @@ pub enum SlotKind {
     Curve,
     /// A panel.
     Panel,
-    /// A place inside something, which need not be drawn to anything.
+    /// A place inside something, which need not be drawn to anything, and a name for it.
     Inside,
     /// A number: typed, or given by the pointer.
     Number {
@@ -104,10 +107,10 @@ pub type ChainEdge = (PanelId, EdgeId);
 pub enum Answer {
     /// A place.
     Place(Placed),
-    /// A place of a new point, and its name if one was typed.
-    NewPoint(Placed, Option<String>),
-    /// Places, and whether the last joins the first.
-    Places(Vec<Placed>, bool),
+    /// The place that ends what is drawn, and the name of it if one was typed.
+    Named(Placed, Option<String>),
+    /// Places, whether the last joins the first, and the name if one was typed.
+    Places(Vec<Placed>, bool, Option<String>),
     /// A place of a panel's line, on its sheet [m]; and the mark there if a distance was typed.
     OnLine(PanelId, Item, Vec2, Option<Mark>),
     /// An edge, and the place it was taken at [m].
@@ -120,8 +123,8 @@ pub enum Answer {
     Curve(SheetId, CurveId, Vec2),
     /// A panel.
     Panel(PanelId),
-    /// A place inside something of a sheet [m].
-    Inside(SheetId, Vec2),
+    /// A place inside something of a sheet [m], and the name if one was typed.
+    Inside(SheetId, Vec2, Option<String>),
     /// A number.
     Number(Number),
 }
@@ -147,10 +150,14 @@ pub struct SlotState {
     pub(super) places: Vec<Placed>,
     /// Edges of a chain that more are added to.
     pub(super) chain: Vec<ChainEdge>,
-    /// What is typed: one or two numbers, and the name of a new point.
+    /// What is typed: up to two numbers, and the name of what is drawn.
     pub(super) typed: [String; 3],
     /// Which of them is typed.
     pub(super) field: usize,
+    /// Whether the name was begun by its sign.
+    pub(super) naming: bool,
+    /// The name that was typed before the last of several places.
+    pub(super) named: String,
     /// The snap that is taken, counted from the best.
     snap: usize,
     pub(super) pointer: Option<Pointer>,
@@ -167,9 +174,39 @@ impl SlotState {
             && !self.is_typing()
     }
 
-    /// Whether a number is being typed.
+    /// Whether a number or a name is being typed.
     pub fn is_typing(&self) -> bool {
-        self.typed.iter().any(|text| !text.is_empty())
+        self.naming || self.typed.iter().any(|text| !text.is_empty())
+    }
+
+    /// Takes typed text. The sign of names begins the name of what is drawn; within a formula it is a
+    /// sign like others.
+    fn take_text(&mut self, kind: SlotKind, text: &str) {
+        let fields = fields(kind);
+        let Some(last) = fields.len().checked_sub(1) else {
+            return;
+        };
+        self.field = self.field.min(last);
+        let is_begun = !self.typed[self.field].is_empty() || self.naming;
+        match text.strip_prefix(NAME_SIGN).filter(|_| !is_begun) {
+            Some(rest) if fields[last].0 == NAME => {
+                self.naming = true;
+                self.field = last;
+                self.typed[last] = rest.to_owned();
+            }
+            _ => self.typed[self.field].push_str(text),
+        }
+    }
+
+    /// The name that was typed.
+    fn name(&self, kind: SlotKind) -> Option<String> {
+        let field = fields(kind).iter().position(|(label, _)| *label == NAME);
+        let typed = field.map_or("", |field| self.typed[field].trim());
+        let name = match typed.is_empty() {
+            true => &self.named,
+            false => typed,
+        };
+        (!name.is_empty()).then(|| name.to_owned())
     }
 
     /// The sheet of the place given last.
@@ -189,6 +226,7 @@ impl SlotState {
     fn clear_typed(&mut self) {
         self.typed = Default::default();
         self.field = 0;
+        self.naming = false;
         self.snap = 0;
     }
 }
@@ -221,16 +259,13 @@ pub(super) fn step(
             outcome = accept(tool, &mut next, reading, false);
         }
         Event::Enter => outcome = accept(tool, &mut next, reading, true),
-        Event::Text(text) => {
-            let fields = fields(kind).len();
-            if fields > 0 {
-                let field = next.field.min(fields - 1);
-                next.typed[field].push_str(text);
-            }
-        }
+        Event::Text(text) => next.take_text(kind, text),
         Event::Backspace => {
             let field = next.field;
-            next.typed[field].pop();
+            if next.typed[field].pop().is_none() && next.naming {
+                next.naming = false;
+                next.field = 0;
+            }
         }
         Event::Tab => match next.is_typing() {
             true => next.field = (next.field + 1) % fields(kind).len().max(1),
@@ -245,6 +280,9 @@ pub(super) fn step(
             {
                 outcome.done = true;
             }
+            if next.places.is_empty() {
+                next.named.clear();
+            }
         }
         Event::Drop | Event::Go(_) => {}
     }
@@ -255,12 +293,14 @@ pub(super) fn step(
     (next, outcome)
 }
 
-/// What may be typed in a slot: numbers, and the name of a new point.
+/// What may be typed in a slot: numbers, and the name of what is drawn.
 pub(super) fn fields(kind: SlotKind) -> Vec<(&'static str, Want)> {
+    let named = |fields: Fields| [fields.labels(), &[(NAME, Want::Any)]].concat();
     match kind {
-        SlotKind::NewPoint(fields) => [fields.labels(), &[("name", Want::Any)]].concat(),
+        SlotKind::Named(fields) => named(fields),
         SlotKind::Place(fields) | SlotKind::OnLine(fields) => fields.labels().to_vec(),
-        SlotKind::Places => Fields::FromLast.labels().to_vec(),
+        SlotKind::Places => named(Fields::FromLast),
+        SlotKind::Inside => named(Fields::None),
         SlotKind::Number { label, want, .. } => vec![(label, want)],
         _ => Vec::new(),
     }
@@ -280,10 +320,9 @@ pub(super) fn answer(
     };
     match kind {
         SlotKind::Place(fields) => Ok(Answer::Place(placed(fields, state, reading)?)),
-        SlotKind::NewPoint(fields) => {
-            let name = state.typed[2].trim();
-            let name = (!name.is_empty()).then(|| name.to_owned());
-            Ok(Answer::NewPoint(placed(fields, state, reading)?, name))
+        SlotKind::Named(fields) => {
+            let name = state.name(kind);
+            Ok(Answer::Named(placed(fields, state, reading)?, name))
         }
         SlotKind::Places => Ok(Answer::Place(placed(Fields::FromLast, state, reading)?)),
         SlotKind::OnLine(_) => {
@@ -291,8 +330,11 @@ pub(super) fn answer(
             let hit = hit(&wanted, "line of a panel")?;
             let panel = hit.item.panel().ok_or("there is no panel here")?;
             let typed = state.typed[0].trim();
-            let (Item::Edge(_, edge), false) = (hit.item, typed.is_empty()) else {
+            if typed.is_empty() {
                 return Ok(Answer::OnLine(panel, hit.item, hit.at, None));
+            }
+            let Item::Edge(_, edge) = hit.item else {
+                return Err("a distance is measured along an edge: point at one".into());
             };
             let distance = number::parse(typed, Want::Length, reading.evaluation)?;
             let found = along::mark_along(reading, (panel, edge, hit.at), distance);
@@ -336,7 +378,7 @@ pub(super) fn answer(
         }
         SlotKind::Inside => {
             let pointer = here()?;
-            Ok(Answer::Inside(pointer.sheet, pointer.at))
+            Ok(Answer::Inside(pointer.sheet, pointer.at, state.name(kind)))
         }
         SlotKind::Number {
             want, usual, live, ..
@@ -409,7 +451,10 @@ fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Pl
         }
         Fields::Size if last.is_some() => {
             // A rectangle grows to the side the pointer is on.
-            let signed = |number: Option<Number>, way: f64| or_pointed(number, way);
+            let signed = |number: Option<Number>, way: f64| match number {
+                Some(number) => to_side(number, way, (state, reading)),
+                None => or_pointed(None, way),
+            };
             let (x, y) = (signed(first, way.x)?, signed(second, way.y)?);
             let to = Vec2::new(value(&x, Want::Length)?, value(&y, Want::Length)?);
             Ok(Placed {
@@ -433,28 +478,6 @@ fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Pl
     }
 }
 
-/// The place at the pointer's distance from the last, in a direction of whole steps.
-fn turned(last: &Placed, pointer: &Pointer, free: Placed) -> Placed {
-    let way = free.at - last.at;
-    let step = TURN.to_radians();
-    let angle = (way.y.atan2(way.x) / step).round() * step;
-    let unit = Vec2::new(angle.cos(), angle.sin());
-    let far = way.dot(&unit);
-    let far = match pointer.held.command {
-        true => far,
-        false => crate::canvas::snap::rounded(far, 0.001),
-    };
-    Placed {
-        sheet: last.sheet,
-        at: last.at + unit * far,
-        spec: Spec::FromLast {
-            distance: Number::Value(far),
-            angle: Number::Value(angle),
-        },
-        words: format!("at {:.0}\u{b0}", angle.to_degrees()),
-    }
-}
-
 /// Takes what is given now, and does the work when that was the last.
 fn accept(
     tool: &'static SlotTool,
@@ -468,7 +491,9 @@ fn accept(
         ..Outcome::default()
     };
     if let SlotKind::Places = kind {
-        let ends = by_key && !state.is_typing();
+        // A name alone is no place: Enter after it ends them.
+        let ends = by_key && state.typed[..2].iter().all(String::is_empty);
+        state.named = state.name(kind).unwrap_or_default();
         let given = match ends {
             true => None,
             false => match answer(kind, state, reading) {
@@ -494,7 +519,8 @@ fn accept(
             return refused("click at least two places first".into());
         }
         let places = std::mem::take(&mut state.places);
-        state.answers.push(Answer::Places(places, closes));
+        let name = state.name(kind);
+        state.answers.push(Answer::Places(places, closes, name));
     } else {
         let adds = state.pointer.as_ref().is_some_and(|at| at.held.shift);
         match answer(kind, state, reading) {
@@ -514,6 +540,7 @@ fn accept(
     match (tool.plan)(&state.answers, reading) {
         Ok(plan) => {
             state.answers = plan.again;
+            state.named.clear();
             Outcome {
                 commit: Some((plan.edits, plan.label)),
                 select: Some(plan.select),
@@ -522,7 +549,8 @@ fn accept(
         }
         Err(error) => {
             // What was given last is asked for again.
-            if let Some(Answer::Places(places, _)) = state.answers.pop() {
+            state.named.clear();
+            if let Some(Answer::Places(places, ..)) = state.answers.pop() {
                 state.places = places;
             }
             refused(error.to_string())

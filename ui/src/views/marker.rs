@@ -139,8 +139,9 @@ impl MarkerView {
             scene.locked = piece.locked;
             self.pieces.push(scene);
         }
-        // What waits lies in a row under the fabric.
-        let mut pen = 0.0;
+        // What waits lies beyond the end of the fabric, in columns as high as it is wide.
+        let mut pen = Vec2::new(length + 3.0 * GAP, strip.width);
+        let mut widest: f64 = 0.0;
         for piece in laid.waiting() {
             let upright = Pose {
                 grain: piece.cut.grain,
@@ -150,11 +151,16 @@ impl MarkerView {
             };
             let bounds = piece.cut.outer().mapped(|at| upright.apply(at)).bounds();
             let size = bounds.size();
+            if pen.y < size.y && pen.y < strip.width {
+                pen = Vec2::new(pen.x + widest + GAP, strip.width);
+                widest = 0.0;
+            }
             let pose = Pose {
-                translation: Vec2::new(pen - bounds.min.x, -GAP - size.y - bounds.min.y),
+                translation: Vec2::new(pen.x - bounds.min.x, pen.y - bounds.max.y),
                 ..upright
             };
-            pen += size.x + GAP;
+            pen.y -= size.y + GAP;
+            widest = widest.max(size.x);
             let mut scene = PieceScene::new(piece.piece, piece.name, pose, |place, words| {
                 piece.cut.drawing(place, words)
             });

@@ -18,7 +18,7 @@ pub struct Drafter {
     pub window: Harness<'static, ToileApp>,
     /// What was done.
     pub actions: usize,
-    /// Every raw input, a line each, so that the way can be gone again with a mouse and keys on a
+    /// Every raw input but drags, a line each, so that they can be replayed with a mouse and keys on a
     /// display: `click X Y`, `hover X Y` and `wheel X Y` (down by a notch) in pixels, `key CHORD` and
     /// `text TEXT`.
     pub inputs: Vec<String>,

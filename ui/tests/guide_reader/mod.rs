@@ -197,8 +197,9 @@ impl Reader {
                 self.drafter.key(Key::L);
                 self.point(sheet, from);
             }
+            self.drafter.type_text(&format!("'{name}"));
             self.point(sheet, to);
-            self.name_curve(name);
+            self.has_curve(name);
             last = to;
         }
     }
@@ -211,9 +212,10 @@ impl Reader {
                 panic!("{row:?}");
             };
             self.point(sheet, from);
+            self.drafter.type_text(&format!("'{name}"));
             self.point(sheet, to);
             self.drafter.key(Key::Enter);
-            self.name_curve(name);
+            self.has_curve(name);
             self.drafter.enter_on(&format!("x of handle at {from}"), x);
             self.drafter.typed_and(y, Key::Tab);
             self.drafter.typed_and(last_x, Key::Tab);
@@ -224,9 +226,7 @@ impl Reader {
         }
     }
 
-    /// Names what was just drawn, which is selected.
-    pub fn name_curve(&mut self, name: &str) {
-        self.drafter.enter("Name", name);
+    pub fn has_curve(&self, name: &str) {
         let pattern = self.drafter.pattern();
         let found = pattern.sheets.last().unwrap().curve_named(name);
         assert!(found.is_some(), "{name}: {}", self.drafter.status());

@@ -284,11 +284,35 @@ fn proposed(runs: &[Vec<Run<'_>>; 2]) -> String {
     let (Some(one), Some(two)) = (one, two) else {
         return "seam".into();
     };
-    let [a, b] = [one, two].map(|run| run.edges[0].name);
-    match a == b {
-        true => format!("{a} seam"),
-        false => format!("{} {a} to {} {b}", one.panel.name, two.panel.name),
+    let edges = runs.iter().flatten().flat_map(|run| &run.edges);
+    let names: Vec<&str> = edges.map(|edge| edge.name).collect();
+    let common = common_words(&names);
+    match common.is_empty() {
+        false => format!("{common} seam"),
+        true => {
+            let [a, b] = [one, two].map(|run| run.edges[0].name);
+            format!("{} {a} to {} {b}", one.panel.name, two.panel.name)
+        }
     }
+}
+
+/// The words that all names begin with: `side` of `side_low`, `side_high` and `side`.
+fn common_words<'n>(names: &[&'n str]) -> &'n str {
+    let is_between = |c: char| c == '_' || c == ' ';
+    let Some((first, others)) = names.split_first() else {
+        return "";
+    };
+    let ends = first.char_indices().filter(|(_, c)| is_between(*c));
+    let mut ends: Vec<usize> = ends.map(|(at, _)| at).collect();
+    ends.push(first.len());
+    let is_common = |end: &usize| {
+        others.iter().all(|name| {
+            let rest = name.strip_prefix(&first[..*end]);
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(is_between))
+        })
+    };
+    let end = ends.into_iter().rev().find(is_common);
+    end.map_or("", |end| &first[..end])
 }
 
 /// The edit that puts a seam, refused if it has no place.
@@ -303,5 +327,20 @@ fn put(evaluation: &Evaluation, seam: Seam) -> Result<Vec<Edit>, EditError> {
             format!("seam {name:?} has no place"),
             "mend its panels first",
         )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::common_words;
+
+    #[test]
+    fn names_share_whole_words() {
+        assert_eq!(common_words(&["side_low", "side_high", "side"]), "side");
+        assert_eq!(common_words(&["side seam low", "side seam"]), "side seam");
+        assert_eq!(common_words(&["side", "sideways"]), "");
+        assert_eq!(common_words(&["right", "left"]), "");
+        assert_eq!(common_words(&["waist", "waist"]), "waist");
+        assert_eq!(common_words(&[]), "");
     }
 }

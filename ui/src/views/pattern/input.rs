@@ -3,6 +3,7 @@
 use super::PatternView;
 use crate::canvas::camera::ScreenPoint;
 use crate::tools::number::begins_typing;
+use crate::tools::slots::NAME_SIGN;
 use crate::tools::{Event, Going, Held, Tool};
 use egui::{EventFilter, Key, PointerButton, Response, Ui};
 
@@ -144,7 +145,9 @@ impl PatternView {
             input.events.retain(|event| {
                 let taken = match event {
                     egui::Event::Text(text) => {
-                        let begins = text.starts_with(begins_typing);
+                        let names = matches!(self.tool, Tool::Slots(_));
+                        let begins =
+                            text.starts_with(begins_typing) || names && text.starts_with(NAME_SIGN);
                         let is_choice = text == "=" && self.pressed.is_some();
                         let is_typed = self.tool.takes_keys() && (typing || begins);
                         let takes = is_typed || is_choice;

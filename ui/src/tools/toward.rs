@@ -1,0 +1,49 @@
+//! Places that are meant by where the pointer lies: straight from the last, to one of its sides.
+
+use super::slots::SlotState;
+use super::{Pointer, Reading, along};
+use crate::canvas::snap::{Placed, Spec, rounded};
+use toile_geometry::Vec2;
+use toile_pattern::{Number, Want};
+
+/// Steps of an angle while Shift is held [degrees].
+const TURN: f64 = 15.0;
+/// How far the pointer lies beyond a place to mean its other side [pixels].
+const BEYOND: f64 = 12.0;
+
+/// The place at the pointer's distance from the last, in a direction of whole steps.
+pub(super) fn turned(last: &Placed, pointer: &Pointer, free: Placed) -> Placed {
+    let way = free.at - last.at;
+    let step = TURN.to_radians();
+    let angle = (way.y.atan2(way.x) / step).round() * step;
+    let unit = Vec2::new(angle.cos(), angle.sin());
+    let far = way.dot(&unit);
+    let far = match pointer.held.command {
+        true => far,
+        false => rounded(far, 0.001),
+    };
+    Placed {
+        sheet: last.sheet,
+        at: last.at + unit * far,
+        spec: Spec::FromLast {
+            distance: Number::Value(far),
+            angle: Number::Value(angle),
+        },
+        words: format!("at {:.0}\u{b0}", angle.to_degrees()),
+    }
+}
+
+/// A typed width or height toward the side the pointer lies on, that far from the last place [m]. One
+/// that is typed with its sign stays.
+pub(super) fn to_side(
+    number: Number,
+    way: f64,
+    (state, reading): (&SlotState, &Reading<'_>),
+) -> Result<Number, String> {
+    let pixel = state.pointer.as_ref().map_or(0.0, |pointer| pointer.pixel);
+    let value = reading.evaluation.number(&number, Want::Length);
+    match way < -BEYOND * pixel && value.is_some_and(|value| value > 0.0) {
+        true => along::negated(&number, reading).map_err(|error| error.to_string()),
+        false => Ok(number),
+    }
+}
