@@ -282,6 +282,31 @@ fn a_part_is_found_by_its_name_and_shown() {
         .window
         .get_by_role_and_label(Role::TextInput, "Name");
     assert_eq!(label.value().unwrap(), "sleeve");
+    // A seam is shown where it begins, though other panels are on show alone.
+    drafter.key(Key::F);
+    drafter.click(drafter.part("Panel front"));
+    drafter.key(Key::Period);
+    drafter.chord(Modifiers::COMMAND, Key::K);
+    drafter.enter("Find a command, or a part of the pattern", "left sleeve");
+    assert!(is_seen(&drafter), "{}", drafter.status());
+}
+
+#[test]
+fn a_sheet_is_copied_with_its_panels_into_free_room() {
+    let mut drafter = Drafter::opened("t-shirt");
+    drafter.click(drafter.part("Point top of sleeve"));
+    let tag = drafter.part("Sheet sleeve") + vec2(20.0, -14.0);
+    drafter.click(tag);
+    drafter.chord(Modifiers::COMMAND, Key::D);
+    let pattern = drafter.pattern();
+    let counts = (pattern.sheets.len(), pattern.panels.len());
+    assert_eq!(counts, (4, 4), "{}", drafter.status());
+    assert_eq!(pattern.panels[3].sheet(), Some(pattern.sheets[3].id));
+    // The others stay where they are seen, and say so.
+    for (k, sheet) in pattern.sheets.iter().enumerate() {
+        let others = pattern.sheets[..k].iter();
+        assert!(others.clone().all(|other| other.on_table != sheet.on_table));
+    }
 }
 
 #[test]

@@ -141,7 +141,7 @@ fn keys_and_numbers_say_how_far() {
         .fault()
         .unwrap_or_default()
         .to_owned();
-    assert!(fault.contains("type no more than that"), "{fault}");
+    assert!(fault.contains("type a distance from 0 to that"), "{fault}");
     drafter.key(Key::End);
     let whole = told(&drafter);
     drafter.key(Key::ArrowRight);

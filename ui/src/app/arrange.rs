@@ -164,13 +164,15 @@ impl ToileApp {
 
     pub(crate) fn duplicate(&mut self) {
         let parts = self.selected_parts();
-        let panels = self.view.selection.panels();
-        let pasted = match panels.len() == parts.len() {
+        let is_whole = |part: &PartId| matches!(part, PartId::Panel(_) | PartId::Sheet(_));
+        let pasted = match parts.iter().all(is_whole) {
             // Beside the panels as they are seen, with their mirrored halves.
             true => plan::copy(&self.base, &parts).and_then(|fragment| {
-                let scene = &self.view.scene;
-                let seen = panels.iter().filter_map(|id| scene.panel_scene(*id));
-                let bounds = seen
+                let is_copied = |panel: &&PanelScene| {
+                    parts.contains(&panel.id.into()) || parts.contains(&panel.sheet.into())
+                };
+                let bounds = self.view.scene.panels.iter().filter(is_copied);
+                let bounds = bounds
                     .map(|panel| self.on_table(panel))
                     .reduce(|a, b| a.union(&b));
                 let target = PasteTarget {

@@ -40,14 +40,15 @@ impl ToileApp {
         }
     }
 
-    /// Says what went wrong by the step that was made, unless a refusal is told.
+    /// Says what went wrong by the step that was made, unless a refusal is told. It was made all the
+    /// same: so it is a warning.
     pub(super) fn tell_new_fault(&mut self, before: &[Diagnostic]) {
         let is_new =
             |found: &&Diagnostic| found.severity == Severity::Error && !before.contains(found);
         if !self.notice.is_fault()
             && let Some(found) = self.findings.iter().find(is_new)
         {
-            self.notice = Notice::fault(found.to_string());
+            self.notice = Notice::warning(found.to_string());
         }
     }
 

@@ -79,11 +79,31 @@ impl ToileApp {
         }
     }
 
-    /// Selects a part, and moves the table so that it is seen.
+    /// Selects a part, and moves the table so that it is seen: of a seam the panel it begins at, of a
+    /// curve that a panel is traced along its edge.
     fn show_part(&mut self, item: Item) {
         self.take(Tool::Select);
         self.view.select(Selection::one(item));
-        self.view.reveal(item);
+        let pattern = self.base.pattern();
+        let shown = match item {
+            Item::Seam(id) => {
+                let seam = pattern.seams.iter().find(|seam| seam.id == id);
+                let first = seam.and_then(|seam| seam.sides[0].first());
+                first.map(|span| Item::Panel(span.panel))
+            }
+            Item::Curve(id) => pattern.panels.iter().find_map(|panel| {
+                let edge = panel.edges().find(|edge| edge.curve == id)?;
+                Some(Item::Edge(panel.id, edge.id))
+            }),
+            _ => None,
+        };
+        let shown = shown.unwrap_or(item);
+        let is_hidden =
+            |panel| !self.view.isolated.is_empty() && !self.view.isolated.contains(&panel);
+        if shown.panel().is_some_and(is_hidden) {
+            self.isolate();
+        }
+        self.view.reveal(shown);
     }
 }
 

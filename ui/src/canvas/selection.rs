@@ -1,8 +1,8 @@
 //! What is selected or under the pointer. View state: not in the document, not undone.
 
 use toile_pattern::{
-    CurveId, EdgeId, LineId, NotchId, OperationId, PanelId, PartId, Pattern, PointId, SeamId,
-    SheetId,
+    CurveId, EdgeId, LineId, LineKind, NotchId, OperationId, PanelId, PartId, Pattern, PointId,
+    SeamId, SheetId,
 };
 
 /// A part of the pattern that can be selected.
@@ -36,6 +36,11 @@ impl Item {
             let id = panel.id;
             all.push(Self::Panel(id));
             all.extend(panel.edges().map(|edge| Self::Edge(id, edge.id)));
+            let inner = panel
+                .lines
+                .iter()
+                .filter(|line| line.kind != LineKind::Outline);
+            all.extend(inner.map(|line| Self::Line(id, line.id)));
             all.extend(
                 panel
                     .operations

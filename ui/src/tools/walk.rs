@@ -6,7 +6,7 @@ use super::{Event, Going, Outcome, Overlay, Pointer, Reading, Tone};
 use crate::canvas::selection::{Item, Selection};
 use toile_geometry::{Bounds2, Curve, Vec2};
 use toile_pattern::plan::Affine;
-use toile_pattern::walk::{Contact, Joint, NOTCHES_MEET, Smoothness, Stays, Walk, WalkedNotch};
+use toile_pattern::walk::{Contact, Joint, Smoothness, Stays, Walk, WalkedNotch};
 use toile_pattern::{
     DisplayUnit, Draft, DraftSeam, Evaluation, Pattern, Piece, SeamId, SeamOrigin, Want,
 };
@@ -201,7 +201,9 @@ pub(super) fn step(
             Ok(_) => {
                 let unit = seen.pattern.unit;
                 let whole = number::show(whole, Want::Length, unit);
-                outcome.refusal = Some(format!("the seam is {whole} long: type no more than that"));
+                outcome.refusal = Some(format!(
+                    "the seam is {whole} long: type a distance from 0 to that"
+                ));
             }
             Err(words) => outcome.refusal = Some(words),
         },
@@ -431,9 +433,11 @@ fn mark_notches(
         let at = map.apply(notch.at);
         let name = notch_name(seen, &notch);
         let (tone, words) = match notch.partner {
-            Some(apart) if apart.abs() <= NOTCHES_MEET => (Tone::Good, String::new()),
-            // Of a pair that is apart it is told once.
-            Some(_) if notch.side == 1 => (Tone::Warning, String::new()),
+            Some(_) if notch.meets() => (Tone::Good, String::new()),
+            // Of a pair of notches that is apart it is told once, at the one of the first side.
+            Some(_) if notch.side == 1 && notch.partner_piece == Some(contact.pieces[0]) => {
+                (Tone::Warning, String::new())
+            }
             Some(apart) => {
                 let apart = 1e3 * apart.abs();
                 (

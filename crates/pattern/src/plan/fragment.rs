@@ -226,6 +226,12 @@ fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
                 all.extend(sheet.points.iter().map(|point| PartId::from(point.id)));
                 all.extend(sheet.curves.iter().map(|curve| PartId::from(curve.id)));
             }
+            // What is traced from a sheet goes with it, as when it is moved or removed.
+            let traced = pattern
+                .panels
+                .iter()
+                .filter(|panel| panel.sheet() == Some(id));
+            all.extend(traced.map(|panel| PartId::from(panel.id)));
             all
         }
         PartId::Line(_) | PartId::Edge(_) => {

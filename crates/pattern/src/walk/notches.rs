@@ -29,6 +29,8 @@ pub struct WalkedNotch {
     /// notch the partner is an end of the other side that it meets, a dart that is closed there, or
     /// where one piece of it ends and the next begins.
     pub partner: Option<f64>,
+    /// The piece of the notch that is its partner; nothing if that is no notch.
+    pub partner_piece: Option<usize>,
 }
 
 impl WalkedNotch {
@@ -56,15 +58,24 @@ impl Walk<'_> {
                 let mutual = other.filter(|&j| {
                     nearest(others[j].along, own, 1.0 / scale).is_some_and(|back| back == k)
                 });
-                let notch = mutual.map(|j| others[j].along - goal);
                 let within = |apart: Option<f64>, reach: f64| apart.filter(|a| a.abs() <= reach);
-                within(notch, NOTCH_REACH)
-                    .or_else(|| within(least(&[0.0, lengths[1 - side]], goal), NOTCHES_MEET))
-                    .or_else(|| within(least(&self.sides[1 - side].joins(), goal), NOTCH_REACH))
+                let notch = mutual.and_then(|j| {
+                    let apart = within(Some(others[j].along - goal), NOTCH_REACH)?;
+                    Some((apart, Some(others[j].piece)))
+                });
+                notch.or_else(|| {
+                    within(least(&[0.0, lengths[1 - side]], goal), NOTCHES_MEET)
+                        .or_else(|| within(least(&self.sides[1 - side].joins(), goal), NOTCH_REACH))
+                        .map(|apart| (apart, None))
+                })
             };
-            let found = (0..own.len()).map(|k| WalkedNotch {
-                partner: partner(k),
-                ..own[k]
+            let found = (0..own.len()).map(|k| {
+                let partner = partner(k);
+                WalkedNotch {
+                    partner: partner.map(|(apart, _)| apart),
+                    partner_piece: partner.and_then(|(_, piece)| piece),
+                    ..own[k]
+                }
             });
             found.collect::<Vec<_>>()
         };
@@ -99,6 +110,7 @@ impl Walk<'_> {
                         at: notch.point,
                         along,
                         partner: None,
+                        partner_piece: None,
                     });
                 }
             }
