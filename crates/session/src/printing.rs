@@ -19,6 +19,8 @@ use toile_pattern::{Draft, Pattern, Severity};
 /// White between pieces on paper, and to the edge of the drawing \[m\].
 const GAP: f64 = 0.004;
 const EDGE: f64 = 0.003;
+/// Share of a print that is done when its pieces are arranged.
+const ARRANGED: f64 = 0.95;
 /// How long each arrangement is searched for: a second or so.
 const EVALUATIONS: u64 = 500_000;
 /// How many more rows of sheets than needed are tried.
@@ -103,7 +105,7 @@ pub fn print_pattern(
     let remedy = "prints are written as NAME.pdf or NAME.svg";
     check_ending(to, &[".pdf", ".svg"], remedy)?;
     let (job, printed) = print_job(project, options, watcher)?;
-    tell(watcher, "writing", 0.95, "")?;
+    tell(watcher, "writing", ARRANGED, "")?;
     let is_svg = to.to_string_lossy().to_lowercase().ends_with(".svg");
     let bytes = match is_svg {
         true => job.svg().map(String::into_bytes),
@@ -518,7 +520,7 @@ fn searched(
         .unwrap_or_else(|| Arc::new(AtomicBool::new(false)));
     let mut stopped = false;
     let mut follow = |progress: Progress| {
-        let share = from + part * progress.done.clamp(0.0, 1.0);
+        let share = (from + part * progress.done.clamp(0.0, 1.0)).min(ARRANGED);
         if tell(watcher, "arranging", share, "").is_err() {
             stopped = true;
             cancel.store(true, std::sync::atomic::Ordering::Relaxed);
