@@ -252,7 +252,8 @@ def middle(box, side):
 def saved(window, file, words, holds):
     """Saves, and waits until the file holds something."""
     def ask():
-        with contextlib.suppress(OSError, ValueError):
+        # A file as it was saved before may lack what is waited for.
+        with contextlib.suppress(OSError, ValueError, KeyError):
             return holds(json.loads(file.read_text(encoding="utf-8")))
         return False
     window.key("ctrl+s")

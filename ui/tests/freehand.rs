@@ -374,6 +374,20 @@ fn a_typed_rectangle_grows_to_the_side_of_the_pointer() {
     let corner = drafter.point("C");
     let wanted = toile_geometry::Vec2::new(0.48, -0.22);
     assert!((corner - wanted).norm() < 1e-12, "{corner}");
+    // From a corner that is typed it grows as its numbers say, wherever the pointer rests.
+    for text in ["60", "0", "20", "30"] {
+        drafter.typed_and(
+            text,
+            if ["60", "20"].contains(&text) {
+                Key::Tab
+            } else {
+                Key::Enter
+            },
+        );
+    }
+    let corner = drafter.point("G");
+    let wanted = toile_geometry::Vec2::new(0.8, 0.3);
+    assert!((corner - wanted).norm() < 1e-12, "{corner}");
 }
 
 #[test]

@@ -158,6 +158,8 @@ pub struct SlotState {
     pub(super) naming: bool,
     /// The name that was typed before the last of several places.
     pub(super) named: String,
+    /// Whether the last place was given by the pointer, not by numbers.
+    pointed: bool,
     /// The snap that is taken, counted from the best.
     snap: usize,
     pub(super) pointer: Option<Pointer>,
@@ -450,9 +452,11 @@ fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Pl
             })
         }
         Fields::Size if last.is_some() => {
-            // A rectangle grows to the side the pointer is on.
+            // A rectangle grows to the side the pointer is on; from a corner that was typed, to the right
+            // and upward.
             let signed = |number: Option<Number>, way: f64| match number {
-                Some(number) => to_side(number, way, (state, reading)),
+                Some(number) if state.pointed => to_side(number, way, (state, reading)),
+                Some(number) => Ok(number),
                 None => or_pointed(None, way),
             };
             let (x, y) = (signed(first, way.x)?, signed(second, way.y)?);
@@ -528,7 +532,10 @@ fn accept(
                 state.chain = chain;
                 return Outcome::default();
             }
-            Ok(answer) => state.answers.push(answer),
+            Ok(answer) => {
+                state.pointed = state.typed[..2].iter().all(String::is_empty);
+                state.answers.push(answer);
+            }
             Err(words) => return refused(words),
         }
     }
