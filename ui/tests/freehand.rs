@@ -423,14 +423,20 @@ fn each_cut_of_pleats_has_a_field_of_its_own() {
     );
 }
 
-#[test]
-fn no_corner_is_painted_over_what_is_said_of_a_seam() {
+/// Two rectangles of 10 x 20 cm beside each other.
+fn two_panels() -> Drafter {
     let mut drafter = drawing();
     for x in [0.0, 0.13] {
         drafter.key(Key::R);
         drafter.click(drafter.place(x, 0.0));
         drafter.click(drafter.place(x + 0.1, 0.2));
     }
+    drafter
+}
+
+#[test]
+fn no_corner_is_painted_over_what_is_said_of_a_seam() {
+    let mut drafter = two_panels();
     drafter.key(Key::S);
     drafter.click(drafter.place(0.1, 0.1));
     drafter.click(drafter.place(0.13, 0.1));
@@ -454,12 +460,7 @@ fn no_corner_is_painted_over_what_is_said_of_a_seam() {
 
 #[test]
 fn what_is_selected_differs_from_what_is_pointed_at() {
-    let mut drafter = drawing();
-    for x in [0.0, 0.13] {
-        drafter.key(Key::R);
-        drafter.click(drafter.place(x, 0.0));
-        drafter.click(drafter.place(x + 0.1, 0.2));
-    }
+    let mut drafter = two_panels();
     drafter.key(Key::V);
     drafter.click(drafter.place(0.05, 0.05));
     drafter.hover(drafter.place(0.16, 0.05));

@@ -5,24 +5,13 @@
 mod drafter;
 
 use drafter::Drafter;
-use egui::{Key, Modifiers, Pos2, Role, vec2};
+use egui::{Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable;
 use toile_geometry::Vec2;
 use toile_pattern::{CurveRule, Number, PointRule};
 use toile_ui::Beginning;
 
 impl Drafter {
-    fn begin_drag(&mut self, from: Pos2, to: Pos2) {
-        self.window.hover_at(from);
-        self.window.run();
-        self.window.drag_at(from);
-        self.window.run();
-        for share in [0.3, 0.7, 1.0] {
-            self.window.hover_at(from + (to - from) * share);
-            self.window.run();
-        }
-    }
-
     fn begin(&mut self) {
         self.press("New pattern");
         self.enter("Name", "Sheets");

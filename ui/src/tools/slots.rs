@@ -454,8 +454,9 @@ fn placed(fields: Fields, state: &SlotState, reading: &Reading<'_>) -> Result<Pl
         Fields::Size if last.is_some() => {
             // A rectangle grows to the side the pointer is on; from a corner that was typed, to the right
             // and upward.
+            let pixel = pointer.map_or(0.0, |pointer| pointer.pixel);
             let signed = |number: Option<Number>, way: f64| match number {
-                Some(number) if state.pointed => to_side(number, way, (state, reading)),
+                Some(number) if state.pointed => to_side(number, way, (pixel, reading)),
                 Some(number) => Ok(number),
                 None => or_pointed(None, way),
             };

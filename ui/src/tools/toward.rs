@@ -1,6 +1,5 @@
 //! Places that are meant by where the pointer lies: straight from the last, to one of its sides.
 
-use super::slots::SlotState;
 use super::{Pointer, Reading, along};
 use crate::canvas::snap::{Placed, Spec, rounded};
 use toile_geometry::Vec2;
@@ -33,14 +32,13 @@ pub(super) fn turned(last: &Placed, pointer: &Pointer, free: Placed) -> Placed {
     }
 }
 
-/// A typed width or height toward the side the pointer lies on, that far from the last place [m]. One
-/// that is typed with its sign stays.
+/// A typed width or height toward the side the pointer lies on, that far from the last place [m], with the
+/// size of a pixel there [m]. One that is typed with its sign stays.
 pub(super) fn to_side(
     number: Number,
     way: f64,
-    (state, reading): (&SlotState, &Reading<'_>),
+    (pixel, reading): (f64, &Reading<'_>),
 ) -> Result<Number, String> {
-    let pixel = state.pointer.as_ref().map_or(0.0, |pointer| pointer.pixel);
     let value = reading.evaluation.number(&number, Want::Length);
     match way < -BEYOND * pixel && value.is_some_and(|value| value > 0.0) {
         true => along::negated(&number, reading).map_err(|error| error.to_string()),

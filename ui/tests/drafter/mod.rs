@@ -200,9 +200,8 @@ impl Drafter {
         self.window.run();
     }
 
-    /// A drag from a place to another.
-    pub fn drag(&mut self, from: Pos2, to: Pos2) {
-        self.actions += 1;
+    /// A drag from a place to another, the button still held.
+    pub fn begin_drag(&mut self, from: Pos2, to: Pos2) {
         self.window.hover_at(from);
         self.window.run();
         self.window.drag_at(from);
@@ -211,6 +210,12 @@ impl Drafter {
             self.window.hover_at(from + (to - from) * share);
             self.window.run();
         }
+    }
+
+    /// A drag from a place to another.
+    pub fn drag(&mut self, from: Pos2, to: Pos2) {
+        self.actions += 1;
+        self.begin_drag(from, to);
         self.window.drop_at(to);
         self.window.run();
     }
