@@ -230,7 +230,7 @@ impl ToileApp {
 
     /// The field of a number alone.
     pub(crate) fn number_text_field(&mut self, ui: &mut Ui, entry: &NumberEntry, label: egui::Id) {
-        let id = egui::Id::unique(("number", &entry.place));
+        let id = number_field_id(entry);
         let shown = entry.number.as_ref().map_or_else(String::new, |number| {
             plan::number_text(&self.base, number, entry.want)
         });
@@ -417,6 +417,11 @@ impl ToileApp {
             );
         }
     }
+}
+
+/// The field of a number.
+pub(crate) fn number_field_id(entry: &NumberEntry) -> egui::Id {
+    egui::Id::unique(("number", &entry.place))
 }
 
 /// The name of a part.

@@ -3,12 +3,13 @@
 use crate::app::ToileApp;
 use crate::app::shows::Tab;
 use crate::fields::Entered;
+use crate::inspector::number_field_id;
 use crate::theme::Palette;
 use crate::tools::number;
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Color32, Grid, Id, PopupCloseBehavior, RichText, ScrollArea, TextStyle, Ui};
 use toile_measure::{CATALOGUE, Definition, Measurements, UnitKind, definition};
-use toile_pattern::{Number, Pattern, SizeId, Want, plan};
+use toile_pattern::{Number, Pattern, SizeId, VariableId, Want, plan};
 use toile_session::Command;
 
 /// Measurements that a size begins with.
@@ -33,7 +34,10 @@ const LEAST_LABEL: f32 = 100.0;
 
 /// Width of the name of a variable and of its formula [pixels].
 const NAME: f32 = 150.0;
-const FORMULA: f32 = 260.0;
+const FORMULA: f32 = 320.0;
+
+/// Room for the button beside the field of a new variable [pixels].
+const ADD_BUTTON: f32 = 120.0;
 
 /// How many measurements are proposed at once.
 const PROPOSED: usize = 5;
@@ -53,7 +57,7 @@ impl ToileApp {
         match self.tables.tab {
             Tab::Measurements => self.measurement_table(ui),
             Tab::Variables => self.variable_table(ui),
-            Tab::History => scrolled(ui, |ui| self.history_table(ui)),
+            Tab::History => self.history_table(ui),
         }
     }
 
@@ -155,6 +159,7 @@ impl ToileApp {
         });
         let width = widths.fold(LEAST_LABEL, f32::max);
         ScrollArea::horizontal()
+            .id_salt("measurements across")
             .auto_shrink([false, false])
             .show(ui, |ui| {
                 Grid::new("sizes").show(ui, |ui| {
@@ -167,7 +172,9 @@ impl ToileApp {
                     }
                     ui.end_row();
                 });
-                let rows = ScrollArea::vertical().auto_shrink([true, false]);
+                let rows = ScrollArea::vertical()
+                    .id_salt("measurements")
+                    .auto_shrink([true, false]);
                 rows.show(ui, |ui| {
                     let grid = Grid::new("measurements").striped(true);
                     grid.show(ui, |ui| {
@@ -332,7 +339,7 @@ impl ToileApp {
             let label = ui.label("New variable").id;
             let field = egui::TextEdit::singleline(&mut self.tables.new_variable)
                 .hint_text("ease = 2cm")
-                .desired_width(220.0);
+                .desired_width((ui.available_width() - ADD_BUTTON).clamp(220.0, 480.0));
             let response = ui.add(field).labelled_by(label);
             let entered =
                 response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
@@ -344,6 +351,7 @@ impl ToileApp {
         });
         let pattern = self.base.pattern().clone();
         ScrollArea::horizontal()
+            .id_salt("variables across")
             .auto_shrink([false, false])
             .show(ui, |ui| self.variable_rows(ui, &pattern));
     }
@@ -362,7 +370,9 @@ impl ToileApp {
             ui.end_row();
             heads
         });
-        let rows = ScrollArea::vertical().auto_shrink([true, false]);
+        let rows = ScrollArea::vertical()
+            .id_salt("variables")
+            .auto_shrink([true, false]);
         rows.show(ui, |ui| {
             self.variable_grid(ui, pattern, heads.inner[1]);
         });
@@ -394,6 +404,7 @@ impl ToileApp {
                     ui.scope(|ui| {
                         ui.set_width(FORMULA);
                         for entry in plan::numbers_of(&self.base, variable.id.into()) {
+                            self.go_to_variable(ui, variable.id, number_field_id(&entry));
                             self.number_text_field(ui, &entry, label);
                         }
                     });
@@ -421,13 +432,31 @@ impl ToileApp {
             });
     }
 
-    /// A variable from `name = formula`, or from a formula alone.
+    /// Goes to the field of a variable that was asked for. The Enter that asked would end the typing
+    /// at once: it waits for the next frame.
+    fn go_to_variable(&mut self, ui: &Ui, variable: VariableId, field: Id) {
+        if self.tables.entered_variable != Some(variable) {
+        } else if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
+            ui.ctx().request_repaint();
+        } else {
+            self.tables.entered_variable = None;
+            ui.memory_mut(|memory| memory.request_focus(field));
+        }
+    }
+
+    /// A variable from `name = formula`, or from a formula alone; the name of one that is there gives
+    /// it another number.
     fn add_variable(&mut self) {
         let text = self.tables.new_variable.clone();
         let (name, formula) = match text.split_once('=') {
             Some((name, formula)) => (Some(name.trim()), formula),
             None => (None, text.as_str()),
         };
+        let known = name.and_then(|name| self.base.pattern().variable_named(name));
+        if let Some(known) = known.map(|variable| variable.id) {
+            self.set_variable(known, formula);
+            return;
+        }
         let planned = number::parse(formula, Want::Any, &self.base).and_then(|number| {
             plan::add_variable(&self.base, name, number).map_err(|error| error.to_string())
         });
@@ -436,6 +465,23 @@ impl ToileApp {
                 if self.edit(Ok(edits), "Add variable") {
                     self.tables.new_variable.clear();
                     self.tables.added = true;
+                }
+            }
+            Err(words) => self.say_fault(words),
+        }
+    }
+
+    fn set_variable(&mut self, id: VariableId, formula: &str) {
+        let entries = plan::numbers_of(&self.base, id.into());
+        let planned = number::parse(formula, Want::Any, &self.base).and_then(|number| {
+            let place = entries.first().map(|entry| &entry.place);
+            let place = place.ok_or("the variable has no number")?;
+            plan::set_number(&self.base, place, number).map_err(|error| error.to_string())
+        });
+        match planned {
+            Ok(edits) => {
+                if self.edit(Ok(edits), "Set variable") {
+                    self.tables.new_variable.clear();
                 }
             }
             Err(words) => self.say_fault(words),
@@ -452,27 +498,32 @@ impl ToileApp {
             .map(str::to_owned)
             .collect();
         let mut steps: Vec<Command> = Vec::new();
-        if ui
-            .selectable_label(past.is_empty(), "as it was opened")
-            .clicked()
-        {
-            steps = vec![Command::Undo; past.len()];
-        }
-        for (k, label) in past.iter().enumerate() {
-            let is_now = k + 1 == past.len();
-            let words = format!("{}  {label}", k + 1);
-            if ui.selectable_label(is_now, words).clicked() {
-                steps = vec![Command::Undo; past.len() - k - 1];
+        let rows = ScrollArea::both()
+            .id_salt("history")
+            .auto_shrink([false, false]);
+        rows.show(ui, |ui| {
+            if ui
+                .selectable_label(past.is_empty(), "as it was opened")
+                .clicked()
+            {
+                steps = vec![Command::Undo; past.len()];
             }
-        }
-        let soft = Palette::of(ui.ctx()).ink_soft;
-        for (k, label) in future.iter().enumerate() {
-            let words = format!("{}  {label}", past.len() + k + 1);
-            let words = RichText::new(words).color(soft);
-            if ui.selectable_label(false, words).clicked() {
-                steps = vec![Command::Redo; k + 1];
+            for (k, label) in past.iter().enumerate() {
+                let is_now = k + 1 == past.len();
+                let words = format!("{}  {label}", k + 1);
+                if ui.selectable_label(is_now, words).clicked() {
+                    steps = vec![Command::Undo; past.len() - k - 1];
+                }
             }
-        }
+            let soft = Palette::of(ui.ctx()).ink_soft;
+            for (k, label) in future.iter().enumerate() {
+                let words = format!("{}  {label}", past.len() + k + 1);
+                let words = RichText::new(words).color(soft);
+                if ui.selectable_label(false, words).clicked() {
+                    steps = vec![Command::Redo; k + 1];
+                }
+            }
+        });
         for step in steps {
             self.execute(step);
         }
@@ -486,11 +537,4 @@ fn named(ui: &mut Ui, width: f32, words: RichText) -> egui::Response {
         ui.label(words)
     });
     label.inner
-}
-
-/// Rows that are scrolled under what stands above them.
-fn scrolled(ui: &mut Ui, rows: impl FnOnce(&mut Ui)) {
-    ScrollArea::both()
-        .auto_shrink([false, false])
-        .show(ui, rows);
 }

@@ -379,7 +379,7 @@ fn wear(reader: &mut Reader) {
     }
     reader.drafter.chord(Modifiers::COMMAND, Key::K);
     reader.drafter.type_text("dart");
-    let field = "Find a command, or a part of the pattern";
+    let field = "Find a command, a part, a variable or a measurement";
     let dialog = reader
         .drafter
         .window

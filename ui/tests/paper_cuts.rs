@@ -33,6 +33,115 @@ fn variables_are_typed_one_after_another() {
     assert_eq!(drafter.point("A"), Vec2::new(0.01, 0.03));
 }
 
+/// Ctrl+K leads to the number of a variable and of a measurement, and says when nothing is found.
+#[test]
+fn variables_and_measurements_are_found_by_name_and_changed_at_once() {
+    let mut drafter = drawing();
+    drafter.key(Key::F8);
+    drafter.press("Add size");
+    drafter.press("Variables");
+    drafter.enter("New variable", "ease = 2cm");
+    drafter.key(Key::Escape);
+    drafter.key(Key::F8);
+    drafter.hover(drafter.place(0.1, 0.1));
+    let find = |drafter: &mut Drafter, text: &str| {
+        drafter.chord(Modifiers::COMMAND, Key::K);
+        drafter.window.run();
+        drafter.type_text(text);
+    };
+    find(&mut drafter, "ease");
+    drafter.key(Key::Enter);
+    drafter.window.run();
+    drafter.typed("3cm");
+    let pattern = drafter.pattern();
+    let evaluation = drafter.evaluation();
+    let value = evaluation.variable(pattern.variables[0].id).unwrap().0;
+    assert!((value - 0.03).abs() < 1e-12, "{value}");
+
+    drafter.key(Key::Escape);
+    drafter.hover(drafter.place(0.1, 0.1));
+    find(&mut drafter, "hips");
+    drafter.key(Key::Enter);
+    drafter.window.run();
+    drafter.typed("101,5");
+    let size = &drafter.pattern().sizes[0];
+    assert_eq!(size.measurements.get("hips"), Some(1.015));
+
+    drafter.key(Key::Escape);
+    drafter.hover(drafter.place(0.1, 0.1));
+    find(&mut drafter, "no such thing");
+    assert!(drafter.status().contains("Nothing has this in its name."));
+}
+
+#[test]
+fn a_variable_that_is_there_takes_the_new_number() {
+    let mut drafter = drawing();
+    drafter.key(Key::F8);
+    drafter.press("Variables");
+    drafter.enter("New variable", "ease = 2cm");
+    drafter.typed("half = ease / 2");
+    drafter.typed("ease = 5cm");
+    let (pattern, evaluation) = (drafter.pattern(), drafter.evaluation());
+    assert_eq!(pattern.variables.len(), 2, "{}", drafter.status());
+    let half = evaluation.variable(pattern.variables[1].id).unwrap().0;
+    assert!((half - 0.025).abs() < 1e-12, "{half}");
+}
+
+/// A new piece is not a fault before the first seam is sewn.
+#[test]
+fn nothing_is_forgotten_before_the_first_seam() {
+    let mut drafter = drawing();
+    for from in [0.0, 0.4, 0.8] {
+        drafter.key(Key::R);
+        drafter.click(drafter.place(from, 0.0));
+        drafter.click(drafter.place(from + 0.2, 0.3));
+    }
+    assert!(drafter.window.state().findings().is_empty());
+    drafter.key(Key::S);
+    drafter.click(drafter.part("Edge right of draft"));
+    drafter.click(drafter.part("Edge left of draft 2"));
+    drafter.key(Key::Escape);
+    let found = drafter.window.state().findings();
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].to_string().contains("sewn to nothing"));
+}
+
+/// `'` and a name, typed before the last place of an inner line or of open lines, name them.
+#[test]
+fn lines_that_are_no_panel_are_named_as_they_are_drawn() {
+    let mut drafter = drawing();
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::I);
+    drafter.click(drafter.place(0.1, 0.15));
+    drafter.click(drafter.place(0.05, 0.1));
+    drafter.type_text("'pocket");
+    drafter.click(drafter.place(0.15, 0.1));
+    drafter.key(Key::Enter);
+    drafter.key(Key::Escape);
+    let pattern = drafter.pattern();
+    let lines = &pattern.panels[0].lines;
+    assert_eq!(lines.len(), 2, "{}", drafter.status());
+    assert_eq!(lines[1].name, "pocket");
+
+    drafter.chord(Modifiers::SHIFT, Key::L);
+    drafter.click(drafter.place(0.4, 0.1));
+    drafter.click(drafter.place(0.5, 0.2));
+    drafter.type_text("'roof");
+    drafter.click(drafter.place(0.6, 0.1));
+    drafter.key(Key::Enter);
+    let pattern = drafter.pattern();
+    let mut curves = pattern.sheets.iter().flat_map(|sheet| &sheet.curves);
+    for name in ["roof 1", "roof 2"] {
+        assert!(
+            curves.any(|curve| curve.name == name),
+            "{}",
+            drafter.status()
+        );
+    }
+}
+
 #[test]
 fn the_handles_of_a_curve_are_set_beside_it_one_after_another() {
     let mut drafter = drawing();

@@ -265,7 +265,10 @@ fn a_part_is_found_by_its_name_and_shown() {
     };
     assert!(!is_seen(&drafter));
     drafter.chord(Modifiers::COMMAND, Key::K);
-    drafter.enter("Find a command, or a part of the pattern", "panel sle");
+    drafter.enter(
+        "Find a command, a part, a variable or a measurement",
+        "panel sle",
+    );
     assert!(is_seen(&drafter), "{}", drafter.status());
     let label = drafter
         .window
@@ -276,7 +279,10 @@ fn a_part_is_found_by_its_name_and_shown() {
     drafter.click(drafter.part("Panel front"));
     drafter.key(Key::Period);
     drafter.chord(Modifiers::COMMAND, Key::K);
-    drafter.enter("Find a command, or a part of the pattern", "left sleeve");
+    drafter.enter(
+        "Find a command, a part, a variable or a measurement",
+        "left sleeve",
+    );
     assert!(is_seen(&drafter), "{}", drafter.status());
 }
 

@@ -208,7 +208,7 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         Menu::Edit,
         "Find",
         key(COMMAND, Key::K),
-        "Find a command, or a part of the pattern, by its name",
+        "Find a command, a part of the pattern, a variable or a measurement by its name",
         always,
         ToileApp::ask_command,
     ),

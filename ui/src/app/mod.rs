@@ -47,7 +47,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 use toile_pattern::plan::Fragment;
-use toile_pattern::{Diagnostic, Evaluation, Pattern};
+use toile_pattern::{Code, Diagnostic, Evaluation, Pattern};
 use toile_session::{Abandoned, Command, Event, Project, Recovery, Session, Silent, abandoned};
 
 /// Time between frames while something runs by itself.
@@ -295,7 +295,11 @@ impl ToileApp {
         // Checks may take longer than a frame: they wait until a gesture is over.
         if self.checked != self.revision && !self.session.is_previewing() {
             self.checked = self.revision;
-            let found = self.session.diagnostics();
+            let mut found = self.session.diagnostics();
+            if self.base.pattern().seams.is_empty() {
+                // While nothing is sewn yet, no piece was forgotten.
+                Arc::make_mut(&mut found).retain(|found| found.code != Code::NotSewn);
+            }
             let before = std::mem::replace(&mut self.findings, found);
             self.tell_new_fault(&before);
         }

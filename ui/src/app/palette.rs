@@ -1,14 +1,17 @@
-//! Finding a command, or a part of the pattern, by its name.
+//! Finding a command, a part of the pattern, a variable or a measurement by its name.
 
 use super::ToileApp;
 use super::answer::Answer;
 use super::command::UiCommand;
 use super::command_table::commands;
 use super::dialogs::Dialog;
+use super::shows::Tab;
 use crate::canvas::selection::{Item, Selection};
+use crate::theme::Palette;
 use crate::tools::Tool;
-use egui::{Button, Key, ScrollArea, Ui, vec2};
-use toile_pattern::Pattern;
+use egui::{Button, Key, RichText, ScrollArea, Ui, vec2};
+use toile_measure::definition;
+use toile_pattern::{Pattern, VariableId};
 
 /// Most commands and parts that are listed.
 const MOST: usize = 12;
@@ -18,6 +21,9 @@ const MOST: usize = 12;
 enum Found {
     Command(&'static UiCommand),
     Part(Item, String),
+    Variable(VariableId, String),
+    /// A measurement that a size has, by its name in formulas, and its words.
+    Measurement(String, String),
 }
 
 impl ToileApp {
@@ -26,7 +32,9 @@ impl ToileApp {
     }
 
     pub(super) fn ask_find(&self, ui: &mut Ui, text: &mut String, chosen: &mut usize) -> Answer {
-        let label = ui.label("Find a command, or a part of the pattern").id;
+        let label = ui
+            .label("Find a command, a part, a variable or a measurement")
+            .id;
         let field = egui::TextEdit::singleline(text).desired_width(f32::INFINITY);
         let field = ui.add(field).labelled_by(label);
         field.request_focus();
@@ -49,12 +57,19 @@ impl ToileApp {
         };
         let mut taken = found.get(*chosen).cloned().filter(|_| entered);
         ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
+            if found.is_empty() {
+                let soft = Palette::of(ui.ctx()).ink_soft;
+                ui.label(RichText::new("Nothing has this in its name.").color(soft));
+            }
             for (k, one) in found.iter().enumerate() {
                 let (words, key, tip, enabled) = match one {
                     Found::Command(command) => {
                         (command.name, command.key, command.tip, (command.when)(self))
                     }
                     Found::Part(_, words) => (words.as_str(), None, "Select it and show it", true),
+                    Found::Variable(_, words) | Found::Measurement(_, words) => {
+                        (words.as_str(), None, "Change its value", true)
+                    }
                 };
                 let mut button = Button::selectable(k == *chosen, words);
                 if let Some(key) = key {
@@ -75,8 +90,21 @@ impl ToileApp {
                 Answer::Do(Box::new(command.does))
             }
             Some(Found::Part(item, _)) => Answer::Do(Box::new(move |app| app.show_part(item))),
+            Some(Found::Variable(id, _)) => Answer::Do(Box::new(move |app| {
+                app.show_table(Tab::Variables);
+                app.tables.entered_variable = Some(id);
+            })),
+            Some(Found::Measurement(name, _)) => Answer::Do(Box::new(move |app| {
+                app.show_table(Tab::Measurements);
+                app.tables.entered_measurement = Some(name);
+            })),
             _ => Answer::Stay,
         }
+    }
+
+    fn show_table(&mut self, tab: Tab) {
+        self.shows.tables = true;
+        self.tables.tab = tab;
     }
 
     /// Selects a part, and moves the table so that it is seen: of a seam the panel it begins at, of a
@@ -107,8 +135,8 @@ impl ToileApp {
     }
 }
 
-/// Commands whose name or explanation has all words that are typed, and parts whose name has; what
-/// begins so comes first. Nothing typed finds commands alone.
+/// Commands whose name or explanation has all words that are typed, and parts, variables and
+/// measurements whose name has; what begins so comes first. Nothing typed finds commands alone.
 fn found(text: &str, pattern: &Pattern) -> Vec<Found> {
     let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
     let (typed, first) = (words.join(" "), words.first().map_or("", String::as_str));
@@ -123,25 +151,55 @@ fn found(text: &str, pattern: &Pattern) -> Vec<Found> {
         };
         Some((rank, Found::Command(command)))
     });
-    let parts = match words.is_empty() {
+    let others = match words.is_empty() {
         true => Vec::new(),
-        false => Item::all(pattern),
+        false => others(pattern),
     };
-    let of_parts = parts.into_iter().filter_map(|item| {
-        let words = item.words(pattern)?;
+    let of_others = others.into_iter().filter_map(|(words, found)| {
         let low = words.to_lowercase();
-        // A part is looked for by its own name, or by what it is: "Panel front", "front".
+        // What is no command is looked for by its own name, or by what it is: "Panel front", "front".
         let own = low.split_once(' ').map_or("", |found| found.1);
         let rank = match () {
             () if !has_all(&low) => return None,
             () if low.starts_with(&typed) || own.starts_with(&typed) => 1,
             () => 3,
         };
-        Some((rank, Found::Part(item, words)))
+        Some((rank, found))
     });
-    let mut found: Vec<(u8, Found)> = of_commands.chain(of_parts).collect();
+    let mut found: Vec<(u8, Found)> = of_commands.chain(of_others).collect();
     found.sort_by_key(|(rank, _)| *rank);
     found.into_iter().take(MOST).map(|(_, one)| one).collect()
+}
+
+/// Everything of a pattern that has a name, in words.
+fn others(pattern: &Pattern) -> Vec<(String, Found)> {
+    let parts = Item::all(pattern).into_iter().filter_map(|item| {
+        let words = item.words(pattern)?;
+        Some((words.clone(), Found::Part(item, words)))
+    });
+    let variables = pattern.variables.iter().map(|variable| {
+        let words = format!("Variable {}", variable.name);
+        (words.clone(), Found::Variable(variable.id, words))
+    });
+    let mut measured: Vec<&str> = Vec::new();
+    for (name, _) in pattern
+        .sizes
+        .iter()
+        .flat_map(|size| size.measurements.iter())
+    {
+        if !measured.contains(&name) {
+            measured.push(name);
+        }
+    }
+    let measurements = measured.into_iter().map(|name| {
+        let label = definition(name).map_or("", |known| known.label);
+        let words = match label.is_empty() || label.eq_ignore_ascii_case(name) {
+            true => format!("Measurement {name}"),
+            false => format!("Measurement {name} ({label})"),
+        };
+        (words.clone(), Found::Measurement(name.to_owned(), words))
+    });
+    parts.chain(variables).chain(measurements).collect()
 }
 
 #[cfg(test)]
@@ -152,7 +210,9 @@ mod tests {
         let found = found(text, &Pattern::new("none")).into_iter();
         let names = found.map(|one| match one {
             Found::Command(command) => command.name.to_owned(),
-            Found::Part(_, words) => words,
+            Found::Part(_, words) | Found::Variable(_, words) | Found::Measurement(_, words) => {
+                words
+            }
         });
         names.collect()
     }

@@ -1,6 +1,7 @@
 //! What of the window is on show.
 
 use serde::{Deserialize, Serialize};
+use toile_pattern::VariableId;
 
 /// Parts of the window that can be hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,6 +44,8 @@ pub struct Tables {
     pub added: bool,
     /// A measurement whose first value is to be typed next.
     pub entered_measurement: Option<String>,
+    /// A variable whose number is to be typed next.
+    pub entered_variable: Option<VariableId>,
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq)]

@@ -134,11 +134,18 @@ pub static POLYGON: SlotTool = SlotTool {
         let sheet = given[0].sheet;
         let count = points.len();
         let mut curves = Vec::new();
-        for k in 0..if *closes { count } else { count - 1 } {
+        let lines = if *closes { count } else { count - 1 };
+        for k in 0..lines {
             let ends = [points[k], points[(k + 1) % count]];
+            // The name is that of the panel, of one line, or with a number of each of several.
+            let name = match name(answers) {
+                Some(name) if !closes && lines == 1 => Some(name.to_owned()),
+                Some(name) if !closes => Some(format!("{name} {}", k + 1)),
+                _ => None,
+            };
             let curve = planning.run(|evaluation| {
                 let shape = CurveShape::Rule(CurveRule::Line);
-                plan::add_curve(evaluation, (sheet, None), ends, shape)
+                plan::add_curve(evaluation, (sheet, name.as_deref()), ends, shape)
             })?;
             curves.push(curve);
         }

@@ -219,7 +219,10 @@ pub static INNER_LINE: SlotTool = SlotTool {
         let Some(Answer::Panel(panel)) = answers.first() else {
             return Err(refuse("nothing was given", "click a panel"));
         };
-        let closes = matches!(answers.get(1), Some(Answer::Places(_, true, _)));
+        let (closes, name) = match answers.get(1) {
+            Some(Answer::Places(_, closes, name)) => (*closes, name.as_deref()),
+            _ => (false, None),
+        };
         let mut planning = Planning::new(reading);
         let (sheet, points) = points_inside(&mut planning, reading, *panel, &places(answers))?;
         let count = points.len();
@@ -237,7 +240,7 @@ pub static INNER_LINE: SlotTool = SlotTool {
             false => LineKind::Internal,
         };
         let line = planning.run(|evaluation| {
-            plan::add_line(evaluation, *panel, (kind, None), Chain::Curves(&curves))
+            plan::add_line(evaluation, *panel, (kind, name), Chain::Curves(&curves))
         })?;
         let label = if closes { "Add hole" } else { "Add inner line" };
         Ok(planning.done(label, [Item::Line(*panel, line)]))

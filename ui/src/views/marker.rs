@@ -20,6 +20,8 @@ use toile_session::{LaidMarker, MarkerState, Pose};
 const GAP: f64 = 0.03;
 /// Smaller letters are not read [pixels].
 const LEAST_LETTERS: f32 = 7.0;
+/// Sizes of the letters that stand in for them, the first that the piece has room for [pixels].
+const SMALL_NAMES: [f32; 2] = [13.0, 10.5];
 /// Quarter of a turn [rad].
 const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
 
@@ -533,12 +535,15 @@ impl MarkerView {
         if (own * self.camera.scale) as f32 >= LEAST_LETTERS {
             return;
         }
-        let ink = palette.ink_soft;
-        let galley = painter.layout_no_wrap(scene.name.clone(), theme::font(10.5), ink);
         let room = bounds.size() * self.camera.scale;
-        let fits = f64::from(galley.size().x) < room.x && f64::from(galley.size().y) < room.y;
-        if fits {
-            painter.galley(middle - galley.size() * 0.5, galley, ink);
+        for letters in SMALL_NAMES {
+            let font = theme::font(letters);
+            let galley = painter.layout_no_wrap(scene.name.clone(), font, palette.ink);
+            let size = galley.size();
+            if f64::from(size.x) < room.x && f64::from(size.y) < room.y {
+                painter.galley(middle - size * 0.5, galley, palette.ink);
+                return;
+            }
         }
     }
 

@@ -267,17 +267,17 @@ impl<'e> Computation<'e> {
 
 fn missing(node: Node) -> Failure {
     let what = match node {
-        Node::Word(_) => "measurement".to_owned(),
-        Node::Variable(id) => id.to_string(),
-        Node::Point(id) => id.to_string(),
-        Node::Curve(id) => id.to_string(),
-        Node::Edge(id) => id.to_string(),
-        Node::Stage(id, _) => id.to_string(),
-        Node::Seam(id) => id.to_string(),
+        Node::Word(_) => "measurement",
+        Node::Variable(_) => "variable",
+        Node::Point(_) => "point",
+        Node::Curve(_) => "curve",
+        Node::Edge(_) => "edge",
+        Node::Stage(..) => "panel",
+        Node::Seam(_) => "seam",
     };
     Failure::new(
         Code::MissingReference,
-        format!("{what} is not there any more"),
+        format!("a {what} that it names was removed"),
         "name another part, remove what uses it, or undo its removal",
     )
 }
@@ -316,10 +316,9 @@ impl Reading<'_, '_> {
                     .panel(*panel)
                     .map_or(&[][..], |p| &p.lines);
                 let Some(edges) = drawn_stretch(lines, *ends) else {
-                    let text = evaluation.names.print_part(part);
                     return Err(Failure::new(
                         Code::MissingReference,
-                        format!("{text} is no stretch of a line any more"),
+                        "the corners that it names are no stretch of a line any more",
                         "name an edge or two corners of one line, or undo the removal",
                     ));
                 };

@@ -108,8 +108,8 @@ impl<'c, 'e, 'p> Drawing<'c, 'e, 'p> {
         let parent = evaluation.pattern.panel(of);
         let hint = "undo its removal, or remove this panel";
         let Some(parent) = parent else {
-            let what = format!("{of}, which it is a side of, is not there any more");
-            self.error(Code::MissingReference, place, &what, hint);
+            let what = "the panel that it is a side of was removed";
+            self.error(Code::MissingReference, place, what, hint);
             return None;
         };
         if parent.step_of(split).is_none() {

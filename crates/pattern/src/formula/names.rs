@@ -256,16 +256,11 @@ impl Names {
 
     /// Why a text names nothing, and what may have been meant.
     pub(crate) fn missing(&self, text: &str, kind: Kind) -> (String, String) {
-        let gone = |text: &str| {
-            (
-                format!("{text} is not there any more"),
-                "name another part, or undo its removal".to_owned(),
-            )
-        };
         match Written::of(text, kind) {
-            None | Some(Written::Lost(_) | Written::Curve(_) | Written::Seam(Word::Id(_))) => {
-                gone(text)
-            }
+            None => removed(text),
+            Some(Written::Lost(_)) => removed("the part that it names"),
+            Some(Written::Curve(_)) => removed("the curve that it names"),
+            Some(Written::Seam(Word::Id(_))) => removed("the seam that it names"),
             Some(Written::Seam(Word::Name(name))) => {
                 let near = nearest(&name, self.seams.names(()));
                 let hint = suggestion(near, "name a seam, or a part as in front.armhole");
@@ -284,38 +279,35 @@ impl Names {
                 match corners.iter().find(lost) {
                     Some(Corner::Drawn(point)) => self.missing_part(&owner, point, "point"),
                     Some(Corner::Made { by, .. }) => self.missing_part(&owner, by, "operation"),
-                    None => gone(text),
+                    None => removed(text),
                 }
             }
         }
     }
 
     fn missing_part(&self, owner: &Owner, part: &Word, kind: &str) -> (String, String) {
-        let shown = |word: &Word| match word {
-            Word::Name(name) => format!("{name:?}"),
-            Word::Id(id) => format!("?{id}"),
-        };
         let (whose, own) = match owner {
             Owner::Panel(word) => ("panel", word),
             Owner::Sheet(word) => ("sheet", word),
+        };
+        let Word::Name(own) = own else {
+            return removed(&format!("the {whose} whose {kind} it names"));
         };
         let known = self
             .sheet(owner)
             .filter(|id| self.sheets.name(*id).is_some());
         let Some(sheet) = known else {
             let names = self.panels.names(()).chain(self.sheets.names(()));
-            let near = match own {
-                Word::Name(name) => nearest(name, names),
-                Word::Id(_) => None,
-            };
-            let hint = suggestion(near, &format!("name a {whose} of this pattern"));
-            return (format!("there is no {whose} {}", shown(own)), hint);
+            let hint = suggestion(
+                nearest(own, names),
+                &format!("name a {whose} of this pattern"),
+            );
+            return (format!("there is no {whose} {own:?}"), hint);
+        };
+        let Word::Name(named) = part else {
+            return removed(&format!("the {kind} of {whose} {own:?} that it names"));
         };
         let panel = self.owning_panel(owner);
-        let named = match part {
-            Word::Name(name) => &**name,
-            Word::Id(_) => "",
-        };
         let near = match (kind, panel) {
             ("point", _) => nearest(named, self.points.names(sheet)),
             ("operation", Some(panel)) => nearest(named, self.operations.names(panel)),
@@ -326,9 +318,17 @@ impl Names {
             }
         };
         let hint = suggestion(near, &format!("name {kind}s of that {whose}"));
-        let message = format!("{whose} {} has no {kind} {}", shown(own), shown(part));
+        let message = format!("{whose} {own:?} has no {kind} {named:?}");
         (message, hint)
     }
+}
+
+/// Why what was there is not, and what to do.
+fn removed(what: &str) -> (String, String) {
+    (
+        format!("{what} was removed"),
+        "name another part, or undo its removal".to_owned(),
+    )
 }
 
 fn suggestion(near: Option<&str>, otherwise: &str) -> String {

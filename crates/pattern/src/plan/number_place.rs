@@ -135,13 +135,13 @@ impl NumberPlace {
                 PointNumber::Distance => "distance",
                 PointNumber::Along => "along",
                 PointNumber::Aside => "aside",
-                PointNumber::Share => "share",
+                PointNumber::Share => "share of the way",
             },
             Self::Bulge(_) => "bulge",
             Self::ToLength(_) => "length",
             Self::Grain(_) => "grain",
             Self::Allowance(_) | Self::EdgeAllowance(..) => "seam allowance",
-            Self::Level(_) => "level",
+            Self::Level(_) => "height on the body",
             Self::Notch(_, _, mark) => mark.label(),
             Self::Operation(_, _, number) => match number {
                 OperationNumber::Mouth(mark) => mark.label(),
@@ -323,7 +323,7 @@ impl MarkNumber {
     fn label(self) -> &'static str {
         match self {
             Self::Distance => "distance",
-            Self::Share => "share",
+            Self::Share => "share of the edge",
         }
     }
 

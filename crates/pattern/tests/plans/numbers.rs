@@ -289,11 +289,12 @@ fn every_number_is_listed_read_and_set() {
             "ease",
             "end",
             "grain",
+            "height on the body",
             "intake",
             "length",
-            "level",
             "seam allowance",
-            "share",
+            "share of the edge",
+            "share of the way",
             "start",
             "value",
             "widest at",
@@ -367,7 +368,7 @@ fn numbers_without_a_value_are_refused() {
         (
             NumberPlace::Point(p0, PointNumber::Share),
             0.1.into(),
-            "the share of point",
+            "the share of the way of point",
         ),
     ] {
         let told = refusal(plan::set_number(&evaluation, &place, number));
