@@ -159,6 +159,53 @@ fn the_opposite_handle_turns_along_and_ctrl_leaves_it() {
 }
 
 #[test]
+fn the_opposite_handle_turns_along_whatever_becomes_of_formulas() {
+    let mut drafter = Drafter::new();
+    drafter.begin();
+    drafter.key(Key::F8);
+    drafter.press("Add size");
+    drafter.press("Add size");
+    drafter.key(Key::F8);
+    drafter.key(Key::C);
+    for [x, y] in [[0.0, 0.0], [0.1, 0.05], [0.2, 0.0]] {
+        drafter.click(drafter.place(x, y));
+    }
+    drafter.key(Key::Enter);
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    let pattern = drafter.pattern();
+    let CurveRule::Spline { knots, .. } = &pattern.sheets[0].curves[0].rule else {
+        panic!("no spline");
+    };
+    let knot = knots[0];
+    let seen = |drafter: &Drafter| {
+        let evaluation = drafter.evaluation();
+        [knot.before, knot.point, knot.after].map(|id| evaluation.point(id).unwrap())
+    };
+    let [was, middle, after] = seen(&drafter);
+    let length = (was - middle).norm();
+    for presses in 0..4 {
+        let from = drafter.place(after.x, after.y);
+        let to = Vec2::new(after.x, after.y + 0.03);
+        let goal = drafter.place(to.x, to.y);
+        drafter.begin_drag(from, goal);
+        for _ in 0..presses {
+            drafter.window.event(egui::Event::Text("=".into()));
+            drafter.window.run();
+        }
+        drafter.window.drop_at(goal);
+        drafter.window.run();
+        let [before, middle, moved] = seen(&drafter);
+        assert!((moved - to).norm() < 1e-3, "{presses}: {moved}");
+        let across = (moved - middle).perp(&(before - middle)).abs();
+        assert!(across < 1e-9, "{presses}: {across}");
+        assert!((before - middle).norm() - length < 1e-9, "{presses}");
+        drafter.chord(Modifiers::COMMAND, Key::Z);
+        assert_eq!(seen(&drafter), [was, middle, after], "one step");
+    }
+}
+
+#[test]
 fn a_dragged_formula_is_adjusted_or_what_else_is_chosen() {
     let mut drafter = Drafter::new();
     drafter.begin();
