@@ -98,7 +98,9 @@ impl Picture<'_> {
             self.point(shown);
         }
         // While its pieces lie against each other it is seen what meets.
-        let is_walked = overlay.iter().any(|mark| matches!(mark, Overlay::Ghost(_)));
+        let is_walked = overlay
+            .iter()
+            .any(|mark| matches!(mark, Overlay::Ghost(..)));
         for seam in self.scene.seams.iter().filter(|_| !is_walked) {
             if self.fresh.contains(&seam.id) || self.is_lit(Item::Seam(seam.id)) {
                 self.seam_links(seam);
@@ -459,7 +461,7 @@ impl Picture<'_> {
                 self.tag(at + vec2(12.0, 20.0), words);
             }
             Overlay::Words(..) | Overlay::Label(..) => {}
-            Overlay::Ghost(_) | Overlay::Stroke(..) | Overlay::Pip(..) | Overlay::Touch(_) => {
+            Overlay::Ghost(..) | Overlay::Stroke(..) | Overlay::Pip(..) | Overlay::Touch(_) => {
                 self.on_table(mark);
             }
             Overlay::Box(corners) => {

@@ -1,7 +1,6 @@
 //! Paints what a tool lays on the table: a piece as a ghost, lines, marks, and words that keep clear
 //! of each other.
 
-use super::fill::fill;
 use super::paint::Picture;
 use crate::theme;
 use crate::tools::{Overlay, Tone};
@@ -31,9 +30,9 @@ impl Picture<'_> {
     pub(super) fn on_table(&self, mark: &Overlay) {
         let table = Vec2::zeros();
         match mark {
-            Overlay::Ghost(rings) => {
+            Overlay::Ghost(rings, fill) => {
                 let cloth = self.palette.accent_soft.gamma_multiply(GHOST);
-                self.filled(table, &fill(rings), cloth, egui::Vec2::ZERO);
+                self.filled(table, fill, cloth, egui::Vec2::ZERO);
                 let stroke = Stroke::new(1.4, self.palette.accent);
                 for ring in rings {
                     let line = self.line(table, ring);
