@@ -34,6 +34,30 @@ pub(super) fn mark_along(
     Ok((mark, edge.place(along).unwrap_or(near)))
 }
 
+/// How far from the first corner of an edge what is put near a place lies [m]: in the middle if that is
+/// near, else on a whole millimetre from the nearer corner.
+pub(super) fn tidy(edge: &FinishedEdge, near: Vec2) -> f64 {
+    let (along, length) = (edge.nearest(near), edge.length);
+    if (along - 0.5 * length).abs() < 0.004_f64.min(0.1 * length) {
+        return 0.5 * length;
+    }
+    let whole = |along: f64| crate::canvas::snap::rounded(along, 0.001).clamp(0.0, length);
+    match along > 0.5 * length {
+        true => length - whole(length - along),
+        false => whole(along),
+    }
+}
+
+/// How far from the nearer end of an edge what is put near a place lies [m], and where that is [m].
+pub(super) fn told(
+    reading: &Reading<'_>,
+    (panel, edge, near): (PanelId, EdgeId, Vec2),
+) -> Option<(f64, Vec2)> {
+    let edge = plan::finished_edge(reading.evaluation, panel, edge).ok()?;
+    let along = tidy(&edge, near);
+    Some((along.min(edge.length - along), edge.place(along)?))
+}
+
 /// The corner of an edge that is nearer to a place, along the edge: 0 the first, 1 the second.
 fn end_near(edge: &FinishedEdge, near: Vec2) -> usize {
     match edge.nearest(near) > 0.5 * edge.length {

@@ -120,6 +120,13 @@ impl FinishedEdge {
         Some((part, (along - part.start).clamp(0.0, part.path.length())))
     }
 
+    /// Which edge is there at a distance from the first corner [m], and the share of it.
+    pub fn share(&self, along: f64) -> Option<(EdgeName, f64)> {
+        let (part, local) = self.part(along)?;
+        let [from, to] = part.shares;
+        Some((part.edge, from + (to - from) * local / part.path.length()))
+    }
+
     /// The place at a distance from the first corner [m].
     pub fn place(&self, along: f64) -> Option<Vec2> {
         let (part, along) = self.part(along)?;
@@ -160,11 +167,10 @@ pub fn mark_along(
             distance: distance.clone(),
         });
     }
-    let (part, local) = edge.part(along).ok_or_else(beyond)?;
-    let [from, to] = part.shares;
+    let (name, share) = edge.share(along).ok_or_else(beyond)?;
     let spot = Spot {
-        edge: part.edge,
-        share: from + (to - from) * local / part.path.length(),
+        edge: name,
+        share,
         along,
     };
     match on_first_stage(evaluation, edge, end, spot) {
