@@ -439,37 +439,30 @@ fn a_typed_distance_is_measured_on_the_edge_as_it_is_finished() {
         ("spread", spread),
         ("pleated", pleated),
     ] {
+        let mut drafter = panel();
+        alter(&mut drafter);
+        drafter.key(Key::Escape);
+        drafter.key(Key::Escape);
+        let pattern = drafter.pattern();
+        // Within the first or last centimetres of the edge, wherever operations moved it.
+        let edge = pattern.panels[0].edges().find(|edge| edge.name == "top");
+        let top = Name::Drawn(edge.unwrap().id);
+        let finished = stage(&drafter);
+        let own = finished.outline().iter().filter(|edge| edge.name == top);
+        let mut own: Vec<&StageEdge> = own.collect();
+        own.sort_by(|a, b| a.from.total_cmp(&b.from));
+        let places = [own[0].curve.point(0.3), own[own.len() - 1].curve.point(0.7)];
+        drafter.key(Key::N);
         for (text, wanted) in [("3", 0.03), ("12", 0.12), ("=10cm + 3cm", 0.13)] {
-            for at_end in [false, true] {
-                let mut drafter = panel();
-                alter(&mut drafter);
-                drafter.key(Key::Escape);
-                drafter.key(Key::Escape);
-                // Within the first or last centimetres of the edge, wherever operations moved it.
-                let place = {
-                    let pattern = drafter.pattern();
-                    let edge = pattern.panels[0].edges().find(|edge| edge.name == "top");
-                    let wanted = Name::Drawn(edge.unwrap().id);
-                    let stage = stage(&drafter);
-                    let own = stage.outline().iter().filter(|edge| edge.name == wanted);
-                    let mut own: Vec<&StageEdge> = own.collect();
-                    own.sort_by(|a, b| a.from.total_cmp(&b.from));
-                    let (curve, t) = match at_end {
-                        false => (own[0].curve, 0.3),
-                        true => (own[own.len() - 1].curve, 0.7),
-                    };
-                    curve.point(t)
-                };
-                drafter.key(Key::N);
+            for (end, place) in places.iter().enumerate() {
                 drafter.hover(drafter.place(place.x, place.y));
                 drafter.typed(text);
                 let notches = stage(&drafter).notches.len();
                 assert_eq!(notches, 1, "{what} {text}: {}", drafter.status());
-                let reach = reaches(&drafter, "top")[usize::from(at_end)];
-                assert!(
-                    (reach - wanted).abs() < 1e-9,
-                    "{what} {text} {at_end}: {reach}"
-                );
+                let reach = reaches(&drafter, "top")[end];
+                let is_there = (reach - wanted).abs() < 1e-9;
+                assert!(is_there, "{what} {text} {end}: {reach}");
+                drafter.chord(Modifiers::COMMAND, Key::Z);
             }
         }
     }

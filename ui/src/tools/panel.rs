@@ -418,11 +418,20 @@ pub(super) fn marked(
         let along = super::along::tidy(&edge, at);
         // Not into what an operation let into the edge.
         if let Some((_, tidy)) = edge.share(along).filter(|(name, _)| *name == near.edge) {
-            *share = Number::Value(tidy);
+            *share = Number::Value(short(tidy));
             near.at = edge.place(along).unwrap_or(near.at);
         }
     }
     Ok(near)
+}
+
+/// A share without the digits that only rounding gives it.
+fn short(share: f64) -> f64 {
+    let short = (share * 1e9).round() / 1e9;
+    match (short - share).abs() < 1e-12 {
+        true => short,
+        false => share,
+    }
 }
 
 /// An operation put on a panel.
