@@ -19,5 +19,6 @@ pub mod seams;
 pub mod selection;
 pub mod sheet_tag;
 pub mod snap;
+pub mod walked;
 
 pub use panel_shape::along;

@@ -10,6 +10,7 @@ use toile_geometry::Vec2;
 use toile_pattern::{Edit, EditError, Evaluation, PanelId, PointId, PointRule, SheetId, plan};
 
 /// Edits in the making.
+#[derive(Clone)]
 pub struct Planning {
     evaluation: Evaluation,
     edits: Vec<Edit>,

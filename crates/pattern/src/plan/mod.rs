@@ -2,6 +2,7 @@
 
 mod additions;
 mod align;
+mod along;
 mod bare;
 mod bind;
 mod chain;
@@ -38,6 +39,7 @@ mod transform;
 mod typed;
 
 pub use align::{Alignment, Axis, align, distribute};
+pub use along::{FinishedEdge, finished_edge, mark_along};
 pub use chain::Chain;
 pub use construct::{CurveShape, add_curve, add_point, add_sheet, bend_curve, move_sheets};
 pub use crossings::mark_crossings;
