@@ -244,7 +244,8 @@ fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
         | PartId::Operation(_)
         | PartId::Size(_)
         | PartId::Fabric(_)
-        | PartId::Marker(_) => {
+        | PartId::Marker(_)
+        | PartId::Guide(_) => {
             return Err(impossible(
                 format!("{part} is not copied by itself"),
                 "copy its panel, or points and curves",
