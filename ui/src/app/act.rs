@@ -204,6 +204,7 @@ impl ToileApp {
             (1, Some(Item::Point(_))) => "Delete point",
             (1, Some(Item::Panel(_))) => "Delete panel",
             (1, Some(Item::Sheet(_))) => "Delete sheet",
+            (1, Some(Item::Guide(_))) => "Remove guide",
             _ => "Delete",
         };
         self.edit(plan::remove_parts(&self.base, &parts), label);

@@ -18,6 +18,8 @@ pub struct Shows {
     pub allowances: bool,
     /// Rulers.
     pub rulers: bool,
+    /// Guides.
+    pub guides: bool,
 }
 
 impl Default for Shows {
@@ -29,6 +31,7 @@ impl Default for Shows {
             findings: false,
             allowances: true,
             rulers: true,
+            guides: true,
         }
     }
 }
