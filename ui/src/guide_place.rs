@@ -5,6 +5,7 @@ use crate::canvas::selection::Item;
 use crate::fields::Entered;
 use crate::tools::number;
 use egui::{Id, Ui};
+use toile_geometry::Vec2;
 use toile_pattern::{GuideId, GuideRun, Number, Want, plan};
 
 /// Places of guides are shown to a nanometre: what is finer comes of adding numbers up [m].
@@ -21,7 +22,9 @@ impl ToileApp {
             GuideRun::Vertical => "Place on the top ruler",
         };
         let origin = self.view.sheet_origin()[guide.runs.axis()];
-        let at = ((guide.at - origin) * SHOWN).round() / SHOWN;
+        let exact = guide.at - origin;
+        let shown = (exact * SHOWN).round() / SHOWN;
+        let at = if shown.is_finite() { shown } else { exact };
         let base = self.base.clone();
         let unit = base.pattern().unit;
         let value = |text: &str| -> Result<f64, String> {
@@ -57,6 +60,28 @@ impl ToileApp {
         if let Some(Item::Guide(id)) = self.view.selection.single() {
             ui.memory_mut(|memory| memory.request_focus(place_field(id)));
             ui.ctx().request_repaint();
+        }
+    }
+
+    /// Shows or hides guides; what is hidden is not selected.
+    pub(crate) fn toggle_guides(&mut self) {
+        self.shows.guides = !self.shows.guides;
+        if !self.shows.guides {
+            let items = self.view.selection.items().iter().copied();
+            let kept = items.filter(|item| !matches!(item, Item::Guide(_)));
+            self.view.selection = kept.collect();
+        }
+    }
+
+    /// Moves the guide that alone is selected by a way of the arrow keys [m].
+    pub(crate) fn nudge_guide(&mut self, id: GuideId, way: Vec2) {
+        let Some(guide) = self.base.pattern().guide(id) else {
+            return;
+        };
+        let by = way[guide.runs.axis()];
+        if by != 0.0 {
+            let moved = plan::move_guide(&self.base, id, guide.at + by);
+            self.edit(moved, "Move guide");
         }
     }
 

@@ -165,6 +165,15 @@ fn a_guide_comes_out_of_a_ruler_and_goes_back_into_it() {
     drafter
         .window
         .event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    // Arrow keys move it, but not along itself.
+    drafter.key(Key::ArrowUp);
+    drafter.key(Key::ArrowLeft);
+    assert!((drafter.guides()[1].1 - at - 0.001).abs() < 1e-12);
+    // Hidden it is not selected: Delete leaves it.
+    drafter.chord(SHOW.0, SHOW.1);
+    drafter.key(Key::Delete);
+    assert_eq!(drafter.guides().len(), 2);
+    drafter.chord(SHOW.0, SHOW.1);
     // All are removed, and come back.
     let before = drafter.guides();
     drafter.entry("View", "Remove all guides");
@@ -239,6 +248,14 @@ fn what_is_drawn_snaps_to_guides_that_are_seen() {
     assert!(drafter.is_seen("Horizontal guide 1") && drafter.is_seen("Horizontal guide 3"));
     drafter.click(drafter.place(0.18, 0.3) + vec2(0.0, 4.0));
     assert_eq!(drafter.last_place(), Vec2::new(0.18, 0.3));
+    // A line that is begun goes on to a guide that was dragged out meanwhile.
+    drafter.key(Key::Escape);
+    drafter.key(Key::L);
+    drafter.click(drafter.place(0.22, 0.35));
+    drafter.upright(0.31);
+    drafter.click(drafter.place(0.31, 0.38) + vec2(-4.0, 0.0));
+    assert_eq!(drafter.last_place(), Vec2::new(0.31, 0.38));
+    assert_eq!(drafter.pattern().sheets[0].curves.len(), 2);
 }
 
 #[test]

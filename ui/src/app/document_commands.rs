@@ -258,7 +258,7 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         key(COMMAND, Key::Semicolon),
         "Show or hide the guides; drag one out of a ruler, and drop it back there to remove it",
         always,
-        |app| app.shows.guides = !app.shows.guides,
+        ToileApp::toggle_guides,
     ),
     command(
         Menu::View,

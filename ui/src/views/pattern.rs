@@ -15,7 +15,7 @@ use crate::canvas::sheet_tag::tagged;
 use crate::canvas::snap::snaps;
 use crate::theme::{GRAB, Palette};
 use crate::tools::{Event, Held, Outcome, Overlay, Pointer, Reading, State, Tool, walk};
-use egui::{CursorIcon, Id, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use egui::{Id, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::{Draft, Evaluation, PanelId, Pattern, SeamId, SheetId};
@@ -438,21 +438,6 @@ impl PatternView {
             pixel: 1.0 / self.camera.scale,
             held,
         }
-    }
-
-    fn cursor(&self, ui: &Ui, panning: bool, inside: bool) {
-        if !inside {
-            return;
-        }
-        let icon = match (self.tool, self.hover.map(|hit| hit.item)) {
-            _ if panning => CursorIcon::Grab,
-            (Tool::Slots(_) | Tool::Walk, _) => CursorIcon::Crosshair,
-            (_, Some(Item::Point(_) | Item::Panel(_) | Item::Sheet(_))) => CursorIcon::Move,
-            (_, Some(Item::Guide(id))) => self.guide_cursor(id),
-            (_, Some(_)) => CursorIcon::PointingHand,
-            (_, None) => CursorIcon::Default,
-        };
-        ui.ctx().set_cursor_icon(icon);
     }
 
     fn paint(&self, ui: &Ui, view: Rect, evaluation: &Evaluation) {

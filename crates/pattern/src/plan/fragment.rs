@@ -244,11 +244,17 @@ fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
         | PartId::Operation(_)
         | PartId::Size(_)
         | PartId::Fabric(_)
-        | PartId::Marker(_)
-        | PartId::Guide(_) => {
+        | PartId::Marker(_) => {
             return Err(impossible(
                 format!("{part} is not copied by itself"),
                 "copy its panel, or points and curves",
+            ));
+        }
+        PartId::Guide(id) => {
+            let words = pattern.guide_words(id).unwrap_or_else(|| part.to_string());
+            return Err(impossible(
+                format!("{words} is not copied"),
+                "drag another out of the ruler",
             ));
         }
     })
