@@ -1,7 +1,7 @@
 //! Guides on the canvas: which is at a place, and the places near one that lie on them.
 
+use super::placed::{Placed, Spec, grid_step, near_curves, on_curve, rounded};
 use super::scene::SheetScene;
-use super::snap::{Placed, Spec, grid_step, near_curves, on_curve, rounded};
 use toile_geometry::{Curve, Path, Vec2};
 use toile_pattern::{Guide, GuideRun, Mark, Name, Number, PointRule, SheetId};
 

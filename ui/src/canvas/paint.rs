@@ -2,10 +2,10 @@
 
 use super::boards::Boards;
 use super::camera::{TableCamera, TablePoint};
+use super::drawn_guide::{DrawnGuide, GuideLabel};
 use super::fill::Fill;
 use super::grading::Grading;
 use super::hit::{ShownPoint, shown_points};
-use super::paint_guides::{DrawnGuide, GuideLabel};
 use super::rulers::{self, RULER};
 use super::scene::{PanelScene, PointRole, Scene, SheetScene};
 use super::selection::{Item, Selection};

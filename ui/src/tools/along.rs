@@ -41,7 +41,7 @@ pub(super) fn tidy(edge: &FinishedEdge, near: Vec2) -> f64 {
     if (along - 0.5 * length).abs() < 0.004_f64.min(0.1 * length) {
         return 0.5 * length;
     }
-    let whole = |along: f64| crate::canvas::snap::rounded(along, 0.001).clamp(0.0, length);
+    let whole = |along: f64| crate::canvas::placed::rounded(along, 0.001).clamp(0.0, length);
     match along > 0.5 * length {
         true => length - whole(length - along),
         false => whole(along),

@@ -4,8 +4,8 @@ use super::planning::{Planning, panel_under, places};
 use super::refusal::refuse;
 use super::slots::{Answer, Fields, Slot, SlotKind, SlotTool};
 use super::{Pointer, Reading};
+use crate::canvas::placed::Placed;
 use crate::canvas::selection::Item;
-use crate::canvas::snap::Placed;
 use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::{
@@ -108,7 +108,7 @@ fn depth(answers: &[Answer], pointer: &Pointer) -> f64 {
         _ => None,
     });
     let away = mouth.map_or(0.1, |mouth| (pointer.at - mouth).norm());
-    crate::canvas::snap::rounded(away, 0.001).max(0.001)
+    crate::canvas::placed::rounded(away, 0.001).max(0.001)
 }
 
 /// A panel that is half of what is cut: a straight edge lies on the fold.

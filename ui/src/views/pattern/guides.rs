@@ -2,12 +2,12 @@
 
 use super::PatternView;
 use crate::canvas::camera::ScreenPoint;
+use crate::canvas::drawn_guide::{DrawnGuide, GuideLabel};
 use crate::canvas::guides::guide_at;
 use crate::canvas::hit::Hit;
-use crate::canvas::paint_guides::{DrawnGuide, GuideLabel};
+use crate::canvas::placed::{Spec, grid_step, rounded};
 use crate::canvas::rulers::RULER;
 use crate::canvas::selection::{Item, Selection};
-use crate::canvas::snap::{Spec, grid_step, rounded};
 use crate::theme::GRAB;
 use crate::tools::{Held, Outcome, Tool, number};
 use egui::{CursorIcon, Key, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense, Ui};
