@@ -5,6 +5,7 @@ use super::camera::{TableCamera, TablePoint};
 use super::fill::Fill;
 use super::grading::Grading;
 use super::hit::{ShownPoint, shown_points};
+use super::paint_guides::{DrawnGuide, GuideLabel};
 use super::rulers::{self, RULER};
 use super::scene::{PanelScene, PointRole, Scene, SheetScene};
 use super::selection::{Item, Selection};
@@ -51,6 +52,10 @@ pub struct Picture<'a> {
     pub grading: Option<&'a Grading>,
     /// Place that rulers count from [m], and their unit.
     pub rulers: Option<(Vec2, DisplayUnit)>,
+    /// Guides.
+    pub guides: &'a [DrawnGuide],
+    /// What is told of the one that is dragged.
+    pub guide_label: Option<&'a GuideLabel>,
     /// Whether lines to cut along are drawn.
     pub allowances: bool,
     /// Seams that a tool is about to make.
@@ -89,6 +94,7 @@ impl Picture<'_> {
         for seam in &self.scene.seams {
             self.seam_numbers(seam);
         }
+        self.guides();
         self.handles();
         for sheet in tagged(self.scene, self.open) {
             self.sheet_tag(sheet);
@@ -117,6 +123,7 @@ impl Picture<'_> {
         if let Some(grading) = self.grading {
             self.legend(grading);
         }
+        self.guide_label();
     }
 
     pub(super) fn seen(&self, origin: Vec2, at: Vec2) -> Pos2 {

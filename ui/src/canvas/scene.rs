@@ -11,8 +11,8 @@ use std::sync::Arc;
 use toile_geometry::{Bounds2, Path, Vec2};
 use toile_pattern::plan::{self, EdgePart};
 use toile_pattern::{
-    Curve, CurveId, CurveRule, Draft, Evaluation, Name, OperationId, OperationKind, Panel, PanelId,
-    PointId, SeamId, Sheet, SheetId, Stage,
+    Curve, CurveId, CurveRule, Draft, Evaluation, Guide, Name, OperationId, OperationKind, Panel,
+    PanelId, PointId, SeamId, Sheet, SheetId, Stage,
 };
 
 /// Largest distance of a drawn curve from the true one [pixels].
@@ -33,6 +33,8 @@ pub struct Scene {
     pub seams: Vec<SeamDrawing>,
     /// Lines to cut along.
     pub cut_lines: CutLines,
+    /// The guides.
+    pub guides: Vec<Arc<Guide>>,
     /// The pieces and seams it was made from.
     pub draft: Arc<Draft>,
     /// The finest enlargement it is drawn for: a power of two [pixels per metre].
@@ -172,6 +174,7 @@ impl Scene {
             .filter(|panel| !pattern.is_replaced(panel))
             .filter_map(|panel| self.panel(panel, evaluation, &mut shapes))
             .collect();
+        self.guides.clone_from(&pattern.guides);
         self.leave_points();
         // What is drawn no more is forgotten.
         self.lines = lines;

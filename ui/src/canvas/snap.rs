@@ -1,8 +1,9 @@
 //! Snapping: a place near the pointer that means something, and how a point there is constructed.
 
+use super::guides;
 use super::scene::{CurveScene, PointRole, Scene, SheetScene};
 use toile_geometry::Vec2;
-use toile_pattern::{Mark, Name, Number, PointId, PointRule, SheetId};
+use toile_pattern::{Guide, Mark, Name, Number, PointId, PointRule, SheetId};
 
 /// How near the pointer must be to a place to be drawn to it [pixels].
 const REACH: f64 = 9.0;
@@ -67,16 +68,29 @@ impl Placed {
     }
 }
 
-/// Places near one of a sheet [m], the best first; the last is anywhere.
-pub fn snaps(scene: &Scene, sheet: SheetId, at: Vec2, scale: f64) -> Vec<Placed> {
+/// Places near one of a sheet [m], the best first; the last is anywhere. Guides lie where the sheet
+/// has them.
+pub fn snaps(
+    (scene, own_guides): (&Scene, &[Guide]),
+    sheet: SheetId,
+    at: Vec2,
+    scale: f64,
+) -> Vec<Placed> {
     let mut found = Vec::new();
+    let reach = REACH / scale;
     let step = grid_step(scale);
     if let Some(drawn) = scene.sheet_scene(sheet) {
-        let reach = REACH / scale;
         points(drawn, at, reach, &mut found);
         crossings(drawn, at, reach, &mut found);
+    }
+    guides::crossings(sheet, own_guides, (at, reach), &mut found);
+    if let Some(drawn) = scene.sheet_scene(sheet) {
+        guides::on_lines(drawn, own_guides, (at, reach), &mut found);
         on_curves(drawn, at, reach, &mut found);
         on_edges(drawn, at, reach, &mut found);
+    }
+    guides::on_guides(sheet, own_guides, (at, reach, scale), &mut found);
+    if let Some(drawn) = scene.sheet_scene(sheet) {
         levels(drawn, at, (LEVEL_REACH / scale, step), &mut found);
     }
     found.push(Placed {
@@ -119,7 +133,11 @@ fn points(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) {
 }
 
 /// Curves that come near, the nearest first, with the place on each.
-fn near_curves(sheet: &SheetScene, at: Vec2, reach: f64) -> Vec<(&CurveScene, f64, Vec2)> {
+pub(super) fn near_curves(
+    sheet: &SheetScene,
+    at: Vec2,
+    reach: f64,
+) -> Vec<(&CurveScene, f64, Vec2)> {
     let mut near: Vec<(f64, &CurveScene, f64, Vec2)> = sheet
         .curves
         .iter()
@@ -182,15 +200,21 @@ fn on_curves(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) 
         let middle = curve.path.at_length(0.5 * length);
         let middle = middle.map(|place| curve.path.point(place));
         if let Some(middle) = middle.filter(|middle| (middle - at).norm() <= reach) {
-            found.push(on_curve(sheet, curve, 0.5, middle, "the middle of"));
+            found.push(on_curve(sheet.id, curve, (0.5, middle), "the middle of"));
         }
-        found.push(on_curve(sheet, curve, share, point, "on"));
+        found.push(on_curve(sheet.id, curve, (share, point), "on"));
     }
 }
 
-fn on_curve(sheet: &SheetScene, curve: &CurveScene, share: f64, at: Vec2, words: &str) -> Placed {
+/// A point on a curve, at a share of its length, which lies there [m].
+pub(super) fn on_curve(
+    sheet: SheetId,
+    curve: &CurveScene,
+    (share, at): (f64, Vec2),
+    words: &str,
+) -> Placed {
     Placed {
-        sheet: sheet.id,
+        sheet,
         at,
         spec: Spec::New(PointRule::OnCurve {
             curve: curve.id,

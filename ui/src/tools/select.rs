@@ -185,7 +185,7 @@ fn take_hold(hit: Hit, reading: &Reading<'_>) -> (Dragged, Option<Selection>) {
                 None => Dragged::Fixed("the curve is not there".into()),
             }
         }
-        Item::Line(..) | Item::Notch(..) | Item::Operation(..) | Item::Seam(_) => {
+        Item::Line(..) | Item::Notch(..) | Item::Operation(..) | Item::Seam(_) | Item::Guide(_) => {
             Dragged::Fixed("it is moved by its numbers, beside the view".into())
         }
     };

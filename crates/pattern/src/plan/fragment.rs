@@ -261,6 +261,13 @@ fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
                 "copy its panel, or points and curves",
             ));
         }
+        PartId::Guide(id) => {
+            let words = pattern.guide_words(id).unwrap_or_else(|| part.to_string());
+            return Err(impossible(
+                format!("{words} is not copied"),
+                "drag another out of the ruler",
+            ));
+        }
     })
 }
 
