@@ -124,11 +124,4 @@ pub const KNOWN: &[Known] = &[
         "crates/session/src",
         &[&["drape.rs", "dressed.rs", "hands.rs", "setup.rs"]],
     ),
-    (
-        "ui/src",
-        &[
-            &["canvas/guides.rs", "canvas/snap.rs"],
-            &["canvas/paint.rs", "canvas/paint_guides.rs"],
-        ],
-    ),
 ];

@@ -2,9 +2,9 @@
 
 use super::paint::Picture;
 use super::selection::Item;
-use egui::{Pos2, Stroke};
+use egui::Stroke;
 use toile_geometry::Vec2;
-use toile_pattern::{GuideId, GuideRun};
+use toile_pattern::GuideRun;
 
 impl Picture<'_> {
     /// Paints guides across the whole view.
