@@ -92,15 +92,16 @@ fn a_variable_that_is_there_takes_the_new_number() {
 #[test]
 fn nothing_is_forgotten_before_the_first_seam() {
     let mut drafter = drawing();
-    for from in [0.0, 0.4, 0.8] {
+    for from in [0.0, 0.1, 0.2] {
         drafter.key(Key::R);
         drafter.click(drafter.place(from, 0.0));
-        drafter.click(drafter.place(from + 0.2, 0.3));
+        drafter.click(drafter.place(from + 0.06, 0.2));
     }
+    assert_eq!(drafter.pattern().panels.len(), 3, "{}", drafter.status());
     assert!(drafter.window.state().findings().is_empty());
     drafter.key(Key::S);
     drafter.click(drafter.part("Edge right of draft"));
-    drafter.click(drafter.part("Edge left of draft 2"));
+    drafter.click(drafter.part("Edge left 2 of draft 2"));
     drafter.key(Key::Escape);
     let found = drafter.window.state().findings();
     assert_eq!(found.len(), 1, "{found:?}");
@@ -127,10 +128,10 @@ fn lines_that_are_no_panel_are_named_as_they_are_drawn() {
     assert_eq!(lines[1].name, "pocket");
 
     drafter.chord(Modifiers::SHIFT, Key::L);
-    drafter.click(drafter.place(0.4, 0.1));
-    drafter.click(drafter.place(0.5, 0.2));
+    drafter.click(drafter.place(0.22, 0.1));
+    drafter.click(drafter.place(0.25, 0.2));
     drafter.type_text("'roof");
-    drafter.click(drafter.place(0.6, 0.1));
+    drafter.click(drafter.place(0.28, 0.1));
     drafter.key(Key::Enter);
     let pattern = drafter.pattern();
     let mut curves = pattern.sheets.iter().flat_map(|sheet| &sheet.curves);

@@ -409,7 +409,10 @@ fn a_sheet_without_panels_is_pasted_as_a_sheet() {
     let mut drafter = with_bare_sheet();
     let paste = |drafter: &mut Drafter| {
         drafter.chord(Modifiers::COMMAND, Key::K);
-        drafter.enter("Find a command, or a part of the pattern", "Paste");
+        drafter.enter(
+            "Find a command, a part, a variable or a measurement",
+            "Paste",
+        );
     };
     let tag = drafter.part("Sheet sheet") + vec2(20.0, -14.0);
     drafter.click(tag);
