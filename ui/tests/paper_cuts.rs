@@ -5,6 +5,7 @@ mod drafter;
 
 use drafter::Drafter;
 use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
 use toile_geometry::Vec2;
 use toile_ui::Overlay;
 
@@ -72,6 +73,30 @@ fn variables_and_measurements_are_found_by_name_and_changed_at_once() {
     drafter.hover(drafter.place(0.1, 0.1));
     find(&mut drafter, "no such thing");
     assert!(drafter.status().contains("Nothing has this in its name."));
+}
+
+/// The lowest line says that some panels are on show, and Escape shows all again.
+#[test]
+fn panels_that_are_hidden_are_told_and_come_back() {
+    let mut drafter = drawing();
+    for from in [0.0, 0.1] {
+        drafter.key(Key::R);
+        drafter.click(drafter.place(from, 0.0));
+        drafter.click(drafter.place(from + 0.06, 0.2));
+    }
+    drafter.key(Key::Escape);
+    drafter.click(drafter.part("Panel draft"));
+    drafter.key(Key::Period);
+    let is_told = |drafter: &Drafter| {
+        let told = drafter.window.query_by_label("1 panel shown: show all");
+        told.is_some()
+    };
+    assert!(is_told(&drafter));
+    assert!(drafter.window.query_by_label("Panel draft 2").is_none());
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    assert!(!is_told(&drafter));
+    assert!(drafter.window.query_by_label("Panel draft 2").is_some());
 }
 
 #[test]
@@ -322,7 +347,22 @@ fn a_point_is_named_as_it_is_drawn() {
 impl Drafter {
     /// Characters that all come within one frame, as they do while a slow frame is drawn.
     fn type_within_a_frame(&mut self, text: &str) {
-        let typed = text.chars().map(|c| egui::Event::Text(c.to_string()));
+        let typed = text.chars().flat_map(|c| {
+            let key = Key::from_name(&c.to_uppercase().to_string());
+            let event = |pressed| {
+                key.map(|key| egui::Event::Key {
+                    key,
+                    physical_key: None,
+                    pressed,
+                    repeat: false,
+                    modifiers: Modifiers::NONE,
+                })
+            };
+            let text = egui::Event::Text(c.to_string());
+            let released = event(false);
+            event(true).into_iter().chain([text]).chain(released)
+        });
+        let typed: Vec<egui::Event> = typed.collect();
         self.window.input_mut().events.extend(typed);
         self.window.run();
     }
@@ -342,6 +382,15 @@ fn nothing_is_lost_of_what_is_typed_within_one_frame() {
     }
     let hip = drafter.point("hip");
     assert!((hip - Vec2::new(0.12, 0.07)).norm() < 1e-12, "{hip}");
+    // Letters of a name are no commands, even when they come with its sign.
+    drafter.key(Key::L);
+    drafter.click(drafter.place(0.03, 0.02));
+    drafter.hover(drafter.place(0.05, 0.05));
+    drafter.type_within_a_frame("'ginger");
+    drafter.key(Key::Enter);
+    let curves = &drafter.pattern().sheets[0].curves;
+    assert_eq!(curves.len(), 1, "{}", drafter.status());
+    assert_eq!(curves[0].name, "ginger");
     // A dialog's name is typed as it opens: nothing of it is left, nothing is lost.
     let mut drafter = Drafter::new();
     drafter.window.input_mut().events.push(egui::Event::Key {
