@@ -6,6 +6,7 @@ mod drafter;
 use drafter::Drafter;
 use egui::{Key, Modifiers};
 use toile_geometry::Vec2;
+use toile_pattern::LineKind;
 use toile_ui::Overlay;
 
 fn drawing() -> Drafter {
@@ -383,4 +384,67 @@ fn nothing_is_lost_of_what_is_typed_within_one_frame() {
         .map(|size| size.measurements.get("waist"))
         .collect();
     assert_eq!(waists, [Some(0.84), Some(0.92)]);
+}
+
+/// A name that is typed before there are places enough is kept, and the numbers typed next are numbers.
+#[test]
+fn a_name_typed_before_the_second_place_is_kept() {
+    let mut drafter = drawing();
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::I);
+    drafter.click(drafter.part("Panel draft"));
+    drafter.click(drafter.place(0.02, 0.1));
+    drafter.typed("'pocket place");
+    assert_eq!(drafter.window.state().fault(), None);
+    drafter.typed_and("16", Key::Tab);
+    drafter.typed("0");
+    drafter.key(Key::Enter);
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    let pattern = drafter.pattern();
+    let panel = &pattern.panels[0];
+    assert_eq!(panel.lines.len(), 2, "{}", drafter.status());
+    assert_eq!(panel.lines[1].name, "pocket place");
+    let stage = drafter.evaluation();
+    let stage = stage.last_stage(panel).unwrap();
+    let line = stage
+        .lines
+        .iter()
+        .find(|line| line.kind == LineKind::Internal)
+        .unwrap();
+    let length: f64 = line.edges.iter().map(|edge| edge.curve.length()).sum();
+    assert!((length - 0.16).abs() < 1e-9, "{length}");
+
+    // A curve and open lines in the same way, and a name before any place.
+    for (key, name) in [(Key::C, "curve"), (Key::L, "roof")] {
+        let modifiers = match key {
+            Key::L => Modifiers::SHIFT,
+            _ => Modifiers::NONE,
+        };
+        drafter.chord(modifiers, key);
+        if key == Key::L {
+            drafter.typed(&format!("'{name}"));
+        }
+        drafter.click(drafter.place(0.22, 0.1));
+        if key == Key::C {
+            drafter.typed(&format!("'{name}"));
+        }
+        drafter.typed_and("5", Key::Tab);
+        drafter.typed("80");
+        drafter.key(Key::Enter);
+        drafter.key(Key::Escape);
+        drafter.key(Key::Escape);
+        let pattern = drafter.pattern();
+        let mut curves = pattern.sheets.iter().flat_map(|sheet| &sheet.curves);
+        let is_named = curves.any(|curve| curve.name.starts_with(name));
+        assert!(is_named, "{name}: {}", drafter.status());
+    }
+    // Without a name, and once it is there, places are asked for as ever.
+    drafter.key(Key::C);
+    drafter.click(drafter.place(0.25, 0.1));
+    drafter.key(Key::Enter);
+    let fault = drafter.window.state().fault().map(str::to_owned);
+    assert!(fault.unwrap().contains("at least two places"));
 }

@@ -521,6 +521,11 @@ fn accept(
             return Outcome::default();
         }
         if state.places.len() < 2 {
+            // A name that was typed is kept for what comes of the places that are still to be given.
+            if state.is_typing() && !state.named.is_empty() {
+                state.clear_typed();
+                return Outcome::default();
+            }
             return refused("click at least two places first".into());
         }
         let places = std::mem::take(&mut state.places);
