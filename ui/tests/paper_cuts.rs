@@ -448,3 +448,58 @@ fn a_name_typed_before_the_second_place_is_kept() {
     let fault = drafter.window.state().fault().map(str::to_owned);
     assert!(fault.unwrap().contains("at least two places"));
 }
+
+/// What was refused is told until the tool gets on; then what to do next is.
+#[test]
+fn a_refusal_is_gone_once_the_tool_gets_on() {
+    let mut drafter = drawing();
+    for from in [0.0, 0.1] {
+        drafter.key(Key::R);
+        drafter.click(drafter.place(from, 0.0));
+        drafter.click(drafter.place(from + 0.08, 0.2));
+    }
+    drafter.key(Key::S);
+    drafter.click(drafter.place(0.04, 0.1));
+    let refused = "there is no edge of a panel here";
+    assert_eq!(
+        drafter.window.state().fault().unwrap().find(refused),
+        Some(0)
+    );
+    // Pointing elsewhere and typing are no steps.
+    drafter.hover(drafter.place(0.05, 0.12));
+    assert!(drafter.status().contains(refused));
+    drafter.click(drafter.part("Edge right of draft"));
+    let words = drafter.status();
+    assert!(!words.contains(refused), "{words}");
+    assert!(words.contains("Click the edge it is sewn to"), "{words}");
+    // Shift-clicks and steps back get on too.
+    drafter.click(drafter.place(0.04, 0.1));
+    assert!(drafter.status().contains(refused));
+    drafter.key(Key::Escape);
+    let words = drafter.status();
+    assert!(words.contains("Click the edge to sew"), "{words}");
+    drafter.click(drafter.place(0.04, 0.1));
+    drafter.shift_click(drafter.part("Edge right of draft"));
+    assert!(!drafter.status().contains(refused));
+
+    // So it is with a seam that is walked.
+    drafter.key(Key::S);
+    drafter.click(drafter.part("Edge right of draft"));
+    drafter.click(drafter.part("Edge left 2 of draft 2"));
+    drafter.key(Key::W);
+    drafter.typed("999");
+    assert!(drafter.status().contains("type a distance from 0"));
+    drafter.key(Key::Escape);
+    drafter.typed("5");
+    let words = drafter.status();
+    assert!(!words.contains("type a distance from 0"), "{words}");
+
+    drafter.key(Key::I);
+    drafter.click(drafter.place(0.09, 0.25));
+    assert!(drafter.status().contains("there is no panel here"));
+    drafter.click(drafter.part("Panel draft"));
+    drafter.key(Key::Enter);
+    assert!(drafter.status().contains("at least two places"));
+    drafter.click(drafter.place(0.02, 0.1));
+    assert_eq!(drafter.window.state().fault(), None);
+}

@@ -292,6 +292,11 @@ pub(super) fn step(
         outcome.shown = shown(tool, &next, reading);
     }
     next.refusal = outcome.refusal.clone();
+    outcome.gets_on = outcome.refusal.is_none()
+        && matches!(
+            event,
+            Event::Click(_) | Event::DoubleClick(_) | Event::Enter | Event::Escape
+        );
     (next, outcome)
 }
 
