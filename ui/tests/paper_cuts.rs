@@ -503,3 +503,38 @@ fn a_refusal_is_gone_once_the_tool_gets_on() {
     drafter.click(drafter.place(0.02, 0.1));
     assert_eq!(drafter.window.state().fault(), None);
 }
+
+/// A pocket is not sewn to the line that marks its place: that is said, and what to do.
+#[test]
+fn a_line_inside_a_panel_is_refused_by_name_where_edges_are_sewn() {
+    let mut drafter = drawing();
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::I);
+    drafter.click(drafter.part("Panel draft"));
+    drafter.click(drafter.place(0.05, 0.1));
+    drafter.type_text("'pocket place");
+    drafter.click(drafter.place(0.15, 0.1));
+    drafter.key(Key::Enter);
+    let on_line = drafter.place(0.08, 0.1);
+    drafter.key(Key::S);
+    drafter.click(on_line);
+    let words = drafter.window.state().fault().unwrap().to_owned();
+    for part in [
+        "Line pocket place of draft lies inside the panel",
+        "only edges of outlines and holes are sewn",
+        "by hand",
+    ] {
+        assert!(words.contains(part), "{words}");
+    }
+    // Other tools that take edges say what they take.
+    drafter.chord(Modifiers::SHIFT, Key::F);
+    drafter.click(on_line);
+    let words = drafter.window.state().fault().unwrap().to_owned();
+    assert!(
+        words.contains("Line pocket place of draft lies inside"),
+        "{words}"
+    );
+    assert!(!words.contains("sewn"), "{words}");
+}
