@@ -83,6 +83,9 @@ impl ToileApp {
 
     /// What an event of a tool came to.
     pub(crate) fn follow_outcome(&mut self, outcome: Outcome) {
+        if outcome.gets_on && self.notice.is_fault() {
+            self.notice = Notice::default();
+        }
         match outcome.shown {
             Shown::Same => {}
             Shown::Nothing => {
