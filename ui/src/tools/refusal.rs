@@ -1,6 +1,5 @@
 //! Refusals of tools.
 
-use super::slots::SlotKind;
 use super::{Pointer, Reading};
 use crate::canvas::selection::Item;
 use toile_pattern::EditError;
@@ -13,19 +12,20 @@ pub(super) fn refuse(message: &str, hint: &str) -> EditError {
     }
 }
 
-/// Where an edge is asked for and there is none: a line inside a panel is told by its name.
-pub(super) fn no_edge(kind: SlotKind, at: Option<&Pointer>, reading: &Reading<'_>) -> String {
+/// Where an edge is asked for, to be sewn or for something else, and there is none: a line inside a panel
+/// is told by its name.
+pub(super) fn no_edge(sews: bool, at: Option<&Pointer>, reading: &Reading<'_>) -> String {
     let mut items = at.iter().flat_map(|at| &at.hits).map(|hit| hit.item);
     let line = items.find(|item| matches!(item, Item::Line(..)));
     let Some(line) = line.and_then(|line| line.words(reading.evaluation.pattern())) else {
         return "there is no edge of a panel here: click on one".into();
     };
-    let rest = match kind {
-        SlotKind::Chain => {
+    let rest = match sews {
+        true => {
             "only edges of outlines and holes are sewn; mark with the line where a pocket goes, and \
              sew it on by hand"
         }
-        _ => "click an edge of an outline or a hole",
+        false => "click an edge of an outline or a hole",
     };
     format!("{line} lies inside the panel: {rest}")
 }

@@ -331,7 +331,9 @@ pub(super) fn answer(
             Item::Edge(panel, edge) => Some((panel, edge, hit.at)),
             _ => None,
         });
-        edges.next().ok_or_else(|| no_edge(kind, pointer, reading))
+        edges
+            .next()
+            .ok_or_else(|| no_edge(matches!(kind, SlotKind::Chain), pointer, reading))
     };
     match kind {
         SlotKind::Place(fields) => Ok(Answer::Place(placed(fields, state, reading)?)),
