@@ -113,8 +113,8 @@ impl ToileApp {
 /// The leg a dart is pressed towards, along the outline.
 fn press_choice(ui: &mut Ui, pressed: &mut Pressed) {
     let legs = [
-        (Pressed::Before, "the leg it starts with"),
-        (Pressed::After, "the leg it ends with"),
+        (Pressed::Before, "its first leg along the outline"),
+        (Pressed::After, "its second leg along the outline"),
     ];
     choice(ui, "Pressed towards", &legs, pressed);
 }

@@ -245,14 +245,8 @@ impl ToileApp {
         let is_angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
         let want = if is_angle { Want::Angle } else { Want::Length };
         let id = Id::unique(("measurement", size, name));
-        let is_first = self
-            .base
-            .pattern()
-            .sizes
-            .first()
-            .is_some_and(|first| first.id == size);
         let is_asked = self.tables.entered_measurement.as_deref() == Some(name);
-        if is_first && is_asked && has_been_led_to(ui, id) {
+        if is_asked && Some(size) == self.shown_size() && has_been_led_to(ui, id) {
             self.tables.entered_measurement = None;
         }
         let base = self.base.clone();
@@ -283,6 +277,15 @@ impl ToileApp {
                 Err(fault) => self.typed.refuse(id, text, fault),
             }
         });
+    }
+
+    /// The size that is drafted, else the first.
+    fn shown_size(&self) -> Option<SizeId> {
+        let project = self.session.project();
+        let sizes = &project.pattern.sizes;
+        let shown = project.size.as_ref();
+        let shown = shown.and_then(|name| sizes.iter().find(|size| size.name == *name));
+        shown.or(sizes.first()).map(|size| size.id)
     }
 
     /// A size like the last; the first has the wearer's measurements.

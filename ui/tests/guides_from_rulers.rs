@@ -269,6 +269,13 @@ fn points_and_edges_are_taken_before_a_guide_and_panels_after_it() {
     drafter.level(0.1);
     drafter.upright(0.2);
     let both = drafter.guides();
+    // A point on a guide that is selected is chosen by a click.
+    for (at, kind) in [([0.02, 0.1], "Guide("), ([0.1, 0.1], "Point(")] {
+        drafter.click(drafter.place(at[0], at[1]));
+        let selected = format!("{:?}", drafter.window.state().view().selection);
+        assert!(selected.contains(kind), "{selected}");
+    }
+    drafter.key(Key::Escape);
     // The corner moves, and the rectangle that is placed by it; the guide under it stays.
     drafter.drag(drafter.place(0.1, 0.1), drafter.place(0.05, 0.05));
     assert_eq!(drafter.guides(), both);

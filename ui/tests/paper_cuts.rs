@@ -17,65 +17,6 @@ fn drawing() -> Drafter {
     drafter
 }
 
-#[test]
-fn variables_are_typed_one_after_another() {
-    let mut drafter = drawing();
-    drafter.key(Key::F8);
-    drafter.press("Variables");
-    drafter.enter("New variable", "ease = 2cm");
-    drafter.typed("half = ease / 2");
-    let pattern = drafter.pattern();
-    let names: Vec<&str> = pattern.variables.iter().map(|v| &*v.name).collect();
-    assert_eq!(names, ["ease", "half"], "{}", drafter.status());
-    // Escape gives the keys back to the tools.
-    drafter.key(Key::Escape);
-    drafter.hover(drafter.place(0.1, 0.1));
-    drafter.key(Key::P);
-    drafter.typed_and("=half", Key::Tab);
-    drafter.typed("3");
-    assert_eq!(drafter.point("A"), Vec2::new(0.01, 0.03));
-}
-
-/// Ctrl+K leads to the number of a variable and of a measurement, and says when nothing is found.
-#[test]
-fn variables_and_measurements_are_found_by_name_and_changed_at_once() {
-    let mut drafter = drawing();
-    drafter.key(Key::F8);
-    drafter.press("Add size");
-    drafter.press("Variables");
-    drafter.enter("New variable", "ease = 2cm");
-    drafter.key(Key::Escape);
-    drafter.key(Key::F8);
-    drafter.hover(drafter.place(0.1, 0.1));
-    let find = |drafter: &mut Drafter, text: &str| {
-        drafter.chord(Modifiers::COMMAND, Key::K);
-        drafter.window.run();
-        drafter.type_text(text);
-    };
-    find(&mut drafter, "ease");
-    drafter.key(Key::Enter);
-    drafter.window.run();
-    drafter.typed("3cm");
-    let pattern = drafter.pattern();
-    let evaluation = drafter.evaluation();
-    let value = evaluation.variable(pattern.variables[0].id).unwrap().0;
-    assert!((value - 0.03).abs() < 1e-12, "{value}");
-
-    drafter.key(Key::Escape);
-    drafter.hover(drafter.place(0.1, 0.1));
-    find(&mut drafter, "hips");
-    drafter.key(Key::Enter);
-    drafter.window.run();
-    drafter.typed("101,5");
-    let size = &drafter.pattern().sizes[0];
-    assert_eq!(size.measurements.get("hips"), Some(1.015));
-
-    drafter.key(Key::Escape);
-    drafter.hover(drafter.place(0.1, 0.1));
-    find(&mut drafter, "no such thing");
-    assert!(drafter.status().contains("Nothing has this in its name."));
-}
-
 /// The lowest line says that some panels are on show, and Escape shows all again.
 #[test]
 fn panels_that_are_hidden_are_told_and_come_back() {
@@ -98,20 +39,6 @@ fn panels_that_are_hidden_are_told_and_come_back() {
     drafter.key(Key::Escape);
     assert!(!is_told(&drafter));
     assert!(drafter.window.query_by_label("Panel draft 2").is_some());
-}
-
-#[test]
-fn a_variable_that_is_there_takes_the_new_number() {
-    let mut drafter = drawing();
-    drafter.key(Key::F8);
-    drafter.press("Variables");
-    drafter.enter("New variable", "ease = 2cm");
-    drafter.typed("half = ease / 2");
-    drafter.typed("ease = 5cm");
-    let (pattern, evaluation) = (drafter.pattern(), drafter.evaluation());
-    assert_eq!(pattern.variables.len(), 2, "{}", drafter.status());
-    let half = evaluation.variable(pattern.variables[1].id).unwrap().0;
-    assert!((half - 0.025).abs() < 1e-12, "{half}");
 }
 
 /// A new piece is not a fault before the first seam is sewn.

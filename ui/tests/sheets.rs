@@ -199,7 +199,8 @@ fn the_opposite_handle_turns_along_whatever_becomes_of_formulas() {
         assert!((moved - to).norm() < 1e-3, "{presses}: {moved}");
         let across = (moved - middle).perp(&(before - middle)).abs();
         assert!(across < 1e-9, "{presses}: {across}");
-        assert!((before - middle).norm() - length < 1e-9, "{presses}");
+        let longer = (before - middle).norm() - length;
+        assert!(longer.abs() < 1e-9, "{presses}: {longer}");
         drafter.chord(Modifiers::COMMAND, Key::Z);
         assert_eq!(seen(&drafter), [was, middle, after], "one step");
     }
@@ -491,6 +492,23 @@ fn assert_apart(drafter: &Drafter, count: usize) {
     }
     let view = drafter.window.get_by_label("Pattern view").rect();
     assert!(view.contains_rect(last), "{last} is not in {view}");
+}
+
+/// A panel that was moved off its sheet is copied beside where it lies, not beside where it was.
+#[test]
+fn a_panel_moved_off_its_sheet_is_copied_beside_itself() {
+    let mut drafter = Drafter::new();
+    drafter.begin();
+    drafter.draw_rectangle();
+    let from = drafter.part("Panel draft");
+    drafter.drag(from, from - egui::vec2(60.0, 40.0));
+    drafter.click(drafter.part("Panel draft"));
+    drafter.chord(Modifiers::COMMAND, Key::D);
+    assert_apart(&drafter, 2);
+    let [panel, copy] = [0, 1].map(|k| panels_seen(&drafter)[k]);
+    assert!((copy.top() - panel.top()).abs() < 2.0, "{panel} {copy}");
+    let room = copy.left() - panel.right();
+    assert!(room < 0.75 * panel.width(), "{panel} {copy}");
 }
 
 #[test]

@@ -37,10 +37,13 @@ pub fn nearest(guide: &Guide, to: Vec2) -> Vec2 {
     at
 }
 
-/// The guides of a sheet within reach of a place of it [m].
+/// The guides of a sheet within reach of a place of it [m], the nearest first.
 fn near(guides: &[Guide], at: Vec2, reach: f64) -> impl Iterator<Item = &Guide> {
     let away = move |guide: &Guide| (guide.at - at[guide.runs.axis()]).abs();
-    guides.iter().filter(move |guide| away(guide) <= reach)
+    let within = guides.iter().filter(|guide| away(guide) <= reach);
+    let mut within: Vec<&Guide> = within.collect();
+    within.sort_by(|a, b| away(a).total_cmp(&away(b)));
+    within.into_iter()
 }
 
 /// Where guides cross each other near a place of a sheet [m].
@@ -158,6 +161,21 @@ mod tests {
         assert_eq!(at(0.203, -5.0), Some(GuideRun::Vertical));
         assert_eq!(at(0.201, 0.104), Some(GuideRun::Vertical));
         assert_eq!(at(0.21, 0.11), None);
+    }
+
+    #[test]
+    fn of_two_guides_within_reach_the_nearer_comes_first() {
+        let guides = [0.1, 0.105].map(|at| guide(GuideRun::Horizontal, at));
+        for at in [0.1, 0.105] {
+            let mut found = Vec::new();
+            on_guides(
+                1.into(),
+                &guides,
+                (Vec2::new(0.3, at), 0.01, 1000.0),
+                &mut found,
+            );
+            assert_eq!(found[0].at.y, at);
+        }
     }
 
     #[test]

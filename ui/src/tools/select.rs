@@ -86,10 +86,9 @@ fn nothing_shown() -> Outcome {
 /// Repeated clicks at one place go through what lies there.
 fn clicked(pointer: &Pointer, selection: &Selection) -> Option<Item> {
     let current = selection.single();
-    // A guide is left where it is: what it lies over is clicked beside it.
-    let guide = current.filter(|item| matches!(item, Item::Guide(_)));
-    if let Some(guide) = guide.filter(|guide| pointer.hits.iter().any(|hit| hit.item == *guide)) {
-        return Some(guide);
+    // Clicks on a guide that is selected do not go on to the panel under it.
+    if matches!(current, Some(Item::Guide(_))) {
+        return pointer.hits.first().map(|hit| hit.item);
     }
     let at = current.and_then(|item| pointer.hits.iter().position(|hit| hit.item == item));
     let next = at.map_or(0, |k| (k + 1) % pointer.hits.len());
@@ -256,27 +255,33 @@ fn moved_by(
     change: FormulaChange,
 ) -> Result<Vec<Edit>, EditError> {
     let mut planning = Planning::new(reading);
-    for (k, &(point, to)) in goals.iter().enumerate() {
-        let before = planning.clone();
+    // Where the points before came to: one on a line may not reach its goal.
+    let mut reached: Vec<(PointId, Vec2)> = Vec::new();
+    for &(point, to) in goals {
         let by = |change| {
             move |evaluation: &Evaluation| {
                 let edits = plan::move_point_by(evaluation, point, to, change)?;
                 Ok((edits, ()))
             }
         };
-        let made = planning.run(by(change));
-        if k == 0 {
-            made?;
-            continue;
+        if reached.is_empty() {
+            planning.run(by(change))?;
+        } else {
+            let before = planning.clone();
+            let made = planning.run(by(change));
+            let is_there = |&(point, to): &(PointId, Vec2)| {
+                let at = planning.evaluation().point(point);
+                at.is_some_and(|at| (at - to).norm() <= IN_PLACE)
+            };
+            if made.is_err() || !reached.iter().all(is_there) {
+                planning = before.clone();
+                // One that cannot turn along stays, as in a drag without a choice.
+                if planning.run(by(FormulaChange::Adjust)).is_err() {
+                    planning = before;
+                }
+            }
         }
-        let is_there = |&(point, to): &(PointId, Vec2)| {
-            let at = planning.evaluation().point(point);
-            at.is_some_and(|at| (at - to).norm() <= IN_PLACE)
-        };
-        if made.is_err() || !goals[..k].iter().all(is_there) {
-            planning = before;
-            planning.run(by(FormulaChange::Adjust))?;
-        }
+        reached.extend(planning.evaluation().point(point).map(|at| (point, at)));
     }
     Ok(planning.edits())
 }

@@ -33,7 +33,7 @@ pub struct Panel {
     pub fabric: FabricId,
     /// Where on the body it belongs.
     pub worn: WornRule,
-    /// Where its origin lies on the table [m], if it was moved there.
+    /// How far it was moved on the table from where its sheet has it [m], if it was.
     pub on_table: Option<[f64; 2]>,
 }
 

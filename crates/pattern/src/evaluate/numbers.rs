@@ -267,17 +267,17 @@ impl<'e> Computation<'e> {
 
 fn missing(node: Node) -> Failure {
     let what = match node {
-        Node::Word(_) => "measurement",
-        Node::Variable(_) => "variable",
-        Node::Point(_) => "point",
-        Node::Curve(_) => "curve",
-        Node::Edge(_) => "edge",
-        Node::Stage(..) => "panel",
-        Node::Seam(_) => "seam",
+        Node::Word(_) => "a measurement",
+        Node::Variable(_) => "a variable",
+        Node::Point(_) => "a point",
+        Node::Curve(_) => "a curve",
+        Node::Edge(_) => "an edge",
+        Node::Stage(..) => "a panel",
+        Node::Seam(_) => "a seam",
     };
     Failure::new(
         Code::MissingReference,
-        format!("a {what} that it names was removed"),
+        format!("{what} that it names is not there any more"),
         "name another part, remove what uses it, or undo its removal",
     )
 }

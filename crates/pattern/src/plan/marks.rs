@@ -17,8 +17,6 @@ pub struct NearMark {
     pub line: LineId,
     /// The edge it is on.
     pub edge: EdgeName,
-    /// Length of that edge [m].
-    pub length: f64,
     /// The mark: a corner, or a share of the way along the edge.
     pub mark: Mark,
     /// Where it is [m].
@@ -54,7 +52,6 @@ pub fn nearest_mark(
     Ok(NearMark {
         line: found.line,
         edge: found.edge,
-        length: found.length,
         mark,
         at: found.at,
     })

@@ -270,18 +270,10 @@ impl Pasting {
             return Ok(());
         }
         self.rename(&mut entity);
-        match &mut entity {
-            Entity::Sheet(head) => {
-                head.on_table[0] += target.offset[0];
-                head.on_table[1] += target.offset[1];
-            }
-            Entity::Panel(panel) if target.sheet.is_none() => {
-                if let Some(place) = &mut Arc::make_mut(panel).on_table {
-                    place[0] += target.offset[0];
-                    place[1] += target.offset[1];
-                }
-            }
-            _ => {}
+        // Panels lie as far from their sheet as they did.
+        if let Entity::Sheet(head) = &mut entity {
+            head.on_table[0] += target.offset[0];
+            head.on_table[1] += target.offset[1];
         }
         self.result.parts.extend(entity.id());
         let edit = Edit::Put(entity);
