@@ -61,7 +61,7 @@ pub use methods::{
 };
 pub use model::{Collider, ContactSample, Elastic, ElasticEnd, Grip, Model};
 pub use motion::{Motion, MotionKey, Pose};
-pub use newton::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
+pub use newton::{Expansion, Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 pub use pcg::PcgLimits;
 pub use rest::{RestRun, RestSettings};
 pub use scene::{

@@ -9,9 +9,11 @@
 mod chord;
 mod direction;
 mod elimination;
+mod expansion;
 mod foresight;
 
 pub(crate) use chord::ChordLimits;
+pub use expansion::Expansion;
 
 use crate::collision::Couplings;
 use crate::contacts::Contacts;
