@@ -3,12 +3,12 @@
 //! solved by factorisation.
 
 use crate::collision::Couplings;
-use crate::factor::{Block, Factor, Graph};
 use crate::newton::elastics_of;
-use crate::sparse::ScalarMatrix;
 use crate::{Elastic, ElasticEnd, Model};
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
+use toile_sparse::ScalarMatrix;
+use toile_sparse::factor::{Block, Factor, Graph};
 
 /// A symmetric positive semidefinite Hessian; rows and columns of pinned vertices do not count.
 pub struct Hessian<'a> {

@@ -13,7 +13,6 @@ mod contact_settings;
 mod contacts;
 mod error;
 pub mod fabrics;
-pub mod factor;
 mod features;
 mod garment;
 mod hessian;
@@ -30,12 +29,10 @@ mod newton;
 mod pairs;
 mod part;
 mod patches;
-mod pcg;
 mod rest;
 mod scene;
 mod scene_run;
 mod sew;
-mod sparse;
 mod state;
 mod step;
 mod step_terms;
@@ -62,7 +59,6 @@ pub use methods::{
 pub use model::{Collider, ContactSample, Elastic, ElasticEnd, Grip, Model};
 pub use motion::{Motion, MotionKey, Pose};
 pub use newton::{Expansion, Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
-pub use pcg::PcgLimits;
 pub use rest::{RestRun, RestSettings};
 pub use scene::{
     Damping, MOST_LAYER, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject,
@@ -72,4 +68,5 @@ pub use sew::{SewRun, SewSettings};
 pub use state::{Memory, State};
 pub use step::{StepSettings, step_in_time};
 pub use step_terms::SettledStrain;
+pub use toile_sparse::PcgLimits;
 pub use xpbd::{ConstraintCount, Xpbd, XpbdReport, XpbdSettings};

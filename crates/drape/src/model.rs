@@ -7,11 +7,11 @@ use crate::laws::bending::{BendingMatrix, BendingStencil, RestSheet};
 use crate::laws::elastic::ElasticLaw;
 use crate::laws::membrane::MembraneElement;
 use crate::laws::stretch::MembraneLaw;
-use crate::sparse::{BlockPattern, ScalarMatrix};
 use crate::{Cloth, ContactSettings, DrapeError, Material, Motion, Pose};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 use toile_geometry::{DistanceField, SurfaceTree, TriangleMesh, Vec3};
+use toile_sparse::{BlockPattern, ScalarMatrix};
 
 /// A solid surface: exact for counting, smooth for forces.
 #[derive(Clone)]

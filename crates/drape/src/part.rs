@@ -2,10 +2,10 @@
 
 use crate::collision::ClothContact;
 use crate::model::corner_lists;
-use crate::sparse::{BlockPattern, ScalarMatrix};
 use crate::{ContactSample, ContactSettings, Elastic, ElasticEnd, Model, State};
 use std::collections::BTreeMap;
 use toile_geometry::Vec3;
+use toile_sparse::{BlockPattern, ScalarMatrix};
 
 /// Some vertices of a model, free to move, and those they are coupled with, pinned.
 pub struct Part {

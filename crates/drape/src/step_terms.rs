@@ -14,11 +14,11 @@ use crate::laws::bending::BendingStencil;
 use crate::laws::fold::{FoldTerm, along_normal, area_normal};
 use crate::laws::membrane::green_strain;
 use crate::laws::stretch::{MembraneLaw, StrainLaw};
-use crate::sparse::ScalarMatrix;
 use crate::{Model, State};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
+use toile_sparse::ScalarMatrix;
 
 /// What a triangle's cloth has settled into: v for stretch and for bending.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

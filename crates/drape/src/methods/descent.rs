@@ -1,9 +1,9 @@
 //! What the quasi-Newton methods share: gradient and potential at a place, and a line search.
 
 use super::implicit::Problem;
-use crate::sparse::dot;
 use crate::{NewtonReport, State, Workspace};
 use toile_geometry::Vec3;
+use toile_sparse::dot;
 
 /// Sufficient decrease (Armijo's constant; Nocedal and Wright 2006, 3.1).
 const DECREASE: f64 = 1e-4;

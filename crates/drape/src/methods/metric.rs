@@ -1,11 +1,11 @@
 //! The constant metric of projective dynamics: one scalar matrix for x, y and z, factorised once.
 
 use super::implicit::Problem;
-use crate::factor::{Factor, Graph};
 use crate::laws::stretch::MembraneLaw;
-use crate::sparse::ScalarMatrix;
 use crate::{Elastic, ElasticEnd, Model, State, Workspace};
 use toile_geometry::Vec3;
+use toile_sparse::ScalarMatrix;
+use toile_sparse::factor::{Factor, Graph};
 
 /// A = b M + sum_t A_t (k_u a a^T + k_v b b^T) + bending + elastics, pins held.
 ///

@@ -3,8 +3,8 @@
 use super::descent::LONGEST_MOVE;
 use super::implicit::{Limits, Problem, Solver};
 use crate::laws::membrane::Curvature;
-use crate::sparse::dot;
 use crate::{LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State, Workspace};
+use toile_sparse::dot;
 
 /// Block conjugate gradients, as [`crate::step_in_time`] uses them.
 const LINEAR: LinearSolver = LinearSolver::Iterative(PcgLimits {

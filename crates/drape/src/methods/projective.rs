@@ -3,11 +3,11 @@
 use super::descent::{Line, descend, search, shorten};
 use super::implicit::{Limits, Problem, Solver};
 use super::metric::Metric;
-use crate::sparse::dot;
 use crate::{NewtonReport, State, Workspace};
 use nalgebra::{DMatrix, DVector};
 use std::collections::VecDeque;
 use toile_geometry::Vec3;
+use toile_sparse::dot;
 
 /// Projective dynamics (Bouaziz, Martin, Liu, Kavan and Pauly 2014) for any energy, as the
 /// quasi-Newton method it is (Liu, Bouaziz and Kavan 2017, section 4):

@@ -4,9 +4,9 @@ use super::explicit::forces_and_settle;
 use super::{Method, MethodSettings, StepReport};
 use crate::laws::membrane::Curvature;
 use crate::measure::weight_norm;
-use crate::sparse::dot;
 use crate::{DrapeError, Inertia, Memory, Model, State, Workspace};
 use toile_geometry::Vec3;
+use toile_sparse::dot;
 
 /// How a relaxation stands between two steps.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,11 +10,11 @@ use super::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 use crate::laws::membrane::Curvature;
 use crate::merge::merge_map;
 use crate::part::Part;
-use crate::sparse::dot;
 use crate::{Model, PcgLimits, State};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use toile_geometry::Vec3;
+use toile_sparse::dot;
 
 /// Share of the sum of squared forces that regions grow round.
 const HELD: f64 = 0.8;

@@ -19,13 +19,13 @@ use crate::collision::Couplings;
 use crate::contacts::Contacts;
 use crate::hessian::{Direct, Hessian};
 use crate::laws::membrane::Curvature;
-use crate::pcg::{BlockJacobi, Pcg, PcgLimits};
-use crate::sparse::dot;
 use crate::step_terms::{StepTerms, add_forces_of_motion};
 use crate::{ElasticEnd, Model, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
+use toile_sparse::dot;
+use toile_sparse::{BlockJacobi, Pcg, PcgLimits};
 
 /// What holds vertices to where inertia would take them.
 pub struct Inertia<'a> {

@@ -9,7 +9,7 @@ use super::dissection::Node;
 
 /// One front of the tree.
 #[derive(Clone, Debug)]
-pub struct Front {
+pub struct FrontalMatrix {
     /// First pivot, in the order of elimination.
     pub first: u32,
     /// Number of pivots.
@@ -28,7 +28,7 @@ pub struct Front {
     pub runs: Vec<Run>,
 }
 
-impl Front {
+impl FrontalMatrix {
     /// Vertices in its rows.
     pub fn rows(&self) -> usize {
         (self.pivots + self.boundary) as usize
@@ -60,7 +60,7 @@ pub struct Slot {
 pub struct Symbolic {
     /// Vertices in the order of elimination.
     pub order: Vec<u32>,
-    pub fronts: Vec<Front>,
+    pub fronts: Vec<FrontalMatrix>,
     /// Boundary vertices of all fronts, as places in the order of elimination, ascending.
     pub boundary: Vec<u32>,
     /// For each place in the order, where its slots start.
@@ -82,7 +82,7 @@ impl Symbolic {
     }
 
     /// Boundary of a front.
-    pub fn boundary_of(&self, front: &Front) -> &[u32] {
+    pub fn boundary_of(&self, front: &FrontalMatrix) -> &[u32] {
         &self.boundary[front.boundary_start..front.boundary_start + front.boundary as usize]
     }
 
@@ -106,7 +106,7 @@ impl Symbolic {
                 place[v as usize] = self.order.len() as u32;
                 self.order.push(v);
             }
-            self.fronts.push(Front {
+            self.fronts.push(FrontalMatrix {
                 first,
                 pivots: nodes[node].pivots.len() as u32,
                 boundary_start: 0,
@@ -155,7 +155,7 @@ impl Symbolic {
     }
 
     /// Row of a front in which a place of the order stands.
-    fn row_of(&self, front: &Front, place: u32) -> u32 {
+    fn row_of(&self, front: &FrontalMatrix, place: u32) -> u32 {
         if place < front.first + front.pivots {
             place - front.first
         } else {

@@ -6,7 +6,7 @@
 use super::dense::Number;
 use super::layout::Layout;
 use super::panel::Panel;
-use super::symbolic::{Front, Symbolic};
+use super::symbolic::{FrontalMatrix, Symbolic};
 use faer::MatMut;
 use faer::prelude::ReborrowMut;
 
@@ -111,7 +111,7 @@ impl<T: Number> Substitution<'_, T> {
 
     fn own<'b>(
         &self,
-        front: &Front,
+        front: &FrontalMatrix,
         boundary: &'b mut [T],
         first: usize,
     ) -> (&'b [T], &'b mut [T]) {

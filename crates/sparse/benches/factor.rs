@@ -1,12 +1,12 @@
 //! Times of the sparse factorisation and of solving with it, on sheets and tubes of triangles
 //! coupled as far as bending couples them. Run on an idle machine:
-//! `cargo bench -p toile-drape --bench factor`.
+//! `cargo bench -p toile-sparse --bench factor`.
 
 use criterion::{BenchmarkId, Criterion, Throughput};
 use std::f64::consts::TAU;
 use std::hint::black_box;
-use toile_drape::factor::{Block, Factor, Graph};
 use toile_geometry::Vec3;
+use toile_sparse::factor::{Block, Factor, Graph};
 
 /// Steps of a triangular lattice (i, j) to all points within 2.65 edges, one of each pair: with
 /// itself a vertex then has 31 entries in its row, as in a cloth.

@@ -2,7 +2,7 @@
 //! search) over the vertices, then straightened by moving single vertices (Fiduccia and
 //! Mattheyses 1982, for vertex separators: Ashcraft and Liu 1996).
 
-use super::dissection::Piece;
+use super::subgraph::Subgraph;
 use nalgebra::{Matrix3, SymmetricEigen};
 use toile_geometry::Vec3;
 
@@ -36,8 +36,8 @@ impl Estimate {
     /// A sheet whose vertices are coupled r rings far has rows of 3 r (r + 1) others, a square one
     /// of n vertices has separators of r sqrt(n), and factorising it costs K n^1.5 with
     /// K n^1.5 = (r sqrt(n))^3 + 2 K (n/2)^1.5.
-    fn new(piece: &Piece) -> Self {
-        let others = piece.entries() as f64 / piece.len() as f64;
+    fn new(graph: &Subgraph) -> Self {
+        let others = graph.entries() as f64 / graph.len() as f64;
         let reach = ((1.0 + 4.0 / 3.0 * others).sqrt() - 1.0) / 2.0;
         Self {
             below: reach.powi(3) / (1.0 - std::f64::consts::FRAC_1_SQRT_2),
@@ -53,30 +53,30 @@ impl Estimate {
 
 /// A label for every vertex and the separator, in order along its longest direction; nothing when
 /// no separator is worth it.
-pub fn separate(piece: &Piece) -> Option<(Vec<u32>, Vec<u32>)> {
-    let estimate = Estimate::new(piece);
-    let mut swept: Vec<(f64, Vec<u32>)> = candidate_keys(piece)
+pub fn separate(graph: &Subgraph) -> Option<(Vec<u32>, Vec<u32>)> {
+    let estimate = Estimate::new(graph);
+    let mut swept: Vec<(f64, Vec<u32>)> = candidate_keys(graph)
         .iter()
-        .filter_map(|keys| sweep(piece, estimate, keys))
+        .filter_map(|keys| sweep(graph, estimate, keys))
         .collect();
     swept.sort_by(|a, b| a.0.total_cmp(&b.0));
-    swept.truncate(if is_small(piece) { 1 } else { STRAIGHTENED });
+    swept.truncate(if is_small(graph) { 1 } else { STRAIGHTENED });
     for (work, side) in &mut swept {
-        *work = straighten(piece, estimate, side);
+        *work = straighten(graph, estimate, side);
     }
     let best = swept.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
     let (_, side) = best?;
-    let mut separator: Vec<u32> = (0..piece.len() as u32)
+    let mut separator: Vec<u32> = (0..graph.len() as u32)
         .filter(|&v| side[v as usize] == SEPARATOR)
         .collect();
-    let large = separator.len() as f64 > LARGEST_SEPARATOR * piece.len() as f64;
+    let large = separator.len() as f64 > LARGEST_SEPARATOR * graph.len() as f64;
     if large || [0, 1].iter().any(|label| !side.contains(label)) {
         return None;
     }
-    let (low, high) = bounds(separator.iter().map(|&v| piece.places[v as usize]));
+    let (low, high) = bounds(separator.iter().map(|&v| graph.places[v as usize]));
     let axis = (high - low).imax();
     separator.sort_by(|&a, &b| {
-        let [p, q] = [a, b].map(|v| piece.places[v as usize][axis]);
+        let [p, q] = [a, b].map(|v| graph.places[v as usize][axis]);
         p.total_cmp(&q).then(a.cmp(&b))
     });
     Some((side, separator))
@@ -87,17 +87,17 @@ fn bounds(places: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
     places.fold((none, -none), |(low, high), p| (low.inf(&p), high.sup(&p)))
 }
 
-fn is_small(piece: &Piece) -> bool {
-    piece.len() <= SMALL
+fn is_small(graph: &Subgraph) -> bool {
+    graph.len() <= SMALL
 }
 
 /// Orders to sweep the vertices in: along the principal directions, the longest first; in large
 /// pieces along the axes and by distance within the graph from a vertex at the rim too.
-fn candidate_keys(piece: &Piece) -> Vec<Vec<f64>> {
-    let along = |d: Vec3| piece.places.iter().map(|p| p.dot(&d)).collect();
+fn candidate_keys(graph: &Subgraph) -> Vec<Vec<f64>> {
+    let along = |d: Vec3| graph.places.iter().map(|p| p.dot(&d)).collect();
     let mut all: Vec<Vec<f64>> = Vec::new();
-    let centre = piece.places.iter().sum::<Vec3>() / piece.len() as f64;
-    let spread = piece.places.iter().fold(Matrix3::zeros(), |sum, p| {
+    let centre = graph.places.iter().sum::<Vec3>() / graph.len() as f64;
+    let spread = graph.places.iter().fold(Matrix3::zeros(), |sum, p| {
         sum + (p - centre) * (p - centre).transpose()
     });
     if spread.iter().all(|s| s.is_finite())
@@ -106,27 +106,27 @@ fn candidate_keys(piece: &Piece) -> Vec<Vec<f64>> {
         let mut order = [0, 1, 2];
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
         let direction = |&k: &usize| along(eigen.eigenvectors.column(k).into());
-        if is_small(piece) {
+        if is_small(graph) {
             return order[..2].iter().map(direction).collect();
         }
         all.extend(order.iter().map(direction));
     }
     all.extend([Vec3::x(), Vec3::y(), Vec3::z()].map(along));
-    let rim = farthest(&hops(piece, 0));
-    all.push(hops(piece, rim));
+    let rim = farthest(&hops(graph, 0));
+    all.push(hops(graph, rim));
     all
 }
 
 /// Steps along the graph from a vertex.
-fn hops(piece: &Piece, from: usize) -> Vec<f64> {
-    let mut steps = vec![f64::INFINITY; piece.len()];
+fn hops(graph: &Subgraph, from: usize) -> Vec<f64> {
+    let mut steps = vec![f64::INFINITY; graph.len()];
     steps[from] = 0.0;
     let mut queue = vec![from as u32];
     let mut next = 0;
     while next < queue.len() {
         let v = queue[next] as usize;
         next += 1;
-        for &u in piece.neighbours(v) {
+        for &u in graph.neighbours(v) {
             if steps[u as usize].is_infinite() {
                 steps[u as usize] = steps[v] + 1.0;
                 queue.push(u);
@@ -144,8 +144,8 @@ fn farthest(steps: &[f64]) -> usize {
 
 /// Moves the vertices from right to left in the order of their keys, and keeps the moment at
 /// which the rim of one side makes the cheapest separator.
-fn sweep(piece: &Piece, estimate: Estimate, keys: &[f64]) -> Option<(f64, Vec<u32>)> {
-    let n = piece.len();
+fn sweep(graph: &Subgraph, estimate: Estimate, keys: &[f64]) -> Option<(f64, Vec<u32>)> {
+    let n = graph.len();
     let mut order: Vec<u32> = (0..n as u32).collect();
     order.sort_unstable_by(|&a, &b| {
         keys[a as usize]
@@ -160,13 +160,13 @@ fn sweep(piece: &Piece, estimate: Estimate, keys: &[f64]) -> Option<(f64, Vec<u3
     for (at, &v) in order.iter().enumerate() {
         let v = v as usize;
         right_rim -= usize::from(in_left[v] > 0);
-        left_rim += usize::from(in_left[v] < piece.neighbours(v).len() as u32);
+        left_rim += usize::from(in_left[v] < graph.neighbours(v).len() as u32);
         left[v] = true;
-        for &u in piece.neighbours(v) {
+        for &u in graph.neighbours(v) {
             let u = u as usize;
             in_left[u] += 1;
             if left[u] {
-                left_rim -= usize::from(in_left[u] == piece.neighbours(u).len() as u32);
+                left_rim -= usize::from(in_left[u] == graph.neighbours(u).len() as u32);
             } else {
                 right_rim += usize::from(in_left[u] == 1);
             }
@@ -194,7 +194,7 @@ fn sweep(piece: &Piece, estimate: Estimate, keys: &[f64]) -> Option<(f64, Vec<u3
     let rim: Vec<usize> = (0..n)
         .filter(|&v| {
             side[v] == own
-                && piece
+                && graph
                     .neighbours(v)
                     .iter()
                     .any(|&u| side[u as usize] == other)
@@ -208,14 +208,14 @@ fn sweep(piece: &Piece, estimate: Estimate, keys: &[f64]) -> Option<(f64, Vec<u3
 
 /// Moves vertices out of the separator, drawing in those that would then touch the other side, as
 /// long as that pays; passes go uphill too and keep the best moment. Returns the work estimated.
-fn straighten(piece: &Piece, estimate: Estimate, side: &mut [u32]) -> f64 {
+fn straighten(graph: &Subgraph, estimate: Estimate, side: &mut [u32]) -> f64 {
     let mut count = [0usize; 3];
     for &s in side.iter() {
         count[s as usize] += 1;
     }
     let mut best = estimate.work(count[2], count[0], count[1]);
     for _ in 0..PASSES {
-        let found = pass(piece, estimate, side, &mut count);
+        let found = pass(graph, estimate, side, &mut count);
         if found >= best {
             break;
         }
@@ -225,14 +225,14 @@ fn straighten(piece: &Piece, estimate: Estimate, side: &mut [u32]) -> f64 {
 }
 
 /// One pass; leaves the best moment in `side` and `count` and returns its work.
-fn pass(piece: &Piece, estimate: Estimate, side: &mut [u32], count: &mut [usize; 3]) -> f64 {
+fn pass(graph: &Subgraph, estimate: Estimate, side: &mut [u32], count: &mut [usize; 3]) -> f64 {
     let mut rim: Vec<u32> = (0..side.len() as u32)
         .filter(|&v| side[v as usize] == SEPARATOR)
         .collect();
     let mut drawn: Vec<[i32; 2]> = vec![[0; 2]; side.len()];
     let touching = |side: &[u32], v: u32| {
         let mut touch = [0; 3];
-        for &u in piece.neighbours(v as usize) {
+        for &u in graph.neighbours(v as usize) {
             touch[side[u as usize] as usize] += 1;
         }
         // Moving to one side draws in the neighbours on the other.
@@ -272,7 +272,7 @@ fn pass(piece: &Piece, estimate: Estimate, side: &mut [u32], count: &mut [usize;
         side[v as usize] = to;
         count[2] -= 1;
         count[to as usize] += 1;
-        for &u in piece.neighbours(v as usize) {
+        for &u in graph.neighbours(v as usize) {
             if side[u as usize] == 1 - to {
                 moves.push((u, 1 - to));
                 side[u as usize] = SEPARATOR;
@@ -288,7 +288,7 @@ fn pass(piece: &Piece, estimate: Estimate, side: &mut [u32], count: &mut [usize;
             if side[w as usize] == SEPARATOR {
                 drawn[w as usize] = touching(side, w);
             }
-            for &u in piece.neighbours(w as usize) {
+            for &u in graph.neighbours(w as usize) {
                 if side[u as usize] == SEPARATOR {
                     drawn[u as usize] = touching(side, u);
                 }

@@ -1,7 +1,7 @@
 //! Preconditioned conjugate gradients (Hestenes and Stiefel 1952).
 
 use crate::factor::{Factor, Number};
-use crate::sparse::{ROW_CHUNK, dot};
+use crate::matrix::{ROW_CHUNK, dot};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use toile_geometry::Vec3;

@@ -12,6 +12,7 @@ mod numeric;
 mod panel;
 mod separator;
 mod solve;
+mod subgraph;
 mod symbolic;
 
 pub use dense::Number;
