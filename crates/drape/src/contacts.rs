@@ -3,7 +3,7 @@
 use crate::collision::ClothContacts;
 use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{ContactLaw, ContactPlane, damped_push, gentle_push};
-use crate::state::Memory as StateMemory;
+use crate::memory::Memory as StateMemory;
 use crate::{Model, Pose, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;

@@ -2,9 +2,9 @@
 
 use crate::caps::without_caps;
 use crate::contact_settings::{FIELD_REACH, MOST_EXTRA};
+use crate::elastic::{Elastic, ElasticEnd};
 use crate::laws::air::Air;
 use crate::laws::bending::{BendingMatrix, BendingStencil, RestSheet};
-use crate::laws::elastic::ElasticLaw;
 use crate::laws::membrane::MembraneElement;
 use crate::laws::stretch::MembraneLaw;
 use crate::{Cloth, ContactSettings, DrapeError, Material, Motion, Pose};
@@ -104,36 +104,6 @@ impl Collider {
         let place = pose.map_or(place, |pose| pose.undo(place));
         let closest = self.surface.closest_point(place, f64::INFINITY);
         closest.map_or(f64::INFINITY, |c| c.signed_distance)
-    }
-}
-
-/// One end of an elastic.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ElasticEnd {
-    /// A vertex of the cloth.
-    Vertex(u32),
-    /// A fixed place [m].
-    Point(Vec3),
-}
-
-/// An attachment force between a vertex and another vertex or a place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Elastic {
-    /// The vertex it pulls.
-    pub from: u32,
-    /// What it is pulled to.
-    pub to: ElasticEnd,
-    /// Its force law.
-    pub law: ElasticLaw,
-}
-
-impl Elastic {
-    /// The vertices it couples, where it couples two.
-    pub(crate) fn ends(&self) -> Option<[u32; 2]> {
-        match self.to {
-            ElasticEnd::Vertex(to) => Some([self.from, to]),
-            ElasticEnd::Point(_) => None,
-        }
     }
 }
 
@@ -302,6 +272,19 @@ impl Model {
         };
         model.lump(count);
         Ok(model)
+    }
+
+    /// Elastics at a vertex with their other end.
+    pub(crate) fn elastics_at(&self, v: usize) -> impl Iterator<Item = (usize, ElasticEnd)> + '_ {
+        let uses = self.elastic_start[v] as usize..self.elastic_start[v + 1] as usize;
+        self.elastic_uses[uses].iter().map(move |&e| {
+            let elastic = &self.elastics[e as usize];
+            let other = match elastic.from as usize == v {
+                true => elastic.to,
+                false => ElasticEnd::Vertex(elastic.from),
+            };
+            (e as usize, other)
+        })
     }
 
     /// Lumps mass, area and friction at the vertices: a third of each triangle to each corner.

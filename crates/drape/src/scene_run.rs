@@ -4,7 +4,8 @@ use crate::collision::Tally;
 use crate::laws::elastic::ElasticLaw;
 use crate::measure::{Measures, measure};
 use crate::merge::{joinable, merged_layers, merged_motion};
-use crate::methods::{Method, whole_energy};
+use crate::method::Method;
+use crate::methods::whole_energy;
 use crate::scene::{ObjectKind, Scene, SceneEnd};
 use crate::{
     Cloth, Collider, DrapeError, Elastic, ElasticEnd, Grip, Model, State, Workspace, merge_map,

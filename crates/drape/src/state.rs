@@ -1,52 +1,8 @@
 //! The state: what changes as a simulation runs; a complete checkpoint.
 
 use crate::collision::ClothMemory;
-use crate::step_terms::SettledStrain;
-use crate::{Model, RelaxationRun, RestRun};
+use crate::{InternalStrain, Memory, Model};
 use toile_geometry::Vec3;
-
-/// What a method must remember from one step to the next beyond positions and velocities. Another
-/// method than the one that wrote it takes no notice of it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Memory {
-    /// Nothing.
-    #[default]
-    Nothing,
-    /// The state before the last step, for methods of two steps.
-    Previous {
-        /// Positions then [m].
-        positions: Vec<Vec3>,
-        /// Velocities then [m/s].
-        velocities: Vec<Vec3>,
-        /// Length of the step that followed [s].
-        step: f64,
-    },
-    /// Contact samples that a surface was put over and that have not come out since, in order.
-    Buried(Vec<u32>),
-    /// How the way to rest stands.
-    Rest(RestRun),
-    /// How dynamic relaxation stands.
-    Relaxation(RelaxationRun),
-}
-
-impl Memory {
-    /// Of contact samples that a surface was put over, in order.
-    pub(crate) fn of_buried(samples: impl Iterator<Item = u32>) -> Self {
-        let samples: Vec<u32> = samples.collect();
-        match samples.is_empty() {
-            true => Self::Nothing,
-            false => Self::Buried(samples),
-        }
-    }
-
-    /// The contact samples that a surface was put over, in order.
-    pub(crate) fn buried(&self) -> &[u32] {
-        match self {
-            Self::Buried(samples) => samples,
-            _ => &[],
-        }
-    }
-}
 
 /// Positions, velocities, and what contact remembers.
 #[derive(Debug, Default, PartialEq)]
@@ -62,7 +18,7 @@ pub struct State {
     /// What contact of cloth with cloth remembers.
     pub cloth: ClothMemory,
     /// What each triangle has settled into; empty unless a cloth keeps strain.
-    pub settled: Vec<SettledStrain>,
+    pub settled: Vec<InternalStrain>,
     /// Simulated time [s].
     pub time: f64,
     /// What the method remembers.

@@ -18,8 +18,8 @@ use toile_drape::collision::{
     bound_moves, crossings, nearnesses,
 };
 use toile_drape::{
-    Cloth, ContactSettings, Material, Measures, MethodKind, Model, RestRun, RestSettings, Scene,
-    SceneRun, State, Workspace,
+    Cloth, ContactSettings, Material, Measures, MethodKind, Model, PseudoTransientContinuation,
+    RestSettings, Scene, SceneRun, State, Workspace,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3, segment_intersects_triangle};
 
@@ -337,7 +337,7 @@ fn pressed_to_rest() -> (f64, usize, f64) {
     let (mut model, mut state) = sheets::cloth(&mesh, Material::default());
     model.pinned[..pinned].fill(true);
     model.contact = contact;
-    let mut rest = RestRun::near(RestSettings {
+    let mut rest = PseudoTransientContinuation::near(RestSettings {
         steps: 100,
         ..RestSettings::default()
     });

@@ -7,8 +7,8 @@ use sheets::{cloth, sheet};
 use std::sync::Arc;
 use toile_drape::{
     Collider, DrapeError, Elastic, ElasticEnd, Inertia, LinearSolver, Material, MethodKind, Model,
-    NewtonSettings, PcgLimits, RestRun, RestSettings, State, StepSettings, Workspace, Xpbd,
-    XpbdSettings, laws::elastic::ElasticLaw,
+    NewtonSettings, PcgLimits, PseudoTransientContinuation, RestSettings, State, StepSettings,
+    Workspace, Xpbd, XpbdSettings, laws::elastic::ElasticLaw,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
@@ -210,7 +210,7 @@ fn it_rests_where_newton_rests() {
         model.pinned[10 * row + 1] = true;
     }
     let mut reference = state.clone();
-    let mut rest = RestRun::new(RestSettings {
+    let mut rest = PseudoTransientContinuation::new(RestSettings {
         residual: 1e-7,
         ..RestSettings::default()
     });

@@ -13,7 +13,7 @@
 
 use super::energy::{EnergyWatch, fastest, runaway};
 use super::frequency::{FrequencySearch, damped_contact_frequency};
-use super::{Method, MethodSettings, StepReport};
+use crate::method::{Method, MethodSettings, StepReport};
 use crate::{DrapeError, Model, State, Workspace};
 use toile_geometry::Vec3;
 

@@ -6,11 +6,14 @@
 //! two, four ... pieces.
 
 use super::energy::{EnergyAccount, EnergyWatch, fastest, possible_energy, runaway};
-use super::{Method, MethodSettings, StepReport};
 use crate::measure::weight_norm;
+use crate::method::{Method, MethodSettings, StepReport};
 use crate::{DrapeError, Inertia, Model, NewtonReport, State, Workspace};
 use std::marker::PhantomData;
 use toile_geometry::Vec3;
+
+/// Longest move of a vertex in one iteration near solid surfaces [m].
+pub const LONGEST_MOVE: f64 = 0.05;
 
 /// A rule of time integration, as a minimum and what follows from it.
 pub trait TimeRule: Send {

@@ -1,7 +1,6 @@
 //! Lowering the potential by Newton's method: to its minimum, or by one linear solve.
 
-use super::descent::LONGEST_MOVE;
-use super::implicit::{Limits, Problem, Solver};
+use super::implicit::{LONGEST_MOVE, Limits, Problem, Solver};
 use crate::laws::membrane::Curvature;
 use crate::{LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State, Workspace};
 use toile_sparse::dot;

@@ -35,7 +35,8 @@ mod stretch;
 mod tensions;
 mod touch;
 
-use crate::methods::{Method, MethodSettings, StepReport, energy_bound, is_possible_speed};
+use crate::method::{Method, MethodSettings, StepReport};
+use crate::methods::{energy_bound, is_possible_speed};
 use crate::{DrapeError, Model, State};
 use lane::Lane;
 use limits::stiffening;

@@ -4,7 +4,7 @@
 use super::Lane;
 use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{damped_push, gentle_push};
-use crate::state::Memory;
+use crate::memory::Memory;
 use crate::{Model, State};
 use rayon::prelude::*;
 use toile_geometry::Vec3;

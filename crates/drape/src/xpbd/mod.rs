@@ -34,7 +34,7 @@ mod run;
 
 use crate::collision::Tally;
 use crate::lanes::LANES;
-use crate::methods::{Method, MethodSettings, StepReport};
+use crate::method::{Method, MethodSettings, StepReport};
 use crate::{DrapeError, Model, State};
 use bending::{BendingForce, Filter};
 use bounce::BounceStep;

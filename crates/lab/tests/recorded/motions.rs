@@ -4,7 +4,7 @@ use crate::record::Record;
 use crate::states::{self, Frozen};
 use toile_drape::{
     Collider, ContactSettings, GarmentLevel, GarmentRun, GarmentSetup, MethodKind, MethodSettings,
-    RestRun, RestSettings, SewSettings, Stage, State, Workspace,
+    PseudoTransientContinuation, RestSettings, SewSettings, Stage, State, Workspace,
 };
 use toile_geometry::Vec3;
 use toile_lab::card;
@@ -102,7 +102,7 @@ pub fn note_stages(record: &mut Record) {
     note(record, "swing", &run.state);
 
     let (mut state, mut workspace) = (run.state.clone(), Workspace::default());
-    let mut rest = RestRun::new(RestSettings::default());
+    let mut rest = PseudoTransientContinuation::new(RestSettings::default());
     for _ in 0..STAGE_STEPS {
         rest.advance(&run.model, &mut state, &mut workspace)
             .unwrap();

@@ -1,8 +1,8 @@
 //! Projective dynamics as descent in a constant metric, with Anderson acceleration.
 
 use super::descent::{Line, descend, search, shorten};
-use super::implicit::{Limits, Problem, Solver};
 use super::metric::Metric;
+use crate::methods::implicit::{Limits, Problem, Solver};
 use crate::{NewtonReport, State, Workspace};
 use nalgebra::{DMatrix, DVector};
 use std::collections::VecDeque;

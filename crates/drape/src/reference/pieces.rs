@@ -1,6 +1,6 @@
 //! Pieces of cloth that hang together, and the shift of each as a whole that lowers the potential.
 
-use super::implicit::Problem;
+use crate::methods::implicit::Problem;
 use crate::{ElasticEnd, Model, State, Workspace, merge_map};
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;

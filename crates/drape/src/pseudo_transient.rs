@@ -8,6 +8,7 @@
 
 use crate::laws::membrane::Curvature;
 use crate::measure::{residual, weight_norm};
+use crate::memory::RestMemory;
 use crate::newton::ChordLimits;
 use crate::{
     DrapeError, Inertia, LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State,
@@ -39,16 +40,9 @@ impl Default for RestSettings {
 
 /// A drape on its way to rest.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RestRun {
+pub struct PseudoTransientContinuation {
     settings: RestSettings,
-    pseudo_step: f64,
-    steps: usize,
-    residual: f64,
-    longest_step: f64,
-    best: f64,
-    waited: usize,
-    linear_iterations: usize,
-    curvature: Curvature,
+    memory: RestMemory,
 }
 
 /// Steps without a new low of the residual before a cycle is suspected.
@@ -65,11 +59,10 @@ const NEAR_STEP: f64 = 0.1;
 const SHORTEST_STEP: f64 = 1e-6;
 const LONGEST_STEP: f64 = 100.0;
 
-impl RestRun {
+impl PseudoTransientContinuation {
     /// A new way to rest.
     pub fn new(settings: RestSettings) -> Self {
-        Self {
-            settings,
+        let memory = RestMemory {
             pseudo_step: FIRST_STEP,
             steps: 0,
             residual: f64::INFINITY,
@@ -78,50 +71,55 @@ impl RestRun {
             waited: 0,
             linear_iterations: 0,
             curvature: Curvature::CONVEX,
-        }
+        };
+        Self { settings, memory }
     }
 
     /// A new way that starts near rest, where a swing ended.
     pub fn near(settings: RestSettings) -> Self {
-        Self {
-            pseudo_step: NEAR_STEP,
-            ..Self::new(settings)
-        }
+        let mut run = Self::new(settings);
+        run.memory.pseudo_step = NEAR_STEP;
+        run
     }
 
-    /// The same way with other settings.
-    pub fn with_settings(self, settings: RestSettings) -> Self {
-        Self { settings, ..self }
+    /// Goes on from what a state remembers.
+    pub fn resume(settings: RestSettings, memory: RestMemory) -> Self {
+        Self { settings, memory }
+    }
+
+    /// What a state is to remember to go on.
+    pub fn memory(&self) -> &RestMemory {
+        &self.memory
     }
 
     /// Residual after the last step.
     pub fn residual(&self) -> f64 {
-        self.residual
+        self.memory.residual
     }
 
     /// Steps taken.
     pub fn steps(&self) -> usize {
-        self.steps
+        self.memory.steps
     }
 
     /// Conjugate-gradient iterations taken in all.
     pub fn linear_iterations(&self) -> usize {
-        self.linear_iterations
+        self.memory.linear_iterations
     }
 
     /// Whether the residual asked for is reached or the steps are used up.
     pub fn finished(&self) -> bool {
-        self.residual <= self.settings.residual || self.steps >= self.settings.steps
+        self.memory.residual <= self.settings.residual || self.memory.steps >= self.settings.steps
     }
 
     /// Asks for a smaller residual with as many steps again.
     pub fn go_on(&mut self, residual: f64, more_steps: usize) {
         self.settings.residual = residual;
-        self.settings.steps = self.steps + more_steps;
-        self.residual = f64::INFINITY;
-        self.best = f64::INFINITY;
-        self.waited = 0;
-        self.longest_step = LONGEST_STEP;
+        self.settings.steps = self.memory.steps + more_steps;
+        self.memory.residual = f64::INFINITY;
+        self.memory.best = f64::INFINITY;
+        self.memory.waited = 0;
+        self.memory.longest_step = LONGEST_STEP;
     }
 
     /// Takes one step.
@@ -138,7 +136,7 @@ impl RestRun {
         let start = state.clone();
         workspace.terms.hold_still(model, state);
         loop {
-            let h = self.pseudo_step;
+            let h = self.memory.pseudo_step;
             let weight: Vec<f64> = model.mass.iter().map(|m| m / (h * h)).collect();
             let inertia = Inertia {
                 weight: &weight,
@@ -148,7 +146,7 @@ impl RestRun {
                 iterations: 1,
                 tolerance: 0.0,
                 longest_move: self.settings.longest_move,
-                curvature: self.curvature,
+                curvature: self.memory.curvature,
                 linear: LinearSolver::Direct {
                     otherwise: PcgLimits {
                         tolerance: 1e-3,
@@ -157,7 +155,7 @@ impl RestRun {
                 },
             };
             let report = workspace.solve(model, state, &inertia, &newton);
-            self.linear_iterations += report.linear_iterations;
+            self.memory.linear_iterations += report.linear_iterations;
             if report.sound && state.first_not_finite().is_none() {
                 let enough = self.settings.residual * weight_norm(model);
                 let limits = ChordLimits {
@@ -171,21 +169,21 @@ impl RestRun {
                     workspace.contacts.refresh(model, state, &state.positions);
                 }
                 workspace.contacts.settle(model, state);
-                let before = self.residual;
-                self.residual = residual(model, state, workspace);
+                let before = self.memory.residual;
+                self.memory.residual = residual(model, state, workspace);
                 self.adapt(&report, before);
                 break;
             }
             let vertex = state.first_not_finite();
             state.clone_from(&start);
-            self.pseudo_step *= 0.5;
-            if self.pseudo_step < SHORTEST_STEP {
+            self.memory.pseudo_step *= 0.5;
+            if self.memory.pseudo_step < SHORTEST_STEP {
                 let stage = "drape to rest";
                 return Err(match vertex {
                     Some(vertex) => DrapeError::NotFinite { stage, vertex },
                     None => DrapeError::NoProgress {
                         stage,
-                        residual: self.residual,
+                        residual: self.memory.residual,
                     },
                 });
             }
@@ -193,7 +191,7 @@ impl RestRun {
         for v in &mut state.velocities {
             *v = Vec3::zeros();
         }
-        self.steps += 1;
+        self.memory.steps += 1;
         Ok(())
     }
 
@@ -201,12 +199,12 @@ impl RestRun {
     /// it when the line search or the limit on moves cut the step short.
     fn adapt(&mut self, report: &NewtonReport, residual_before: f64) {
         let (fraction, moved) = (report.fraction, report.moved);
-        self.curvature = report.next_curvature();
+        self.memory.curvature = report.next_curvature();
         let free = moved < 0.5 * self.settings.longest_move;
-        if fraction >= 1.0 && free && self.residual < 1.05 * residual_before {
-            self.pseudo_step = (self.pseudo_step * 1.5).min(self.longest_step);
+        if fraction >= 1.0 && free && self.memory.residual < 1.05 * residual_before {
+            self.memory.pseudo_step = (self.memory.pseudo_step * 1.5).min(self.memory.longest_step);
         } else if fraction < 0.3 || moved >= 0.99 * self.settings.longest_move {
-            self.pseudo_step = (self.pseudo_step * 0.7).max(SHORTEST_STEP);
+            self.memory.pseudo_step = (self.memory.pseudo_step * 0.7).max(SHORTEST_STEP);
         }
         self.break_cycles();
     }
@@ -215,17 +213,17 @@ impl RestRun {
     /// found no new low for long, the pseudo step is bounded ten times lower: inertia then damps
     /// the cycle, though not what regions do that are brought to rest apart.
     fn break_cycles(&mut self) {
-        if self.residual < 0.9 * self.best {
-            self.best = self.residual;
-            self.waited = 0;
+        if self.memory.residual < 0.9 * self.memory.best {
+            self.memory.best = self.memory.residual;
+            self.memory.waited = 0;
             return;
         }
-        self.waited += 1;
-        if self.waited >= PATIENCE {
-            self.waited = 0;
-            self.best = self.residual;
-            self.longest_step = (0.1 * self.longest_step).max(FIRST_STEP);
-            self.pseudo_step = self.pseudo_step.min(self.longest_step);
+        self.memory.waited += 1;
+        if self.memory.waited >= PATIENCE {
+            self.memory.waited = 0;
+            self.memory.best = self.memory.residual;
+            self.memory.longest_step = (0.1 * self.memory.longest_step).max(FIRST_STEP);
+            self.memory.pseudo_step = self.memory.pseudo_step.min(self.memory.longest_step);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Symplectic (semi-explicit) Euler: order 1, keeps energy for ever below its limit.
 
-use super::explicit::{Scheme, forces_and_settle};
+use crate::methods::explicit::{Scheme, forces_and_settle};
 use crate::{Model, State, Workspace};
 
 /// v' = (v + h f(x) / m) / (1 + c h),  x' = x + h v'

@@ -1,8 +1,8 @@
 //! L-BFGS that starts from the metric of projective dynamics.
 
 use super::descent::{Line, descend, search, shorten};
-use super::implicit::{Limits, Problem, Solver};
 use super::metric::Metric;
+use crate::methods::implicit::{Limits, Problem, Solver};
 use crate::pairs::Pairs;
 use crate::{NewtonReport, State, Workspace};
 use toile_geometry::Vec3;

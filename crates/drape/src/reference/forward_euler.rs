@@ -1,6 +1,6 @@
 //! Forward Euler (Euler 1768): order 1, and unstable for every undamped vibration.
 
-use super::explicit::{Scheme, forces_and_settle};
+use crate::methods::explicit::{Scheme, forces_and_settle};
 use crate::{Model, State, Workspace};
 
 /// x' = x + h v,  v' = v + h (f(x, v) / m - c v).

@@ -1,10 +1,9 @@
 //! Vertex block descent: the potential lowered one vertex at a time, colour by colour.
 
 use super::colours::Colours;
-use super::implicit::{Limits, Problem, Solver};
 use super::pieces::Pieces;
 use crate::contacts::Contacts;
-use crate::newton::{elastics_of, end_place};
+use crate::methods::implicit::{Limits, Problem, Solver};
 use crate::{Model, NewtonReport, State, Workspace};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -131,8 +130,8 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
                 hessian += blocks[0];
             }
         }
-        for (e, other) in elastics_of(model, v) {
-            let gap = x[v] - end_place(other, x);
+        for (e, other) in model.elastics_at(v) {
+            let gap = x[v] - other.place(x);
             let secant = model.elastics[e].law.secant(gap);
             gradient += gap * secant;
             hessian += Matrix3::identity() * secant;

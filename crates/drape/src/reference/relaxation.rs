@@ -1,27 +1,12 @@
 //! Dynamic relaxation: to rest by letting the cloth swing and stopping it at every swing's peak.
 
-use super::explicit::forces_and_settle;
-use super::{Method, MethodSettings, StepReport};
 use crate::laws::membrane::Curvature;
 use crate::measure::weight_norm;
-use crate::{DrapeError, Inertia, Memory, Model, State, Workspace};
+use crate::method::{Method, MethodSettings, StepReport};
+use crate::methods::explicit::forces_and_settle;
+use crate::{DrapeError, Inertia, Memory, Model, RelaxationMemory, State, Workspace};
 use toile_geometry::Vec3;
 use toile_sparse::dot;
-
-/// How a relaxation stands between two steps.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RelaxationRun {
-    /// Moves per iteration, half an iteration back [m].
-    moves: Vec<Vec3>,
-    /// Fictitious masses in iterations [N/m].
-    masses: Vec<f64>,
-    /// Kinetic energy in iterations, half an iteration back [J].
-    kinetic: f64,
-    /// Whether the next iteration starts from standstill.
-    still: bool,
-    iterations: usize,
-    residual: f64,
-}
 
 /// Dynamic relaxation with kinetic damping (Day 1965; Cundall 1976; Barnes 1999, section 3).
 ///
@@ -38,7 +23,7 @@ pub struct RelaxationRun {
 pub struct Relaxation {
     tolerance: f64,
     most: usize,
-    run: Option<RelaxationRun>,
+    run: Option<RelaxationMemory>,
     workspace: Workspace,
     zeros: Vec<f64>,
 }
@@ -69,11 +54,11 @@ impl Relaxation {
     }
 
     /// The run the state remembers, or a new one.
-    fn resume(&mut self, model: &Model, state: &mut State) -> RelaxationRun {
+    fn resume(&mut self, model: &Model, state: &mut State) -> RelaxationMemory {
         let n = model.vertex_count();
         match std::mem::take(&mut state.memory) {
             Memory::Relaxation(run) if run.moves.len() == n => run,
-            _ => RelaxationRun {
+            _ => RelaxationMemory {
                 moves: vec![Vec3::zeros(); n],
                 masses: Vec::new(),
                 kinetic: 0.0,
@@ -120,7 +105,7 @@ impl Relaxation {
     }
 
     /// One iteration; true when it was the last of a swing.
-    fn iterate(&mut self, model: &Model, state: &mut State, run: &mut RelaxationRun) -> bool {
+    fn iterate(&mut self, model: &Model, state: &mut State, run: &mut RelaxationMemory) -> bool {
         if run.still {
             let mut masses = std::mem::take(&mut run.masses);
             self.weigh(model, state, &mut masses);

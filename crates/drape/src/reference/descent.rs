@@ -1,6 +1,6 @@
 //! What the quasi-Newton methods share: gradient and potential at a place, and a line search.
 
-use super::implicit::Problem;
+use crate::methods::implicit::{LONGEST_MOVE, Problem};
 use crate::{NewtonReport, State, Workspace};
 use toile_geometry::Vec3;
 use toile_sparse::dot;
@@ -10,9 +10,6 @@ const DECREASE: f64 = 1e-4;
 
 /// Halvings before a line search gives up.
 const HALVINGS: usize = 16;
-
-/// Longest move of a vertex in one iteration near solid surfaces [m].
-pub const LONGEST_MOVE: f64 = 0.05;
 
 /// Contacts and gradient at the state's positions; returns the gradient's norm [N].
 pub fn slope(problem: &Problem, state: &State, workspace: &mut Workspace) -> f64 {

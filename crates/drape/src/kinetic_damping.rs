@@ -8,7 +8,7 @@ use crate::{DrapeError, Model, State, Xpbd};
 use toile_geometry::Vec3;
 
 /// A swing on its way to calm.
-pub struct SwingRun {
+pub struct KineticDamping {
     xpbd: Xpbd,
     cloth: ClothWatch,
     substep: f64,
@@ -41,7 +41,7 @@ const CALM: f64 = 0.0015;
 const LOWER: f64 = 0.8;
 const PATIENCE: u32 = 12;
 
-impl SwingRun {
+impl KineticDamping {
     /// Prepares the constraints of a model.
     pub fn new(model: &Model) -> Self {
         Self {
@@ -130,7 +130,7 @@ impl SwingRun {
     }
 }
 
-impl SwingRun {
+impl KineticDamping {
     /// Counts the peaks of kinetic energy without a new low while cloth crosses cloth or layers lie
     /// in the wrong order.
     fn watch_crossings(&mut self) {
@@ -164,7 +164,7 @@ fn substep(model: &Model) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Cloth, Material, RestRun, RestSettings, Workspace};
+    use crate::{Cloth, Material, PseudoTransientContinuation, RestSettings, Workspace};
     use toile_geometry::TriangleMesh;
 
     /// A strip of 3 x 20 cells held level by its first row.
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn a_strip_let_go_swings_down_and_is_calm_before_its_time_is_up() {
         let (model, mut state) = strip();
-        let mut run = SwingRun::new(&model);
+        let mut run = KineticDamping::new(&model);
         let mut stops = 0;
         while !run.finished() {
             run.advance(&model, &mut state).unwrap();
@@ -204,7 +204,7 @@ mod tests {
         assert!(state.positions[83].y < -0.15, "{}", state.positions[83]);
         // Newton's method finds the tip near its place.
         let tip = state.positions[83];
-        let mut rest = RestRun::near(RestSettings::default());
+        let mut rest = PseudoTransientContinuation::near(RestSettings::default());
         let mut workspace = Workspace::default();
         while !rest.finished() {
             rest.advance(&model, &mut state, &mut workspace).unwrap();

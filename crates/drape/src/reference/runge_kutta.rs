@@ -1,6 +1,6 @@
 //! The classical Runge-Kutta method: order 4.
 
-use super::explicit::{Scheme, forces, forces_and_settle};
+use crate::methods::explicit::{Scheme, forces, forces_and_settle};
 use crate::{Model, State, Workspace};
 use toile_geometry::Vec3;
 

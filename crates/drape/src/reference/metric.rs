@@ -1,7 +1,7 @@
 //! The constant metric of projective dynamics: one scalar matrix for x, y and z, factorised once.
 
-use super::implicit::Problem;
 use crate::laws::stretch::MembraneLaw;
+use crate::methods::implicit::Problem;
 use crate::{Elastic, ElasticEnd, Model, State, Workspace};
 use toile_geometry::Vec3;
 use toile_sparse::ScalarMatrix;
