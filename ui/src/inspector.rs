@@ -150,6 +150,7 @@ impl ToileApp {
             Item::Curve(curve) => self.handle_numbers(ui, curve),
             Item::Notch(panel, notch) => self.notch_choice(ui, panel, notch),
             Item::Seam(seam) => self.seam_joints(ui, seam),
+            Item::Guide(guide) => self.guide_place(ui, guide),
             _ => {}
         }
     }

@@ -8,6 +8,7 @@ mod app;
 mod canvas;
 mod fields;
 mod gpu;
+mod guide_place;
 mod inspector;
 mod several;
 mod steps;

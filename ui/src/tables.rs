@@ -251,14 +251,9 @@ impl ToileApp {
             .sizes
             .first()
             .is_some_and(|first| first.id == size);
-        // The Enter that asked for it would end the typing at once: it waits for the next frame.
-        let is_entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
         let is_asked = self.tables.entered_measurement.as_deref() == Some(name);
-        if is_first && is_asked && is_entered {
-            ui.ctx().request_repaint();
-        } else if is_first && is_asked {
+        if is_first && is_asked && has_been_led_to(ui, id) {
             self.tables.entered_measurement = None;
-            ui.memory_mut(|memory| memory.request_focus(id));
         }
         let base = self.base.clone();
         let shown = value.map_or_else(String::new, |value| {
@@ -404,7 +399,10 @@ impl ToileApp {
                     ui.scope(|ui| {
                         ui.set_width(FORMULA);
                         for entry in plan::numbers_of(&self.base, variable.id.into()) {
-                            self.go_to_variable(ui, variable.id, number_field_id(&entry));
+                            let is_asked = self.tables.entered_variable == Some(variable.id);
+                            if is_asked && has_been_led_to(ui, number_field_id(&entry)) {
+                                self.tables.entered_variable = None;
+                            }
                             self.number_text_field(ui, &entry, label);
                         }
                     });
@@ -430,18 +428,6 @@ impl ToileApp {
                     ui.end_row();
                 }
             });
-    }
-
-    /// Goes to the field of a variable that was asked for. The Enter that asked would end the typing
-    /// at once: it waits for the next frame.
-    fn go_to_variable(&mut self, ui: &Ui, variable: VariableId, field: Id) {
-        if self.tables.entered_variable != Some(variable) {
-        } else if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
-            ui.ctx().request_repaint();
-        } else {
-            self.tables.entered_variable = None;
-            ui.memory_mut(|memory| memory.request_focus(field));
-        }
     }
 
     /// A variable from `name = formula`, or from a formula alone; the name of one that is there gives
@@ -528,6 +514,21 @@ impl ToileApp {
             self.execute(step);
         }
     }
+}
+
+/// Gives the keys to a field that was asked for; whether it has them. The Enter that asked would end the
+/// typing at once, and what is behind a dialog gets no keys in the frame in which it closes: these
+/// frames are waited for.
+fn has_been_led_to(ui: &Ui, field: Id) -> bool {
+    let is_entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
+    let has_keys = !is_entered && ui.memory(|memory| memory.has_focus(field));
+    if !has_keys {
+        ui.ctx().request_repaint();
+    }
+    if !has_keys && !is_entered {
+        ui.memory_mut(|memory| memory.request_focus(field));
+    }
+    has_keys
 }
 
 /// A label in a column of a width.

@@ -29,6 +29,8 @@ pub struct Palette {
     pub ink_soft: Color32,
     /// Grainlines, construction, inner lines.
     pub pencil: Color32,
+    /// Guides.
+    pub guide: Color32,
     /// What is selected or under the pointer, and the main button.
     pub accent: Color32,
     /// Text on the accent.
@@ -61,6 +63,7 @@ pub const LIGHT: Palette = Palette {
     ink: Color32::from_rgb(0x2E, 0x33, 0x3B),
     ink_soft: Color32::from_rgb(0x62, 0x66, 0x6E),
     pencil: Color32::from_rgb(0x93, 0x90, 0x88),
+    guide: Color32::from_rgb(0x6A, 0x7F, 0xE0),
     accent: Color32::from_rgb(0x1F, 0x6F, 0x78),
     on_accent: Color32::WHITE,
     accent_soft: Color32::from_rgb(0xD3, 0xE6, 0xE6),
@@ -85,6 +88,7 @@ pub const DARK: Palette = Palette {
     ink: Color32::from_rgb(0xE8, 0xE6, 0xE1),
     ink_soft: Color32::from_rgb(0xB4, 0xB3, 0xAF),
     pencil: Color32::from_rgb(0x8A, 0x8B, 0x8E),
+    guide: Color32::from_rgb(0x86, 0x98, 0xF2),
     accent: Color32::from_rgb(0x5F, 0xC2, 0xCB),
     on_accent: Color32::from_rgb(0x10, 0x1A, 0x1C),
     accent_soft: Color32::from_rgb(0x22, 0x4A, 0x4F),

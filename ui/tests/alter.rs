@@ -7,7 +7,7 @@ use drafter::Drafter;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
-use toile_pattern::{LineKind, Stage};
+use toile_pattern::{LineKind, Name, Role, Stage, StageEdge};
 
 fn panel() -> Drafter {
     let mut drafter = Drafter::new();
@@ -369,4 +369,123 @@ fn a_dart_with_two_points_is_taken_out_by_two_clicks_and_a_number() {
         drafter.status()
     );
     assert_eq!(drafter.window.state().session().past().len(), steps);
+}
+
+/// How far the last notch of the first panel is from both ends of a drawn edge, along that edge as it
+/// is finished: darts sewn, pleats folded, openings in between [m].
+fn reaches(drafter: &Drafter, name: &str) -> [f64; 2] {
+    let pattern = drafter.pattern();
+    let edge = pattern.panels[0].edges().find(|edge| edge.name == name);
+    let wanted = Name::Drawn(edge.unwrap().id);
+    let stage = stage(drafter);
+    let notch = stage.notches.last().unwrap();
+    let outline = stage.outline();
+    let first = |edge: &StageEdge| edge.name == wanted && edge.start.is_some() && edge.from == 0.0;
+    let first = outline.iter().position(first).unwrap();
+    let (mut whole, mut reach) = (0.0, None);
+    for edge in outline[first..].iter().chain(&outline[..first]) {
+        if matches!(edge.name, Name::Drawn(_)) && edge.name != wanted {
+            break;
+        }
+        if edge.name == notch.edge && (edge.from..=edge.to).contains(&notch.share) {
+            let share = (notch.share - edge.from) / (edge.to - edge.from);
+            reach = Some(whole + share * edge.curve.length());
+        }
+        if !matches!(edge.name.role(), Some(Role::Leg | Role::Underlay)) {
+            whole += edge.curve.length();
+        }
+    }
+    let reach = reach.unwrap();
+    [reach, whole - reach]
+}
+
+#[test]
+fn a_typed_distance_is_measured_on_the_edge_as_it_is_finished() {
+    type Alter = fn(&mut Drafter);
+    let dart: Alter = |drafter| {
+        drafter.key(Key::D);
+        drafter.click(drafter.part("Edge top of draft"));
+        drafter.typed("2");
+        drafter.typed("15");
+    };
+    let pivoted: Alter = |drafter| {
+        drafter.key(Key::D);
+        drafter.click(drafter.part("Edge top of draft"));
+        drafter.typed("2");
+        drafter.typed("15");
+        drafter.chord(Modifiers::SHIFT, Key::E);
+        drafter.click(drafter.part("Dart of draft"));
+        drafter.click(drafter.part("Edge right of draft"));
+        drafter.key(Key::Enter);
+    };
+    let spread: Alter = |drafter| {
+        drafter.chord(Modifiers::SHIFT, Key::W);
+        drafter.click(drafter.part("Edge top of draft"));
+        drafter.click(drafter.part("Edge bottom of draft"));
+        drafter.typed("3");
+        drafter.typed("2");
+        drafter.key(Key::Enter);
+    };
+    let pleated: Alter = |drafter| {
+        drafter.key(Key::Y);
+        drafter.click(drafter.part("Edge top of draft"));
+        drafter.click(drafter.part("Edge bottom of draft"));
+        drafter.typed("2");
+        drafter.typed("1.5");
+    };
+    for (what, alter) in [
+        ("dart", dart),
+        ("pivoted", pivoted),
+        ("spread", spread),
+        ("pleated", pleated),
+    ] {
+        let mut drafter = panel();
+        alter(&mut drafter);
+        drafter.key(Key::Escape);
+        drafter.key(Key::Escape);
+        let pattern = drafter.pattern();
+        // Within the first or last centimetres of the edge, wherever operations moved it.
+        let edge = pattern.panels[0].edges().find(|edge| edge.name == "top");
+        let top = Name::Drawn(edge.unwrap().id);
+        let finished = stage(&drafter);
+        let own = finished.outline().iter().filter(|edge| edge.name == top);
+        let mut own: Vec<&StageEdge> = own.collect();
+        own.sort_by(|a, b| a.from.total_cmp(&b.from));
+        let places = [own[0].curve.point(0.3), own[own.len() - 1].curve.point(0.7)];
+        drafter.key(Key::N);
+        for (text, wanted) in [("3", 0.03), ("12", 0.12), ("=10cm + 3cm", 0.13)] {
+            for (end, place) in places.iter().enumerate() {
+                drafter.hover(drafter.place(place.x, place.y));
+                drafter.typed(text);
+                let notches = stage(&drafter).notches.len();
+                assert_eq!(notches, 1, "{what} {text}: {}", drafter.status());
+                let reach = reaches(&drafter, "top")[end];
+                let is_there = (reach - wanted).abs() < 1e-9;
+                assert!(is_there, "{what} {text} {end}: {reach}");
+                drafter.chord(Modifiers::COMMAND, Key::Z);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_typed_distance_is_measured_from_a_cut_too() {
+    let mut drafter = halved();
+    drafter.key(Key::Escape);
+    drafter.key(Key::N);
+    // Left of the cut, and both sides of it.
+    for (y, text, wanted) in [(0.17, "5", 0.2), (0.12, "5", 0.1), (0.27, "=4cm", 0.26)] {
+        drafter.hover(drafter.place(0.0, y));
+        drafter.typed(text);
+        let evaluation = drafter.evaluation();
+        let pattern = drafter.pattern();
+        let panels = pattern.panels.iter();
+        let stages = panels.filter_map(|panel| evaluation.last_stage(panel));
+        let mut notches = stages.flat_map(|stage| &stage.notches);
+        let is_there = notches.any(|notch| {
+            let away = notch.point - toile_geometry::Vec2::new(0.0, wanted);
+            away.norm() < 1e-9
+        });
+        assert!(is_there, "{text} at {y}: {}", drafter.status());
+    }
 }

@@ -6,6 +6,7 @@ mod drafter;
 use drafter::Drafter;
 use egui::{Key, Modifiers};
 use toile_geometry::Vec2;
+use toile_ui::Overlay;
 
 fn drawing() -> Drafter {
     let mut drafter = Drafter::new();
@@ -91,15 +92,16 @@ fn a_variable_that_is_there_takes_the_new_number() {
 #[test]
 fn nothing_is_forgotten_before_the_first_seam() {
     let mut drafter = drawing();
-    for from in [0.0, 0.4, 0.8] {
+    for from in [0.0, 0.1, 0.2] {
         drafter.key(Key::R);
         drafter.click(drafter.place(from, 0.0));
-        drafter.click(drafter.place(from + 0.2, 0.3));
+        drafter.click(drafter.place(from + 0.06, 0.2));
     }
+    assert_eq!(drafter.pattern().panels.len(), 3, "{}", drafter.status());
     assert!(drafter.window.state().findings().is_empty());
     drafter.key(Key::S);
     drafter.click(drafter.part("Edge right of draft"));
-    drafter.click(drafter.part("Edge left of draft 2"));
+    drafter.click(drafter.part("Edge left 2 of draft 2"));
     drafter.key(Key::Escape);
     let found = drafter.window.state().findings();
     assert_eq!(found.len(), 1, "{found:?}");
@@ -126,10 +128,10 @@ fn lines_that_are_no_panel_are_named_as_they_are_drawn() {
     assert_eq!(lines[1].name, "pocket");
 
     drafter.chord(Modifiers::SHIFT, Key::L);
-    drafter.click(drafter.place(0.4, 0.1));
-    drafter.click(drafter.place(0.5, 0.2));
+    drafter.click(drafter.place(0.22, 0.1));
+    drafter.click(drafter.place(0.25, 0.2));
     drafter.type_text("'roof");
-    drafter.click(drafter.place(0.6, 0.1));
+    drafter.click(drafter.place(0.28, 0.1));
     drafter.key(Key::Enter);
     let pattern = drafter.pattern();
     let mut curves = pattern.sheets.iter().flat_map(|sheet| &sheet.curves);
@@ -213,6 +215,87 @@ fn darts_and_notches_are_put_at_a_typed_distance_from_the_nearer_corner() {
     let words = drafter.status();
     assert!(words.contains("does not reach so far"), "{words}");
     assert_eq!(drafter.pattern().panels[0].notches.len(), 2);
+}
+
+#[test]
+fn a_distance_is_refused_where_there_is_no_edge() {
+    let mut drafter = drawing();
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::I);
+    drafter.click(drafter.part("Panel draft"));
+    drafter.click(drafter.place(0.05, 0.1));
+    drafter.click(drafter.place(0.15, 0.1));
+    drafter.key(Key::Enter);
+    drafter.key(Key::N);
+    drafter.hover(drafter.place(0.08, 0.1));
+    drafter.typed("2");
+    let words = drafter.status();
+    assert!(
+        words.contains("a distance is measured along an edge"),
+        "{words}"
+    );
+    assert!(drafter.pattern().panels[0].notches.is_empty());
+    // Where there is one, what is typed is taken.
+    drafter.hover(drafter.place(0.08, 0.0));
+    drafter.key(Key::Enter);
+    assert_eq!(drafter.pattern().panels[0].notches.len(), 1);
+}
+
+/// Words on the canvas.
+fn told(drafter: &Drafter) -> String {
+    let marks = drafter.window.state().view().overlay(&drafter.evaluation());
+    let words = marks.into_iter().filter_map(|mark| match mark {
+        Overlay::Words(_, _, words) => Some(words),
+        _ => None,
+    });
+    words.collect::<Vec<_>>().join(" | ")
+}
+
+#[test]
+fn the_distance_from_the_nearer_end_is_told_where_a_notch_would_lie() {
+    let mut drafter = drawing();
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::D);
+    drafter.hover(drafter.place(0.03, 0.0));
+    drafter.typed("8");
+    drafter.typed("2");
+    drafter.typed("10");
+    drafter.key(Key::N);
+    // On whole millimetres, along the edge without the mouth of its dart, from 7 to 9 cm.
+    for (x, wanted) in [
+        (0.0502, "5 cm"),
+        (0.16, "4 cm"),
+        (0.12, "8 cm"),
+        (0.109, "9 cm"),
+    ] {
+        drafter.hover(drafter.place(x, 0.0));
+        assert_eq!(told(&drafter), wanted, "at {x}");
+    }
+    drafter.hover(drafter.place(0.05, 0.3));
+    assert_eq!(told(&drafter), "5 cm");
+    // A click puts it there.
+    drafter.hover(drafter.place(0.16, 0.0));
+    drafter.click(drafter.place(0.16, 0.0));
+    let notch = |drafter: &Drafter| {
+        let pattern = drafter.pattern();
+        let evaluation = drafter.evaluation();
+        let stage = evaluation.last_stage(&pattern.panels[0]).unwrap();
+        stage.notches.last().unwrap().point
+    };
+    let at = notch(&drafter);
+    assert!((at - Vec2::new(0.16, 0.0)).norm() < 1e-9, "{at}");
+    // What is typed is told in its place.
+    drafter.hover(drafter.place(0.14, 0.0));
+    drafter.type_text("3");
+    assert_eq!(told(&drafter), "distance 3|");
+    drafter.key(Key::Escape);
+    // Inside there is no edge.
+    drafter.hover(drafter.place(0.1, 0.25));
+    assert_eq!(told(&drafter), "");
 }
 
 #[test]

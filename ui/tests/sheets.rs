@@ -159,6 +159,53 @@ fn the_opposite_handle_turns_along_and_ctrl_leaves_it() {
 }
 
 #[test]
+fn the_opposite_handle_turns_along_whatever_becomes_of_formulas() {
+    let mut drafter = Drafter::new();
+    drafter.begin();
+    drafter.key(Key::F8);
+    drafter.press("Add size");
+    drafter.press("Add size");
+    drafter.key(Key::F8);
+    drafter.key(Key::C);
+    for [x, y] in [[0.0, 0.0], [0.1, 0.05], [0.2, 0.0]] {
+        drafter.click(drafter.place(x, y));
+    }
+    drafter.key(Key::Enter);
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    let pattern = drafter.pattern();
+    let CurveRule::Spline { knots, .. } = &pattern.sheets[0].curves[0].rule else {
+        panic!("no spline");
+    };
+    let knot = knots[0];
+    let seen = |drafter: &Drafter| {
+        let evaluation = drafter.evaluation();
+        [knot.before, knot.point, knot.after].map(|id| evaluation.point(id).unwrap())
+    };
+    let [was, middle, after] = seen(&drafter);
+    let length = (was - middle).norm();
+    for presses in 0..4 {
+        let from = drafter.place(after.x, after.y);
+        let to = Vec2::new(after.x, after.y + 0.03);
+        let goal = drafter.place(to.x, to.y);
+        drafter.begin_drag(from, goal);
+        for _ in 0..presses {
+            drafter.window.event(egui::Event::Text("=".into()));
+            drafter.window.run();
+        }
+        drafter.window.drop_at(goal);
+        drafter.window.run();
+        let [before, middle, moved] = seen(&drafter);
+        assert!((moved - to).norm() < 1e-3, "{presses}: {moved}");
+        let across = (moved - middle).perp(&(before - middle)).abs();
+        assert!(across < 1e-9, "{presses}: {across}");
+        assert!((before - middle).norm() - length < 1e-9, "{presses}");
+        drafter.chord(Modifiers::COMMAND, Key::Z);
+        assert_eq!(seen(&drafter), [was, middle, after], "one step");
+    }
+}
+
+#[test]
 fn a_dragged_formula_is_adjusted_or_what_else_is_chosen() {
     let mut drafter = Drafter::new();
     drafter.begin();
@@ -334,4 +381,87 @@ fn sheets_of_which_one_was_moved_are_opened_again_as_they_were_seen() {
         let found = again.part(name);
         assert!((found - seen).length() < 1.0, "{name}: {seen:?} {found:?}");
     }
+}
+
+/// How many sheets and points a pattern has.
+fn counts(drafter: &Drafter) -> (usize, usize) {
+    let pattern = drafter.pattern();
+    let points = pattern.sheets.iter().map(|sheet| sheet.points.len()).sum();
+    (pattern.sheets.len(), points)
+}
+
+/// Two sheets, the second with two points.
+fn with_bare_sheet() -> Drafter {
+    let mut drafter = Drafter::new();
+    drafter.begin();
+    drafter.draw_rectangle();
+    drafter.chord(Modifiers::COMMAND | Modifiers::SHIFT, Key::N);
+    drafter.key(Key::P);
+    drafter.click(drafter.place(0.0, 0.05));
+    drafter.click(drafter.place(0.1, 0.1));
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter
+}
+
+#[test]
+fn a_sheet_without_panels_is_pasted_as_a_sheet() {
+    let mut drafter = with_bare_sheet();
+    let paste = |drafter: &mut Drafter| {
+        drafter.chord(Modifiers::COMMAND, Key::K);
+        drafter.enter(
+            "Find a command, a part, a variable or a measurement",
+            "Paste",
+        );
+    };
+    let tag = drafter.part("Sheet sheet") + vec2(20.0, -14.0);
+    drafter.click(tag);
+    drafter.window.event(egui::Event::Copy);
+    drafter.window.run();
+    paste(&mut drafter);
+    assert_eq!(counts(&drafter), (3, 8), "{}", drafter.status());
+    let pattern = drafter.pattern();
+    assert_ne!(pattern.sheets[1].name, pattern.sheets[2].name);
+    assert_ne!(pattern.sheets[1].on_table, pattern.sheets[2].on_table);
+    // Its points alone go to the sheet in hand.
+    drafter.chord(Modifiers::COMMAND, Key::Z);
+    assert_eq!(counts(&drafter), (2, 6));
+    drafter.key(Key::F);
+    drafter.click(drafter.part("Point A of sheet"));
+    drafter.window.event(egui::Event::Copy);
+    drafter.window.run();
+    paste(&mut drafter);
+    assert_eq!(counts(&drafter), (2, 7), "{}", drafter.status());
+}
+
+#[test]
+fn a_sheet_without_panels_is_duplicated_beside_itself() {
+    let mut drafter = with_bare_sheet();
+    let tag = drafter.part("Sheet sheet") + vec2(20.0, -14.0);
+    drafter.click(tag);
+    drafter.chord(Modifiers::COMMAND, Key::D);
+    assert_eq!(counts(&drafter), (3, 8), "{}", drafter.status());
+    let pattern = drafter.pattern();
+    let [first, second] = [1, 2].map(|k| pattern.sheets[k].on_table[0]);
+    assert!(second > first + 0.1, "{first} {second}");
+}
+
+#[test]
+fn a_new_sheet_lies_beside_panels_that_are_hidden_too() {
+    let mut drafter = Drafter::opened("t-shirt");
+    let right = |drafter: &Drafter| {
+        let view = drafter.window.state().view();
+        view.boards.bounds(&view.scene).unwrap().max.x
+    };
+    let free = right(&drafter);
+    drafter.click(drafter.part("Panel front"));
+    drafter.key(Key::Period);
+    assert!(right(&drafter) < free, "others lie farther to the right");
+    drafter.chord(Modifiers::COMMAND | Modifiers::SHIFT, Key::N);
+    let pattern = drafter.pattern();
+    let sheet = pattern.sheets.last().unwrap();
+    assert_eq!(pattern.sheets.len(), 4, "{}", drafter.status());
+    assert!(sheet.on_table[0] > free, "{:?} {free}", sheet.on_table);
+    // It is seen, though others were on show alone.
+    drafter.part(&format!("Sheet {}", sheet.name));
 }

@@ -10,7 +10,7 @@ use egui_kittest::kittest::Queryable;
 use toile_geometry::{Vec2, closest_on_segment};
 use toile_pattern::plan;
 use toile_session::Command;
-use toile_ui::{Going, Held, Overlay, Tone, ToolEvent};
+use toile_ui::{Going, Held, Overlay, Pointer, Tone, ToolEvent};
 
 /// The T-shirt with the shoulder seam of the wearer's left selected and walked.
 fn walking() -> Drafter {
@@ -50,7 +50,7 @@ fn touch(drafter: &Drafter) -> Vec2 {
 fn ghost(drafter: &Drafter) -> Vec<Vec2> {
     let all = overlay(drafter).into_iter();
     let mut ghosts = all.filter_map(|mark| match mark {
-        Overlay::Ghost(mut rings) => Some(rings.swap_remove(0)),
+        Overlay::Ghost(mut rings, _) => Some(rings.swap_remove(0)),
         _ => None,
     });
     ghosts.next().unwrap()
@@ -337,7 +337,11 @@ fn whatever_is_done_the_document_stays_and_the_pieces_touch() {
         let event = match next(11) {
             0 => ToolEvent::Hover(pointer),
             1 => ToolEvent::Drag(pointer.clone(), pointer),
-            2 => ToolEvent::Click(pointer),
+            // Beside all edges: on another seam it would be that which is walked.
+            2 => ToolEvent::Click(Pointer {
+                hits: Vec::new(),
+                ..pointer
+            }),
             3 => ToolEvent::Go(Going::On),
             4 => ToolEvent::Go(Going::Back),
             5 => ToolEvent::Go([Going::ToStart, Going::ToEnd][next(2) as usize]),
@@ -354,7 +358,7 @@ fn whatever_is_done_the_document_stays_and_the_pieces_touch() {
             _ => None,
         });
         let ring = marks.iter().find_map(|mark| match mark {
-            Overlay::Ghost(rings) => rings.first(),
+            Overlay::Ghost(rings, _) => rings.first(),
             _ => None,
         });
         let (touch, ring) = (touch.unwrap(), ring.unwrap());
@@ -368,4 +372,70 @@ fn whatever_is_done_the_document_stays_and_the_pieces_touch() {
     }
     assert_eq!(drafter.pattern(), before);
     assert_eq!(drafter.window.state().session().can_undo(), None);
+}
+
+#[test]
+fn a_click_on_another_seam_takes_it_up() {
+    let mut drafter = walking();
+    drafter.key(Key::End);
+    let across = |drafter: &Drafter, seam: &str| {
+        let told = words(drafter);
+        told.iter().any(|(words, _)| words.contains(seam))
+    };
+    assert!(across(&drafter, "across left shoulder"));
+    // On the seam that is walked a click leads along it.
+    let shoulder = drafter.part("Edge shoulder of front");
+    drafter.click(shoulder);
+    assert!(across(&drafter, "across left shoulder"));
+    let side = drafter.part("Edge side of front");
+    drafter.click(side);
+    assert!(
+        across(&drafter, "across left side"),
+        "{:?}",
+        words(&drafter)
+    );
+    assert!(!across(&drafter, "across left shoulder"));
+    // On no seam it leads along the one that is walked.
+    let view = drafter.window.get_by_label("Pattern view").rect();
+    drafter.click(view.left_bottom() + egui::vec2(60.0, -40.0));
+    assert!(across(&drafter, "across left side"));
+    assert_eq!(drafter.window.state().session().can_undo(), None);
+}
+
+#[test]
+fn panning_and_walking_measure_and_flatten_nothing_anew() {
+    let mut drafter = walking();
+    let seen = |drafter: &Drafter| {
+        let app = drafter.window.state();
+        (app.view().scene.made(), app.session().revision())
+    };
+    let before = seen(&drafter);
+    let view = drafter.window.get_by_label("Pattern view").rect();
+    let camera = drafter.window.state().view().camera;
+    for k in 0..12 {
+        let at = view.center() + egui::vec2(3.0 * k as f32, 2.0);
+        drafter.window.event(egui::Event::PointerMoved(at));
+        if k == 0 || k == 11 {
+            drafter.window.event(egui::Event::PointerButton {
+                pos: at,
+                button: egui::PointerButton::Middle,
+                pressed: k == 0,
+                modifiers: Modifiers::NONE,
+            });
+        }
+        drafter.window.run();
+    }
+    assert_ne!(drafter.window.state().view().camera, camera);
+    assert_eq!(seen(&drafter), before);
+    for key in [Key::Home, Key::ArrowRight, Key::Tab, Key::End] {
+        drafter.key(key);
+    }
+    assert_eq!(seen(&drafter), before);
+    // Another seam is measured once.
+    let side = drafter.part("Edge side of front");
+    drafter.click(side);
+    let once = seen(&drafter);
+    assert!(once.0 > before.0);
+    drafter.key(Key::Home);
+    assert_eq!(seen(&drafter), once);
 }

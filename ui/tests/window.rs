@@ -519,18 +519,22 @@ fn panning_makes_nothing_anew_and_zooming_evaluates_nothing() {
     let before = seen(&window);
     let view = window.get_by_label("Pattern view").rect();
     let middle = view.center();
+    let camera = window.state().view().camera;
     for k in 0..20 {
         let at = middle + vec2(k as f32 * 3.0, 2.0);
         window.event(egui::Event::PointerMoved(at));
-        window.event(egui::Event::PointerButton {
-            pos: at,
-            button: egui::PointerButton::Middle,
-            pressed: k < 19,
-            modifiers: Modifiers::NONE,
-        });
+        if k == 0 || k == 19 {
+            window.event(egui::Event::PointerButton {
+                pos: at,
+                button: egui::PointerButton::Middle,
+                pressed: k == 0,
+                modifiers: Modifiers::NONE,
+            });
+        }
         window.run();
     }
     assert_eq!(seen(&window), before);
+    assert_ne!(window.state().view().camera, camera);
     let camera = window.state().view().camera;
     window.hover_at(middle);
     window.run();

@@ -68,6 +68,7 @@ impl Pattern {
             Place::Marker(id) => {
                 named("marker", self.marker(*id).map(|m| &*m.name), id.to_string())
             }
+            Place::Guide(id) => self.guide_words(*id).unwrap_or_else(|| id.to_string()),
             Place::File { path, line, column } => {
                 format!("line {line}, column {column}, {path}")
             }
@@ -122,6 +123,11 @@ impl Pattern {
         parts.extend(self.seams.iter().map(|s| (s.id.into(), Place::Seam(s.id))));
         let markers = self.markers.iter();
         parts.extend(markers.map(|m| (m.id.into(), Place::Marker(m.id))));
+        parts.extend(
+            self.guides
+                .iter()
+                .map(|g| (g.id.into(), Place::Guide(g.id))),
+        );
         parts
     }
 }

@@ -1,8 +1,8 @@
 //! What is wrong with a pattern: what, where, how bad, and what to do.
 
 use crate::{
-    CurveId, EdgeId, FabricId, LineId, MarkerId, NotchId, OperationId, PanelId, PointId, SeamId,
-    SheetId, SizeId, VariableId,
+    CurveId, EdgeId, FabricId, GuideId, LineId, MarkerId, NotchId, OperationId, PanelId, PointId,
+    SeamId, SheetId, SizeId, VariableId,
 };
 use std::fmt;
 
@@ -133,6 +133,8 @@ pub enum Place {
     Fabric(FabricId),
     /// A marker.
     Marker(MarkerId),
+    /// A guide.
+    Guide(GuideId),
     /// A place in the file it was read from.
     File {
         /// Path of names and indices from the root, such as `panels.front.points`.

@@ -85,6 +85,8 @@ ids! {
     SeamId Seam "seam",
     /// A marker.
     MarkerId Marker "marker",
+    /// A guide.
+    GuideId Guide "guide",
 }
 
 /// Gives ids. It only counts up.
@@ -135,5 +137,6 @@ fresh!(
     NotchId,
     OperationId,
     SeamId,
-    MarkerId
+    MarkerId,
+    GuideId
 );

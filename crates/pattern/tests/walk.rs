@@ -354,6 +354,21 @@ fn notches_are_matched_with_those_opposite() {
 }
 
 #[test]
+fn a_walk_that_is_begun_again_is_the_same() {
+    let draft = drafted(&sample());
+    let seam = &draft.seams[0];
+    let walk = Walk::new(&draft, seam).unwrap();
+    let again = Walk::again(&draft, seam, &walk.sides());
+    assert_eq!(again.lengths(), walk.lengths());
+    for along in [0.0, 0.1, 0.4] {
+        let both = [&walk, &again].map(|walk| walk.contact(along, Stays::Second));
+        assert_eq!(both[0], both[1]);
+    }
+    assert_eq!(again.joints(0.0), walk.joints(0.0));
+    assert_eq!(again.notches(), walk.notches());
+}
+
+#[test]
 fn a_seam_that_is_not_there_is_not_walked() {
     let draft = drafted(&sample());
     let seam = DraftSeam {

@@ -204,6 +204,7 @@ impl ToileApp {
             (1, Some(Item::Point(_))) => "Delete point",
             (1, Some(Item::Panel(_))) => "Delete panel",
             (1, Some(Item::Sheet(_))) => "Delete sheet",
+            (1, Some(Item::Guide(_))) => "Remove guide",
             _ => "Delete",
         };
         self.edit(plan::remove_parts(&self.base, &parts), label);
@@ -295,7 +296,12 @@ impl ToileApp {
         });
         let sheets: Vec<SheetId> = sheets.collect();
         let moves_sheets = !sheets.is_empty() && sheets.len() == parts.len();
-        if (points.is_empty() && !moves_sheets) || self.view.is_typing() || self.types(context) {
+        let guide = match self.view.selection.single() {
+            Some(Item::Guide(id)) => Some(id),
+            _ => None,
+        };
+        let moves_nothing = points.is_empty() && !moves_sheets && guide.is_none();
+        if moves_nothing || self.view.is_typing() || self.types(context) {
             return;
         }
         let way = context.input_mut(|input| {
@@ -317,6 +323,10 @@ impl ToileApp {
             way
         });
         if way == Vec2::zeros() {
+            return;
+        }
+        if let Some(guide) = guide {
+            self.nudge_guide(guide, way);
             return;
         }
         if moves_sheets {

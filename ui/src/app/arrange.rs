@@ -2,7 +2,7 @@
 
 use super::ToileApp;
 use super::notice::Notice;
-use crate::canvas::scene::PanelScene;
+use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
 use std::path::Path;
 use std::sync::Arc;
@@ -60,7 +60,7 @@ impl ToileApp {
     /// Adds an empty sheet beside what is there, level with the one that is drawn on, and draws on it from
     /// now on. All sheets are then laid where they are seen.
     pub(crate) fn new_sheet(&mut self) {
-        let bounds = self.view.boards.bounds(&self.view.scene);
+        let bounds = self.view.boards.bounds(&self.whole_scene());
         let place = bounds.map_or_else(Vec2::zeros, |bounds| {
             Vec2::new(bounds.max.x + SHEETS_APART, self.view.sheet_origin().y)
         });
@@ -73,11 +73,31 @@ impl ToileApp {
         match planned {
             Ok((edits, sheet)) => {
                 if self.edit(Ok(edits), "New sheet") {
+                    self.show_all();
                     self.view.select(Selection::one(Item::Sheet(sheet)));
                     self.view.fit();
                 }
             }
             Err(error) => self.say_fault(error.to_string()),
+        }
+    }
+
+    /// Everything that lies on the table, though a part of it may be on show alone.
+    fn whole_scene(&self) -> Scene {
+        let mut scene = self.view.scene.clone();
+        if !self.view.isolated.is_empty() {
+            let draft = scene.draft.clone();
+            scene.update(&self.base, &draft, scene.octave());
+        }
+        scene
+    }
+
+    /// Shows what was hidden while panels were on show alone: what comes to them would be hidden too.
+    fn show_all(&mut self) {
+        if !self.view.isolated.is_empty() {
+            self.view.isolated.clear();
+            self.revision = None;
+            self.refresh();
         }
     }
 
@@ -152,8 +172,10 @@ impl ToileApp {
     }
 
     fn paste(&mut self, fragment: &Fragment) {
-        // Panels bring sheets of their own; points and curves go to the sheet that is drawn on.
-        let loose = fragment.panels.is_empty() && fragment.sheets.len() <= 1;
+        // Panels bring sheets of their own; points and curves go to the sheet that is drawn on, unless
+        // their sheet was copied.
+        let is_bare = fragment.panels.is_empty() && fragment.whole_sheets.is_empty();
+        let loose = is_bare && fragment.sheets.len() <= 1;
         let target = PasteTarget {
             sheet: self.view.sheet.filter(|_| loose),
             offset: [ASIDE, -ASIDE],
@@ -168,16 +190,13 @@ impl ToileApp {
         let pasted = match parts.iter().all(is_whole) {
             // Beside the panels as they are seen, with their mirrored halves.
             true => plan::copy(&self.base, &parts).and_then(|fragment| {
-                let is_copied = |panel: &&PanelScene| {
-                    parts.contains(&panel.id.into()) || parts.contains(&panel.sheet.into())
-                };
-                let bounds = self.view.scene.panels.iter().filter(is_copied);
-                let bounds = bounds
-                    .map(|panel| self.on_table(panel))
-                    .reduce(|a, b| a.union(&b));
+                let scene = self.whole_scene();
+                let bounds = self.on_table(&scene, |id| parts.contains(&id));
+                let bounds = bounds.into_iter().reduce(|a, b| a.union(&b));
+                let aside = bounds.map_or(0.0, |bounds| self.free_aside(&scene, &bounds));
                 let target = PasteTarget {
                     sheet: None,
-                    offset: [bounds.map_or(0.0, |bounds| self.free_aside(&bounds)), 0.0],
+                    offset: [aside, 0.0],
                 };
                 plan::paste(&self.base, &self.as_laid(fragment), target)
             }),
@@ -186,20 +205,30 @@ impl ToileApp {
         self.take_pasted(pasted, "Duplicate");
     }
 
-    /// Least rectangle round a panel on the table [m].
-    fn on_table(&self, panel: &PanelScene) -> Bounds2 {
-        let place = self.view.boards.panel(panel.id);
-        let bounds = panel.bounds();
-        Bounds2 {
+    /// Least rectangles on the table [m] round panels of which they or their sheets are asked for, and
+    /// round sheets with no panels.
+    fn on_table(&self, scene: &Scene, wanted: impl Fn(PartId) -> bool) -> Vec<Bounds2> {
+        let boards = &self.view.boards;
+        let moved = |bounds: Bounds2, place: Vec2| Bounds2 {
             min: bounds.min + place,
             max: bounds.max + place,
-        }
+        };
+        let panels = scene.panels.iter();
+        let panels = panels.filter(|panel| wanted(panel.id.into()) || wanted(panel.sheet.into()));
+        let panels = panels.map(|panel| moved(*panel.bounds(), boards.panel(panel.id)));
+        let sheets = scene.sheets.iter();
+        let bare = sheets.filter(|sheet| sheet.is_bare && wanted(sheet.id.into()));
+        let bare = bare.map(|sheet| {
+            let bounds = sheet.bounds();
+            let bounds = bounds.unwrap_or_else(|| Bounds2::of([Vec2::zeros()]));
+            moved(bounds, boards.sheet(sheet.id))
+        });
+        panels.chain(bare).collect()
     }
 
-    /// How far to the right of its place something of these bounds lies on no panel [m].
-    fn free_aside(&self, bounds: &Bounds2) -> f64 {
-        let panels = self.view.scene.panels.iter();
-        let mut panels: Vec<Bounds2> = panels.map(|panel| self.on_table(panel)).collect();
+    /// How far to the right of its place something of these bounds lies on nothing else [m].
+    fn free_aside(&self, scene: &Scene, bounds: &Bounds2) -> f64 {
+        let mut panels = self.on_table(scene, |_| true);
         panels.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
         let mut aside = bounds.size().x + BESIDE;
         for panel in panels {
@@ -239,6 +268,9 @@ impl ToileApp {
         if !self.edit(edits, label) {
             return;
         }
+        if brings_sheets {
+            self.show_all();
+        }
         let selection = select_pasted(self.base.pattern(), &pasted.parts);
         self.view.select(selection);
         if !pasted.loosened.is_empty() {
@@ -259,7 +291,7 @@ impl ToileApp {
             }
         };
         let evaluation = Evaluation::new(&other.pattern, other.drafted_to());
-        let right = self.view.boards.bounds(&self.view.scene);
+        let right = self.view.boards.bounds(&self.whole_scene());
         let offset = right.map_or(Vec2::zeros(), |bounds| {
             Vec2::new(bounds.max.x + 0.1, bounds.min.y)
         });
@@ -307,7 +339,7 @@ impl ToileApp {
     }
 }
 
-/// The new panels; where there are none, the new curves and points.
+/// The new panels; where there are none, the new sheets; else the new curves and points.
 fn select_pasted(pattern: &Pattern, parts: &[PartId]) -> Selection {
     let panels: Selection = parts
         .iter()
@@ -318,6 +350,16 @@ fn select_pasted(pattern: &Pattern, parts: &[PartId]) -> Selection {
         .collect();
     if !panels.is_empty() {
         return panels;
+    }
+    let sheets: Selection = parts
+        .iter()
+        .filter_map(|part| match part {
+            PartId::Sheet(id) => Some(Item::Sheet(*id)),
+            _ => None,
+        })
+        .collect();
+    if !sheets.is_empty() {
+        return sheets;
     }
     let items = parts.iter().filter_map(|part| match part {
         PartId::Point(id) => Some(Item::Point(*id)),

@@ -116,6 +116,7 @@ impl ToileApp {
     fn is_on(&self, name: &str) -> bool {
         match name {
             "Rulers" => self.shows.rulers,
+            "Show guides" => self.shows.guides,
             "Isolate" => !self.view.isolated.is_empty(),
             "All sizes" => self.view.grading.is_some(),
             "Tables" => self.shows.tables,

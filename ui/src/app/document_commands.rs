@@ -254,6 +254,22 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::View,
+        "Show guides",
+        key(COMMAND, Key::Semicolon),
+        "Show or hide the guides; drag one out of a ruler, and drop it back there to remove it",
+        always,
+        ToileApp::toggle_guides,
+    ),
+    command(
+        Menu::View,
+        "Remove all guides",
+        None,
+        "Remove every guide from the pattern",
+        ToileApp::has_guides,
+        ToileApp::remove_guides,
+    ),
+    command(
+        Menu::View,
         "Isolate",
         key(PLAIN, Key::Period),
         "Show the selected panels alone, or all again",

@@ -506,10 +506,16 @@ impl ToileApp {
         let base = self.base.clone();
         self.view.allowances = self.shows.allowances;
         self.view.rulers = self.shows.rulers;
+        self.view.guides = self.shows.guides;
         self.view.is_covered = self.dialog.is_some() || self.menu_is_open;
         self.view.click_is_taken |= self.typed.took_click();
         for outcome in self.view.show(ui, &base) {
             self.follow_outcome(outcome);
+        }
+        // A guide that is dragged out is seen from then on.
+        self.shows.guides = self.view.guides;
+        if std::mem::take(&mut self.view.asks_guide_place) {
+            self.ask_guide_place(ui);
         }
         self.canvas_menu();
         if seen(self) != before {

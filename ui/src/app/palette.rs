@@ -126,6 +126,7 @@ impl ToileApp {
             _ => None,
         };
         let shown = shown.unwrap_or(item);
+        self.shows.guides |= matches!(shown, Item::Guide(_));
         let is_hidden =
             |panel| !self.view.isolated.is_empty() && !self.view.isolated.contains(&panel);
         if shown.panel().is_some_and(is_hidden) {

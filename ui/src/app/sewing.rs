@@ -55,7 +55,7 @@ impl ToileApp {
     /// How the edges beside a seam go on across it, in words.
     pub(crate) fn seam_joints(&mut self, ui: &mut Ui, seam: SeamId) {
         let palette = Palette::of(ui.ctx());
-        for (words, tone) in crossing_lines((&self.base, &self.view.scene.draft), seam) {
+        for (words, tone) in crossing_lines((&self.base, &self.view.scene), seam) {
             let colour = match tone {
                 Tone::Plain | Tone::Good => palette.ink_soft,
                 Tone::Warning => palette.warning,

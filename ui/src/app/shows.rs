@@ -19,6 +19,8 @@ pub struct Shows {
     pub allowances: bool,
     /// Rulers.
     pub rulers: bool,
+    /// Guides.
+    pub guides: bool,
 }
 
 impl Default for Shows {
@@ -30,6 +32,7 @@ impl Default for Shows {
             findings: false,
             allowances: true,
             rulers: true,
+            guides: true,
         }
     }
 }

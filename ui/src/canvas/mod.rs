@@ -3,21 +3,26 @@
 mod allowance;
 pub mod boards;
 pub mod camera;
+pub mod drawn_guide;
 pub mod fill;
 pub mod grading;
+pub mod guides;
 pub mod hit;
 mod inside;
 mod names;
 pub mod paint;
+mod paint_guides;
 mod paint_seams;
 mod paint_sheet_tag;
 mod paint_walk;
 mod panel_shape;
-mod rulers;
+pub mod placed;
+pub mod rulers;
 pub mod scene;
 pub mod seams;
 pub mod selection;
 pub mod sheet_tag;
 pub mod snap;
+pub mod walked;
 
 pub use panel_shape::along;

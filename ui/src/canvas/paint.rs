@@ -2,6 +2,7 @@
 
 use super::boards::Boards;
 use super::camera::{TableCamera, TablePoint};
+use super::drawn_guide::{DrawnGuide, GuideLabel};
 use super::fill::Fill;
 use super::grading::Grading;
 use super::hit::{ShownPoint, shown_points};
@@ -51,6 +52,10 @@ pub struct Picture<'a> {
     pub grading: Option<&'a Grading>,
     /// Place that rulers count from [m], and their unit.
     pub rulers: Option<(Vec2, DisplayUnit)>,
+    /// Guides.
+    pub guides: &'a [DrawnGuide],
+    /// What is told of the one that is dragged.
+    pub guide_label: Option<&'a GuideLabel>,
     /// Whether lines to cut along are drawn.
     pub allowances: bool,
     /// Seams that a tool is about to make.
@@ -89,6 +94,7 @@ impl Picture<'_> {
         for seam in &self.scene.seams {
             self.seam_numbers(seam);
         }
+        self.guides();
         self.handles();
         for sheet in tagged(self.scene, self.open) {
             self.sheet_tag(sheet);
@@ -98,7 +104,9 @@ impl Picture<'_> {
             self.point(shown);
         }
         // While its pieces lie against each other it is seen what meets.
-        let is_walked = overlay.iter().any(|mark| matches!(mark, Overlay::Ghost(_)));
+        let is_walked = overlay
+            .iter()
+            .any(|mark| matches!(mark, Overlay::Ghost(..)));
         for seam in self.scene.seams.iter().filter(|_| !is_walked) {
             if self.fresh.contains(&seam.id) || self.is_lit(Item::Seam(seam.id)) {
                 self.seam_links(seam);
@@ -115,6 +123,7 @@ impl Picture<'_> {
         if let Some(grading) = self.grading {
             self.legend(grading);
         }
+        self.guide_label();
     }
 
     pub(super) fn seen(&self, origin: Vec2, at: Vec2) -> Pos2 {
@@ -459,7 +468,7 @@ impl Picture<'_> {
                 self.tag(at + vec2(12.0, 20.0), words);
             }
             Overlay::Words(..) | Overlay::Label(..) => {}
-            Overlay::Ghost(_) | Overlay::Stroke(..) | Overlay::Pip(..) | Overlay::Touch(_) => {
+            Overlay::Ghost(..) | Overlay::Stroke(..) | Overlay::Pip(..) | Overlay::Touch(_) => {
                 self.on_table(mark);
             }
             Overlay::Box(corners) => {
@@ -481,27 +490,37 @@ impl Picture<'_> {
 
     /// Paints a label, and says where.
     pub(super) fn label(&self, at: Pos2, text: &str, ground_colour: Color32) -> Rect {
+        self.words_on(text, ground_colour, |size, first| {
+            // Its first line is level with the place.
+            let corner = at - vec2(0.0, 0.5 * first + 2.0);
+            let ground = Rect::from_min_size(corner, size);
+            // At the rim of the view it is moved inward.
+            let view = self.clear_view();
+            let low = (view.max - ground.max).min(egui::Vec2::ZERO);
+            let ground = ground.translate(low);
+            let high = (view.min - ground.min).max(egui::Vec2::ZERO);
+            ground.translate(high)
+        })
+    }
+
+    /// Paints words on a ground, and says where: `place` gives the ground from its size and the height of
+    /// the first line.
+    pub(super) fn words_on(
+        &self,
+        words: &str,
+        ground_colour: Color32,
+        place: impl FnOnce(egui::Vec2, f32) -> Rect,
+    ) -> Rect {
         // A long formula is broken into lines rather than cut off.
         let (font, most) = (theme::font(12.5), self.clear_view().width() - LABEL_MARGIN);
-        let text = text.to_owned();
-        let text = self
-            .painter
-            .layout(text, font, self.palette.on_accent, most);
-        // Its first line is level with the place.
+        let ink = self.palette.on_accent;
+        let text = self.painter.layout(words.to_owned(), font, ink, most);
         let first = text.rows.first().map_or(0.0, |row| row.height());
-        let corner = at - vec2(0.0, 0.5 * first + 2.0);
-        let ground = Rect::from_min_size(corner, text.size() + vec2(12.0, 4.0));
-        // At the rim of the view it is moved inward.
-        let view = self.clear_view();
-        let low = (view.max - ground.max).min(egui::Vec2::ZERO);
-        let ground = ground.translate(low);
-        let high = (view.min - ground.min).max(egui::Vec2::ZERO);
-        let ground = ground.translate(high);
+        let ground = place(text.size() + vec2(12.0, 4.0), first);
         self.painter
             .rect_filled(ground, CornerRadius::same(4), ground_colour);
         let corner = Align2::CENTER_CENTER.align_size_within_rect(text.size(), ground);
-        self.painter
-            .galley(corner.min, text, self.palette.on_accent);
+        self.painter.galley(corner.min, text, ink);
         ground
     }
 }

@@ -1,11 +1,9 @@
 //! Paints what a tool lays on the table: a piece as a ghost, lines, marks, and words that keep clear
 //! of each other.
 
-use super::fill::fill;
 use super::paint::Picture;
-use crate::theme;
 use crate::tools::{Overlay, Tone};
-use egui::{Align2, Color32, CornerRadius, Pos2, Rect, Shape, Stroke, vec2};
+use egui::{Color32, Pos2, Rect, Shape, Stroke, vec2};
 use toile_geometry::Vec2;
 
 /// How dense the cloth of a ghost is, as a factor of its colour.
@@ -31,9 +29,9 @@ impl Picture<'_> {
     pub(super) fn on_table(&self, mark: &Overlay) {
         let table = Vec2::zeros();
         match mark {
-            Overlay::Ghost(rings) => {
+            Overlay::Ghost(rings, fill) => {
                 let cloth = self.palette.accent_soft.gamma_multiply(GHOST);
-                self.filled(table, &fill(rings), cloth, egui::Vec2::ZERO);
+                self.filled(table, fill, cloth, egui::Vec2::ZERO);
                 let stroke = Stroke::new(1.4, self.palette.accent);
                 for ring in rings {
                     let line = self.line(table, ring);
@@ -76,28 +74,19 @@ impl Picture<'_> {
                 continue;
             }
             let at = self.seen(Vec2::zeros(), *at);
-            let text = self.painter.layout_no_wrap(
-                words.clone(),
-                theme::font(12.5),
-                self.palette.on_accent,
-            );
-            let size = text.size() + vec2(12.0, 4.0);
             let way = match tone {
                 Tone::Plain => BELOW,
                 Tone::Good | Tone::Warning | Tone::Fault => ABOVE,
             };
-            let goal = at + way - vec2(0.0, size.y * 0.5);
-            let ground = clear(&placed, self.clear_view().shrink(ROOM), (goal, size));
-            placed.push(ground);
             let colour = self.toned(*tone);
-            let near = ground.clamp(at);
-            self.painter
-                .line_segment([at, near], Stroke::new(1.0, colour));
-            self.painter
-                .rect_filled(ground, CornerRadius::same(4), colour);
-            let corner = Align2::CENTER_CENTER.align_size_within_rect(text.size(), ground);
-            self.painter
-                .galley(corner.min, text, self.palette.on_accent);
+            let ground = self.words_on(words, colour, |size, _| {
+                let goal = at + way - vec2(0.0, size.y * 0.5);
+                let ground = clear(&placed, self.clear_view().shrink(ROOM), (goal, size));
+                let line = [at, ground.clamp(at)];
+                self.painter.line_segment(line, Stroke::new(1.0, colour));
+                ground
+            });
+            placed.push(ground);
         }
     }
 }

@@ -4,13 +4,15 @@
 use super::allowance::CutLines;
 use super::panel_shape::PanelShape;
 use super::seams::{SeamDrawing, draw_seams};
+use super::walked::{WalkedLast, WalkedSeam};
 use std::collections::{BTreeSet, HashMap};
+use std::rc::Rc;
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Path, Vec2};
 use toile_pattern::plan::{self, EdgePart};
 use toile_pattern::{
-    Curve, CurveId, CurveRule, Draft, Evaluation, Name, OperationId, OperationKind, Panel, PanelId,
-    PointId, Sheet, SheetId, Stage,
+    Curve, CurveId, CurveRule, Draft, Evaluation, Guide, Name, OperationId, OperationKind, Panel,
+    PanelId, PointId, SeamId, Sheet, SheetId, Stage,
 };
 
 /// Largest distance of a drawn curve from the true one [pixels].
@@ -31,6 +33,8 @@ pub struct Scene {
     pub seams: Vec<SeamDrawing>,
     /// Lines to cut along.
     pub cut_lines: CutLines,
+    /// The guides.
+    pub guides: Vec<Arc<Guide>>,
     /// The pieces and seams it was made from.
     pub draft: Arc<Draft>,
     /// The finest enlargement it is drawn for: a power of two [pixels per metre].
@@ -39,6 +43,8 @@ pub struct Scene {
     shapes: HashMap<*const Stage, KeptShape>,
     /// Lines and shapes that were made, ever.
     made: u64,
+    /// The seam that is walked; clones of the scene share it.
+    walked: Rc<WalkedLast>,
 }
 
 /// A polyline and the path it was made from, which lives as long so that its address is its own.
@@ -168,6 +174,7 @@ impl Scene {
             .filter(|panel| !pattern.is_replaced(panel))
             .filter_map(|panel| self.panel(panel, evaluation, &mut shapes))
             .collect();
+        self.guides.clone_from(&pattern.guides);
         self.leave_points();
         // What is drawn no more is forgotten.
         self.lines = lines;
@@ -205,9 +212,14 @@ impl Scene {
         self.panels.is_empty() && self.sheets.iter().all(|sheet| sheet.points.is_empty())
     }
 
-    /// Lines and shapes that were made, ever: panning makes none.
+    /// Lines, shapes and seams to walk that were made, ever: panning makes none.
     pub fn made(&self) -> u64 {
-        self.made
+        self.made + self.walked.made()
+    }
+
+    /// A seam, measured and flattened to be walked; nothing if it cannot be walked.
+    pub fn walked(&self, seam: SeamId) -> Option<Arc<WalkedSeam>> {
+        self.walked.seam(&self.draft, seam)
     }
 
     /// The enlargement it is drawn for.

@@ -1,8 +1,8 @@
 //! What is selected or under the pointer. View state: not in the document, not undone.
 
 use toile_pattern::{
-    CurveId, EdgeId, LineId, LineKind, NotchId, OperationId, PanelId, PartId, Pattern, PointId,
-    SeamId, SheetId,
+    CurveId, EdgeId, GuideId, LineId, LineKind, NotchId, OperationId, PanelId, PartId, Pattern,
+    PointId, SeamId, SheetId,
 };
 
 /// A part of the pattern that can be selected.
@@ -26,10 +26,12 @@ pub enum Item {
     Seam(SeamId),
     /// A whole sheet.
     Sheet(SheetId),
+    /// A guide.
+    Guide(GuideId),
 }
 
 impl Item {
-    /// Every part of a pattern: panels and what is of them, seams, sheets and what is on them.
+    /// Every part of a pattern: panels and what is of them, seams, sheets and what is on them, guides.
     pub fn all(pattern: &Pattern) -> Vec<Self> {
         let mut all = Vec::new();
         for panel in &pattern.panels {
@@ -55,6 +57,7 @@ impl Item {
             all.extend(sheet.points.iter().map(|point| Self::Point(point.id)));
             all.extend(sheet.curves.iter().map(|curve| Self::Curve(curve.id)));
         }
+        all.extend(pattern.guides.iter().map(|guide| Self::Guide(guide.id)));
         all
     }
 
@@ -70,6 +73,7 @@ impl Item {
             Self::Panel(id) => id.into(),
             Self::Seam(id) => id.into(),
             Self::Sheet(id) => id.into(),
+            Self::Guide(id) => id.into(),
         }
     }
 
@@ -81,7 +85,9 @@ impl Item {
             | Self::Notch(panel, _)
             | Self::Operation(panel, _)
             | Self::Panel(panel) => Some(panel),
-            Self::Point(_) | Self::Curve(_) | Self::Seam(_) | Self::Sheet(_) => None,
+            Self::Point(_) | Self::Curve(_) | Self::Seam(_) | Self::Sheet(_) | Self::Guide(_) => {
+                None
+            }
         }
     }
 
@@ -125,6 +131,10 @@ impl Item {
             Self::Panel(id) => format!("Panel {}", panel(id)?.name),
             Self::Seam(id) => format!("Seam {}", pattern.seam(id)?.name),
             Self::Sheet(id) => format!("Sheet {}", pattern.sheet(id)?.name),
+            Self::Guide(id) => {
+                let words = pattern.guide_words(id)?;
+                words[..1].to_uppercase() + &words[1..]
+            }
         })
     }
 }

@@ -1,82 +1,38 @@
 //! Snapping: a place near the pointer that means something, and how a point there is constructed.
 
+use super::guides;
+use super::placed::{Placed, Spec, grid_step, near_curves, on_curve, rounded};
 use super::scene::{CurveScene, PointRole, Scene, SheetScene};
 use toile_geometry::Vec2;
-use toile_pattern::{Mark, Name, Number, PointId, PointRule, SheetId};
+use toile_pattern::{Guide, Mark, Name, Number, PointId, PointRule, SheetId};
 
 /// How near the pointer must be to a place to be drawn to it [pixels].
 const REACH: f64 = 9.0;
 /// How near it must be to the level of a point [pixels].
 const LEVEL_REACH: f64 = 5.0;
-/// Steps of the grid [m], and the least enlargement each is used at [pixels per metre].
-const GRID: [(f64, f64); 4] = [(0.001, 8000.0), (0.005, 1600.0), (0.01, 500.0), (0.05, 0.0)];
-
-/// How a point at a place comes about.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Spec {
-    /// It is there.
-    Point(PointId),
-    /// It is constructed.
-    New(PointRule),
-    /// At a distance [m] and angle [rad] from the place given before.
-    FromLast {
-        /// The distance [m].
-        distance: Number,
-        /// The angle [rad], from +x counter-clockwise.
-        angle: Number,
-    },
-    /// Beside the place given before [m].
-    BesideLast {
-        /// To the right [m].
-        x: Number,
-        /// Upward [m].
-        y: Number,
-    },
-}
-
-/// A place that a point could have.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Placed {
-    /// The sheet.
-    pub sheet: SheetId,
-    /// Where on it [m].
-    pub at: Vec2,
-    /// How a point there comes about.
-    pub spec: Spec,
-    /// What it is, in words; empty for anywhere.
-    pub words: String,
-}
-
-impl Placed {
-    /// A place that means nothing in particular.
-    pub fn free(sheet: SheetId, at: Vec2) -> Self {
-        Self {
-            sheet,
-            at,
-            spec: Spec::New(PointRule::at(at.x, at.y)),
-            words: String::new(),
-        }
-    }
-
-    /// The point that is there.
-    pub fn point(&self) -> Option<PointId> {
-        match self.spec {
-            Spec::Point(id) => Some(id),
-            _ => None,
-        }
-    }
-}
-
-/// Places near one of a sheet [m], the best first; the last is anywhere.
-pub fn snaps(scene: &Scene, sheet: SheetId, at: Vec2, scale: f64) -> Vec<Placed> {
+/// Places near one of a sheet [m], the best first; the last is anywhere. Guides lie where the sheet
+/// has them.
+pub fn snaps(
+    (scene, own_guides): (&Scene, &[Guide]),
+    sheet: SheetId,
+    at: Vec2,
+    scale: f64,
+) -> Vec<Placed> {
     let mut found = Vec::new();
+    let reach = REACH / scale;
     let step = grid_step(scale);
     if let Some(drawn) = scene.sheet_scene(sheet) {
-        let reach = REACH / scale;
         points(drawn, at, reach, &mut found);
         crossings(drawn, at, reach, &mut found);
+    }
+    guides::crossings(sheet, own_guides, (at, reach), &mut found);
+    if let Some(drawn) = scene.sheet_scene(sheet) {
+        guides::on_lines(drawn, own_guides, (at, reach), &mut found);
         on_curves(drawn, at, reach, &mut found);
         on_edges(drawn, at, reach, &mut found);
+    }
+    guides::on_guides(sheet, own_guides, (at, reach, scale), &mut found);
+    if let Some(drawn) = scene.sheet_scene(sheet) {
         levels(drawn, at, (LEVEL_REACH / scale, step), &mut found);
     }
     found.push(Placed {
@@ -85,17 +41,6 @@ pub fn snaps(scene: &Scene, sheet: SheetId, at: Vec2, scale: f64) -> Vec<Placed>
     });
     found.push(Placed::free(sheet, at));
     found
-}
-
-/// The step of the grid at an enlargement [m].
-pub fn grid_step(scale: f64) -> f64 {
-    let step = GRID.iter().find(|(_, least)| scale >= *least);
-    step.map_or(0.05, |(step, _)| *step)
-}
-
-/// The nearest multiple of a step, with few digits: 0.3, not 0.30000000000000004.
-pub fn rounded(value: f64, step: f64) -> f64 {
-    ((value / step).round() * step * 1e6).round() / 1e6
 }
 
 fn points(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) {
@@ -116,24 +61,6 @@ fn points(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) {
         .collect();
     near.sort_by(|a, b| a.0.total_cmp(&b.0));
     found.extend(near.into_iter().map(|(_, placed)| placed));
-}
-
-/// Curves that come near, the nearest first, with the place on each.
-fn near_curves(sheet: &SheetScene, at: Vec2, reach: f64) -> Vec<(&CurveScene, f64, Vec2)> {
-    let mut near: Vec<(f64, &CurveScene, f64, Vec2)> = sheet
-        .curves
-        .iter()
-        .filter_map(|curve| {
-            let place = curve.path.nearest(at)?;
-            let point = curve.path.point(place);
-            let away = (point - at).norm();
-            (away <= reach).then_some((away, curve, place.along, point))
-        })
-        .collect();
-    near.sort_by(|a, b| a.0.total_cmp(&b.0));
-    near.into_iter()
-        .map(|(_, curve, along, point)| (curve, along, point))
-        .collect()
 }
 
 fn crossings(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) {
@@ -182,21 +109,9 @@ fn on_curves(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) 
         let middle = curve.path.at_length(0.5 * length);
         let middle = middle.map(|place| curve.path.point(place));
         if let Some(middle) = middle.filter(|middle| (middle - at).norm() <= reach) {
-            found.push(on_curve(sheet, curve, 0.5, middle, "the middle of"));
+            found.push(on_curve(sheet.id, curve, (0.5, middle), "the middle of"));
         }
-        found.push(on_curve(sheet, curve, share, point, "on"));
-    }
-}
-
-fn on_curve(sheet: &SheetScene, curve: &CurveScene, share: f64, at: Vec2, words: &str) -> Placed {
-    Placed {
-        sheet: sheet.id,
-        at,
-        spec: Spec::New(PointRule::OnCurve {
-            curve: curve.id,
-            share: Number::Value(share),
-        }),
-        words: format!("{words} {}", curve.name),
+        found.push(on_curve(sheet.id, curve, (share, point), "on"));
     }
 }
 

@@ -4,8 +4,8 @@ use super::planning::{Planning, places};
 use super::refusal::refuse;
 use super::slots::{Answer, Fields, Plan, Slot, SlotKind, SlotTool};
 use super::{Reading, along};
+use crate::canvas::placed::{Placed, Spec};
 use crate::canvas::selection::Item;
-use crate::canvas::snap::{Placed, Spec};
 use toile_geometry::Vec2;
 use toile_pattern::{
     CurveRule, EditError, Number, PointId, PointRule, Want,

@@ -21,10 +21,11 @@ pub use select::SelectState;
 pub use walk::WalkState;
 
 use crate::canvas::boards::Boards;
+use crate::canvas::fill::Fill;
 use crate::canvas::hit::Hit;
+use crate::canvas::placed::Placed;
 use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
-use crate::canvas::snap::Placed;
 use slots::{SlotState, SlotTool};
 use toile_geometry::Vec2;
 use toile_pattern::{EdgeId, Edit, Evaluation, PanelId, SheetId};
@@ -145,8 +146,8 @@ pub enum Overlay {
     Words(SheetId, Vec2, String),
     /// A rectangle of the table.
     Box([Vec2; 2]),
-    /// A piece that is laid on the table while a tool is in hand: its rings [m].
-    Ghost(Vec<Vec<Vec2>>),
+    /// A piece that is laid on the table while a tool is in hand: its rings [m], and what they enclose.
+    Ghost(Vec<Vec<Vec2>>, Fill),
     /// A line on the table.
     Stroke(Vec<Vec2>, Tone),
     /// A mark on a line of the table.

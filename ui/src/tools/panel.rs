@@ -4,8 +4,8 @@ use super::planning::{Planning, panel_under, places};
 use super::refusal::refuse;
 use super::slots::{Answer, Fields, Slot, SlotKind, SlotTool};
 use super::{Pointer, Reading};
+use crate::canvas::placed::Placed;
 use crate::canvas::selection::Item;
-use crate::canvas::snap::Placed;
 use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::{
@@ -108,7 +108,7 @@ fn depth(answers: &[Answer], pointer: &Pointer) -> f64 {
         _ => None,
     });
     let away = mouth.map_or(0.1, |mouth| (pointer.at - mouth).norm());
-    crate::canvas::snap::rounded(away, 0.001).max(0.001)
+    crate::canvas::placed::rounded(away, 0.001).max(0.001)
 }
 
 /// A panel that is half of what is cut: a straight edge lies on the fold.
@@ -403,8 +403,8 @@ fn panel_of<'r>(reading: &Reading<'r>, id: PanelId) -> Result<&'r Arc<Panel>, Ed
     found.ok_or_else(|| refuse("the panel is not there", "click another"))
 }
 
-/// The mark of a panel's line nearest to a place: the one that was typed, else on a whole millimetre
-/// of its edge or in the middle if that is near.
+/// The mark of a panel's line nearest to a place: the one that was typed, else on a whole millimetre of its
+/// edge as it is finished or in the middle if that is near.
 pub(super) fn marked(
     reading: &Reading<'_>,
     panel: PanelId,
@@ -415,20 +415,26 @@ pub(super) fn marked(
         near.mark = mark.clone();
         return Ok(near);
     }
-    if let Mark::Between { share, .. } = &mut near.mark
-        && let Some(value) = share.value()
+    if let (Mark::Between { share, .. }, Name::Drawn(edge)) = (&mut near.mark, near.edge)
+        && let Ok(edge) = plan::finished_edge(reading.evaluation, panel, edge)
     {
-        *share = Number::Value(tidy_share(value * near.length, near.length));
+        let along = super::along::tidy(&edge, at);
+        // Not into what an operation let into the edge.
+        if let Some((_, tidy)) = edge.share(along).filter(|(name, _)| *name == near.edge) {
+            *share = Number::Value(short(tidy));
+            near.at = edge.place(along).unwrap_or(near.at);
+        }
     }
     Ok(near)
 }
 
-/// A share of a length that falls on a whole millimetre, or on the middle if that is near.
-fn tidy_share(along: f64, length: f64) -> f64 {
-    if (along - 0.5 * length).abs() < 0.004_f64.min(0.1 * length) {
-        return 0.5;
+/// A share without the digits that only rounding gives it.
+fn short(share: f64) -> f64 {
+    let short = (share * 1e9).round() / 1e9;
+    match (short - share).abs() < 1e-12 {
+        true => short,
+        false => share,
     }
-    (crate::canvas::snap::rounded(along, 0.001) / length).clamp(0.0, 1.0)
 }
 
 /// An operation put on a panel.

@@ -3,13 +3,14 @@
 use super::Reading;
 use super::refusal::refuse;
 use super::slots::{Answer, Plan};
+use crate::canvas::placed::{Placed, Spec};
 use crate::canvas::scene::PanelScene;
 use crate::canvas::selection::{Item, Selection};
-use crate::canvas::snap::{Placed, Spec};
 use toile_geometry::Vec2;
 use toile_pattern::{Edit, EditError, Evaluation, PanelId, PointId, PointRule, SheetId, plan};
 
 /// Edits in the making.
+#[derive(Clone)]
 pub struct Planning {
     evaluation: Evaluation,
     edits: Vec<Edit>,

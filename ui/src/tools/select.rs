@@ -1,6 +1,6 @@
 //! Selects by click and by box; drags points and whole panels; divides an edge by a double click.
 
-use super::{Event, Outcome, Overlay, Pointer, Reading, Shown, chosen};
+use super::{Event, Outcome, Overlay, Planning, Pointer, Reading, Shown, chosen};
 use crate::canvas::boards::Boards;
 use crate::canvas::hit::Hit;
 use crate::canvas::selection::{Item, Selection};
@@ -11,6 +11,8 @@ use toile_pattern::{Edit, EditError, Entity, Evaluation, Panel, PanelId, PointId
 
 /// Sine of the angle up to which two handles lie on one line.
 const SMOOTH: f64 = 1e-3;
+/// How far a point may be from where it was moved to when another is moved after it [m].
+const IN_PLACE: f64 = 1e-9;
 
 /// What is going on.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -183,7 +185,7 @@ fn take_hold(hit: Hit, reading: &Reading<'_>) -> (Dragged, Option<Selection>) {
                 None => Dragged::Fixed("the curve is not there".into()),
             }
         }
-        Item::Line(..) | Item::Notch(..) | Item::Operation(..) | Item::Seam(_) => {
+        Item::Line(..) | Item::Notch(..) | Item::Operation(..) | Item::Seam(_) | Item::Guide(_) => {
             Dragged::Fixed("it is moved by its numbers, beside the view".into())
         }
     };
@@ -210,12 +212,13 @@ fn moved(
                 .iter()
                 .filter_map(|point| Some((*point, reading.evaluation.point(*point)? + way)))
                 .collect();
-            if let ([(point, to)], true) = (&goals[..], change != FormulaChange::Adjust) {
-                return plan::move_point_by(reading.evaluation, *point, *to, change);
-            }
+            let is_alone = goals.len() == 1;
             if let ([(handle, to)], false) = (&goals[..], to.held.command) {
                 let opposite = turned_along(*handle, *to, reading);
                 goals.extend(opposite);
+            }
+            if is_alone && change != FormulaChange::Adjust {
+                return moved_by(reading, &goals, change);
             }
             Ok(plan::move_points(reading.evaluation, &goals)?.edits)
         }
@@ -237,6 +240,40 @@ fn moved(
             hint: words.clone(),
         }),
     }
+}
+
+/// The edits that move the point in hand by a choice of what becomes of its formulas, and then the handle
+/// that turns along by the same choice. Where that would lead the first away again, as with a variable
+/// that places both, or cannot be, something is added to the numbers of the second.
+fn moved_by(
+    reading: &Reading<'_>,
+    goals: &[(PointId, Vec2)],
+    change: FormulaChange,
+) -> Result<Vec<Edit>, EditError> {
+    let mut planning = Planning::new(reading);
+    for (k, &(point, to)) in goals.iter().enumerate() {
+        let before = planning.clone();
+        let by = |change| {
+            move |evaluation: &Evaluation| {
+                let edits = plan::move_point_by(evaluation, point, to, change)?;
+                Ok((edits, ()))
+            }
+        };
+        let made = planning.run(by(change));
+        if k == 0 {
+            made?;
+            continue;
+        }
+        let is_there = |&(point, to): &(PointId, Vec2)| {
+            let at = planning.evaluation().point(point);
+            at.is_some_and(|at| (at - to).norm() <= IN_PLACE)
+        };
+        if made.is_err() || !goals[..k].iter().all(is_there) {
+            planning = before;
+            planning.run(by(FormulaChange::Adjust))?;
+        }
+    }
+    Ok(planning.edits())
 }
 
 /// The edits that move sheets by a way [m] on the table; the others stay where they are seen.

@@ -3,7 +3,8 @@
 use super::slots::{
     Answer, ChainEdge, Fields, SlotKind, SlotState, SlotTool, answer, fields, slot,
 };
-use super::{Overlay, Reading, number};
+use super::{Overlay, Reading, along, number};
+use crate::canvas::selection::Item;
 use toile_pattern::Want;
 
 pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Vec<Overlay> {
@@ -62,6 +63,17 @@ pub(super) fn overlay(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>)
                     pointer.at,
                     words.trim().into(),
                 ));
+            }
+        }
+        Ok(Answer::OnLine(panel, Item::Edge(_, edge), at, None))
+            if matches!(kind, SlotKind::OnLine(Fields::Distance)) =>
+        {
+            if let Some(pointer) = &state.pointer {
+                let told = along::told(reading, (panel, edge, at));
+                let at = told.map_or(at, |(_, at)| at);
+                marks.push(Overlay::Dot(pointer.sheet, at));
+                let distance = told.map(|(distance, _)| number::show(distance, Want::Length, unit));
+                marks.extend(distance.map(|words| Overlay::Words(pointer.sheet, at, words)));
             }
         }
         Ok(Answer::OnLine(_, _, at, _) | Answer::Edge(_, _, at) | Answer::Curve(_, _, at)) => {

@@ -4,8 +4,8 @@
 use super::toward::{to_side, turned};
 use super::{Event, Outcome, Pointer, Reading, Shown};
 use super::{along, number};
+use crate::canvas::placed::{Placed, Spec};
 use crate::canvas::selection::{Item, Selection};
-use crate::canvas::snap::{Placed, Spec};
 use toile_geometry::Vec2;
 use toile_pattern::{
     CurveId, EdgeId, Edit, EditError, Mark, Number, OperationId, PanelId, SheetId, Want,

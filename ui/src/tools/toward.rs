@@ -1,7 +1,7 @@
 //! Places that are meant by where the pointer lies: straight from the last, to one of its sides.
 
 use super::{Pointer, Reading, along};
-use crate::canvas::snap::{Placed, Spec, rounded};
+use crate::canvas::placed::{Placed, Spec, rounded};
 use toile_geometry::Vec2;
 use toile_pattern::{Number, Want};
 

@@ -3,20 +3,22 @@
 
 use super::number;
 use super::{Event, Going, Outcome, Overlay, Pointer, Reading, Tone};
+use crate::canvas::fill::Fill;
+use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
-use toile_geometry::{Bounds2, Curve, Vec2};
+use crate::canvas::walked::WalkedSeam;
+use std::sync::Arc;
+use toile_geometry::{Bounds2, Vec2, closest_on_segment};
 use toile_pattern::plan::Affine;
 use toile_pattern::walk::{Contact, Joint, Smoothness, Stays, Walk, WalkedNotch};
 use toile_pattern::{
-    DisplayUnit, Draft, DraftSeam, Evaluation, Pattern, Piece, SeamId, SeamOrigin, Want,
+    DisplayUnit, Draft, DraftSeam, EdgeId, Evaluation, PanelId, Pattern, Piece, SeamId, Want,
 };
 
 /// How far an arrow key goes [m].
 const STEP: f64 = 0.01;
 /// How near the pointer must come to the seam line to lead the walk [pixels].
 const REACH: f64 = 60.0;
-/// Curves are drawn this near to their course [m].
-const FLATNESS: f64 = 1e-4;
 /// A step is told from this on [m]: what seams may differ by without ease.
 const STEP_TOLD: f64 = 5e-4;
 /// Length of the lines that show how edges go on across the seam [m].
@@ -48,6 +50,8 @@ struct Seen<'r> {
     draft: &'r Draft,
     seam: &'r DraftSeam,
     walk: Walk<'r>,
+    /// What is drawn of it.
+    kept: Arc<WalkedSeam>,
     /// How much longer one side may be [m].
     ease: f64,
     reading: &'r Reading<'r>,
@@ -67,13 +71,14 @@ impl<'r> Seen<'r> {
         let id = selected(reading)?;
         let pattern = reading.evaluation.pattern();
         let draft: &Draft = &reading.scene.draft;
-        let mut seams = draft.seams.iter();
-        let seam = seams.find(|seam| seam.id == SeamOrigin::Seam(id))?;
+        let kept = reading.scene.walked(id)?;
+        let (seam, walk) = kept.walk(draft)?;
         Some(Self {
             pattern,
             draft,
             seam,
-            walk: Walk::new(draft, seam)?,
+            walk,
+            kept,
             ease: reading.evaluation.ease(seam.id),
             reading,
         })
@@ -136,10 +141,9 @@ pub fn room(state: &WalkState, reading: &Reading<'_>) -> Option<Bounds2> {
         let contact = seen.walk.contact(along, state.stays);
         let maps = seen.maps(&contact, state.stays)?;
         for (side, map) in sides.into_iter().zip(maps) {
-            let piece = seen.piece(&contact, side)?;
-            let outline = piece.outline.iter();
-            let points = outline.flat_map(|edge| edge.curve.flatten(FLATNESS));
-            places.extend(points.map(|at| map.apply(at)));
+            let piece = seen.kept.pieces.get(&contact.pieces[side])?;
+            let outline = piece.rings.iter().take(1).flatten();
+            places.extend(outline.map(|at| map.apply(*at)));
         }
     }
     Some(Bounds2::of(places))
@@ -165,7 +169,7 @@ pub(super) fn step(
     let Some(seen) = Seen::new(reading) else {
         match event {
             Event::Click(pointer) | Event::DoubleClick(pointer) => {
-                match seam_at(pointer, reading) {
+                match seams_at(pointer, reading).first().copied() {
                     Some(seam) => outcome.select = Some(Selection::one(Item::Seam(seam))),
                     None => outcome.refusal = Some("no seam is here: click a sewn edge".into()),
                 }
@@ -175,6 +179,14 @@ pub(super) fn step(
         }
         return (WalkState::default(), outcome);
     };
+    if let Event::Click(pointer) | Event::DoubleClick(pointer) = event {
+        let there = seams_at(pointer, reading);
+        let is_walked = selected(reading).is_some_and(|id| there.contains(&id));
+        if let (Some(other), false) = (there.first(), is_walked) {
+            outcome.select = Some(Selection::one(Item::Seam(*other)));
+            return (WalkState::default(), outcome);
+        }
+    }
     let whole = seen.walk.lengths()[0];
     match event {
         Event::Hover(pointer) if !state.is_typing() => {
@@ -225,21 +237,29 @@ pub(super) fn step(
     (next, outcome)
 }
 
-/// The seam of the edge under the pointer.
-fn seam_at(pointer: &Pointer, reading: &Reading<'_>) -> Option<SeamId> {
+/// The seams under the pointer, the nearest edge first: of each edge the seam whose stretch of it is
+/// nearest.
+fn seams_at(pointer: &Pointer, reading: &Reading<'_>) -> Vec<SeamId> {
     let edges = pointer.hits.iter().filter_map(|hit| match hit.item {
-        Item::Edge(panel, edge) => Some((panel, Some(edge))),
+        Item::Edge(panel, edge) => seam_of((panel, edge), hit.at, reading),
         _ => None,
     });
-    let mut edges = edges;
-    edges.find_map(|edge| {
-        let mut seams = reading.scene.seams.iter();
-        let found = seams.find(|seam| {
-            let mut own = seam.stretches.iter();
-            own.any(|stretch| (stretch.panel, stretch.edge) == edge)
-        });
-        found.map(|seam| seam.id)
-    })
+    edges.collect()
+}
+
+/// The seam that joins an edge at a place of its panel [m].
+fn seam_of((panel, edge): (PanelId, EdgeId), at: Vec2, reading: &Reading<'_>) -> Option<SeamId> {
+    let seams = reading.scene.seams.iter();
+    let stretches = seams.flat_map(|seam| seam.stretches.iter().map(move |own| (seam.id, own)));
+    let own = stretches.filter(|(_, own)| (own.panel, own.edge) == (panel, Some(edge)));
+    let away = |line: &[Vec2]| {
+        let sides = line.windows(2);
+        let places = sides.map(|side| closest_on_segment(at, [side[0], side[1]]));
+        let least = places.map(|place| (place - at).norm());
+        least.fold(f64::INFINITY, f64::min)
+    };
+    let found = own.map(|(id, own)| (id, away(&own.line)));
+    found.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(id, _)| id)
 }
 
 pub(super) fn overlay(state: &WalkState, reading: &Reading<'_>) -> Vec<Overlay> {
@@ -309,32 +329,37 @@ fn ghost(
     let Some(piece) = seen.piece(contact, moved) else {
         return;
     };
-    let ring = |curves: &mut dyn Iterator<Item = &Curve>| -> Vec<Vec2> {
-        let points = curves.flat_map(|curve| curve.flatten(FLATNESS));
-        points.map(|at| laid.apply(at)).collect()
-    };
-    let outline = ring(&mut piece.outline.iter().map(|edge| &edge.curve));
-    let holes = piece.holes.iter();
-    let holes = holes.map(|hole| ring(&mut hole.iter().map(|edge| &edge.curve)));
-    marks.push(Overlay::Ghost(
-        std::iter::once(outline).chain(holes).collect(),
-    ));
+    if let Some(flat) = seen.kept.pieces.get(&contact.pieces[moved]) {
+        let lay = |ring: &Vec<Vec2>| ring.iter().map(|at| laid.apply(*at)).collect();
+        let fill = Fill {
+            points: flat
+                .fill
+                .points
+                .iter()
+                .map(|at| mapped(laid, *at))
+                .collect(),
+            indices: flat.fill.indices.clone(),
+        };
+        marks.push(Overlay::Ghost(flat.rings.iter().map(lay).collect(), fill));
+    }
     for notch in &piece.notches {
         let line = [notch.point, notch.point + notch.inward * NOTCH];
         let line = line.map(|at| laid.apply(at)).to_vec();
         marks.push(Overlay::Stroke(line, Tone::Plain));
     }
     for (side, map) in [(moved, laid), (base, stays_at)] {
-        for (_, path) in seen
-            .walk
-            .lines(side)
-            .filter(|(k, _)| *k == contact.pieces[side])
-        {
-            let line = path.flatten(FLATNESS);
-            let line = line.into_iter().map(|at| map.apply(at)).collect();
+        let lines = seen.kept.lines[side].iter();
+        for (_, line) in lines.filter(|(k, _)| *k == contact.pieces[side]) {
+            let line = line.iter().map(|at| map.apply(*at)).collect();
             marks.push(Overlay::Stroke(line, Tone::Plain));
         }
     }
+}
+
+/// A corner of a filled region, laid elsewhere.
+fn mapped(laid: &Affine, at: [f32; 2]) -> [f32; 2] {
+    let at = laid.apply(Vec2::from(at.map(f64::from)));
+    [at.x as f32, at.y as f32]
 }
 
 /// The colour of a line by its smoothness.
@@ -365,14 +390,12 @@ fn joint_words(joint: &Joint, (line, seam): (&str, &str)) -> String {
 
 /// The lines that cross a seam at its ends, in words.
 pub fn crossing_lines(
-    (evaluation, draft): (&Evaluation, &Draft),
+    (evaluation, scene): (&Evaluation, &Scene),
     seam: SeamId,
 ) -> Vec<(String, Tone)> {
-    let pattern = evaluation.pattern();
-    let mut seams = draft.seams.iter();
-    let seam = seams.find(|known| known.id == SeamOrigin::Seam(seam));
-    let walk = seam.and_then(|seam| Some((seam, Walk::new(draft, seam)?)));
-    let Some((seam, walk)) = walk else {
+    let (pattern, draft) = (evaluation.pattern(), &scene.draft);
+    let kept = scene.walked(seam);
+    let Some((seam, walk)) = kept.and_then(|kept| kept.walk(draft)) else {
         return Vec::new();
     };
     let joints = walk.joints(evaluation.ease(seam.id));
@@ -421,7 +444,7 @@ fn mark_notches(
     marks: &mut Vec<Overlay>,
 ) {
     let sides = stays.sides();
-    for notch in seen.walk.notches() {
+    for notch in &seen.kept.notches {
         if notch.piece != contact.pieces[notch.side] {
             continue;
         }
@@ -431,7 +454,7 @@ fn mark_notches(
             maps[1]
         };
         let at = map.apply(notch.at);
-        let name = notch_name(seen, &notch);
+        let name = notch_name(seen, notch);
         let (tone, words) = match notch.partner {
             Some(_) if notch.meets() => (Tone::Good, String::new()),
             // Of a pair of notches that is apart it is told once, at the one of the first side.

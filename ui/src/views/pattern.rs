@@ -1,6 +1,7 @@
 //! The pattern view: pans and zooms, turns the pointer and keys into events of the tool in hand.
 //! It changes no document: it says what came of the events.
 
+mod guides;
 mod input;
 
 use crate::canvas::boards::Boards;
@@ -14,7 +15,7 @@ use crate::canvas::sheet_tag::tagged;
 use crate::canvas::snap::snaps;
 use crate::theme::{GRAB, Palette};
 use crate::tools::{Event, Held, Outcome, Overlay, Pointer, Reading, State, Tool, walk};
-use egui::{CursorIcon, Id, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use egui::{Id, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::{Draft, Evaluation, PanelId, Pattern, SeamId, SheetId};
@@ -52,6 +53,12 @@ pub struct PatternView {
     pub allowances: bool,
     /// Whether rulers are drawn.
     pub rulers: bool,
+    /// Whether guides are seen.
+    pub guides: bool,
+    /// The guide that is dragged.
+    guide: Option<guides::GuideDrag>,
+    /// Whether the place of the selected guide is to be typed.
+    pub asks_guide_place: bool,
     /// All sizes over each other, while they are drawn.
     pub grading: Option<Grading>,
     /// Whether the click that goes on was taken by a number that is typed elsewhere.
@@ -96,6 +103,9 @@ impl Default for PatternView {
             isolated: Vec::new(),
             allowances: true,
             rulers: true,
+            guides: true,
+            guide: None,
+            asks_guide_place: false,
             grading: None,
             click_is_taken: false,
             is_covered: false,
@@ -145,6 +155,7 @@ impl PatternView {
         self.tool = tool;
         self.state = tool.begin();
         self.pressed = None;
+        self.guide = None;
         // A pointer that rests on the canvas is told to the new tool.
         self.told = None;
     }
@@ -229,7 +240,7 @@ impl PatternView {
 
     /// Whether a gesture of the tool is under way.
     pub fn is_busy(&self) -> bool {
-        self.tool.is_under_way(&self.state)
+        self.guide.is_some() || self.tool.is_under_way(&self.state)
     }
 
     /// Gives an event to the tool in hand.
@@ -264,7 +275,8 @@ impl PatternView {
 
     /// What a click does now.
     pub fn hint(&self, evaluation: &Evaluation) -> String {
-        self.tool.hint(&self.state, &self.reading(evaluation))
+        let hint = || self.tool.hint(&self.state, &self.reading(evaluation));
+        self.guide_hint().unwrap_or_else(hint)
     }
 
     /// What the tool in hand draws over the pattern.
@@ -313,7 +325,12 @@ impl PatternView {
             self.paint(ui, view, evaluation);
             return outcomes;
         }
-        for event in self.events(ui, &response, panning) {
+        outcomes.extend(self.drag_guide(ui, (view, &response), panning, evaluation));
+        let events = match self.guide {
+            Some(_) => Vec::new(),
+            None => self.events(ui, &response, panning),
+        };
+        for event in events {
             outcomes.push(self.step(&event, evaluation));
             if matches!(event, Event::Tab | Event::Go(_) | Event::Enter) {
                 self.follow_walk(view, evaluation);
@@ -390,7 +407,8 @@ impl PatternView {
     /// What a pointer at a place of the table [m] finds there.
     pub fn pointer(&self, table: Vec2, held: Held) -> Pointer {
         let open = self.open();
-        let found = hits((&self.base, &self.boards), &open, table, self.camera.scale);
+        let mut found = hits((&self.base, &self.boards), &open, table, self.camera.scale);
+        self.add_guide_hit(&mut found, table);
         let begun = match &self.state {
             State::Slots(state) => state.sheet(),
             State::Select(_) | State::Walk(_) => None,
@@ -410,25 +428,16 @@ impl PatternView {
             table,
             sheet,
             at,
-            snaps: snaps(&self.base, sheet, at, self.camera.scale),
+            snaps: snaps(
+                (&self.base, &self.guides_on(sheet)),
+                sheet,
+                at,
+                self.camera.scale,
+            ),
             hits: found,
             pixel: 1.0 / self.camera.scale,
             held,
         }
-    }
-
-    fn cursor(&self, ui: &Ui, panning: bool, inside: bool) {
-        if !inside {
-            return;
-        }
-        let icon = match (self.tool, self.hover.map(|hit| hit.item)) {
-            _ if panning => CursorIcon::Grab,
-            (Tool::Slots(_) | Tool::Walk, _) => CursorIcon::Crosshair,
-            (_, Some(Item::Point(_) | Item::Panel(_) | Item::Sheet(_))) => CursorIcon::Move,
-            (_, Some(_)) => CursorIcon::PointingHand,
-            (_, None) => CursorIcon::Default,
-        };
-        ui.ctx().set_cursor_icon(icon);
     }
 
     fn paint(&self, ui: &Ui, view: Rect, evaluation: &Evaluation) {
@@ -448,6 +457,7 @@ impl PatternView {
             .filter(known)
             .map(|s| s.id)
             .collect();
+        let (guides, guide_label) = (self.drawn_guides(), self.guide_label(evaluation));
         let picture = Picture {
             painter: ui.painter_at(view),
             view,
@@ -456,6 +466,8 @@ impl PatternView {
             scene: &self.scene,
             selection: &self.selection,
             hover,
+            guides: &guides,
+            guide_label: guide_label.as_ref(),
             allowances: self.allowances,
             rulers: self
                 .rulers
@@ -530,6 +542,7 @@ impl PatternView {
             let at = shown.origin + shown.point.at;
             parts.push((shown.sheet, Item::Point(shown.point.id), at));
         }
+        parts.extend(self.guide_parts());
         parts
     }
 
@@ -539,7 +552,7 @@ impl PatternView {
         let open = self.open();
         let mut parts = self.parts();
         if parts.len() > MOST_NAMED {
-            parts.retain(|(sheet, ..)| open.contains(sheet));
+            parts.retain(|(sheet, item, _)| open.contains(sheet) || matches!(item, Item::Guide(_)));
         }
         let mut asked = None;
         let mut named = std::collections::BTreeSet::new();

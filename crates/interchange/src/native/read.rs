@@ -11,8 +11,8 @@ use crate::FormatError;
 use std::collections::HashMap;
 use std::sync::Arc;
 use toile_pattern::{
-    Curve, CurveRule, Diagnostic, DisplayUnit, Formula, Knot, Names, Number, PartId, Pattern,
-    Point, PointRule, Sheet, Size, SizeId, Variable,
+    Curve, CurveRule, Diagnostic, DisplayUnit, Formula, Guide, GuideRun, Knot, Names, Number,
+    PartId, Pattern, Point, PointRule, Sheet, Size, SizeId, Variable,
 };
 
 /// Reads the pattern at the root of a file.
@@ -50,6 +50,9 @@ const CURVES: &[FieldsOfKind<'_>] = &[
     (1, &["copy"]),
     (0, &[]),
 ];
+
+/// Kinds of guides: at a height, or so far to the right.
+const GUIDES: &[FieldsOfKind<'_>] = &[(1, &["y"]), (1, &["x"])];
 
 /// Kinds of numbers that are objects.
 const NUMBERS: &[FieldsOfKind<'_>] = &[
@@ -91,6 +94,7 @@ const HEAD: &[&str] = &[
     "panels",
     "seams",
     "markers",
+    "guides",
     "next_id",
 ];
 
@@ -154,6 +158,10 @@ impl<'a> Reader<'a> {
         for item in head.items("markers")? {
             let marker = marker(self, &item)?;
             pattern.markers.push(Arc::new(marker));
+        }
+        for item in head.items("guides")? {
+            let guide = self.guide(&item)?;
+            pattern.guides.push(Arc::new(guide));
         }
         pattern.ids.next = head.need("next_id")?.count()?;
         self.check_ids(&head.need("next_id")?, pattern.ids.next)?;
@@ -296,6 +304,20 @@ impl<'a> Reader<'a> {
             self.number(&x, Measure::Length)?,
             self.number(&y, Measure::Length)?,
         ])
+    }
+
+    fn guide(&mut self, item: &Item<'a>) -> Result<Guide, FormatError> {
+        let fields = item.object(&["id", "x", "y"], &mut self.notes)?;
+        fields.of_one_kind(&["id"], GUIDES)?;
+        let (runs, at) = match fields.get("x") {
+            Some(x) => (GuideRun::Vertical, x),
+            None => (GuideRun::Horizontal, fields.need("y")?),
+        };
+        Ok(Guide {
+            id: self.own(&fields.need("id")?)?,
+            runs,
+            at: self.value(&at, Measure::Length)?,
+        })
     }
 
     fn sheet(&mut self, item: &Item<'a>) -> Result<Sheet, FormatError> {

@@ -9,8 +9,8 @@ use super::write_seam::{mark, name, seam};
 use crate::FormatError;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
 use toile_pattern::{
-    Curve, CurveRule, DisplayUnit, Fabric, Names, Number, Pattern, Point, PointRule, Rheology,
-    Sheet, is_part_name,
+    Curve, CurveRule, DisplayUnit, Fabric, Guide, GuideRun, Names, Number, Pattern, Point,
+    PointRule, Rheology, Sheet, is_part_name,
 };
 
 /// Writes a pattern in the native format. Reading it back gives the same pattern.
@@ -133,6 +133,8 @@ impl Writer<'_> {
         head.put_list("seams", seams?);
         let markers: Result<Vec<_>, _> = pattern.markers.iter().map(|m| marker(self, m)).collect();
         head.put_list("markers", markers?);
+        let guides: Result<Vec<_>, _> = pattern.guides.iter().map(|g| self.guide(g)).collect();
+        head.put_list("guides", guides?);
         head.put("next_id", count(pattern.ids.next));
         Ok(head.done())
     }
@@ -193,6 +195,18 @@ impl Writer<'_> {
         if own.relaxation_time != usual.relaxation_time {
             fields.put("relaxation_time_s", number(own.relaxation_time)?);
         }
+        Ok(fields.done())
+    }
+
+    fn guide(&self, guide: &Guide) -> Result<Value, FormatError> {
+        finite(guide.at, &guide.id.to_string())?;
+        let mut fields = Fields::default();
+        fields.put("id", count(guide.id.0));
+        let name = match guide.runs {
+            GuideRun::Horizontal => "y",
+            GuideRun::Vertical => "x",
+        };
+        fields.put(name, length_value(guide.at, self.unit));
         Ok(fields.done())
     }
 

@@ -148,6 +148,17 @@ pub fn random_pattern(dice: &mut Dice) -> Pattern {
         pattern.seams.push(Arc::new(seam));
     }
     pattern.markers = markers(dice, &mut ids, &pattern);
+    for _ in 0..dice.below(4) {
+        let runs = match dice.chance(50) {
+            true => GuideRun::Horizontal,
+            false => GuideRun::Vertical,
+        };
+        pattern.guides.push(Arc::new(Guide {
+            id: ids.take(),
+            runs,
+            at: dice.finite(),
+        }));
+    }
     ids.next += dice.below(3) as u32;
     pattern.ids = ids;
     bind(&pattern)

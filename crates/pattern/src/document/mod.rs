@@ -1,6 +1,7 @@
 //! The document: what is edited, saved and undone.
 
 mod drawing;
+mod guide;
 mod history;
 mod marker;
 mod operation;
@@ -9,6 +10,7 @@ mod seam;
 mod sheet;
 
 pub use drawing::Drawing;
+pub use guide::{Guide, GuideRun};
 pub(crate) use history::History;
 pub use marker::{
     Flaw, MOST_GARMENTS, Marker, MarkerCloth, MarkerFault, NapRule, OrderedPiece, OrderedSize,
@@ -57,6 +59,9 @@ pub struct Pattern {
     /// The markers.
     #[serde(default)]
     pub markers: Vec<Arc<Marker>>,
+    /// Lines across the table to draw against.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub guides: Vec<Arc<Guide>>,
     /// Gives the ids of new parts.
     pub ids: Ids,
 }

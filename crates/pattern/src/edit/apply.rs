@@ -62,6 +62,12 @@ impl Pattern {
                 }
                 put(&mut self.markers, marker, |m| m.id);
             }
+            Entity::Guide(guide) => {
+                if !guide.at.is_finite() {
+                    return Err(EditError::NotFinite(guide.id.to_string()));
+                }
+                put(&mut self.guides, guide, |g| g.id);
+            }
             Entity::Panel(panel) => {
                 for (id, _) in panel.own_parts() {
                     self.ids.reserve(id.number());
@@ -112,6 +118,7 @@ impl Pattern {
             PartId::Panel(id) => remove(&mut self.panels, |p| p.id == id),
             PartId::Seam(id) => remove(&mut self.seams, |s| s.id == id),
             PartId::Marker(id) => remove(&mut self.markers, |m| m.id == id),
+            PartId::Guide(id) => remove(&mut self.guides, |g| g.id == id),
             PartId::Point(id) => {
                 let mut sheets = self.sheets.iter_mut();
                 let owner = sheets.find(|sheet| sheet.point(id).is_some());
@@ -145,6 +152,7 @@ impl Pattern {
             PartId::Panel(id) => order(&mut self.panels, |p| p.id == id, at),
             PartId::Seam(id) => order(&mut self.seams, |s| s.id == id, at),
             PartId::Marker(id) => order(&mut self.markers, |m| m.id == id, at),
+            PartId::Guide(id) => order(&mut self.guides, |g| g.id == id, at),
             PartId::Point(id) => {
                 let mut sheets = self.sheets.iter_mut();
                 let owner = sheets.find(|sheet| sheet.point(id).is_some());

@@ -5,8 +5,8 @@ mod apply;
 mod references;
 
 use crate::{
-    Curve, DisplayUnit, Fabric, Marker, OperationId, Panel, PanelId, PartId, Point, Seam, SheetId,
-    Size, SizeId, Variable,
+    Curve, DisplayUnit, Fabric, Guide, Marker, OperationId, Panel, PanelId, PartId, Point, Seam,
+    SheetId, Size, SizeId, Variable,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -52,6 +52,8 @@ pub enum Entity {
     Seam(Arc<Seam>),
     /// A marker.
     Marker(Arc<Marker>),
+    /// A guide.
+    Guide(Arc<Guide>),
 }
 
 /// What a pattern has besides its parts.
@@ -129,10 +131,11 @@ impl Entity {
             Self::Panel(panel) => panel.id.into(),
             Self::Seam(seam) => seam.id.into(),
             Self::Marker(marker) => marker.id.into(),
+            Self::Guide(guide) => guide.id.into(),
         })
     }
 
-    /// Its name.
+    /// Its name; what a guide is, which has none.
     pub fn name(&self) -> &str {
         match self {
             Self::Head(head) => &head.name,
@@ -145,6 +148,7 @@ impl Entity {
             Self::Panel(panel) => &panel.name,
             Self::Seam(seam) => &seam.name,
             Self::Marker(marker) => &marker.name,
+            Self::Guide(guide) => guide.runs.words(),
         }
     }
 }

@@ -13,7 +13,7 @@ impl Entity {
         let mut found = Vec::new();
         match self {
             Self::Head(head) => found.extend(head.base_size.map(PartId::from)),
-            Self::Size(_) | Self::Fabric(_) => {}
+            Self::Size(_) | Self::Fabric(_) | Self::Guide(_) => {}
             Self::Variable(variable) => number(&variable.number, &mut found),
             Self::Sheet(sheet) => {
                 if let Some((panel, after)) = sheet.on {
@@ -61,9 +61,12 @@ impl Entity {
     /// Every number it has.
     pub(crate) fn numbers(&self) -> Vec<&Number> {
         match self {
-            Self::Head(_) | Self::Size(_) | Self::Fabric(_) | Self::Sheet(_) | Self::Marker(_) => {
-                Vec::new()
-            }
+            Self::Head(_)
+            | Self::Size(_)
+            | Self::Fabric(_)
+            | Self::Sheet(_)
+            | Self::Marker(_)
+            | Self::Guide(_) => Vec::new(),
             Self::Variable(variable) => vec![&variable.number],
             Self::Point(_, point) => point.rule.numbers(),
             Self::Curve(_, curve) => curve.rule.number().into_iter().collect(),
@@ -189,6 +192,9 @@ impl Pattern {
         }
         for marker in &self.markers {
             put(Entity::Marker(marker.clone()), Place::Marker(marker.id));
+        }
+        for guide in &self.guides {
+            put(Entity::Guide(guide.clone()), Place::Guide(guide.id));
         }
         all
     }

@@ -5,7 +5,7 @@ use super::number_place::NumberPlace;
 use super::numbers::numbers_of;
 use crate::{
     EditError, Entity, Evaluation, Fabric, Ids, Number, Panel, PartId, Pattern, PointRule, Seam,
-    Sheet, SheetHead, Source, Variable, Want,
+    Sheet, SheetHead, SheetId, Source, Variable, Want,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -29,6 +29,9 @@ pub struct Fragment {
     pub pattern: String,
     /// Sheets with those of their points and curves that were copied.
     pub sheets: Vec<Arc<Sheet>>,
+    /// Those of them that were chosen themselves: they are pasted as sheets, not onto another.
+    #[serde(default)]
+    pub whole_sheets: Vec<SheetId>,
     /// Panels.
     pub panels: Vec<Arc<Panel>>,
     /// Seams between these panels.
@@ -92,6 +95,7 @@ pub fn copy(evaluation: &Evaluation, parts: &[PartId]) -> Result<Fragment, EditE
     }
     let mut fragment = Fragment {
         pattern: pattern.name.clone(),
+        whole_sheets: parts.iter().filter_map(whole_sheet).collect(),
         ..Fragment::default()
     };
     for sheet in &pattern.sheets {
@@ -130,6 +134,13 @@ pub fn copy(evaluation: &Evaluation, parts: &[PartId]) -> Result<Fragment, EditE
     fragment.fabrics = pattern.fabrics.iter().filter(is_used).cloned().collect();
     look_outside(evaluation, &mut fragment);
     Ok(fragment)
+}
+
+fn whole_sheet(part: &PartId) -> Option<SheetId> {
+    match part {
+        PartId::Sheet(id) => Some(*id),
+        _ => None,
+    }
 }
 
 /// Gives points at marks of a panel that is not copied their places as they are.
@@ -248,6 +259,13 @@ fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
             return Err(impossible(
                 format!("{part} is not copied by itself"),
                 "copy its panel, or points and curves",
+            ));
+        }
+        PartId::Guide(id) => {
+            let words = pattern.guide_words(id).unwrap_or_else(|| part.to_string());
+            return Err(impossible(
+                format!("{words} is not copied"),
+                "drag another out of the ruler",
             ));
         }
     })

@@ -2,6 +2,7 @@
 
 mod additions;
 mod align;
+mod along;
 mod bare;
 mod bind;
 mod chain;
@@ -12,6 +13,7 @@ mod face;
 mod figure;
 mod formula_change;
 mod fragment;
+mod guide;
 mod lookup;
 mod marker;
 mod marks;
@@ -38,6 +40,7 @@ mod transform;
 mod typed;
 
 pub use align::{Alignment, Axis, align, distribute};
+pub use along::{FinishedEdge, finished_edge, mark_along};
 pub use chain::Chain;
 pub use construct::{CurveShape, add_curve, add_point, add_sheet, bend_curve, move_sheets};
 pub use crossings::mark_crossings;
@@ -45,6 +48,7 @@ pub use divide::{divide_edge, join_edges};
 pub use figure::{Figure, FirstCorner, add_polygon, add_rectangle};
 pub use formula_change::{FormulaChange, move_point_by};
 pub use fragment::{Fragment, FragmentKind, Outside, OutsideValue, copy};
+pub use guide::{add_guide, move_guide, remove_guides};
 pub use marker::{
     add_marker, flip_pieces, lock_pieces, move_pieces, place_marker, place_pieces, remove_marker,
     set_marker_cloth, set_marker_order, take_off_pieces, turn_pieces,

@@ -281,6 +281,7 @@ fn candidates(pattern: &Pattern, part: PartId) -> Vec<NumberPlace> {
         | PartId::Fabric(_)
         | PartId::Sheet(_)
         | PartId::Line(_)
-        | PartId::Marker(_) => Vec::new(),
+        | PartId::Marker(_)
+        | PartId::Guide(_) => Vec::new(),
     }
 }

@@ -293,7 +293,7 @@ impl Pasting {
     fn rename(&self, entity: &mut Entity) {
         let work = &self.work;
         match entity {
-            Entity::Head(_) | Entity::Size(_) | Entity::Marker(_) => {}
+            Entity::Head(_) | Entity::Size(_) | Entity::Marker(_) | Entity::Guide(_) => {}
             Entity::Fabric(fabric) => {
                 let fabric = Arc::make_mut(fabric);
                 let taken = |name: &str| work.fabrics.iter().any(|known| known.name == name);
@@ -383,6 +383,7 @@ fn fresh(part: PartId, ids: &mut Ids) -> PartId {
         PartId::Operation(_) => take::<crate::OperationId>(ids),
         PartId::Seam(_) => take::<crate::SeamId>(ids),
         PartId::Marker(_) => take::<crate::MarkerId>(ids),
+        PartId::Guide(_) => take::<crate::GuideId>(ids),
     }
 }
 

@@ -36,8 +36,8 @@ impl Remap {
     /// The entity with all ids changed, its own too.
     pub fn entity(&self, entity: Entity) -> Entity {
         match entity {
-            // Fragments have no markers.
-            Entity::Head(_) | Entity::Size(_) | Entity::Marker(_) => entity,
+            // Fragments have no markers and no guides.
+            Entity::Head(_) | Entity::Size(_) | Entity::Marker(_) | Entity::Guide(_) => entity,
             Entity::Fabric(mut fabric) => {
                 let own = Arc::make_mut(&mut fabric);
                 own.id = self.id(own.id);

@@ -63,7 +63,8 @@ fn collect(pattern: &Pattern, part: PartId, found: &mut BTreeSet<PointId>) {
         | PartId::Fabric(_)
         | PartId::Notch(_)
         | PartId::Seam(_)
-        | PartId::Marker(_) => {}
+        | PartId::Marker(_)
+        | PartId::Guide(_) => {}
     }
 }
 

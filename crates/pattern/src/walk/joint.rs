@@ -120,7 +120,7 @@ impl Walk<'_> {
 
     /// The corner of a side at an end of the seam; nothing if the seam ends within an edge.
     fn corner(&self, side: usize, end: usize) -> Option<SeamCorner> {
-        let runs = &self.sides[side].runs;
+        let runs = &self.sides.0[side].runs;
         let run = if end == 0 {
             runs.first()?
         } else {

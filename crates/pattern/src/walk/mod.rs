@@ -13,6 +13,7 @@ pub use notches::{NOTCH_REACH, NOTCHES_MEET, WalkedNotch};
 
 use crate::plan::Affine;
 use crate::{Draft, DraftSeam, DraftSpan, Evaluation, Piece, PieceEdge, SeamOrigin};
+use std::sync::Arc;
 use toile_geometry::{Path, Vec2};
 
 /// A seam that can be walked.
@@ -20,8 +21,13 @@ use toile_geometry::{Path, Vec2};
 pub struct Walk<'d> {
     draft: &'d Draft,
     seam: &'d DraftSeam,
-    sides: [WalkedSide; 2],
+    sides: WalkSides,
 }
+
+/// Both sides of a seam, measured: by them a walk is begun again without measuring anew, as long as the
+/// draft is the same.
+#[derive(Clone, Debug)]
+pub struct WalkSides(Arc<[WalkedSide; 2]>);
 
 /// One side of a seam in walking order, mouths of darts left out.
 #[derive(Clone, Debug)]
@@ -100,13 +106,27 @@ impl<'d> Walk<'d> {
         Some(Self {
             draft,
             seam,
-            sides: [first?, second?],
+            sides: WalkSides(Arc::new([first?, second?])),
         })
+    }
+
+    /// The walk of a seam of a draft whose sides were measured before.
+    pub fn again(draft: &'d Draft, seam: &'d DraftSeam, sides: &WalkSides) -> Self {
+        Self {
+            draft,
+            seam,
+            sides: sides.clone(),
+        }
+    }
+
+    /// Both sides, to begin the walk again by.
+    pub fn sides(&self) -> WalkSides {
+        self.sides.clone()
     }
 
     /// Arc length of each side, mouths of darts left out [m].
     pub fn lengths(&self) -> [f64; 2] {
-        [self.sides[0].length, self.sides[1].length]
+        [self.sides.0[0].length, self.sides.0[1].length]
     }
 
     /// Where both sides touch at an arc length of the first [m], clamped to it. The second has its
@@ -115,7 +135,7 @@ impl<'d> Walk<'d> {
         let [first, second] = self.lengths();
         let along = along.clamp(0.0, first);
         let along = [along, along / first * second];
-        let at = [0, 1].map(|k| self.sides[k].at(along[k]));
+        let at = [0, 1].map(|k| self.sides.0[k].at(along[k]));
         let places = at.map(|(_, place, _)| place);
         let directions = at.map(|(_, _, direction)| direction);
         // The cloth lies to the left of the walk on one piece and to the right on the other, or the
@@ -141,7 +161,7 @@ impl<'d> Walk<'d> {
     /// The arc length of the first side at the place of a piece's seam line that is nearest to a
     /// point of its plane [m]; nothing if that side has no stretch on the piece.
     pub fn nearest(&self, side: usize, piece: usize, to: Vec2) -> Option<f64> {
-        let own = self.sides[side].runs.iter();
+        let own = self.sides.0[side].runs.iter();
         let own = own.filter(|run| run.span.piece == piece);
         let mut best: Option<(f64, f64)> = None;
         for run in own {
@@ -152,13 +172,13 @@ impl<'d> Walk<'d> {
             }
         }
         let along = best?.1;
-        Some(along / self.sides[side].length * self.sides[0].length)
+        Some(along / self.sides.0[side].length * self.sides.0[0].length)
     }
 
     /// The stretches of a side on their pieces, in walking order: index of the piece, and the seam
     /// line in its plane [m].
     pub fn lines(&self, side: usize) -> impl Iterator<Item = (usize, &Path)> {
-        let runs = self.sides[side].runs.iter();
+        let runs = self.sides.0[side].runs.iter();
         runs.map(|run| (run.span.piece, &run.path))
     }
 

@@ -65,7 +65,9 @@ impl Walk<'_> {
                 });
                 notch.or_else(|| {
                     within(least(&[0.0, lengths[1 - side]], goal), NOTCHES_MEET)
-                        .or_else(|| within(least(&self.sides[1 - side].joins(), goal), NOTCH_REACH))
+                        .or_else(|| {
+                            within(least(&self.sides.0[1 - side].joins(), goal), NOTCH_REACH)
+                        })
                         .map(|apart| (apart, None))
                 })
             };
@@ -87,7 +89,7 @@ impl Walk<'_> {
     /// The notches of one side, each once.
     fn notches_of(&self, side: usize) -> Vec<WalkedNotch> {
         let mut found: Vec<WalkedNotch> = Vec::new();
-        for run in &self.sides[side].runs {
+        for run in &self.sides.0[side].runs {
             let Some(piece) = self.draft.pieces.get(run.span.piece) else {
                 continue;
             };

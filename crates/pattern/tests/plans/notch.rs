@@ -157,3 +157,40 @@ fn places_lead_to_the_nearest_mark() {
     assert!(plan::nearest_mark(&evaluation, PanelId(9999), v(0.0, 0.0)).is_err());
     assert!(plan::nearest_mark(&evaluation, panel, v(f64::NAN, 0.0)).is_err());
 }
+
+#[test]
+fn a_distance_along_a_finished_edge_passes_over_a_dart() {
+    let (mut pattern, panel, line) = bowed();
+    let top = edge(&pattern, "front", "top");
+    let kind = super::sample::dart(&pattern, "top", 0.5, 0.02, Apex::Depth(0.1.into()));
+    super::sample::put_operation(&mut pattern, 0, "dart", kind);
+    let evaluation = evaluated(&pattern);
+    let drawn = evaluation.edge(top).unwrap().length();
+    let finished = plan::finished_edge(&evaluation, panel, top).unwrap();
+    assert_eq!(finished.line, line);
+    assert!((finished.length - drawn + 0.02).abs() < 1e-12);
+    // Before the mouth a distance is as it is drawn, and stays as it is typed.
+    let mark =
+        |end: usize, distance: &Number| plan::mark_along(&evaluation, &finished, (end, distance));
+    let typed = formula("5cm + 2cm");
+    let along = |end: usize, distance: Number| Mark::Along {
+        from: finished.ends[end],
+        distance,
+    };
+    assert_eq!(mark(0, &typed), Ok(along(0, typed.clone())));
+    let back = formula("-(5cm + 2cm)");
+    assert_eq!(mark(1, &back), Ok(along(1, back.clone())));
+    // Beyond it the intake is added; a formula stays a formula.
+    let far = formula("30cm");
+    let Ok(Mark::Along { distance, .. }) = mark(0, &far) else {
+        panic!("{:?}", mark(0, &far));
+    };
+    let Number::Adjusted { by, .. } = distance else {
+        panic!("{distance:?}");
+    };
+    assert!((by - 0.02).abs() < 1e-9, "{by}");
+    for beyond in [-0.01, drawn, f64::NAN] {
+        assert!(mark(0, &beyond.into()).is_err(), "{beyond}");
+    }
+    assert!(plan::finished_edge(&evaluation, panel, EdgeId(9999)).is_err());
+}

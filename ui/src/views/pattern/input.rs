@@ -2,10 +2,11 @@
 
 use super::PatternView;
 use crate::canvas::camera::ScreenPoint;
+use crate::canvas::selection::Item;
 use crate::tools::number::begins_typing;
 use crate::tools::slots::NAME_SIGN;
 use crate::tools::{Event, Going, Held, Tool};
-use egui::{EventFilter, Key, PointerButton, Response, Ui};
+use egui::{CursorIcon, EventFilter, Key, PointerButton, Response, Ui};
 
 impl PatternView {
     /// Panning and zooming; says whether the primary button pans too.
@@ -178,6 +179,22 @@ impl PatternView {
             ui.ctx().request_repaint();
         }
         events
+    }
+
+    /// The pointer's shape, by what a press would do.
+    pub(super) fn cursor(&self, ui: &Ui, panning: bool, inside: bool) {
+        if !inside || self.guide.is_some() {
+            return;
+        }
+        let icon = match (self.tool, self.hover.map(|hit| hit.item)) {
+            _ if panning => CursorIcon::Grab,
+            (Tool::Slots(_) | Tool::Walk, _) => CursorIcon::Crosshair,
+            (_, Some(Item::Point(_) | Item::Panel(_) | Item::Sheet(_))) => CursorIcon::Move,
+            (_, Some(Item::Guide(id))) => self.guide_cursor(id),
+            (_, Some(_)) => CursorIcon::PointingHand,
+            (_, None) => CursorIcon::Default,
+        };
+        ui.ctx().set_cursor_icon(icon);
     }
 }
 

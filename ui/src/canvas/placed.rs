@@ -1,0 +1,111 @@
+//! A place that a point could have, and how a point there is constructed.
+
+use super::scene::{CurveScene, SheetScene};
+use toile_geometry::Vec2;
+use toile_pattern::{Number, PointId, PointRule, SheetId};
+
+/// Steps of the grid [m], and the least enlargement each is used at [pixels per metre].
+const GRID: [(f64, f64); 4] = [(0.001, 8000.0), (0.005, 1600.0), (0.01, 500.0), (0.05, 0.0)];
+
+/// How a point at a place comes about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Spec {
+    /// It is there.
+    Point(PointId),
+    /// It is constructed.
+    New(PointRule),
+    /// At a distance [m] and angle [rad] from the place given before.
+    FromLast {
+        /// The distance [m].
+        distance: Number,
+        /// The angle [rad], from +x counter-clockwise.
+        angle: Number,
+    },
+    /// Beside the place given before [m].
+    BesideLast {
+        /// To the right [m].
+        x: Number,
+        /// Upward [m].
+        y: Number,
+    },
+}
+
+/// A place that a point could have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placed {
+    /// The sheet.
+    pub sheet: SheetId,
+    /// Where on it [m].
+    pub at: Vec2,
+    /// How a point there comes about.
+    pub spec: Spec,
+    /// What it is, in words; empty for anywhere.
+    pub words: String,
+}
+
+impl Placed {
+    /// A place that means nothing in particular.
+    pub fn free(sheet: SheetId, at: Vec2) -> Self {
+        Self {
+            sheet,
+            at,
+            spec: Spec::New(PointRule::at(at.x, at.y)),
+            words: String::new(),
+        }
+    }
+
+    /// The point that is there.
+    pub fn point(&self) -> Option<PointId> {
+        match self.spec {
+            Spec::Point(id) => Some(id),
+            _ => None,
+        }
+    }
+}
+
+/// The step of the grid at an enlargement [m].
+pub fn grid_step(scale: f64) -> f64 {
+    let step = GRID.iter().find(|(_, least)| scale >= *least);
+    step.map_or(0.05, |(step, _)| *step)
+}
+
+/// The nearest multiple of a step, with few digits: 0.3, not 0.30000000000000004.
+pub fn rounded(value: f64, step: f64) -> f64 {
+    ((value / step).round() * step * 1e6).round() / 1e6
+}
+
+/// Curves that come near, the nearest first, with the place on each.
+pub fn near_curves(sheet: &SheetScene, at: Vec2, reach: f64) -> Vec<(&CurveScene, f64, Vec2)> {
+    let mut near: Vec<(f64, &CurveScene, f64, Vec2)> = sheet
+        .curves
+        .iter()
+        .filter_map(|curve| {
+            let place = curve.path.nearest(at)?;
+            let point = curve.path.point(place);
+            let away = (point - at).norm();
+            (away <= reach).then_some((away, curve, place.along, point))
+        })
+        .collect();
+    near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    near.into_iter()
+        .map(|(_, curve, along, point)| (curve, along, point))
+        .collect()
+}
+
+/// A point on a curve, at a share of its length, which lies there [m].
+pub fn on_curve(
+    sheet: SheetId,
+    curve: &CurveScene,
+    (share, at): (f64, Vec2),
+    words: &str,
+) -> Placed {
+    Placed {
+        sheet,
+        at,
+        spec: Spec::New(PointRule::OnCurve {
+            curve: curve.id,
+            share: Number::Value(share),
+        }),
+        words: format!("{words} {}", curve.name),
+    }
+}
