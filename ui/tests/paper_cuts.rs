@@ -5,7 +5,9 @@ mod drafter;
 
 use drafter::Drafter;
 use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
 use toile_geometry::Vec2;
+use toile_pattern::LineKind;
 use toile_ui::Overlay;
 
 fn drawing() -> Drafter {
@@ -72,6 +74,30 @@ fn variables_and_measurements_are_found_by_name_and_changed_at_once() {
     drafter.hover(drafter.place(0.1, 0.1));
     find(&mut drafter, "no such thing");
     assert!(drafter.status().contains("Nothing has this in its name."));
+}
+
+/// The lowest line says that some panels are on show, and Escape shows all again.
+#[test]
+fn panels_that_are_hidden_are_told_and_come_back() {
+    let mut drafter = drawing();
+    for from in [0.0, 0.1] {
+        drafter.key(Key::R);
+        drafter.click(drafter.place(from, 0.0));
+        drafter.click(drafter.place(from + 0.06, 0.2));
+    }
+    drafter.key(Key::Escape);
+    drafter.click(drafter.part("Panel draft"));
+    drafter.key(Key::Period);
+    let is_told = |drafter: &Drafter| {
+        let told = drafter.window.query_by_label("1 panel shown: show all");
+        told.is_some()
+    };
+    assert!(is_told(&drafter));
+    assert!(drafter.window.query_by_label("Panel draft 2").is_none());
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    assert!(!is_told(&drafter));
+    assert!(drafter.window.query_by_label("Panel draft 2").is_some());
 }
 
 #[test]
@@ -322,7 +348,22 @@ fn a_point_is_named_as_it_is_drawn() {
 impl Drafter {
     /// Characters that all come within one frame, as they do while a slow frame is drawn.
     fn type_within_a_frame(&mut self, text: &str) {
-        let typed = text.chars().map(|c| egui::Event::Text(c.to_string()));
+        let typed = text.chars().flat_map(|c| {
+            let key = Key::from_name(&c.to_uppercase().to_string());
+            let event = |pressed| {
+                key.map(|key| egui::Event::Key {
+                    key,
+                    physical_key: None,
+                    pressed,
+                    repeat: false,
+                    modifiers: Modifiers::NONE,
+                })
+            };
+            let text = egui::Event::Text(c.to_string());
+            let released = event(false);
+            event(true).into_iter().chain([text]).chain(released)
+        });
+        let typed: Vec<egui::Event> = typed.collect();
         self.window.input_mut().events.extend(typed);
         self.window.run();
     }
@@ -342,6 +383,15 @@ fn nothing_is_lost_of_what_is_typed_within_one_frame() {
     }
     let hip = drafter.point("hip");
     assert!((hip - Vec2::new(0.12, 0.07)).norm() < 1e-12, "{hip}");
+    // Letters of a name are no commands, even when they come with its sign.
+    drafter.key(Key::L);
+    drafter.click(drafter.place(0.03, 0.02));
+    drafter.hover(drafter.place(0.05, 0.05));
+    drafter.type_within_a_frame("'ginger");
+    drafter.key(Key::Enter);
+    let curves = &drafter.pattern().sheets[0].curves;
+    assert_eq!(curves.len(), 1, "{}", drafter.status());
+    assert_eq!(curves[0].name, "ginger");
     // A dialog's name is typed as it opens: nothing of it is left, nothing is lost.
     let mut drafter = Drafter::new();
     drafter.window.input_mut().events.push(egui::Event::Key {
@@ -383,4 +433,157 @@ fn nothing_is_lost_of_what_is_typed_within_one_frame() {
         .map(|size| size.measurements.get("waist"))
         .collect();
     assert_eq!(waists, [Some(0.84), Some(0.92)]);
+}
+
+/// A name that is typed before there are places enough is kept, and the numbers typed next are numbers.
+#[test]
+fn a_name_typed_before_the_second_place_is_kept() {
+    let mut drafter = drawing();
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::I);
+    drafter.click(drafter.part("Panel draft"));
+    drafter.click(drafter.place(0.02, 0.1));
+    drafter.typed("'pocket place");
+    assert_eq!(drafter.window.state().fault(), None);
+    drafter.typed_and("16", Key::Tab);
+    drafter.typed("0");
+    drafter.key(Key::Enter);
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    let pattern = drafter.pattern();
+    let panel = &pattern.panels[0];
+    assert_eq!(panel.lines.len(), 2, "{}", drafter.status());
+    assert_eq!(panel.lines[1].name, "pocket place");
+    let stage = drafter.evaluation();
+    let stage = stage.last_stage(panel).unwrap();
+    let line = stage
+        .lines
+        .iter()
+        .find(|line| line.kind == LineKind::Internal)
+        .unwrap();
+    let length: f64 = line.edges.iter().map(|edge| edge.curve.length()).sum();
+    assert!((length - 0.16).abs() < 1e-9, "{length}");
+
+    // A curve and open lines in the same way, and a name before any place.
+    for (key, name) in [(Key::C, "curve"), (Key::L, "roof")] {
+        let modifiers = match key {
+            Key::L => Modifiers::SHIFT,
+            _ => Modifiers::NONE,
+        };
+        drafter.chord(modifiers, key);
+        if key == Key::L {
+            drafter.typed(&format!("'{name}"));
+        }
+        drafter.click(drafter.place(0.22, 0.1));
+        if key == Key::C {
+            drafter.typed(&format!("'{name}"));
+        }
+        drafter.typed_and("5", Key::Tab);
+        drafter.typed("80");
+        drafter.key(Key::Enter);
+        drafter.key(Key::Escape);
+        drafter.key(Key::Escape);
+        let pattern = drafter.pattern();
+        let mut curves = pattern.sheets.iter().flat_map(|sheet| &sheet.curves);
+        let is_named = curves.any(|curve| curve.name.starts_with(name));
+        assert!(is_named, "{name}: {}", drafter.status());
+    }
+    // Without a name, and once it is there, places are asked for as ever.
+    drafter.key(Key::C);
+    drafter.click(drafter.place(0.25, 0.1));
+    drafter.key(Key::Enter);
+    let fault = drafter.window.state().fault().map(str::to_owned);
+    assert!(fault.unwrap().contains("at least two places"));
+}
+
+/// What was refused is told until the tool gets on; then what to do next is.
+#[test]
+fn a_refusal_is_gone_once_the_tool_gets_on() {
+    let mut drafter = drawing();
+    for from in [0.0, 0.1] {
+        drafter.key(Key::R);
+        drafter.click(drafter.place(from, 0.0));
+        drafter.click(drafter.place(from + 0.08, 0.2));
+    }
+    drafter.key(Key::S);
+    drafter.click(drafter.place(0.04, 0.1));
+    let refused = "there is no edge of a panel here";
+    assert_eq!(
+        drafter.window.state().fault().unwrap().find(refused),
+        Some(0)
+    );
+    // Pointing elsewhere and typing are no steps.
+    drafter.hover(drafter.place(0.05, 0.12));
+    assert!(drafter.status().contains(refused));
+    drafter.click(drafter.part("Edge right of draft"));
+    let words = drafter.status();
+    assert!(!words.contains(refused), "{words}");
+    assert!(words.contains("Click the edge it is sewn to"), "{words}");
+    // Shift-clicks and steps back get on too.
+    drafter.click(drafter.place(0.04, 0.1));
+    assert!(drafter.status().contains(refused));
+    drafter.key(Key::Escape);
+    let words = drafter.status();
+    assert!(words.contains("Click the edge to sew"), "{words}");
+    drafter.click(drafter.place(0.04, 0.1));
+    drafter.shift_click(drafter.part("Edge right of draft"));
+    assert!(!drafter.status().contains(refused));
+
+    // So it is with a seam that is walked.
+    drafter.key(Key::S);
+    drafter.click(drafter.part("Edge right of draft"));
+    drafter.click(drafter.part("Edge left 2 of draft 2"));
+    drafter.key(Key::W);
+    drafter.typed("999");
+    assert!(drafter.status().contains("type a distance from 0"));
+    drafter.key(Key::Escape);
+    drafter.typed("5");
+    let words = drafter.status();
+    assert!(!words.contains("type a distance from 0"), "{words}");
+
+    drafter.key(Key::I);
+    drafter.click(drafter.place(0.09, 0.25));
+    assert!(drafter.status().contains("there is no panel here"));
+    drafter.click(drafter.part("Panel draft"));
+    drafter.key(Key::Enter);
+    assert!(drafter.status().contains("at least two places"));
+    drafter.click(drafter.place(0.02, 0.1));
+    assert_eq!(drafter.window.state().fault(), None);
+}
+
+/// A pocket is not sewn to the line that marks its place: that is said, and what to do.
+#[test]
+fn a_line_inside_a_panel_is_refused_by_name_where_edges_are_sewn() {
+    let mut drafter = drawing();
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::I);
+    drafter.click(drafter.part("Panel draft"));
+    drafter.click(drafter.place(0.05, 0.1));
+    drafter.type_text("'pocket place");
+    drafter.click(drafter.place(0.15, 0.1));
+    drafter.key(Key::Enter);
+    let on_line = drafter.place(0.08, 0.1);
+    drafter.key(Key::S);
+    drafter.click(on_line);
+    let words = drafter.window.state().fault().unwrap().to_owned();
+    for part in [
+        "Line pocket place of draft lies inside the panel",
+        "only edges of outlines and holes are sewn",
+        "by hand",
+    ] {
+        assert!(words.contains(part), "{words}");
+    }
+    // Other tools that take edges say what they take.
+    drafter.chord(Modifiers::SHIFT, Key::F);
+    drafter.click(on_line);
+    let words = drafter.window.state().fault().unwrap().to_owned();
+    assert!(
+        words.contains("Line pocket place of draft lies inside"),
+        "{words}"
+    );
+    assert!(!words.contains("sewn"), "{words}");
 }

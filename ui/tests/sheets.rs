@@ -5,7 +5,7 @@
 mod drafter;
 
 use drafter::Drafter;
-use egui::{Key, Modifiers, Role, vec2};
+use egui::{Key, Modifiers, Rect, Role, vec2};
 use egui_kittest::kittest::Queryable;
 use toile_geometry::Vec2;
 use toile_pattern::{CurveRule, Number, PointRule};
@@ -404,16 +404,18 @@ fn with_bare_sheet() -> Drafter {
     drafter
 }
 
+/// Pastes what was copied last.
+fn paste(drafter: &mut Drafter) {
+    drafter.chord(Modifiers::COMMAND, Key::K);
+    drafter.enter(
+        "Find a command, a part, a variable or a measurement",
+        "Paste",
+    );
+}
+
 #[test]
 fn a_sheet_without_panels_is_pasted_as_a_sheet() {
     let mut drafter = with_bare_sheet();
-    let paste = |drafter: &mut Drafter| {
-        drafter.chord(Modifiers::COMMAND, Key::K);
-        drafter.enter(
-            "Find a command, a part, a variable or a measurement",
-            "Paste",
-        );
-    };
     let tag = drafter.part("Sheet sheet") + vec2(20.0, -14.0);
     drafter.click(tag);
     drafter.window.event(egui::Event::Copy);
@@ -464,4 +466,81 @@ fn a_new_sheet_lies_beside_panels_that_are_hidden_too() {
     assert!(sheet.on_table[0] > free, "{:?} {free}", sheet.on_table);
     // It is seen, though others were on show alone.
     drafter.part(&format!("Sheet {}", sheet.name));
+}
+
+/// Rectangles on the screen round the panels.
+fn panels_seen(drafter: &Drafter) -> Vec<Rect> {
+    let view_state = drafter.window.state().view();
+    let view = drafter.window.get_by_label("Pattern view").rect();
+    let panels = view_state.scene.panels.iter().map(|panel| {
+        let origin = view_state.boards.panel(panel.id);
+        let bounds = panel.bounds();
+        let corners = [bounds.min, bounds.max].map(|at| view_state.screen(view, origin, at));
+        Rect::from_two_pos(corners[0], corners[1])
+    });
+    panels.collect()
+}
+
+/// Asserts that so many panels lie apart, and that the last of them is seen whole.
+fn assert_apart(drafter: &Drafter, count: usize) {
+    let panels = panels_seen(drafter);
+    assert_eq!(panels.len(), count, "{}", drafter.status());
+    let last = panels[count - 1];
+    for other in &panels[..count - 1] {
+        assert!(!other.intersects(last), "{panels:?}");
+    }
+    let view = drafter.window.get_by_label("Pattern view").rect();
+    assert!(view.contains_rect(last), "{last} is not in {view}");
+}
+
+#[test]
+fn panels_are_pasted_where_there_is_room_and_seen_there() {
+    let mut drafter = Drafter::new();
+    drafter.begin();
+    drafter.draw_rectangle();
+    drafter.click(drafter.part("Panel draft"));
+    drafter.window.event(egui::Event::Copy);
+    drafter.window.run();
+    for count in 2..9 {
+        paste(&mut drafter);
+        assert_apart(&drafter, count);
+    }
+    // So are duplicates, out of view as well.
+    drafter.chord(Modifiers::COMMAND, Key::D);
+    assert_apart(&drafter, 9);
+    // As large as the view, it is shown smaller.
+    drafter.key(Key::F);
+    for _ in 0..7 {
+        drafter.key(Key::Plus);
+    }
+    paste(&mut drafter);
+    assert_apart(&drafter, 10);
+
+    // What was cut comes back to its place while that is free.
+    let mut drafter = with_bare_sheet();
+    let place = drafter.pattern().sheets[1].on_table;
+    drafter.click(drafter.part("Sheet sheet") + vec2(20.0, -14.0));
+    drafter.window.event(egui::Event::Cut);
+    drafter.window.run();
+    assert_eq!(drafter.pattern().sheets.len(), 1, "{}", drafter.status());
+    paste(&mut drafter);
+    assert_eq!(drafter.pattern().sheets[1].on_table, place);
+}
+
+#[test]
+fn empty_sheets_are_not_pasted_upon_each_other() {
+    let mut drafter = Drafter::new();
+    drafter.begin();
+    drafter.draw_rectangle();
+    drafter.chord(Modifiers::COMMAND | Modifiers::SHIFT, Key::N);
+    drafter.window.event(egui::Event::Copy);
+    drafter.window.run();
+    paste(&mut drafter);
+    paste(&mut drafter);
+    let pattern = drafter.pattern();
+    let places: Vec<_> = pattern.sheets.iter().map(|sheet| sheet.on_table).collect();
+    assert_eq!(places.len(), 4, "{}", drafter.status());
+    for (k, place) in places.iter().enumerate() {
+        assert!(!places[..k].contains(place), "{places:?}");
+    }
 }

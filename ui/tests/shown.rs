@@ -164,3 +164,43 @@ fn corners_that_a_step_moved_are_seen_only_with_their_sheet() {
     drafter.click(drafter.part("Panel draft"));
     assert_eq!(points(&drafter) - tools, 4);
 }
+
+/// Lengths in pixels of what is drawn between two places.
+fn drawn_between(drafter: &Drafter, [from, to]: [egui::Pos2; 2]) -> f32 {
+    let strip = Rect::from_two_pos(from, to).expand(1.0);
+    let shapes = drafter.window.output().shapes.iter();
+    let lengths = shapes.filter_map(|clipped| match &clipped.shape {
+        egui::Shape::LineSegment { points, .. } => {
+            let is_inside = points.iter().all(|at| strip.contains(*at));
+            is_inside.then(|| points[0].distance(points[1]))
+        }
+        _ => None,
+    });
+    lengths.sum()
+}
+
+#[test]
+fn an_inner_line_of_a_folded_panel_is_seen_on_both_halves() {
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "Shown");
+    drafter.key(Key::R);
+    drafter.click(drafter.place(0.0, 0.0));
+    drafter.click(drafter.place(0.2, 0.3));
+    drafter.key(Key::I);
+    drafter.click(drafter.part("Panel draft"));
+    drafter.click(drafter.place(0.05, 0.1));
+    drafter.click(drafter.place(0.15, 0.1));
+    drafter.key(Key::Enter);
+    drafter.chord(Modifiers::SHIFT, Key::F);
+    drafter.click(drafter.part("Edge left of draft"));
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
+    drafter.key(Key::F);
+    let drawn = |side: f64| {
+        let ends = [0.05, 0.15].map(|x| drafter.place(x * side, 0.1));
+        drawn_between(&drafter, ends) / ends[0].distance(ends[1])
+    };
+    let halves = [drawn(1.0), drawn(-1.0)];
+    assert!(halves.iter().all(|share| *share > 0.5), "{halves:?}");
+}

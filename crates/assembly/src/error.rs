@@ -7,7 +7,7 @@ pub enum AssemblyError {
     #[error("edge length {0} m cannot be used; give one from 0.5 mm to 1 m")]
     EdgeLength(f64),
     /// The draft has no piece that is sewn.
-    #[error("the draft has no sewn piece; add a panel or a seam")]
+    #[error("no piece is sewn; sew panels together, or an edge of one to another of it")]
     Empty,
     /// The outline of a piece cannot be meshed.
     #[error("piece \"{piece}\": {reason}; {remedy}")]

@@ -62,7 +62,9 @@ impl ToileApp {
     pub(crate) fn deselect(&mut self) {
         self.stop_printing();
         self.notice = Notice::default();
+        let shows_some = !self.view.isolated.is_empty();
         match self.view.tool {
+            Tool::Select if shows_some && !self.has_selection() => self.isolate(),
             Tool::Select => self.give(&Event::Escape),
             Tool::Slots(_) | Tool::Walk => self.take(Tool::Select),
         }
@@ -81,6 +83,9 @@ impl ToileApp {
 
     /// What an event of a tool came to.
     pub(crate) fn follow_outcome(&mut self, outcome: Outcome) {
+        if outcome.gets_on && self.notice.is_fault() {
+            self.notice = Notice::default();
+        }
         match outcome.shown {
             Shown::Same => {}
             Shown::Nothing => {

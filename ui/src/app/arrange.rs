@@ -2,8 +2,10 @@
 
 use super::ToileApp;
 use super::notice::Notice;
+use crate::canvas::boards::Boards;
 use crate::canvas::scene::Scene;
 use crate::canvas::selection::{Item, Selection};
+use crate::tools::Planning;
 use std::path::Path;
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Vec2};
@@ -11,7 +13,7 @@ use toile_pattern::plan::{self, Alignment, Axis, Fragment, PasteTarget, Pasted};
 use toile_pattern::{Edit, EditError, Entity, Evaluation, PartId, Pattern, PointId};
 use toile_session::Project;
 
-/// How far what is pasted lies beside where it was copied [m].
+/// How far points and curves that are pasted lie beside where they were copied [m].
 const ASIDE: f64 = 0.02;
 
 /// Room between a new sheet's origin and what is there [m]: a piece may be drawn to the left of it.
@@ -180,8 +182,38 @@ impl ToileApp {
             sheet: self.view.sheet.filter(|_| loose),
             offset: [ASIDE, -ASIDE],
         };
-        let pasted = plan::paste(&self.base, fragment, target);
+        let pasted = match is_bare {
+            true => plan::paste(&self.base, fragment, target),
+            false => self.pasted_free(fragment),
+        };
         self.take_pasted(pasted, "Paste");
+    }
+
+    /// Panels and sheets where they lay; where something else lies there, to the right of it in free
+    /// room.
+    fn pasted_free(&self, fragment: &Fragment) -> Result<Pasted, EditError> {
+        let aside = |aside: f64| {
+            let target = PasteTarget {
+                sheet: None,
+                offset: [aside, 0.0],
+            };
+            plan::paste(&self.base, fragment, target)
+        };
+        let there = aside(0.0)?;
+        let scene = self.whole_scene();
+        let mut trial = Planning::of(&self.base);
+        trial.make(there.edits.clone())?;
+        let (mut with, mut boards) = (scene.clone(), self.view.boards.clone());
+        with.update(trial.evaluation(), &Arc::default(), scene.octave());
+        boards.follow(trial.evaluation().pattern());
+        let copies = on_table((&with, &boards), |id| there.parts.contains(&id));
+        let others = on_table((&scene, &self.view.boards), |_| true);
+        let is_free = |copy: &Bounds2| !others.iter().any(|other| touch(copy, other));
+        if copies.iter().all(is_free) {
+            return Ok(there);
+        }
+        let bounds = copies.into_iter().reduce(|a, b| a.union(&b));
+        aside(bounds.map_or(0.0, |bounds| self.free_aside(&scene, &bounds)))
     }
 
     pub(crate) fn duplicate(&mut self) {
@@ -191,7 +223,7 @@ impl ToileApp {
             // Beside the panels as they are seen, with their mirrored halves.
             true => plan::copy(&self.base, &parts).and_then(|fragment| {
                 let scene = self.whole_scene();
-                let bounds = self.on_table(&scene, |id| parts.contains(&id));
+                let bounds = on_table((&scene, &self.view.boards), |id| parts.contains(&id));
                 let bounds = bounds.into_iter().reduce(|a, b| a.union(&b));
                 let aside = bounds.map_or(0.0, |bounds| self.free_aside(&scene, &bounds));
                 let target = PasteTarget {
@@ -205,34 +237,13 @@ impl ToileApp {
         self.take_pasted(pasted, "Duplicate");
     }
 
-    /// Least rectangles on the table [m] round panels of which they or their sheets are asked for, and
-    /// round sheets with no panels.
-    fn on_table(&self, scene: &Scene, wanted: impl Fn(PartId) -> bool) -> Vec<Bounds2> {
-        let boards = &self.view.boards;
-        let moved = |bounds: Bounds2, place: Vec2| Bounds2 {
-            min: bounds.min + place,
-            max: bounds.max + place,
-        };
-        let panels = scene.panels.iter();
-        let panels = panels.filter(|panel| wanted(panel.id.into()) || wanted(panel.sheet.into()));
-        let panels = panels.map(|panel| moved(*panel.bounds(), boards.panel(panel.id)));
-        let sheets = scene.sheets.iter();
-        let bare = sheets.filter(|sheet| sheet.is_bare && wanted(sheet.id.into()));
-        let bare = bare.map(|sheet| {
-            let bounds = sheet.bounds();
-            let bounds = bounds.unwrap_or_else(|| Bounds2::of([Vec2::zeros()]));
-            moved(bounds, boards.sheet(sheet.id))
-        });
-        panels.chain(bare).collect()
-    }
-
     /// How far to the right of its place something of these bounds lies on nothing else [m].
     fn free_aside(&self, scene: &Scene, bounds: &Bounds2) -> f64 {
-        let mut panels = self.on_table(scene, |_| true);
+        let mut panels = on_table((scene, &self.view.boards), |_| true);
         panels.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
         let mut aside = bounds.size().x + BESIDE;
         for panel in panels {
-            let is_beside = panel.min.y < bounds.max.y && bounds.min.y < panel.max.y;
+            let is_beside = panel.min.y <= bounds.max.y && bounds.min.y <= panel.max.y;
             let is_under = panel.min.x < bounds.max.x + aside + BESIDE
                 && bounds.min.x + aside < panel.max.x + BESIDE;
             // What lies touching the room that is left is passed too.
@@ -273,6 +284,14 @@ impl ToileApp {
         }
         let selection = select_pasted(self.base.pattern(), &pasted.parts);
         self.view.select(selection);
+        if brings_sheets {
+            let copies = on_table((&self.view.scene, &self.view.boards), |id| {
+                pasted.parts.contains(&id)
+            });
+            let room = copies.into_iter().reduce(|a, b| a.union(&b));
+            room.into_iter()
+                .for_each(|room| self.view.reveal_room(room));
+        }
         if !pasted.loosened.is_empty() {
             self.notice = Notice::warning(format!(
                 "{} spoke of parts that are not here, and are values now",
@@ -337,6 +356,31 @@ impl ToileApp {
             Err(error) => self.notice = Notice::fault(error.to_string()),
         }
     }
+}
+
+/// Least rectangles on the table [m] round panels of which they or their sheets are asked for, and
+/// round sheets with no panels.
+fn on_table((scene, boards): (&Scene, &Boards), wanted: impl Fn(PartId) -> bool) -> Vec<Bounds2> {
+    let moved = |bounds: Bounds2, place: Vec2| Bounds2 {
+        min: bounds.min + place,
+        max: bounds.max + place,
+    };
+    let panels = scene.panels.iter();
+    let panels = panels.filter(|panel| wanted(panel.id.into()) || wanted(panel.sheet.into()));
+    let panels = panels.map(|panel| moved(*panel.bounds(), boards.panel(panel.id)));
+    let sheets = scene.sheets.iter();
+    let bare = sheets.filter(|sheet| sheet.is_bare && wanted(sheet.id.into()));
+    let bare = bare.map(|sheet| {
+        let bounds = sheet.bounds();
+        let bounds = bounds.unwrap_or_else(|| Bounds2::of([Vec2::zeros()]));
+        moved(bounds, boards.sheet(sheet.id))
+    });
+    panels.chain(bare).collect()
+}
+
+/// Whether two rectangles have a place in common.
+fn touch(a: &Bounds2, b: &Bounds2) -> bool {
+    (0..2).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
 }
 
 /// The new panels; where there are none, the new sheets; else the new curves and points.

@@ -1,7 +1,7 @@
 //! Menu bar, tool bar, status line.
 
 use super::ToileApp;
-use super::command::{Menu, UiCommand};
+use super::command::{Menu, UiCommand, shortcut_words};
 use super::command_table::{commands, named};
 use super::findings::finding_colour;
 use super::notice::Tone;
@@ -107,7 +107,7 @@ impl ToileApp {
     fn menu_entry(&mut self, ui: &mut Ui, command: &'static UiCommand) {
         let mut button = Button::new(command.name).selected(self.is_on(command.name));
         if let Some(key) = command.key {
-            button = button.shortcut_text(ui.ctx().format_shortcut(&key));
+            button = button.shortcut_text(shortcut_words(ui.ctx(), &key));
         }
         self.command_widget(ui, command, button, None);
     }
@@ -162,7 +162,7 @@ impl ToileApp {
                         continue;
                     };
                     let in_hand = self.tool_name() == *name;
-                    let key = command.key.map(|key| ui.ctx().format_shortcut(&key));
+                    let key = command.key.map(|key| shortcut_words(ui.ctx(), &key));
                     let button = Button::new(*name)
                         .selected(in_hand)
                         .frame_when_inactive(in_hand)
@@ -224,6 +224,7 @@ impl ToileApp {
         ui.horizontal(|ui| {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 self.findings_button(ui);
+                self.isolated_button(ui);
                 if let Some((sheet, at)) = self.view.pointer {
                     let unit = self.base.pattern().unit;
                     let [x, y] = [at.x, at.y].map(|v| number::show(v, Want::Length, unit));
@@ -242,6 +243,18 @@ impl ToileApp {
                 });
             });
         });
+    }
+
+    /// Says that some panels alone are on show, and shows all again.
+    fn isolated_button(&mut self, ui: &mut Ui) {
+        let words = match self.view.isolated.len() {
+            0 => return,
+            1 => "1 panel shown: show all".to_owned(),
+            count => format!("{count} panels shown: show all"),
+        };
+        if ui.button(words).on_hover_text("Isolate (.)").clicked() {
+            self.isolate();
+        }
     }
 
     /// The latest message; else what the tool in hand asks for; else the part under the pointer;

@@ -94,7 +94,7 @@ impl UiCommand {
     /// What is said of it where the pointer rests: what it does, and its key.
     pub fn words(&self, context: &egui::Context) -> String {
         match self.key {
-            Some(key) => format!("{} ({})", self.tip, context.format_shortcut(&key)),
+            Some(key) => format!("{} ({})", self.tip, shortcut_words(context, &key)),
             None => self.tip.to_owned(),
         }
     }
@@ -112,4 +112,14 @@ pub(super) const BOTH: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 /// When a command can always be done.
 pub(super) fn always(_: &ToileApp) -> bool {
     true
+}
+
+/// A key in words, as `Ctrl+S`; signs stand for themselves.
+pub fn shortcut_words(context: &egui::Context, key: &egui::KeyboardShortcut) -> String {
+    let words = context.format_shortcut(key);
+    let (name, sign) = (key.logical_key.name(), key.logical_key.symbol_or_name());
+    match words.strip_suffix(name) {
+        Some(held) if sign.is_ascii() => format!("{held}{sign}"),
+        _ => words,
+    }
 }

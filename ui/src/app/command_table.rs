@@ -4,6 +4,7 @@ use super::command::UiCommand;
 use super::document_commands::DOCUMENT_COMMANDS;
 use super::tool_commands::TOOL_COMMANDS;
 use crate::tools::number::begins_typing;
+use crate::tools::slots::NAME_SIGN;
 use egui::{Key, KeyboardShortcut};
 
 /// All commands, in the order of their menus.
@@ -82,11 +83,13 @@ pub fn pressed(context: &egui::Context, keys: KeysTaken) -> Vec<&'static UiComma
     keyed.sort_by_key(|(_, key)| std::cmp::Reverse(modifiers(key)));
     let mut pressed = Vec::new();
     context.input_mut(|input| {
-        // Several letters may come in one frame: the first of a number or formula makes the others
-        // part of it.
+        // Several letters may come in one frame: the first of a number, formula or name makes the
+        // others part of it.
         let begun = keys.numbers
             && input.events.iter().any(|event| match event {
-                egui::Event::Text(text) => text.starts_with(begins_typing),
+                egui::Event::Text(text) => {
+                    text.starts_with(begins_typing) || text.starts_with(NAME_SIGN)
+                }
                 _ => false,
             });
         for (command, key) in keyed {

@@ -136,8 +136,11 @@ pub static DOCUMENT_COMMANDS: &[UiCommand] = &[
         Menu::Edit,
         "Deselect",
         key(PLAIN, Key::Escape),
-        "Put the tool down, or select nothing",
-        |app| app.has_selection() || !matches!(app.view.tool, Tool::Select),
+        "Put the tool down, select nothing, or show all panels again",
+        |app| {
+            let shows_some = !app.view.isolated.is_empty();
+            app.has_selection() || shows_some || !matches!(app.view.tool, Tool::Select)
+        },
         ToileApp::deselect,
     ),
     command(

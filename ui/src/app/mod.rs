@@ -252,6 +252,7 @@ impl ToileApp {
         if opened {
             self.refusal = None;
             self.view.opened(&self.base.pattern().clone());
+            self.tables.forget_typed();
             self.making.clear();
             self.stage.clear_garment();
             if let Some(path) = self.session.project().source.clone() {

@@ -2,7 +2,7 @@
 
 use super::ToileApp;
 use super::answer::Answer;
-use super::command::UiCommand;
+use super::command::{UiCommand, shortcut_words};
 use super::command_table::commands;
 use super::dialogs::Dialog;
 use super::shows::Tab;
@@ -73,7 +73,7 @@ impl ToileApp {
                 };
                 let mut button = Button::selectable(k == *chosen, words);
                 if let Some(key) = key {
-                    button = button.shortcut_text(ui.ctx().format_shortcut(&key));
+                    button = button.shortcut_text(shortcut_words(ui.ctx(), &key));
                 }
                 let button = button.min_size(vec2(ui.available_width(), 0.0));
                 let button = ui.add_enabled(enabled, button);
@@ -146,9 +146,10 @@ fn found(text: &str, pattern: &Pattern) -> Vec<Found> {
         let name = command.name.to_lowercase();
         let rank = match () {
             () if !has_all(&format!("{name} {}", command.tip.to_lowercase())) => return None,
-            () if name.starts_with(&typed) => 0,
-            () if name.contains(first) => 2,
-            () => 4,
+            () if name == typed => 0,
+            () if name.starts_with(&typed) => 1,
+            () if name.contains(first) => 3,
+            () => 5,
         };
         Some((rank, Found::Command(command)))
     });
@@ -160,10 +161,12 @@ fn found(text: &str, pattern: &Pattern) -> Vec<Found> {
         let low = words.to_lowercase();
         // What is no command is looked for by its own name, or by what it is: "Panel front", "front".
         let own = low.split_once(' ').map_or("", |found| found.1);
+        let name = own.split_once(" (").map_or(own, |found| found.0);
         let rank = match () {
             () if !has_all(&low) => return None,
-            () if low.starts_with(&typed) || own.starts_with(&typed) => 1,
-            () => 3,
+            () if name == typed => 0,
+            () if low.starts_with(&typed) || own.starts_with(&typed) => 2,
+            () => 4,
         };
         Some((rank, found))
     });

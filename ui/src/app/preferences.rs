@@ -7,6 +7,10 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toile_session::Paper;
 
+/// Two clicks no farther apart are one double click [s]: as long as desktops allow, so that slow frames do not
+/// part them.
+const DOUBLE_CLICK: f64 = 0.5;
+
 /// Size of a window that was never opened before, and the least one has [logical pixels].
 const WINDOW: [f32; 2] = [1400.0, 860.0];
 const LEAST_WINDOW: [f32; 2] = [760.0, 480.0];
@@ -50,7 +54,10 @@ impl Preferences {
     /// Sets the theme.
     pub fn apply(&self, context: &egui::Context) {
         // Where the system says nothing, colours are light.
-        context.options_mut(|options| options.fallback_theme = egui::Theme::Light);
+        context.options_mut(|options| {
+            options.fallback_theme = egui::Theme::Light;
+            options.input_options.max_double_click_delay = DOUBLE_CLICK;
+        });
         context.set_theme(match self.dark {
             None => egui::ThemePreference::System,
             Some(true) => egui::ThemePreference::Dark,

@@ -51,6 +51,16 @@ pub struct Tables {
     pub entered_variable: Option<VariableId>,
 }
 
+impl Tables {
+    /// Leaves what is typed: another document is opened.
+    pub fn forget_typed(&mut self) {
+        *self = Self {
+            tab: self.tab,
+            ..Self::default()
+        };
+    }
+}
+
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub enum Tab {
     #[default]

@@ -75,15 +75,39 @@ impl TableCamera {
 
     /// Shows all of a part of the table.
     pub fn fit(&mut self, view: Rect, bounds: &Bounds2) {
-        let size = bounds.max - bounds.min;
-        let room = 1.0 - 2.0 * BORDER;
-        let scale = (f64::from(view.width()) * room / size.x.max(LEAST_FITTED))
-            .min(f64::from(view.height()) * room / size.y.max(LEAST_FITTED));
-        if scale.is_finite() && scale > 0.0 {
-            self.scale = scale.clamp(SCALES[0], SCALES[1]);
+        if let Some(scale) = fitting(view, bounds) {
+            self.scale = scale;
             self.centre = (bounds.min + bounds.max) * 0.5;
         }
     }
+
+    /// Moves the table, and shows it smaller if need be, just so far that all of a part is seen.
+    pub fn reveal(&mut self, view: Rect, bounds: &Bounds2) {
+        // What touches the rim of the view is hardly seen.
+        let clear = view.shrink(0.5 * BORDER as f32 * view.size().min_elem());
+        let is_seen = |at: Vec2| clear.contains(self.screen(view, TablePoint(at)).0);
+        let Some(scale) = fitting(view, bounds) else {
+            return;
+        };
+        if [bounds.min, bounds.max].into_iter().all(is_seen) {
+            return;
+        }
+        self.scale = self.scale.min(scale);
+        let half = view.size() * (0.5 - BORDER as f32);
+        let half = Vec2::new(f64::from(half.x), f64::from(half.y)) / self.scale;
+        self.centre = self.centre.sup(&(bounds.max - half));
+        self.centre = self.centre.inf(&(bounds.min + half));
+    }
+}
+
+/// The enlargement at which a part of the table fills the view up to its border.
+fn fitting(view: Rect, bounds: &Bounds2) -> Option<f64> {
+    let size = bounds.max - bounds.min;
+    let room = 1.0 - 2.0 * BORDER;
+    let scale = (f64::from(view.width()) * room / size.x.max(LEAST_FITTED))
+        .min(f64::from(view.height()) * room / size.y.max(LEAST_FITTED));
+    let is_one = scale.is_finite() && scale > 0.0;
+    is_one.then(|| scale.clamp(SCALES[0], SCALES[1]))
 }
 
 #[cfg(test)]
@@ -130,6 +154,30 @@ mod tests {
         camera.fit(view(), &bounds);
         for corner in [bounds.min, bounds.max] {
             assert!(view().contains(camera.screen(view(), TablePoint(corner)).0));
+        }
+    }
+
+    #[test]
+    fn what_is_revealed_is_seen_and_what_was_seen_stays() {
+        let small = Bounds2 {
+            min: Vec2::new(2.0, 1.0),
+            max: Vec2::new(2.1, 1.2),
+        };
+        let large = Bounds2 {
+            min: Vec2::new(-3.0, 1.0),
+            max: Vec2::new(-1.0, 1.2),
+        };
+        let mut camera = TableCamera::default();
+        for (bounds, stays) in [(small, true), (small, true), (large, false)] {
+            let before = camera;
+            camera.reveal(view(), &bounds);
+            for corner in [bounds.min, bounds.max] {
+                assert!(view().contains(camera.screen(view(), TablePoint(corner)).0));
+            }
+            assert_eq!(camera.scale == before.scale, stays);
+            let now = camera;
+            camera.reveal(view(), &bounds);
+            assert_eq!(camera, now);
         }
     }
 }

@@ -261,7 +261,7 @@ impl Picture<'_> {
             self.painter
                 .extend(Shape::dashed_line(&line, ink, 6.0, 4.0));
         };
-        for (id, line) in &shape.internal_lines {
+        for (id, line) in shape.internal_lines.iter().chain(&shape.mirrored_lines) {
             dashed(line, Item::Line(panel.id, *id));
         }
         for (id, is_placement, line) in &shape.creases {

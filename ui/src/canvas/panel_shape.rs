@@ -35,6 +35,8 @@ pub struct PanelShape {
     pub creases: Vec<(OperationId, bool, Vec<Vec2>)>,
     /// Lines inside of the half that is drawn.
     pub internal_lines: Vec<(LineId, Vec<Vec2>)>,
+    /// The same of the mirrored half.
+    pub mirrored_lines: Vec<(LineId, Vec<Vec2>)>,
     /// Notches: place on the outline and unit direction inward.
     pub notches: Vec<(NotchId, Vec2, Vec2)>,
     /// Both ends of the grainline, if there is room for one.
@@ -86,6 +88,7 @@ impl PanelShape {
             darts: Vec::new(),
             creases: Vec::new(),
             internal_lines: Vec::new(),
+            mirrored_lines: Vec::new(),
             notches: stage
                 .notches
                 .iter()
@@ -97,12 +100,16 @@ impl PanelShape {
             shape.edge(edge, polyline(&edge.curve));
         }
         for line in &stage.lines {
-            if line.kind != LineKind::Internal || line.half != 0 {
+            if line.kind != LineKind::Internal {
                 continue;
             }
             let points = line.edges.iter().flat_map(|edge| polyline(&edge.curve));
             match line.name {
+                Name::Drawn(id) if line.half != 0 => {
+                    shape.mirrored_lines.push((id, points.collect()));
+                }
                 Name::Drawn(id) => shape.internal_lines.push((id, points.collect())),
+                Name::Made { .. } if line.half != 0 => {}
                 // Where a pleat is folded, and where it is laid to.
                 Name::Made { by, role, .. } => {
                     let is_placement = role == Role::Placement;

@@ -196,6 +196,8 @@ pub struct Outcome {
     pub select: Option<Selection>,
     /// Why something was not done.
     pub refusal: Option<String>,
+    /// The tool came a step on or back: what was refused before is of no matter any more.
+    pub gets_on: bool,
     /// The tool is put down.
     pub done: bool,
 }

@@ -86,6 +86,11 @@ fn nothing_shown() -> Outcome {
 /// Repeated clicks at one place go through what lies there.
 fn clicked(pointer: &Pointer, selection: &Selection) -> Option<Item> {
     let current = selection.single();
+    // A guide is left where it is: what it lies over is clicked beside it.
+    let guide = current.filter(|item| matches!(item, Item::Guide(_)));
+    if let Some(guide) = guide.filter(|guide| pointer.hits.iter().any(|hit| hit.item == *guide)) {
+        return Some(guide);
+    }
     let at = current.and_then(|item| pointer.hits.iter().position(|hit| hit.item == item));
     let next = at.map_or(0, |k| (k + 1) % pointer.hits.len());
     pointer.hits.get(next).map(|hit| hit.item)

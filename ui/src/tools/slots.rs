@@ -1,6 +1,7 @@
 //! Tools that are given one thing after another: a list of slots and a planner. One machine gives
 //! all of them hovering, typed numbers, snapping, steps back and hints.
 
+use super::refusal::no_edge;
 use super::toward::{to_side, turned};
 use super::{Event, Outcome, Pointer, Reading, Shown};
 use super::{along, number};
@@ -292,6 +293,11 @@ pub(super) fn step(
         outcome.shown = shown(tool, &next, reading);
     }
     next.refusal = outcome.refusal.clone();
+    outcome.gets_on = outcome.refusal.is_none()
+        && matches!(
+            event,
+            Event::Click(_) | Event::DoubleClick(_) | Event::Enter | Event::Escape
+        );
     (next, outcome)
 }
 
@@ -320,6 +326,15 @@ pub(super) fn answer(
         let found = here()?.hits.iter().find(|hit| wanted(hit.item)).copied();
         found.ok_or_else(|| format!("there is no {words} here: click on one"))
     };
+    let edge = || {
+        let mut edges = here()?.hits.iter().filter_map(|hit| match hit.item {
+            Item::Edge(panel, edge) => Some((panel, edge, hit.at)),
+            _ => None,
+        });
+        edges
+            .next()
+            .ok_or_else(|| no_edge(matches!(kind, SlotKind::Chain), pointer, reading))
+    };
     match kind {
         SlotKind::Place(fields) => Ok(Answer::Place(placed(fields, state, reading)?)),
         SlotKind::Named(fields) => {
@@ -343,18 +358,9 @@ pub(super) fn answer(
             let (mark, at) = found.map_err(|error| error.to_string())?;
             Ok(Answer::OnLine(panel, hit.item, at, Some(mark)))
         }
-        SlotKind::Edge => {
-            let found = hit(&|item| matches!(item, Item::Edge(..)), "edge of a panel")?;
-            match found.item {
-                Item::Edge(panel, edge) => Ok(Answer::Edge(panel, edge, found.at)),
-                _ => Err("there is no edge here: click on one".into()),
-            }
-        }
+        SlotKind::Edge => edge().map(|(panel, edge, at)| Answer::Edge(panel, edge, at)),
         SlotKind::Chain => {
-            let found = hit(&|item| matches!(item, Item::Edge(..)), "edge of a panel")?;
-            let Item::Edge(panel, edge) = found.item else {
-                return Err("there is no edge here: click on one".into());
-            };
+            let (panel, edge, _) = edge()?;
             let mut chain = state.chain.clone();
             chain.push((panel, edge));
             Ok(Answer::Chain(chain))
@@ -521,6 +527,11 @@ fn accept(
             return Outcome::default();
         }
         if state.places.len() < 2 {
+            // A name that was typed is kept for what comes of the places that are still to be given.
+            if state.is_typing() && !state.named.is_empty() {
+                state.clear_typed();
+                return Outcome::default();
+            }
             return refused("click at least two places first".into());
         }
         let places = std::mem::take(&mut state.places);

@@ -234,6 +234,8 @@ pub(super) fn step(
         Event::Hover(_) | Event::Enter | Event::Leave | Event::Drop => {}
     }
     next.along = next.along.clamp(0.0, whole);
+    outcome.gets_on = outcome.refusal.is_none() && next != *state;
+    outcome.gets_on &= !matches!(event, Event::Hover(_) | Event::Text(_) | Event::Backspace);
     (next, outcome)
 }
 

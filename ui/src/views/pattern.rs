@@ -3,6 +3,7 @@
 
 mod guides;
 mod input;
+mod revealed;
 
 use crate::canvas::boards::Boards;
 use crate::canvas::camera::{ScreenPoint, TableCamera};
@@ -81,8 +82,8 @@ pub struct PatternView {
     /// Whether keys went to another widget in the last frame.
     was_typed_into: bool,
     wants_fit: bool,
-    /// A part that is to be seen.
-    revealed: Option<Item>,
+    /// What is to be seen.
+    revealed: Option<revealed::Revealed>,
     /// Size of the view that everything was fitted into, until it is panned or zoomed.
     fitted: Option<egui::Vec2>,
     /// The seam that room was made for when its walk began.
@@ -163,26 +164,6 @@ impl PatternView {
     /// Shows the whole pattern when it is next drawn.
     pub fn fit(&mut self) {
         self.wants_fit = true;
-    }
-
-    /// Shows a part in the middle of the view when it is next drawn, unless it is seen already.
-    pub fn reveal(&mut self, item: Item) {
-        self.revealed = Some(item);
-    }
-
-    /// Moves the table so that the part that was asked for is seen.
-    fn follow_revealed(&mut self, view: Rect) {
-        let Some(item) = self.revealed.take() else {
-            return;
-        };
-        let parts = self.parts();
-        let Some((.., at)) = parts.into_iter().find(|(_, known, _)| *known == item) else {
-            return;
-        };
-        if !view.contains(self.screen(view, Vec2::zeros(), at)) {
-            self.camera.centre = at;
-            self.fitted = None;
-        }
     }
 
     /// Enlarges about the middle of the view.

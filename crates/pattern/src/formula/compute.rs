@@ -258,7 +258,7 @@ fn like(a: Quantity, b: Quantity, value: f64) -> Arithmetic {
         }),
         None => Err((
             format!("{} is put together with {}", kind(a.power), kind(b.power)),
-            "give the plain number a unit, for example 2cm",
+            "give the plain number a unit, for example 2cm; a variable gets it in its own row",
         )),
     }
 }

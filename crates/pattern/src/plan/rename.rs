@@ -144,7 +144,7 @@ pub(super) fn variable_name(
     if !is_own && (is_measured || definition(&name).is_some()) {
         return Err(impossible(
             format!("{name:?} is a measurement, and formulas would not tell them apart"),
-            "choose a name that is none",
+            "choose another name",
         ));
     }
     Ok(name)

@@ -1,0 +1,50 @@
+//! Brings into view what is asked for and lies outside it.
+
+use super::PatternView;
+use crate::canvas::selection::Item;
+use egui::Rect;
+use toile_geometry::{Bounds2, Vec2};
+
+/// What is to be seen when the view is next drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Revealed {
+    /// A part.
+    Part(Item),
+    /// All of a rectangle of the table [m].
+    Room(Bounds2),
+}
+
+impl PatternView {
+    /// Shows a part in the middle of the view when it is next drawn, unless it is seen already.
+    pub fn reveal(&mut self, item: Item) {
+        self.revealed = Some(Revealed::Part(item));
+    }
+
+    /// Shows all of a rectangle of the table [m] when the view is next drawn.
+    pub fn reveal_room(&mut self, bounds: Bounds2) {
+        self.revealed = Some(Revealed::Room(bounds));
+    }
+
+    /// Moves the table so that what was asked for is seen.
+    pub(super) fn follow_revealed(&mut self, view: Rect) {
+        let camera = self.camera;
+        match self.revealed.take() {
+            Some(Revealed::Part(item)) => {
+                let found = self
+                    .parts()
+                    .into_iter()
+                    .find(|(_, known, _)| *known == item);
+                if let Some((.., at)) = found
+                    && !view.contains(self.screen(view, Vec2::zeros(), at))
+                {
+                    self.camera.centre = at;
+                }
+            }
+            Some(Revealed::Room(bounds)) => self.camera.reveal(view, &bounds),
+            None => {}
+        }
+        if self.camera != camera {
+            self.fitted = None;
+        }
+    }
+}
