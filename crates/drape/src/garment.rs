@@ -360,9 +360,8 @@ impl GarmentRun {
         }
         self.refinements += 1;
         for triangle in offenders {
-            self.model.refine_contact(triangle);
+            self.state.refine_contact(&self.model, triangle);
         }
-        self.state.follow_samples(&self.model);
         true
     }
 
@@ -456,7 +455,7 @@ fn part_layers(model: &mut Model, layer: &[u16], cloth_offset: f64) {
     let mut layers = layer.to_vec();
     layers.sort_unstable();
     layers.dedup();
-    for sample in &mut model.samples {
+    for sample in Arc::make_mut(&mut model.samples) {
         let own = layer.get(sample.vertices[0] as usize);
         let below = own.map_or(0, |own| layers.partition_point(|other| other < own));
         sample.extra_offset = below as f64 * cloth_offset;

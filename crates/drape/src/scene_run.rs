@@ -288,9 +288,8 @@ impl SceneRun {
         found.dedup();
         self.refinements += usize::from(!found.is_empty());
         for triangle in found {
-            self.model.refine_contact(triangle);
+            self.state.refine_contact(&self.model, triangle);
         }
-        self.state.follow_samples(&self.model);
     }
 
     /// What contact of cloth with cloth found and did, where the method counts it.

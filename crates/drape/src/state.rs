@@ -1,7 +1,8 @@
 //! The state: what changes as a simulation runs; a complete checkpoint.
 
 use crate::collision::ClothMemory;
-use crate::{InternalStrain, Memory, Model};
+use crate::{ContactSample, InternalStrain, Memory, Model};
+use std::sync::Arc;
 use toile_geometry::Vec3;
 
 /// Positions, velocities, and what contact remembers.
@@ -11,6 +12,9 @@ pub struct State {
     pub positions: Vec<Vec3>,
     /// Velocities [m/s].
     pub velocities: Vec<Vec3>,
+    /// Where the cloth is tested against solid surfaces: at its vertices, and within triangles where it
+    /// went on crossing.
+    pub samples: Arc<Vec<ContactSample>>,
     /// Where each contact sample sticks to a surface [m]; none while it is free.
     pub anchors: Vec<Option<Vec3>>,
     /// Normal force on each contact sample in the last step [N].
@@ -37,6 +41,7 @@ impl Clone for State {
         let Self {
             positions,
             velocities,
+            samples,
             anchors,
             normal_forces,
             cloth,
@@ -46,6 +51,7 @@ impl Clone for State {
         } = from;
         self.positions.clone_from(positions);
         self.velocities.clone_from(velocities);
+        self.samples.clone_from(samples);
         self.anchors.clone_from(anchors);
         self.normal_forces.clone_from(normal_forces);
         self.cloth.clone_from(cloth);
@@ -61,6 +67,7 @@ impl State {
         Self {
             velocities: vec![Vec3::zeros(); positions.len()],
             positions,
+            samples: model.samples.clone(),
             anchors: vec![None; model.samples.len()],
             normal_forces: vec![0.0; model.samples.len()],
             cloth: ClothMemory::default(),
@@ -70,10 +77,10 @@ impl State {
         }
     }
 
-    /// Makes room for contact samples added to the model.
-    pub fn follow_samples(&mut self, model: &Model) {
-        self.anchors.resize(model.samples.len(), None);
-        self.normal_forces.resize(model.samples.len(), 0.0);
+    /// Makes room for contact samples that were added.
+    pub fn follow_samples(&mut self) {
+        self.anchors.resize(self.samples.len(), None);
+        self.normal_forces.resize(self.samples.len(), 0.0);
     }
 
     /// First vertex with a position or velocity that is not finite.

@@ -40,7 +40,7 @@ impl Workspace {
         self.solve_with(model, x, inertia, settings, report);
         for _ in 0..FORESIGHTS {
             let promises = 0.5 * dot(&self.gradient, &self.direction);
-            if !(self.contacts).foresee(model, x, &self.direction, promises) {
+            if !(self.contacts).foresee(x, &self.direction, promises) {
                 break;
             }
             self.force.clone_from(&self.gradient);

@@ -274,7 +274,7 @@ impl Workspace {
             energy += elastic.law.energy(elastic.gap(x));
         }
         for contact in &self.contacts.active {
-            let place = model.samples[contact.sample as usize].place(x);
+            let place = contact.point.place(x);
             energy += contact.law.energy(&contact.plane, place);
         }
         for contact in &self.contacts.cloth.active {
@@ -311,7 +311,7 @@ impl Workspace {
             *out = g;
         });
         for contact in &self.contacts.active {
-            let sample = &model.samples[contact.sample as usize];
+            let sample = &contact.point;
             let (_, gradient, _) = contact.law.evaluate(&contact.plane, sample.place(x));
             for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
                 self.gradient[v as usize] += gradient * w;
@@ -353,7 +353,7 @@ impl Workspace {
             *d = Matrix3::identity() * (inertia.weight[v] + pull);
         }
         for contact in &self.contacts.active {
-            let sample = &model.samples[contact.sample as usize];
+            let sample = &contact.point;
             let place = sample.place(x);
             let (_, _, mut hessian) = contact.law.evaluate(&contact.plane, place);
             hessian -= contact.law.missing_curvature(&contact.plane, place) * curvature.0;

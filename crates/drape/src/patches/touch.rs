@@ -176,7 +176,7 @@ impl Touch {
             return;
         }
         let buried = state.memory.buried();
-        for (number, sample) in model.samples.iter().enumerate() {
+        for (number, sample) in state.samples.iter().enumerate() {
             let vertex = sample.vertices[0];
             if sample.triangle.is_some() || model.pinned[vertex as usize] {
                 continue;

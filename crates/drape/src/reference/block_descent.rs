@@ -4,7 +4,7 @@ use super::colours::Colours;
 use super::pieces::Pieces;
 use crate::contacts::Contacts;
 use crate::methods::implicit::{Limits, Problem, Solver};
-use crate::{Model, NewtonReport, State, Workspace};
+use crate::{Contact, Model, NewtonReport, State, Workspace};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -63,13 +63,13 @@ impl Touching {
     fn gather(&mut self, model: &Model, contacts: &Contacts) {
         self.start.clear();
         self.start.resize(model.vertex_count() + 1, 0);
-        let uses = |contact: u32| {
-            let sample = &model.samples[contact as usize];
+        let uses = |contact: &Contact| {
+            let sample = &contact.point;
             let used = if sample.triangle.is_some() { 3 } else { 1 };
             sample.vertices.into_iter().zip(sample.weights).take(used)
         };
         for contact in &contacts.active {
-            for (v, _) in uses(contact.sample) {
+            for (v, _) in uses(contact) {
                 self.start[v as usize + 1] += 1;
             }
         }
@@ -81,7 +81,7 @@ impl Touching {
         self.entries
             .resize(next[model.vertex_count()] as usize, (0, 0.0));
         for (at, contact) in contacts.active.iter().enumerate() {
-            for (v, w) in uses(contact.sample) {
+            for (v, w) in uses(contact) {
                 self.entries[next[v as usize] as usize] = (at as u32, w);
                 next[v as usize] += 1;
             }
@@ -138,7 +138,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
         }
         for &(at, w) in self.touching.of(v) {
             let contact = &workspace.contacts.active[at as usize];
-            let place = model.samples[contact.sample as usize].place(x);
+            let place = contact.point.place(x);
             let (_, g, h) = contact.law.evaluate(&contact.plane, place);
             gradient += g * w;
             hessian += h * (w * w);

@@ -116,7 +116,7 @@ impl Metric {
     pub fn press(&mut self, problem: &Problem, state: &State, workspace: &Workspace) {
         self.pressing.clear();
         for contact in &workspace.contacts.active {
-            let sample = &problem.model.samples[contact.sample as usize];
+            let sample = &contact.point;
             let vertex = sample.vertices[0];
             let place = sample.place(&state.positions);
             if sample.triangle.is_none() && contact.plane.depth_of(place) > 0.0 {

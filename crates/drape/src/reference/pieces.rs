@@ -62,7 +62,7 @@ impl Pieces {
             }
         }
         for contact in &workspace.contacts.active {
-            let sample = &model.samples[contact.sample as usize];
+            let sample = &contact.point;
             let (_, _, hessian) = contact
                 .law
                 .evaluate(&contact.plane, sample.place(&state.positions));

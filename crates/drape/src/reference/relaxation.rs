@@ -94,7 +94,7 @@ impl Relaxation {
             masses.push(0.25 * SAFETY * (sums.max() + own));
         }
         for contact in &workspace.contacts.active {
-            let sample = &model.samples[contact.sample as usize];
+            let sample = &contact.point;
             for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
                 masses[v as usize] += 0.25 * SAFETY * w * contact.law.normal;
             }
@@ -159,7 +159,7 @@ impl Method for Relaxation {
         state: &mut State,
         _step: f64,
     ) -> Result<StepReport, DrapeError> {
-        state.follow_samples(model);
+        state.follow_samples();
         state.velocities.fill(Vec3::zeros());
         let mut run = self.resume(model, state);
         let first = run.iterations;

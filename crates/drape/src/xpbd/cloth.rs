@@ -176,7 +176,7 @@ impl Xpbd {
             watch.forget();
             return self.advance(model, state, span.substep, span.count, span.drag);
         }
-        if self.take_up(model) {
+        if self.take_up(model, &state.samples) {
             // The contacts in hand are gone.
             watch.forget();
         }

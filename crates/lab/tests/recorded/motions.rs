@@ -12,6 +12,8 @@ use toile_session::{Command, Quality, SAMPLE, Session, Silent};
 
 /// Step in time [s].
 const STEP: f64 = 1.0 / 240.0;
+/// Steps of sewing after which panels are still apart.
+const EARLY: usize = 5;
 /// Steps of a stage.
 const STAGE_STEPS: usize = 20;
 
@@ -69,8 +71,11 @@ pub fn note_stages(record: &mut Record) {
     while steps < STAGE_STEPS && run.progress().stage == Stage::Sewing {
         run.advance().unwrap();
         steps += 1;
+        if steps == EARLY {
+            note(record, "sewing, early", &run.state);
+        }
     }
-    note(record, "sewing", &run.state);
+    note(record, "sewn", &run.state);
     record.numbers("sewing, steps", &[steps as f64]);
     record.numbers("sewing, gap", &[run.gap_before_merging()]);
 
