@@ -111,11 +111,13 @@ mod tests {
         contacts.active = vec![
             Contact {
                 sample: 0,
+                point: model.samples[0],
                 plane: plane(0, 2e-4),
                 law,
             },
             Contact {
                 sample: 1,
+                point: model.samples[1],
                 plane: plane(1, -1e-3),
                 law,
             },
@@ -147,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_step_on_or_up_meets_no_kink() {
-        let (model, mut contacts, x) = scene();
+        let (_, mut contacts, x) = scene();
         let on_and_up = [Vec3::x() * 1e-4, Vec3::y() * 3e-3, Vec3::zeros()];
         assert!(!contacts.foresee(&x, &on_and_up, 1e-12));
     }
