@@ -3,8 +3,8 @@
 use crate::collision::ClothContacts;
 use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{ContactLaw, ContactPlane, damped_push, gentle_push};
-use crate::state::Memory as StateMemory;
-use crate::{Model, Pose, State};
+use crate::memory::Memory as StateMemory;
+use crate::{ContactSample, Model, Pose, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -14,6 +14,8 @@ use toile_geometry::Vec3;
 pub struct Contact {
     /// Index of the sample.
     pub sample: u32,
+    /// The sample: a point of the cloth.
+    pub point: ContactSample,
     /// The surface, linearised there.
     pub plane: ContactPlane,
     /// Its laws.
@@ -63,7 +65,7 @@ impl Contacts {
             place: Vec3::repeat(f64::INFINITY),
             clearance: 0.0,
         };
-        self.memory.resize(model.samples.len(), unknown);
+        self.memory.resize(state.samples.len(), unknown);
         let poses: Vec<Option<Pose>> = model.colliders.iter().map(|c| c.pose(state.time)).collect();
         if poses.iter().any(Option::is_some) {
             // What was measured holds for a surface that stands still.
@@ -95,7 +97,7 @@ impl Contacts {
     /// takes from it what would throw cloth that a surface was put over [N].
     pub fn damp(&self, model: &Model, state: &State, h: f64, force: &mut [Vec3]) {
         for contact in &self.active {
-            let sample = &model.samples[contact.sample as usize];
+            let sample = &contact.point;
             let (plane, law) = (&contact.plane, &contact.law);
             let place = sample.place(&state.positions);
             let elastic = law.normal_force(plane, place);
@@ -125,7 +127,7 @@ impl Contacts {
             return;
         }
         let buried = self.active.iter().filter(|contact| {
-            let sample = &model.samples[contact.sample as usize];
+            let sample = &contact.point;
             is_buried(model, state, contact, sample.place(&state.positions))
         });
         state.memory = StateMemory::of_buried(buried.map(|contact| contact.sample));
@@ -136,10 +138,10 @@ impl Contacts {
         self.cloth.settle(model, state);
         state.anchors.fill(None);
         state.normal_forces.fill(0.0);
-        state.follow_samples(model);
+        state.follow_samples();
         for contact in &self.active {
             let at = contact.sample as usize;
-            let place = model.samples[at].place(&state.positions);
+            let place = contact.point.place(&state.positions);
             let force = contact.law.normal_force(&contact.plane, place);
             if force > 0.0 {
                 state.anchors[at] = Some(contact.law.slide(&contact.plane, place, force));
@@ -153,7 +155,7 @@ impl Contacts {
 /// lain so and not come out since.
 fn is_buried(model: &Model, state: &State, contact: &Contact, place: Vec3) -> bool {
     let depth = contact.plane.depth_of(place);
-    let offset = model.contact.offset + model.samples[contact.sample as usize].extra_offset;
+    let offset = model.contact.offset + contact.point.extra_offset;
     let remembered = || state.memory.buried().binary_search(&contact.sample).is_ok();
     depth > offset || (depth > 0.0 && remembered())
 }
@@ -177,7 +179,7 @@ fn find(
         state,
         poses,
     } = scene;
-    let sample = &model.samples[at];
+    let sample = &state.samples[at];
     let place = sample.place(positions);
     let offset = model.contact.offset + sample.extra_offset;
     let reach = offset * REACH_IN_OFFSETS;
@@ -241,6 +243,7 @@ fn find(
     };
     out.push(Contact {
         sample: at as u32,
+        point: *sample,
         plane,
         law,
     });

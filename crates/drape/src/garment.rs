@@ -3,12 +3,12 @@
 //! alike.
 
 use crate::collision::{ClothMemory, Tally};
+use crate::kinetic_damping::KineticDamping;
 use crate::measure::{Measures, measure};
 use crate::merge::merged_layers;
-use crate::swing::SwingRun;
 use crate::{
-    Carry, Cloth, Collider, ContactSettings, DrapeError, Model, RestRun, RestSettings, SewRun,
-    SewSettings, State, Workspace, merge_map,
+    Carry, Cloth, Collider, ContactSettings, DrapeError, Model, PseudoTransientContinuation,
+    RestSettings, SewRun, SewSettings, State, Workspace, merge_map,
 };
 use std::sync::Arc;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
@@ -84,12 +84,12 @@ pub struct GarmentRun {
     workspace: Workspace,
     setup: GarmentSetup,
     sew: SewRun,
-    swing: Option<SwingRun>,
+    swing: Option<KineticDamping>,
     /// Whether crossings of cloth ended the swing before the cloth was calm.
     cut_short: bool,
     /// Swings of this level that are over.
     swings: usize,
-    rest: RestRun,
+    rest: PseudoTransientContinuation,
     stage: Stage,
     gap_before_merging: f64,
     refinements: usize,
@@ -140,7 +140,7 @@ impl GarmentRun {
             swing: None,
             cut_short: false,
             swings: 0,
-            rest: RestRun::new(setup.rest),
+            rest: PseudoTransientContinuation::new(setup.rest),
             sew: SewRun::new(&mut model, Vec::new(), setup.sew),
             workspace: Workspace::default(),
             stage: Stage::Sewing,
@@ -185,7 +185,7 @@ impl GarmentRun {
         self.tally = self.cloth_tally();
         self.workspace = Workspace::default();
         self.stage = Stage::Sewing;
-        self.rest = RestRun::new(self.rest_settings());
+        self.rest = PseudoTransientContinuation::new(self.rest_settings());
         self.refinements = 0;
         self.swings = 0;
         self.look_below = FIRST_LOOK;
@@ -291,8 +291,8 @@ impl GarmentRun {
     fn swing(&mut self) -> Result<(), DrapeError> {
         let model = &self.model;
         let swing = (self.swing).get_or_insert_with(|| match self.level {
-            0 => SwingRun::new(model),
-            _ => SwingRun::carried(model),
+            0 => KineticDamping::new(model),
+            _ => KineticDamping::carried(model),
         });
         swing.advance(&self.model, &mut self.state)?;
         let shown = 0.5 + 0.2 * swing.share();
@@ -314,7 +314,7 @@ impl GarmentRun {
             self.cut_short = false;
             if self.swings < MOST_SWINGS {
                 self.steps[1] += self.rest.steps();
-                self.rest = RestRun::near(self.rest_settings());
+                self.rest = PseudoTransientContinuation::near(self.rest_settings());
                 let cloth = &mut self.workspace.contacts.cloth;
                 self.tally = self.tally.then(std::mem::take(&mut cloth.tally));
                 self.state.cloth = ClothMemory::default();
@@ -360,9 +360,8 @@ impl GarmentRun {
         }
         self.refinements += 1;
         for triangle in offenders {
-            self.model.refine_contact(triangle);
+            self.state.refine_contact(&self.model, triangle);
         }
-        self.state.follow_samples(&self.model);
         true
     }
 
@@ -420,7 +419,7 @@ impl GarmentRun {
         self.workspace = Workspace::default();
         self.gap_before_merging = self.sew.last_gap();
         self.swing = None;
-        self.rest = RestRun::near(self.rest_settings());
+        self.rest = PseudoTransientContinuation::near(self.rest_settings());
         self.stage = Stage::Swinging;
         self.show(0.5);
         Ok(())
@@ -456,7 +455,7 @@ fn part_layers(model: &mut Model, layer: &[u16], cloth_offset: f64) {
     let mut layers = layer.to_vec();
     layers.sort_unstable();
     layers.dedup();
-    for sample in &mut model.samples {
+    for sample in Arc::make_mut(&mut model.samples) {
         let own = layer.get(sample.vertices[0] as usize);
         let below = own.map_or(0, |own| layers.partition_point(|other| other < own));
         sample.extra_offset = below as f64 * cloth_offset;

@@ -3,12 +3,11 @@
 //! solved by factorisation.
 
 use crate::collision::Couplings;
-use crate::factor::{Block, Factor, Graph};
-use crate::newton::elastics_of;
-use crate::sparse::ScalarMatrix;
 use crate::{Elastic, ElasticEnd, Model};
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
+use toile_sparse::ScalarMatrix;
+use toile_sparse::factor::{Block, Factor, Graph};
 
 /// A symmetric positive semidefinite Hessian; rows and columns of pinned vertices do not count.
 pub struct Hessian<'a> {
@@ -80,7 +79,7 @@ impl Hessian<'_> {
     pub fn row_times(&self, row: usize, p: &[Vec3]) -> Vec3 {
         let model = self.model;
         let mut sum = model.pattern.row_times(row, self.blocks, p) + self.bending.row_times(row, p);
-        for (e, other) in elastics_of(model, row) {
+        for (e, other) in model.elastics_at(row) {
             if let ElasticEnd::Vertex(other) = other {
                 sum -= p[other as usize] * self.secants[e];
             }
@@ -116,7 +115,7 @@ impl Hessian<'_> {
                 (0..3).for_each(|k| out[at][k][k] += value);
             }
         }
-        for (e, other) in elastics_of(model, row) {
+        for (e, other) in model.elastics_at(row) {
             if let ElasticEnd::Vertex(other) = other
                 && let Ok(at) = columns.binary_search(&number(other))
             {

@@ -1,6 +1,6 @@
 //! Merging: vertices that seams have drawn together become one.
 
-use crate::collision::BETWEEN_LAYERS;
+use crate::collision::layer_order::BETWEEN_LAYERS;
 use toile_geometry::Vec3;
 
 /// Union-find: sets of vertices, each known by its smallest.

@@ -1,17 +1,18 @@
 //! The model: everything about a simulation that does not change while it runs.
 
 use crate::caps::without_caps;
-use crate::contact_settings::{FIELD_REACH, MOST_EXTRA};
+use crate::contact_sample::ContactSample;
+use crate::contact_settings::FIELD_REACH;
+use crate::elastic::{Elastic, ElasticEnd};
 use crate::laws::air::Air;
 use crate::laws::bending::{BendingMatrix, BendingStencil, RestSheet};
-use crate::laws::elastic::ElasticLaw;
 use crate::laws::membrane::MembraneElement;
 use crate::laws::stretch::MembraneLaw;
-use crate::sparse::{BlockPattern, ScalarMatrix};
 use crate::{Cloth, ContactSettings, DrapeError, Material, Motion, Pose};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 use toile_geometry::{DistanceField, SurfaceTree, TriangleMesh, Vec3};
+use toile_sparse::{BlockPattern, ScalarMatrix};
 
 /// A solid surface: exact for counting, smooth for forces.
 #[derive(Clone)]
@@ -107,36 +108,6 @@ impl Collider {
     }
 }
 
-/// One end of an elastic.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ElasticEnd {
-    /// A vertex of the cloth.
-    Vertex(u32),
-    /// A fixed place [m].
-    Point(Vec3),
-}
-
-/// An attachment force between a vertex and another vertex or a place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Elastic {
-    /// The vertex it pulls.
-    pub from: u32,
-    /// What it is pulled to.
-    pub to: ElasticEnd,
-    /// Its force law.
-    pub law: ElasticLaw,
-}
-
-impl Elastic {
-    /// The vertices it couples, where it couples two.
-    pub(crate) fn ends(&self) -> Option<[u32; 2]> {
-        match self.to {
-            ElasticEnd::Vertex(to) => Some([self.from, to]),
-            ElasticEnd::Point(_) => None,
-        }
-    }
-}
-
 fn box_corners(positions: &[Vec3]) -> [Vec3; 8] {
     let mut low = Vec3::repeat(f64::INFINITY);
     let mut high = Vec3::repeat(f64::NEG_INFINITY);
@@ -157,37 +128,6 @@ pub struct Grip {
     pub home: Vec3,
     /// The motion.
     pub motion: Arc<Motion>,
-}
-
-/// How much farther a triangle is kept each time it is found crossing again [m]: a quarter of the
-/// usual offset.
-const EXTRA_OFFSET: f64 = 1e-3;
-
-/// A point of the cloth that is tested against surfaces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactSample {
-    /// The triangle it lies on; none for a sample at a vertex (then `vertices[0]`).
-    pub triangle: Option<u32>,
-    /// Vertices it hangs on.
-    pub vertices: [u32; 3],
-    /// Their weights.
-    pub weights: [f64; 3],
-    /// Area of cloth it stands for [m2].
-    pub area: f64,
-    /// Friction coefficient there.
-    pub friction: f64,
-    /// Share of the normal speed of an impact that comes back there, where any cloth says it.
-    pub restitution: Option<f64>,
-    /// Distance kept beyond the usual offset [m]: raised where a triangle went on crossing.
-    pub extra_offset: f64,
-}
-
-impl ContactSample {
-    /// Its place [m].
-    pub fn place(&self, x: &[Vec3]) -> Vec3 {
-        let [a, b, c] = self.vertices.map(|v| x[v as usize]);
-        a * self.weights[0] + b * self.weights[1] + c * self.weights[2]
-    }
 }
 
 /// The constant part of a simulation.
@@ -215,8 +155,9 @@ pub struct Model {
     pub colliders: Vec<Collider>,
     /// How the cloth meets them.
     pub contact: ContactSettings,
-    /// Where the cloth is tested against them.
-    pub samples: Vec<ContactSample>,
+    /// Where the cloth is tested against them from the start: at its vertices. A state has more where it
+    /// needs them.
+    pub samples: Arc<Vec<ContactSample>>,
     /// Layer of each vertex, larger numbers farther out, or
     /// [`BETWEEN_LAYERS`](crate::collision::BETWEEN_LAYERS); empty where all are of one.
     pub layer: Vec<u16>,
@@ -285,7 +226,7 @@ impl Model {
             elastics: Vec::new(),
             colliders: Vec::new(),
             contact: ContactSettings::default(),
-            samples: Vec::new(),
+            samples: Arc::default(),
             layer: Vec::new(),
             gravity: Vec3::new(0.0, -9.81, 0.0),
             air_drag: 0.0,
@@ -302,6 +243,19 @@ impl Model {
         };
         model.lump(count);
         Ok(model)
+    }
+
+    /// Elastics at a vertex with their other end.
+    pub(crate) fn elastics_at(&self, v: usize) -> impl Iterator<Item = (usize, ElasticEnd)> + '_ {
+        let uses = self.elastic_start[v] as usize..self.elastic_start[v + 1] as usize;
+        self.elastic_uses[uses].iter().map(move |&e| {
+            let elastic = &self.elastics[e as usize];
+            let other = match elastic.from as usize == v {
+                true => elastic.to,
+                false => ElasticEnd::Vertex(elastic.from),
+            };
+            (e as usize, other)
+        })
     }
 
     /// Lumps mass, area and friction at the vertices: a third of each triangle to each corner.
@@ -322,7 +276,7 @@ impl Model {
                 }
             }
         }
-        self.samples = (0..count)
+        let samples = (0..count)
             .filter(|&v| area[v] > 0.0)
             .map(|v| ContactSample {
                 triangle: None,
@@ -335,6 +289,7 @@ impl Model {
                 extra_offset: 0.0,
             })
             .collect();
+        self.samples = Arc::new(samples);
         // A vertex on no triangle has no mass; it stays where it is.
         for (v, &share) in area.iter().enumerate() {
             if share <= 0.0 {
@@ -406,61 +361,6 @@ impl Model {
             .iter()
             .map(|&e| self.elastics[e as usize].law.stiffness)
             .sum()
-    }
-
-    /// Tests a triangle at its middle and the middles of its edges too, where it is too large
-    /// for the curve it lies on; when it is tested so already, keeps it and its corners farther
-    /// from the surface.
-    pub fn refine_contact(&mut self, triangle: u32) {
-        for triangle in self.under(triangle) {
-            self.refine_triangle(triangle);
-        }
-    }
-
-    /// Triangles of the model that cover one of the surface: itself, or the two that were exchanged
-    /// for it and its neighbour.
-    fn under(&self, triangle: u32) -> Vec<u32> {
-        let given = self.surface_triangles()[triangle as usize];
-        let own = self.triangles[triangle as usize];
-        if given == own {
-            return vec![triangle];
-        }
-        let quad = |v: &u32| given.contains(v) || own.contains(v);
-        let all = 0..self.triangles.len() as u32;
-        all.filter(|&t| self.triangles[t as usize].iter().all(quad))
-            .collect()
-    }
-
-    fn refine_triangle(&mut self, triangle: u32) {
-        if self.samples.iter().any(|s| s.triangle == Some(triangle)) {
-            let corners = self.triangles[triangle as usize];
-            for sample in &mut self.samples {
-                let corner = sample.triangle.is_none() && corners.contains(&sample.vertices[0]);
-                if corner || sample.triangle == Some(triangle) {
-                    sample.extra_offset = (sample.extra_offset + EXTRA_OFFSET).min(MOST_EXTRA);
-                }
-            }
-            return;
-        }
-        let vertices = self.triangles[triangle as usize];
-        let material = &self.materials[self.material[triangle as usize] as usize];
-        let third = 1.0 / 3.0;
-        for weights in [
-            [third; 3],
-            [0.5, 0.5, 0.0],
-            [0.0, 0.5, 0.5],
-            [0.5, 0.0, 0.5],
-        ] {
-            self.samples.push(ContactSample {
-                triangle: Some(triangle),
-                vertices,
-                weights,
-                area: self.elements[triangle as usize].area / 3.0,
-                friction: material.friction,
-                restitution: material.restitution,
-                extra_offset: 0.0,
-            });
-        }
     }
 
     /// Triangles of the surface as it was given.

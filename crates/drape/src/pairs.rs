@@ -1,8 +1,8 @@
 //! The memory of L-BFGS: steps, and the changes of the gradient over them.
 
-use crate::sparse::dot;
 use std::collections::VecDeque;
 use toile_geometry::Vec3;
+use toile_sparse::dot;
 
 /// A step s and the change y of the gradient over it.
 #[derive(Default)]

@@ -2,10 +2,11 @@
 
 use crate::collision::ClothContact;
 use crate::model::corner_lists;
-use crate::sparse::{BlockPattern, ScalarMatrix};
 use crate::{ContactSample, ContactSettings, Elastic, ElasticEnd, Model, State};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use toile_geometry::Vec3;
+use toile_sparse::{BlockPattern, ScalarMatrix};
 
 /// Some vertices of a model, free to move, and those they are coupled with, pinned.
 pub struct Part {
@@ -108,9 +109,9 @@ impl Numbers {
 
     /// Contact samples on own vertices, with their numbers in the whole; `triangles` are those of
     /// the part, ascending.
-    fn samples(&mut self, model: &Model, triangles: &[u32]) -> Vec<(usize, ContactSample)> {
+    fn samples(&mut self, all: &[ContactSample], triangles: &[u32]) -> Vec<(usize, ContactSample)> {
         let mut samples = Vec::new();
-        for (at, sample) in model.samples.iter().enumerate() {
+        for (at, sample) in all.iter().enumerate() {
             if self.moves(&sample.vertices, &sample.weights) {
                 let triangle = |t| triangles.binary_search(&t).ok().map(|t| t as u32);
                 let own = ContactSample {
@@ -144,12 +145,15 @@ impl Part {
         let bending = numbers.bending(model);
         let elastics = numbers.elastics(model);
         let touching = numbers.touching(contacts);
-        let samples = numbers.samples(model, &used);
+        let samples = numbers.samples(&state.samples, &used);
         let vertices = numbers.vertices;
         let (corner_start, corners) = corner_lists(vertices.len(), &triangles);
         let mut pinned = vec![false; vertices.len()];
         pinned[own.len()..].fill(true);
+        let own_samples: Vec<ContactSample> = samples.iter().map(|(_, sample)| *sample).collect();
+        let own_samples = Arc::new(own_samples);
         let state = State {
+            samples: own_samples.clone(),
             anchors: samples.iter().map(|&(at, _)| state.anchors[at]).collect(),
             normal_forces: (samples.iter())
                 .map(|&(at, _)| state.normal_forces[at])
@@ -178,7 +182,7 @@ impl Part {
                 cloth_offset: 0.0,
                 ..model.contact
             },
-            samples: samples.into_iter().map(|(_, sample)| sample).collect(),
+            samples: own_samples,
             layer: Vec::new(),
             gravity: model.gravity,
             air_drag: 0.0,
@@ -259,7 +263,6 @@ mod tests {
         let mut model = Model::new("sheets", &cloth).unwrap();
         model.contact.cloth_offset = 2e-3;
         model.colliders = vec![wall()];
-        model.refine_contact(48);
         let law = ElasticLaw {
             stiffness: 30.0,
             largest_force: 1.0,
@@ -271,7 +274,8 @@ mod tests {
             elastic(90, ElasticEnd::Vertex(38)),
             elastic(1, ElasticEnd::Vertex(120)),
         ]);
-        let state = State::at_rest(&model, mesh.positions.clone());
+        let mut state = State::at_rest(&model, mesh.positions.clone());
+        state.refine_contact(&model, 48);
         let own: Vec<u32> = (0..36).map(|k| 24 + k / 6 * 11 + k % 6).collect();
 
         let mut whole = Workspace::default();
@@ -285,7 +289,7 @@ mod tests {
         let places = &part.state.positions;
         (alone.contacts).refresh_surfaces(&part.model, &part.state, places);
         assert!(alone.contacts.active.iter().any(|c| c.plane.depth > 0.0));
-        let triangles = part.model.samples.iter().filter(|s| s.triangle.is_some());
+        let triangles = part.state.samples.iter().filter(|s| s.triangle.is_some());
         assert_eq!(triangles.count(), 4);
         alone.fill_gradient(&part.model, places, None);
         let largest = forces.iter().map(|f| f.norm()).fold(0.0, f64::max);

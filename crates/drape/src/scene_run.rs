@@ -4,7 +4,8 @@ use crate::collision::Tally;
 use crate::laws::elastic::ElasticLaw;
 use crate::measure::{Measures, measure};
 use crate::merge::{joinable, merged_layers, merged_motion};
-use crate::methods::{Method, whole_energy};
+use crate::method::Method;
+use crate::methods::whole_energy;
 use crate::scene::{ObjectKind, Scene, SceneEnd};
 use crate::{
     Cloth, Collider, DrapeError, Elastic, ElasticEnd, Grip, Model, State, Workspace, merge_map,
@@ -287,9 +288,8 @@ impl SceneRun {
         found.dedup();
         self.refinements += usize::from(!found.is_empty());
         for triangle in found {
-            self.model.refine_contact(triangle);
+            self.state.refine_contact(&self.model, triangle);
         }
-        self.state.follow_samples(&self.model);
     }
 
     /// What contact of cloth with cloth found and did, where the method counts it.

@@ -1,52 +1,9 @@
 //! The state: what changes as a simulation runs; a complete checkpoint.
 
 use crate::collision::ClothMemory;
-use crate::step_terms::SettledStrain;
-use crate::{Model, RelaxationRun, RestRun};
+use crate::{ContactSample, InternalStrain, Memory, Model};
+use std::sync::Arc;
 use toile_geometry::Vec3;
-
-/// What a method must remember from one step to the next beyond positions and velocities. Another
-/// method than the one that wrote it takes no notice of it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Memory {
-    /// Nothing.
-    #[default]
-    Nothing,
-    /// The state before the last step, for methods of two steps.
-    Previous {
-        /// Positions then [m].
-        positions: Vec<Vec3>,
-        /// Velocities then [m/s].
-        velocities: Vec<Vec3>,
-        /// Length of the step that followed [s].
-        step: f64,
-    },
-    /// Contact samples that a surface was put over and that have not come out since, in order.
-    Buried(Vec<u32>),
-    /// How the way to rest stands.
-    Rest(RestRun),
-    /// How dynamic relaxation stands.
-    Relaxation(RelaxationRun),
-}
-
-impl Memory {
-    /// Of contact samples that a surface was put over, in order.
-    pub(crate) fn of_buried(samples: impl Iterator<Item = u32>) -> Self {
-        let samples: Vec<u32> = samples.collect();
-        match samples.is_empty() {
-            true => Self::Nothing,
-            false => Self::Buried(samples),
-        }
-    }
-
-    /// The contact samples that a surface was put over, in order.
-    pub(crate) fn buried(&self) -> &[u32] {
-        match self {
-            Self::Buried(samples) => samples,
-            _ => &[],
-        }
-    }
-}
 
 /// Positions, velocities, and what contact remembers.
 #[derive(Debug, Default, PartialEq)]
@@ -55,6 +12,9 @@ pub struct State {
     pub positions: Vec<Vec3>,
     /// Velocities [m/s].
     pub velocities: Vec<Vec3>,
+    /// Where the cloth is tested against solid surfaces: at its vertices, and within triangles where it
+    /// went on crossing.
+    pub samples: Arc<Vec<ContactSample>>,
     /// Where each contact sample sticks to a surface [m]; none while it is free.
     pub anchors: Vec<Option<Vec3>>,
     /// Normal force on each contact sample in the last step [N].
@@ -62,7 +22,7 @@ pub struct State {
     /// What contact of cloth with cloth remembers.
     pub cloth: ClothMemory,
     /// What each triangle has settled into; empty unless a cloth keeps strain.
-    pub settled: Vec<SettledStrain>,
+    pub settled: Vec<InternalStrain>,
     /// Simulated time [s].
     pub time: f64,
     /// What the method remembers.
@@ -81,6 +41,7 @@ impl Clone for State {
         let Self {
             positions,
             velocities,
+            samples,
             anchors,
             normal_forces,
             cloth,
@@ -90,6 +51,7 @@ impl Clone for State {
         } = from;
         self.positions.clone_from(positions);
         self.velocities.clone_from(velocities);
+        self.samples.clone_from(samples);
         self.anchors.clone_from(anchors);
         self.normal_forces.clone_from(normal_forces);
         self.cloth.clone_from(cloth);
@@ -105,6 +67,7 @@ impl State {
         Self {
             velocities: vec![Vec3::zeros(); positions.len()],
             positions,
+            samples: model.samples.clone(),
             anchors: vec![None; model.samples.len()],
             normal_forces: vec![0.0; model.samples.len()],
             cloth: ClothMemory::default(),
@@ -114,10 +77,10 @@ impl State {
         }
     }
 
-    /// Makes room for contact samples added to the model.
-    pub fn follow_samples(&mut self, model: &Model) {
-        self.anchors.resize(model.samples.len(), None);
-        self.normal_forces.resize(model.samples.len(), 0.0);
+    /// Makes room for contact samples that were added.
+    pub fn follow_samples(&mut self) {
+        self.anchors.resize(self.samples.len(), None);
+        self.normal_forces.resize(self.samples.len(), 0.0);
     }
 
     /// First vertex with a position or velocity that is not finite.

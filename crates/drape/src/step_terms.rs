@@ -14,20 +14,11 @@ use crate::laws::bending::BendingStencil;
 use crate::laws::fold::{FoldTerm, along_normal, area_normal};
 use crate::laws::membrane::green_strain;
 use crate::laws::stretch::{MembraneLaw, StrainLaw};
-use crate::sparse::ScalarMatrix;
-use crate::{Model, State};
+use crate::{InternalStrain, Model, State};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
-
-/// What a triangle's cloth has settled into: v for stretch and for bending.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SettledStrain {
-    /// Green strain E_uu, E_vv, gamma.
-    pub stretch: [f64; 3],
-    /// Curvatures along the normal: uu, uv, vv [1/m].
-    pub curvature: [f64; 3],
-}
+use toile_sparse::ScalarMatrix;
 
 /// A membrane law during a step: shifted by kept strain, with viscosity.
 #[derive(Clone, Copy, Debug)]
@@ -371,7 +362,7 @@ pub(crate) fn relax(model: &Model, state: &mut State, h: f64) {
     }
     state
         .settled
-        .resize(model.triangles.len(), SettledStrain::default());
+        .resize(model.triangles.len(), InternalStrain::default());
     let x = &state.positions;
     state
         .settled

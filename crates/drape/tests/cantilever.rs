@@ -6,7 +6,7 @@
 mod strips;
 
 use strips::{KINDS, Kind, strip};
-use toile_drape::{Material, Model, RestRun, RestSettings, State, Workspace};
+use toile_drape::{Material, Model, PseudoTransientContinuation, RestSettings, State, Workspace};
 use toile_geometry::Vec3;
 
 const LENGTH: f64 = 0.2;
@@ -31,7 +31,7 @@ fn drop_over_projection(kind: Kind, along: usize, gamma: f64, locking: f64) -> f
     }
     let mut state = State::at_rest(&model, cloth.positions.clone());
     let mut workspace = Workspace::default();
-    let mut run = RestRun::new(RestSettings {
+    let mut run = PseudoTransientContinuation::new(RestSettings {
         residual: 1e-7,
         steps: 600,
         longest_move: 0.05,

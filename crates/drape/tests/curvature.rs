@@ -12,7 +12,7 @@ use numbers::Numbers;
 use sheets::{grid, sheet};
 use std::collections::BTreeSet;
 use toile_drape::collision::{
-    Clearance, ClothSurface, FeaturePair, Near, Nearness, Reach, Ways, crossings,
+    Clearance, ClothSurface, FeaturePair, LinearTrajectories, Near, Nearness, Reach, crossings,
 };
 use toile_geometry::{TriangleMesh, Vec3};
 
@@ -92,8 +92,8 @@ fn what_is_left_out_keeps_its_distance_wherever_vertices_stray() {
         let (flat, mut x) = waved(seed);
         let mut surface = ClothSurface::of_mesh(&flat);
         // Far enough that every pair that could come near in the time is among these.
-        let all = surface.near(Ways::still(&x), 0.02);
-        let found = surface.near_unless_clear(Ways::still(&x), 0.02, clearance);
+        let all = surface.near(LinearTrajectories::still(&x), 0.02);
+        let found = surface.near_unless_clear(LinearTrajectories::still(&x), 0.02, clearance);
         assert_eq!(
             crossings(&surface, &all, &x),
             crossings(&surface, &found, &x),
@@ -139,8 +139,8 @@ fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
         .extend(upper.triangles.iter().map(|t| t.map(|v| v + count)));
     let mut surface = ClothSurface::of_mesh(&plies);
     let x = plies.positions.clone();
-    let all = surface.near(Ways::still(&x), 2e-3);
-    let found = surface.near_unless_clear(Ways::still(&x), 2e-3, clearance);
+    let all = surface.near(LinearTrajectories::still(&x), 2e-3);
+    let found = surface.near_unless_clear(LinearTrajectories::still(&x), 2e-3, clearance);
     let split = |near: &[[u32; 2]]| -> [BTreeSet<FeaturePair>; 2] {
         let across = |pair: &FeaturePair| {
             let v = pair.vertices();
@@ -166,8 +166,8 @@ fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
         all.filter(|pair| Nearness::distance(*pair, &x) < 5e-4 * 6.3)
             .collect::<Vec<_>>()
     };
-    let all = surface.near(Ways::still(&x), 5e-3);
-    let found = surface.near_unless_clear(Ways::still(&x), 5e-3, clearance);
+    let all = surface.near(LinearTrajectories::still(&x), 5e-3);
+    let found = surface.near_unless_clear(LinearTrajectories::still(&x), 5e-3, clearance);
     assert!(close(&all, &surface).len() > 100);
     assert_eq!(close(&all, &surface), close(&found, &surface));
 }
@@ -191,8 +191,8 @@ fn numbers_that_are_none_leave_nothing_out() {
     ] {
         let mut surface = ClothSurface::of_mesh(&mesh);
         let x = &mesh.positions;
-        let all = surface.near(Ways::still(x), 0.01);
-        let found = surface.near_unless_clear(Ways::still(x), 0.01, clearance);
+        let all = surface.near(LinearTrajectories::still(x), 0.01);
+        let found = surface.near_unless_clear(LinearTrajectories::still(x), 0.01, clearance);
         match clearance.kept.is_finite() {
             true => assert_eq!(all, found),
             // The room at a vertex is less than without end: here there is room for it.
@@ -206,8 +206,8 @@ fn numbers_that_are_none_leave_nothing_out() {
         kept: 0.0,
         beyond: 0.0,
     };
-    let found = surface.near_unless_clear(Ways::still(&x), 0.01, clearance);
-    let all = surface.near(Ways::still(&x), 0.01);
+    let found = surface.near_unless_clear(LinearTrajectories::still(&x), 0.01, clearance);
+    let all = surface.near(LinearTrajectories::still(&x), 0.01);
     assert!(found.len() <= all.len());
 }
 
@@ -223,7 +223,7 @@ fn a_smooth_sheet_costs_the_same_few_regions_however_fine() {
             beyond: 1e-5,
         };
         let x = &dome.positions;
-        let found = surface.near_unless_clear(Ways::still(x), 2e-4, clearance);
+        let found = surface.near_unless_clear(LinearTrajectories::still(x), 2e-4, clearance);
         assert!(
             found.is_empty(),
             "{} pairs of a sheet of {n} cells",
@@ -270,7 +270,10 @@ fn what_was_found_serves_while_the_cloth_moves() {
             // Now and then all is elsewhere at once.
             let leap = Vec3::repeat(if step == 9 { 0.4 } else { 0.0 });
             let told_of = format!("state {seed}, step {step}");
-            for ways in [Ways::together(&from, &to), Ways::still(&to)] {
+            for ways in [
+                LinearTrajectories::together(&from, &to),
+                LinearTrajectories::still(&to),
+            ] {
                 let all = fresh.near(ways, reach);
                 let all = features(&fresh, &all);
                 surface.look(ways, &Reach::all(reach), clearance);
@@ -281,7 +284,7 @@ fn what_was_found_serves_while_the_cloth_moves() {
                 fresh.forget();
                 fresh.look(ways, &Reach::all(reach), clearance);
                 told_anew += fresh.opened()[1];
-                let exact = fresh.near(Ways::still(ways.from), 0.0);
+                let exact = fresh.near(LinearTrajectories::still(ways.from), 0.0);
                 assert_eq!(crossing, crossings(&fresh, &exact, ways.from), "{told_of}");
                 crossed += crossing.len();
                 listed += found.len();
@@ -322,13 +325,14 @@ fn a_vertex_lost_on_the_way_leaves_no_region_out() {
     let x = &mesh.positions;
     assert!(
         surface
-            .near_unless_clear(Ways::still(x), 0.01, clearance)
+            .near_unless_clear(LinearTrajectories::still(x), 0.01, clearance)
             .is_empty()
     );
     for lost in [f64::NAN, f64::INFINITY] {
         let mut to = x.clone();
         to[100] = Vec3::repeat(lost);
-        let found = surface.near_unless_clear(Ways::together(x, &to), 0.01, clearance);
+        let found =
+            surface.near_unless_clear(LinearTrajectories::together(x, &to), 0.01, clearance);
         let pairs = features(&surface, &found).into_iter();
         let with = pairs.filter(|pair| pair.vertices().contains(&100)).count();
         assert!(with > 10, "{with} pairs at a vertex that is {lost}");

@@ -11,7 +11,8 @@ use crumpled::{all_pairs, crumpled};
 use numbers::Numbers;
 use std::collections::BTreeSet;
 use toile_drape::collision::{
-    Ahead, Clearance, ClothSurface, FeaturePair, Near, Nearness, Reach, Ways, crossings,
+    Ahead, Clearance, ClothSurface, FeaturePair, LinearTrajectories, Near, Nearness, Reach,
+    crossings,
 };
 use toile_geometry::{TriangleMesh, Vec3};
 
@@ -59,9 +60,13 @@ fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
             let both = mesh.positions.iter().zip(&goal);
             let x: Vec<Vec3> = both.map(|(a, b)| turned * (a + (b - a) * share)).collect();
             if step % 7 > 0 {
-                surface.look(Ways::together(&from, &x), &Reach::all(5e-4), NEVER_CLEAR);
+                surface.look(
+                    LinearTrajectories::together(&from, &x),
+                    &Reach::all(5e-4),
+                    NEVER_CLEAR,
+                );
             }
-            surface.look(Ways::still(&x), &looks, NEVER_CLEAR);
+            surface.look(LinearTrajectories::still(&x), &looks, NEVER_CLEAR);
             opened += surface.opened()[0];
             let found = within(&surface, &x, reach, None);
             let expected = pairs
@@ -74,7 +79,7 @@ fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
             assert_eq!(found, expected, "state {seed}, step {step}");
             told += found.len();
             let crossing = crossings(&surface, Near::Listed, &x);
-            let near = fresh.near(Ways::still(&x), 0.0);
+            let near = fresh.near(LinearTrajectories::still(&x), 0.0);
             let expected = crossings(&fresh, &near, &x);
             assert_eq!(crossing, expected, "state {seed}, step {step}");
             crossed += crossing.len();
@@ -96,7 +101,11 @@ fn a_look_for_what_goes_another_way_finds_all_that_meets_it() {
             .map(|p| p + Vec3::new(p.z, 0.0, -p.x) * 0.1)
             .collect();
         let mut surface = ClothSurface::of_mesh(&mesh);
-        surface.look(Ways::together(x, &ends), &Reach::all(reach), NEVER_CLEAR);
+        surface.look(
+            LinearTrajectories::together(x, &ends),
+            &Reach::all(reach),
+            NEVER_CLEAR,
+        );
         // One round after another, as where impulses push on.
         for round in 0..3 {
             let mut marks = vec![false; count];
@@ -105,7 +114,7 @@ fn a_look_for_what_goes_another_way_finds_all_that_meets_it() {
                 marks[v] = true;
                 ends[v] += Vec3::new(0.02, -0.01 * k as f64, 0.03);
             }
-            let ways = Ways::together(x, &ends);
+            let ways = LinearTrajectories::together(x, &ends);
             let all = Reach::all(reach);
             surface.look_again(ways, &all, NEVER_CLEAR, Some(&marks));
             let mut anew = ClothSurface::of_mesh(&mesh);
@@ -146,7 +155,7 @@ fn a_look_ahead_lists_all_that_velocities_may_bring_near() {
                 most: 6e-3,
                 ahead: Some(ahead),
             };
-            surface.look(Ways::still(x), &reach, NEVER_CLEAR);
+            surface.look(LinearTrajectories::still(x), &reach, NEVER_CLEAR);
             let found = surface.features(Near::Listed, |pair, _, found| found.push(pair));
             let found: BTreeSet<FeaturePair> = found.into_iter().collect();
             for pair in all_pairs(&mesh) {
@@ -165,19 +174,31 @@ fn a_vertex_lost_or_come_back_is_looked_for() {
     let mesh = crumpled(3, 12);
     let all = Reach::all(4e-3);
     let mut surface = ClothSurface::of_mesh(&mesh);
-    surface.look(Ways::still(&mesh.positions), &all, NEVER_CLEAR);
+    surface.look(
+        LinearTrajectories::still(&mesh.positions),
+        &all,
+        NEVER_CLEAR,
+    );
     let whole = within(&surface, &mesh.positions, 4e-3, None);
     for lost in [f64::NAN, f64::INFINITY] {
         let mut x = mesh.positions.clone();
         x[80] = Vec3::repeat(lost);
-        surface.look(Ways::together(&mesh.positions, &x), &all, NEVER_CLEAR);
+        surface.look(
+            LinearTrajectories::together(&mesh.positions, &x),
+            &all,
+            NEVER_CLEAR,
+        );
         let with = surface.features(Near::Listed, |pair, _, found| {
             found.extend(pair.vertices().contains(&80).then_some(pair));
         });
         let count = with.len();
         assert!(count > 100, "{count} pairs at a vertex that is {lost}");
-        surface.look(Ways::still(&x), &all, NEVER_CLEAR);
-        surface.look(Ways::still(&mesh.positions), &all, NEVER_CLEAR);
+        surface.look(LinearTrajectories::still(&x), &all, NEVER_CLEAR);
+        surface.look(
+            LinearTrajectories::still(&mesh.positions),
+            &all,
+            NEVER_CLEAR,
+        );
         let again = within(&surface, &mesh.positions, 4e-3, None);
         assert_eq!(again, whole, "{lost}");
     }
@@ -201,9 +222,9 @@ fn an_edge_through_a_face_that_is_a_line_but_for_rounding_is_found() {
         };
         let x = &mesh.positions;
         let mut surface = ClothSurface::of_mesh(&mesh);
-        let near = surface.near(Ways::still(x), 0.0);
+        let near = surface.near(LinearTrajectories::still(x), 0.0);
         let expected = crossings(&surface, &near, x);
-        surface.look(Ways::still(x), &Reach::all(1e-3), NEVER_CLEAR);
+        surface.look(LinearTrajectories::still(x), &Reach::all(1e-3), NEVER_CLEAR);
         assert_eq!(crossings(&surface, Near::Listed, x), expected, "{seed}");
         crossed += expected.len();
     }

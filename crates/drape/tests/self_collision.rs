@@ -14,12 +14,12 @@ use crumpled::{all_pairs, crumpled};
 use numbers::Numbers;
 use sheets::{object, sheet};
 use toile_drape::collision::{
-    ClothContacts, ClothSurface, FeaturePair, Knots, Motions, Nearness, Reach, Ways, bound_moves,
-    crossings, nearnesses,
+    ClothContacts, ClothSurface, FeaturePair, Knots, LinearTrajectories, Motions, Nearness, Reach,
+    bound_moves, crossings, nearnesses,
 };
 use toile_drape::{
-    Cloth, ContactSettings, Material, Measures, MethodKind, Model, RestRun, RestSettings, Scene,
-    SceneRun, State, Workspace,
+    Cloth, ContactSettings, Material, Measures, MethodKind, Model, PseudoTransientContinuation,
+    RestSettings, Scene, SceneRun, State, Workspace,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3, segment_intersects_triangle};
 
@@ -31,7 +31,7 @@ fn pairs_are_those_of_brute_force_in_200_crumpled_states() {
         let mesh = crumpled(seed, 8);
         let x = &mesh.positions;
         let reach = 0.01;
-        let near = surface.near(Ways::still(x), reach);
+        let near = surface.near(LinearTrajectories::still(x), reach);
         let mut found = surface.features(&near, |pair, _, found| {
             found.extend(Nearness::measure(pair, x, reach));
         });
@@ -87,7 +87,7 @@ fn neighbours_that_face_alike_touch_only_where_they_were_sewn_twisted() {
     };
     let found = |mesh: &TriangleMesh| {
         let mut surface = ClothSurface::of_mesh(mesh);
-        let near = surface.near(Ways::still(&mesh.positions), 4e-3);
+        let near = surface.near(LinearTrajectories::still(&mesh.positions), 4e-3);
         nearnesses(&surface, &near, &mesh.positions, &Reach::all(4e-3))
     };
     let rungs = found(&twisted);
@@ -153,7 +153,7 @@ fn what_came_nearer_since_it_was_looked_at_is_still_kept_apart() {
     // A tenth of a millimetre apart when the motion began, of which nine tenths are kept.
     let ends: Vec<Vec3> = x.iter().zip(&moves).map(|(x, d)| x + d).collect();
     let mut surface = ClothSurface::of_mesh(&mesh);
-    let near = surface.near(Ways::still(&ends), 1e-3);
+    let near = surface.near(LinearTrajectories::still(&ends), 1e-3);
     let distances = surface.features(&near, |pair, _, found| {
         found.push(Nearness::distance(pair, &ends));
     });
@@ -192,7 +192,7 @@ fn bounded_moves_never_cross() {
             for (x, d) in mesh.positions.iter_mut().zip(&moves) {
                 *x += d;
             }
-            let near = surface.near(Ways::still(&mesh.positions), 0.0);
+            let near = surface.near(LinearTrajectories::still(&mesh.positions), 0.0);
             assert!(
                 crossings(&surface, &near, &mesh.positions).is_empty(),
                 "seed {seed}"
@@ -252,7 +252,7 @@ fn impulses_keep_layers_apart_and_keep_their_momentum() {
             .map(|(x, d)| x + d)
             .collect();
         let mut surface = ClothSurface::of_mesh(&mesh);
-        let near = surface.near(Ways::still(&end), 0.0);
+        let near = surface.near(LinearTrajectories::still(&end), 0.0);
         assert!(crossings(&surface, &near, &end).is_empty(), "seed {seed}");
         if kept.cut == 0 {
             uncut += 1;
@@ -337,7 +337,7 @@ fn pressed_to_rest() -> (f64, usize, f64) {
     let (mut model, mut state) = sheets::cloth(&mesh, Material::default());
     model.pinned[..pinned].fill(true);
     model.contact = contact;
-    let mut rest = RestRun::near(RestSettings {
+    let mut rest = PseudoTransientContinuation::near(RestSettings {
         steps: 100,
         ..RestSettings::default()
     });

@@ -7,8 +7,8 @@ use sheets::{cloth, sheet};
 use std::sync::Arc;
 use toile_drape::{
     Collider, DrapeError, Elastic, ElasticEnd, Inertia, LinearSolver, Material, MethodKind, Model,
-    NewtonSettings, PcgLimits, RestRun, RestSettings, State, StepSettings, Workspace, Xpbd,
-    XpbdSettings, laws::elastic::ElasticLaw,
+    NewtonSettings, PcgLimits, PseudoTransientContinuation, RestSettings, State, StepSettings,
+    Workspace, Xpbd, XpbdSettings, laws::elastic::ElasticLaw,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
@@ -210,7 +210,7 @@ fn it_rests_where_newton_rests() {
         model.pinned[10 * row + 1] = true;
     }
     let mut reference = state.clone();
-    let mut rest = RestRun::new(RestSettings {
+    let mut rest = PseudoTransientContinuation::new(RestSettings {
         residual: 1e-7,
         ..RestSettings::default()
     });
@@ -288,7 +288,7 @@ fn friction_holds_below_its_angle_and_slides_as_coulomb_says_above() {
 
 /// A sheet falling onto a floor, with pins, an elastic and samples within triangles.
 fn busy_scene(n: usize) -> (Model, State) {
-    let (mut model, state) = cloth(
+    let (mut model, mut state) = cloth(
         &grid(n, n, 0.01, |u, v| {
             Vec3::new(u, 0.03 + 0.01 * (40.0 * u).sin(), v)
         }),
@@ -306,7 +306,7 @@ fn busy_scene(n: usize) -> (Model, State) {
     }]);
     model.colliders.push(slope(0.1));
     for t in [5, 70, model.triangles.len() as u32 / 2] {
-        model.refine_contact(t);
+        state.refine_contact(&model, t);
     }
     (model, state)
 }

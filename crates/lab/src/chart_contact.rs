@@ -11,7 +11,7 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use toile_drape::collision::{ClothSurface, Ways, crossings};
+use toile_drape::collision::{ClothSurface, LinearTrajectories, crossings};
 use toile_drape::{Collider, Feature, Material, MethodKind, MethodSettings, Model, State};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 use toile_picture::{Axis, Chart, Series};
@@ -89,7 +89,7 @@ fn scene(name: &str) -> Result<(Model, State), LabError> {
 /// Edges of a model's cloth through faces of it, exactly.
 pub(crate) fn crossed(model: &Model, x: &[Vec3]) -> usize {
     let mut surface = ClothSurface::new(model);
-    let near = surface.near(Ways::still(x), 0.0);
+    let near = surface.near(LinearTrajectories::still(x), 0.0);
     crossings(&surface, &near, x).len()
 }
 

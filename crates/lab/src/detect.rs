@@ -8,7 +8,7 @@ use crate::clock::Clock;
 use crate::scenes::card;
 use crate::{LabError, MeshKind, rectangle, subdivided};
 use toile_drape::collision::{
-    Clearance, ClothContacts, ClothSurface, Near, Reach, Ways, crossings, nearnesses,
+    Clearance, ClothContacts, ClothSurface, LinearTrajectories, Near, Reach, crossings, nearnesses,
 };
 use toile_drape::{Cloth, MethodKind, MethodSettings, Model, State};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
@@ -65,11 +65,11 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
         }
     };
     counted("all", &mut |surface| {
-        surface.near(Ways::still(x), edge).len()
+        surface.near(LinearTrajectories::still(x), edge).len()
     });
     counted("curved", &mut |surface| {
         surface
-            .near_unless_clear(Ways::still(x), edge, clearance)
+            .near_unless_clear(LinearTrajectories::still(x), edge, clearance)
             .len()
     });
     Ok(())
@@ -142,9 +142,11 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
             counted.insert(format!("{name}_{what}"), value);
         }
     };
-    look("all", &mut |surface| surface.near(Ways::still(x), REACH));
+    look("all", &mut |surface| {
+        surface.near(LinearTrajectories::still(x), REACH)
+    });
     look("curved", &mut |surface| {
-        surface.near_unless_clear(Ways::still(x), REACH, clearance)
+        surface.near_unless_clear(LinearTrajectories::still(x), REACH, clearance)
     });
     for (name, turn) in [("worn", 0.0), ("turning", TURN)] {
         let mut start = state.clone();
@@ -192,12 +194,12 @@ fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>]) -> [f64; 3] {
     let clearance = ClothContacts::clearance(OFFSET);
     let [of_ways, of_contacts] = [WAYS_REACH, REACH].map(Reach::all);
     let mut opened = [0; 2];
-    surface.look(Ways::still(&path[0]), &of_contacts, clearance);
+    surface.look(LinearTrajectories::still(&path[0]), &of_contacts, clearance);
     let clock = Clock::start();
     for ends in path.windows(2) {
-        let still = Ways::still(&ends[1]);
+        let still = LinearTrajectories::still(&ends[1]);
         for (ways, reach) in [
-            (Ways::together(&ends[0], &ends[1]), &of_ways),
+            (LinearTrajectories::together(&ends[0], &ends[1]), &of_ways),
             (still, &of_contacts),
         ] {
             surface.look(ways, reach, clearance);

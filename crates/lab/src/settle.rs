@@ -2,7 +2,8 @@
 
 use crate::LabError;
 use toile_drape::{
-    DrapeError, MethodKind, MethodSettings, Model, RestRun, RestSettings, State, Workspace,
+    DrapeError, MethodKind, MethodSettings, Model, PseudoTransientContinuation, RestSettings,
+    State, Workspace,
 };
 use toile_geometry::Vec3;
 
@@ -19,7 +20,7 @@ const MOST_STEPS: usize = 3000;
 /// The drape stopped, or did not get there.
 pub fn to_rest(model: &Model, state: &mut State, residual: f64) -> Result<usize, LabError> {
     let mut workspace = Workspace::default();
-    let mut run = RestRun::new(RestSettings {
+    let mut run = PseudoTransientContinuation::new(RestSettings {
         residual,
         steps: MOST_STEPS,
         ..RestSettings::default()

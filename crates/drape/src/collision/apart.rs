@@ -2,9 +2,12 @@
 //! of two edges, and what lies beyond what along it. Single precision, so about right: [`super::sieve`] says
 //! what may be made of it.
 
-use super::sieve::ROUNDING;
 use crate::lanes::{Triple, add_scaled, dot, sub};
 use pulp::Simd;
+
+/// How far off a distance in single precision is, as a share of the largest coordinate: rounding of the
+/// places (1.8), of their differences (at most 3) and of the sums (at most 6), and as much again.
+pub(super) const ROUNDING: f32 = 24.0 * f32::EPSILON;
 
 /// Below this lengths count as none and edges as parallel [m2, m4]: it keeps quotients numbers.
 const TINY: f32 = 1e-30;

@@ -4,13 +4,15 @@
 //! even then is cut, vertex by vertex, until nothing meets any more.
 
 use super::curvature::{Clearance, longest};
+use super::feature_pair::FeaturePair;
 use super::impact::{edge_edge_impact, vertex_face_impact};
 use super::layers::Knots;
-use super::proximity::{Nearness, closest, is_far};
+use super::motions::Motions;
+use super::nearness::{Nearness, closest, is_far};
 use super::reach::Reach;
-use super::regions::Ways;
 use super::sieve::Sieve;
-use super::surface::{ClothSurface, FeaturePair, Near};
+use super::surface::{ClothSurface, Near};
+use super::trajectories::LinearTrajectories;
 use super::zones::Zones;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -68,23 +70,9 @@ impl Meeting {
     }
 }
 
-/// A motion in hand.
-pub struct Motions<'a> {
-    /// Where vertices are [m].
-    pub x: &'a [Vec3],
-    /// Where each goes from there [m].
-    pub moves: &'a mut [Vec3],
-    /// Their velocities at the end [m/s].
-    pub velocities: &'a mut [Vec3],
-    /// One over the mass of each [1/kg]; zero where nothing moves it.
-    pub lightness: &'a [f64],
-    /// The time that the motion takes [s].
-    pub span: f64,
-}
-
 /// How a motion was corrected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Kept {
+pub struct ImpactStats {
     /// Impulses given.
     pub impulses: usize,
     /// Vertices that moved in rigid zones because impulses did not settle.
@@ -100,14 +88,14 @@ pub fn keep_apart(
     knots: Knots,
     motion: &mut Motions,
     clearance: Clearance,
-) -> Kept {
-    let mut kept = Kept::default();
+) -> ImpactStats {
+    let mut kept = ImpactStats::default();
     let mut zones = Zones::new(motion.x.len());
     // Vertices whose moves may not be what they were when nothing else met.
     let mut stirred: Option<Vec<bool>> = None;
     for round in 0..IMPULSE_ROUNDS + ZONE_ROUNDS {
         let target = ends(motion.x, motion.moves);
-        let ways = Ways::together(motion.x, &target);
+        let ways = LinearTrajectories::together(motion.x, &target);
         surface.look_again(
             ways,
             &Reach::all(REACH_OF_WAYS),
@@ -252,7 +240,11 @@ pub fn bound_moves(
         kept: 0.0,
         beyond: longest(moves.iter().map(|d| d.norm())),
     };
-    let near = surface.near_unless_clear(Ways::each(x, &target), REACH_OF_WAYS, clearance);
+    let near = surface.near_unless_clear(
+        LinearTrajectories::each(x, &target),
+        REACH_OF_WAYS,
+        clearance,
+    );
     bound_pairs(surface, &near, knots, x, moves)
 }
 

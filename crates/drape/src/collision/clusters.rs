@@ -2,7 +2,7 @@
 //! against each other sixteen at a time, in single precision rounded outward.
 
 use super::boxes::{Bounds, BoxTree, CLUSTER};
-use super::regions::Ways;
+use super::trajectories::LinearTrajectories;
 use crate::lanes::LANES;
 use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
@@ -356,7 +356,7 @@ impl Clusters {
     }
 
     /// Fits all boxes round the ways of the vertices, with a margin [m].
-    pub fn fit(&mut self, ways: &Ways, corners: Corners, margin: f64) {
+    pub fn fit(&mut self, ways: &LinearTrajectories, corners: Corners, margin: f64) {
         let origin = origin(ways.from);
         let both = ways.from.par_iter().zip(ways.to).with_min_len(1024);
         both.map(|(from, to)| Slab::of_way(from - origin, to - origin, margin))
@@ -379,7 +379,7 @@ impl Clusters {
     }
 
     /// Fits the boxes of some clusters round the ways of their vertices, without a margin.
-    pub fn fit_some(&mut self, ways: &Ways, corners: Corners, clusters: &[u32]) {
+    pub fn fit_some(&mut self, ways: &LinearTrajectories, corners: Corners, clusters: &[u32]) {
         if 2 * clusters.len() > self.round.len() {
             // All of them side by side take no longer.
             self.fit(ways, corners, 0.0);

@@ -1,73 +1,26 @@
 //! Contact of cloth with cloth: the laws of contact with a surface, on the vector between two
 //! features in place of the point.
 
-use super::bound::{Kept, Motions};
+use super::bound::ImpactStats;
+use super::cloth_contact::ClothContact;
 use super::curvature::Clearance;
 use super::fade::fade;
-use super::layers::{Knots, Stray, layer_order, strays, ways_out};
-use super::proximity::{Nearness, nearnesses};
+use super::layer_order::layer_order;
+use super::layers::{Knots, Stray, strays, ways_out};
+use super::memory::{ContactFrictionState, RecoveryDirection};
+use super::motions::Motions;
+use super::nearness::Nearness;
+use super::proximity::nearnesses;
 use super::reach::Reach;
-use super::regions::Ways;
-use super::surface::{ClothSurface, FeaturePair, Near};
-use super::tangle::{Drawn, Piercing, crossed_for, crossings, keep_on, loose_round, piercings};
+use super::surface::{ClothSurface, Near};
+use super::tangle::{Piercing, crossed_for, crossings, keep_on, loose_round, piercings};
+use super::trajectories::LinearTrajectories;
 use crate::laws::contact::{ContactLaw, ContactPlane};
 use crate::{Model, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use toile_geometry::Vec3;
-
-/// A contact of two features.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ClothContact {
-    /// The four vertices.
-    pub vertices: [u32; 4],
-    /// Their weights; they sum to zero.
-    pub weights: [f64; 4],
-    /// The plane; its point is the vector from the second feature to the first.
-    pub plane: ContactPlane,
-    /// The laws.
-    pub law: ContactLaw,
-    /// Share of the speed of an impact that comes back, where any of the vertices says it.
-    pub restitution: Option<f64>,
-    /// The features; none for a crossing that is being undone.
-    pub pair: Option<FeaturePair>,
-}
-
-impl ClothContact {
-    /// The vector between the features.
-    pub fn between(&self, x: &[Vec3]) -> Vec3 {
-        let four = self.vertices.into_iter().zip(self.weights);
-        four.map(|(v, w)| x[v as usize] * w).sum()
-    }
-}
-
-/// What a contact remembers from step to step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Held {
-    /// The features.
-    pub pair: FeaturePair,
-    /// How far they have slid against each other since they stuck [m].
-    pub slip: Vec3,
-    /// Normal force in the last step [N].
-    pub force: f64,
-}
-
-/// What contact of cloth with cloth remembers of the last step.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ClothMemory {
-    /// Positions then [m].
-    pub places: Vec<Vec3>,
-    /// Contacts that pressed, in order of their features.
-    pub held: Vec<Held>,
-    /// How far off vertices on the wrong side of a layer are looked for at the next look [m]: zero where
-    /// none can be, since layers that do not cross do not change sides; none before the first look.
-    pub stray_reach: Option<f64>,
-    /// Which way vertices at crossings were drawn, in order of the vertices.
-    pub drawn: Vec<Drawn>,
-    /// For how many looks each vertex has been at a crossing, those without taken off; empty where none is.
-    pub crossed_for: Vec<u32>,
-}
 
 /// What was found and done so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -179,7 +132,7 @@ pub struct ClothContacts {
     /// What was found and done so far.
     pub tally: Tally,
     surface: ClothSurface,
-    drawn: Vec<Drawn>,
+    drawn: Vec<RecoveryDirection>,
     /// What a state is to remember of vertices on the wrong side of a layer, as in [`ClothMemory`].
     stray_reach: Option<f64>,
     /// For how many looks vertices have been at a crossing, likewise.
@@ -244,7 +197,8 @@ impl ClothContacts {
             return;
         }
         let clearance = Self::clearance(model.contact.cloth_offset);
-        self.surface(model).look(Ways::still(x), reach, clearance);
+        self.surface(model)
+            .look(LinearTrajectories::still(x), reach, clearance);
         let crossings = crossings(&self.surface, Near::Listed, x);
         self.piercings = crossings.len();
         let (own, across) = self.mark(&crossings);
@@ -488,7 +442,7 @@ impl ClothContacts {
                 let anchor = contact.law.slide(&contact.plane, between, force);
                 let slip = between - anchor;
                 let n = contact.plane.normal;
-                held.push(Held {
+                held.push(ContactFrictionState {
                     pair,
                     slip: slip - n * slip.dot(&n),
                     force,
@@ -504,9 +458,9 @@ impl ClothContacts {
     }
 
     /// Corrects a motion so that cloth does not pass through cloth on the way.
-    pub fn keep_apart(&mut self, model: &Model, motion: &mut Motions) -> Kept {
+    pub fn keep_apart(&mut self, model: &Model, motion: &mut Motions) -> ImpactStats {
         if model.contact.cloth_offset <= 0.0 {
-            return Kept::default();
+            return ImpactStats::default();
         }
         self.surface(model);
         let clearance = Self::clearance(model.contact.cloth_offset);

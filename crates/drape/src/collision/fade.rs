@@ -1,7 +1,7 @@
 //! Contact of two edges that comes and goes without a jump of its force.
 
-use super::contact::ClothContact;
-use super::surface::FeaturePair;
+use super::cloth_contact::ClothContact;
+use super::feature_pair::FeaturePair;
 use toile_geometry::Vec3;
 
 /// The sine of the angle between two edges from which on they push with all their stiffness, and

@@ -7,11 +7,13 @@
 use super::boxes::{BoxTree, Region};
 use super::clusters::{Clusters, Hits};
 use super::curvature::Clearance;
+use super::feature_pair::FeaturePair;
 use super::moves::Moves;
-use super::proximity::{Nearness, PARALLEL, is_far};
+use super::nearness::{Nearness, PARALLEL, is_far};
 use super::reach::Reach;
-use super::regions::{Cloth, Leave, Regions, Ways};
-use super::surface::FeaturePair;
+use super::regions::{PruningRule, Regions};
+use super::surface_view::SurfaceView;
+use super::trajectories::LinearTrajectories;
 use pulp::Arch;
 use rayon::iter::Either;
 use rayon::prelude::*;
@@ -125,7 +127,7 @@ struct Pace {
 }
 
 impl Sought {
-    fn new(cloth: &Cloth, reach: &Reach) -> Self {
+    fn new(cloth: &SurfaceView, reach: &Reach) -> Self {
         let pace = reach.ahead.as_ref().map(|ahead| {
             // What is held may be led anywhere.
             let velocity = |v: u32| match ahead.pinned[v as usize] {
@@ -259,7 +261,7 @@ struct Parted<'a> {
     asked: &'a Asked,
 }
 
-impl Leave for Parted<'_> {
+impl PruningRule for Parted<'_> {
     type Notes = Vec<Part>;
 
     fn apart(&self, parts: &mut Vec<Part>, region: &Region) -> bool {
@@ -326,8 +328,8 @@ impl Front {
     /// that are to be searched for it, and what is asked of them.
     pub fn expired(
         &mut self,
-        cloth: &Cloth,
-        (ways, reach): (&Ways, &Reach),
+        cloth: &SurfaceView,
+        (ways, reach): (&LinearTrajectories, &Reach),
         clearance: Clearance,
     ) -> (Vec<Region>, Asked) {
         let (grown, fewest) = GROWTH;
@@ -345,7 +347,7 @@ impl Front {
             true => Since::Still,
             false => self.since(cloth, ways.from),
         };
-        let moves = ways.moves(cloth).map(Arc::new);
+        let moves = Moves::of(ways, cloth).map(Arc::new);
         if let (Some(moves), _) | (None, Since::Moved(moves)) = (&moves, &since) {
             self.last = Some(moves.clone());
         }
@@ -387,7 +389,7 @@ impl Front {
     }
 
     /// The moves since the last look.
-    fn since(&self, cloth: &Cloth, x: &[Vec3]) -> Since {
+    fn since(&self, cloth: &SurfaceView, x: &[Vec3]) -> Since {
         let same = |places: &[Vec3]| {
             let mut both = x.iter().zip(places);
             both.all(|(x, place)| (x - place).norm_squared() <= SAME * SAME)
@@ -406,7 +408,7 @@ impl Front {
     /// begin, at `x` [m]. How many regions it looked into, and how many closely.
     pub fn search(
         &mut self,
-        cloth: &Cloth,
+        cloth: &SurfaceView,
         (regions, clusters): (&mut Regions, &mut Clusters),
         x: &[Vec3],
         (expired, asked): (&[Region], &Asked),
@@ -428,7 +430,7 @@ impl Front {
         let (listed, open): (Vec<[u32; 2]>, Vec<Part>) = pairs.partition_map(end);
         self.parts.extend(open);
         clusters.fit_some(
-            &Ways::still(x),
+            &LinearTrajectories::still(x),
             cloth.corners(),
             &of_pairs(cloth, listed.iter().copied()),
         );
@@ -465,9 +467,9 @@ impl Front {
     /// about, only what has one of these.
     pub fn fit(
         &mut self,
-        cloth: &Cloth,
+        cloth: &SurfaceView,
         clusters: &mut Clusters,
-        (ways, asked): (&Ways, &Asked),
+        (ways, asked): (&LinearTrajectories, &Asked),
         marks: Option<&[bool]>,
     ) {
         let marked = |leaf: u32| {
@@ -496,7 +498,7 @@ impl Front {
 }
 
 /// The clusters of some pairs, sorted.
-fn of_pairs(cloth: &Cloth, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
+fn of_pairs(cloth: &SurfaceView, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
     let mut named = vec![false; cloth.tree.leaves()];
     pairs.flatten().for_each(|leaf| named[leaf as usize] = true);
     let leaves = 0..named.len() as u32;
@@ -504,7 +506,7 @@ fn of_pairs(cloth: &Cloth, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
 }
 
 /// The mean of the shortest edges at the vertices of every cluster [m].
-fn shortest(cloth: &Cloth) -> Arc<[f64]> {
+fn shortest(cloth: &SurfaceView) -> Arc<[f64]> {
     let of_leaf = |leaf: usize| {
         let vertices = cloth.leaf(leaf);
         let sum: f64 = vertices.iter().map(|&v| cloth.room[v as usize]).sum();
@@ -524,7 +526,12 @@ fn within(pair: FeaturePair, x: &[Vec3], far: f64) -> bool {
 
 /// Those of some features that may be no farther apart than `gap` [m], edges and faces than `piercing` [m];
 /// nothing where none is.
-fn near(cloth: &Cloth, x: &[Vec3], hits: &Hits, [gap, piercing]: [f64; 2]) -> Option<Box<Hits>> {
+fn near(
+    cloth: &SurfaceView,
+    x: &[Vec3],
+    hits: &Hits,
+    [gap, piercing]: [f64; 2],
+) -> Option<Box<Hits>> {
     let is_near = |pair: Option<FeaturePair>| pair.is_some_and(|pair| within(pair, x, gap));
     let some = |hits: &[[u32; 2]], keep: &dyn Fn([u32; 2]) -> bool| -> Vec<[u32; 2]> {
         hits.iter().copied().filter(|&hit| keep(hit)).collect()
@@ -540,7 +547,7 @@ fn near(cloth: &Cloth, x: &[Vec3], hits: &Hits, [gap, piercing]: [f64; 2]) -> Op
 
 /// Whether an edge may cross a face, or come no farther from it than so [m]: its ends are not both farther
 /// from the plane of the face on one side. Of a face that is hardly more than a line the plane is rounding.
-fn edge_within(cloth: &Cloth, x: &[Vec3], [e, t]: [u32; 2], far: f64) -> bool {
+fn edge_within(cloth: &SurfaceView, x: &[Vec3], [e, t]: [u32; 2], far: f64) -> bool {
     let at = |v: u32| x[v as usize];
     let (ends, [p, q, r]) = (
         cloth.edges[e as usize].map(at),

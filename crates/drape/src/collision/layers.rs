@@ -2,22 +2,13 @@
 //! out. The outside of a cloth is the side that its triangles face; of two cloths in order the outer
 //! one lies on the outside of the inner one.
 
-use super::surface::{ClothSurface, FeaturePair};
+use super::feature_pair::FeaturePair;
+use super::layer_order::{BETWEEN_LAYERS, layer_order};
+use super::surface::ClothSurface;
 use super::tangle::Piercing;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3, closest_on_face};
-
-/// Layer of a vertex that hangs in cloths of several layers: it is in order with none.
-pub const BETWEEN_LAYERS: u16 = u16::MAX;
-
-/// Which of two vertices' cloths lies farther inside; equal where they are in no order.
-pub fn layer_order(layer: &[u16], a: u32, b: u32) -> Ordering {
-    match (layer.get(a as usize), layer.get(b as usize)) {
-        (Some(&a), Some(&b)) if a != BETWEEN_LAYERS && b != BETWEEN_LAYERS => a.cmp(&b),
-        _ => Ordering::Equal,
-    }
-}
 
 /// Vertices that pairs of features are let through at, because they are led to where they belong.
 #[derive(Clone, Copy, Debug, Default)]
@@ -201,7 +192,7 @@ fn normal_of([a, b, c]: [Vec3; 3]) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::regions::Ways;
+    use super::super::trajectories::LinearTrajectories;
     use super::*;
 
     /// Two squares of two triangles, the second `height` [m] above the first; normals point up.
@@ -252,7 +243,7 @@ mod tests {
     fn crossings_of_layers_lead_the_outer_one_out() {
         let (mut surface, mut x) = squares(0.1);
         x[4].y = -0.1;
-        let near = surface.near(Ways::still(&x), 0.0);
+        let near = surface.near(LinearTrajectories::still(&x), 0.0);
         let crossed = super::super::tangle::crossings(&surface, &near, &x);
         let found = ways_out(&surface, &crossed, &x);
         assert!(!found.is_empty() && found.len() == crossed.len());

@@ -5,7 +5,8 @@
 //! crosses by it: what strays by r from it comes nearer by 2 r at the most.
 
 use super::boxes::{Bounds, Region};
-use super::regions::Cloth;
+use super::surface_view::SurfaceView;
+use super::trajectories::LinearTrajectories;
 use toile_geometry::Vec3;
 
 /// Regions that stray less than this are asked for no turn [m], and where all the cloth strays less than
@@ -145,8 +146,18 @@ impl Common {
 }
 
 impl Moves {
+    /// The moves of some trajectories; nothing where nothing moves.
+    pub fn of(trajectories: &LinearTrajectories, cloth: &SurfaceView) -> Option<Self> {
+        let (from, to) = (trajectories.from, trajectories.to);
+        let way = |v: u32| to[v as usize] - from[v as usize];
+        (!trajectories.are_still()).then(|| match trajectories.together {
+            true => Self::new(cloth, from, way),
+            false => Self::shifts(cloth, way).or_less(),
+        })
+    }
+
     /// From some places by some moves, straight and at one pace.
-    pub fn new(cloth: &Cloth, x: &[Vec3], of: impl Fn(u32) -> Vec3 + Sync) -> Self {
+    pub fn new(cloth: &SurfaceView, x: &[Vec3], of: impl Fn(u32) -> Vec3 + Sync) -> Self {
         let mut moves = Self::shifts(cloth, &of);
         let far = |bounds: &Bounds| bounds.radius() > LITTLE_IN_ALL;
         if !moves.round.first().is_some_and(far) {
@@ -174,7 +185,7 @@ impl Moves {
     }
 
     /// Shifts alone.
-    pub fn shifts(cloth: &Cloth, of: impl Fn(u32) -> Vec3 + Sync) -> Self {
+    pub fn shifts(cloth: &SurfaceView, of: impl Fn(u32) -> Vec3 + Sync) -> Self {
         let of_leaf = |leaf: usize| Bounds::round_all(cloth.leaf(leaf).iter().map(|&v| of(v)));
         Self {
             round: cloth.tree.folded(of_leaf, Bounds::join),

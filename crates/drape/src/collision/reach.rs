@@ -1,6 +1,6 @@
 //! How far a look for contacts goes: as far as two features may come nearer before the next one.
 
-use super::surface::FeaturePair;
+use super::feature_pair::FeaturePair;
 use toile_geometry::Vec3;
 
 /// How far a look goes.

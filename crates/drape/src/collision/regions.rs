@@ -2,112 +2,11 @@
 //! themselves while their vertices stray little from one another, however far they go together.
 
 use super::boxes::{BoxTree, Region};
-use super::clusters::Corners;
 use super::curvature::{Clearance, Curvature, LEAST};
 use super::moves::Moves;
-use super::surface::{FeaturePair, ROOM};
+use super::surface_view::{ROOM, SurfaceView};
+use super::trajectories::LinearTrajectories;
 use toile_geometry::Vec3;
-
-/// Straight ways of all vertices.
-#[derive(Clone, Copy, Debug)]
-pub struct Ways<'a> {
-    /// Where they begin [m].
-    pub from: &'a [Vec3],
-    /// Where they end [m].
-    pub to: &'a [Vec3],
-    /// Whether all go at one pace; else each may end anywhere on its way.
-    pub together: bool,
-}
-
-impl<'a> Ways<'a> {
-    /// Ways that all go at one pace.
-    pub fn together(from: &'a [Vec3], to: &'a [Vec3]) -> Self {
-        Self {
-            from,
-            to,
-            together: true,
-        }
-    }
-
-    /// Ways on which each vertex may stop where it likes.
-    pub fn each(from: &'a [Vec3], to: &'a [Vec3]) -> Self {
-        Self {
-            from,
-            to,
-            together: false,
-        }
-    }
-
-    /// No ways.
-    pub fn still(x: &'a [Vec3]) -> Self {
-        Self::together(x, x)
-    }
-
-    /// Whether nothing moves.
-    pub fn are_still(&self) -> bool {
-        std::ptr::eq(self.from, self.to)
-    }
-
-    /// The moves below every node; nothing where nothing moves.
-    pub fn moves(&self, cloth: &Cloth) -> Option<Moves> {
-        let way = |v: u32| self.to[v as usize] - self.from[v as usize];
-        (!self.are_still()).then(|| match self.together {
-            true => Moves::new(cloth, self.from, way),
-            false => Moves::shifts(cloth, way).or_less(),
-        })
-    }
-}
-
-/// The cloth that is searched.
-#[derive(Clone, Copy)]
-pub struct Cloth<'a> {
-    /// The tree over its triangles, fitted.
-    pub tree: &'a BoxTree,
-    /// The corners of each leaf's triangles, leaf after leaf; where those of each begin, and the end.
-    pub leaf_vertices: [&'a [u32]; 2],
-    /// Corners of the triangles.
-    pub triangles: &'a [[u32; 3]],
-    /// Ends of the edges.
-    pub edges: &'a [[u32; 2]],
-    /// Length of the shortest edge at each vertex [m].
-    pub room: &'a [f64],
-}
-
-impl Cloth<'_> {
-    /// The vertices of a leaf.
-    pub fn leaf(&self, leaf: usize) -> &[u32] {
-        let [vertices, starts] = self.leaf_vertices;
-        &vertices[starts[leaf] as usize..starts[leaf + 1] as usize]
-    }
-
-    /// Its features.
-    pub fn corners(&self) -> Corners<'_> {
-        Corners {
-            edges: self.edges,
-            triangles: self.triangles,
-        }
-    }
-
-    /// A vertex and a face; nothing where the face has the vertex.
-    pub fn vertex_face(&self, [v, t]: [u32; 2]) -> Option<FeaturePair> {
-        let [a, b, c] = self.triangles[t as usize];
-        (v != a && v != b && v != c).then_some(FeaturePair::VertexFace([v, a, b, c]))
-    }
-
-    /// Two edges, the same whichever comes first; nothing where they share a vertex.
-    pub fn edge_edge(&self, [e, f]: [u32; 2]) -> Option<FeaturePair> {
-        let (e, f) = (e.min(f), e.max(f));
-        let ([a, b], [c, d]) = (self.edges[e as usize], self.edges[f as usize]);
-        let apart = a != c && a != d && b != c && b != d;
-        apart.then_some(FeaturePair::EdgeEdge([a, b, c, d]))
-    }
-
-    /// Whether an edge and a face share no vertex.
-    pub fn are_apart(&self, [e, t]: [u32; 2]) -> bool {
-        let face = self.triangles[t as usize];
-        !self.edges[e as usize].iter().any(|v| face.contains(v))
-    }
-}
 
 /// What one part of a search notes.
 #[derive(Debug, Default)]
@@ -134,7 +33,7 @@ pub struct Searched<N> {
 }
 
 /// What decides which regions are left out.
-pub trait Leave: Sync {
+pub trait PruningRule: Sync {
     /// Is told what was left out.
     type Notes: Default + Send;
     /// Whether a region's two nodes are far apart.
@@ -152,7 +51,7 @@ struct Once<'a> {
     clearance: Clearance,
 }
 
-impl Leave for Once<'_> {
+impl PruningRule for Once<'_> {
     type Notes = ();
 
     fn apart(&self, (): &mut (), region: &Region) -> bool {
@@ -175,7 +74,7 @@ pub struct Regions {
 
 impl Regions {
     /// Regions of a cloth.
-    pub fn new(cloth: &Cloth, edge_triangles: &[Vec<u32>]) -> Self {
+    pub fn new(cloth: &SurfaceView, edge_triangles: &[Vec<u32>]) -> Self {
         Self {
             curvature: Curvature::new(cloth.tree, cloth.triangles, cloth.edges, edge_triangles),
         }
@@ -183,20 +82,25 @@ impl Regions {
 
     /// Pairs of clusters whose boxes meet, without those of regions that keep clear of themselves on
     /// the way.
-    pub fn near(&mut self, cloth: &Cloth, ways: &Ways, clearance: Clearance) -> Searched<()> {
+    pub fn near(
+        &mut self,
+        cloth: &SurfaceView,
+        ways: &LinearTrajectories,
+        clearance: Clearance,
+    ) -> Searched<()> {
         let root: Vec<Region> = cloth.tree.root().map(Region::Own).into_iter().collect();
         let leave = Once {
             tree: cloth.tree,
-            moves: ways.moves(cloth),
+            moves: Moves::of(ways, cloth),
             clearance,
         };
         self.search(cloth, (ways.from, &root), clearance, &leave)
     }
 
     /// Looks into some regions at some places [m], those left out that `leave` says.
-    pub fn search<L: Leave>(
+    pub fn search<L: PruningRule>(
         &mut self,
-        cloth: &Cloth,
+        cloth: &SurfaceView,
         (x, regions): (&[Vec3], &[Region]),
         clearance: Clearance,
         leave: &L,

@@ -9,17 +9,13 @@
 //! Any n will do, so it need not be known well: it is taken between the closest points where the ways begin.
 //! What is not told apart, numbers that are none among it, is left to be measured.
 
-use super::apart::{edge_is_beyond, face_is_beyond, to_edge, to_face};
+use super::apart::{ROUNDING, edge_is_beyond, face_is_beyond, to_edge, to_face};
 use super::clusters::{Hits, origin};
-use super::regions::Cloth;
+use super::surface_view::SurfaceView;
 use crate::lanes::{Corner, LANES, Point, Row, Triple, dot, gather, parts};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
-
-/// How far off a distance in single precision is, as a share of the largest coordinate: rounding of the
-/// places (1.8), of their differences (at most 3) and of the sums (at most 6), and as much again.
-pub(super) const ROUNDING: f32 = 24.0 * f32::EPSILON;
 
 /// Which features are held against which.
 #[derive(Clone, Copy, Debug)]
@@ -119,7 +115,7 @@ impl Looked {
     }
 
     /// Takes out what a sieve tells apart.
-    pub fn sift(&mut self, sieve: &Sieve, cloth: &Cloth) {
+    pub fn sift(&mut self, sieve: &Sieve, cloth: &SurfaceView) {
         let [faces, edges] = &self.reach;
         let features = Sifted::VertexFace(cloth.triangles);
         sieve.sift(features, &self.hits.vertex_face, faces, &mut self.left);
@@ -285,9 +281,9 @@ impl Sieve {
 
 #[cfg(test)]
 mod tests {
+    use super::super::feature_pair::FeaturePair;
+    use super::super::nearness::Nearness;
     use super::super::numbers::Numbers;
-    use super::super::proximity::Nearness;
-    use super::super::surface::FeaturePair;
     use super::*;
 
     const FACE: [[u32; 3]; 1] = [[1, 2, 3]];

@@ -4,39 +4,17 @@
 use super::boxes::{Bounds, BoxTree, Region};
 use super::clusters::{Clusters, Corners, Hits};
 use super::curvature::Clearance;
+use super::feature_pair::FeaturePair;
 use super::front::Front;
 use super::reach::Reach;
-use super::regions::{Cloth, Regions, Ways};
+use super::regions::Regions;
 use super::sieve::{Looked, Sieve};
+use super::surface_view::{ROOM, SurfaceView};
+use super::trajectories::LinearTrajectories;
 use crate::{Model, merge_map};
 use pulp::Arch;
 use rayon::prelude::*;
 use toile_geometry::{TriangleMesh, Vec3};
-
-/// Two features that might touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum FeaturePair {
-    /// A vertex and the corners of a face.
-    VertexFace([u32; 4]),
-    /// The ends of an edge, and those of another.
-    EdgeEdge([u32; 4]),
-}
-
-impl FeaturePair {
-    /// How many of the vertices are the first feature's.
-    pub fn first(&self) -> usize {
-        match self {
-            Self::VertexFace(_) => 1,
-            Self::EdgeEdge(_) => 2,
-        }
-    }
-
-    /// The four vertices.
-    pub fn vertices(&self) -> [u32; 4] {
-        let (Self::VertexFace(v) | Self::EdgeEdge(v)) = *self;
-        v
-    }
-}
 
 /// Where features are looked for: in what the last search found, until the next one of any kind.
 #[derive(Clone, Copy, Debug)]
@@ -92,9 +70,6 @@ pub struct ClothSurface {
     front: Front,
     opened: [usize; 2],
 }
-
-/// Share of the shortest edge nearby above which no distance is kept: neighbours are not contacts.
-pub(super) const ROOM: f64 = 0.5;
 
 /// The same between features of triangles that share a vertex and face alike: in a triangle with angles of
 /// 20 degrees and more a corner is a third of an edge from the side opposite.
@@ -200,8 +175,8 @@ impl ClothSurface {
         rooms.into_iter().fold(asked, f64::min)
     }
 
-    fn cloth(&self) -> Cloth<'_> {
-        Cloth {
+    fn cloth(&self) -> SurfaceView<'_> {
+        SurfaceView {
             tree: &self.tree,
             leaf_vertices: self.cluster_vertices.each_ref().map(|list| &list[..]),
             triangles: &self.triangles,
@@ -212,7 +187,7 @@ impl ClothSurface {
 
     /// Pairs of clusters that come within `reach` [m] of each other on the way of the cloth, and clusters
     /// with themselves; more than those, but never fewer.
-    pub fn near(&mut self, ways: Ways, reach: f64) -> Vec<[u32; 2]> {
+    pub fn near(&mut self, ways: LinearTrajectories, reach: f64) -> Vec<[u32; 2]> {
         self.refit(ways, reach);
         let root: Vec<Region> = self.tree.root().map(Region::Own).into_iter().collect();
         let tree = &self.tree;
@@ -231,7 +206,7 @@ impl ClothSurface {
     /// features without a common vertex come nearer than the clearance says.
     pub fn near_unless_clear(
         &mut self,
-        ways: Ways,
+        ways: LinearTrajectories,
         reach: f64,
         clearance: Clearance,
     ) -> Vec<[u32; 2]> {
@@ -246,7 +221,7 @@ impl ClothSurface {
     /// Lists features that come within reach of each other on the way of the cloth, and edges and faces that
     /// may cross where it begins, and more, but for those of a region that keeps clear of itself. What is
     /// listed serves the next looks as long as vertices stray little from their neighbours.
-    pub fn look(&mut self, ways: Ways, reach: &Reach, clearance: Clearance) {
+    pub fn look(&mut self, ways: LinearTrajectories, reach: &Reach, clearance: Clearance) {
         self.look_again(ways, reach, clearance, None);
     }
 
@@ -254,7 +229,7 @@ impl ClothSurface {
     /// which was for the same.
     pub fn look_again(
         &mut self,
-        ways: Ways,
+        ways: LinearTrajectories,
         reach: &Reach,
         clearance: Clearance,
         marks: Option<&[bool]>,
@@ -286,7 +261,7 @@ impl ClothSurface {
         self.front.forget();
     }
 
-    fn refit(&mut self, ways: Ways, reach: f64) {
+    fn refit(&mut self, ways: LinearTrajectories, reach: f64) {
         let corners = Corners {
             edges: &self.edges,
             triangles: &self.triangles,

@@ -2,6 +2,7 @@
 //! so that the line of intersection grows shorter (Volino and Magnenat-Thalmann 2006, Resolving
 //! surface collisions through intersection contour minimization).
 
+use super::memory::RecoveryDirection;
 use super::surface::{ClothSurface, Near};
 use toile_geometry::{Vec3, segment_intersects_triangle};
 
@@ -16,17 +17,6 @@ pub struct Piercing {
     pub way: Vec3,
 }
 
-/// Which way a vertex at a crossing was drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drawn {
-    /// The vertex.
-    pub vertex: u32,
-    /// Unit direction.
-    pub way: Vec3,
-    /// Looks since.
-    pub looks: u32,
-}
-
 /// Looks after which it is forgotten which way a vertex was drawn, unless it went so of its own since.
 const MEMORY: u32 = 8;
 
@@ -36,16 +26,16 @@ const CANCELLED: f64 = 0.1;
 /// Has each piercing edge go on the way that its vertices and the face's were drawn before, in order of
 /// vertices, where its own would turn back; what is to be remembered then. Else two edges at one corner,
 /// of which now one crosses and now the other, draw the cloth to and fro for ever.
-pub fn keep_on(piercings: &mut [Piercing], before: &[Drawn]) -> Vec<Drawn> {
+pub fn keep_on(piercings: &mut [Piercing], before: &[RecoveryDirection]) -> Vec<RecoveryDirection> {
     let drawn = |v: &u32| {
         let at = before.binary_search_by_key(v, |drawn| drawn.vertex);
         at.ok().map(|at| before[at])
     };
-    let older = |drawn: &Drawn| Drawn {
+    let older = |drawn: &RecoveryDirection| RecoveryDirection {
         looks: drawn.looks + 1,
         ..*drawn
     };
-    let mut after: Vec<Drawn> = Vec::new();
+    let mut after: Vec<RecoveryDirection> = Vec::new();
     for piercing in piercings {
         let signed = piercing
             .vertices
@@ -64,7 +54,7 @@ pub fn keep_on(piercings: &mut [Piercing], before: &[Drawn]) -> Vec<Drawn> {
             piercing.way = way;
             looks = 1 + known().map(|(drawn, _)| drawn.looks).min().unwrap_or(0);
         }
-        after.extend(signed.map(|(vertex, sign)| Drawn {
+        after.extend(signed.map(|(vertex, sign)| RecoveryDirection {
             vertex,
             way: piercing.way * sign,
             looks,

@@ -11,7 +11,7 @@
 //! other, nothing in it meets, and its size grows by |w|^2 / 2 at the most, which is the square of a
 //! small angle.
 
-use super::bound::Motions;
+use super::motions::Motions;
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 

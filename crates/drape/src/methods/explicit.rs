@@ -13,7 +13,7 @@
 
 use super::energy::{EnergyWatch, fastest, runaway};
 use super::frequency::{FrequencySearch, damped_contact_frequency};
-use super::{Method, MethodSettings, StepReport};
+use crate::method::{Method, MethodSettings, StepReport};
 use crate::{DrapeError, Model, State, Workspace};
 use toile_geometry::Vec3;
 
@@ -97,7 +97,7 @@ impl<S: Scheme> Explicit<S> {
         if let Some(given) = self.substeps {
             return Ok(given.max(1));
         }
-        let limits = [S::LIMIT, damped_contact_frequency(model)];
+        let limits = [S::LIMIT, damped_contact_frequency(model, &state.samples)];
         let (longest, vertex) = self
             .search
             .stable_step(model, state, &mut self.workspace, limits);
@@ -136,7 +136,7 @@ impl<S: Scheme> Method for Explicit<S> {
     ) -> Result<StepReport, DrapeError> {
         let substeps = self.substep_count(model, state, step)?;
         let h = step / f64::from(substeps);
-        state.follow_samples(model);
+        state.follow_samples();
         for (v, &pinned) in state.velocities.iter_mut().zip(&model.pinned) {
             if pinned {
                 *v = Vec3::zeros();

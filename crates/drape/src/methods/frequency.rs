@@ -2,7 +2,7 @@
 
 use crate::laws::contact::RESTITUTION_DAMPING;
 use crate::laws::membrane::Curvature;
-use crate::{Inertia, Model, State, Workspace};
+use crate::{ContactSample, Inertia, Model, State, Workspace};
 use toile_geometry::Vec3;
 
 /// Private memory of the search, sized once for a model.
@@ -49,12 +49,12 @@ pub fn largest_frequency(model: &Model, state: &State) -> f64 {
 /// w_s k_s / m, samples s at it with weight w_s and normal stiffness k_s (rows of K summed, so
 /// every eigenvalue is below it; Gershgorin 1931). With samples at vertices alone it is
 /// sqrt(stiffness / density). Zero without solid surfaces.
-pub fn contact_frequency(model: &Model) -> f64 {
+pub fn contact_frequency(model: &Model, samples: &[ContactSample]) -> f64 {
     if model.colliders.is_empty() {
         return 0.0;
     }
     let mut stiffness = vec![0.0; model.vertex_count()];
-    for sample in &model.samples {
+    for sample in samples {
         for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
             stiffness[v as usize] += w * model.contact.stiffness * sample.area;
         }
@@ -71,9 +71,9 @@ pub fn contact_frequency(model: &Model) -> f64 {
 
 /// The same as explicit methods feel it: a dashpot of zeta evaluated at the old velocity lowers the
 /// limit of h w from 2 to 2 (sqrt(1 + zeta^2) - zeta).
-pub fn damped_contact_frequency(model: &Model) -> f64 {
+pub fn damped_contact_frequency(model: &Model, samples: &[ContactSample]) -> f64 {
     let zeta = RESTITUTION_DAMPING;
-    contact_frequency(model) * (zeta.hypot(1.0) + zeta)
+    contact_frequency(model, samples) * (zeta.hypot(1.0) + zeta)
 }
 
 impl FrequencySearch {

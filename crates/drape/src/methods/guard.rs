@@ -1,6 +1,6 @@
 //! The guard round every method: bad states are refused, failed steps undone, results checked.
 
-use super::{Method, StepReport};
+use crate::method::{Method, StepReport};
 use crate::step_terms::relax;
 use crate::{DrapeError, Model, State};
 

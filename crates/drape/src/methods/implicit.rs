@@ -6,11 +6,14 @@
 //! two, four ... pieces.
 
 use super::energy::{EnergyAccount, EnergyWatch, fastest, possible_energy, runaway};
-use super::{Method, MethodSettings, StepReport};
 use crate::measure::weight_norm;
-use crate::{DrapeError, Inertia, Model, NewtonReport, State, Workspace};
+use crate::method::{Method, MethodSettings, StepReport};
+use crate::{ContactSample, DrapeError, Inertia, Model, NewtonReport, State, Workspace};
 use std::marker::PhantomData;
 use toile_geometry::Vec3;
+
+/// Longest move of a vertex in one iteration near solid surfaces [m].
+pub const LONGEST_MOVE: f64 = 0.05;
 
 /// A rule of time integration, as a minimum and what follows from it.
 pub trait TimeRule: Send {
@@ -25,7 +28,7 @@ pub trait TimeRule: Send {
     }
 
     /// Substeps a step of `step` [s] is cut into where the settings say nothing.
-    fn substeps(_model: &Model, _step: f64) -> u32 {
+    fn substeps(_model: &Model, _samples: &[ContactSample], _step: f64) -> u32 {
         1
     }
 
@@ -256,7 +259,7 @@ impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
         state: &mut State,
         step: f64,
     ) -> Result<StepReport, DrapeError> {
-        state.follow_samples(model);
+        state.follow_samples();
         // A step must not depend on what was found before it.
         self.workspace.forget_pairs();
         let mut total = StepReport::default();
@@ -266,7 +269,7 @@ impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
             [before, self.account.start(state.time, before)]
         });
         let mut led = self.leads_out();
-        let automatic = || R::substeps(model, step);
+        let automatic = || R::substeps(model, &state.samples, step);
         let substeps = self.substeps.unwrap_or_else(automatic).max(1);
         for _ in 0..substeps {
             self.whole(model, state, step / f64::from(substeps), &mut total)?;

@@ -1,189 +1,32 @@
 //! Methods: one trait with a whole step in it, chosen once by name from a closed list.
 
-mod block_descent;
-mod colours;
-mod descent;
 mod energy;
-mod explicit;
-mod forward_euler;
+pub(crate) mod explicit;
 mod frequency;
 mod guard;
-mod implicit;
-mod lbfgs;
-mod metric;
+pub(crate) mod implicit;
 mod newton_solver;
-mod pieces;
-mod projective;
-mod relaxation;
 mod rest;
 mod rules;
-mod runge_kutta;
-mod symplectic_euler;
 mod velocity_verlet;
 
 pub use energy::whole_energy;
 pub(crate) use energy::{energy_bound, is_possible_speed};
 pub(crate) use frequency::damped_contact_frequency;
 pub use frequency::largest_frequency;
-pub use relaxation::RelaxationRun;
 
-use crate::collision::Tally;
+use crate::method::{Method, MethodKind, MethodSettings};
 use crate::patches::PatchVerlet;
-use crate::{DrapeError, Model, State};
-use block_descent::BlockDescent;
+use crate::reference::block_descent::BlockDescent;
+use crate::reference::lbfgs::Lbfgs;
+use crate::reference::projective::Projective;
+use crate::reference::{forward_euler, relaxation, runge_kutta, symplectic_euler};
 use explicit::Explicit;
 use guard::Guarded;
 use implicit::{Implicit, Solver};
-use lbfgs::Lbfgs;
 use newton_solver::{Newton, OneSolve};
-use projective::Projective;
-
-/// What one step of a method took.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StepReport {
-    /// Pieces the step had to be cut into because it failed whole; 1 when it did not.
-    pub pieces: u32,
-    /// Iterations of the method's outer loop (Newton, local-global, sweeps, substeps).
-    pub iterations: usize,
-    /// Iterations of linear solvers inside it.
-    pub linear_iterations: usize,
-}
-
-/// A time integrator or equilibrium solver.
-///
-/// It owns its workspace; everything it must remember from step to step to go on is in the
-/// [`State`], so that a saved state continues bit for bit with a fresh method. Only `xpbd` with contact of
-/// cloth with cloth keeps where its search ended, and with it which pairs far from pressing it leaves out,
-/// and `implicit-midpoint` the energy that its run can have come by, which it refuses to exceed tenfold.
-pub trait Method: Send {
-    /// Advances the state by `step` [s]. Equilibrium methods take one iteration; their time does
-    /// not run and `step` is ignored.
-    ///
-    /// # Errors
-    /// Names vertex and stage; the state is then as it was before.
-    fn advance(
-        &mut self,
-        model: &Model,
-        state: &mut State,
-        step: f64,
-    ) -> Result<StepReport, DrapeError>;
-
-    /// Whether the method has nothing more to do: an equilibrium method at the residual asked
-    /// for. Methods in time never have.
-    fn finished(&self) -> bool {
-        false
-    }
-
-    /// What contact of cloth with cloth found and did so far, where the method counts it.
-    fn cloth_tally(&self) -> Option<Tally> {
-        None
-    }
-
-    /// Net force over weight after the last step, where the method knows it.
-    fn residual(&self) -> Option<f64> {
-        None
-    }
-}
-
-/// The closed list of methods.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum MethodKind {
-    /// Forward Euler: explicit, order 1, never stable without damping.
-    ForwardEuler,
-    /// Symplectic Euler: explicit, order 1.
-    SymplecticEuler,
-    /// Velocity Verlet: explicit, order 2.
-    VelocityVerlet,
-    /// The classical Runge-Kutta method: explicit, order 4.
-    RungeKutta4,
-    /// The same in patches, for cloth of the plain laws: explicit, order 2, fast.
-    PatchVerlet,
-    /// Semi-implicit Euler: one linear solve a step (Baraff and Witkin 1998), order 1.
-    SemiImplicitEuler,
-    /// Implicit Euler by full Newton with line search.
-    #[default]
-    ImplicitEuler,
-    /// The two-step backward differentiation formula: implicit, order 2, little damping.
-    Bdf2,
-    /// Implicit midpoint: order 2, no damping.
-    ImplicitMidpoint,
-    /// Projective dynamics with Anderson acceleration on implicit Euler.
-    ProjectiveDynamics,
-    /// L-BFGS from the metric of projective dynamics on implicit Euler.
-    Lbfgs,
-    /// Vertex block descent (Chen et al. 2024) on implicit Euler.
-    VertexBlockDescent,
-    /// The same with Chebyshev acceleration.
-    ChebyshevBlockDescent,
-    /// Dynamic relaxation with kinetic damping: to rest without any system; time does not run.
-    DynamicRelaxation,
-    /// Straight to rest by pseudo-transient continuation; time does not run.
-    Rest,
-    /// Extended position based dynamics: [`crate::Xpbd`].
-    Xpbd,
-}
 
 impl MethodKind {
-    /// Every method with its name in files.
-    pub const ALL: [(&'static str, Self); 16] = [
-        ("forward-euler", Self::ForwardEuler),
-        ("symplectic-euler", Self::SymplecticEuler),
-        ("velocity-verlet", Self::VelocityVerlet),
-        ("runge-kutta-4", Self::RungeKutta4),
-        ("patch-verlet", Self::PatchVerlet),
-        ("semi-implicit-euler", Self::SemiImplicitEuler),
-        ("implicit-euler", Self::ImplicitEuler),
-        ("bdf2", Self::Bdf2),
-        ("implicit-midpoint", Self::ImplicitMidpoint),
-        ("projective-dynamics", Self::ProjectiveDynamics),
-        ("lbfgs", Self::Lbfgs),
-        ("vertex-block-descent", Self::VertexBlockDescent),
-        ("chebyshev-block-descent", Self::ChebyshevBlockDescent),
-        ("dynamic-relaxation", Self::DynamicRelaxation),
-        ("rest", Self::Rest),
-        ("xpbd", Self::Xpbd),
-    ];
-
-    /// Its name in files.
-    pub fn name(self) -> &'static str {
-        Self::ALL
-            .iter()
-            .find(|(_, kind)| *kind == self)
-            .map_or("", |(name, _)| name)
-    }
-
-    /// Whether the states it comes to balance the forces of the model: net force over weight then says how
-    /// far from rest one is. `xpbd` leaves its constraints unsolved by some compliance of its own, and
-    /// keeps friction in no anchor, so at its rest the model's forces are far from balanced.
-    pub fn balances_forces(self) -> bool {
-        self != Self::Xpbd
-    }
-
-    /// Largest stable product of angular frequency and substep of an undamped vibration; nothing
-    /// for implicit methods, which have no limit, and for forward Euler 0.
-    pub fn stability_limit(self) -> Option<f64> {
-        match self {
-            Self::ForwardEuler => Some(0.0),
-            Self::SymplecticEuler | Self::VelocityVerlet | Self::PatchVerlet => Some(2.0),
-            Self::RungeKutta4 => Some(2.0 * std::f64::consts::SQRT_2),
-            _ => None,
-        }
-    }
-
-    /// The fields of [`MethodSettings`] that it has a use for, by their names.
-    pub fn settings(self) -> &'static [&'static str] {
-        match self {
-            Self::ForwardEuler
-            | Self::SymplecticEuler
-            | Self::VelocityVerlet
-            | Self::RungeKutta4
-            | Self::PatchVerlet => &["substeps"],
-            Self::Xpbd => &["substeps", "iterations"],
-            Self::Rest | Self::DynamicRelaxation => &["iterations", "tolerance"],
-            _ => &["substeps", "iterations", "tolerance"],
-        }
-    }
-
     /// Iterations in a (sub)step at the most where the settings give none; nothing for explicit
     /// methods, which have none, and for those that look for rest, whose iterations are their steps.
     pub fn most_iterations(self) -> Option<usize> {
@@ -197,34 +40,6 @@ impl MethodKind {
             Self::ChebyshevBlockDescent => Some(BlockDescent::<true>::LIMITS.iterations),
             Self::Xpbd => Some(crate::XpbdSettings::default().iterations as usize),
             _ => None,
-        }
-    }
-
-    /// Whether it looks for rest rather than running in time.
-    pub fn is_equilibrium(self) -> bool {
-        matches!(self, Self::Rest | Self::DynamicRelaxation)
-    }
-}
-
-/// A method with its settings; what is not given is the method's own default.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct MethodSettings {
-    /// Which method.
-    pub kind: MethodKind,
-    /// Substeps a step is cut into; explicit methods left without take what the largest frequency
-    /// at the start of each step asks for (0.9 of their limit).
-    pub substeps: Option<u32>,
-    /// Iterations in a (sub)step at the most.
-    pub iterations: Option<usize>,
-    /// Where iterations stop: norm of the gradient [N] in time, net force over weight for rest.
-    pub tolerance: Option<f64>,
-}
-
-impl From<MethodKind> for MethodSettings {
-    fn from(kind: MethodKind) -> Self {
-        Self {
-            kind,
-            ..Self::default()
         }
     }
 }

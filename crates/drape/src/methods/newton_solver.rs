@@ -1,10 +1,9 @@
 //! Lowering the potential by Newton's method: to its minimum, or by one linear solve.
 
-use super::descent::LONGEST_MOVE;
-use super::implicit::{Limits, Problem, Solver};
+use super::implicit::{LONGEST_MOVE, Limits, Problem, Solver};
 use crate::laws::membrane::Curvature;
-use crate::sparse::dot;
 use crate::{LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State, Workspace};
+use toile_sparse::dot;
 
 /// Block conjugate gradients, as [`crate::step_in_time`] uses them.
 const LINEAR: LinearSolver = LinearSolver::Iterative(PcgLimits {

@@ -1,12 +1,14 @@
 //! The way to rest by pseudo-transient continuation.
 
-use super::{Method, MethodSettings, StepReport};
-use crate::{DrapeError, Memory, Model, RestRun, RestSettings, State, Workspace};
+use crate::method::{Method, MethodSettings, StepReport};
+use crate::{
+    DrapeError, Memory, Model, PseudoTransientContinuation, RestSettings, State, Workspace,
+};
 
-/// The way to rest: see [`RestRun`]. How it stands is remembered in the state.
+/// The way to rest: see [`PseudoTransientContinuation`]. How it stands is remembered in the state.
 pub struct Rest {
     settings: RestSettings,
-    run: RestRun,
+    run: PseudoTransientContinuation,
     workspace: Workspace,
 }
 
@@ -20,7 +22,7 @@ impl Rest {
         };
         Self {
             settings,
-            run: RestRun::new(settings),
+            run: PseudoTransientContinuation::new(settings),
             workspace: Workspace::default(),
         }
     }
@@ -34,12 +36,12 @@ impl Method for Rest {
         _step: f64,
     ) -> Result<StepReport, DrapeError> {
         self.run = match std::mem::take(&mut state.memory) {
-            Memory::Rest(run) => run.with_settings(self.settings),
-            _ => RestRun::new(self.settings),
+            Memory::Rest(memory) => PseudoTransientContinuation::resume(self.settings, memory),
+            _ => PseudoTransientContinuation::new(self.settings),
         };
         let before = self.run.linear_iterations();
         self.run.advance(model, state, &mut self.workspace)?;
-        state.memory = Memory::Rest(self.run.clone());
+        state.memory = Memory::Rest(self.run.memory().clone());
         Ok(StepReport {
             pieces: 1,
             iterations: 1,

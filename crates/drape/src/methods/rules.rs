@@ -4,7 +4,7 @@
 
 use super::frequency::contact_frequency;
 use super::implicit::TimeRule;
-use crate::{Memory, Model, State};
+use crate::{ContactSample, Memory, Model, State};
 use toile_geometry::Vec3;
 
 /// Implicit Euler: v' = v + h (a(x') - c v'), x' = x + h v'. Order 1, damps
@@ -63,8 +63,10 @@ impl TimeRule for Midpoint {
         0.5 * h
     }
 
-    fn substeps(model: &Model, step: f64) -> u32 {
-        (step * contact_frequency(model)).ceil().min(MOST_SUBSTEPS) as u32
+    fn substeps(model: &Model, samples: &[ContactSample], step: f64) -> u32 {
+        (step * contact_frequency(model, samples))
+            .ceil()
+            .min(MOST_SUBSTEPS) as u32
     }
 
     fn weight(model: &Model, _state: &State, h: f64) -> f64 {

@@ -4,8 +4,8 @@
 
 use super::{Inertia, Workspace};
 use crate::pairs::Pairs;
-use crate::sparse::dot;
 use crate::{Model, State};
+use toile_sparse::dot;
 
 /// A step of which the line search takes less than this is the last: the matrix is no longer that of the
 /// cloth.

@@ -5,9 +5,9 @@ use super::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 use crate::Model;
 use crate::hessian::{Direct, Hessian};
 use crate::laws::membrane::Curvature;
-use crate::pcg::System;
-use crate::sparse::dot;
 use toile_geometry::Vec3;
+use toile_sparse::System;
+use toile_sparse::dot;
 
 /// Times a direction is found anew because points come back from the limit of friction.
 const FORESIGHTS: usize = 2;
@@ -40,7 +40,7 @@ impl Workspace {
         self.solve_with(model, x, inertia, settings, report);
         for _ in 0..FORESIGHTS {
             let promises = 0.5 * dot(&self.gradient, &self.direction);
-            if !(self.contacts).foresee(model, x, &self.direction, promises) {
+            if !(self.contacts).foresee(x, &self.direction, promises) {
                 break;
             }
             self.force.clone_from(&self.gradient);

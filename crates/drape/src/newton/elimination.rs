@@ -10,11 +10,11 @@ use super::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 use crate::laws::membrane::Curvature;
 use crate::merge::merge_map;
 use crate::part::Part;
-use crate::sparse::dot;
 use crate::{Model, PcgLimits, State};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use toile_geometry::Vec3;
+use toile_sparse::dot;
 
 /// Share of the sum of squared forces that regions grow round.
 const HELD: f64 = 0.8;
@@ -202,7 +202,7 @@ fn bring_to_rest(part: &mut Part, calm: f64) -> bool {
 pub(super) mod tests {
     use super::*;
     use crate::measure::residual;
-    use crate::{Cloth, Material, RestRun, RestSettings};
+    use crate::{Cloth, Material, PseudoTransientContinuation, RestSettings};
     use toile_geometry::TriangleMesh;
 
     /// A sheet of 40 x 40 squares of 10 mm at rest, hung by its upper edge.
@@ -223,7 +223,7 @@ pub(super) mod tests {
         model.pinned[..41].fill(true);
         let mut state = State::at_rest(&model, mesh.positions);
         let mut workspace = Workspace::default();
-        let mut rest = RestRun::near(RestSettings {
+        let mut rest = PseudoTransientContinuation::near(RestSettings {
             residual: 1e-6,
             ..RestSettings::default()
         });

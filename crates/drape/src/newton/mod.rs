@@ -9,21 +9,23 @@
 mod chord;
 mod direction;
 mod elimination;
+mod expansion;
 mod foresight;
 
 pub(crate) use chord::ChordLimits;
+pub use expansion::Expansion;
 
 use crate::collision::Couplings;
 use crate::contacts::Contacts;
 use crate::hessian::{Direct, Hessian};
 use crate::laws::membrane::Curvature;
-use crate::pcg::{BlockJacobi, Pcg, PcgLimits};
-use crate::sparse::dot;
 use crate::step_terms::{StepTerms, add_forces_of_motion};
-use crate::{ElasticEnd, Model, State};
+use crate::{Model, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
+use toile_sparse::dot;
+use toile_sparse::{BlockJacobi, Pcg, PcgLimits};
 
 /// What holds vertices to where inertia would take them.
 pub struct Inertia<'a> {
@@ -269,10 +271,10 @@ impl Workspace {
             .collect();
         let mut energy = elements.iter().sum::<f64>() + vertices.iter().sum::<f64>();
         for elastic in &model.elastics {
-            energy += elastic.law.energy(elastic_gap(elastic.from, elastic.to, x));
+            energy += elastic.law.energy(elastic.gap(x));
         }
         for contact in &self.contacts.active {
-            let place = model.samples[contact.sample as usize].place(x);
+            let place = contact.point.place(x);
             energy += contact.law.energy(&contact.plane, place);
         }
         for contact in &self.contacts.cloth.active {
@@ -290,7 +292,7 @@ impl Workspace {
             *out = model.elements[t].gradient(&terms.law(model, t), corners).1;
         });
         for (secant, elastic) in self.secants.iter_mut().zip(&model.elastics) {
-            *secant = elastic.law.secant(elastic_gap(elastic.from, elastic.to, x));
+            *secant = elastic.law.secant(elastic.gap(x));
         }
         let (corner_gradients, secants) = (&self.corner_gradients, &self.secants);
         let each = self.gradient.par_iter_mut().enumerate();
@@ -300,8 +302,8 @@ impl Workspace {
             for &corner in &model.corners[uses] {
                 g += corner_gradients[corner as usize / 3][corner as usize % 3];
             }
-            for (e, other) in elastics_of(model, v) {
-                g += (x[v] - end_place(other, x)) * secants[e];
+            for (e, other) in model.elastics_at(v) {
+                g += (x[v] - other.place(x)) * secants[e];
             }
             if let Some(inertia) = inertia {
                 g += (x[v] - inertia.target[v]) * inertia.weight[v];
@@ -309,7 +311,7 @@ impl Workspace {
             *out = g;
         });
         for contact in &self.contacts.active {
-            let sample = &model.samples[contact.sample as usize];
+            let sample = &contact.point;
             let (_, gradient, _) = contact.law.evaluate(&contact.plane, sample.place(x));
             for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
                 self.gradient[v as usize] += gradient * w;
@@ -347,11 +349,11 @@ impl Workspace {
             terms.add_hessian(t, out);
         });
         for (v, d) in self.diagonal.iter_mut().enumerate() {
-            let pull: f64 = elastics_of(model, v).map(|(e, _)| self.secants[e]).sum();
+            let pull: f64 = model.elastics_at(v).map(|(e, _)| self.secants[e]).sum();
             *d = Matrix3::identity() * (inertia.weight[v] + pull);
         }
         for contact in &self.contacts.active {
-            let sample = &model.samples[contact.sample as usize];
+            let sample = &contact.point;
             let place = sample.place(x);
             let (_, _, mut hessian) = contact.law.evaluate(&contact.plane, place);
             hessian -= contact.law.missing_curvature(&contact.plane, place) * curvature.0;
@@ -447,32 +449,4 @@ impl Workspace {
         let squares = self.direction.iter().map(Vec3::norm_squared);
         squares.fold(0.0, f64::max).sqrt()
     }
-}
-
-/// Elastics at a vertex with their other end.
-pub(crate) fn elastics_of(
-    model: &Model,
-    v: usize,
-) -> impl Iterator<Item = (usize, ElasticEnd)> + '_ {
-    let uses = model.elastic_start[v] as usize..model.elastic_start[v + 1] as usize;
-    model.elastic_uses[uses].iter().map(move |&e| {
-        let elastic = &model.elastics[e as usize];
-        let other = if elastic.from as usize == v {
-            elastic.to
-        } else {
-            ElasticEnd::Vertex(elastic.from)
-        };
-        (e as usize, other)
-    })
-}
-
-pub(crate) fn end_place(end: ElasticEnd, x: &[Vec3]) -> Vec3 {
-    match end {
-        ElasticEnd::Vertex(v) => x[v as usize],
-        ElasticEnd::Point(p) => p,
-    }
-}
-
-fn elastic_gap(from: u32, to: ElasticEnd, x: &[Vec3]) -> Vec3 {
-    x[from as usize] - end_place(to, x)
 }

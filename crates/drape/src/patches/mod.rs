@@ -35,8 +35,9 @@ mod stretch;
 mod tensions;
 mod touch;
 
-use crate::methods::{Method, MethodSettings, StepReport, energy_bound, is_possible_speed};
-use crate::{DrapeError, Model, State};
+use crate::method::{Method, MethodSettings, StepReport};
+use crate::methods::{energy_bound, is_possible_speed};
+use crate::{ContactSample, DrapeError, Model, State};
 use lane::Lane;
 use limits::stiffening;
 use sheet::Sheet;
@@ -88,7 +89,7 @@ impl PatchVerlet {
             Some(sheet) => sheet,
             None => Sheet::new(model),
         };
-        state.follow_samples(model);
+        state.follow_samples();
         sheet.start(model, state);
         let before = sheet.energy();
         let taken = match self.substeps {
@@ -126,7 +127,7 @@ impl Method for PatchVerlet {
         state: &mut State,
         step: f64,
     ) -> Result<StepReport, DrapeError> {
-        if is_plain(model) {
+        if is_plain(model, &state.samples) {
             // Inside the pool, so that its threads need not be called again for every substep.
             rayon::scope(|_| self.advance_patches(model, state, step))
         } else {
@@ -200,12 +201,12 @@ fn blown_up(vertex: usize, speed: f64, substep: f64) -> DrapeError {
 }
 
 /// Whether nothing acts but what patches treat.
-fn is_plain(model: &Model) -> bool {
+fn is_plain(model: &Model, samples: &[ContactSample]) -> bool {
     model.laws.iter().all(|law| law.is_linear())
         && !model.has_viscous_stretch()
         && model.viscous_bending.is_none()
         && model.stencils.is_empty()
         && !model.keeps_strain()
         && !model.air.acts()
-        && model.samples.iter().all(|sample| sample.triangle.is_none())
+        && samples.iter().all(|sample| sample.triangle.is_none())
 }

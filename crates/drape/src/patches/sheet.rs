@@ -111,7 +111,7 @@ impl Sheet {
                 elements: model.elements.clone(),
                 laws: model.laws.clone(),
                 elastics: model.elastics.clone(),
-                contact: damped_contact_frequency(model),
+                contact: damped_contact_frequency(model, &model.samples),
             },
             patches,
             home,
@@ -137,7 +137,7 @@ impl Sheet {
             && key.elements == model.elements
             && key.laws == model.laws
             && key.elastics == model.elastics
-            && key.contact == damped_contact_frequency(model)
+            && key.contact == damped_contact_frequency(model, &model.samples)
     }
 
     /// Takes over a state.

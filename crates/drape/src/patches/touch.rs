@@ -4,7 +4,7 @@
 use super::Lane;
 use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{damped_push, gentle_push};
-use crate::state::Memory;
+use crate::memory::Memory;
 use crate::{Model, State};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -176,7 +176,7 @@ impl Touch {
             return;
         }
         let buried = state.memory.buried();
-        for (number, sample) in model.samples.iter().enumerate() {
+        for (number, sample) in state.samples.iter().enumerate() {
             let vertex = sample.vertices[0];
             if sample.triangle.is_some() || model.pinned[vertex as usize] {
                 continue;

@@ -7,7 +7,7 @@
 
 use super::contact::{ContactStencil, NO_SAMPLE, Touch};
 use super::particles::Particles;
-use crate::Model;
+use crate::ContactSample;
 use crate::lanes::{LANES, Point};
 
 /// Rounds over contacts that share points.
@@ -89,7 +89,7 @@ pub struct BounceStep {
 /// Gives contacts that pressed in the substep the speed they leave with; `stencils` are runs of them
 /// with the slot that their points are numbered from.
 pub fn bounce<'a>(
-    model: &Model,
+    samples: &[ContactSample],
     stencils: impl Iterator<Item = (usize, &'a [ContactStencil])>,
     particles: &mut Particles,
     step: BounceStep,
@@ -100,14 +100,19 @@ pub fn bounce<'a>(
             let touch = touches.get(lane);
             let slot = (block * LANES + lane) as u32;
             let one = ([slot; 4], [1.0, 0.0, 0.0, 0.0]);
-            hits.extend(Hit::new(particles, one, &touch, restitution(model, &touch)));
+            hits.extend(Hit::new(
+                particles,
+                one,
+                &touch,
+                restitution(samples, &touch),
+            ));
         }
     }
     let each = stencils.flat_map(|(first, run)| run.iter().map(move |stencil| (first, stencil)));
     for (first, stencil) in each.filter(|(_, stencil)| stencil.touch.push > 0.0) {
         let share = match stencil.touch.sample {
             NO_SAMPLE => stencil.restitution,
-            _ => restitution(model, &stencil.touch),
+            _ => restitution(samples, &stencil.touch),
         };
         let slots = stencil.vertices.map(|v| v + first as u32);
         let four = (slots, stencil.weights);
@@ -148,7 +153,7 @@ pub fn bounce<'a>(
     }
 }
 
-fn restitution(model: &Model, touch: &Touch) -> Option<f32> {
-    let sample = model.samples.get(touch.sample as usize)?;
+fn restitution(samples: &[ContactSample], touch: &Touch) -> Option<f32> {
+    let sample = samples.get(touch.sample as usize)?;
     sample.restitution.map(|e| e as f32)
 }

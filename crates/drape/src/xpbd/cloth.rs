@@ -2,7 +2,7 @@
 
 use super::contact::{ContactStencil, Touch};
 use super::{Xpbd, XpbdReport, middle};
-use crate::collision::{Ahead, ClothContact, ClothContacts, Kept, Motions, Reach};
+use crate::collision::{Ahead, ClothContact, ClothContacts, ImpactStats, Motions, Reach};
 use crate::laws::contact::HARDER;
 use crate::{DrapeError, Model, State};
 use rayon::prelude::*;
@@ -125,7 +125,7 @@ impl ClothWatch {
             span,
         };
         let kept = self.contacts.keep_apart(model, &mut motion);
-        if kept != Kept::default() {
+        if kept != ImpactStats::default() {
             let ends = self.before.iter().zip(&self.moves);
             for (x, (from, way)) in state.positions.iter_mut().zip(ends) {
                 *x = from + way;
@@ -176,7 +176,7 @@ impl Xpbd {
             watch.forget();
             return self.advance(model, state, span.substep, span.count, span.drag);
         }
-        if self.take_up(model) {
+        if self.take_up(model, &state.samples) {
             // The contacts in hand are gone.
             watch.forget();
         }

@@ -6,7 +6,7 @@
 //! not creep. Contacts of cloth with cloth are stencils of the same form with other weights.
 
 use crate::lanes::{LANES, Point, Row, add_scaled, dot, load, store, sub};
-use crate::{Model, Pose};
+use crate::{ContactSample, Model, Pose};
 use pulp::Simd;
 use toile_geometry::Vec3;
 
@@ -56,8 +56,7 @@ const FLAT_SLOPE: f64 = 0.05;
 
 impl Touch {
     /// That of a sample, still to be looked up.
-    pub fn of_sample(model: &Model, sample: usize) -> Self {
-        let found = &model.samples[sample];
+    pub fn of_sample(model: &Model, (number, found): (usize, &ContactSample)) -> Self {
         let friction = if model.contact.friction {
             found.friction
         } else {
@@ -67,7 +66,7 @@ impl Touch {
             softness: (1.0 / (model.contact.stiffness * found.area)).min(1e30) as f32,
             friction: friction as f32,
             offset: (model.contact.offset + found.extra_offset) as f32,
-            sample: sample as u32,
+            sample: number as u32,
             ..Self::none()
         }
     }

@@ -34,8 +34,8 @@ mod run;
 
 use crate::collision::Tally;
 use crate::lanes::LANES;
-use crate::methods::{Method, MethodSettings, StepReport};
-use crate::{DrapeError, Model, State};
+use crate::method::{Method, MethodSettings, StepReport};
+use crate::{ContactSample, DrapeError, Model, State};
 use bending::{BendingForce, Filter};
 use bounce::BounceStep;
 pub(crate) use cloth::{ClothWatch, Span};
@@ -45,6 +45,7 @@ use order::Order;
 use particles::{MotionStep, Particles};
 use region::{Regions, SweepStep};
 use run::Run;
+use std::sync::Arc;
 use toile_geometry::Vec3;
 
 /// How constraints are solved.
@@ -126,12 +127,12 @@ struct Fingerprint {
     pinned: Vec<bool>,
     elastics: Vec<crate::Elastic>,
     contact: crate::ContactSettings,
-    samples: Vec<crate::ContactSample>,
+    samples: Arc<Vec<ContactSample>>,
     solid: bool,
 }
 
 impl Fingerprint {
-    fn new(model: &Model) -> Self {
+    fn new(model: &Model, samples: &Arc<Vec<ContactSample>>) -> Self {
         Self {
             triangles: model.triangles.clone(),
             elements: model.elements.clone(),
@@ -142,12 +143,12 @@ impl Fingerprint {
             pinned: model.pinned.clone(),
             elastics: model.elastics.clone(),
             contact: model.contact,
-            samples: model.samples.clone(),
+            samples: samples.clone(),
             solid: !model.colliders.is_empty(),
         }
     }
 
-    fn fits(&self, model: &Model) -> bool {
+    fn fits(&self, model: &Model, samples: &Arc<Vec<ContactSample>>) -> bool {
         self.triangles == model.triangles
             && self.elements == model.elements
             && self.material == model.material
@@ -157,7 +158,7 @@ impl Fingerprint {
             && self.pinned == model.pinned
             && self.elastics == model.elastics
             && self.contact == model.contact
-            && self.samples == model.samples
+            && Arc::ptr_eq(&self.samples, samples)
             && self.solid != model.colliders.is_empty()
     }
 }
@@ -170,18 +171,27 @@ impl Xpbd {
 
     /// Builds the constraints of a model, to be solved as given.
     pub fn with_settings(model: &Model, settings: XpbdSettings) -> Self {
+        Self::with_samples(model, &model.samples, settings)
+    }
+
+    /// The same for a state's samples.
+    fn with_samples(
+        model: &Model,
+        samples: &Arc<Vec<ContactSample>>,
+        settings: XpbdSettings,
+    ) -> Self {
         let order = Order::new(model);
         let mut regions = Regions::new(&order);
         regions.add_membranes(model, &order);
         regions.add_ties(model, &order);
         let mut particles = Particles::new(order.len());
         if !model.colliders.is_empty() {
-            regions.add_samples(model, &order);
-            for (index, sample) in model.samples.iter().enumerate() {
+            regions.add_samples(model, samples, &order);
+            for (index, sample) in samples.iter().enumerate() {
                 if sample.triangle.is_none() {
                     let slot = order.slot_of[sample.vertices[0] as usize];
                     let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
-                    particles.touch[block].set(lane, &Touch::of_sample(model, index));
+                    particles.touch[block].set(lane, &Touch::of_sample(model, (index, sample)));
                 }
             }
         }
@@ -195,7 +205,7 @@ impl Xpbd {
             laws: model.laws.iter().map(LawRow::new).collect(),
             step: f64::NAN,
             kappa: f64::NAN,
-            built_for: Fingerprint::new(model),
+            built_for: Fingerprint::new(model, samples),
             domain_starts: order.domain_starts(),
             settle_starts: order.settle_starts(),
             cut_starts: order.cut_starts(),
@@ -231,7 +241,7 @@ impl Xpbd {
         count: u32,
         drag: f64,
     ) -> Result<XpbdReport, DrapeError> {
-        self.take_up(model);
+        self.take_up(model, &state.samples);
         let span = Span {
             substep,
             count,
@@ -259,7 +269,7 @@ impl Xpbd {
             let stage = "XPBD, before the step";
             return Err(DrapeError::NotFinite { stage, vertex });
         }
-        state.follow_samples(model);
+        state.follow_samples();
         let mut failed = 0;
         for halvings in 0..=STEP_HALVINGS {
             let pieces = 1u32 << halvings;
@@ -292,10 +302,10 @@ impl Xpbd {
     }
 
     /// Builds the constraints anew where the model has changed; whether it has.
-    fn take_up(&mut self, model: &Model) -> bool {
-        let changed = !self.built_for.fits(model);
+    fn take_up(&mut self, model: &Model, samples: &Arc<Vec<ContactSample>>) -> bool {
+        let changed = !self.built_for.fits(model, samples);
         if changed {
-            *self = Self::with_settings(model, self.settings);
+            *self = Self::with_samples(model, samples, self.settings);
         }
         changed
     }
@@ -395,9 +405,9 @@ impl Xpbd {
             }
             state.normal_forces[at] = kappa * f64::from(touch.push);
             state.anchors[at] = (touch.push > 0.0).then(|| {
-                let stiffness = 0.5 * model.contact.stiffness * model.samples[at].area;
+                let stiffness = 0.5 * model.contact.stiffness * state.samples[at].area;
                 let rub = Vec3::from(touch.rub.map(f64::from)) * kappa;
-                model.samples[at].place(&state.positions) + rub / stiffness
+                state.samples[at].place(&state.positions) + rub / stiffness
             });
         }
         XpbdReport {
@@ -451,6 +461,7 @@ impl Xpbd {
             filter: self.filter.as_ref(),
             time,
             iterations: self.settings.iterations.max(1),
+            samples: &self.built_for.samples,
             domain_starts: &self.domain_starts,
             settle_starts: &self.settle_starts,
             cut_starts: &self.cut_starts,

@@ -5,7 +5,7 @@ use super::contact::{ContactStencil, ContactStep, Solid, Tie, Touch, solve_stenc
 use super::membrane::{self, LawRow, MembraneBatch};
 use super::order::{Order, Place, batches};
 use crate::lanes::{LANES, Point, Row};
-use crate::{ElasticEnd, Model};
+use crate::{ContactSample, ElasticEnd, Model};
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -139,8 +139,8 @@ impl Regions {
     }
 
     /// Adds the contact samples that lie within triangles.
-    pub fn add_samples(&mut self, model: &Model, order: &Order) {
-        for (index, sample) in model.samples.iter().enumerate() {
+    pub fn add_samples(&mut self, model: &Model, samples: &[ContactSample], order: &Order) {
+        for (index, sample) in samples.iter().enumerate() {
             if sample.triangle.is_none() {
                 continue;
             }
@@ -151,7 +151,7 @@ impl Regions {
             self.at(place).contacts.push(ContactStencil {
                 vertices: [a, b, c, 0],
                 weights: [p, q, r, 0.0],
-                touch: Touch::of_sample(model, index),
+                touch: Touch::of_sample(model, (index, sample)),
                 restitution: None,
             });
         }

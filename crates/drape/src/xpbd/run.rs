@@ -8,6 +8,7 @@ use super::particles::{
     Bend, Bound, Free, MotionStep, Particles, Predict, RunStage, Settle, Stage,
 };
 use super::region::{Regions, SweepStep};
+use crate::ContactSample;
 use crate::Pose;
 
 /// What substeps of one size share.
@@ -26,6 +27,8 @@ pub struct Run<'a> {
     pub time: f64,
     /// Sweeps a substep.
     pub iterations: u32,
+    /// The contact samples that touches are of.
+    pub samples: &'a [ContactSample],
     /// First slots of the domains, and the end.
     pub domain_starts: &'a [usize],
     /// First slots of what meets surfaces by itself, and the end.
@@ -79,7 +82,7 @@ impl Run<'_> {
                     .flat_map(|(&first, region)| {
                         [&region.contacts, &region.cloth].map(|run| (first, &run[..]))
                     });
-                bounce(sweep.solid.model, runs, particles, step);
+                bounce(self.samples, runs, particles, step);
                 self.look_ahead(particles);
             }
         }

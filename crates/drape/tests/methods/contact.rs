@@ -68,7 +68,7 @@ fn on_a_slope(slope: f64) -> (Model, State) {
     };
     model.colliders = vec![Collider::new(Arc::new(SurfaceTree::new(plane)))];
     model.gravity = Vec3::new(slope.sin(), -slope.cos(), 0.0) * 9.81;
-    for (force, sample) in state.normal_forces.iter_mut().zip(&model.samples) {
+    for (force, sample) in state.normal_forces.iter_mut().zip(state.samples.iter()) {
         *force = depth * 1e6 * sample.area;
     }
     (model, state)

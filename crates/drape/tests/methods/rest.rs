@@ -2,7 +2,7 @@
 
 use crate::fixtures::{ball_mesh, cloth, sheet};
 use std::sync::Arc;
-use toile_drape::{Collider, Material, RestRun, RestSettings, Workspace};
+use toile_drape::{Collider, Material, PseudoTransientContinuation, RestSettings, Workspace};
 use toile_geometry::{SurfaceTree, Vec3};
 
 /// In an armpit the push of the body turns as the cloth slides: steps that do not know it are too
@@ -31,7 +31,7 @@ fn cloth_in_a_hollow_slides_to_its_lowest_place_in_few_steps() {
         steps: 300,
         ..RestSettings::default()
     };
-    let mut run = RestRun::near(settings);
+    let mut run = PseudoTransientContinuation::near(settings);
     let mut workspace = Workspace::default();
     while !run.finished() {
         run.advance(&model, &mut state, &mut workspace)

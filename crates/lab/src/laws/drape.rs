@@ -4,7 +4,7 @@ use crate::check::{Cases, Expected};
 use crate::outline::{fold_count, shadow};
 use crate::{LabError, Tolerance, disc};
 use toile_drape::fabrics::{LIBRARY, LibraryFabric};
-use toile_drape::{Material, Model, RestRun, RestSettings, State, Workspace};
+use toile_drape::{Material, Model, PseudoTransientContinuation, RestSettings, State, Workspace};
 use toile_geometry::{Vec3, total_area};
 
 /// Radius of the specimen and of the discs that hold it [m].
@@ -60,7 +60,7 @@ const STEPS: usize = 500;
 
 fn settle(model: &Model, state: &mut State) -> Result<(), LabError> {
     let mut workspace = Workspace::default();
-    let mut run = RestRun::new(RestSettings {
+    let mut run = PseudoTransientContinuation::new(RestSettings {
         residual: STILL,
         steps: STEPS,
         ..RestSettings::default()

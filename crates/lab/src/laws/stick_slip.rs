@@ -90,7 +90,7 @@ impl Strip {
 
     /// Whether the tip stays with a friction coefficient.
     fn sticks(&mut self, friction: f64) -> Result<bool, LabError> {
-        for sample in &mut self.model.samples {
+        for sample in Arc::make_mut(&mut self.state.samples) {
             sample.friction = friction;
         }
         let before = mean(&self.state.positions, &self.tip).x;
@@ -133,7 +133,7 @@ pub(super) fn stick_slip(cases: &mut Cases) -> Result<(), LabError> {
                 format!("clamp down by {down} L, {name}"),
                 Expected::value(LEAST, expected),
                 || {
-                    for sample in &mut strip.model.samples {
+                    for sample in Arc::make_mut(&mut strip.state.samples) {
                         sample.friction = 10.0;
                     }
                     strip.push(before, down)?;

@@ -1,0 +1,69 @@
+//! Contact tested more finely where cloth went on crossing a solid surface.
+
+use crate::contact_settings::MOST_EXTRA;
+use crate::{ContactSample, Model, State};
+use std::sync::Arc;
+
+/// How much farther a triangle is kept each time it is found crossing again [m]: a quarter of the
+/// usual offset.
+const EXTRA_OFFSET: f64 = 1e-3;
+
+impl State {
+    /// Tests a triangle at its middle and the middles of its edges too, where it is too large
+    /// for the curve it lies on; when it is tested so already, keeps it and its corners farther
+    /// from the surface.
+    pub fn refine_contact(&mut self, model: &Model, triangle: u32) {
+        let samples = Arc::make_mut(&mut self.samples);
+        for triangle in under(model, triangle) {
+            refine(model, samples, triangle);
+        }
+        self.follow_samples();
+    }
+}
+
+/// Triangles of the model that cover one of the surface: itself, or the two that were exchanged
+/// for it and its neighbour.
+fn under(model: &Model, triangle: u32) -> Vec<u32> {
+    let given = model.surface_triangles()[triangle as usize];
+    let own = model.triangles[triangle as usize];
+    if given == own {
+        return vec![triangle];
+    }
+    let quad = |v: &u32| given.contains(v) || own.contains(v);
+    let all = 0..model.triangles.len() as u32;
+    all.filter(|&t| model.triangles[t as usize].iter().all(quad))
+        .collect()
+}
+
+/// Adds samples within a triangle, or keeps those that are there farther off.
+fn refine(model: &Model, samples: &mut Vec<ContactSample>, triangle: u32) {
+    if samples.iter().any(|s| s.triangle == Some(triangle)) {
+        let corners = model.triangles[triangle as usize];
+        for sample in samples.iter_mut() {
+            let corner = sample.triangle.is_none() && corners.contains(&sample.vertices[0]);
+            if corner || sample.triangle == Some(triangle) {
+                sample.extra_offset = (sample.extra_offset + EXTRA_OFFSET).min(MOST_EXTRA);
+            }
+        }
+        return;
+    }
+    let vertices = model.triangles[triangle as usize];
+    let material = &model.materials[model.material[triangle as usize] as usize];
+    let third = 1.0 / 3.0;
+    for weights in [
+        [third; 3],
+        [0.5, 0.5, 0.0],
+        [0.0, 0.5, 0.5],
+        [0.5, 0.0, 0.5],
+    ] {
+        samples.push(ContactSample {
+            triangle: Some(triangle),
+            vertices,
+            weights,
+            area: model.elements[triangle as usize].area / 3.0,
+            friction: material.friction,
+            restitution: material.restitution,
+            extra_offset: 0.0,
+        });
+    }
+}

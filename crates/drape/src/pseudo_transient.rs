@@ -1,0 +1,229 @@
+//! The way to rest: pseudo-transient continuation (Kelley and Keyes 1998). Each step is one
+//! Newton iteration held back by inertia m/h^2 towards where the cloth is; h grows while all goes
+//! well and shrinks when the line search has to cut the step, so far from rest it creeps safely
+//! and near rest it is Newton's method. The matrix of each step serves a few more, and then regions
+//! that hold most of the net force are brought to rest apart (nonlinear elimination). How much of the
+//! curvature that compression takes away is kept in the Hessian is found in the same way: as much as
+//! leaves it positive definite.
+
+use crate::laws::membrane::Curvature;
+use crate::measure::{residual, weight_norm};
+use crate::memory::RestMemory;
+use crate::newton::ChordLimits;
+use crate::{
+    DrapeError, Inertia, LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State,
+    Workspace,
+};
+use toile_geometry::Vec3;
+
+/// When the way to rest ends, and how fast it may go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RestSettings {
+    /// Stop when net force over weight is below this.
+    pub residual: f64,
+    /// Steps at the most.
+    pub steps: usize,
+    /// Longest move of a vertex in one step [m].
+    pub longest_move: f64,
+}
+
+impl Default for RestSettings {
+    /// To 5e-3, within 1000 steps of at most 15 mm: a gathered skirt takes 400.
+    fn default() -> Self {
+        Self {
+            residual: 5e-3,
+            steps: 1000,
+            longest_move: 0.015,
+        }
+    }
+}
+
+/// A drape on its way to rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PseudoTransientContinuation {
+    settings: RestSettings,
+    memory: RestMemory,
+}
+
+/// Steps without a new low of the residual before a cycle is suspected.
+const PATIENCE: usize = 60;
+/// Steps with the matrix of a Newton step after it at the most, and at which share of the net force that is
+/// enough they end.
+const CHORDS: usize = 24;
+const CALM: f64 = 0.5;
+/// First pseudo time step [s]: a drop of 4 mm under gravity.
+const FIRST_STEP: f64 = 0.02;
+/// The same where a swing has brought the cloth near rest.
+const NEAR_STEP: f64 = 0.1;
+/// Bounds of the pseudo time step [s]: at the upper one inertia is 1e-6 of gravity over a metre.
+const SHORTEST_STEP: f64 = 1e-6;
+const LONGEST_STEP: f64 = 100.0;
+
+impl PseudoTransientContinuation {
+    /// A new way to rest.
+    pub fn new(settings: RestSettings) -> Self {
+        let memory = RestMemory {
+            pseudo_step: FIRST_STEP,
+            steps: 0,
+            residual: f64::INFINITY,
+            longest_step: LONGEST_STEP,
+            best: f64::INFINITY,
+            waited: 0,
+            linear_iterations: 0,
+            curvature: Curvature::CONVEX,
+        };
+        Self { settings, memory }
+    }
+
+    /// A new way that starts near rest, where a swing ended.
+    pub fn near(settings: RestSettings) -> Self {
+        let mut run = Self::new(settings);
+        run.memory.pseudo_step = NEAR_STEP;
+        run
+    }
+
+    /// Goes on from what a state remembers.
+    pub fn resume(settings: RestSettings, memory: RestMemory) -> Self {
+        Self { settings, memory }
+    }
+
+    /// What a state is to remember to go on.
+    pub fn memory(&self) -> &RestMemory {
+        &self.memory
+    }
+
+    /// Residual after the last step.
+    pub fn residual(&self) -> f64 {
+        self.memory.residual
+    }
+
+    /// Steps taken.
+    pub fn steps(&self) -> usize {
+        self.memory.steps
+    }
+
+    /// Conjugate-gradient iterations taken in all.
+    pub fn linear_iterations(&self) -> usize {
+        self.memory.linear_iterations
+    }
+
+    /// Whether the residual asked for is reached or the steps are used up.
+    pub fn finished(&self) -> bool {
+        self.memory.residual <= self.settings.residual || self.memory.steps >= self.settings.steps
+    }
+
+    /// Asks for a smaller residual with as many steps again.
+    pub fn go_on(&mut self, residual: f64, more_steps: usize) {
+        self.settings.residual = residual;
+        self.settings.steps = self.memory.steps + more_steps;
+        self.memory.residual = f64::INFINITY;
+        self.memory.best = f64::INFINITY;
+        self.memory.waited = 0;
+        self.memory.longest_step = LONGEST_STEP;
+    }
+
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// When numbers stop being finite or no step lowers the potential any more although the
+    /// residual is not reached; the state is then the last good one.
+    pub fn advance(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        workspace: &mut Workspace,
+    ) -> Result<(), DrapeError> {
+        let start = state.clone();
+        workspace.terms.hold_still(model, state);
+        loop {
+            let h = self.memory.pseudo_step;
+            let weight: Vec<f64> = model.mass.iter().map(|m| m / (h * h)).collect();
+            let inertia = Inertia {
+                weight: &weight,
+                target: &start.positions,
+            };
+            let newton = NewtonSettings {
+                iterations: 1,
+                tolerance: 0.0,
+                longest_move: self.settings.longest_move,
+                curvature: self.memory.curvature,
+                linear: LinearSolver::Direct {
+                    otherwise: PcgLimits {
+                        tolerance: 1e-3,
+                        iterations: 2000,
+                    },
+                },
+            };
+            let report = workspace.solve(model, state, &inertia, &newton);
+            self.memory.linear_iterations += report.linear_iterations;
+            if report.sound && state.first_not_finite().is_none() {
+                let enough = self.settings.residual * weight_norm(model);
+                let limits = ChordLimits {
+                    steps: CHORDS,
+                    tolerance: CALM * enough,
+                    longest_move: self.settings.longest_move,
+                };
+                workspace.follow_on(model, state, &inertia, limits);
+                workspace.contacts.refresh(model, state, &state.positions);
+                if workspace.eliminate(model, state, enough) {
+                    workspace.contacts.refresh(model, state, &state.positions);
+                }
+                workspace.contacts.settle(model, state);
+                let before = self.memory.residual;
+                self.memory.residual = residual(model, state, workspace);
+                self.adapt(&report, before);
+                break;
+            }
+            let vertex = state.first_not_finite();
+            state.clone_from(&start);
+            self.memory.pseudo_step *= 0.5;
+            if self.memory.pseudo_step < SHORTEST_STEP {
+                let stage = "drape to rest";
+                return Err(match vertex {
+                    Some(vertex) => DrapeError::NotFinite { stage, vertex },
+                    None => DrapeError::NoProgress {
+                        stage,
+                        residual: self.memory.residual,
+                    },
+                });
+            }
+        }
+        for v in &mut state.velocities {
+            *v = Vec3::zeros();
+        }
+        self.memory.steps += 1;
+        Ok(())
+    }
+
+    /// Grows the pseudo step while the full step is taken and the residual does not rise; shrinks
+    /// it when the line search or the limit on moves cut the step short.
+    fn adapt(&mut self, report: &NewtonReport, residual_before: f64) {
+        let (fraction, moved) = (report.fraction, report.moved);
+        self.memory.curvature = report.next_curvature();
+        let free = moved < 0.5 * self.settings.longest_move;
+        if fraction >= 1.0 && free && self.memory.residual < 1.05 * residual_before {
+            self.memory.pseudo_step = (self.memory.pseudo_step * 1.5).min(self.memory.longest_step);
+        } else if fraction < 0.3 || moved >= 0.99 * self.settings.longest_move {
+            self.memory.pseudo_step = (self.memory.pseudo_step * 0.7).max(SHORTEST_STEP);
+        }
+        self.break_cycles();
+    }
+
+    /// Newton's method can go round in a cycle between two sets of contacts. When the residual has
+    /// found no new low for long, the pseudo step is bounded ten times lower: inertia then damps
+    /// the cycle, though not what regions do that are brought to rest apart.
+    fn break_cycles(&mut self) {
+        if self.memory.residual < 0.9 * self.memory.best {
+            self.memory.best = self.memory.residual;
+            self.memory.waited = 0;
+            return;
+        }
+        self.memory.waited += 1;
+        if self.memory.waited >= PATIENCE {
+            self.memory.waited = 0;
+            self.memory.best = self.memory.residual;
+            self.memory.longest_step = (0.1 * self.memory.longest_step).max(FIRST_STEP);
+            self.memory.pseudo_step = self.memory.pseudo_step.min(self.memory.longest_step);
+        }
+    }
+}

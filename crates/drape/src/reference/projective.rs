@@ -1,0 +1,190 @@
+//! Projective dynamics as descent in a constant metric, with Anderson acceleration.
+
+use super::descent::{Line, descend, search, shorten};
+use super::metric::Metric;
+use crate::methods::implicit::{Limits, Problem, Solver};
+use crate::{NewtonReport, State, Workspace};
+use nalgebra::{DMatrix, DVector};
+use std::collections::VecDeque;
+use toile_geometry::Vec3;
+use toile_sparse::dot;
+
+/// Projective dynamics (Bouaziz, Martin, Liu, Kavan and Pauly 2014) for any energy, as the
+/// quasi-Newton method it is (Liu, Bouaziz and Kavan 2017, section 4):
+/// G(x) = x - A^-1 grad Phi(x) is one local projection and one global solve, A the prefactored
+/// [`Metric`]. It lowers the same Phi as the other methods, so it converges to the same step.
+///
+/// Accelerated as in Peng et al. 2018: with f_k = G(x_k) - x_k and the last m differences
+/// df, dx, theta minimises |f_k - sum theta_j df_j|, and
+/// x_k+1 = x_k + f_k - sum theta_j (dx_j + df_j). Where that does not lower Phi the line-searched
+/// step along f_k is taken and the memory emptied.
+#[derive(Default)]
+pub struct Projective {
+    metric: Metric,
+    step: Vec<Vec3>,
+    accelerated: Vec<Vec3>,
+    negative: Vec<Vec3>,
+    last: Option<(Vec<Vec3>, Vec<Vec3>)>,
+    history: VecDeque<Difference>,
+}
+
+/// Changes of place and of step between two iterations.
+struct Difference {
+    place: Vec<Vec3>,
+    step: Vec<Vec3>,
+}
+
+/// Differences remembered (their m).
+const MEMORY: usize = 5;
+
+impl Projective {
+    /// Remembers the present place and step.
+    fn remember(&mut self, x: &[Vec3]) {
+        let (mut place, mut step) = self.last.take().unwrap_or_default();
+        if place.len() == x.len() {
+            let mut difference = if self.history.len() >= MEMORY {
+                self.history.pop_front()
+            } else {
+                None
+            }
+            .unwrap_or(Difference {
+                place: Vec::new(),
+                step: Vec::new(),
+            });
+            subtract(x, &place, &mut difference.place);
+            subtract(&self.step, &step, &mut difference.step);
+            self.history.push_back(difference);
+        }
+        place.clear();
+        place.extend_from_slice(x);
+        step.clear();
+        step.extend_from_slice(&self.step);
+        self.last = Some((place, step));
+    }
+
+    fn forget(&mut self) {
+        self.history.clear();
+        self.last = None;
+    }
+
+    /// The accelerated step into `accelerated`; false without memory.
+    fn accelerate(&mut self) -> bool {
+        let m = self.history.len();
+        if m == 0 {
+            return false;
+        }
+        let mut products = DMatrix::<f64>::zeros(m, m);
+        let mut right = DVector::<f64>::zeros(m);
+        for i in 0..m {
+            for j in 0..=i {
+                let product = dot(&self.history[i].step, &self.history[j].step);
+                products[(i, j)] = product;
+                products[(j, i)] = product;
+            }
+            right[i] = dot(&self.history[i].step, &self.step);
+        }
+        // Nearly parallel differences: a trace of the identity keeps the system solvable.
+        let trace = products.trace();
+        for i in 0..m {
+            products[(i, i)] += 1e-12 * trace;
+        }
+        let Some(theta) = products.cholesky().map(|c| c.solve(&right)) else {
+            return false;
+        };
+        self.accelerated.clone_from(&self.step);
+        for (difference, &theta) in self.history.iter().zip(theta.iter()) {
+            let changes = difference.place.iter().zip(&difference.step);
+            for (out, (dx, df)) in self.accelerated.iter_mut().zip(changes) {
+                *out -= (dx + df) * theta;
+            }
+        }
+        self.accelerated
+            .iter()
+            .all(|d| d.norm_squared().is_finite())
+    }
+
+    /// One iteration from the gradient in the workspace; the share of the step taken.
+    fn iterate(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        workspace: &mut Workspace,
+        energy: &mut Option<f64>,
+    ) -> f64 {
+        self.negative.clear();
+        self.negative.extend(workspace.gradient.iter().map(|g| -g));
+        self.metric.press(problem, state, workspace);
+        self.metric
+            .solve(problem.model, &self.negative, &mut self.step);
+        self.remember(&state.positions);
+        if self.accelerate() {
+            let mut direction = std::mem::take(&mut self.accelerated);
+            shorten(problem, &mut direction);
+            let share = search(
+                problem,
+                state,
+                workspace,
+                Line {
+                    direction: &direction,
+                    shares: 1,
+                    energy,
+                },
+            );
+            self.accelerated = direction;
+            if share > 0.0 {
+                return share;
+            }
+            self.forget();
+        }
+        let mut step = std::mem::take(&mut self.step);
+        shorten(problem, &mut step);
+        let share = search(
+            problem,
+            state,
+            workspace,
+            Line {
+                direction: &step,
+                shares: usize::MAX,
+                energy,
+            },
+        );
+        self.step = step;
+        if share < 1.0 {
+            self.forget();
+        }
+        share
+    }
+}
+
+fn subtract(a: &[Vec3], b: &[Vec3], out: &mut Vec<Vec3>) {
+    out.clear();
+    out.extend(a.iter().zip(b).map(|(a, b)| a - b));
+}
+
+impl Solver for Projective {
+    const STAGE: &'static str = "projective dynamics";
+    const LIMITS: Limits = Limits {
+        iterations: 30,
+        tolerance: 1e-7,
+    };
+    const CONVERGES: bool = false;
+
+    fn lower(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        workspace: &mut Workspace,
+    ) -> NewtonReport {
+        workspace.fit(problem.model);
+        self.step
+            .resize(problem.model.vertex_count(), Vec3::zeros());
+        self.forget();
+        if !self.metric.fit(problem.model, problem.weight) {
+            return NewtonReport::default();
+        }
+        let mut energy = None;
+        descend(problem, state, workspace, |state, workspace, _| {
+            self.iterate(problem, state, workspace, &mut energy)
+        })
+    }
+}

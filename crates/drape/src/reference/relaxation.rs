@@ -1,0 +1,194 @@
+//! Dynamic relaxation: to rest by letting the cloth swing and stopping it at every swing's peak.
+
+use crate::laws::membrane::Curvature;
+use crate::measure::weight_norm;
+use crate::method::{Method, MethodSettings, StepReport};
+use crate::methods::explicit::forces_and_settle;
+use crate::{DrapeError, Inertia, Memory, Model, RelaxationMemory, State, Workspace};
+use toile_geometry::Vec3;
+use toile_sparse::dot;
+
+/// Dynamic relaxation with kinetic damping (Day 1965; Cundall 1976; Barnes 1999, section 3).
+///
+/// Leapfrog with fictitious masses and a step of one iteration: v' = v + f(x) / m, x' = x + v',
+/// from standstill v' = f / (2 m). When the kinetic energy falls, the cloth has passed an
+/// equilibrium of its swing: it is put back to the peak, x - v'/2 + f / (2 m), and stopped.
+/// Masses m_i = sum_j |K_ij| / 4 (rows summed in absolute value, the worst of the three
+/// directions) times 1.2: by Gershgorin's theorem every frequency is then under 2 per iteration,
+/// and soft places move as fast as stiff ones. They are taken anew at every peak, contact in reach
+/// counted in full.
+///
+/// One step is a swing, of 100 iterations at the most. An explicit method: each iteration costs a
+/// force evaluation, and it takes thousands, more as the mesh grows finer.
+pub struct Relaxation {
+    tolerance: f64,
+    most: usize,
+    run: Option<RelaxationMemory>,
+    workspace: Workspace,
+    zeros: Vec<f64>,
+}
+
+/// Iterations of one step at the most.
+const SWING: usize = 100;
+
+/// Iterations at the most where the settings give none.
+const MOST_ITERATIONS: usize = 100_000;
+
+/// How much heavier the masses are than stability asks at the present shape: cloth stiffens as it
+/// stretches.
+const SAFETY: f64 = 1.2;
+
+/// Longest move of a vertex in one iteration [m]: the whole motion is slowed to it.
+const LONGEST_MOVE: f64 = 5e-3;
+
+impl Relaxation {
+    /// With what the settings leave open at its defaults.
+    pub fn new(settings: &MethodSettings) -> Self {
+        Self {
+            tolerance: settings.tolerance.unwrap_or(1e-3),
+            most: settings.iterations.unwrap_or(MOST_ITERATIONS),
+            run: None,
+            workspace: Workspace::default(),
+            zeros: Vec::new(),
+        }
+    }
+
+    /// The run the state remembers, or a new one.
+    fn resume(&mut self, model: &Model, state: &mut State) -> RelaxationMemory {
+        let n = model.vertex_count();
+        match std::mem::take(&mut state.memory) {
+            Memory::Relaxation(run) if run.moves.len() == n => run,
+            _ => RelaxationMemory {
+                moves: vec![Vec3::zeros(); n],
+                masses: Vec::new(),
+                kinetic: 0.0,
+                still: true,
+                iterations: 0,
+                residual: f64::INFINITY,
+            },
+        }
+    }
+
+    /// Masses that keep every vibration stable at the state's positions.
+    fn weigh(&mut self, model: &Model, state: &State, masses: &mut Vec<f64>) {
+        let workspace = &mut self.workspace;
+        self.zeros.resize(model.vertex_count(), 0.0);
+        let inertia = Inertia {
+            weight: &self.zeros,
+            target: &state.positions,
+        };
+        workspace.fit(model);
+        workspace.terms.hold_still(model, state);
+        workspace.contacts.refresh(model, state, &state.positions);
+        workspace.fill_gradient(model, &state.positions, Some(&inertia));
+        workspace.fill_hessian(model, &state.positions, &inertia, Curvature::CONVEX);
+        masses.clear();
+        for v in 0..model.vertex_count() {
+            let mut sums =
+                Vec3::repeat(model.bending.row_entries(v).1.iter().map(|b| b.abs()).sum());
+            for block in workspace.hessian_blocks(model, v).1 {
+                sums += block.abs().column_sum();
+            }
+            // An elastic between vertices adds its secant off the diagonal too.
+            let own = model.elastic_stiffness(v);
+            masses.push(0.25 * SAFETY * (sums.max() + own));
+        }
+        for contact in &workspace.contacts.active {
+            let sample = &contact.point;
+            for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
+                masses[v as usize] += 0.25 * SAFETY * w * contact.law.normal;
+            }
+        }
+        for (mass, &real) in masses.iter_mut().zip(&model.mass) {
+            *mass = mass.max(f64::MIN_POSITIVE + 1e-9 * real);
+        }
+    }
+
+    /// One iteration; true when it was the last of a swing.
+    fn iterate(&mut self, model: &Model, state: &mut State, run: &mut RelaxationMemory) -> bool {
+        if run.still {
+            let mut masses = std::mem::take(&mut run.masses);
+            self.weigh(model, state, &mut masses);
+            run.masses = masses;
+        }
+        // No substep: nothing moves in time, and no push can throw the cloth.
+        let force = forces_and_settle(model, state, &mut self.workspace, 0.0);
+        run.iterations += 1;
+        run.residual = dot(force, force).sqrt() / weight_norm(model);
+        if run.residual <= self.tolerance {
+            return true;
+        }
+        let share = if run.still { 0.5 } else { 1.0 };
+        let (mut kinetic, mut longest) = (0.0, 0.0f64);
+        for ((v, f), m) in run.moves.iter_mut().zip(force).zip(&run.masses) {
+            *v += f * (share / m);
+            kinetic += 0.5 * m * v.norm_squared();
+            longest = longest.max(v.norm_squared());
+        }
+        if !run.still && kinetic < run.kinetic {
+            let moving = state.positions.iter_mut().zip(&mut run.moves);
+            for ((x, v), (f, m)) in moving.zip(force.iter().zip(&run.masses)) {
+                *x += f * (0.5 / m) - *v * 0.5;
+                *v = Vec3::zeros();
+            }
+            run.kinetic = 0.0;
+            run.still = true;
+            return true;
+        }
+        let longest = longest.sqrt();
+        if longest > LONGEST_MOVE {
+            let slowing = LONGEST_MOVE / longest;
+            kinetic *= slowing * slowing;
+            for v in &mut run.moves {
+                *v *= slowing;
+            }
+        }
+        for (x, v) in state.positions.iter_mut().zip(&run.moves) {
+            *x += v;
+        }
+        run.kinetic = kinetic;
+        run.still = false;
+        false
+    }
+}
+
+impl Method for Relaxation {
+    fn advance(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        _step: f64,
+    ) -> Result<StepReport, DrapeError> {
+        state.follow_samples();
+        state.velocities.fill(Vec3::zeros());
+        let mut run = self.resume(model, state);
+        let first = run.iterations;
+        for _ in 0..SWING {
+            if self.iterate(model, state, &mut run) {
+                break;
+            }
+        }
+        let stage = "dynamic relaxation";
+        if let Some(vertex) = state.first_not_finite() {
+            return Err(DrapeError::NotFinite { stage, vertex });
+        }
+        let report = StepReport {
+            pieces: 1,
+            iterations: run.iterations - first,
+            linear_iterations: 0,
+        };
+        state.memory = Memory::Relaxation(run.clone());
+        self.run = Some(run);
+        Ok(report)
+    }
+
+    fn finished(&self) -> bool {
+        self.run
+            .as_ref()
+            .is_some_and(|run| run.residual <= self.tolerance || run.iterations >= self.most)
+    }
+
+    fn residual(&self) -> Option<f64> {
+        Some(self.run.as_ref().map_or(f64::INFINITY, |run| run.residual))
+    }
+}
