@@ -279,13 +279,14 @@ impl ToileApp {
         });
     }
 
-    /// The size that is drafted, else the first.
+    /// The size that is drafted: the one chosen, else the base size, else the first.
     fn shown_size(&self) -> Option<SizeId> {
         let project = self.session.project();
         let sizes = &project.pattern.sizes;
         let shown = project.size.as_ref();
         let shown = shown.and_then(|name| sizes.iter().find(|size| size.name == *name));
-        shown.or(sizes.first()).map(|size| size.id)
+        let base = project.pattern.base();
+        shown.or(base).or(sizes.first()).map(|size| size.id)
     }
 
     /// A size like the last; the first has the wearer's measurements.

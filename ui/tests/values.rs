@@ -109,3 +109,22 @@ fn a_variable_that_is_there_takes_the_new_number() {
     let half = evaluation.variable(pattern.variables[1].id).unwrap().0;
     assert!((half - 0.025).abs() < 1e-12, "{half}");
 }
+
+/// While no size is chosen the base size is drafted, and Find leads to it.
+#[test]
+fn find_leads_to_the_base_size_while_none_is_chosen() {
+    let mut drafter = Drafter::opened("t-shirt");
+    drafter.hover(drafter.place(0.1, 0.1));
+    drafter.chord(Modifiers::COMMAND, Key::K);
+    drafter.window.run();
+    drafter.type_text("hips");
+    drafter.key(Key::Enter);
+    drafter.window.run();
+    let before = drafter.pattern();
+    drafter.typed("101");
+    let after = drafter.pattern();
+    for (old, new) in before.sizes.iter().zip(&after.sizes) {
+        let is_changed = old.measurements.get("hips") != new.measurements.get("hips");
+        assert_eq!(is_changed, old.name == "M", "{}", old.name);
+    }
+}

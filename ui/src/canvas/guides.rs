@@ -1,9 +1,9 @@
 //! Guides on the canvas: which is at a place, and the places near one that lie on them.
 
-use super::placed::{Placed, Spec, grid_step, near_curves, on_curve, rounded};
+use super::placed::{Placed, grid_step, near_curves, on_curve, on_edge, rounded};
 use super::scene::SheetScene;
 use toile_geometry::{Curve, Path, Vec2};
-use toile_pattern::{Guide, GuideRun, Mark, Name, Number, PointRule, SheetId};
+use toile_pattern::{Guide, GuideRun, SheetId};
 
 /// How near the pointer must be to a guide to take hold of it [pixels].
 const REACH: f64 = 6.0;
@@ -90,17 +90,8 @@ pub(super) fn on_lines(
             let crossings = Path::new(vec![part.curve]).crossings(&line).into_iter();
             for crossing in crossings.filter(|crossing| is_near(&crossing.point)) {
                 if let Some((place, share)) = part.nearest(crossing.point) {
-                    let at = Mark::Between {
-                        ends: part.ends,
-                        share: Number::Value(share),
-                    };
-                    let line = Name::Drawn(part.line);
-                    found.push(Placed {
-                        sheet: sheet.id,
-                        at: place,
-                        spec: Spec::New(PointRule::Mark { line, at }),
-                        words: "where the guide crosses the panel's edge".into(),
-                    });
+                    let words = "where the guide crosses the panel's edge";
+                    found.push(on_edge(sheet.id, part, (share, place), words));
                 }
             }
         }

@@ -2,7 +2,8 @@
 
 use super::scene::{CurveScene, SheetScene};
 use toile_geometry::Vec2;
-use toile_pattern::{Number, PointId, PointRule, SheetId};
+use toile_pattern::plan::EdgePart;
+use toile_pattern::{Mark, Name, Number, PointId, PointRule, SheetId};
 
 /// Steps of the grid [m], and the least enlargement each is used at [pixels per metre].
 const GRID: [(f64, f64); 4] = [(0.001, 8000.0), (0.005, 1600.0), (0.01, 500.0), (0.05, 0.0)];
@@ -107,5 +108,20 @@ pub fn on_curve(
             share: Number::Value(share),
         }),
         words: format!("{words} {}", curve.name),
+    }
+}
+
+/// A point on an edge of the panel that a sheet lies on, at a share of it, which lies there [m].
+pub fn on_edge(sheet: SheetId, part: &EdgePart, (share, at): (f64, Vec2), words: &str) -> Placed {
+    let mark = Mark::Between {
+        ends: part.ends,
+        share: Number::Value(share),
+    };
+    let line = Name::Drawn(part.line);
+    Placed {
+        sheet,
+        at,
+        spec: Spec::New(PointRule::Mark { line, at: mark }),
+        words: words.into(),
     }
 }

@@ -1,10 +1,10 @@
 //! Snapping: a place near the pointer that means something, and how a point there is constructed.
 
 use super::guides;
-use super::placed::{Placed, Spec, grid_step, near_curves, on_curve, rounded};
+use super::placed::{Placed, Spec, grid_step, near_curves, on_curve, on_edge, rounded};
 use super::scene::{CurveScene, PointRole, Scene, SheetScene};
 use toile_geometry::Vec2;
-use toile_pattern::{Guide, Mark, Name, Number, PointId, PointRule, SheetId};
+use toile_pattern::{Guide, Number, PointId, PointRule, SheetId};
 
 /// How near the pointer must be to a place to be drawn to it [pixels].
 const REACH: f64 = 9.0;
@@ -123,17 +123,12 @@ fn on_edges(sheet: &SheetScene, at: Vec2, reach: f64, found: &mut Vec<Placed>) {
         (away <= reach).then_some((away, part, point, share))
     });
     if let Some((_, part, point, share)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) {
-        let at = Mark::Between {
-            ends: part.ends,
-            share: Number::Value(share),
-        };
-        let line = Name::Drawn(part.line);
-        found.push(Placed {
-            sheet: sheet.id,
-            at: point,
-            spec: Spec::New(PointRule::Mark { line, at }),
-            words: "on the panel's edge".into(),
-        });
+        found.push(on_edge(
+            sheet.id,
+            part,
+            (share, point),
+            "on the panel's edge",
+        ));
     }
 }
 

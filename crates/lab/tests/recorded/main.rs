@@ -11,6 +11,7 @@ mod band;
 mod ends;
 mod frozen;
 mod motions;
+#[path = "../../../drape/tests/support/numbers.rs"]
 mod numbers;
 mod record;
 mod states;
