@@ -41,7 +41,7 @@ fn check(path: PathBuf, size: Option<&str>) {
             .unwrap_or_else(|error| panic!("{name}: {error}"));
     }
     let measures = run.measure();
-    let mesh = run.model.mesh(&run.state.positions);
+    let mesh = run.system.mesh(&run.state.positions);
     assert_eq!(mesh.component_count(), 1, "{name}: one merged object");
     assert_eq!(
         mesh.topology().non_manifold().count(),
@@ -141,7 +141,7 @@ fn shipped_patterns_are_worn_over_one_another() {
     for layer in &measures.layers {
         assert_eq!([layer.outer_intersections, layer.astray], [0; 2]);
     }
-    let mesh = run.model.mesh(&run.state.positions);
+    let mesh = run.system.mesh(&run.state.positions);
     assert_eq!(mesh.component_count(), 3);
     assert!(run.warnings().is_empty(), "{:?}", run.warnings());
 }

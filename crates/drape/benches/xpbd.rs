@@ -8,7 +8,7 @@ mod sheets;
 use sheets::sheet;
 use std::sync::Arc;
 use std::time::Instant;
-use toile_drape::{Cloth, Collider, Material, Model, State, Xpbd};
+use toile_drape::{Cloth, Collider, Material, State, System, SystemBuilder, Xpbd};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 fn bumpy(n: usize, cell: f64) -> TriangleMesh {
@@ -34,20 +34,20 @@ fn floor() -> Collider {
 
 /// Milliseconds of a frame: what reading and writing a state takes, and twenty substeps. Found from
 /// the least time of short runs, so that what other programs take is left out as far as can be.
-fn time(model: &Model, threads: usize, runs: usize) -> f64 {
+fn time(system: &System, threads: usize, runs: usize) -> f64 {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .unwrap();
     pool.install(|| {
-        let mut state = State::at_rest(model, sheet_positions(model));
-        let mut solver = Xpbd::new(model);
+        let mut state = State::at_rest(system, sheet_positions(system));
+        let mut solver = Xpbd::new(system);
         let mut least = [f64::INFINITY; 2];
         for _ in 0..runs {
             for (least, substeps) in least.iter_mut().zip([1, 4]) {
                 let start = Instant::now();
                 solver
-                    .advance(model, &mut state, 1.0 / 1200.0, substeps, 0.1)
+                    .advance(system, &mut state, 1.0 / 1200.0, substeps, 0.1)
                     .unwrap();
                 *least = least.min(start.elapsed().as_secs_f64() * 1e3);
             }
@@ -56,8 +56,8 @@ fn time(model: &Model, threads: usize, runs: usize) -> f64 {
     })
 }
 
-fn sheet_positions(model: &Model) -> Vec<Vec3> {
-    let n = (model.vertex_count() as f64).sqrt() as usize - 1;
+fn sheet_positions(system: &System) -> Vec<Vec3> {
+    let n = (system.vertex_count() as f64).sqrt() as usize - 1;
     bumpy(n, 1.0 / n as f64).positions
 }
 
@@ -74,18 +74,19 @@ fn main() {
                 ..Material::default()
             };
             let cloth = Cloth::from_mesh("sheet", &bumpy(n, 1.0 / n as f64), material).unwrap();
-            let mut model = Model::new("sheet", &cloth).unwrap();
-            model.pinned[0] = true;
-            model.pinned[n] = true;
+            let mut builder = SystemBuilder::new("sheet", &cloth).unwrap();
+            builder.pinned[0] = true;
+            builder.pinned[n] = true;
             if contact {
-                model.colliders.push(floor());
+                builder.colliders.push(floor());
             }
-            let runs = (2_000_000 / model.vertex_count()).max(150);
-            let (one, two) = (time(&model, 1, runs), time(&model, 2, runs));
-            let triangles = model.triangles.len();
+            let system = builder.build();
+            let runs = (2_000_000 / system.vertex_count()).max(150);
+            let (one, two) = (time(&system, 1, runs), time(&system, 2, runs));
+            let triangles = system.topology.triangles.len();
             println!(
                 "{:8}  {triangles:9}  {name:10}  {one:13.3}  {two:14.3}  {:5.2}  {:.2e}",
-                model.vertex_count(),
+                system.vertex_count(),
                 one / two,
                 triangles as f64 * 20.0 / (two * 1e-3)
             );

@@ -162,7 +162,7 @@ impl Flipper {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Material, Model, State, Workspace};
+    use crate::{Material, State, System, Workspace};
     use toile_geometry::Vec3;
 
     /// A square of 4 x 4 cells with a cap planted on the first edge of some triangles.
@@ -256,19 +256,19 @@ mod tests {
     #[test]
     fn a_model_keeps_the_surface_and_an_even_stretch_pulls_on_no_inner_vertex() {
         let cloth = square(&[2, 9, 21]);
-        let model = Model::new("square", &cloth).unwrap();
-        assert_ne!(model.triangles, cloth.triangles);
-        assert_eq!(model.mesh(&cloth.positions).triangles, cloth.triangles);
-        let mut model = model;
-        model.gravity = Vec3::zeros();
+        let system = System::new("square", &cloth).unwrap();
+        assert_ne!(system.topology.triangles, cloth.triangles);
+        assert_eq!(system.mesh(&cloth.positions).triangles, cloth.triangles);
+        let mut system = system;
+        system.control.gravity = Vec3::zeros();
         let stretched: Vec<Vec3> = cloth
             .positions
             .iter()
             .map(|p| Vec3::new(1.03 * p.x + 0.02 * p.y, 0.98 * p.y, 0.0))
             .collect();
-        let state = State::at_rest(&model, stretched);
+        let state = State::at_rest(&system, stretched);
         let mut workspace = Workspace::default();
-        let force = workspace.net_force(&model, &state);
+        let force = workspace.net_force(&system, &state);
         let most = force.iter().map(Vec3::norm).fold(0.0, f64::max);
         for (p, f) in cloth.positions.iter().zip(force) {
             let inside = [p.x, p.y].iter().all(|&c| c > 1e-9 && c < 0.04 - 1e-9);

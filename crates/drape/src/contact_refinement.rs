@@ -25,20 +25,20 @@ impl State {
 /// for it and its neighbour.
 fn under(model: &Model, triangle: u32) -> Vec<u32> {
     let given = model.surface_triangles()[triangle as usize];
-    let own = model.triangles[triangle as usize];
+    let own = model.topology.triangles[triangle as usize];
     if given == own {
         return vec![triangle];
     }
     let quad = |v: &u32| given.contains(v) || own.contains(v);
-    let all = 0..model.triangles.len() as u32;
-    all.filter(|&t| model.triangles[t as usize].iter().all(quad))
+    let all = 0..model.topology.triangles.len() as u32;
+    all.filter(|&t| model.topology.triangles[t as usize].iter().all(quad))
         .collect()
 }
 
 /// Adds samples within a triangle, or keeps those that are there farther off.
 fn refine(model: &Model, samples: &mut Vec<ContactSample>, triangle: u32) {
     if samples.iter().any(|s| s.triangle == Some(triangle)) {
-        let corners = model.triangles[triangle as usize];
+        let corners = model.topology.triangles[triangle as usize];
         for sample in samples.iter_mut() {
             let corner = sample.triangle.is_none() && corners.contains(&sample.vertices[0]);
             if corner || sample.triangle == Some(triangle) {
@@ -47,8 +47,8 @@ fn refine(model: &Model, samples: &mut Vec<ContactSample>, triangle: u32) {
         }
         return;
     }
-    let vertices = model.triangles[triangle as usize];
-    let material = &model.materials[model.material[triangle as usize] as usize];
+    let vertices = model.topology.triangles[triangle as usize];
+    let material = &model.materials.list[model.materials.of_triangle[triangle as usize] as usize];
     let third = 1.0 / 3.0;
     for weights in [
         [third; 3],
@@ -60,7 +60,7 @@ fn refine(model: &Model, samples: &mut Vec<ContactSample>, triangle: u32) {
             triangle: Some(triangle),
             vertices,
             weights,
-            area: model.elements[triangle as usize].area / 3.0,
+            area: model.rest.elements[triangle as usize].area / 3.0,
             friction: material.friction,
             restitution: material.restitution,
             extra_offset: 0.0,

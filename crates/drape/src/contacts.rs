@@ -108,7 +108,7 @@ impl Contacts {
             let [mut leaving, mut mass] = [0.0; 2];
             for (&v, w) in corners.clone() {
                 leaving += w * plane.normal.dot(&state.velocities[v as usize]);
-                mass += w * model.mass[v as usize];
+                mass += w * model.rest.mass[v as usize];
             }
             let mut push = damped_push(elastic, law.normal, mass, leaving);
             if is_buried(model, state, contact, place) {

@@ -7,8 +7,8 @@ use crate::kinetic_damping::KineticDamping;
 use crate::measure::{Measures, measure};
 use crate::merge::merged_layers;
 use crate::{
-    Carry, Cloth, Collider, ContactSettings, DrapeError, Model, PseudoTransientContinuation,
-    RestSettings, SewRun, SewSettings, State, Workspace, merge_map,
+    Carry, Cloth, Collider, ContactSettings, DrapeError, PseudoTransientContinuation, RestSettings,
+    SewRun, SewSettings, State, System, SystemBuilder, Workspace, merge_map,
 };
 use std::sync::Arc;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
@@ -74,8 +74,8 @@ pub struct Progress {
 
 /// A garment being sewn and draped.
 pub struct GarmentRun {
-    /// The model of the present stage.
-    pub model: Model,
+    /// The model of the present stage and what acts on it.
+    pub system: System,
     /// The state of the present stage.
     pub state: State,
     /// New index of every vertex of the present level's cloth; the identity until merged.
@@ -131,8 +131,9 @@ impl GarmentRun {
         };
         setup.contact = setup.contact.for_cloth(&first.cloth.materials);
         setup.contact.check_reach("thickness of the fabrics")?;
-        let mut model = Model::new("garment", &first.cloth)?;
-        model.colliders = setup.colliders.iter().cloned().map(Collider::new).collect();
+        let mut builder = SystemBuilder::new("garment", &first.cloth)?;
+        builder.colliders = setup.colliders.iter().cloned().map(Collider::new).collect();
+        let mut system = builder.build();
         let mut run = Self {
             target: Vec::new(),
             level: 0,
@@ -141,7 +142,7 @@ impl GarmentRun {
             cut_short: false,
             swings: 0,
             rest: PseudoTransientContinuation::new(setup.rest),
-            sew: SewRun::new(&mut model, Vec::new(), setup.sew),
+            sew: SewRun::new(&mut system, Vec::new(), setup.sew),
             workspace: Workspace::default(),
             stage: Stage::Sewing,
             gap_before_merging: 0.0,
@@ -151,7 +152,7 @@ impl GarmentRun {
             warnings: Vec::new(),
             steps: [0; 2],
             tally: Tally::default(),
-            model,
+            system,
             setup,
         };
         let placed = run.setup.levels[0].cloth.positions.clone();
@@ -167,21 +168,22 @@ impl GarmentRun {
             stitches,
             layer,
         } = &self.setup.levels[level];
-        let mut model = Model::new("garment", cloth)?;
-        model.colliders = std::mem::take(&mut self.model.colliders);
-        model.contact = ContactSettings {
+        let mut builder = SystemBuilder::new("garment", cloth)?;
+        builder.colliders = self.system.colliders.to_vec();
+        builder.contact = ContactSettings {
             friction: false,
             cloth_offset: 0.0,
             ..self.setup.contact
         };
-        model.gravity = Vec3::zeros();
-        part_layers(&mut model, layer, self.setup.contact.cloth_offset);
+        builder.control.gravity = Vec3::zeros();
+        part_layers(&mut builder, layer, self.setup.contact.cloth_offset);
+        let mut system = builder.build();
         self.target = (0..positions.len() as u32).collect();
-        self.state = State::at_rest(&model, positions);
-        self.sew = SewRun::new(&mut model, stitches.clone(), self.setup.sew);
+        self.state = State::at_rest(&system, positions);
+        self.sew = SewRun::new(&mut system, stitches.clone(), self.setup.sew);
         self.sew.look(&self.state);
         self.level = level;
-        self.model = model;
+        self.system = system;
         self.tally = self.cloth_tally();
         self.workspace = Workspace::default();
         self.stage = Stage::Sewing;
@@ -222,7 +224,7 @@ impl GarmentRun {
     }
 
     /// Lets a merged garment settle anew, with all the steps of its setup again: for when the
-    /// elastics of [`GarmentRun::model`] were changed from outside. While it is sewn nothing
+    /// elastics of [`GarmentRun::system`] were changed from outside. While it is sewn nothing
     /// changes.
     pub fn unsettle(&mut self) {
         if matches!(self.stage, Stage::Settling | Stage::Finished) {
@@ -265,7 +267,7 @@ impl GarmentRun {
         match self.stage {
             Stage::Sewing => {
                 self.sew
-                    .advance(&mut self.model, &mut self.state, &mut self.workspace)?;
+                    .advance(&mut self.system, &mut self.state, &mut self.workspace)?;
                 let start = 0.3;
                 let shown = 0.5 * (1.0 - (self.sew.last_gap() / start).min(1.0));
                 self.show(shown);
@@ -289,12 +291,12 @@ impl GarmentRun {
     }
 
     fn swing(&mut self) -> Result<(), DrapeError> {
-        let model = &self.model;
+        let system = &self.system;
         let swing = (self.swing).get_or_insert_with(|| match self.level {
-            0 => KineticDamping::new(model),
-            _ => KineticDamping::carried(model),
+            0 => KineticDamping::new(system),
+            _ => KineticDamping::carried(system),
         });
-        swing.advance(&self.model, &mut self.state)?;
+        swing.advance(&self.system, &mut self.state)?;
         let shown = 0.5 + 0.2 * swing.share();
         if swing.finished() {
             self.cut_short = swing.left_crossings();
@@ -309,7 +311,7 @@ impl GarmentRun {
 
     fn settle(&mut self) -> Result<(), DrapeError> {
         self.rest
-            .advance(&self.model, &mut self.state, &mut self.workspace)?;
+            .advance(&self.system, &mut self.state, &mut self.workspace)?;
         if self.cut_short && self.workspace.contacts.cloth.is_in_order() {
             self.cut_short = false;
             if self.swings < MOST_SWINGS {
@@ -360,7 +362,7 @@ impl GarmentRun {
         }
         self.refinements += 1;
         for triangle in offenders {
-            self.state.refine_contact(&self.model, triangle);
+            self.state.refine_contact(&self.system, triangle);
         }
         true
     }
@@ -383,9 +385,9 @@ impl GarmentRun {
 
     /// Cloth triangles that cross a solid surface, exactly.
     fn body_crossings(&self) -> Vec<u32> {
-        let mesh = self.model.mesh(&self.state.positions);
+        let mesh = self.system.mesh(&self.state.positions);
         let mut crossing: Vec<u32> = Vec::new();
-        for collider in &self.model.colliders {
+        for collider in self.system.colliders.iter() {
             let pairs = collider.crossings(self.state.time, &mesh);
             crossing.extend(pairs.iter().map(|pair| pair[0]));
         }
@@ -408,13 +410,14 @@ impl GarmentRun {
         let pairs = stitches.iter().copied();
         let (target, count) = merge_map(placed.positions.len(), pairs);
         let merged = placed.merged(&target, count);
-        let mut model = Model::new("garment", &merged)?;
-        model.colliders = std::mem::take(&mut self.model.colliders);
-        model.contact = self.setup.contact;
-        model.gravity = self.setup.gravity;
-        model.layer = merged_layers(layer, &target, count);
-        self.state = State::at_rest(&model, merged.positions);
-        self.model = model;
+        let mut builder = SystemBuilder::new("garment", &merged)?;
+        builder.colliders = self.system.colliders.to_vec();
+        builder.contact = self.setup.contact;
+        builder.control.gravity = self.setup.gravity;
+        builder.layer = merged_layers(layer, &target, count);
+        let system = builder.build();
+        self.state = State::at_rest(&system, merged.positions);
+        self.system = system;
         self.target = target;
         self.workspace = Workspace::default();
         self.gap_before_merging = self.sew.last_gap();
@@ -440,24 +443,24 @@ impl GarmentRun {
 
     /// Measures the present state. Strain counts only where the setup says so.
     pub fn measure(&mut self) -> Measures {
-        let counted = if self.model.triangles.len() == self.setup.counted.len() {
+        let counted = if self.system.topology.triangles.len() == self.setup.counted.len() {
             self.setup.counted.clone()
         } else {
             Vec::new()
         };
-        measure(&self.model, &self.state, &mut self.workspace, &counted)
+        measure(&self.system, &self.state, &mut self.workspace, &counted)
     }
 }
 
 /// Keeps outer layers farther from the body, each by the distance between two cloths: while a garment is
 /// sewn its layers pass through each other, and so most of each comes to lie where it belongs.
-fn part_layers(model: &mut Model, layer: &[u16], cloth_offset: f64) {
+fn part_layers(builder: &mut SystemBuilder, layer: &[u16], cloth_offset: f64) {
     let mut layers = layer.to_vec();
     layers.sort_unstable();
     layers.dedup();
-    for sample in Arc::make_mut(&mut model.samples) {
-        let own = layer.get(sample.vertices[0] as usize);
+    builder.keep_off(|vertex| {
+        let own = layer.get(vertex as usize);
         let below = own.map_or(0, |own| layers.partition_point(|other| other < own));
-        sample.extra_offset = below as f64 * cloth_offset;
-    }
+        below as f64 * cloth_offset
+    });
 }

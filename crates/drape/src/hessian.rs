@@ -3,7 +3,7 @@
 //! solved by factorisation.
 
 use crate::collision::Couplings;
-use crate::{Elastic, ElasticEnd, Model};
+use crate::{ElasticEnd, Model, System};
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 use toile_sparse::ScalarMatrix;
@@ -11,7 +11,7 @@ use toile_sparse::factor::{Block, Factor, Graph};
 
 /// A symmetric positive semidefinite Hessian; rows and columns of pinned vertices do not count.
 pub struct Hessian<'a> {
-    pub model: &'a Model,
+    pub system: &'a System,
     /// Bending, with what viscosity adds to it in a step.
     pub bending: &'a ScalarMatrix,
     /// Blocks over the mesh's pattern, everything on the diagonal but bending included.
@@ -33,19 +33,16 @@ struct Unknowns {
 const PINNED: u32 = u32::MAX;
 
 impl Unknowns {
-    fn new(model: &Model) -> Self {
-        let all = 0..model.vertex_count() as u32;
-        let vertex: Vec<u32> = all.filter(|&v| !model.pinned[v as usize]).collect();
-        let mut number = vec![PINNED; model.vertex_count()];
+    fn new(system: &System) -> Self {
+        let all = 0..system.vertex_count() as u32;
+        let vertex: Vec<u32> = all
+            .filter(|&v| !system.prescribed.pinned[v as usize])
+            .collect();
+        let mut number = vec![PINNED; system.vertex_count()];
         for (at, &v) in (0..).zip(&vertex) {
             number[v as usize] = at;
         }
         Self { vertex, number }
-    }
-
-    fn fit(&self, model: &Model) -> bool {
-        let is_pinned = |&number: &u32| number == PINNED;
-        (self.number.iter().map(is_pinned)).eq(model.pinned.iter().copied())
     }
 
     /// The unknowns of a pair of vertices, none where one is pinned.
@@ -55,31 +52,32 @@ impl Unknowns {
     }
 
     /// Unknowns that the matrix couples.
-    fn graph(&self, model: &Model, touching: &[[u32; 2]]) -> Graph {
+    fn graph(&self, system: &System, touching: &[[u32; 2]]) -> Graph {
         let mesh = self.vertex.iter().flat_map(|&v| {
-            let edges = model.pattern.row_columns(v as usize);
-            let bending = model.bending.row_entries(v as usize).0;
+            let edges = system.topology.pattern.row_columns(v as usize);
+            let bending = system.rest.bending.row_entries(v as usize).0;
             // Either way round is enough.
             let after = edges.iter().chain(bending).filter(move |&&u| u > v);
             after.map(move |&u| [v, u])
         });
-        let others = couples(model).chain(touching.iter().copied());
+        let others = couples(system).chain(touching.iter().copied());
         let pairs = mesh.chain(others).filter_map(|pair| self.pair(pair));
         Graph::from_pairs(self.vertex.len(), pairs)
     }
 }
 
 /// Vertices coupled by elastics.
-fn couples(model: &Model) -> impl Iterator<Item = [u32; 2]> + '_ {
-    model.elastics.iter().filter_map(Elastic::ends)
+fn couples(system: &System) -> impl Iterator<Item = [u32; 2]> + '_ {
+    system.couplings.ends()
 }
 
 impl Hessian<'_> {
     /// A row times a vector, pins not heeded.
     pub fn row_times(&self, row: usize, p: &[Vec3]) -> Vec3 {
-        let model = self.model;
-        let mut sum = model.pattern.row_times(row, self.blocks, p) + self.bending.row_times(row, p);
-        for (e, other) in model.elastics_at(row) {
+        let system = self.system;
+        let mut sum =
+            system.topology.pattern.row_times(row, self.blocks, p) + self.bending.row_times(row, p);
+        for (e, other) in system.elastics_at(row) {
             if let ElasticEnd::Vertex(other) = other {
                 sum -= p[other as usize] * self.secants[e];
             }
@@ -89,18 +87,21 @@ impl Hessian<'_> {
 
     /// The block on the diagonal.
     pub fn diagonal(&self, row: usize) -> Matrix3<f64> {
-        self.model.pattern.diagonal_block(row, self.blocks)
+        self.system
+            .topology
+            .pattern
+            .diagonal_block(row, self.blocks)
             + Matrix3::identity() * self.bending.diagonal(row)
     }
 
     /// Writes an unknown's row as the factorisation wants it; `columns` are all unknowns that the row
     /// may have.
     fn fill_row(&self, unknowns: &Unknowns, row: usize, columns: &[u32], out: &mut [Block<3>]) {
-        let model = self.model;
+        let system = self.system;
         out.fill([[0.0; 3]; 3]);
         let row = unknowns.vertex[row] as usize;
         let number = |vertex: u32| unknowns.number[vertex as usize];
-        let (edges, blocks) = model.pattern.row_entries(row, self.blocks);
+        let (edges, blocks) = system.topology.pattern.row_entries(row, self.blocks);
         let mut at = 0;
         for (&vertex, block) in edges.iter().zip(blocks) {
             if seek(columns, &mut at, number(vertex)) {
@@ -115,7 +116,7 @@ impl Hessian<'_> {
                 (0..3).for_each(|k| out[at][k][k] += value);
             }
         }
-        for (e, other) in model.elastics_at(row) {
+        for (e, other) in system.elastics_at(row) {
             if let ElasticEnd::Vertex(other) = other
                 && let Ok(at) = columns.binary_search(&number(other))
             {
@@ -148,7 +149,8 @@ fn seek(columns: &[u32], at: &mut usize, column: u32) -> bool {
 pub struct Direct {
     factor: Factor<3>,
     unknowns: Unknowns,
-    couples: Vec<[u32; 2]>,
+    /// The model the structure was worked out for.
+    model: Model,
     /// Right side and solution at the unknowns.
     right: Vec<Vec3>,
     found: Vec<Vec3>,
@@ -159,15 +161,15 @@ pub struct Direct {
 impl Direct {
     /// Works out the structure for a model and vertices of cloths that may touch; `places` is any
     /// layout of the vertices in space.
-    pub fn new(model: &Model, places: &[Vec3], touching: &[[u32; 2]]) -> Self {
-        let unknowns = Unknowns::new(model);
-        let graph = unknowns.graph(model, touching);
+    pub fn new(system: &System, places: &[Vec3], touching: &[[u32; 2]]) -> Self {
+        let unknowns = Unknowns::new(system);
+        let graph = unknowns.graph(system, touching);
         let places: Vec<Vec3> = (unknowns.vertex.iter())
             .map(|&v| places[v as usize])
             .collect();
         Self {
             factor: Factor::new(graph, &places),
-            couples: couples(model).collect(),
+            model: system.model.clone(),
             right: Vec::new(),
             found: vec![Vec3::zeros(); places.len()],
             unknowns,
@@ -175,13 +177,12 @@ impl Direct {
         }
     }
 
-    /// Whether the structure is that of a model, made from the same mesh as the one it was made
-    /// for but perhaps with other elastics and pins.
-    pub fn fits(&self, model: &Model, touching: &Couplings) -> bool {
+    /// Whether the structure is that of a model where some vertices of cloths touch.
+    pub fn fits(&self, system: &System, touching: &Couplings) -> bool {
         let graph = self.factor.graph();
         let has = |[a, b]: [u32; 2]| graph.row(a as usize).binary_search(&b).is_ok();
-        self.unknowns.fit(model)
-            && couples(model).eq(self.couples.iter().copied())
+        self.model.has_structure_of(system)
+            && self.model.has_ties_of(system)
             && (touching.places())
                 .filter_map(|pair| self.unknowns.pair(pair))
                 .all(has)
@@ -252,30 +253,36 @@ mod tests {
 
     /// Norm of A x - b, b the weights, over that of b; and over what rounding x alone leaves,
     /// |A| |x| + |b|, with pseudo steps of `step` seconds.
-    fn residuals(model: &Model, places: &[Vec3], step: f64) -> [f64; 2] {
-        let state = State::at_rest(model, places.to_vec());
+    fn residuals(system: &System, places: &[Vec3], step: f64) -> [f64; 2] {
+        let state = State::at_rest(system, places.to_vec());
         let mut workspace = Workspace::default();
-        workspace.net_force(model, &state);
-        let weight: Vec<f64> = model.mass.iter().map(|m| m / (step * step)).collect();
+        workspace.net_force(system, &state);
+        let weight: Vec<f64> = system.rest.mass.iter().map(|m| m / (step * step)).collect();
         let inertia = Inertia {
             weight: &weight,
             target: places,
         };
-        workspace.fill_hessian(model, places, &inertia, Curvature::CONVEX);
-        let hessian = workspace.hessian(model);
-        let free = |v: usize, p: Vec3| if model.pinned[v] { Vec3::zeros() } else { p };
+        workspace.fill_hessian(system, places, &inertia, Curvature::CONVEX);
+        let hessian = workspace.hessian(system);
+        let free = |v: usize, p: Vec3| {
+            if system.prescribed.pinned[v] {
+                Vec3::zeros()
+            } else {
+                p
+            }
+        };
         let b: Vec<Vec3> = (0..places.len())
-            .map(|v| free(v, model.gravity * model.mass[v]))
+            .map(|v| free(v, system.control.gravity * system.rest.mass[v]))
             .collect();
         let mut x = vec![Vec3::zeros(); b.len()];
-        let mut direct = Direct::new(model, &model.layout, &[]);
-        assert!(direct.fits(model, &Couplings::default()));
+        let mut direct = Direct::new(system, &system.topology.layout, &[]);
+        assert!(direct.fits(system, &Couplings::default()));
         assert!(direct.solve(&hessian, &b, &mut x));
         let (mut off, mut whole, mut found, mut largest) = (0.0, 0.0, 0.0, 0.0f64);
         for v in 0..b.len() {
             found += x[v].norm_squared();
             largest = largest.max(hessian.diagonal(v).norm());
-            assert!(!model.pinned[v] || x[v] == Vec3::zeros());
+            assert!(!system.prescribed.pinned[v] || x[v] == Vec3::zeros());
             off += free(v, hessian.row_times(v, &x) - b[v]).norm_squared();
             whole += b[v].norm_squared();
         }
@@ -283,8 +290,8 @@ mod tests {
         [off / whole, off / (largest * found + whole)]
     }
 
-    fn check(model: &Model, places: &[Vec3], step: f64) {
-        let [relative, rounding] = residuals(model, places, step);
+    fn check(system: &System, places: &[Vec3], step: f64) {
+        let [relative, rounding] = residuals(system, places, step);
         assert!(rounding < 1e-14, "{step} s: {rounding:e}");
         assert!(relative < 1e-3, "{step} s: {relative:e}");
     }
@@ -302,7 +309,7 @@ mod tests {
     #[test]
     fn ill_conditioned_systems_are_solved() {
         let cloth = sheets(stiff(1e4));
-        let mut model = Model::new("sheets", &cloth).unwrap();
+        let mut system = System::new("sheets", &cloth).unwrap();
         // Pseudo steps from the first to the longest of the way to rest; sheets that hang by one
         // corner, and sheets that float, held by inertia alone.
         for (pins, step) in [
@@ -311,27 +318,29 @@ mod tests {
             (vec![0, 441], 0.02),
             (vec![0, 441], 100.0),
         ] {
-            model.pinned.fill(false);
-            pins.iter().for_each(|&v: &usize| model.pinned[v] = true);
-            check(&model, &cloth.positions, step);
+            system = system.with(|builder| {
+                builder.pinned.fill(false);
+                pins.iter().for_each(|&v: &usize| builder.pinned[v] = true);
+            });
+            check(&system, &cloth.positions, step);
         }
     }
 
     #[test]
     fn crushed_and_stretched_cloth_is_solved() {
         let cloth = sheets(stiff(1.0));
-        let model = Model::new("sheets", &cloth).unwrap();
+        let system = System::new("sheets", &cloth).unwrap();
         for scale in [0.0, 0.1, 4.0] {
             let places: Vec<Vec3> = cloth.positions.iter().map(|p| p * scale).collect();
-            check(&model, &places, 0.02);
+            check(&system, &places, 0.02);
         }
     }
 
     #[test]
     fn sewn_sheets_are_solved_and_other_seams_need_another_structure() {
         let cloth = sheets(stiff(1.0));
-        let mut model = Model::new("sheets", &cloth).unwrap();
-        let unsewn = Direct::new(&model, &model.layout, &[]);
+        let mut system = System::new("sheets", &cloth).unwrap();
+        let unsewn = Direct::new(&system, &system.topology.layout, &[]);
         let law = ElasticLaw {
             stiffness: 2e3,
             largest_force: 1.0,
@@ -346,31 +355,35 @@ mod tests {
             to: ElasticEnd::Point(Vec3::zeros()),
             law,
         };
-        model.set_elastics((0..21).map(seam).chain([hold]).collect());
-        assert!(!unsewn.fits(&model, &Couplings::default()));
-        check(&model, &cloth.positions, 1.0 / 60.0);
+        system = system.with(|builder| {
+            builder.elastics = (0..21).map(seam).chain([hold]).collect();
+        });
+        assert!(!unsewn.fits(&system, &Couplings::default()));
+        check(&system, &cloth.positions, 1.0 / 60.0);
     }
 
     #[test]
     fn pins_are_no_unknowns_and_other_pins_need_another_structure() {
         let cloth = sheets(stiff(1.0));
-        let mut model = Model::new("sheets", &cloth).unwrap();
-        let free = Direct::new(&model, &model.layout, &[]);
-        model.pinned[..441].fill(true);
-        assert!(!free.fits(&model, &Couplings::default()));
-        let held = Direct::new(&model, &model.layout, &[[3, 500]]);
-        assert!(held.fits(&model, &Couplings::default()));
+        let mut system = System::new("sheets", &cloth).unwrap();
+        let free = Direct::new(&system, &system.topology.layout, &[]);
+        system = system.with(|builder| {
+            builder.pinned[..441].fill(true);
+        });
+        assert!(!free.fits(&system, &Couplings::default()));
+        let held = Direct::new(&system, &system.topology.layout, &[[3, 500]]);
+        assert!(held.fits(&system, &Couplings::default()));
         assert_eq!(held.factor.graph().vertex_count(), 441);
         assert!(held.factor.operations() < 0.51 * free.factor.operations());
         // Contact with cloth that is pinned couples nothing, contact of what is free does.
         let mut touching = Couplings::default();
         touching.add(3, 600, Matrix3::identity());
-        touching.sort(model.vertex_count());
-        assert!(held.fits(&model, &touching));
+        touching.sort(system.vertex_count());
+        assert!(held.fits(&system, &touching));
         touching.add(450, 870, Matrix3::identity());
-        touching.sort(model.vertex_count());
-        assert!(!held.fits(&model, &touching));
-        check(&model, &cloth.positions, 1.0);
+        touching.sort(system.vertex_count());
+        assert!(!held.fits(&system, &touching));
+        check(&system, &cloth.positions, 1.0);
     }
 
     #[test]
@@ -380,17 +393,17 @@ mod tests {
             triangles: vec![[0, 1, 2]],
         };
         let cloth = Cloth::from_mesh("triangle", &mesh, Material::default()).unwrap();
-        let model = Model::new("triangle", &cloth).unwrap();
-        let blocks = vec![Matrix3::identity() * -1.0; model.pattern.block_count()];
+        let system = System::new("triangle", &cloth).unwrap();
+        let blocks = vec![Matrix3::identity() * -1.0; system.topology.pattern.block_count()];
         let hessian = Hessian {
-            model: &model,
-            bending: &model.bending,
+            system: &system,
+            bending: &system.rest.bending,
             blocks: &blocks,
             secants: &[],
             touching: &Couplings::default(),
         };
         let mut x = [Vec3::zeros(); 3];
-        let mut direct = Direct::new(&model, &model.layout, &[]);
+        let mut direct = Direct::new(&system, &system.topology.layout, &[]);
         assert!(!direct.solve(&hessian, &[Vec3::x(); 3], &mut x));
         assert!(!direct.solve_again(&[Vec3::x(); 3], &mut x));
     }

@@ -4,7 +4,7 @@
 
 use crate::collision::Tally;
 use crate::xpbd::{ClothWatch, Span};
-use crate::{DrapeError, Model, State, Xpbd};
+use crate::{DrapeError, State, System, Xpbd};
 use toile_geometry::Vec3;
 
 /// A swing on its way to calm.
@@ -43,11 +43,11 @@ const PATIENCE: u32 = 12;
 
 impl KineticDamping {
     /// Prepares the constraints of a model.
-    pub fn new(model: &Model) -> Self {
+    pub fn new(system: &System) -> Self {
         Self {
-            xpbd: Xpbd::new(model),
+            xpbd: Xpbd::new(system),
             cloth: ClothWatch::default(),
-            substep: substep(model),
+            substep: substep(system),
             time: 0.0,
             energy: 0.0,
             calm: false,
@@ -58,10 +58,10 @@ impl KineticDamping {
     }
 
     /// The same for the shape of a coarser mesh at rest.
-    pub fn carried(model: &Model) -> Self {
+    pub fn carried(system: &System) -> Self {
         Self {
             longest: LONGEST_CARRIED,
-            ..Self::new(model)
+            ..Self::new(system)
         }
     }
 
@@ -95,7 +95,7 @@ impl KineticDamping {
     ///
     /// # Errors
     /// When a substep fails at every size; the state is as it was.
-    pub fn advance(&mut self, model: &Model, state: &mut State) -> Result<(), DrapeError> {
+    pub fn advance(&mut self, system: &System, state: &mut State) -> Result<(), DrapeError> {
         let span = Span {
             substep: self.substep,
             count: ROUND,
@@ -104,7 +104,7 @@ impl KineticDamping {
         let before = state.clone();
         let report = match self
             .xpbd
-            .advance_touching(model, state, &mut self.cloth, &span)
+            .advance_touching(system, state, &mut self.cloth, &span)
         {
             Ok(report) => report,
             Err(error) => {
@@ -115,7 +115,7 @@ impl KineticDamping {
         };
         self.time += self.substep * f64::from(ROUND);
         if report.kinetic_energy < self.energy {
-            let mass: f64 = model.mass.iter().sum();
+            let mass: f64 = system.rest.mass.iter().sum();
             self.calm = self.energy < 0.5 * mass * CALM * CALM;
             self.watch_crossings();
             self.energy = 0.0;
@@ -149,30 +149,34 @@ fn stop(state: &mut State) {
 }
 
 /// Substep for the mean edge of a model and the speed of waves in its cloth [s].
-fn substep(model: &Model) -> f64 {
+fn substep(system: &System) -> f64 {
     let crossing = |t: usize| {
-        let material = &model.materials[model.material[t] as usize];
+        let material = system.materials.of(t);
         let stiffest = material.stretch[0].max(material.stretch[1]);
-        let edge = (2.0 * model.elements[t].area).sqrt();
+        let edge = (2.0 * system.rest.elements[t].area).sqrt();
         edge * (material.density / stiffest).sqrt()
     };
-    let count = model.triangles.len().max(1);
-    let mean = (0..model.triangles.len()).map(crossing).sum::<f64>() / count as f64;
+    let count = system.topology.triangles.len().max(1);
+    let mean = (0..system.topology.triangles.len())
+        .map(crossing)
+        .sum::<f64>()
+        / count as f64;
     (COURANT * mean).min(LONGEST_SUBSTEP)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::SystemBuilder;
     use crate::{Cloth, Material, PseudoTransientContinuation, RestSettings, Workspace};
     use toile_geometry::TriangleMesh;
 
-    /// A strip of 3 x 20 cells held level by its first row.
-    fn strip() -> (Model, State) {
+    /// A strip of 3 x 20 cells of an edge [m], held level by its first row.
+    fn strip(edge: f64) -> (System, State) {
         let mut mesh = TriangleMesh::default();
         for j in 0..=20u32 {
             for i in 0..=3u32 {
-                let (x, z) = (0.01 * f64::from(i), 0.01 * f64::from(j));
+                let (x, z) = (edge * f64::from(i), edge * f64::from(j));
                 mesh.positions.push(Vec3::new(x, 0.0, z));
                 if i < 3 && j < 20 {
                     let a = 4 * j + i;
@@ -182,19 +186,20 @@ mod tests {
             }
         }
         let cloth = Cloth::from_mesh("strip", &mesh, Material::default()).unwrap();
-        let mut model = Model::new("strip", &cloth).unwrap();
-        model.pinned[..4].fill(true);
-        let state = State::at_rest(&model, mesh.positions);
-        (model, state)
+        let mut builder = SystemBuilder::new("strip", &cloth).unwrap();
+        builder.pinned[..4].fill(true);
+        let system = builder.build();
+        let state = State::at_rest(&system, mesh.positions);
+        (system, state)
     }
 
     #[test]
     fn a_strip_let_go_swings_down_and_is_calm_before_its_time_is_up() {
-        let (model, mut state) = strip();
-        let mut run = KineticDamping::new(&model);
+        let (system, mut state) = strip(0.01);
+        let mut run = KineticDamping::new(&system);
         let mut stops = 0;
         while !run.finished() {
-            run.advance(&model, &mut state).unwrap();
+            run.advance(&system, &mut state).unwrap();
             stops += usize::from(run.energy == 0.0);
             assert!((0.0..=1.0 + 1e-9).contains(&run.share()));
         }
@@ -207,7 +212,7 @@ mod tests {
         let mut rest = PseudoTransientContinuation::near(RestSettings::default());
         let mut workspace = Workspace::default();
         while !rest.finished() {
-            rest.advance(&model, &mut state, &mut workspace).unwrap();
+            rest.advance(&system, &mut state, &mut workspace).unwrap();
         }
         let off = (state.positions[83] - tip).norm();
         assert!(off < 3e-3, "{off}");
@@ -215,13 +220,9 @@ mod tests {
 
     #[test]
     fn finer_cloth_swings_in_shorter_substeps() {
-        let (model, _) = strip();
-        let mut finer = strip().0;
-        for area in &mut finer.elements {
-            area.area /= 16.0;
-        }
-        let ratio = substep(&finer) / substep(&model);
-        assert!((ratio - 0.25).abs() < 1e-12 || substep(&model) == LONGEST_SUBSTEP);
-        assert!(substep(&finer) < substep(&model));
+        let [system, finer] = [0.01, 0.0025].map(|edge| strip(edge).0);
+        let ratio = substep(&finer) / substep(&system);
+        assert!((ratio - 0.25).abs() < 1e-12 || substep(&system) == LONGEST_SUBSTEP);
+        assert!(substep(&finer) < substep(&system));
     }
 }

@@ -1,7 +1,7 @@
 //! What is measured on a drape: residual, strain, seam gaps, penetration, crossings.
 
 use crate::collision::{ClothSurface, layers_of, strays_from};
-use crate::{Model, State, Workspace};
+use crate::{State, System, Workspace};
 use rayon::prelude::*;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
@@ -50,23 +50,24 @@ pub struct LayerMeasures {
 const ORDER_REACH: f64 = 0.05;
 
 /// Net force over weight, both as norms over all free vertices.
-pub fn residual(model: &Model, state: &State, workspace: &mut Workspace) -> f64 {
-    let net = workspace.net_force(model, state);
+pub fn residual(system: &System, state: &State, workspace: &mut Workspace) -> f64 {
+    let net = workspace.net_force(system, state);
     let force: f64 = net.iter().map(Vec3::norm_squared).sum();
-    force.sqrt() / weight_norm(model)
+    force.sqrt() / weight_norm(system)
 }
 
 /// Norm of the weights of the free vertices [N]; without gravity their weight on earth.
-pub(crate) fn weight_norm(model: &Model) -> f64 {
-    let free = model
+pub(crate) fn weight_norm(system: &System) -> f64 {
+    let free = system
+        .rest
         .mass
         .iter()
-        .zip(&model.pinned)
+        .zip(&system.prescribed.pinned)
         .filter(|&(_, &pinned)| !pinned);
     let mass: f64 = free.map(|(m, _)| m * m).sum();
     // Without gravity the weight on earth is the scale.
-    let gravity = if model.gravity.norm() > 0.0 {
-        model.gravity.norm()
+    let gravity = if system.control.gravity.norm() > 0.0 {
+        system.control.gravity.norm()
     } else {
         9.81
     };
@@ -75,19 +76,21 @@ pub(crate) fn weight_norm(model: &Model) -> f64 {
 
 /// Measures a state. `counted` says which triangles count for strain (those away from gathers).
 pub fn measure(
-    model: &Model,
+    system: &System,
     state: &State,
     workspace: &mut Workspace,
     counted: &[bool],
 ) -> Measures {
     let x = &state.positions;
-    let strains: Vec<_> = (0..model.triangles.len())
+    let strains: Vec<_> = (0..system.topology.triangles.len())
         .into_par_iter()
-        .map(|t| model.elements[t].strain(model.triangles[t].map(|v| x[v as usize])))
+        .map(|t| {
+            system.rest.elements[t].strain(system.topology.triangles[t].map(|v| x[v as usize]))
+        })
         .collect();
     let mut measures = Measures {
-        residual: residual(model, state, workspace),
-        kinetic_energy: state.kinetic_energy(model),
+        residual: residual(system, state, workspace),
+        kinetic_energy: state.kinetic_energy(system),
         ..Measures::default()
     };
     for direction in 0..2 {
@@ -101,7 +104,7 @@ pub fn measure(
             let squeezed = &mut measures.compression_max[direction];
             *squeezed = squeezed.max(-value);
             if counted.get(t).copied().unwrap_or(true) {
-                stretch.push((value.max(0.0), model.elements[t].area));
+                stretch.push((value.max(0.0), system.rest.elements[t].area));
                 measures.shear_max = measures.shear_max.max(strain.shear.abs());
             }
         }
@@ -110,9 +113,9 @@ pub fn measure(
             measures.strain_p99[direction],
         ) = top_of(&mut stretch);
     }
-    let mesh = model.mesh(x);
+    let mesh = system.mesh(x);
     let mut on_body = Vec::new();
-    for collider in &model.colliders {
+    for collider in system.colliders.iter() {
         on_body.extend(collider.crossings(state.time, &mesh));
         let pose = collider.pose(state.time);
         let depths: Vec<f64> = x
@@ -128,24 +131,24 @@ pub fn measure(
     let tree = SurfaceTree::new(mesh);
     let own = tree.self_intersections();
     measures.self_intersections = own.len();
-    measures.layers = by_layer(model, tree.mesh(), &on_body, &own);
+    measures.layers = by_layer(system, tree.mesh(), &on_body, &own);
     measures
 }
 
 /// What was found, by layer; a triangle between layers counts with the innermost of its corners.
 fn by_layer(
-    model: &Model,
+    system: &System,
     mesh: &TriangleMesh,
     on_body: &[[u32; 2]],
     own: &[[u32; 2]],
 ) -> Vec<LayerMeasures> {
-    if model.layer.is_empty() {
+    if system.layer.is_empty() {
         return Vec::new();
     }
-    let surface = ClothSurface::new(model);
+    let surface = ClothSurface::new(system);
     let layer_of = |t: u32| {
         let corners = mesh.triangles[t as usize];
-        corners.into_iter().map(|v| model.layer[v as usize]).min()
+        corners.into_iter().map(|v| system.layer[v as usize]).min()
     };
     let layers = layers_of(&surface).into_iter().map(|layer| {
         let mut astray = Vec::new();
@@ -185,10 +188,11 @@ fn top_of(values: &mut [(f64, f64)]) -> (f64, f64) {
 }
 
 /// Stretch of every triangle: the larger of warp and weft, negative where both are squeezed.
-pub fn stretch_per_triangle(model: &Model, positions: &[Vec3]) -> Vec<f64> {
-    (0..model.triangles.len())
+pub fn stretch_per_triangle(system: &System, positions: &[Vec3]) -> Vec<f64> {
+    (0..system.topology.triangles.len())
         .map(|t| {
-            let s = model.elements[t].strain(model.triangles[t].map(|v| positions[v as usize]));
+            let s = system.rest.elements[t]
+                .strain(system.topology.triangles[t].map(|v| positions[v as usize]));
             s.warp.max(s.weft)
         })
         .collect()

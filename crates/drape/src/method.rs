@@ -1,7 +1,7 @@
 //! What a method is, and the closed list of them.
 
 use crate::collision::Tally;
-use crate::{DrapeError, Model, State};
+use crate::{DrapeError, State, System};
 
 /// What one step of a method took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,7 +28,7 @@ pub trait Method: Send {
     /// Names vertex and stage; the state is then as it was before.
     fn advance(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         step: f64,
     ) -> Result<StepReport, DrapeError>;

@@ -1,17 +1,20 @@
 //! A part of a model whose rim stands still: what is solved apart from the rest.
 
 use crate::collision::ClothContact;
-use crate::model::corner_lists;
-use crate::{ContactSample, ContactSettings, Elastic, ElasticEnd, Model, State};
+use crate::laws::elastic::ElasticLaw;
+use crate::{
+    Attachment, Attachments, ContactSample, ContactSettings, Control, ElasticCouplings, Materials,
+    Model, ModelParts, Prescribed, RestData, State, System, Topology,
+};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_geometry::Vec3;
-use toile_sparse::{BlockPattern, ScalarMatrix};
+use toile_sparse::ScalarMatrix;
 
 /// Some vertices of a model, free to move, and those they are coupled with, pinned.
 pub struct Part {
     /// The part as a model of its own: its potential is the whole's but for a constant.
-    pub model: Model,
+    pub system: System,
     /// Its state.
     pub state: State,
     /// Contacts of cloth with cloth at its own vertices, as found on the whole: the part itself looks
@@ -56,10 +59,10 @@ impl Numbers {
 
     /// The rows of bending that own vertices take part in. Energy counts a pair once in each
     /// vertex's row, so the rim's rows hold what couples them with own vertices.
-    fn bending(&mut self, model: &Model) -> Vec<(u32, u32, f64)> {
+    fn bending(&mut self, system: &System) -> Vec<(u32, u32, f64)> {
         let mut entries = Vec::new();
         for i in 0..self.own {
-            let (columns, values) = model.bending.row_entries(self.vertices[i] as usize);
+            let (columns, values) = system.rest.bending.row_entries(self.vertices[i] as usize);
             for (&column, &value) in columns.iter().zip(values) {
                 let j = self.of(column);
                 entries.push((i as u32, j, value));
@@ -71,27 +74,31 @@ impl Numbers {
         entries
     }
 
-    fn elastics(&mut self, model: &Model) -> Vec<Elastic> {
-        let uses = |&v: &u32| {
-            let v = v as usize;
-            let uses = model.elastic_start[v] as usize..model.elastic_start[v + 1] as usize;
-            model.elastic_uses[uses].to_vec()
-        };
-        let mut used: Vec<u32> = self.vertices[..self.own].iter().flat_map(uses).collect();
+    /// Elastics at own vertices between two, in their order.
+    fn couplings(&mut self, system: &System) -> Vec<([u32; 2], ElasticLaw)> {
+        let uses = self.vertices[..self.own].iter();
+        let uses = uses.flat_map(|&v| system.couplings.at(v as usize));
+        let mut used: Vec<u32> = uses.copied().collect();
         used.sort_unstable();
         used.dedup();
-        let elastics = used.into_iter().map(|e| {
-            let elastic = model.elastics[e as usize];
-            Elastic {
-                from: self.of(elastic.from),
-                to: match elastic.to {
-                    ElasticEnd::Vertex(v) => ElasticEnd::Vertex(self.of(v)),
-                    point => point,
-                },
-                ..elastic
-            }
+        let couplings = used.into_iter().map(|e| {
+            let (ends, law) = system.couplings.all[e as usize];
+            (ends.map(|v| self.of(v)), law)
         });
-        elastics.collect()
+        couplings.collect()
+    }
+
+    /// Attachments of own vertices.
+    fn attachments(&mut self, system: &System) -> Attachments {
+        let own = (0..).zip(&self.vertices[..self.own]);
+        let attachments = own.flat_map(|(number, &v)| {
+            let there = system.control.attachments.at(v as usize).1.iter();
+            there.map(move |one| Attachment {
+                vertex: number,
+                ..*one
+            })
+        });
+        attachments.collect()
     }
 
     fn touching(&mut self, contacts: &[ClothContact]) -> Vec<ClothContact> {
@@ -129,25 +136,22 @@ impl Numbers {
 impl Part {
     /// The part of some free vertices; `contacts` are those of cloth with cloth. Folds that are
     /// viscous or kept, and moving air, are left out.
-    pub fn new(model: &Model, state: &State, contacts: &[ClothContact], own: &[u32]) -> Self {
-        let corners = own.iter().flat_map(|&v| {
-            let corners = model.corner_start[v as usize]..model.corner_start[v as usize + 1];
-            &model.corners[corners.start as usize..corners.end as usize]
-        });
+    pub fn new(system: &System, state: &State, contacts: &[ClothContact], own: &[u32]) -> Self {
+        let corners = (own.iter()).flat_map(|&v| system.topology.corners_of(v as usize));
         let mut used: Vec<u32> = corners.map(|corner| corner / 3).collect();
         used.sort_unstable();
         used.dedup();
         let mut numbers = Numbers::new(own);
         let triangles: Vec<[u32; 3]> = used
             .iter()
-            .map(|&t| model.triangles[t as usize].map(|v| numbers.of(v)))
+            .map(|&t| system.topology.triangles[t as usize].map(|v| numbers.of(v)))
             .collect();
-        let bending = numbers.bending(model);
-        let elastics = numbers.elastics(model);
+        let bending = numbers.bending(system);
+        let couplings = numbers.couplings(system);
+        let attachments = numbers.attachments(system);
         let touching = numbers.touching(contacts);
         let samples = numbers.samples(&state.samples, &used);
         let vertices = numbers.vertices;
-        let (corner_start, corners) = corner_lists(vertices.len(), &triangles);
         let mut pinned = vec![false; vertices.len()];
         pinned[own.len()..].fill(true);
         let own_samples: Vec<ContactSample> = samples.iter().map(|(_, sample)| *sample).collect();
@@ -167,40 +171,46 @@ impl Part {
             velocities: taken(&vertices, &state.velocities),
             ..State::default()
         };
-        let mut part = Model {
-            pattern: BlockPattern::new(vertices.len(), &triangles),
-            surface: None,
-            material: taken(&used, &model.material),
-            materials: model.materials.clone(),
-            laws: model.laws.clone(),
-            mass: taken(&vertices, &model.mass),
-            pinned,
-            grips: Vec::new(),
-            elastics: Vec::new(),
-            colliders: model.colliders.clone(),
-            contact: ContactSettings {
-                cloth_offset: 0.0,
-                ..model.contact
-            },
-            samples: own_samples,
-            layer: Vec::new(),
-            gravity: model.gravity,
-            air_drag: 0.0,
-            air: model.air,
-            elements: taken(&used, &model.elements),
-            bending: ScalarMatrix::from_entries(vertices.len(), &bending),
+        let count = vertices.len();
+        let rest = RestData {
+            elements: taken(&used, &system.rest.elements),
+            bending: ScalarMatrix::from_entries(count, &bending),
             viscous_bending: None,
             stencils: Vec::new(),
-            layout: taken(&vertices, &model.layout),
-            corner_start,
-            corners,
-            elastic_start: Vec::new(),
-            elastic_uses: Vec::new(),
-            triangles,
+            mass: taken(&vertices, &system.rest.mass),
+            samples: own_samples,
         };
-        part.set_elastics(elastics);
+        let materials = Materials::new(
+            system.materials.list.clone(),
+            taken(&used, &system.materials.of_triangle),
+        );
+        let layout = taken(&vertices, &system.topology.layout);
+        let part = System {
+            model: Model::of(ModelParts {
+                topology: Arc::new(Topology::new(layout, triangles, None)),
+                rest: Arc::new(rest),
+                materials: Arc::new(materials),
+                prescribed: Arc::new(Prescribed {
+                    pinned,
+                    grips: Vec::new(),
+                }),
+                couplings: Arc::new(ElasticCouplings::new(count, couplings)),
+                colliders: system.colliders.clone(),
+                contact: ContactSettings {
+                    cloth_offset: 0.0,
+                    ..system.contact
+                },
+                layer: Arc::default(),
+            }),
+            control: Control {
+                gravity: system.control.gravity,
+                air_drag: 0.0,
+                air: system.control.air,
+                attachments,
+            },
+        };
         Self {
-            model: part,
+            system: part,
             state,
             touching,
             own: own.len(),
@@ -224,6 +234,7 @@ mod tests {
     use super::*;
     use crate::laws::elastic::ElasticLaw;
     use crate::{Cloth, Collider, Inertia, Material, Workspace};
+    use crate::{Elastic, ElasticEnd, SystemBuilder};
     use std::sync::Arc;
     use toile_geometry::{SurfaceTree, TriangleMesh};
 
@@ -260,38 +271,39 @@ mod tests {
     fn a_part_has_the_forces_and_the_energy_of_the_whole() {
         let mesh = sheets();
         let cloth = Cloth::from_mesh("sheets", &mesh, Material::default()).unwrap();
-        let mut model = Model::new("sheets", &cloth).unwrap();
-        model.contact.cloth_offset = 2e-3;
-        model.colliders = vec![wall()];
+        let mut builder = SystemBuilder::new("sheets", &cloth).unwrap();
+        builder.contact.cloth_offset = 2e-3;
+        builder.colliders = vec![wall()];
         let law = ElasticLaw {
             stiffness: 30.0,
             largest_force: 1.0,
         };
         let elastic = |from, to| Elastic { from, to, law };
-        model.set_elastics(vec![
+        builder.elastics = vec![
             elastic(36, ElasticEnd::Point(Vec3::zeros())),
             elastic(37, ElasticEnd::Vertex(200)),
             elastic(90, ElasticEnd::Vertex(38)),
             elastic(1, ElasticEnd::Vertex(120)),
-        ]);
-        let mut state = State::at_rest(&model, mesh.positions.clone());
-        state.refine_contact(&model, 48);
+        ];
+        let system = builder.build();
+        let mut state = State::at_rest(&system, mesh.positions.clone());
+        state.refine_contact(&system, 48);
         let own: Vec<u32> = (0..36).map(|k| 24 + k / 6 * 11 + k % 6).collect();
 
         let mut whole = Workspace::default();
-        let forces = whole.net_force(&model, &state).to_vec();
-        let part = Part::new(&model, &state, &whole.contacts.cloth.active, &own);
-        assert!(!part.touching.is_empty() && part.model.elastics.len() == 3);
+        let forces = whole.net_force(&system, &state).to_vec();
+        let part = Part::new(&system, &state, &whole.contacts.cloth.active, &own);
+        assert!(!part.touching.is_empty() && part.system.elastic_count() == 3);
         let mut alone = Workspace::default();
-        alone.fit(&part.model);
-        alone.terms.hold_still(&part.model, &part.state);
+        alone.fit(&part.system);
+        alone.terms.hold_still(&part.system, &part.state);
         alone.contacts.cloth.active.clone_from(&part.touching);
         let places = &part.state.positions;
-        (alone.contacts).refresh_surfaces(&part.model, &part.state, places);
+        (alone.contacts).refresh_surfaces(&part.system, &part.state, places);
         assert!(alone.contacts.active.iter().any(|c| c.plane.depth > 0.0));
         let triangles = part.state.samples.iter().filter(|s| s.triangle.is_some());
         assert_eq!(triangles.count(), 4);
-        alone.fill_gradient(&part.model, places, None);
+        alone.fill_gradient(&part.system, places, None);
         let largest = forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
         for (k, &v) in own.iter().enumerate() {
             let off = (alone.gradient[k] + forces[v as usize]).norm();
@@ -310,15 +322,15 @@ mod tests {
             there[0][v as usize] += moved(v);
             there[1][k] += moved(v);
         }
-        let change = |workspace: &Workspace, model: &Model, from: &[Vec3], to: &[Vec3]| {
+        let change = |workspace: &Workspace, system: &System, from: &[Vec3], to: &[Vec3]| {
             let inertia = Inertia {
                 weight: &vec![0.0; from.len()],
                 target: from,
             };
-            workspace.potential(model, to, &inertia) - workspace.potential(model, from, &inertia)
+            workspace.potential(system, to, &inertia) - workspace.potential(system, from, &inertia)
         };
-        let expected = change(&whole, &model, &state.positions, &there[0]);
-        let got = change(&alone, &part.model, places, &there[1]);
+        let expected = change(&whole, &system, &state.positions, &there[0]);
+        let got = change(&alone, &part.system, places, &there[1]);
         assert!(expected.abs() > 1e-5);
         assert!(
             (got - expected).abs() < 1e-11 * expected.abs(),

@@ -11,7 +11,7 @@ use crate::measure::{residual, weight_norm};
 use crate::memory::RestMemory;
 use crate::newton::ChordLimits;
 use crate::{
-    DrapeError, Inertia, LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State,
+    DrapeError, Inertia, LinearSolver, NewtonReport, NewtonSettings, PcgLimits, State, System,
     Workspace,
 };
 use toile_geometry::Vec3;
@@ -129,15 +129,15 @@ impl PseudoTransientContinuation {
     /// residual is not reached; the state is then the last good one.
     pub fn advance(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         workspace: &mut Workspace,
     ) -> Result<(), DrapeError> {
         let start = state.clone();
-        workspace.terms.hold_still(model, state);
+        workspace.terms.hold_still(system, state);
         loop {
             let h = self.memory.pseudo_step;
-            let weight: Vec<f64> = model.mass.iter().map(|m| m / (h * h)).collect();
+            let weight: Vec<f64> = system.rest.mass.iter().map(|m| m / (h * h)).collect();
             let inertia = Inertia {
                 weight: &weight,
                 target: &start.positions,
@@ -154,23 +154,23 @@ impl PseudoTransientContinuation {
                     },
                 },
             };
-            let report = workspace.solve(model, state, &inertia, &newton);
+            let report = workspace.solve(system, state, &inertia, &newton);
             self.memory.linear_iterations += report.linear_iterations;
             if report.sound && state.first_not_finite().is_none() {
-                let enough = self.settings.residual * weight_norm(model);
+                let enough = self.settings.residual * weight_norm(system);
                 let limits = ChordLimits {
                     steps: CHORDS,
                     tolerance: CALM * enough,
                     longest_move: self.settings.longest_move,
                 };
-                workspace.follow_on(model, state, &inertia, limits);
-                workspace.contacts.refresh(model, state, &state.positions);
-                if workspace.eliminate(model, state, enough) {
-                    workspace.contacts.refresh(model, state, &state.positions);
+                workspace.follow_on(system, state, &inertia, limits);
+                workspace.contacts.refresh(system, state, &state.positions);
+                if workspace.eliminate(system, state, enough) {
+                    workspace.contacts.refresh(system, state, &state.positions);
                 }
-                workspace.contacts.settle(model, state);
+                workspace.contacts.settle(system, state);
                 let before = self.memory.residual;
-                self.memory.residual = residual(model, state, workspace);
+                self.memory.residual = residual(system, state, workspace);
                 self.adapt(&report, before);
                 break;
             }

@@ -8,7 +8,8 @@ use crate::method::Method;
 use crate::methods::whole_energy;
 use crate::scene::{ObjectKind, Scene, SceneEnd};
 use crate::{
-    Cloth, Collider, DrapeError, Elastic, ElasticEnd, Grip, Model, State, Workspace, merge_map,
+    Cloth, Collider, Control, DrapeError, Elastic, ElasticEnd, Grip, State, System, SystemBuilder,
+    Workspace, merge_map,
 };
 use std::sync::Arc;
 use toile_geometry::{SurfaceTree, TriangleMesh};
@@ -16,7 +17,7 @@ use toile_geometry::{SurfaceTree, TriangleMesh};
 /// A scene on its way.
 pub struct SceneRun {
     /// The model of the present structure.
-    pub model: Model,
+    pub system: System,
     /// The state.
     pub state: State,
     scene: Scene,
@@ -81,13 +82,10 @@ impl SceneRun {
         }
         let target = (0..cloth.positions.len() as u32).collect();
         let acting = (0..scene.elastics.len()).collect();
-        let state = State {
-            positions: cloth.positions.clone(),
-            ..State::default()
-        };
+        let system = System::new("scene", &cloth)?;
         let mut run = Self {
-            model: Model::new("scene", &cloth)?,
-            state,
+            state: State::at_rest(&system, cloth.positions.clone()),
+            system,
             method: scene.method.build(),
             workspace: Workspace::default(),
             scene,
@@ -101,47 +99,52 @@ impl SceneRun {
             refinements: 0,
             tally: None,
         };
-        run.state = State::at_rest(&run.model, run.cloth.positions.clone());
         run.furnish();
         Ok(run)
     }
 
-    /// Gives the model its colliders, pins and elastics.
+    /// Gives the present cloth its solids, pins, elastics and what acts on it.
     fn furnish(&mut self) {
-        if self.model.colliders.is_empty() {
-            let surface = |mesh: &TriangleMesh| Arc::new(SurfaceTree::new(mesh.clone()));
-            let solids = self.scene.objects.iter().filter_map(|o| match &o.kind {
-                ObjectKind::Static => Some(Collider::new(surface(&o.mesh))),
-                ObjectKind::Animated { motion } => {
-                    Some(Collider::moving(surface(&o.mesh), motion.clone()))
-                }
-                ObjectKind::Deformable { .. } => None,
-            });
-            self.model.colliders = solids.collect();
+        let mut builder = self.system.edit();
+        if builder.colliders.is_empty() {
+            builder.colliders = self.solids();
         }
-        self.model.contact = self.scene.contact.for_cloth(&self.cloth.materials);
-        self.model.layer = self.layers();
-        self.model.gravity = self.scene.gravity;
-        self.model.air_drag = self.scene.air.drag + self.scene.damping.mass;
-        self.model.air = self.scene.air;
+        builder.contact = self.scene.contact.for_cloth(&self.cloth.materials);
+        builder.layer = self.layers();
+        builder.control = Control {
+            gravity: self.scene.gravity,
+            air_drag: self.scene.air.drag + self.scene.damping.mass,
+            air: self.scene.air,
+            ..Control::default()
+        };
         for &pin in &self.pins {
-            self.model.pinned[self.target[pin as usize] as usize] = true;
+            builder.pinned[self.target[pin as usize] as usize] = true;
         }
-        self.model.grips = self.grips();
-        for grip in &self.model.grips {
-            self.model.pinned[grip.vertex as usize] = true;
+        builder.grips = self.grips();
+        for grip in &builder.grips {
+            builder.pinned[grip.vertex as usize] = true;
         }
-        let elastics = self
-            .acting
-            .iter()
-            .filter_map(|&e| self.elastic(e))
-            .collect();
-        self.model.set_elastics(elastics);
+        let acting = self.acting.iter();
+        builder.elastics = acting.filter_map(|&e| self.elastic(e)).collect();
+        self.system = builder.build();
+    }
+
+    /// The solid objects of the scene.
+    fn solids(&self) -> Vec<Collider> {
+        let surface = |mesh: &TriangleMesh| Arc::new(SurfaceTree::new(mesh.clone()));
+        let solids = self.scene.objects.iter().filter_map(|o| match &o.kind {
+            ObjectKind::Static => Some(Collider::new(surface(&o.mesh))),
+            ObjectKind::Animated { motion } => {
+                Some(Collider::moving(surface(&o.mesh), motion.clone()))
+            }
+            ObjectKind::Deformable { .. } => None,
+        });
+        solids.collect()
     }
 
     /// Pairs of cloths that elastics have merged vertices of, as indices into the scene's objects.
     pub fn sewn_objects(&self) -> Vec<[usize; 2]> {
-        let mut owner: Vec<Option<usize>> = vec![None; self.model.vertex_count()];
+        let mut owner: Vec<Option<usize>> = vec![None; self.system.vertex_count()];
         let mut pairs = Vec::new();
         for (index, object) in self.scene.objects.iter().enumerate() {
             let Some(first) = self.first[index] else {
@@ -171,7 +174,7 @@ impl SceneRun {
         if layers.windows(2).all(|pair| pair[0] == pair[1]) {
             return Vec::new();
         }
-        merged_layers(&layers, &self.target, self.model.vertex_count())
+        merged_layers(&layers, &self.target, self.system.vertex_count())
     }
 
     fn grips(&self) -> Vec<Grip> {
@@ -256,7 +259,7 @@ impl SceneRun {
     pub fn advance(&mut self) -> Result<(), DrapeError> {
         let report = self
             .method
-            .advance(&self.model, &mut self.state, self.scene.step)?;
+            .advance(&self.system, &mut self.state, self.scene.step)?;
         self.split_steps += usize::from(report.pieces > 1);
         self.steps += 1;
         if self.steps.is_multiple_of(STEPS_TO_REFINE) {
@@ -268,16 +271,16 @@ impl SceneRun {
     /// Tests contact more finely where cloth crosses a body although its corners keep off: where a
     /// body is too sharp for the triangles on it.
     fn refine(&mut self) {
-        if self.model.colliders.is_empty() || self.refinements >= MOST_REFINEMENTS {
+        if self.system.colliders.is_empty() || self.refinements >= MOST_REFINEMENTS {
             return;
         }
-        let mesh = self.model.mesh(&self.state.positions);
+        let mesh = self.system.mesh(&self.state.positions);
         let mut found: Vec<u32> = Vec::new();
-        for collider in &self.model.colliders {
+        for collider in self.system.colliders.iter() {
             let pose = collider.pose(self.state.time);
             let clear = |&v: &u32| {
                 let place = self.state.positions[v as usize];
-                let off = 0.5 * self.model.contact.offset;
+                let off = 0.5 * self.system.contact.offset;
                 collider.exact_distance(pose.as_ref(), place) > off
             };
             let pairs = collider.crossings(self.state.time, &mesh);
@@ -288,7 +291,7 @@ impl SceneRun {
         found.dedup();
         self.refinements += usize::from(!found.is_empty());
         for triangle in found {
-            self.state.refine_contact(&self.model, triangle);
+            self.state.refine_contact(&self.system, triangle);
         }
     }
 
@@ -325,7 +328,7 @@ impl SceneRun {
         let acting: Vec<usize> = (self.acting.iter().copied())
             .filter(|index| !one(index))
             .collect();
-        let mass = self.model.cloth_mass();
+        let mass = self.system.cloth_mass();
         let (positions, velocities) = merged_motion(
             (&self.state.positions, &self.state.velocities),
             &mass,
@@ -335,17 +338,17 @@ impl SceneRun {
         self.cloth.positions.clone_from(&self.state.positions);
         let mut merged = self.cloth.merged(&map, count);
         merged.positions = positions;
-        let mut model = Model::new("scene", &merged)?;
-        model.colliders = std::mem::take(&mut self.model.colliders);
+        let mut builder = SystemBuilder::new("scene", &merged)?;
+        builder.colliders = self.system.colliders.to_vec();
         self.acting = acting;
-        self.model = model;
+        self.system = builder.build();
         let time = self.state.time;
         let settled = std::mem::take(&mut self.state.settled);
-        self.state = State::at_rest(&self.model, merged.positions.clone());
+        self.state = State::at_rest(&self.system, merged.positions.clone());
         self.state.time = time;
         self.state.velocities = velocities;
         // A triangle whose corners became one is gone: then nothing remembers.
-        if settled.len() == self.model.triangles.len() {
+        if settled.len() == self.system.topology.triangles.len() {
             self.state.settled = settled;
         }
         self.cloth = merged;
@@ -363,7 +366,7 @@ impl SceneRun {
     /// Which vertices pins or grips hold, and which of them grips.
     fn held(&self) -> (Vec<bool>, Vec<bool>) {
         let mut gripped = vec![false; self.state.positions.len()];
-        for grip in &self.model.grips {
+        for grip in &self.system.prescribed.grips {
             gripped[grip.vertex as usize] = true;
         }
         let mut held = gripped.clone();
@@ -416,27 +419,18 @@ impl SceneRun {
 
     /// Largest gap of an elastic that still acts [m].
     pub fn elastic_gap(&self) -> f64 {
-        self.model
-            .elastics
-            .iter()
-            .map(|elastic| {
-                let other = match elastic.to {
-                    ElasticEnd::Vertex(v) => self.state.positions[v as usize],
-                    ElasticEnd::Point(p) => p,
-                };
-                (self.state.positions[elastic.from as usize] - other).norm()
-            })
-            .fold(0.0, f64::max)
+        let gap = |elastic: Elastic| elastic.gap(&self.state.positions).norm();
+        self.system.elastics().map(gap).fold(0.0, f64::max)
     }
 
     /// Energy of motion, strain, weight, elastics and contact [J]; heights count from the origin.
     pub fn energy(&mut self) -> f64 {
-        whole_energy(&self.model, &self.state, &mut self.workspace)
+        whole_energy(&self.system, &self.state, &mut self.workspace)
     }
 
     /// Pairs of cloth triangles that intersect and share no vertex, exactly.
     pub fn crossings(&self) -> usize {
-        let mesh = self.model.mesh(&self.state.positions);
+        let mesh = self.system.mesh(&self.state.positions);
         SurfaceTree::new(mesh).self_intersections().len()
     }
 
@@ -448,7 +442,7 @@ impl SceneRun {
 
     /// Measures the present state.
     pub fn measure(&mut self) -> Measures {
-        measure(&self.model, &self.state, &mut self.workspace, &[])
+        measure(&self.system, &self.state, &mut self.workspace, &[])
     }
 }
 

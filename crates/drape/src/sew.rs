@@ -4,10 +4,7 @@
 use crate::laws::elastic::ElasticLaw;
 use crate::laws::membrane::Curvature;
 use crate::step::{StepSettings, step_in_time};
-use crate::{
-    DrapeError, Elastic, ElasticEnd, LinearSolver, Model, NewtonSettings, PcgLimits, State,
-    Workspace,
-};
+use crate::{DrapeError, LinearSolver, NewtonSettings, PcgLimits, State, System, Workspace};
 
 /// How panels are drawn together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,12 +52,13 @@ const PATIENCE: usize = 12;
 impl SewRun {
     /// Prepares a model for sewing: its elastics become the stitches, with a stiffness and a
     /// largest force that follow from the cloth's own stiffness and the mesh's edge length.
-    pub fn new(model: &mut Model, stitches: Vec<[u32; 2]>, settings: SewSettings) -> Self {
-        let area: f64 = model.elements.iter().map(|e| e.area).sum();
-        let edge = (area / model.elements.len().max(1) as f64 * 2.31).sqrt();
-        let count = 2 * model.materials.len().max(1);
-        let stretch: f64 = model
+    pub fn new(system: &mut System, stitches: Vec<[u32; 2]>, settings: SewSettings) -> Self {
+        let area: f64 = system.rest.elements.iter().map(|e| e.area).sum();
+        let edge = (area / system.rest.elements.len().max(1) as f64 * 2.31).sqrt();
+        let count = 2 * system.materials.list.len().max(1);
+        let stretch: f64 = system
             .materials
+            .list
             .iter()
             .map(|m| m.stretch[0] + m.stretch[1])
             .sum::<f64>()
@@ -75,21 +73,16 @@ impl SewRun {
             best_gap: f64::INFINITY,
             waited: 0,
         };
-        run.set_elastics(model);
+        run.set_elastics(system);
         run
     }
 
-    fn set_elastics(&mut self, model: &mut Model) {
+    fn set_elastics(&mut self, system: &mut System) {
         let law = ElasticLaw {
             stiffness: self.stiffness,
             largest_force: self.force,
         };
-        let elastic = |&[a, b]: &[u32; 2]| Elastic {
-            from: a,
-            to: ElasticEnd::Vertex(b),
-            law,
-        };
-        model.set_elastics(self.stitches.iter().map(elastic).collect());
+        system.couple(self.stitches.iter().map(|&ends| (ends, law)).collect());
     }
 
     /// Largest gap between two stitched vertices [m].
@@ -125,7 +118,7 @@ impl SewRun {
     /// When the seams stay open within the steps allowed, or a step fails at every size.
     pub fn advance(
         &mut self,
-        model: &mut Model,
+        system: &mut System,
         state: &mut State,
         workspace: &mut Workspace,
     ) -> Result<(), DrapeError> {
@@ -150,7 +143,7 @@ impl SewRun {
                 }),
             },
         };
-        step_in_time(model, state, workspace, &settings)?;
+        step_in_time(system, state, workspace, &settings)?;
         self.steps += 1;
         self.gap = self.gap(state);
         if self.gap < 0.97 * self.best_gap {
@@ -164,7 +157,7 @@ impl SewRun {
             self.best_gap = self.gap;
             self.force *= 1.5;
             self.stiffness *= 1.5;
-            self.set_elastics(model);
+            self.set_elastics(system);
         }
         Ok(())
     }

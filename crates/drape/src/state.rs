@@ -67,9 +67,9 @@ impl State {
         Self {
             velocities: vec![Vec3::zeros(); positions.len()],
             positions,
-            samples: model.samples.clone(),
-            anchors: vec![None; model.samples.len()],
-            normal_forces: vec![0.0; model.samples.len()],
+            samples: model.rest.samples.clone(),
+            anchors: vec![None; model.rest.samples.len()],
+            normal_forces: vec![0.0; model.rest.samples.len()],
             cloth: ClothMemory::default(),
             settled: Vec::new(),
             time: 0.0,
@@ -96,7 +96,7 @@ impl State {
     pub fn kinetic_energy(&self, model: &Model) -> f64 {
         self.velocities
             .iter()
-            .zip(&model.mass)
+            .zip(&model.rest.mass)
             .map(|(v, m)| 0.5 * m * v.norm_squared())
             .sum()
     }

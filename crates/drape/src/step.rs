@@ -3,7 +3,7 @@
 
 use crate::laws::membrane::Curvature;
 use crate::{
-    DrapeError, Inertia, LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State,
+    DrapeError, Inertia, LinearSolver, NewtonReport, NewtonSettings, PcgLimits, State, System,
     Workspace,
 };
 use toile_geometry::Vec3;
@@ -51,7 +51,7 @@ const STEP_HALVINGS: u32 = 10;
 /// # Errors
 /// The state is left as it was when even the smallest step fails.
 pub fn step_in_time(
-    model: &Model,
+    system: &System,
     state: &mut State,
     workspace: &mut Workspace,
     settings: &StepSettings,
@@ -62,12 +62,12 @@ pub fn step_in_time(
         let mut report = NewtonReport::default();
         for _ in 0..pieces {
             let h = settings.step / f64::from(pieces);
-            report = implicit_euler(model, state, workspace, settings, h);
+            report = implicit_euler(system, state, workspace, settings, h);
             if !report.sound || state.first_not_finite().is_some() {
                 if halvings == STEP_HALVINGS {
                     let vertex = state.first_not_finite();
                     *state = start;
-                    return Err(failure(model, state, workspace, vertex));
+                    return Err(failure(system, state, workspace, vertex));
                 }
                 state.clone_from(&start);
                 continue 'halving;
@@ -82,7 +82,7 @@ pub fn step_in_time(
 }
 
 fn failure(
-    model: &Model,
+    system: &System,
     state: &State,
     workspace: &mut Workspace,
     vertex: Option<usize>,
@@ -92,7 +92,7 @@ fn failure(
         Some(vertex) => DrapeError::NotFinite { stage, vertex },
         None => DrapeError::NoProgress {
             stage,
-            residual: crate::measure::residual(model, state, workspace),
+            residual: crate::measure::residual(system, state, workspace),
         },
     }
 }
@@ -100,27 +100,32 @@ fn failure(
 /// One step: minimise Phi with w = m (1 + drag h) / h^2 and y = x + h v / (1 + drag h); then
 /// v = (x' - x) / h.
 fn implicit_euler(
-    model: &Model,
+    system: &System,
     state: &mut State,
     workspace: &mut Workspace,
     settings: &StepSettings,
     h: f64,
 ) -> NewtonReport {
     let slowing = 1.0 + settings.drag * h;
-    let weight: Vec<f64> = model.mass.iter().map(|m| m * slowing / (h * h)).collect();
+    let weight: Vec<f64> = system
+        .rest
+        .mass
+        .iter()
+        .map(|m| m * slowing / (h * h))
+        .collect();
     let before = state.positions.clone();
     let target: Vec<Vec3> = before
         .iter()
         .zip(&state.velocities)
-        .zip(&model.pinned)
+        .zip(&system.prescribed.pinned)
         .map(|((x, v), &pinned)| if pinned { *x } else { x + v * (h / slowing) })
         .collect();
     let inertia = Inertia {
         weight: &weight,
         target: &target,
     };
-    workspace.terms.hold(model, state, 1.0 / h);
-    let report = workspace.solve(model, state, &inertia, &settings.newton);
+    workspace.terms.hold(system, state, 1.0 / h);
+    let report = workspace.solve(system, state, &inertia, &settings.newton);
     for ((v, x), old) in state
         .velocities
         .iter_mut()
@@ -135,8 +140,8 @@ fn implicit_euler(
             velocity
         };
     }
-    workspace.contacts.refresh(model, state, &state.positions);
-    workspace.contacts.settle(model, state);
+    workspace.contacts.refresh(system, state, &state.positions);
+    workspace.contacts.settle(system, state);
     state.time += h;
     report
 }

@@ -14,7 +14,7 @@ use crate::laws::bending::BendingStencil;
 use crate::laws::fold::{FoldTerm, along_normal, area_normal};
 use crate::laws::membrane::green_strain;
 use crate::laws::stretch::{MembraneLaw, StrainLaw};
-use crate::{InternalStrain, Model, State};
+use crate::{InternalStrain, State, System};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -102,8 +102,8 @@ pub(crate) struct StepTerms {
 /// Triangles handled by one task.
 const CHUNK: usize = 256;
 
-fn corners(model: &Model, t: usize, x: &[Vec3]) -> [Vec3; 3] {
-    model.triangles[t].map(|v| x[v as usize])
+fn corners(system: &System, t: usize, x: &[Vec3]) -> [Vec3; 3] {
+    system.topology.triangles[t].map(|v| x[v as usize])
 }
 
 fn curvature(stencil: &BendingStencil, x: &[Vec3]) -> [Vec3; 3] {
@@ -121,27 +121,27 @@ fn curvature(stencil: &BendingStencil, x: &[Vec3]) -> [Vec3; 3] {
     k
 }
 
-fn curvature_along_normal(model: &Model, t: usize, x: &[Vec3]) -> Vector3<f64> {
-    match area_normal(corners(model, t, x)).try_normalize(0.0) {
-        Some(n) => along_normal(n, curvature(&model.stencils[t], x)),
+fn curvature_along_normal(system: &System, t: usize, x: &[Vec3]) -> Vector3<f64> {
+    match area_normal(corners(system, t, x)).try_normalize(0.0) {
+        Some(n) => along_normal(n, curvature(&system.rest.stencils[t], x)),
         None => Vector3::zeros(),
     }
 }
 
-fn strain(model: &Model, t: usize, x: &[Vec3]) -> [f64; 3] {
-    green_strain(model.elements[t].tangents(corners(model, t, x)))
+fn strain(system: &System, t: usize, x: &[Vec3]) -> [f64; 3] {
+    green_strain(system.rest.elements[t].tangents(corners(system, t, x)))
 }
 
 impl StepTerms {
     /// Holds a state while nothing moves.
-    pub fn hold_still(&mut self, model: &Model, state: &State) {
-        self.hold(model, state, 0.0);
+    pub fn hold_still(&mut self, system: &System, state: &State) {
+        self.hold(system, state, 0.0);
     }
 
     /// Holds the start of a step; `rate` is 1/h [1/s].
-    pub fn hold(&mut self, model: &Model, state: &State, rate: f64) {
+    pub fn hold(&mut self, system: &System, state: &State, rate: f64) {
         let x = &state.positions;
-        let count = model.triangles.len();
+        let count = system.topology.triangles.len();
         self.stretch.clear();
         self.fold.clear();
         self.air.clear();
@@ -149,45 +149,45 @@ impl StepTerms {
         let moving = rate > 0.0;
         let settled = |t: usize| state.settled.get(t).copied().unwrap_or_default();
         let keeps = !state.settled.is_empty();
-        if keeps || moving && model.has_viscous_stretch() {
+        if keeps || moving && system.materials.have_viscous_stretch() {
             self.stretch.extend((0..count).map(|t| {
-                let material = &model.materials[model.material[t] as usize];
+                let material = system.materials.of(t);
                 let settled = settled(t).stretch;
                 StretchTerm {
                     kept: settled.map(|v| v * material.kept[0]),
-                    start: strain(model, t, x),
+                    start: strain(system, t, x),
                     viscous: material.viscous_stretch().map(|v| v * rate),
                 }
             }));
         }
-        let flows = moving && model.viscous_bending.is_some();
-        if !model.stencils.is_empty() && (keeps || flows) {
+        let flows = moving && system.rest.viscous_bending.is_some();
+        if !system.rest.stencils.is_empty() && (keeps || flows) {
             self.fold.extend((0..count).map(|t| {
-                let material = &model.materials[model.material[t] as usize];
-                let (stencil, area) = (&model.stencils[t], model.elements[t].area);
+                let material = system.materials.of(t);
+                let (stencil, area) = (&system.rest.stencils[t], system.rest.elements[t].area);
                 let kept = Vector3::from(settled(t).curvature) * material.kept[1];
                 FoldTerm {
                     kept: stencil.stiffness(material.bending_matrix()) * kept * area,
-                    start: curvature_along_normal(model, t, x),
+                    start: curvature_along_normal(system, t, x),
                     viscous: stencil.stiffness(material.viscous_bend()) * (area * rate),
                 }
             }));
         }
-        if let Some(viscous) = model.viscous_bending.as_ref().filter(|_| moving) {
-            self.bending = Some(model.bending.plus(viscous, rate));
+        if let Some(viscous) = system.rest.viscous_bending.as_ref().filter(|_| moving) {
+            self.bending = Some(system.rest.bending.plus(viscous, rate));
         }
-        if model.air.acts() && (moving || model.air.wind != Vec3::zeros()) {
+        if system.control.air.acts() && (moving || system.control.air.wind != Vec3::zeros()) {
             self.air.extend((0..count).map(|t| {
-                let at = corners(model, t, x);
+                let at = corners(system, t, x);
                 let normal = area_normal(at);
                 let unit = normal.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
-                let pull = model.air.on(0.5 * normal.norm(), unit);
+                let pull = system.control.air.on(0.5 * normal.norm(), unit);
                 let velocity = if moving {
-                    corners(model, t, &state.velocities).iter().sum::<Vec3>() / 3.0
+                    corners(system, t, &state.velocities).iter().sum::<Vec3>() / 3.0
                 } else {
                     Vec3::zeros()
                 };
-                let w = velocity - model.air.wind;
+                let w = velocity - system.control.air.wind;
                 AirTerm {
                     start: at.iter().sum::<Vec3>() / 3.0,
                     rate,
@@ -206,33 +206,33 @@ impl StepTerms {
 
     /// The law of a triangle's membrane during the step.
     #[inline]
-    pub fn law<'a>(&'a self, model: &'a Model, t: usize) -> HeldLaw<'a> {
+    pub fn law<'a>(&'a self, system: &'a System, t: usize) -> HeldLaw<'a> {
         HeldLaw {
-            law: &model.laws[model.material[t] as usize],
+            law: system.materials.law(t),
             term: self.stretch.get(t),
         }
     }
 
     /// The Hessian of bending during the step.
-    pub fn bending<'a>(&'a self, model: &'a Model) -> &'a ScalarMatrix {
-        self.bending.as_ref().unwrap_or(&model.bending)
+    pub fn bending<'a>(&'a self, system: &'a System) -> &'a ScalarMatrix {
+        self.bending.as_ref().unwrap_or(&system.rest.bending)
     }
 
     /// Energy of folds and air at some positions [J].
-    pub fn energy(&self, model: &Model, x: &[Vec3]) -> f64 {
+    pub fn energy(&self, system: &System, x: &[Vec3]) -> f64 {
         if self.fold.is_empty() && self.air.is_empty() {
             return 0.0;
         }
-        let parts: Vec<f64> = (0..model.triangles.len().div_ceil(CHUNK))
+        let parts: Vec<f64> = (0..system.topology.triangles.len().div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let mut energy = 0.0;
-                for t in chunk * CHUNK..((chunk + 1) * CHUNK).min(model.triangles.len()) {
+                for t in chunk * CHUNK..((chunk + 1) * CHUNK).min(system.topology.triangles.len()) {
                     if let Some(term) = self.fold.get(t) {
-                        energy += term.energy(curvature_along_normal(model, t, x));
+                        energy += term.energy(curvature_along_normal(system, t, x));
                     }
                     if let Some(air) = self.air.get(t) {
-                        energy += air.energy(corners(model, t, x));
+                        energy += air.energy(corners(system, t, x));
                     }
                 }
                 energy
@@ -242,13 +242,13 @@ impl StepTerms {
     }
 
     /// Adds the gradient of [`Self::energy`].
-    pub fn add_gradient(&self, model: &Model, x: &[Vec3], gradient: &mut [Vec3]) {
+    pub fn add_gradient(&self, system: &System, x: &[Vec3], gradient: &mut [Vec3]) {
         for (t, term) in self.fold.iter().enumerate() {
-            add_fold(model, t, term, x, gradient);
+            add_fold(system, t, term, x, gradient);
         }
         for (t, air) in self.air.iter().enumerate() {
-            let slope = air.gradient(corners(model, t, x)) / 3.0;
-            for v in model.triangles[t] {
+            let slope = air.gradient(corners(system, t, x)) / 3.0;
+            for v in system.topology.triangles[t] {
                 gradient[v as usize] += slope;
             }
         }
@@ -291,10 +291,10 @@ impl AirTerm {
     }
 }
 
-fn add_fold(model: &Model, t: usize, term: &FoldTerm, x: &[Vec3], gradient: &mut [Vec3]) {
-    let stencil = &model.stencils[t];
+fn add_fold(system: &System, t: usize, term: &FoldTerm, x: &[Vec3], gradient: &mut [Vec3]) {
+    let stencil = &system.rest.stencils[t];
     let Some((by_curvature, by_corner)) =
-        term.gradient(corners(model, t, x), curvature(stencil, x))
+        term.gradient(corners(system, t, x), curvature(stencil, x))
     else {
         return;
     };
@@ -302,52 +302,52 @@ fn add_fold(model: &Model, t: usize, term: &FoldTerm, x: &[Vec3], gradient: &mut
         gradient[v as usize] +=
             by_curvature[0] * w[0] + by_curvature[1] * w[1] + by_curvature[2] * w[2];
     }
-    for (v, g) in model.triangles[t].into_iter().zip(by_corner) {
+    for (v, g) in system.topology.triangles[t].into_iter().zip(by_corner) {
         gradient[v as usize] += g;
     }
 }
 
 /// Adds the forces that depend on velocity, for explicit methods: viscosity and the change that
 /// motion makes to the push of the air [N].
-pub(crate) fn add_forces_of_motion(model: &Model, state: &State, force: &mut [Vec3]) {
+pub(crate) fn add_forces_of_motion(system: &System, state: &State, force: &mut [Vec3]) {
     let (x, v) = (&state.positions, &state.velocities);
-    let viscous = model.has_viscous_stretch();
-    let folds = model.viscous_bending.is_some() && !model.stencils.is_empty();
-    if !(viscous || folds || model.air.acts()) {
+    let viscous = system.materials.have_viscous_stretch();
+    let folds = system.rest.viscous_bending.is_some() && !system.rest.stencils.is_empty();
+    if !(viscous || folds || system.control.air.acts()) {
         return;
     }
-    for t in 0..model.triangles.len() {
-        let material = &model.materials[model.material[t] as usize];
-        let (at, speed) = (corners(model, t, x), corners(model, t, v));
+    for t in 0..system.topology.triangles.len() {
+        let material = system.materials.of(t);
+        let (at, speed) = (corners(system, t, x), corners(system, t, v));
         if viscous {
-            let element = &model.elements[t];
+            let element = &system.rest.elements[t];
             let ([fu, fv], [gu, gv]) = (element.tangents(at), element.tangents(speed));
             let rate = [fu.dot(&gu), fv.dot(&gv), fu.dot(&gv) + fv.dot(&gu)];
             let [uu, vv, uv] = viscous_stress(material.viscous_stretch(), rate);
             let by_u = (fu * uu + fv * uv) * element.area;
             let by_v = (fv * vv + fu * uv) * element.area;
-            for (k, vertex) in model.triangles[t].into_iter().enumerate() {
+            for (k, vertex) in system.topology.triangles[t].into_iter().enumerate() {
                 force[vertex as usize] -= by_u * element.warp[k] + by_v * element.weft[k];
             }
         }
         let normal = area_normal(at);
         if folds && let Some(n) = normal.try_normalize(0.0) {
-            let stencil = &model.stencils[t];
-            let area = model.elements[t].area;
+            let stencil = &system.rest.stencils[t];
+            let area = system.rest.elements[t].area;
             let rate = along_normal(n, curvature(stencil, v));
             let moment = stencil.stiffness(material.viscous_bend()) * rate * area;
             for (&vertex, w) in stencil.vertices.iter().zip(&stencil.weights) {
                 force[vertex as usize] -= n * moment.dot(&Vector3::from(*w));
             }
         }
-        if model.air.acts() {
+        if system.control.air.acts() {
             let area = 0.5 * normal.norm();
             let normal = normal.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
-            let pull = model.air.on(area, normal);
-            let wind = model.air.wind;
+            let pull = system.control.air.on(area, normal);
+            let wind = system.control.air.wind;
             let change =
                 pull.gradient(speed.iter().sum::<Vec3>() / 3.0 - wind) - pull.gradient(-wind);
-            for vertex in model.triangles[t] {
+            for vertex in system.topology.triangles[t] {
                 force[vertex as usize] -= change / 3.0;
             }
         }
@@ -356,13 +356,13 @@ pub(crate) fn add_forces_of_motion(model: &Model, state: &State, force: &mut [Ve
 
 /// Moves what the cloth has settled into towards the strain it has, over `h` [s]:
 /// v <- E + (v - E) exp(-h / tau).
-pub(crate) fn relax(model: &Model, state: &mut State, h: f64) {
-    if !model.keeps_strain() {
+pub(crate) fn relax(system: &System, state: &mut State, h: f64) {
+    if !system.materials.keep_strain() {
         return;
     }
     state
         .settled
-        .resize(model.triangles.len(), InternalStrain::default());
+        .resize(system.topology.triangles.len(), InternalStrain::default());
     let x = &state.positions;
     state
         .settled
@@ -371,16 +371,16 @@ pub(crate) fn relax(model: &Model, state: &mut State, h: f64) {
         .for_each(|(chunk, settled)| {
             for (k, settled) in settled.iter_mut().enumerate() {
                 let t = chunk * CHUNK + k;
-                let material = &model.materials[model.material[t] as usize];
+                let material = system.materials.of(t);
                 let share = -(-h / material.relaxation_time).exp_m1();
                 if material.kept[0] > 0.0 {
-                    let now = strain(model, t, x);
+                    let now = strain(system, t, x);
                     for (v, e) in settled.stretch.iter_mut().zip(now) {
                         *v += (e - *v) * share;
                     }
                 }
                 if material.kept[1] > 0.0 {
-                    let now = curvature_along_normal(model, t, x);
+                    let now = curvature_along_normal(system, t, x);
                     for (v, e) in settled.curvature.iter_mut().zip(now.iter()) {
                         *v += (e - *v) * share;
                     }

@@ -6,7 +6,9 @@
 mod strips;
 
 use strips::{KINDS, Kind, strip};
-use toile_drape::{Material, Model, PseudoTransientContinuation, RestSettings, State, Workspace};
+use toile_drape::{
+    Material, PseudoTransientContinuation, RestSettings, State, SystemBuilder, Workspace,
+};
 use toile_geometry::Vec3;
 
 const LENGTH: f64 = 0.2;
@@ -25,11 +27,12 @@ fn drop_over_projection(kind: Kind, along: usize, gamma: f64, locking: f64) -> f
         ..Material::default()
     };
     let (cloth, pins) = strip(kind, LENGTH, 0.25 * LENGTH, along, material);
-    let mut model = Model::new("strip", &cloth).unwrap();
+    let mut builder = SystemBuilder::new("strip", &cloth).unwrap();
     for pin in pins {
-        model.pinned[pin as usize] = true;
+        builder.pinned[pin as usize] = true;
     }
-    let mut state = State::at_rest(&model, cloth.positions.clone());
+    let system = builder.build();
+    let mut state = State::at_rest(&system, cloth.positions.clone());
     let mut workspace = Workspace::default();
     let mut run = PseudoTransientContinuation::new(RestSettings {
         residual: 1e-7,
@@ -37,7 +40,7 @@ fn drop_over_projection(kind: Kind, along: usize, gamma: f64, locking: f64) -> f
         longest_move: 0.05,
     });
     while !run.finished() {
-        if run.advance(&model, &mut state, &mut workspace).is_err() {
+        if run.advance(&system, &mut state, &mut workspace).is_err() {
             println!("    no lower than {:.1e}", run.residual());
             break;
         }

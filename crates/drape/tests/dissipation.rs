@@ -5,7 +5,7 @@
 mod strips;
 
 use strips::{KINDS, Kind, strip};
-use toile_drape::{Air, Cloth, Material, MethodKind, MethodSettings, Model, State};
+use toile_drape::{Air, Cloth, Material, MethodKind, MethodSettings, State, System, SystemBuilder};
 use toile_geometry::Vec3;
 
 const IN_TIME: [MethodKind; 7] = [
@@ -19,18 +19,19 @@ const IN_TIME: [MethodKind; 7] = [
 ];
 
 /// A strip 0.2 x 0.05 m without gravity, nothing pinned.
-fn free_strip(material: Material) -> (Cloth, Model, State) {
+fn free_strip(material: Material) -> (Cloth, System, State) {
     let (cloth, _) = strip(Kind::Alternating, 0.2, 0.05, 8, material);
-    let mut model = Model::new("strip", &cloth).unwrap();
-    model.gravity = Vec3::zeros();
-    let state = State::at_rest(&model, cloth.positions.clone());
-    (cloth, model, state)
+    let mut builder = SystemBuilder::new("strip", &cloth).unwrap();
+    builder.control.gravity = Vec3::zeros();
+    let system = builder.build();
+    let state = State::at_rest(&system, cloth.positions.clone());
+    (cloth, system, state)
 }
 
-fn run(model: &Model, state: &mut State, kind: MethodKind, step: f64, time: f64) {
+fn run(system: &System, state: &mut State, kind: MethodKind, step: f64, time: f64) {
     let mut method = MethodSettings::from(kind).build();
     for _ in 0..(time / step).round() as usize {
-        method.advance(model, state, step).unwrap();
+        method.advance(system, state, step).unwrap();
     }
 }
 
@@ -41,15 +42,15 @@ fn a_falling_sheet_reaches_the_terminal_velocity_of_quadratic_drag() {
         ..Material::default()
     };
     for kind in IN_TIME {
-        let (_, mut model, mut state) = free_strip(material.clone());
-        model.gravity = Vec3::new(0.0, -9.81, 0.0);
-        model.air = Air {
+        let (_, mut system, mut state) = free_strip(material.clone());
+        system.control.gravity = Vec3::new(0.0, -9.81, 0.0);
+        system.control.air = Air {
             density: Air::SEA_LEVEL,
             ..Air::default()
         };
         // Past three time constants v/g of 0.12 s; v = v_e tanh(g t / v_e).
         let (time, step) = (0.3, 1e-3);
-        run(&model, &mut state, kind, step, time);
+        run(&system, &mut state, kind, step, time);
         let end = (2.0 * 0.1 * 9.81 / (Air::SEA_LEVEL * 1.2)).sqrt();
         let expected = end * (9.81 * time / end).tanh();
         for v in &state.velocities {
@@ -65,13 +66,13 @@ fn a_falling_sheet_reaches_the_terminal_velocity_of_quadratic_drag() {
 #[test]
 fn wind_carries_a_free_sheet_along() {
     for kind in [MethodKind::SymplecticEuler, MethodKind::ImplicitEuler] {
-        let (_, mut model, mut state) = free_strip(Material::default());
-        model.air = Air {
+        let (_, mut system, mut state) = free_strip(Material::default());
+        system.control.air = Air {
             density: Air::SEA_LEVEL,
             wind: Vec3::new(0.0, 3.0, 0.0),
             ..Air::default()
         };
-        run(&model, &mut state, kind, 1e-3, 0.2);
+        run(&system, &mut state, kind, 1e-3, 0.2);
         // dw/dt = -a w^2 for the velocity w relative to the wind, a = rho C / (2 density).
         let a = Air::SEA_LEVEL * 1.2 / (2.0 * 0.2);
         let expected = 3.0 - 3.0 / (1.0 + 3.0 * a * 0.2);
@@ -104,27 +105,31 @@ fn a_stretched_strip_keeps_its_share_and_lets_go_of_the_rest() {
         poisson: 0.0,
         ..Material::default()
     };
-    let (cloth, mut model, mut state) = free_strip(material);
+    let (cloth, mut system, mut state) = free_strip(material);
     for x in &mut state.positions {
         x.x *= 1.02;
     }
-    model.pinned.fill(true);
-    run(&model, &mut state, MethodKind::ImplicitEuler, 0.01, 1.0);
+    system = system.with(|builder| {
+        builder.pinned.fill(true);
+    });
+    run(&system, &mut state, MethodKind::ImplicitEuler, 0.01, 1.0);
     let held = 1.02f64.powi(2) / 2.0 - 0.5;
     let settled = held * (1.0 - (-1.0f64 / 0.5).exp());
     for triangle in &state.settled {
         assert!((triangle.stretch[0] - settled).abs() < 1e-12);
     }
     // Let go: at rest at once with 0.4 of what settled, as rest does not run in time.
-    model.pinned.fill(false);
-    model.pinned[0] = true;
+    system = system.with(|builder| {
+        builder.pinned.fill(false);
+        builder.pinned[0] = true;
+    });
     let mut rest = MethodSettings {
         tolerance: Some(1e-6),
         ..MethodKind::Rest.into()
     }
     .build();
     while !rest.finished() {
-        rest.advance(&model, &mut state, 0.0).unwrap();
+        rest.advance(&system, &mut state, 0.0).unwrap();
     }
     let kept = (1.0f64 + 2.0 * 0.4 * settled).sqrt() - 1.0;
     let got = stretch(&cloth, &state.positions);
@@ -162,24 +167,29 @@ fn kept_fold(kind: Kind) -> f64 {
         ..Material::default()
     };
     let (cloth, _) = strip(kind, 0.2, 0.05, 8, material);
-    let mut model = Model::new("strip", &cloth).unwrap();
-    model.gravity = Vec3::zeros();
-    let mut state = State::at_rest(&model, cloth.positions.clone());
+    let mut builder = SystemBuilder::new("strip", &cloth).unwrap();
+    builder.control.gravity = Vec3::zeros();
+    let mut system = builder.build();
+    let mut state = State::at_rest(&system, cloth.positions.clone());
     let k = 5.0;
     for x in &mut state.positions {
         *x = Vec3::new((k * x.x).sin() / k, (1.0 - (k * x.x).cos()) / k, x.z);
     }
     let held = turn(&state, &cloth);
-    model.pinned.fill(true);
-    run(&model, &mut state, MethodKind::ImplicitEuler, 0.01, 1.0);
-    model.pinned.fill(false);
+    system = system.with(|builder| {
+        builder.pinned.fill(true);
+    });
+    run(&system, &mut state, MethodKind::ImplicitEuler, 0.01, 1.0);
+    system = system.with(|builder| {
+        builder.pinned.fill(false);
+    });
     let mut rest = MethodSettings {
         tolerance: Some(1e-7),
         ..MethodKind::Rest.into()
     }
     .build();
     while !rest.finished() {
-        rest.advance(&model, &mut state, 0.0).unwrap();
+        rest.advance(&system, &mut state, 0.0).unwrap();
     }
     turn(&state, &cloth) / held
 }
@@ -203,7 +213,7 @@ fn viscosity_damps_stretching_at_its_rate() {
         ..plain.clone()
     };
     let kept = |material: &Material, kind: MethodKind, step: f64| {
-        let (cloth, model, mut state) = free_strip(material.clone());
+        let (cloth, system, mut state) = free_strip(material.clone());
         let start = cloth.positions[0].x;
         for (x, rest) in state.positions.iter_mut().zip(&cloth.positions) {
             x.x -= 1e-4 * (wave * (rest.x - start)).cos();
@@ -212,7 +222,7 @@ fn viscosity_damps_stretching_at_its_rate() {
         let period = 2.0 * std::f64::consts::PI / (wave * (200.0f64 / 0.2).sqrt());
         let steps = (10.0 * period / step).round();
         run(
-            &model,
+            &system,
             &mut state,
             kind,
             10.0 * period / steps,
@@ -244,24 +254,25 @@ fn viscous_bending_brings_a_swinging_strip_to_rest_and_no_rigid_turn_is_damped()
         ..Material::default()
     };
     // A rolled strip, turning rigidly: its speed stays.
-    let (_, model, mut state) = free_strip(material.clone());
+    let (_, system, mut state) = free_strip(material.clone());
     for (x, v) in state.positions.iter_mut().zip(&mut state.velocities) {
         *v = Vec3::new(-x.y, x.x - 0.1, 0.0) * 2.0;
     }
-    let before = state.kinetic_energy(&model);
-    run(&model, &mut state, MethodKind::ImplicitMidpoint, 1e-3, 0.2);
-    assert!((state.kinetic_energy(&model) / before - 1.0).abs() < 2e-3);
+    let before = state.kinetic_energy(&system);
+    run(&system, &mut state, MethodKind::ImplicitMidpoint, 1e-3, 0.2);
+    assert!((state.kinetic_energy(&system) / before - 1.0).abs() < 2e-3);
     // A clamped one swings out.
     let (cloth, pins) = strip(Kind::Right, 0.2, 0.05, 8, material);
-    let mut model = Model::new("strip", &cloth).unwrap();
+    let mut builder = SystemBuilder::new("strip", &cloth).unwrap();
     for pin in pins {
-        model.pinned[pin as usize] = true;
+        builder.pinned[pin as usize] = true;
     }
+    let system = builder.build();
     let mut energies = Vec::new();
-    let mut state = State::at_rest(&model, cloth.positions.clone());
+    let mut state = State::at_rest(&system, cloth.positions.clone());
     for _ in 0..2 {
-        run(&model, &mut state, MethodKind::ImplicitMidpoint, 2e-3, 1.0);
-        energies.push(state.kinetic_energy(&model));
+        run(&system, &mut state, MethodKind::ImplicitMidpoint, 2e-3, 1.0);
+        energies.push(state.kinetic_energy(&system));
     }
     assert!(energies[1] < 0.5 * energies[0], "{energies:?}");
 }

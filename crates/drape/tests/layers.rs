@@ -182,8 +182,8 @@ fn the_pull_between_layers_keeps_momentum() {
     free.gravity = Vec3::zeros();
     free.duration = 0.2;
     let middle = |run: &SceneRun| {
-        let masses = run.model.mass.iter().zip(&run.state.positions);
-        masses.map(|(m, p)| p * *m).sum::<Vec3>() / run.model.mass.iter().sum::<f64>()
+        let masses = run.system.rest.mass.iter().zip(&run.state.positions);
+        masses.map(|(m, p)| p * *m).sum::<Vec3>() / run.system.rest.mass.iter().sum::<f64>()
     };
     let start = middle(&SceneRun::new(free.clone()).unwrap());
     let (run, measures) = finish(free);
@@ -212,10 +212,12 @@ fn what_a_saved_state_knows_of_layers_goes_on_to_the_same_bytes() {
     mesh.positions.extend(outer.positions);
     let shifted = outer.triangles.iter().map(|t| t.map(|v| v + half as u32));
     mesh.triangles.extend(shifted);
-    let (mut model, mut state) = sheets::cloth(&mesh, Material::default());
-    model.gravity = Vec3::zeros();
-    model.contact.cloth_offset = 2e-3;
-    model.layer = (0..2 * half).map(|v| u16::from(v >= half)).collect();
+    let (mut system, mut state) = sheets::cloth(&mesh, Material::default());
+    system.control.gravity = Vec3::zeros();
+    system = system.with(|builder| {
+        builder.contact.cloth_offset = 2e-3;
+        builder.layer = (0..2 * half).map(|v| u16::from(v >= half)).collect();
+    });
     for velocity in &mut state.velocities[half..] {
         *velocity = Vec3::new(-3.0, 0.0, 0.0);
     }
@@ -223,7 +225,7 @@ fn what_a_saved_state_knows_of_layers_goes_on_to_the_same_bytes() {
         let go = |state: &mut State, steps: usize| {
             let mut method = MethodSettings::from(kind).build();
             for _ in 0..steps {
-                method.advance(&model, state, 0.01).unwrap();
+                method.advance(&system, state, 0.01).unwrap();
             }
         };
         let (mut whole, mut resumed) = (state.clone(), state.clone());
@@ -301,8 +303,8 @@ fn cloths_sewn_together_are_in_no_order_there() {
         merge_within: Some(0.01),
     }];
     let (run, measures) = finish(joined);
-    assert_eq!(run.model.vertex_count(), 2 * 49 - 1);
-    assert_eq!(run.model.layer[24], toile_drape::collision::BETWEEN_LAYERS);
+    assert_eq!(run.system.vertex_count(), 2 * 49 - 1);
+    assert_eq!(run.system.layer[24], toile_drape::collision::BETWEEN_LAYERS);
     assert_eq!(measures.self_intersections, 0);
     assert!(measures.layers.iter().all(|layer| layer.astray == 0));
 }

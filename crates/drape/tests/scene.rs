@@ -120,12 +120,12 @@ fn elastics_merge_what_they_draw_together_and_keep_momentum() {
     };
     let run = finish(SceneRun::new(scene).expect("sound"));
     assert_eq!(run.state.positions.len(), 45);
-    assert_eq!(run.model.mesh(&run.state.positions).component_count(), 1);
+    assert_eq!(run.system.mesh(&run.state.positions).component_count(), 1);
     let momentum: Vec3 = run
         .state
         .velocities
         .iter()
-        .zip(&run.model.mass)
+        .zip(&run.system.rest.mass)
         .map(|(v, m)| v * *m)
         .sum();
     assert!(momentum.norm() < 1e-6, "{momentum:?}");

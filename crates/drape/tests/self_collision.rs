@@ -18,8 +18,8 @@ use toile_drape::collision::{
     bound_moves, crossings, nearnesses,
 };
 use toile_drape::{
-    Cloth, ContactSettings, Material, Measures, MethodKind, Model, PseudoTransientContinuation,
-    RestSettings, Scene, SceneRun, State, Workspace,
+    Cloth, ContactSettings, Material, Measures, MethodKind, PseudoTransientContinuation,
+    RestSettings, Scene, SceneRun, State, SystemBuilder, Workspace,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3, segment_intersects_triangle};
 
@@ -121,12 +121,13 @@ fn what_came_nearer_since_it_was_looked_at_is_still_kept_apart() {
     let shifted = upper.triangles.iter().map(|t| t.map(|v| v + half as u32));
     mesh.triangles.extend(shifted);
     let cloth = Cloth::from_mesh("two", &mesh, Material::default()).unwrap();
-    let mut model = Model::new("two", &cloth).unwrap();
-    model.contact.cloth_offset = 2e-3;
-    let lightness: Vec<f64> = model.mass.iter().map(|m| 1.0 / m).collect();
-    let state = State::at_rest(&model, mesh.positions.clone());
+    let mut builder = SystemBuilder::new("two", &cloth).unwrap();
+    builder.contact.cloth_offset = 2e-3;
+    let system = builder.build();
+    let lightness: Vec<f64> = system.rest.mass.iter().map(|m| 1.0 / m).collect();
+    let state = State::at_rest(&system, mesh.positions.clone());
     let mut contacts = ClothContacts::default();
-    contacts.refresh(&model, &state, &state.positions);
+    contacts.refresh(&system, &state, &state.positions);
     let towards = |way: f64| -> Vec<Vec3> {
         let sign = |v: usize| if v < half { 1.0 } else { -1.0 };
         (0..2 * half).map(|v| Vec3::y() * (sign(v) * way)).collect()
@@ -148,7 +149,7 @@ fn what_came_nearer_since_it_was_looked_at_is_still_kept_apart() {
         lightness: &lightness,
         span: 1.0,
     };
-    let kept = contacts.keep_apart(&model, &mut motion);
+    let kept = contacts.keep_apart(&system, &mut motion);
     assert!(kept.impulses > 0, "{kept:?}");
     // A tenth of a millimetre apart when the motion began, of which nine tenths are kept.
     let ends: Vec<Vec3> = x.iter().zip(&moves).map(|(x, d)| x + d).collect();
@@ -215,15 +216,16 @@ fn impulses_keep_layers_apart_and_keep_their_momentum() {
             .extend(part.triangles.iter().map(|t| t.map(|v| v + first)));
     }
     let cloth = Cloth::from_mesh("layers", &mesh, Material::default()).unwrap();
-    let mut model = Model::new("layers", &cloth).unwrap();
-    model.contact.cloth_offset = 2e-3;
-    let lightness: Vec<f64> = model.mass.iter().map(|m| 1.0 / m).collect();
+    let mut builder = SystemBuilder::new("layers", &cloth).unwrap();
+    builder.contact.cloth_offset = 2e-3;
+    let system = builder.build();
+    let lightness: Vec<f64> = system.rest.mass.iter().map(|m| 1.0 / m).collect();
     let (mut uncut, mut impulses) = (0, 0);
     for seed in 0..40 {
         let mut numbers = Numbers(seed);
-        let state = State::at_rest(&model, mesh.positions.clone());
+        let state = State::at_rest(&system, mesh.positions.clone());
         let mut contacts = ClothContacts::default();
-        contacts.refresh(&model, &state, &state.positions);
+        contacts.refresh(&system, &state, &state.positions);
         // All fly along; every second run is wilder than impulses may undo.
         let wild = if seed % 2 == 0 { 2e-2 } else { 0.2 };
         let along = Vec3::new(0.01, -0.02, 0.005);
@@ -231,7 +233,7 @@ fn impulses_keep_layers_apart_and_keep_their_momentum() {
             .map(|_| along + numbers.vector(wild))
             .collect();
         let momentum = |moves: &[Vec3]| {
-            let each = moves.iter().zip(&model.mass);
+            let each = moves.iter().zip(&system.rest.mass);
             each.map(|(d, m)| d * *m).sum::<Vec3>()
         };
         let before = momentum(&moves);
@@ -243,7 +245,7 @@ fn impulses_keep_layers_apart_and_keep_their_momentum() {
             lightness: &lightness,
             span: 1.0,
         };
-        let kept = contacts.keep_apart(&model, &mut motion);
+        let kept = contacts.keep_apart(&system, &mut motion);
         impulses += kept.impulses;
         let end: Vec<Vec3> = mesh
             .positions
@@ -334,16 +336,18 @@ fn pressed_to_rest() -> (f64, usize, f64) {
     let shifted = |t: &[u32; 3]| t.map(|v| v + pinned as u32);
     mesh.triangles.extend(high.triangles.iter().map(shifted));
     mesh.positions.extend(high.positions);
-    let (mut model, mut state) = sheets::cloth(&mesh, Material::default());
-    model.pinned[..pinned].fill(true);
-    model.contact = contact;
+    let (mut system, mut state) = sheets::cloth(&mesh, Material::default());
+    system = system.with(|builder| {
+        builder.pinned[..pinned].fill(true);
+        builder.contact = contact;
+    });
     let mut rest = PseudoTransientContinuation::near(RestSettings {
         steps: 100,
         ..RestSettings::default()
     });
     let mut workspace = Workspace::default();
     while !rest.finished() {
-        rest.advance(&model, &mut state, &mut workspace).unwrap();
+        rest.advance(&system, &mut state, &mut workspace).unwrap();
     }
     let heights = state.positions[pinned..].iter().map(|x| x.y);
     let nearest = heights.fold(f64::INFINITY, f64::min);
@@ -453,16 +457,17 @@ fn a_planted_crossing_is_undone() {
 fn contacts_do_not_depend_on_threads_and_push_both_ways_alike() {
     let mesh = crumpled(3, 12);
     let cloth = Cloth::from_mesh("sheet", &mesh, Material::default()).unwrap();
-    let mut model = Model::new("sheet", &cloth).unwrap();
-    model.contact.cloth_offset = 4e-3;
-    let state = State::at_rest(&model, mesh.positions.clone());
+    let mut builder = SystemBuilder::new("sheet", &cloth).unwrap();
+    builder.contact.cloth_offset = 4e-3;
+    let system = builder.build();
+    let state = State::at_rest(&system, mesh.positions.clone());
     let found = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
             .unwrap();
         let mut contacts = ClothContacts::default();
-        pool.install(|| contacts.find(&model, &state, &state.positions, &Reach::all(8e-3)));
+        pool.install(|| contacts.find(&system, &state, &state.positions, &Reach::all(8e-3)));
         contacts
     };
     let one = found(1);

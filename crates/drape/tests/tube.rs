@@ -132,5 +132,5 @@ fn a_tube_is_sewn_and_comes_to_rest_on_a_ball() {
         measures.strain_p99.iter().all(|&s| s < 0.05),
         "{measures:?}"
     );
-    assert_eq!(run.model.mesh(&run.state.positions).component_count(), 1);
+    assert_eq!(run.system.mesh(&run.state.positions).component_count(), 1);
 }

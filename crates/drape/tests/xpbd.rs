@@ -6,9 +6,9 @@ mod sheets;
 use sheets::{cloth, sheet};
 use std::sync::Arc;
 use toile_drape::{
-    Collider, DrapeError, Elastic, ElasticEnd, Inertia, LinearSolver, Material, MethodKind, Model,
+    Collider, DrapeError, Elastic, ElasticEnd, Inertia, LinearSolver, Material, MethodKind,
     NewtonSettings, PcgLimits, PseudoTransientContinuation, RestSettings, State, StepSettings,
-    Workspace, Xpbd, XpbdSettings, laws::elastic::ElasticLaw,
+    System, Workspace, Xpbd, XpbdSettings, laws::elastic::ElasticLaw,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
@@ -34,43 +34,43 @@ fn slope(angle: f64) -> Collider {
 
 #[test]
 fn a_free_sheet_falls_and_keeps_its_momentum() {
-    let (mut model, mut state) = cloth(
+    let (mut system, mut state) = cloth(
         &grid(12, 12, 0.02, |u, v| Vec3::new(u, 1.0, v)),
         Material::default(),
     );
     // Crumpled by its velocities, under no gravity.
-    model.gravity = Vec3::zeros();
+    system.control.gravity = Vec3::zeros();
     for (i, v) in state.velocities.iter_mut().enumerate() {
         let s = i as f64;
         *v = Vec3::new((s * 1.7).sin(), (s * 0.9).cos(), (s * 2.3).sin()) * 0.3;
     }
     let momentum = |state: &State| -> Vec3 {
-        let parts = state.velocities.iter().zip(&model.mass);
+        let parts = state.velocities.iter().zip(&system.rest.mass);
         parts.map(|(v, m)| v * *m).sum()
     };
-    let scale: f64 = (state.velocities.iter().zip(&model.mass))
+    let scale: f64 = (state.velocities.iter().zip(&system.rest.mass))
         .map(|(v, m)| v.norm() * m)
         .sum();
     let before = momentum(&state);
-    let mut solver = Xpbd::new(&model);
+    let mut solver = Xpbd::new(&system);
     for _ in 0..30 {
         solver
-            .advance(&model, &mut state, 1.0 / 1200.0, 20, 0.0)
+            .advance(&system, &mut state, 1.0 / 1200.0, 20, 0.0)
             .expect("sound");
     }
     // 600 substeps; each rounds velocities by 1e-8 m / h at worst and at random.
     assert!((momentum(&state) - before).norm() < 1e-4 * scale);
 
     // Alone under gravity: v is exact to single precision, and so is the fall.
-    let (model, mut state) = cloth(
+    let (system, mut state) = cloth(
         &grid(6, 6, 0.02, |u, v| Vec3::new(u, 1.0, v)),
         Material::default(),
     );
-    let mut solver = Xpbd::new(&model);
+    let mut solver = Xpbd::new(&system);
     let (h, n) = (1.0 / 1200.0, 1200.0);
     for _ in 0..60 {
         solver
-            .advance(&model, &mut state, h, 20, 0.0)
+            .advance(&system, &mut state, h, 20, 0.0)
             .expect("sound");
     }
     let fallen = 0.5 * 9.81 * h * h * n * (n + 1.0);
@@ -87,32 +87,36 @@ fn iterated_to_the_end_it_is_implicit_euler() {
         shear: 20.0,
         ..Material::default()
     };
-    let (mut model, state) = cloth(
+    let (mut system, state) = cloth(
         &grid(5, 5, 0.03, |u, v| Vec3::new(u, 0.02 * (30.0 * u).sin(), v)),
         material,
     );
-    model.pinned[0] = true;
-    model.air_drag = 0.7;
+    system = system.with(|builder| {
+        builder.pinned[0] = true;
+    });
+    system.control.air_drag = 0.7;
     let law = ElasticLaw {
         stiffness: 5.0,
         largest_force: 0.02,
     };
-    model.set_elastics(vec![
-        Elastic {
-            from: 35,
-            to: ElasticEnd::Point(Vec3::new(0.2, 0.1, 0.2)),
-            law,
-        },
-        Elastic {
-            from: 5,
-            to: ElasticEnd::Vertex(30),
-            law,
-        },
-    ]);
+    system = system.with(|builder| {
+        builder.elastics = vec![
+            Elastic {
+                from: 35,
+                to: ElasticEnd::Point(Vec3::new(0.2, 0.1, 0.2)),
+                law,
+            },
+            Elastic {
+                from: 5,
+                to: ElasticEnd::Vertex(30),
+                law,
+            },
+        ];
+    });
     let h = 0.001;
     let mut reference = state.clone();
-    let weight: Vec<f64> = (model.mass.iter())
-        .map(|m| m * (1.0 + model.air_drag * h) / (h * h))
+    let weight: Vec<f64> = (system.rest.mass.iter())
+        .map(|m| m * (1.0 + system.control.air_drag * h) / (h * h))
         .collect();
     let mut workspace = Workspace::default();
     let newton = NewtonSettings {
@@ -130,14 +134,14 @@ fn iterated_to_the_end_it_is_implicit_euler() {
         weight: &weight,
         target: &target,
     };
-    workspace.solve(&model, &mut reference, &inertia, &newton);
+    workspace.solve(&system, &mut reference, &inertia, &newton);
     let mut got = state.clone();
     let settings = XpbdSettings {
         iterations: 2000,
         ..XpbdSettings::default()
     };
-    Xpbd::with_settings(&model, settings)
-        .advance(&model, &mut got, h, 1, model.air_drag)
+    Xpbd::with_settings(&system, settings)
+        .advance(&system, &mut got, h, 1, system.control.air_drag)
         .expect("sound");
     let moved = |s: &State| {
         let moves = s.positions.iter().zip(&state.positions);
@@ -166,21 +170,23 @@ fn a_hanging_strip_stretches_by_its_weight() {
         ..Material::default()
     };
     let (cells, length) = (20, 0.5);
-    let (mut model, mut state) = cloth(
+    let (mut system, mut state) = cloth(
         &grid(cells, 2, length / 20.0, |u, v| Vec3::new(0.0, -u, v)),
         material.clone(),
     );
     for row in 0..3 {
-        model.pinned[row * (cells + 1)] = true;
+        system = system.with(|builder| {
+            builder.pinned[row * (cells + 1)] = true;
+        });
     }
     let settings = XpbdSettings {
         iterations: 400,
         ..XpbdSettings::default()
     };
-    let mut solver = Xpbd::with_settings(&model, settings);
+    let mut solver = Xpbd::with_settings(&system, settings);
     for _ in 0..200 {
         solver
-            .advance(&model, &mut state, 1.0 / 60.0, 1, 10.0)
+            .advance(&system, &mut state, 1.0 / 60.0, 1, 10.0)
             .expect("sound");
     }
     let mut expected = 0.0;
@@ -204,10 +210,12 @@ fn it_rests_where_newton_rests() {
         bend: [1.5e-3; 3],
         ..Material::default()
     };
-    let (mut model, state) = cloth(&grid(9, 2, 0.015, |u, v| Vec3::new(u, 0.0, v)), material);
+    let (mut system, state) = cloth(&grid(9, 2, 0.015, |u, v| Vec3::new(u, 0.0, v)), material);
     for row in 0..3 {
-        model.pinned[10 * row] = true;
-        model.pinned[10 * row + 1] = true;
+        system = system.with(|builder| {
+            builder.pinned[10 * row] = true;
+            builder.pinned[10 * row + 1] = true;
+        });
     }
     let mut reference = state.clone();
     let mut rest = PseudoTransientContinuation::new(RestSettings {
@@ -216,7 +224,7 @@ fn it_rests_where_newton_rests() {
     });
     let mut workspace = Workspace::default();
     while !rest.finished() {
-        rest.advance(&model, &mut reference, &mut workspace)
+        rest.advance(&system, &mut reference, &mut workspace)
             .expect("sound");
     }
     let sunk = -reference.positions[9].y;
@@ -233,11 +241,11 @@ fn it_rests_where_newton_rests() {
             iterations,
             ..XpbdSettings::default()
         };
-        let mut solver = Xpbd::with_settings(&model, settings);
+        let mut solver = Xpbd::with_settings(&system, settings);
         // Long after everything that moves has been damped.
         let count = (4.0 / substep) as u32;
         let report = solver
-            .advance(&model, &mut got, substep, count, 10.0)
+            .advance(&system, &mut got, substep, count, 10.0)
             .expect("sound");
         assert!(report.kinetic_energy < 1e-8, "{report:?}");
         let gap = (got.positions.iter().zip(&reference.positions))
@@ -255,20 +263,22 @@ fn friction_holds_below_its_angle_and_slides_as_coulomb_says_above() {
         let along = Vec3::new(angle.cos(), angle.sin(), 0.0);
         let up = Vec3::new(-angle.sin(), angle.cos(), 0.0);
         let mesh = grid(4, 4, 0.02, |u, v| along * u + up * 4e-3 + Vec3::z() * v);
-        let (mut model, mut state) = cloth(
+        let (mut system, mut state) = cloth(
             &mesh,
             Material {
                 friction,
                 ..Material::default()
             },
         );
-        model.colliders.push(slope(angle));
+        system = system.with(|builder| {
+            builder.colliders.push(slope(angle));
+        });
         let start = state.positions.clone();
-        let mut solver = Xpbd::new(&model);
+        let mut solver = Xpbd::new(&system);
         let (h, steps) = (1.0 / 1200.0, 240.0);
         for _ in 0..12 {
             solver
-                .advance(&model, &mut state, h, 20, 0.0)
+                .advance(&system, &mut state, h, 20, 0.0)
                 .expect("sound");
         }
         let moved = -(state.positions[12] - start[12]).dot(&along);
@@ -287,28 +297,32 @@ fn friction_holds_below_its_angle_and_slides_as_coulomb_says_above() {
 }
 
 /// A sheet falling onto a floor, with pins, an elastic and samples within triangles.
-fn busy_scene(n: usize) -> (Model, State) {
-    let (mut model, mut state) = cloth(
+fn busy_scene(n: usize) -> (System, State) {
+    let (mut system, mut state) = cloth(
         &grid(n, n, 0.01, |u, v| {
             Vec3::new(u, 0.03 + 0.01 * (40.0 * u).sin(), v)
         }),
         Material::default(),
     );
-    model.pinned[0] = true;
+    system = system.with(|builder| {
+        builder.pinned[0] = true;
+    });
     let law = ElasticLaw {
         stiffness: 20.0,
         largest_force: f64::INFINITY,
     };
-    model.set_elastics(vec![Elastic {
-        from: n as u32,
-        to: ElasticEnd::Vertex((n * (n + 1)) as u32),
-        law,
-    }]);
-    model.colliders.push(slope(0.1));
-    for t in [5, 70, model.triangles.len() as u32 / 2] {
-        state.refine_contact(&model, t);
+    system = system.with(|builder| {
+        builder.elastics = vec![Elastic {
+            from: n as u32,
+            to: ElasticEnd::Vertex((n * (n + 1)) as u32),
+            law,
+        }];
+        builder.colliders.push(slope(0.1));
+    });
+    for t in [5, 70, system.topology.triangles.len() as u32 / 2] {
+        state.refine_contact(&system, t);
     }
-    (model, state)
+    (system, state)
 }
 
 #[test]
@@ -319,15 +333,15 @@ fn the_same_bytes_at_any_number_of_threads_and_from_a_saved_state() {
             .build()
             .expect("threads");
         pool.install(|| {
-            let (model, mut state) = busy_scene(110);
-            let mut solver = Xpbd::new(&model);
+            let (system, mut state) = busy_scene(110);
+            let mut solver = Xpbd::new(&system);
             for _ in 0..4 {
                 if cut {
                     state = state.clone();
-                    solver = Xpbd::new(&model);
+                    solver = Xpbd::new(&system);
                 }
                 solver
-                    .advance(&model, &mut state, 1.0 / 1200.0, 10, 0.1)
+                    .advance(&system, &mut state, 1.0 / 1200.0, 10, 0.1)
                     .expect("sound");
             }
             state
@@ -341,19 +355,19 @@ fn the_same_bytes_at_any_number_of_threads_and_from_a_saved_state() {
 
 #[test]
 fn what_is_no_number_is_an_error_and_the_state_stays() {
-    let (model, mut state) = busy_scene(20);
+    let (system, mut state) = busy_scene(20);
     state.velocities[17].y = f64::NAN;
-    let mut solver = Xpbd::new(&model);
-    let found = solver.advance(&model, &mut state, 1e-3, 5, 0.0);
+    let mut solver = Xpbd::new(&system);
+    let found = solver.advance(&system, &mut state, 1e-3, 5, 0.0);
     assert!(matches!(
         found,
         Err(DrapeError::NotFinite { vertex: 17, .. })
     ));
     // Numbers beyond single precision.
-    let (model, mut state) = busy_scene(20);
+    let (system, mut state) = busy_scene(20);
     state.velocities[40].x = 1e300;
     let before = state.clone();
-    let found = solver.advance(&model, &mut state, 1e-3, 5, 0.0);
+    let found = solver.advance(&system, &mut state, 1e-3, 5, 0.0);
     assert!(
         matches!(found, Err(DrapeError::NotFinite { .. })),
         "{found:?}"
@@ -381,18 +395,20 @@ fn slivers_stiff_cloth_huge_steps_and_collapse_stay_sound() {
         (stiff, &flat, 1.0 / 600.0, true),
     ];
     for (case, (material, turn, substep, crush)) in cases.into_iter().enumerate() {
-        let (mut model, mut state) = cloth(&grid(10, 10, 0.02, turn), material);
-        model.pinned[0] = true;
-        model.colliders.push(slope(0.0));
+        let (mut system, mut state) = cloth(&grid(10, 10, 0.02, turn), material);
+        system = system.with(|builder| {
+            builder.pinned[0] = true;
+            builder.colliders.push(slope(0.0));
+        });
         if crush {
             for p in &mut state.positions[1..] {
                 *p = crushed(0.0, 0.0);
             }
         }
-        let mut solver = Xpbd::new(&model);
+        let mut solver = Xpbd::new(&system);
         for _ in 0..50 {
             solver
-                .advance(&model, &mut state, substep, 10, 0.5)
+                .advance(&system, &mut state, substep, 10, 0.5)
                 .expect("sound");
         }
         let far = state.positions.iter().map(|p| p.norm()).fold(0.0, f64::max);
@@ -406,13 +422,15 @@ fn slivers_stiff_cloth_huge_steps_and_collapse_stay_sound() {
 #[test]
 fn a_step_far_too_large_is_cut_or_refused() {
     for step in [0.3, 1e3] {
-        let (mut model, mut state) = cloth(
+        let (mut system, mut state) = cloth(
             &grid(8, 8, 0.02, |u, v| Vec3::new(u, 0.0, v)),
             Material::default(),
         );
-        model.pinned[0] = true;
+        system = system.with(|builder| {
+            builder.pinned[0] = true;
+        });
         let before = state.clone();
-        match Xpbd::new(&model).advance(&model, &mut state, step, 3, 0.0) {
+        match Xpbd::new(&system).advance(&system, &mut state, step, 3, 0.0) {
             Ok(report) => assert!(step < 1.0 && report.fastest < 100.0, "{report:?}"),
             Err(error) => {
                 assert!(matches!(error, DrapeError::NotFinite { .. }));
@@ -428,10 +446,10 @@ fn it_is_a_method_by_name() {
         .iter()
         .find(|(name, _)| *name == "xpbd")
         .expect("listed");
-    let (model, mut state) = busy_scene(10);
+    let (system, mut state) = busy_scene(10);
     let mut method = toile_drape::MethodSettings::from(*kind).build();
     let report = method
-        .advance(&model, &mut state, 1.0 / 60.0)
+        .advance(&system, &mut state, 1.0 / 60.0)
         .expect("sound");
     assert_eq!((report.pieces, report.iterations), (1, 20));
 }

@@ -9,8 +9,8 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use toile_drape::{
-    GarmentLevel, GarmentRun, GarmentSetup, MethodKind, MethodSettings, Model, RestSettings,
-    SewSettings, Stage, State,
+    GarmentLevel, GarmentRun, GarmentSetup, MethodKind, MethodSettings, RestSettings, SewSettings,
+    Stage, State, System,
 };
 use toile_session::Watcher;
 
@@ -199,14 +199,14 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
             for _ in 0..cuts {
                 cloth = subdivided(&cloth);
             }
-            let (model, state) = card.model(&cloth, &card.cloths[1].pins)?;
-            result.vertices = model.vertex_count();
-            frames(&model, state, (kind.into(), FRAMES), &mut result);
+            let (system, state) = card.system(&cloth, &card.cloths[1].pins)?;
+            result.vertices = system.vertex_count();
+            frames(&system, state, (kind.into(), FRAMES), &mut result);
         }
         Work::Square(square, side, kind) => {
-            let (model, state) = square.build(side)?;
-            result.vertices = model.vertex_count();
-            frames(&model, state, (kind.into(), SQUARE_FRAMES), &mut result);
+            let (system, state) = square.build(side)?;
+            result.vertices = system.vertex_count();
+            frames(&system, state, (kind.into(), SQUARE_FRAMES), &mut result);
         }
         Work::Touching(side) => touching(side, &mut result)?,
         Work::Rest(cuts, residual) => rest(cuts, residual, &mut result)?,
@@ -226,15 +226,15 @@ const TOUCHING_SUBSTEPS: u32 = 10;
 
 /// The square falls on the ball without passing through itself; what passed all the same is counted.
 fn touching(side: u32, result: &mut Timed) -> Result<(), LabError> {
-    let (mut model, state) = Square::Sphere.build(side)?;
-    model.contact.cloth_offset = TOUCHING_OFFSET;
-    result.vertices = model.vertex_count();
+    let (system, state) = Square::Sphere.build(side)?;
+    let system = system.with(|builder| builder.contact.cloth_offset = TOUCHING_OFFSET);
+    result.vertices = system.vertex_count();
     let settings = MethodSettings {
         substeps: Some(TOUCHING_SUBSTEPS),
         ..MethodKind::Xpbd.into()
     };
-    let end = frames(&model, state, (settings, SQUARE_FRAMES), result);
-    let crossed = crossed(&model, &end.positions);
+    let end = frames(&system, state, (settings, SQUARE_FRAMES), result);
+    let crossed = crossed(&system, &end.positions);
     result
         .counted
         .insert("crossings".to_owned(), crossed as f64);
@@ -243,7 +243,7 @@ fn touching(side: u32, result: &mut Timed) -> Result<(), LabError> {
 
 /// Takes frames of 1/60 s and times them; where they end.
 fn frames(
-    model: &Model,
+    system: &System,
     mut state: State,
     (settings, count): (MethodSettings, usize),
     result: &mut Timed,
@@ -260,7 +260,7 @@ fn frames(
                 .insert("first_frame_s".to_owned(), clock.wall());
             clock = Clock::start();
         }
-        match method.advance(model, &mut state, step) {
+        match method.advance(system, &mut state, step) {
             Ok(report) => substeps = report.iterations,
             Err(error) => {
                 result.failure = Some(error.to_string());
@@ -296,7 +296,7 @@ fn frames(
 fn rest(cuts: usize, residual: f64, result: &mut Timed) -> Result<(), LabError> {
     let card = card("shirt")?;
     let mut cloth = card.cloth(0)?;
-    let (model, _) = card.model(&cloth, &[])?;
+    let (system, _) = card.system(&cloth, &[])?;
     let mut levels = Vec::new();
     for cut in 0..=cuts {
         if cut > 0 {
@@ -312,9 +312,9 @@ fn rest(cuts: usize, residual: f64, result: &mut Timed) -> Result<(), LabError> 
     let setup = GarmentSetup {
         levels,
         counted: Vec::new(),
-        colliders: model.colliders.iter().map(|c| c.surface.clone()).collect(),
-        contact: model.contact,
-        gravity: model.gravity,
+        colliders: system.colliders.iter().map(|c| c.surface.clone()).collect(),
+        contact: system.contact,
+        gravity: system.control.gravity,
         sew: SewSettings::default(),
         rest: RestSettings {
             residual,

@@ -6,7 +6,7 @@ use crate::scenes::{Card, Reference, SCENES, apart, card};
 use crate::{LabError, settle::TIGHT};
 use serde::Serialize;
 use std::ops::ControlFlow;
-use toile_drape::{MethodKind, MethodSettings, Model, State};
+use toile_drape::{MethodKind, MethodSettings, State, System};
 use toile_geometry::Vec3;
 use toile_session::Watcher;
 
@@ -118,7 +118,7 @@ pub struct Agreement {
 struct Setting<'a> {
     card: &'a Card,
     mesh: String,
-    model: Model,
+    system: System,
     start: State,
 }
 
@@ -127,7 +127,7 @@ impl Setting<'_> {
         Point {
             scene: self.card.name.clone(),
             mesh: self.mesh.clone(),
-            vertices: self.model.vertex_count(),
+            vertices: self.system.vertex_count(),
             method: kind.name(),
             step,
             iterations: kind.most_iterations(),
@@ -148,7 +148,7 @@ impl Setting<'_> {
         let clock = Clock::start();
         let mut done = 0;
         while done < steps {
-            if let Err(error) = method.advance(&self.model, &mut state, step) {
+            if let Err(error) = method.advance(&self.system, &mut state, step) {
                 point.failure = Some(error.to_string());
                 break;
             }
@@ -193,7 +193,7 @@ impl Setting<'_> {
         let mut method = settings.build();
         let clock = Clock::start();
         while !method.finished() {
-            if let Err(error) = method.advance(&self.model, &mut state, 1.0 / 60.0) {
+            if let Err(error) = method.advance(&self.system, &mut state, 1.0 / 60.0) {
                 point.failure = Some(error.to_string());
                 break;
             }
@@ -244,11 +244,11 @@ pub fn chart(
         let card = card(name)?;
         for (r, cloth_card) in card.cloths.iter().enumerate().take(plan.resolutions) {
             let cloth = card.cloth(r)?;
-            let (model, start) = card.model(&cloth, &cloth_card.pins)?;
+            let (system, start) = card.system(&cloth, &cloth_card.pins)?;
             let setting = Setting {
                 card: &card,
                 mesh: cloth_card.mesh.clone(),
-                model,
+                system,
                 start,
             };
             let share = |part: f64| (k as f64 + part) / chosen.len() as f64;
@@ -334,7 +334,7 @@ fn settle_all(
         .filter(|(_, kind)| kind.is_equilibrium());
     tell(0.8, &format!("{}, rest", setting.mesh))?;
     let mut rest = setting.start.clone();
-    let known = crate::settle::to_rest(&setting.model, &mut rest, 100.0 * TIGHT).is_ok();
+    let known = crate::settle::to_rest(&setting.system, &mut rest, 100.0 * TIGHT).is_ok();
     for &residual in plan.residuals {
         for (name, kind) in methods.clone() {
             tell(0.9, &format!("{}, {name}, to {residual:.0e}", setting.mesh))?;

@@ -12,7 +12,9 @@ use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use toile_drape::collision::{ClothSurface, LinearTrajectories, crossings};
-use toile_drape::{Collider, Feature, Material, MethodKind, MethodSettings, Model, State};
+use toile_drape::{
+    Collider, Feature, Material, MethodKind, MethodSettings, State, System, SystemBuilder,
+};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 use toile_picture::{Axis, Chart, Series};
 use toile_session::Watcher;
@@ -62,40 +64,41 @@ const OFFSETS: [f64; 3] = [0.0, 1e-3, 2e-3];
 
 /// A square sheet of so many metres and cells along a side that falls on its edge, and folds up over a
 /// floor.
-pub(crate) fn fall(side: f64, cells: usize) -> Result<(Model, State), LabError> {
+pub(crate) fn fall(side: f64, cells: usize) -> Result<(System, State), LabError> {
     let corner = Vec2::repeat(side);
     let flat = rectangle(MeshKind::Delaunay, Vec2::zeros(), corner, [cells; 2])?;
     // Not quite upright nor flat, so that it has a way to fold.
     let cloth = flat.cloth(Material::default(), |p| {
         Vec3::new(p.x, p.y + 0.02, 0.004 * (20.0 * p.y).sin())
     });
-    let mut model = Model::new("fall", &cloth)?;
+    let mut builder = SystemBuilder::new("fall", &cloth)?;
     let floor = TriangleMesh::cuboid(Vec3::new(-1.0, -0.5, -1.0), Vec3::new(1.0, 0.0, 1.0));
     let floor = SurfaceTree::new(floor);
-    model.colliders.push(Collider::new(Arc::new(floor)));
-    let state = State::at_rest(&model, cloth.positions);
-    Ok((model, state))
+    builder.colliders.push(Collider::new(Arc::new(floor)));
+    let system = builder.build();
+    let state = State::at_rest(&system, cloth.positions);
+    Ok((system, state))
 }
 
-fn scene(name: &str) -> Result<(Model, State), LabError> {
+fn scene(name: &str) -> Result<(System, State), LabError> {
     if name == "fall" {
         return fall(0.3, 20);
     }
     let card = card(name)?;
     let finest = card.cloths.len() - 1;
-    card.model(&card.cloth(finest)?, &card.cloths[finest].pins)
+    card.system(&card.cloth(finest)?, &card.cloths[finest].pins)
 }
 
 /// Edges of a model's cloth through faces of it, exactly.
-pub(crate) fn crossed(model: &Model, x: &[Vec3]) -> usize {
-    let mut surface = ClothSurface::new(model);
+pub(crate) fn crossed(system: &System, x: &[Vec3]) -> usize {
+    let mut surface = ClothSurface::new(system);
     let near = surface.near(LinearTrajectories::still(x), 0.0);
     crossings(&surface, &near, x).len()
 }
 
 fn run(
     (scene, duration): (&'static str, f64),
-    (model, start): (&Model, &State),
+    (system, start): (&System, &State),
     (kind, step): (MethodKind, f64),
     budget: f64,
 ) -> Touched {
@@ -105,7 +108,7 @@ fn run(
     let clock = Clock::start();
     let (mut done, mut pieces, mut failure) = (0, 1, None);
     while done < steps && failure.is_none() {
-        match method.advance(model, &mut state, step) {
+        match method.advance(system, &mut state, step) {
             Ok(report) => pieces = pieces.max(report.pieces),
             Err(error) => failure = Some(error.to_string()),
         }
@@ -118,13 +121,13 @@ fn run(
     let tally = method.cloth_tally().unwrap_or_default();
     Touched {
         scene,
-        vertices: model.vertex_count(),
+        vertices: system.vertex_count(),
         method: kind.name(),
         step,
-        offset: model.contact.cloth_offset,
+        offset: system.contact.cloth_offset,
         wall_ms: 1e3 * clock.wall() / simulated,
         cpu_ms: clock.cpu().map(|cpu| 1e3 * cpu / simulated),
-        crossings: failure.is_none().then(|| crossed(model, &state.positions)),
+        crossings: failure.is_none().then(|| crossed(system, &state.positions)),
         looks: tally.looks as f64 / simulated,
         impulses: tally.impulses,
         cut: tally.cut,
@@ -143,7 +146,7 @@ pub fn contact_chart(plan: ChartPlan, watcher: &mut dyn Watcher) -> Result<Vec<T
         methods.filter(|(_, kind)| kind.supports(Feature::ClothContact) && !kind.is_equilibrium());
     let mut found = Vec::new();
     for (number, (name, duration)) in SCENES.into_iter().enumerate() {
-        let (mut model, start) = scene(name)?;
+        let (mut system, start) = scene(name)?;
         for &step in plan.contact_steps {
             for (method, kind) in methods.clone() {
                 for offset in OFFSETS {
@@ -152,8 +155,8 @@ pub fn contact_chart(plan: ChartPlan, watcher: &mut dyn Watcher) -> Result<Vec<T
                     if let ControlFlow::Break(()) = watcher.progress("contact", share, &detail) {
                         return Err(LabError::Cancelled);
                     }
-                    model.contact.cloth_offset = offset;
-                    let ready = (&model, &start);
+                    system = system.with(|builder| builder.contact.cloth_offset = offset);
+                    let ready = (&system, &start);
                     found.push(run((name, duration), ready, (kind, step), plan.budget));
                 }
             }
@@ -256,15 +259,19 @@ mod tests {
 
     #[test]
     fn what_passes_without_contact_does_not_with_it() {
-        let (mut model, start) = fall(0.3, 20).unwrap();
-        let fell = |model: &Model| {
+        let (mut system, start) = fall(0.3, 20).unwrap();
+        let fell = |system: &System| {
             let how = (MethodKind::Xpbd, 1.0 / 60.0);
-            run(("fall", 0.4), (model, &start), how, f64::INFINITY)
+            run(("fall", 0.4), (system, &start), how, f64::INFINITY)
         };
-        model.contact.cloth_offset = 0.0;
-        let without = fell(&model);
-        model.contact.cloth_offset = 2e-3;
-        let with = fell(&model);
+        system = system.with(|builder| {
+            builder.contact.cloth_offset = 0.0;
+        });
+        let without = fell(&system);
+        system = system.with(|builder| {
+            builder.contact.cloth_offset = 2e-3;
+        });
+        let with = fell(&system);
         assert!(without.crossings > Some(10), "{without:?}");
         assert_eq!((with.crossings, with.pieces), (Some(0), 1), "{with:?}");
         let text = contact_table(&[without.clone(), with.clone(), with]);

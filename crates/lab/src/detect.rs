@@ -10,7 +10,7 @@ use crate::{LabError, MeshKind, rectangle, subdivided};
 use toile_drape::collision::{
     Clearance, ClothContacts, ClothSurface, LinearTrajectories, Near, Reach, crossings, nearnesses,
 };
-use toile_drape::{Cloth, MethodKind, MethodSettings, Model, State};
+use toile_drape::{Cloth, MethodKind, MethodSettings, State, System};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
 /// Distance that cloth keeps from cloth [m], and how far it is looked.
@@ -83,32 +83,32 @@ const SETTLING_DRAG: f64 = 10.0;
 const TURN: f64 = 2.0;
 
 /// Takes some frames of XPBD; what one takes [s], and the looks for contacts in it.
-fn frames(model: &Model, state: &mut State, count: usize) -> Result<[f64; 2], LabError> {
+fn frames(system: &System, state: &mut State, count: usize) -> Result<[f64; 2], LabError> {
     let mut method = MethodSettings::from(MethodKind::Xpbd).build();
     let clock = Clock::start();
     for _ in 0..count {
-        method.advance(model, state, STEP)?;
+        method.advance(system, state, STEP)?;
     }
     let looks = method.cloth_tally().unwrap_or_default().looks;
     Ok([clock.wall(), looks as f64].map(|sum| sum / count as f64))
 }
 
 /// The worn shirt, its mesh divided so many times.
-fn worn(cuts: usize) -> Result<(Model, State), LabError> {
+fn worn(cuts: usize) -> Result<(System, State), LabError> {
     let card = card("shirt")?;
     let mut cloth: Cloth = card.cloth(0)?;
-    let settled = |cloth: &Cloth, count: usize| -> Result<(Model, State), LabError> {
-        let (mut model, mut state) = card.model(cloth, &[])?;
-        model.contact.cloth_offset = OFFSET;
-        model.air_drag = SETTLING_DRAG;
-        frames(&model, &mut state, count)?;
-        model.air_drag = 0.0;
-        Ok((model, state))
+    let settled = |cloth: &Cloth, count: usize| -> Result<(System, State), LabError> {
+        let (mut system, mut state) = card.system(cloth, &[])?;
+        system = system.with(|builder| builder.contact.cloth_offset = OFFSET);
+        system.control.air_drag = SETTLING_DRAG;
+        frames(&system, &mut state, count)?;
+        system.control.air_drag = 0.0;
+        Ok((system, state))
     };
     let [coarse, fine] = SETTLED;
-    let (model, state) = settled(&cloth, coarse)?;
+    let (system, state) = settled(&cloth, coarse)?;
     if cuts == 0 {
-        return Ok((model, state));
+        return Ok((system, state));
     }
     cloth.positions = state.positions;
     for _ in 0..cuts {
@@ -120,9 +120,9 @@ fn worn(cuts: usize) -> Result<(Model, State), LabError> {
 /// Finds the contacts of the worn shirt with itself, its mesh divided so many times, and makes frames of
 /// XPBD with them and without while the shirt turns about its wearer.
 pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
-    let (mut model, state) = worn(cuts)?;
-    result.vertices = model.vertex_count();
-    let mut surface = ClothSurface::new(&model);
+    let (system, state) = worn(cuts)?;
+    result.vertices = system.vertex_count();
+    let mut surface = ClothSurface::new(&system);
     let (x, clearance) = (&state.positions, ClothContacts::clearance(OFFSET));
     let counted = &mut result.counted;
     let mut look = |name: &str, near: &mut dyn FnMut(&mut ClothSurface) -> Vec<[u32; 2]>| {
@@ -156,10 +156,9 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
         }
         let clock = Clock::start();
         let (mut with, mut without) = (start.clone(), start.clone());
-        model.contact.cloth_offset = 0.0;
-        let [plain, _] = frames(&model, &mut without, FRAMES)?;
-        model.contact.cloth_offset = OFFSET;
-        let [frame, looks] = frames(&model, &mut with, FRAMES)?;
+        let free = system.with(|builder| builder.contact.cloth_offset = 0.0);
+        let [plain, _] = frames(&free, &mut without, FRAMES)?;
+        let [frame, looks] = frames(&system, &mut with, FRAMES)?;
         // The same motion again, for what looking alone takes.
         let mut path = vec![start.positions.clone()];
         let mut method = MethodSettings {
@@ -168,7 +167,7 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
         }
         .build();
         for _ in 0..LOOKS {
-            method.advance(&model, &mut start, STEP / looks)?;
+            method.advance(&system, &mut start, STEP / looks)?;
             path.push(start.positions.clone());
         }
         let each = follow(&mut surface, &path);
@@ -220,18 +219,18 @@ fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>]) -> [f64; 3] {
 /// What contact adds to a frame of a fallen sheet of so many cells along its metre, beside one step of
 /// deformation by implicit Euler.
 pub(crate) fn cost(cells: usize, result: &mut Timed) -> Result<(), LabError> {
-    let (mut model, mut state) = fall(1.0, cells)?;
-    result.vertices = model.vertex_count();
+    let (system, mut state) = fall(1.0, cells)?;
+    let free = system.with(|builder| builder.contact.cloth_offset = 0.0);
+    let system = system.with(|builder| builder.contact.cloth_offset = OFFSET);
+    result.vertices = system.vertex_count();
     let clock = Clock::start();
-    model.contact.cloth_offset = OFFSET;
     // Until much of it lies in folds.
-    frames(&model, &mut state, 30)?;
-    let with = 1e3 * frames(&model, &mut state.clone(), FRAMES)?[0];
-    model.contact.cloth_offset = 0.0;
-    let without = 1e3 * frames(&model, &mut state.clone(), FRAMES)?[0];
+    frames(&system, &mut state, 30)?;
+    let with = 1e3 * frames(&system, &mut state.clone(), FRAMES)?[0];
+    let without = 1e3 * frames(&free, &mut state.clone(), FRAMES)?[0];
     let mut method = MethodSettings::from(MethodKind::ImplicitEuler).build();
     let step = Clock::start();
-    method.advance(&model, &mut state, STEP)?;
+    method.advance(&free, &mut state, STEP)?;
     let implicit = 1e3 * step.wall();
     result.wall_s = clock.wall();
     for (name, value) in [
@@ -253,15 +252,15 @@ mod tests {
     fn a_worn_shirt_comes_to_rest_under_xpbd_with_few_substeps() {
         let card = card("shirt").expect("the card");
         let cloth = card.cloth(0).expect("its cloth");
-        let (mut model, mut state) = card.model(&cloth, &[]).expect("a model");
-        model.air_drag = SETTLING_DRAG;
+        let (mut system, mut state) = card.system(&cloth, &[]).expect("a model");
+        system.control.air_drag = SETTLING_DRAG;
         let mut method = MethodSettings {
             substeps: Some(4),
             ..MethodKind::Xpbd.into()
         }
         .build();
         for _ in 0..120 {
-            method.advance(&model, &mut state, STEP).expect("a step");
+            method.advance(&system, &mut state, STEP).expect("a step");
         }
         let speeds = state.velocities.iter().map(Vec3::norm);
         let fastest = speeds.fold(0.0, f64::max);

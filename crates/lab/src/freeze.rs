@@ -367,7 +367,7 @@ pub fn reference(
         let card = card(name)?;
         for (r, cloth_card) in card.cloths.iter().enumerate() {
             let cloth = card.cloth(r)?;
-            let (model, start) = card.model(&cloth, &cloth_card.pins)?;
+            let (system, start) = card.system(&cloth, &cloth_card.pins)?;
             let mut ends = Vec::new();
             for (kind, step) in METHODS.into_iter().zip(STEPS) {
                 let share = k as f64 / chosen.len() as f64;
@@ -380,7 +380,7 @@ pub fn reference(
                     tolerance: Some(1e-9),
                     ..kind.into()
                 };
-                in_time(&model, &mut state, settings, [step, card.duration], |_| {})?;
+                in_time(&system, &mut state, settings, [step, card.duration], |_| {})?;
                 ends.push(state.positions);
             }
             let found = Reference {

@@ -7,7 +7,8 @@ use serde::Serialize;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use toile_drape::{
-    Cloth, Collider, Material, MethodKind, MethodSettings, Model, State, Workspace, whole_energy,
+    Cloth, Collider, Material, MethodKind, MethodSettings, State, System, SystemBuilder, Workspace,
+    whole_energy,
 };
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 use toile_session::Watcher;
@@ -41,7 +42,7 @@ pub struct HardRun {
 
 /// A case ready to run.
 struct Case {
-    model: Model,
+    system: System,
     state: State,
     step: f64,
     /// A surface that takes the place of the model's after a third of the steps.
@@ -79,14 +80,15 @@ fn cloth(
 }
 
 fn case(cloth: &Cloth, pins: &[u32]) -> Result<Case, LabError> {
-    let mut model = Model::new("cloth", cloth)?;
+    let mut builder = SystemBuilder::new("cloth", cloth)?;
     for &pin in pins {
-        model.pinned[pin as usize] = true;
+        builder.pinned[pin as usize] = true;
     }
-    let mut state = State::at_rest(&model, cloth.positions.clone());
-    shake(&model, &mut state, 1e-3);
+    let system = builder.build();
+    let mut state = State::at_rest(&system, cloth.positions.clone());
+    shake(&system, &mut state, 1e-3);
     Ok(Case {
-        model,
+        system,
         state,
         step: 1.0 / 60.0,
         jump: None,
@@ -176,7 +178,8 @@ fn lying() -> Result<Case, LabError> {
     let above = |p: Vec2| Vec3::new(p.x - 0.1, 0.055, p.y - 0.05);
     let (cloth, _) = cloth(MeshKind::Delaunay, Material::default(), above)?;
     let mut case = case(&cloth, &[])?;
-    case.model.colliders.push(ball_at(Vec3::zeros(), 0.05));
+    case.system =
+        (case.system).with(|builder| builder.colliders.push(ball_at(Vec3::zeros(), 0.05)));
     Ok(case)
 }
 
@@ -205,9 +208,11 @@ fn infinite() -> Result<Case, LabError> {
 /// stiffer than usual, met at speed.
 fn force_field() -> Result<Case, LabError> {
     let mut case = lying()?;
-    case.model.colliders = vec![ball_at(Vec3::zeros(), 0.008)];
-    case.model.contact.offset = 0.02;
-    case.model.contact.stiffness = 1e8;
+    case.system = case.system.with(|builder| {
+        builder.colliders = vec![ball_at(Vec3::zeros(), 0.008)];
+        builder.contact.offset = 0.02;
+        builder.contact.stiffness = 1e8;
+    });
     for v in &mut case.state.velocities {
         v.y = -5.0;
     }
@@ -235,37 +240,37 @@ impl Allowance {
             jumped: 0.0,
             workspace: Workspace::default(),
         };
-        allowance.energy = allowance.energy_of(&case.model, &case.state);
+        allowance.energy = allowance.energy_of(&case.system, &case.state);
         allowance
     }
 
     /// Energy of motion, strain and contact [J], without that of the weight, which has no zero.
-    fn energy_of(&mut self, model: &Model, state: &State) -> f64 {
-        let places = state.positions.iter().zip(&model.mass);
-        let weight: f64 = places.map(|(x, m)| m * model.gravity.dot(x)).sum();
-        whole_energy(model, state, &mut self.workspace) + weight
+    fn energy_of(&mut self, system: &System, state: &State) -> f64 {
+        let places = state.positions.iter().zip(&system.rest.mass);
+        let weight: f64 = places.map(|(x, m)| m * system.control.gravity.dot(x)).sum();
+        whole_energy(system, state, &mut self.workspace) + weight
     }
 
     /// Puts a surface in the place of the model's, with what that stores in the contact.
-    fn jump(&mut self, model: &mut Model, state: &State, jumped: Collider) {
-        let before = self.energy_of(model, state);
-        model.colliders = vec![jumped];
-        let more = (self.energy_of(model, state) - before).max(0.0);
+    fn jump(&mut self, system: &mut System, state: &State, jumped: Collider) {
+        let before = self.energy_of(system, state);
+        *system = system.with(|builder| builder.colliders = vec![jumped]);
+        let more = (self.energy_of(system, state) - before).max(0.0);
         self.energy += more;
         self.jumped += more;
     }
 
     /// Adds what the weight can give in a step [s]: the root of the energy grows by |g| sqrt(M/2) a
     /// second at most, as dE/dt = sum m g.v <= |g| sqrt(2 M E).
-    fn fall(&mut self, model: &Model, step: f64) {
-        let push = model.gravity.norm() * (0.5 * free_mass(model)).sqrt();
+    fn fall(&mut self, system: &System, step: f64) {
+        let push = system.control.gravity.norm() * (0.5 * free_mass(system)).sqrt();
         self.energy = (self.energy.max(0.0).sqrt() + push * step).powi(2);
     }
 
     /// Words for motion with more energy than it can have. Strain is left out: what a solver leaves
     /// unsolved in stiff cloth counts as much energy there and moves nothing.
-    fn exceeded_by(&self, model: &Model, state: &State) -> Option<String> {
-        let motion = state.kinetic_energy(model);
+    fn exceeded_by(&self, system: &System, state: &State) -> Option<String> {
+        let motion = state.kinetic_energy(system);
         let words = || {
             let possible = self.energy;
             format!("moves with {motion:.1e} J where {possible:.1e} J are possible")
@@ -275,8 +280,8 @@ impl Allowance {
 }
 
 /// Mass of the vertices that are not pinned [kg].
-fn free_mass(model: &Model) -> f64 {
-    let free = model.mass.iter().zip(&model.pinned);
+fn free_mass(system: &System) -> f64 {
+    let free = system.rest.mass.iter().zip(&system.prescribed.pinned);
     free.filter(|&(_, &pinned)| !pinned).map(|(m, _)| m).sum()
 }
 
@@ -292,9 +297,9 @@ fn run(mut case: Case, kind: MethodKind, budget: f64) -> (Outcome, String) {
             && let Some(jumped) = case.jump.take()
             && let Some(allowance) = &mut allowance
         {
-            allowance.jump(&mut case.model, &state, jumped);
+            allowance.jump(&mut case.system, &state, jumped);
         }
-        if let Err(error) = method.advance(&case.model, &mut state, case.step) {
+        if let Err(error) = method.advance(&case.system, &mut state, case.step) {
             return (Outcome::Stopped, error.to_string());
         }
         if let Some(vertex) = state.first_not_finite() {
@@ -304,8 +309,8 @@ fn run(mut case: Case, kind: MethodKind, budget: f64) -> (Outcome, String) {
             );
         }
         if let Some(allowance) = &mut allowance {
-            allowance.fall(&case.model, case.step);
-            if let Some(words) = allowance.exceeded_by(&case.model, &state) {
+            allowance.fall(&case.system, case.step);
+            if let Some(words) = allowance.exceeded_by(&case.system, &state) {
                 return (Outcome::Unsound, format!("{words} after step {n}"));
             }
         }
@@ -331,7 +336,7 @@ fn reach(case: &Case, jumped: f64) -> f64 {
         .iter()
         .map(|v| v.norm())
         .fold(0.0, f64::max);
-    let thrown = (2.0 * jumped / free_mass(&case.model)).sqrt();
+    let thrown = (2.0 * jumped / free_mass(&case.system)).sqrt();
     2.0 + 0.5 * 9.81 * time * time + (fastest + thrown) * time
 }
 
@@ -416,15 +421,15 @@ mod tests {
         let case = lying().unwrap();
         let mut allowance = Allowance::new(&case);
         let mut state = case.state.clone();
-        assert_eq!(allowance.exceeded_by(&case.model, &state), None);
+        assert_eq!(allowance.exceeded_by(&case.system, &state), None);
         for v in &mut state.velocities {
             v.y = 2.0;
         }
-        let words = allowance.exceeded_by(&case.model, &state);
+        let words = allowance.exceeded_by(&case.system, &state);
         assert!(words.is_some_and(|words| words.contains(" J are possible")));
         for _ in 0..60 {
-            allowance.fall(&case.model, 1.0 / 60.0);
+            allowance.fall(&case.system, 1.0 / 60.0);
         }
-        assert_eq!(allowance.exceeded_by(&case.model, &state), None);
+        assert_eq!(allowance.exceeded_by(&case.system, &state), None);
     }
 }

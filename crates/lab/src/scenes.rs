@@ -4,7 +4,7 @@
 use crate::LabError;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use toile_drape::{Cloth, Collider, Material, Model, State};
+use toile_drape::{Cloth, Collider, Material, State, System, SystemBuilder};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{ObjMesh, read_obj};
 
@@ -177,11 +177,11 @@ impl Card {
     ///
     /// # Errors
     /// A file of the laboratory is damaged.
-    pub fn model(&self, cloth: &Cloth, pins: &[u32]) -> Result<(Model, State), LabError> {
-        let mut model = Model::new(&self.name, cloth)?;
-        model.air_drag = self.air_drag;
+    pub fn system(&self, cloth: &Cloth, pins: &[u32]) -> Result<(System, State), LabError> {
+        let mut builder = SystemBuilder::new(&self.name, cloth)?;
+        builder.control.air_drag = self.air_drag;
         for &pin in pins {
-            model.pinned[pin as usize] = true;
+            builder.pinned[pin as usize] = true;
         }
         if let Some(name) = &self.collider {
             let solid = obj(name)?;
@@ -189,10 +189,11 @@ impl Card {
                 positions: solid.positions,
                 triangles: solid.triangles,
             });
-            model.colliders.push(Collider::new(Arc::new(surface)));
+            builder.colliders.push(Collider::new(Arc::new(surface)));
         }
-        let state = State::at_rest(&model, cloth.positions.clone());
-        Ok((model, state))
+        let system = builder.build();
+        let state = State::at_rest(&system, cloth.positions.clone());
+        Ok((system, state))
     }
 
     /// Where the motion ends at a resolution; nothing when no two methods agreed on it.
@@ -263,9 +264,9 @@ mod tests {
             let card = card(name).unwrap();
             for (k, cloth_card) in card.cloths.iter().enumerate() {
                 let cloth = card.cloth(k).unwrap();
-                let (model, state) = card.model(&cloth, &cloth_card.pins).unwrap();
+                let (system, state) = card.system(&cloth, &cloth_card.pins).unwrap();
                 assert!(state.first_not_finite().is_none());
-                assert!(model.triangles.len() > 30, "{name}");
+                assert!(system.topology.triangles.len() > 30, "{name}");
                 let reference = card.reference(k).unwrap();
                 if let Some(reference) = reference {
                     assert_eq!(reference.positions.len(), state.positions.len());

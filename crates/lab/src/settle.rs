@@ -2,8 +2,8 @@
 
 use crate::LabError;
 use toile_drape::{
-    DrapeError, MethodKind, MethodSettings, Model, PseudoTransientContinuation, RestSettings,
-    State, Workspace,
+    DrapeError, MethodKind, MethodSettings, PseudoTransientContinuation, RestSettings, State,
+    System, Workspace,
 };
 use toile_geometry::Vec3;
 
@@ -18,7 +18,7 @@ const MOST_STEPS: usize = 3000;
 ///
 /// # Errors
 /// The drape stopped, or did not get there.
-pub fn to_rest(model: &Model, state: &mut State, residual: f64) -> Result<usize, LabError> {
+pub fn to_rest(system: &System, state: &mut State, residual: f64) -> Result<usize, LabError> {
     let mut workspace = Workspace::default();
     let mut run = PseudoTransientContinuation::new(RestSettings {
         residual,
@@ -26,7 +26,7 @@ pub fn to_rest(model: &Model, state: &mut State, residual: f64) -> Result<usize,
         ..RestSettings::default()
     });
     while !run.finished() {
-        match run.advance(model, state, &mut workspace) {
+        match run.advance(system, state, &mut workspace) {
             Ok(()) => {}
             // Rounding may forbid the last digit; a hundred times more is still below any mesh.
             Err(DrapeError::NoProgress { .. }) if run.residual() < 1e2 * residual => break,
@@ -68,7 +68,7 @@ pub(crate) fn converged(kind: MethodKind, tolerance: f64, most: usize) -> Method
 /// # Errors
 /// The method stopped, or left the finite numbers without saying so.
 pub fn in_time(
-    model: &Model,
+    system: &System,
     state: &mut State,
     settings: MethodSettings,
     [step, duration]: [f64; 2],
@@ -77,7 +77,7 @@ pub fn in_time(
     let mut method = settings.build();
     let steps = (duration / step).round() as usize;
     for _ in 0..steps {
-        method.advance(model, state, step)?;
+        method.advance(system, state, step)?;
         if let Some(vertex) = state.first_not_finite() {
             return Err(LabError::Drape(DrapeError::NotFinite {
                 stage: "step in time",
@@ -106,7 +106,7 @@ const HALVINGS: usize = 20;
 /// # Errors
 /// No step is sound.
 pub(crate) fn sound_step(
-    model: &Model,
+    system: &System,
     resting: &State,
     settings: MethodSettings,
     wanted: f64,
@@ -115,24 +115,24 @@ pub(crate) fn sound_step(
     for (v, velocity) in start.velocities.iter_mut().enumerate() {
         let k = v as f64;
         let noise = Vec3::new((7.1 * k).sin(), (3.3 * k).cos(), (5.7 * k + 1.0).sin());
-        *velocity = if model.pinned[v] {
+        *velocity = if system.prescribed.pinned[v] {
             Vec3::zeros()
         } else {
             noise * DISTURBANCE
         };
     }
-    let energy = start.kinetic_energy(model);
+    let energy = start.kinetic_energy(system);
     let mut step = wanted;
     for _ in 0..HALVINGS {
         let mut state = start.clone();
         let mut highest = 0.0f64;
         let outcome = in_time(
-            model,
+            system,
             &mut state,
             settings,
             [step, TRIAL as f64 * step],
             |s| {
-                highest = highest.max(s.kinetic_energy(model));
+                highest = highest.max(s.kinetic_energy(system));
             },
         );
         if outcome.is_ok() && highest < 100.0 * energy {

@@ -4,7 +4,7 @@
 use crate::LabError;
 use crate::freeze::ball;
 use std::sync::Arc;
-use toile_drape::{Cloth, Collider, Material, Model, State};
+use toile_drape::{Cloth, Collider, Material, State, System, SystemBuilder};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 /// What a square does.
@@ -32,7 +32,7 @@ impl Square {
     ///
     /// # Errors
     /// None for the sides of [`SIDES`].
-    pub(crate) fn build(self, side: u32) -> Result<(Model, State), LabError> {
+    pub(crate) fn build(self, side: u32) -> Result<(System, State), LabError> {
         let height = match self {
             Self::Hang => 0.0,
             Self::Sphere => START,
@@ -48,20 +48,21 @@ impl Square {
             ..Material::default()
         };
         let cloth = Cloth::from_mesh("square", &mesh, material)?;
-        let mut model = Model::new("square", &cloth)?;
+        let mut builder = SystemBuilder::new("square", &cloth)?;
         match self {
             Self::Hang => {
                 for corner in [side * (side - 1), side * side - 1] {
-                    model.pinned[corner as usize] = true;
+                    builder.pinned[corner as usize] = true;
                 }
             }
             Self::Sphere => {
                 let solid = SurfaceTree::new(ball(BALL, 4));
-                model.colliders.push(Collider::new(Arc::new(solid)));
+                builder.colliders.push(Collider::new(Arc::new(solid)));
             }
         }
-        let state = State::at_rest(&model, mesh.positions);
-        Ok((model, state))
+        let system = builder.build();
+        let state = State::at_rest(&system, mesh.positions);
+        Ok((system, state))
     }
 }
 
@@ -96,14 +97,19 @@ mod tests {
     #[test]
     fn squares_have_their_size_and_mass() {
         for (name, square) in Square::ALL {
-            let (model, state) = square.build(33).unwrap();
-            assert_eq!(model.vertex_count(), 1089, "{name}");
-            assert!((model.mass.iter().sum::<f64>() - 0.2).abs() < 1e-12);
-            let mesh = model.mesh(&state.positions);
+            let (system, state) = square.build(33).unwrap();
+            assert_eq!(system.vertex_count(), 1089, "{name}");
+            assert!((system.rest.mass.iter().sum::<f64>() - 0.2).abs() < 1e-12);
+            let mesh = system.mesh(&state.positions);
             let corners = mesh.corners(0);
             let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
             assert!(normal.y > 0.0);
-            let held = model.pinned.iter().filter(|&&pinned| pinned).count();
+            let held = system
+                .prescribed
+                .pinned
+                .iter()
+                .filter(|&&pinned| pinned)
+                .count();
             assert_eq!(held, if square == Square::Hang { 2 } else { 0 });
         }
     }

@@ -5,7 +5,8 @@ use crate::{LabError, MeshKind, rectangle};
 use serde::Serialize;
 use std::ops::ControlFlow;
 use toile_drape::{
-    Material, MethodKind, MethodSettings, Model, State, largest_frequency, stretch_per_triangle,
+    Material, MethodKind, MethodSettings, State, System, SystemBuilder, largest_frequency,
+    stretch_per_triangle,
 };
 use toile_geometry::{Vec2, Vec3};
 use toile_session::Watcher;
@@ -72,7 +73,7 @@ const TRIAL: usize = 100;
 const SIZE: f64 = 0.1;
 
 /// A square of cloth hung by an edge, at rest.
-pub(crate) fn hung(stiffness: f64, gravity: bool) -> Result<(Model, State), LabError> {
+pub(crate) fn hung(stiffness: f64, gravity: bool) -> Result<(System, State), LabError> {
     let flat = rectangle(
         MeshKind::Delaunay,
         Vec2::zeros(),
@@ -88,25 +89,26 @@ pub(crate) fn hung(stiffness: f64, gravity: bool) -> Result<(Model, State), LabE
         ..Material::default()
     };
     let cloth = flat.cloth(material, |p| Vec3::new(p.y, -p.x, 0.0));
-    let mut model = Model::new("square", &cloth)?;
+    let mut builder = SystemBuilder::new("square", &cloth)?;
     for v in flat.chosen(|p| p.x < 1e-9) {
-        model.pinned[v as usize] = true;
+        builder.pinned[v as usize] = true;
     }
-    let mut state = State::at_rest(&model, cloth.positions);
+    let mut system = builder.build();
+    let mut state = State::at_rest(&system, cloth.positions);
     if gravity {
-        to_rest(&model, &mut state, 1e-5)?;
+        to_rest(&system, &mut state, 1e-5)?;
     } else {
-        model.gravity = Vec3::zeros();
+        system.control.gravity = Vec3::zeros();
     }
-    Ok((model, state))
+    Ok((system, state))
 }
 
 /// Gives every free vertex a small velocity that looks random [m/s].
-pub(crate) fn shake(model: &Model, state: &mut State, speed: f64) {
+pub(crate) fn shake(system: &System, state: &mut State, speed: f64) {
     for (v, velocity) in state.velocities.iter_mut().enumerate() {
         let k = v as f64;
         let noise = Vec3::new((7.1 * k).sin(), (3.3 * k).cos(), (5.7 * k + 1.0).sin());
-        *velocity = if model.pinned[v] {
+        *velocity = if system.prescribed.pinned[v] {
             Vec3::zeros()
         } else {
             noise * speed
@@ -120,30 +122,30 @@ const SWING: f64 = 1.0;
 /// Lets the cloth swing about its edge and looks at what energy allows: with the kinetic energy
 /// and the fall of its whole weight spent on stretch, E^2 Y / 2 per area, strain stays below a
 /// bound. A method that stretches the cloth beyond three times it is wrong.
-fn judge(model: &Model, rest: &State, settings: MethodSettings, step: f64) -> (Verdict, String) {
+fn judge(system: &System, rest: &State, settings: MethodSettings, step: f64) -> (Verdict, String) {
     let mut state = rest.clone();
-    shake(model, &mut state, 1e-3);
+    shake(system, &mut state, 1e-3);
     for (v, x) in state.velocities.iter_mut().zip(&rest.positions) {
         v.z += SWING * (-x.y / SIZE).max(0.0);
     }
-    let mass: f64 = model.mass.iter().sum();
-    let energy = state.kinetic_energy(model) + mass * 9.81 * 2.0 * SIZE;
-    let stiffness = model.materials[0].stretch[0];
+    let mass: f64 = system.rest.mass.iter().sum();
+    let energy = state.kinetic_energy(system) + mass * 9.81 * 2.0 * SIZE;
+    let stiffness = system.materials.list[0].stretch[0];
     let bound = 3.0 * (2.0 * energy / (stiffness * SIZE * SIZE)).sqrt() + 1e-6;
     let mut method = settings.build();
     let mut worst = 0.0f64;
     for _ in 0..TRIAL {
-        if let Err(error) = method.advance(model, &mut state, step) {
+        if let Err(error) = method.advance(system, &mut state, step) {
             return (Verdict::Unstable, error.to_string());
         }
-        let kinetic = state.kinetic_energy(model);
+        let kinetic = state.kinetic_energy(system);
         if kinetic.is_nan() || kinetic > 100.0 * energy {
             return (
                 Verdict::Unstable,
                 "more energy than there can be".to_owned(),
             );
         }
-        let strains = stretch_per_triangle(model, &state.positions);
+        let strains = stretch_per_triangle(system, &state.positions);
         let squares: f64 = strains.iter().map(|e| e * e).sum();
         worst = worst.max((squares / strains.len() as f64).sqrt());
         if method.finished() {
@@ -168,7 +170,7 @@ fn judge(model: &Model, rest: &State, settings: MethodSettings, step: f64) -> (V
 pub fn stability_map(watcher: &mut dyn Watcher) -> Result<Vec<Cell>, LabError> {
     let mut cells = Vec::new();
     for (s, stiffness) in STIFFNESSES.into_iter().enumerate() {
-        let (model, rest) = hung(stiffness, true)?;
+        let (system, rest) = hung(stiffness, true)?;
         for (name, kind) in MethodKind::ALL {
             let share = s as f64 / STIFFNESSES.len() as f64;
             let detail = format!("{name}, {stiffness:.0e} N/m");
@@ -180,7 +182,7 @@ pub fn stability_map(watcher: &mut dyn Watcher) -> Result<Vec<Cell>, LabError> {
                     substeps: Some(1),
                     ..kind.into()
                 };
-                let (verdict, detail) = judge(&model, &rest, settings, step);
+                let (verdict, detail) = judge(&system, &rest, settings, step);
                 cells.push(Cell {
                     method: name,
                     stiffness,
@@ -197,21 +199,21 @@ pub fn stability_map(watcher: &mut dyn Watcher) -> Result<Vec<Cell>, LabError> {
 /// Steps in which a disturbance must show whether it grows.
 const LONG_TRIAL: usize = 500;
 
-fn grows(model: &Model, rest: &State, kind: MethodKind, step: f64) -> bool {
+fn grows(system: &System, rest: &State, kind: MethodKind, step: f64) -> bool {
     let mut state = rest.clone();
     // So small that the cloth stays in its linear range.
-    shake(model, &mut state, 1e-6);
-    let energy = state.kinetic_energy(model);
+    shake(system, &mut state, 1e-6);
+    let energy = state.kinetic_energy(system);
     let settings = MethodSettings {
         substeps: Some(1),
         ..kind.into()
     };
     let mut method = settings.build();
     for _ in 0..LONG_TRIAL {
-        if method.advance(model, &mut state, step).is_err() {
+        if method.advance(system, &mut state, step).is_err() {
             return true;
         }
-        let kinetic = state.kinetic_energy(model);
+        let kinetic = state.kinetic_energy(system);
         if kinetic.is_nan() || kinetic > 1e3 * energy {
             return true;
         }
@@ -228,8 +230,8 @@ pub fn limits(watcher: &mut dyn Watcher) -> Result<Vec<Limit>, LabError> {
     let mut found = Vec::new();
     for stiffness in [1e2, 1e4, 1e6] {
         // Flat and without gravity: the frequencies are those of the rest shape.
-        let (model, rest) = hung(stiffness, false)?;
-        let frequency = largest_frequency(&model, &rest);
+        let (system, rest) = hung(stiffness, false)?;
+        let frequency = largest_frequency(&system, &rest);
         for (name, kind) in MethodKind::ALL {
             let Some(limit) = kind.stability_limit().filter(|l| *l > 0.0) else {
                 continue;
@@ -241,7 +243,7 @@ pub fn limits(watcher: &mut dyn Watcher) -> Result<Vec<Limit>, LabError> {
             let (mut low, mut high) = (0.5 * theory, 2.0 * theory);
             for _ in 0..9 {
                 let middle = (low * high).sqrt();
-                if grows(&model, &rest, kind, middle) {
+                if grows(&system, &rest, kind, middle) {
                     high = middle;
                 } else {
                     low = middle;
@@ -264,13 +266,13 @@ mod tests {
 
     #[test]
     fn implicit_euler_is_stable_where_verlet_is_not() {
-        let (model, rest) = hung(1e4, true).unwrap();
+        let (system, rest) = hung(1e4, true).unwrap();
         let at = |kind: MethodKind| {
             let settings = MethodSettings {
                 substeps: Some(1),
                 ..kind.into()
             };
-            judge(&model, &rest, settings, 1e-2).0
+            judge(&system, &rest, settings, 1e-2).0
         };
         assert_eq!(at(MethodKind::ImplicitEuler), Verdict::Stable);
         assert_eq!(at(MethodKind::VelocityVerlet), Verdict::Unstable);
@@ -290,10 +292,10 @@ mod tests {
 
     #[test]
     fn verlet_blows_up_at_its_own_limit() {
-        let (model, rest) = hung(1e3, false).unwrap();
-        let theory = 2.0 / largest_frequency(&model, &rest);
+        let (system, rest) = hung(1e3, false).unwrap();
+        let theory = 2.0 / largest_frequency(&system, &rest);
         let kind = MethodKind::VelocityVerlet;
-        assert!(!grows(&model, &rest, kind, 0.95 * theory));
-        assert!(grows(&model, &rest, kind, 1.05 * theory));
+        assert!(!grows(&system, &rest, kind, 0.95 * theory));
+        assert!(grows(&system, &rest, kind, 1.05 * theory));
     }
 }

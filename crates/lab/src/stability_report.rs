@@ -34,8 +34,8 @@ fn map(method: &'static str, limit: Option<f64>, cells: &[Cell]) -> Result<Drawi
         let mut points = Vec::new();
         for decade in 2..=14 {
             let stiffness = 10f64.powf(0.5 * f64::from(decade));
-            let (model, rest) = crate::stability::hung(stiffness, false)?;
-            points.push([stiffness, limit / largest_frequency(&model, &rest)]);
+            let (system, rest) = crate::stability::hung(stiffness, false)?;
+            points.push([stiffness, limit / largest_frequency(&system, &rest)]);
         }
         series.push(Series {
             name: format!("{limit:.3} / w"),

@@ -38,7 +38,7 @@ impl Drape {
         let held = handled.is_held();
         let (job, mut run, inputs) = handled.into_parts();
         let measures = run.measure();
-        let mesh = run.model.mesh(&run.state.positions);
+        let mesh = run.system.mesh(&run.state.positions);
         let origin = (0..job.garment.triangles.len() as u32)
             .filter(|&t| {
                 let [a, b, c] = job.garment.triangles[t as usize].map(|v| run.target[v as usize]);
@@ -52,7 +52,7 @@ impl Drape {
             warnings.push("the cloth is still held; let go of it to see how it hangs".to_owned());
         }
         Self {
-            stretch: stretch_per_triangle(&run.model, &run.state.positions),
+            stretch: stretch_per_triangle(&run.system, &run.state.positions),
             steps: run.steps(),
             seam_gap: run.gap_before_merging(),
             tally: run.cloth_tally(),

@@ -4,7 +4,7 @@ use crate::{GarmentJob, SessionError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use toile_drape::laws::elastic::ElasticLaw;
-use toile_drape::{Carry, Cloth, DrapeError, Elastic, ElasticEnd, GarmentRun, Progress, Stage};
+use toile_drape::{Attachment, Carry, Cloth, DrapeError, GarmentRun, Progress, Stage};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
 /// Something done to cloth while it is draped. Vertices are those of the job's garment, before
@@ -196,21 +196,18 @@ impl HandledRun {
         changed
     }
 
-    /// Gives the model the elastics of the hands beside those of the seams, which come first.
+    /// Draws the held vertices where the hands are.
     fn pull(&mut self) -> Result<(), DrapeError> {
-        let handles = self.held.keys().map(|&vertex| self.handle(vertex));
-        let handles: Vec<u32> = handles.collect::<Result<_, _>>()?;
-        let stitches = &self.job.setup.levels[self.run.level()[0]].stitches;
-        let sewing = self.run.progress().stage == Stage::Sewing;
-        let mut elastics = std::mem::take(&mut self.run.model.elastics);
-        elastics.truncate(if sewing { stitches.len() } else { 0 });
-        let held = self.held.values().zip(handles);
-        elastics.extend(held.map(|(&place, handle)| Elastic {
-            from: self.run.target[handle as usize],
-            to: ElasticEnd::Point(place),
-            law: HAND,
-        }));
-        self.run.model.set_elastics(elastics);
+        let mut attachments = Vec::with_capacity(self.held.len());
+        for (&vertex, &place) in &self.held {
+            let handle = self.handle(vertex)?;
+            attachments.push(Attachment {
+                vertex: self.run.target[handle as usize],
+                place,
+                law: HAND,
+            });
+        }
+        self.run.system.control.attachments = attachments.into_iter().collect();
         Ok(())
     }
 

@@ -171,7 +171,7 @@ fn report(run: &mut SceneRun, notes: Vec<String>, crossings: &Crossings) -> serd
             run.split_steps()
         ));
     }
-    warnings.extend(crossings.warning(run.model.contact.cloth_offset));
+    warnings.extend(crossings.warning(run.system.contact.cloth_offset));
     let layers = measures.layers.iter().map(|layer| {
         let of_layer = |o: &&SceneObject| {
             o.layer == layer.layer && matches!(o.kind, ObjectKind::Deformable { .. })
@@ -190,7 +190,7 @@ fn report(run: &mut SceneRun, notes: Vec<String>, crossings: &Crossings) -> serd
     serde_json::json!({
         "method": run.scene().method.kind.name(),
         "vertices": run.state.positions.len(),
-        "triangles": run.model.triangles.len(),
+        "triangles": run.system.topology.triangles.len(),
         "steps": run.steps(),
         "time_s": run.state.time,
         "residual": run.residual_of(&measures),

@@ -8,4 +8,4 @@ mod matrix;
 mod pcg;
 
 pub use matrix::{BlockPattern, ROW_CHUNK, ScalarMatrix, dot};
-pub use pcg::{BlockJacobi, Pcg, PcgLimits, Preconditioner, System};
+pub use pcg::{BlockJacobi, LinearSystem, Pcg, PcgLimits, Preconditioner};

@@ -66,7 +66,7 @@ impl<const D: usize, T: Number> Preconditioner for Factor<D, T> {
 }
 
 /// A x = b with A symmetric and positive definite.
-pub struct System<'a, F> {
+pub struct LinearSystem<'a, F> {
     /// The right-hand side.
     pub b: &'a [Vec3],
     /// Rows of the result that are zero.
@@ -88,7 +88,7 @@ impl Pcg {
     /// Solves a system. Stops early with what it has. Returns the iterations taken.
     pub fn solve<F: Fn(usize, &[Vec3]) -> Vec3 + Sync>(
         &mut self,
-        system: &System<F>,
+        system: &LinearSystem<F>,
         preconditioner: &mut impl Preconditioner,
         limits: PcgLimits,
         x: &mut [Vec3],
@@ -138,7 +138,7 @@ impl Pcg {
     }
 
     /// A times the direction of search.
-    fn apply<F: Fn(usize, &[Vec3]) -> Vec3 + Sync>(&mut self, system: &System<F>) {
+    fn apply<F: Fn(usize, &[Vec3]) -> Vec3 + Sync>(&mut self, system: &LinearSystem<F>) {
         let search = &self.search;
         self.image
             .par_chunks_mut(ROW_CHUNK)
@@ -178,7 +178,7 @@ mod tests {
             tolerance: 1e-12,
             iterations: 200,
         };
-        let system = System {
+        let system = LinearSystem {
             b: &b,
             fixed: &fixed,
             row: |v, p: &[Vec3]| row(n, v, p),

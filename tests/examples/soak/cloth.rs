@@ -62,7 +62,7 @@ pub fn hard(arguments: &[String]) -> Result<(), String> {
         let (end, found) = run(scene);
         println!(
             "{name},{},{},{},{},{},{:.1e},{:.2e},{:.2e},{:.1e},{:.1e},{},{},{:.1}",
-            end.model.triangles.len(),
+            end.system.topology.triangles.len(),
             found.steps,
             found.crossings[0],
             found.crossings[1],

@@ -20,6 +20,7 @@ use crate::{Model, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::cmp::Ordering;
+use std::sync::Arc;
 use toile_geometry::Vec3;
 
 /// What was found and done so far.
@@ -132,6 +133,8 @@ pub struct ClothContacts {
     /// What was found and done so far.
     pub tally: Tally,
     surface: ClothSurface,
+    /// The model the surface was made for.
+    made_for: Option<Model>,
     drawn: Vec<RecoveryDirection>,
     /// What a state is to remember of vertices on the wrong side of a layer, as in [`ClothMemory`].
     stray_reach: Option<f64>,
@@ -169,14 +172,10 @@ impl ClothContacts {
 
     /// The surface in hand, made anew for another model.
     pub fn surface(&mut self, model: &Model) -> &mut ClothSurface {
-        let stale = {
-            let given = model.surface_triangles();
-            self.surface.triangles != given
-                || self.surface.room.len() != model.vertex_count()
-                || self.surface.layer != model.layer
-        };
-        if stale {
+        let fits = |of: &Model| of.has_cloth_of(model) && Arc::ptr_eq(&of.layer, &model.layer);
+        if !self.made_for.as_ref().is_some_and(fits) {
             self.surface = ClothSurface::new(model);
+            self.made_for = Some(model.clone());
         }
         &mut self.surface
     }
@@ -215,7 +214,9 @@ impl ClothContacts {
         let mut found = nearnesses(&self.surface, Near::Listed, x, reach);
         found.retain(|near| {
             let vertices = near.pair.vertices();
-            let fixed = vertices.iter().all(|&v| model.pinned[v as usize]);
+            let fixed = vertices
+                .iter()
+                .all(|&v| model.prescribed.pinned[v as usize]);
             !fixed && !knots.lets_go(near.pair)
         });
         let contacts = found.par_iter().with_min_len(256);
@@ -381,7 +382,10 @@ impl ClothContacts {
         let total = w[c] + w[d];
         let vertices = [v[0], v[1], v[c], v[d]];
         let weights = [w[0], w[1], -w[c] / total, -w[d] / total];
-        if vertices.iter().all(|&v| model.pinned[v as usize]) {
+        if vertices
+            .iter()
+            .all(|&v| model.prescribed.pinned[v as usize])
+        {
             return None;
         }
         let area: f64 = vertices
@@ -402,7 +406,10 @@ impl ClothContacts {
     fn way_back(&self, model: &Model, x: &[Vec3], stray: &Stray) -> Option<ClothContact> {
         let ([a, b, c], w) = (stray.face, stray.weights);
         let vertices = [stray.vertex, a, b, c];
-        if vertices.iter().all(|&v| model.pinned[v as usize]) {
+        if vertices
+            .iter()
+            .all(|&v| model.prescribed.pinned[v as usize])
+        {
             return None;
         }
         let weights = [1.0, -w[0], -w[1], -w[2]];

@@ -37,7 +37,7 @@ pub(super) fn fade(contact: &ClothContact, x: &[Vec3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Cloth, Material, Model, State, Workspace};
+    use crate::{Cloth, Material, State, SystemBuilder, Workspace};
     use toile_geometry::TriangleMesh;
 
     /// Two folds whose edges of 20 mm lie `gap` above each other, the upper one turned and moved along.
@@ -71,9 +71,10 @@ mod tests {
     /// Largest jump of the forces between steps of 0.2 um over a motion, and the largest force [N].
     fn jump(place: impl Fn(f64) -> TriangleMesh) -> [f64; 2] {
         let cloth = Cloth::from_mesh("ridges", &place(0.0), Material::default()).unwrap();
-        let mut model = Model::new("ridges", &cloth).unwrap();
-        model.contact.cloth_offset = 2e-3;
-        model.contact.friction = false;
+        let mut builder = SystemBuilder::new("ridges", &cloth).unwrap();
+        builder.contact.cloth_offset = 2e-3;
+        builder.contact.friction = false;
+        let model = builder.build().model;
         let mut workspace = Workspace::default();
         let mut push = |share: f64| -> Vec<Vec3> {
             let state = State::at_rest(&model, place(share).positions);
@@ -123,8 +124,9 @@ mod tests {
             triangles: vec![[0, 1, 2], [3, 4, 5]],
         };
         let cloth = Cloth::from_mesh("corners", &mesh, Material::default()).unwrap();
-        let mut model = Model::new("corners", &cloth).unwrap();
-        model.contact.cloth_offset = 2e-3;
+        let mut builder = SystemBuilder::new("corners", &cloth).unwrap();
+        builder.contact.cloth_offset = 2e-3;
+        let model = builder.build().model;
         let state = State::at_rest(&model, mesh.positions);
         let mut workspace = Workspace::default();
         workspace.contacts.refresh(&model, &state, &state.positions);

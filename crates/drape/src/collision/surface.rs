@@ -84,10 +84,10 @@ const AT_ONCE: usize = 32;
 impl ClothSurface {
     /// Features of a model's cloth.
     pub fn new(model: &Model) -> Self {
-        let mesh = model.mesh(&model.layout);
+        let mesh = model.mesh(&model.topology.layout);
         let mut surface = Self::of_mesh(&mesh);
         surface.layer.clone_from(&model.layer);
-        for sample in model.samples.iter().filter(|s| s.triangle.is_none()) {
+        for sample in model.rest.samples.iter().filter(|s| s.triangle.is_none()) {
             let v = sample.vertices[0] as usize;
             surface.area[v] = sample.area;
             surface.friction[v] = sample.friction;

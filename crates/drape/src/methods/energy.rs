@@ -1,6 +1,6 @@
 //! The energy a cloth has, and the most it can have: what tells a result from rubbish.
 
-use crate::{Inertia, Model, State, Workspace};
+use crate::{Inertia, State, System, Workspace};
 
 /// No part of a cloth moves faster [m/s]: the speed of sound in the stiffest fibres (aramid,
 /// drawn polyethylene), which no wave in it exceeds.
@@ -24,20 +24,20 @@ pub struct EnergyWatch {
 
 impl EnergyWatch {
     /// Notes the energy before a step.
-    pub fn start(&mut self, model: &Model, state: &State, workspace: &mut Workspace) {
-        self.before = self.energy(model, state, workspace);
+    pub fn start(&mut self, system: &System, state: &State, workspace: &mut Workspace) {
+        self.before = self.energy(system, state, workspace);
     }
 
     /// Whether the energy after `step` [s] is one the cloth can have.
     pub fn is_possible(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &State,
         workspace: &mut Workspace,
         step: f64,
     ) -> bool {
-        let bound = energy_bound(model, self.before, step);
-        self.after = self.energy(model, state, workspace);
+        let bound = energy_bound(system, self.before, step);
+        self.after = self.energy(system, state, workspace);
         self.after <= bound
     }
 
@@ -47,24 +47,24 @@ impl EnergyWatch {
     }
 
     /// Energy of motion, strain, elastics and contact [J].
-    pub fn energy(&mut self, model: &Model, state: &State, workspace: &mut Workspace) -> f64 {
-        self.zeros.resize(model.vertex_count(), 0.0);
+    pub fn energy(&mut self, system: &System, state: &State, workspace: &mut Workspace) -> f64 {
+        self.zeros.resize(system.vertex_count(), 0.0);
         let nothing = Inertia {
             weight: &self.zeros,
             target: &state.positions,
         };
-        workspace.fit(model);
-        workspace.terms.hold_still(model, state);
-        workspace.contacts.refresh(model, state, &state.positions);
+        workspace.fit(system);
+        workspace.terms.hold_still(system, state);
+        workspace.contacts.refresh(system, state, &state.positions);
         let gravity: f64 = state
             .positions
             .iter()
-            .zip(&model.mass)
-            .map(|(x, m)| m * model.gravity.dot(x))
+            .zip(&system.rest.mass)
+            .map(|(x, m)| m * system.control.gravity.dot(x))
             .sum();
-        workspace.potential(model, &state.positions, &nothing)
+        workspace.potential(system, &state.positions, &nothing)
             + gravity
-            + state.kinetic_energy(model)
+            + state.kinetic_energy(system)
     }
 }
 
@@ -110,35 +110,42 @@ impl EnergyAccount {
 }
 
 /// Energy of motion, strain, weight, elastics and contact [J]; places count from the origin.
-pub fn whole_energy(model: &Model, state: &State, workspace: &mut Workspace) -> f64 {
-    let weight = |(x, m): (&toile_geometry::Vec3, &f64)| m * model.gravity.dot(x);
-    let gravity: f64 = state.positions.iter().zip(&model.mass).map(weight).sum();
-    EnergyWatch::default().energy(model, state, workspace) - gravity
+pub fn whole_energy(system: &System, state: &State, workspace: &mut Workspace) -> f64 {
+    let weight = |(x, m): (&toile_geometry::Vec3, &f64)| m * system.control.gravity.dot(x);
+    let gravity: f64 = state
+        .positions
+        .iter()
+        .zip(&system.rest.mass)
+        .map(weight)
+        .sum();
+    EnergyWatch::default().energy(system, state, workspace) - gravity
 }
 
 /// The energy that a method may show after `step` [s]: [`possible_energy`], and room for the swing
 /// of symplectic methods.
-pub fn energy_bound(model: &Model, before: f64, step: f64) -> f64 {
-    SWING * possible_energy(model, before, step)
+pub fn energy_bound(system: &System, before: f64, step: f64) -> f64 {
+    SWING * possible_energy(system, before, step)
 }
 
 /// The most energy of motion, strain, elastics and contact [J] that a cloth with `before` [J] of it
 /// can have after `step` [s]. All potentials but gravity's are above zero, so this energy H obeys
 /// dH/dt = sum m g.v <= |g| sqrt(2 M H), and sqrt(H) grows by |g| sqrt(M/2) a second at most.
-pub fn possible_energy(model: &Model, before: f64, step: f64) -> f64 {
-    let mass: f64 = model
+pub fn possible_energy(system: &System, before: f64, step: f64) -> f64 {
+    let mass: f64 = system
+        .rest
         .mass
         .iter()
-        .zip(&model.pinned)
+        .zip(&system.prescribed.pinned)
         .filter(|&(_, &pinned)| !pinned)
         .map(|(m, _)| m)
         .sum();
-    let lightest = model
+    let lightest = system
         .materials
+        .list
         .iter()
         .map(|m| m.density)
         .fold(f64::INFINITY, f64::min);
-    let push = model.gravity.norm() + model.air.push(lightest);
+    let push = system.control.gravity.norm() + system.control.air.push(lightest);
     let root = before.max(0.0).sqrt() + push * (0.5 * mass).sqrt() * step;
     root * root + 0.5 * mass * STILL * STILL
 }

@@ -14,7 +14,7 @@
 use super::energy::{EnergyWatch, fastest, runaway};
 use super::frequency::{FrequencySearch, damped_contact_frequency};
 use crate::method::{Method, MethodSettings, StepReport};
-use crate::{DrapeError, Model, State, Workspace};
+use crate::{DrapeError, State, System, Workspace};
 use toile_geometry::Vec3;
 
 /// One substep of an explicit method.
@@ -27,10 +27,10 @@ pub trait Scheme: Default + Send {
     const LIMIT: f64;
 
     /// Prepares for the substeps of `h` [s] of one step.
-    fn begin(&mut self, _model: &Model, _state: &State, _workspace: &mut Workspace, _h: f64) {}
+    fn begin(&mut self, _model: &System, _state: &State, _workspace: &mut Workspace, _h: f64) {}
 
     /// Moves positions and velocities on by `h` [s], and the friction anchors.
-    fn substep(&mut self, model: &Model, state: &mut State, workspace: &mut Workspace, h: f64);
+    fn substep(&mut self, system: &System, state: &mut State, workspace: &mut Workspace, h: f64);
 }
 
 /// An explicit method: a scheme with its substeps.
@@ -52,25 +52,25 @@ const MOST_SUBSTEPS: f64 = 1e6;
 /// Net force on every vertex: all forces of the model at a state, zero at pins [N], for a substep
 /// of `h` [s].
 pub fn forces<'a>(
-    model: &Model,
+    system: &System,
     state: &State,
     workspace: &'a mut Workspace,
     h: f64,
 ) -> &'a [Vec3] {
-    workspace.force_in_motion(model, state, h)
+    workspace.force_in_motion(system, state, h)
 }
 
 /// The same, and slides the friction anchors to where the cloth is now. Once a substep.
 pub fn forces_and_settle<'a>(
-    model: &Model,
+    system: &System,
     state: &mut State,
     workspace: &'a mut Workspace,
     h: f64,
 ) -> &'a [Vec3] {
-    forces(model, state, workspace, h);
-    if !model.colliders.is_empty() {
-        workspace.contacts.settle(model, state);
-        workspace.contacts.remember_buried(model, state);
+    forces(system, state, workspace, h);
+    if !system.colliders.is_empty() {
+        workspace.contacts.settle(system, state);
+        workspace.contacts.remember_buried(system, state);
     }
     workspace.last_force()
 }
@@ -90,17 +90,17 @@ impl<S: Scheme> Explicit<S> {
     /// Substeps a step is cut into: as given, or what the largest frequency at this state asks.
     fn substep_count(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &State,
         step: f64,
     ) -> Result<u32, DrapeError> {
         if let Some(given) = self.substeps {
             return Ok(given.max(1));
         }
-        let limits = [S::LIMIT, damped_contact_frequency(model, &state.samples)];
+        let limits = [S::LIMIT, damped_contact_frequency(system, &state.samples)];
         let (longest, vertex) = self
             .search
-            .stable_step(model, state, &mut self.workspace, limits);
+            .stable_step(system, state, &mut self.workspace, limits);
         let substeps = (step / (SHARE * longest)).ceil();
         if substeps > MOST_SUBSTEPS || !substeps.is_finite() {
             return Err(DrapeError::TooStiff {
@@ -130,30 +130,30 @@ fn blown_up(stage: &'static str, state: &State, vertex: usize, substep: f64) -> 
 impl<S: Scheme> Method for Explicit<S> {
     fn advance(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         step: f64,
     ) -> Result<StepReport, DrapeError> {
-        let substeps = self.substep_count(model, state, step)?;
+        let substeps = self.substep_count(system, state, step)?;
         let h = step / f64::from(substeps);
         state.follow_samples();
-        for (v, &pinned) in state.velocities.iter_mut().zip(&model.pinned) {
+        for (v, &pinned) in state.velocities.iter_mut().zip(&system.prescribed.pinned) {
             if pinned {
                 *v = Vec3::zeros();
             }
         }
-        self.watch.start(model, state, &mut self.workspace);
+        self.watch.start(system, state, &mut self.workspace);
         let end = state.time + step;
-        self.scheme.begin(model, state, &mut self.workspace, h);
+        self.scheme.begin(system, state, &mut self.workspace, h);
         for _ in 0..substeps {
-            self.scheme.substep(model, state, &mut self.workspace, h);
+            self.scheme.substep(system, state, &mut self.workspace, h);
             if let Some(vertex) = runaway(state) {
                 return Err(blown_up(S::STAGE, state, vertex, h));
             }
         }
         if !self
             .watch
-            .is_possible(model, state, &mut self.workspace, step)
+            .is_possible(system, state, &mut self.workspace, step)
         {
             return Err(blown_up(S::STAGE, state, fastest(state).0, h));
         }

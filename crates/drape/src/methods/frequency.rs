@@ -2,7 +2,7 @@
 
 use crate::laws::contact::RESTITUTION_DAMPING;
 use crate::laws::membrane::Curvature;
-use crate::{ContactSample, Inertia, Model, State, Workspace};
+use crate::{ContactSample, Inertia, State, System, Workspace};
 use toile_geometry::Vec3;
 
 /// Private memory of the search, sized once for a model.
@@ -38,10 +38,10 @@ const QUICK: usize = 30;
 ///
 /// Found by Lanczos iteration (Lanczos 1950): power iteration that keeps all its vectors' products
 /// and so converges quadratically faster. Cost: about 160 products with K.
-pub fn largest_frequency(model: &Model, state: &State) -> f64 {
+pub fn largest_frequency(system: &System, state: &State) -> f64 {
     let mut workspace = Workspace::default();
     FrequencySearch::default()
-        .run(model, state, &mut workspace, THOROUGH)
+        .run(system, state, &mut workspace, THOROUGH)
         .frequency
 }
 
@@ -49,20 +49,20 @@ pub fn largest_frequency(model: &Model, state: &State) -> f64 {
 /// w_s k_s / m, samples s at it with weight w_s and normal stiffness k_s (rows of K summed, so
 /// every eigenvalue is below it; Gershgorin 1931). With samples at vertices alone it is
 /// sqrt(stiffness / density). Zero without solid surfaces.
-pub fn contact_frequency(model: &Model, samples: &[ContactSample]) -> f64 {
-    if model.colliders.is_empty() {
+pub fn contact_frequency(system: &System, samples: &[ContactSample]) -> f64 {
+    if system.colliders.is_empty() {
         return 0.0;
     }
-    let mut stiffness = vec![0.0; model.vertex_count()];
+    let mut stiffness = vec![0.0; system.vertex_count()];
     for sample in samples {
         for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
-            stiffness[v as usize] += w * model.contact.stiffness * sample.area;
+            stiffness[v as usize] += w * system.contact.stiffness * sample.area;
         }
     }
     stiffness
         .iter()
-        .zip(&model.mass)
-        .zip(&model.pinned)
+        .zip(&system.rest.mass)
+        .zip(&system.prescribed.pinned)
         .filter(|&(_, &pinned)| !pinned)
         .map(|((k, m), _)| k / m)
         .fold(0.0, f64::max)
@@ -71,9 +71,9 @@ pub fn contact_frequency(model: &Model, samples: &[ContactSample]) -> f64 {
 
 /// The same as explicit methods feel it: a dashpot of zeta evaluated at the old velocity lowers the
 /// limit of h w from 2 to 2 (sqrt(1 + zeta^2) - zeta).
-pub fn damped_contact_frequency(model: &Model, samples: &[ContactSample]) -> f64 {
+pub fn damped_contact_frequency(system: &System, samples: &[ContactSample]) -> f64 {
     let zeta = RESTITUTION_DAMPING;
-    contact_frequency(model, samples) * (zeta.hypot(1.0) + zeta)
+    contact_frequency(system, samples) * (zeta.hypot(1.0) + zeta)
 }
 
 impl FrequencySearch {
@@ -81,13 +81,13 @@ impl FrequencySearch {
     /// lower bound that is within a few per mille after 30.
     pub fn run(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &State,
         workspace: &mut Workspace,
         iterations: usize,
     ) -> Fastest {
-        workspace.terms.hold_still(model, state);
-        self.search(model, state, workspace, iterations)
+        workspace.terms.hold_still(system, state);
+        self.search(system, state, workspace, iterations)
     }
 
     /// A substep of w h = `limit` undamped, shortened for viscosity [s]: with the damping ratio
@@ -96,20 +96,22 @@ impl FrequencySearch {
     /// be added, as of contact.
     pub fn stable_step(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &State,
         workspace: &mut Workspace,
         [limit, extra]: [f64; 2],
     ) -> (f64, usize) {
-        let still = self.run(model, state, workspace, QUICK);
+        let still = self.run(system, state, workspace, QUICK);
         let w = still.frequency.hypot(extra);
         let mut ratio = 0.0;
-        if w > 0.0 && (model.has_viscous_stretch() || model.viscous_bending.is_some()) {
+        if w > 0.0
+            && (system.materials.have_viscous_stretch() || system.rest.viscous_bending.is_some())
+        {
             // K + w C has the eigenvalue w^2 + 2 xi w^2 for the same vibration.
-            workspace.terms.hold(model, state, w);
-            let damped = self.search(model, state, workspace, QUICK).frequency;
+            workspace.terms.hold(system, state, w);
+            let damped = self.search(system, state, workspace, QUICK).frequency;
             ratio = (damped * damped - still.frequency * still.frequency).max(0.0) / (2.0 * w * w);
-            workspace.terms.hold_still(model, state);
+            workspace.terms.hold_still(system, state);
         }
         let shortened = (1.0 + ratio * ratio).sqrt() - ratio;
         (limit / w * shortened, still.vertex)
@@ -117,21 +119,21 @@ impl FrequencySearch {
 
     fn search(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &State,
         workspace: &mut Workspace,
         iterations: usize,
     ) -> Fastest {
-        let n = model.vertex_count();
-        self.fit(model);
-        workspace.fit(model);
-        workspace.contacts.refresh(model, state, &state.positions);
+        let n = system.vertex_count();
+        self.fit(system);
+        workspace.fit(system);
+        workspace.contacts.refresh(system, state, &state.positions);
         let inertia = Inertia {
             weight: &self.zeros,
             target: &state.positions,
         };
-        workspace.fill_gradient(model, &state.positions, Some(&inertia));
-        workspace.fill_hessian(model, &state.positions, &inertia, Curvature::CONVEX);
+        workspace.fill_gradient(system, &state.positions, Some(&inertia));
+        workspace.fill_hessian(system, &state.positions, &inertia, Curvature::CONVEX);
         let (mut diagonal, mut off_diagonal) = (Vec::new(), Vec::new());
         let mut beta = normalise(&mut self.present);
         for _ in 0..iterations.min(3 * n) {
@@ -152,7 +154,7 @@ impl FrequencySearch {
                 *next = if root == 0.0 {
                     Vec3::zeros()
                 } else {
-                    workspace.hessian_row(model, v, &self.scaled) * root - self.before[v] * last
+                    workspace.hessian_row(system, v, &self.scaled) * root - self.before[v] * last
                 };
             }
             let alpha: f64 = self
@@ -181,8 +183,8 @@ impl FrequencySearch {
         }
     }
 
-    fn fit(&mut self, model: &Model) {
-        let n = model.vertex_count();
+    fn fit(&mut self, system: &System) {
+        let n = system.vertex_count();
         self.zeros.resize(n, 0.0);
         for vector in [
             &mut self.before,
@@ -195,14 +197,15 @@ impl FrequencySearch {
         }
         self.inverse_roots.clear();
         self.inverse_roots.extend(
-            model.mass.iter().zip(&model.pinned).map(
-                |(m, &pinned)| {
-                    if pinned { 0.0 } else { 1.0 / m.sqrt() }
-                },
-            ),
+            system
+                .rest
+                .mass
+                .iter()
+                .zip(&system.prescribed.pinned)
+                .map(|(m, &pinned)| if pinned { 0.0 } else { 1.0 / m.sqrt() }),
         );
         for (v, q) in self.present.iter_mut().enumerate() {
-            if !model.pinned[v] {
+            if !system.prescribed.pinned[v] {
                 *q = Vec3::from_fn(|axis, _| scatter((3 * v + axis) as u64));
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::method::{Method, StepReport};
 use crate::step_terms::relax;
-use crate::{DrapeError, Model, State};
+use crate::{DrapeError, State, System};
 
 /// A method whose steps either end finite or leave the state as it was.
 pub struct Guarded<M> {
@@ -23,7 +23,7 @@ impl<M: Method + 'static> Guarded<M> {
 impl<M: Method> Method for Guarded<M> {
     fn advance(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         step: f64,
     ) -> Result<StepReport, DrapeError> {
@@ -32,9 +32,9 @@ impl<M: Method> Method for Guarded<M> {
             return Err(DrapeError::NotFinite { stage, vertex });
         }
         self.start.clone_from(state);
-        let result = self.method.advance(model, state, step);
+        let result = self.method.advance(system, state, step);
         if result.is_ok() {
-            relax(model, state, state.time - self.start.time);
+            relax(system, state, state.time - self.start.time);
         }
         let result = match (result, state.first_not_finite()) {
             (Ok(_), Some(vertex)) => {

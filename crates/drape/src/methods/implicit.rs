@@ -8,7 +8,7 @@
 use super::energy::{EnergyAccount, EnergyWatch, fastest, possible_energy, runaway};
 use crate::measure::weight_norm;
 use crate::method::{Method, MethodSettings, StepReport};
-use crate::{ContactSample, DrapeError, Inertia, Model, NewtonReport, State, Workspace};
+use crate::{ContactSample, DrapeError, Inertia, NewtonReport, State, System, Workspace};
 use std::marker::PhantomData;
 use toile_geometry::Vec3;
 
@@ -28,15 +28,15 @@ pub trait TimeRule: Send {
     }
 
     /// Substeps a step of `step` [s] is cut into where the settings say nothing.
-    fn substeps(_model: &Model, _samples: &[ContactSample], _step: f64) -> u32 {
+    fn substeps(_model: &System, _samples: &[ContactSample], _step: f64) -> u32 {
         1
     }
 
     /// Inertia's weight per mass b [1/s2].
-    fn weight(model: &Model, state: &State, h: f64) -> f64;
+    fn weight(system: &System, state: &State, h: f64) -> f64;
 
     /// Where inertia alone would take each vertex, into `target` [m].
-    fn aim(model: &Model, state: &State, h: f64, target: &mut Vec<Vec3>);
+    fn aim(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>);
 
     /// Turns the minimum in `state.positions` into the new positions and velocities; `before`
     /// holds the old ones.
@@ -55,7 +55,7 @@ pub struct Limits {
 /// What a solver is to lower.
 pub struct Problem<'a> {
     /// The model.
-    pub model: &'a Model,
+    pub system: &'a System,
     /// Weights and targets of the vertices.
     pub inertia: Inertia<'a>,
     /// Weight per mass [1/s2]: the weights are this times the masses.
@@ -68,7 +68,7 @@ impl Problem<'_> {
     /// Longest move of a vertex in one iteration [m]: `near` where there are solid surfaces, whose
     /// contact is found within 10 mm only, so that a longer one may pass through a limb.
     pub fn longest_move(&self, near: f64) -> f64 {
-        if self.model.colliders.is_empty() {
+        if self.system.colliders.is_empty() {
             f64::INFINITY
         } else {
             near
@@ -150,7 +150,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
     /// One step of `h` [s], in pieces where it fails whole.
     fn whole(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         h: f64,
         total: &mut StepReport,
@@ -160,7 +160,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
         'halving: for halvings in 0..=HALVINGS {
             let pieces = 1u32 << halvings;
             for _ in 0..pieces {
-                match self.piece(model, state, h / f64::from(pieces)) {
+                match self.piece(system, state, h / f64::from(pieces)) {
                     Ok(report) => {
                         total.iterations += report.iterations;
                         total.linear_iterations += report.linear_iterations;
@@ -177,23 +177,29 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             total.pieces = total.pieces.max(pieces);
             return Ok(());
         }
-        Err(self.error(model, state, failure, h))
+        Err(self.error(system, state, failure, h))
     }
 
-    fn piece(&mut self, model: &Model, state: &mut State, h: f64) -> Result<NewtonReport, Failure> {
+    fn piece(
+        &mut self,
+        system: &System,
+        state: &mut State,
+        h: f64,
+    ) -> Result<NewtonReport, Failure> {
         self.before.clone_from(state);
-        self.watch.start(model, state, &mut self.workspace);
-        let weight = R::weight(model, state, h);
+        self.watch.start(system, state, &mut self.workspace);
+        let weight = R::weight(system, state, h);
         self.weights.clear();
-        self.weights.extend(model.mass.iter().map(|m| m * weight));
-        R::aim(model, state, h, &mut self.target);
+        self.weights
+            .extend(system.rest.mass.iter().map(|m| m * weight));
+        R::aim(system, state, h, &mut self.target);
         for (v, target) in self.target.iter_mut().enumerate() {
-            if model.pinned[v] {
+            if system.prescribed.pinned[v] {
                 *target = state.positions[v];
             }
         }
         let problem = Problem {
-            model,
+            system,
             inertia: Inertia {
                 weight: &self.weights,
                 target: &self.target,
@@ -202,28 +208,28 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             limits: self.limits,
         };
         let rate = 1.0 / R::reach(h);
-        self.workspace.terms.hold(model, state, rate);
+        self.workspace.terms.hold(system, state, rate);
         let report = self.solver.lower(&problem, state, &mut self.workspace);
-        self.workspace.terms.hold_still(model, state);
+        self.workspace.terms.hold_still(system, state);
         R::finish(&self.before, state, h);
         if let Some(vertex) = state.first_not_finite().or_else(|| runaway(state)) {
             return Err(Failure::Runaway(vertex));
         }
-        let reached = report.gradient <= self.limits.tolerance.max(REACHED * weight_norm(model));
+        let reached = report.gradient <= self.limits.tolerance.max(REACHED * weight_norm(system));
         if !report.sound || S::CONVERGES && !reached {
             return Err(Failure::Stuck);
         }
         let workspace = &mut self.workspace;
-        if !self.watch.is_possible(model, state, workspace, h) {
+        if !self.watch.is_possible(system, state, workspace, h) {
             return Err(Failure::Runaway(fastest(state).0));
         }
         // `is_possible` found the contacts of the new positions.
-        self.workspace.contacts.settle(model, state);
+        self.workspace.contacts.settle(system, state);
         state.time += h;
         Ok(report)
     }
 
-    fn error(&mut self, model: &Model, state: &State, failure: Failure, h: f64) -> DrapeError {
+    fn error(&mut self, system: &System, state: &State, failure: Failure, h: f64) -> DrapeError {
         let stage = S::STAGE;
         match failure {
             Failure::Runaway(vertex) if state.velocities[vertex].iter().all(|x| x.is_finite()) => {
@@ -237,7 +243,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             Failure::Runaway(vertex) => DrapeError::NotFinite { stage, vertex },
             Failure::Stuck => DrapeError::NoProgress {
                 stage,
-                residual: crate::measure::residual(model, &self.start, &mut self.workspace),
+                residual: crate::measure::residual(system, &self.start, &mut self.workspace),
             },
         }
     }
@@ -255,7 +261,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
 impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
     fn advance(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         step: f64,
     ) -> Result<StepReport, DrapeError> {
@@ -265,18 +271,18 @@ impl<R: TimeRule, S: Solver> Method for Implicit<R, S> {
         let mut total = StepReport::default();
         let end = state.time + step;
         let before = R::MOST_ENERGY.map(|_| {
-            let before = self.watch.energy(model, state, &mut self.workspace);
+            let before = self.watch.energy(system, state, &mut self.workspace);
             [before, self.account.start(state.time, before)]
         });
         let mut led = self.leads_out();
-        let automatic = || R::substeps(model, &state.samples, step);
+        let automatic = || R::substeps(system, &state.samples, step);
         let substeps = self.substeps.unwrap_or_else(automatic).max(1);
         for _ in 0..substeps {
-            self.whole(model, state, step / f64::from(substeps), &mut total)?;
+            self.whole(system, state, step / f64::from(substeps), &mut total)?;
             led |= self.leads_out();
         }
         if let (Some(times), Some(before)) = (R::MOST_ENERGY, before) {
-            let [in_step, mut in_run] = before.map(|before| possible_energy(model, before, step));
+            let [in_step, mut in_run] = before.map(|before| possible_energy(system, before, step));
             let (after, possible) = (self.watch.last(), in_step.min(in_run));
             if led {
                 in_run = after;

@@ -2,7 +2,7 @@
 
 use super::implicit::{LONGEST_MOVE, Limits, Problem, Solver};
 use crate::laws::membrane::Curvature;
-use crate::{LinearSolver, Model, NewtonReport, NewtonSettings, PcgLimits, State, Workspace};
+use crate::{LinearSolver, NewtonReport, NewtonSettings, PcgLimits, State, System, Workspace};
 use toile_sparse::dot;
 
 /// Block conjugate gradients, as [`crate::step_in_time`] uses them.
@@ -26,15 +26,21 @@ const STIFF: f64 = 15.0;
 
 /// Whether steps with inertia's weight per mass `weight` [1/s2] are long for the model's fastest
 /// vibrations, judged by one triangle after the other: w^2 = C |a|^2 3 / rho.
-fn is_stiff(model: &Model, weight: f64) -> bool {
-    model.triangles.iter().enumerate().any(|(t, corners)| {
-        let element = &model.elements[t];
-        let [c11, c22, ..] = model.laws[model.material[t] as usize].stiffness;
-        (0..3).any(|i| {
-            let stiffness = c11 * element.warp[i].powi(2) + c22 * element.weft[i].powi(2);
-            element.area * stiffness > STIFF * STIFF * weight * model.mass[corners[i] as usize]
+fn is_stiff(system: &System, weight: f64) -> bool {
+    system
+        .topology
+        .triangles
+        .iter()
+        .enumerate()
+        .any(|(t, corners)| {
+            let element = &system.rest.elements[t];
+            let [c11, c22, ..] = system.materials.law(t).stiffness;
+            (0..3).any(|i| {
+                let stiffness = c11 * element.warp[i].powi(2) + c22 * element.weft[i].powi(2);
+                element.area * stiffness
+                    > STIFF * STIFF * weight * system.rest.mass[corners[i] as usize]
+            })
         })
-    })
 }
 
 /// Relative tolerance of a step that is never corrected: what the solve leaves is lost momentum,
@@ -63,7 +69,7 @@ impl<const STRICT: bool> Solver for Newton<STRICT> {
         state: &mut State,
         workspace: &mut Workspace,
     ) -> NewtonReport {
-        let (curvature, linear) = if is_stiff(problem.model, problem.weight) {
+        let (curvature, linear) = if is_stiff(problem.system, problem.weight) {
             (Curvature::EXACT, FACTORISED)
         } else {
             (Curvature::CONVEX, LINEAR)
@@ -75,7 +81,7 @@ impl<const STRICT: bool> Solver for Newton<STRICT> {
             curvature,
             linear,
         };
-        workspace.solve(problem.model, state, &problem.inertia, &settings)
+        workspace.solve(problem.system, state, &problem.inertia, &settings)
     }
 }
 
@@ -103,11 +109,16 @@ impl Solver for OneSolve {
         state: &mut State,
         workspace: &mut Workspace,
     ) -> NewtonReport {
-        let model = problem.model;
-        workspace.fit(model);
-        workspace.contacts.refresh(model, state, &state.positions);
-        workspace.fill_gradient(model, &state.positions, Some(&problem.inertia));
-        workspace.fill_hessian(model, &state.positions, &problem.inertia, Curvature::CONVEX);
+        let system = problem.system;
+        workspace.fit(system);
+        workspace.contacts.refresh(system, state, &state.positions);
+        workspace.fill_gradient(system, &state.positions, Some(&problem.inertia));
+        workspace.fill_hessian(
+            system,
+            &state.positions,
+            &problem.inertia,
+            Curvature::CONVEX,
+        );
         let gradient = dot(&workspace.gradient, &workspace.gradient).sqrt();
         let [rounding, usual] = ONE_SOLVE;
         let asked = problem.limits.tolerance;
@@ -120,7 +131,7 @@ impl Solver for OneSolve {
             iterations: 1000,
         });
         workspace.turn_gradient();
-        let linear_iterations = workspace.solve_linear(model, linear);
+        let linear_iterations = workspace.solve_linear(system, linear);
         for (x, d) in state.positions.iter_mut().zip(&workspace.direction) {
             *x += d;
         }

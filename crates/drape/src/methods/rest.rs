@@ -2,7 +2,7 @@
 
 use crate::method::{Method, MethodSettings, StepReport};
 use crate::{
-    DrapeError, Memory, Model, PseudoTransientContinuation, RestSettings, State, Workspace,
+    DrapeError, Memory, PseudoTransientContinuation, RestSettings, State, System, Workspace,
 };
 
 /// The way to rest: see [`PseudoTransientContinuation`]. How it stands is remembered in the state.
@@ -31,7 +31,7 @@ impl Rest {
 impl Method for Rest {
     fn advance(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         _step: f64,
     ) -> Result<StepReport, DrapeError> {
@@ -40,7 +40,7 @@ impl Method for Rest {
             _ => PseudoTransientContinuation::new(self.settings),
         };
         let before = self.run.linear_iterations();
-        self.run.advance(model, state, &mut self.workspace)?;
+        self.run.advance(system, state, &mut self.workspace)?;
         state.memory = Memory::Rest(self.run.memory().clone());
         Ok(StepReport {
             pieces: 1,

@@ -4,7 +4,7 @@
 
 use super::frequency::contact_frequency;
 use super::implicit::TimeRule;
-use crate::{ContactSample, Memory, Model, State};
+use crate::{ContactSample, Memory, State, System};
 use toile_geometry::Vec3;
 
 /// Implicit Euler: v' = v + h (a(x') - c v'), x' = x + h v'. Order 1, damps
@@ -13,12 +13,12 @@ use toile_geometry::Vec3;
 pub struct Euler;
 
 impl TimeRule for Euler {
-    fn weight(model: &Model, _state: &State, h: f64) -> f64 {
-        (1.0 + model.air_drag * h) / (h * h)
+    fn weight(system: &System, _state: &State, h: f64) -> f64 {
+        (1.0 + system.control.air_drag * h) / (h * h)
     }
 
-    fn aim(model: &Model, state: &State, h: f64, target: &mut Vec<Vec3>) {
-        let reach = h / (1.0 + model.air_drag * h);
+    fn aim(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>) {
+        let reach = h / (1.0 + system.control.air_drag * h);
         target.clear();
         target.extend(
             state
@@ -63,18 +63,18 @@ impl TimeRule for Midpoint {
         0.5 * h
     }
 
-    fn substeps(model: &Model, samples: &[ContactSample], step: f64) -> u32 {
-        (step * contact_frequency(model, samples))
+    fn substeps(system: &System, samples: &[ContactSample], step: f64) -> u32 {
+        (step * contact_frequency(system, samples))
             .ceil()
             .min(MOST_SUBSTEPS) as u32
     }
 
-    fn weight(model: &Model, _state: &State, h: f64) -> f64 {
-        (4.0 + 2.0 * model.air_drag * h) / (h * h)
+    fn weight(system: &System, _state: &State, h: f64) -> f64 {
+        (4.0 + 2.0 * system.control.air_drag * h) / (h * h)
     }
 
-    fn aim(model: &Model, state: &State, h: f64, target: &mut Vec<Vec3>) {
-        Euler::aim(model, state, 0.5 * h, target);
+    fn aim(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>) {
+        Euler::aim(system, state, 0.5 * h, target);
     }
 
     fn finish(before: &State, state: &mut State, h: f64) {
@@ -126,22 +126,22 @@ struct Before<'a> {
 }
 
 impl TimeRule for Bdf2 {
-    fn weight(model: &Model, state: &State, h: f64) -> f64 {
+    fn weight(system: &System, state: &State, h: f64) -> f64 {
         match two_step(&state.memory, state.positions.len(), h) {
             Some(Before {
                 coefficients: [a0, ..],
                 ..
-            }) => a0 * (a0 + model.air_drag * h) / (h * h),
-            None => Euler::weight(model, state, h),
+            }) => a0 * (a0 + system.control.air_drag * h) / (h * h),
+            None => Euler::weight(system, state, h),
         }
     }
 
-    fn aim(model: &Model, state: &State, h: f64, target: &mut Vec<Vec3>) {
+    fn aim(system: &System, state: &State, h: f64, target: &mut Vec<Vec3>) {
         let Some(before) = two_step(&state.memory, state.positions.len(), h) else {
-            return Euler::aim(model, state, h, target);
+            return Euler::aim(system, state, h, target);
         };
         let [a0, a1, a2] = before.coefficients;
-        let reach = h / (a0 * (a0 + model.air_drag * h));
+        let reach = h / (a0 * (a0 + system.control.air_drag * h));
         let present = state.positions.iter().zip(&state.velocities);
         let past = before.positions.iter().zip(before.velocities);
         target.clear();

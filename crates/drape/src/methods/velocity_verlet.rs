@@ -1,7 +1,7 @@
 //! Velocity Verlet: order 2, keeps energy for ever below its limit.
 
 use super::explicit::{Scheme, forces, forces_and_settle};
-use crate::{Model, State, Workspace};
+use crate::{State, System, Workspace};
 use toile_geometry::Vec3;
 
 /// v_1/2 = v + h/2 (f(x) / m - c v),  x' = x + h v_1/2,
@@ -18,26 +18,26 @@ impl Scheme for VelocityVerlet {
     const STAGE: &'static str = "velocity Verlet";
     const LIMIT: f64 = 2.0;
 
-    fn begin(&mut self, model: &Model, state: &State, workspace: &mut Workspace, h: f64) {
+    fn begin(&mut self, system: &System, state: &State, workspace: &mut Workspace, h: f64) {
         self.force.clear();
-        self.force.extend(forces(model, state, workspace, h));
+        self.force.extend(forces(system, state, workspace, h));
     }
 
-    fn substep(&mut self, model: &Model, state: &mut State, workspace: &mut Workspace, h: f64) {
+    fn substep(&mut self, system: &System, state: &mut State, workspace: &mut Workspace, h: f64) {
         let half = 0.5 * h;
-        let keep = 1.0 - model.air_drag * half;
+        let keep = 1.0 - system.control.air_drag * half;
         let moving = state.positions.iter_mut().zip(&mut state.velocities);
-        for ((x, v), (f, m)) in moving.zip(self.force.iter().zip(&model.mass)) {
+        for ((x, v), (f, m)) in moving.zip(self.force.iter().zip(&system.rest.mass)) {
             *v = *v * keep + f * (half / m);
             *x += *v * h;
         }
-        let slowing = 1.0 / (1.0 + model.air_drag * half);
+        let slowing = 1.0 / (1.0 + system.control.air_drag * half);
         self.force
-            .copy_from_slice(forces_and_settle(model, state, workspace, h));
+            .copy_from_slice(forces_and_settle(system, state, workspace, h));
         for (v, (f, m)) in state
             .velocities
             .iter_mut()
-            .zip(self.force.iter().zip(&model.mass))
+            .zip(self.force.iter().zip(&system.rest.mass))
         {
             *v = (*v + f * (half / m)) * slowing;
         }

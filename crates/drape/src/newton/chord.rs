@@ -4,7 +4,7 @@
 
 use super::{Inertia, Workspace};
 use crate::pairs::Pairs;
-use crate::{Model, State};
+use crate::{State, System};
 use toile_sparse::dot;
 
 /// A step of which the line search takes less than this is the last: the matrix is no longer that of the
@@ -29,12 +29,12 @@ impl Workspace {
     /// is left alone. Returns the steps taken.
     pub(crate) fn follow_on(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         inertia: &Inertia,
         limits: ChordLimits,
     ) -> usize {
-        self.contacts.refresh(model, state, &state.positions);
+        self.contacts.refresh(system, state, &state.positions);
         if !self.contacts.cloth.is_in_order() {
             return 0;
         }
@@ -44,15 +44,15 @@ impl Workspace {
         while steps < limits.steps {
             if steps > 0 {
                 self.contacts
-                    .refresh_surfaces(model, state, &state.positions);
+                    .refresh_surfaces(system, state, &state.positions);
             }
-            let share = self.chord(model, state, inertia, &mut pairs, limits);
+            let share = self.chord(system, state, inertia, &mut pairs, limits);
             steps += usize::from(share > 0.0);
             if share < CUT {
                 break;
             }
         }
-        if steps > 0 && !self.hold_back(model, state, start.positions.clone()) {
+        if steps > 0 && !self.hold_back(system, state, start.positions.clone()) {
             *state = start;
             return 0;
         }
@@ -62,13 +62,13 @@ impl Workspace {
     /// One step with the contacts in hand; the share of it that was taken.
     fn chord(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         inertia: &Inertia,
         pairs: &mut Pairs,
         limits: ChordLimits,
     ) -> f64 {
-        self.fill_gradient(model, &state.positions, Some(inertia));
+        self.fill_gradient(system, &state.positions, Some(inertia));
         let norm = dot(&self.gradient, &self.gradient).sqrt();
         if !norm.is_finite() || norm <= limits.tolerance {
             return 0.0;
@@ -86,10 +86,10 @@ impl Workspace {
             return 0.0;
         }
         self.limit_moves(limits.longest_move);
-        let share = self.line_search(model, &state.positions, inertia);
+        let share = self.line_search(system, &state.positions, inertia);
         if share > 0.0 {
             std::mem::swap(&mut state.positions, &mut self.trial);
-            self.contacts.settle(model, state);
+            self.contacts.settle(system, state);
         }
         share
     }
@@ -111,12 +111,12 @@ mod tests {
     /// A rumpled sheet after one Newton step of a pseudo step of 0.1 s: chord steps, and what is left of the
     /// net force before and after them.
     fn after_newton(direct: bool) -> (usize, [f64; 2]) {
-        let (model, rest, mut workspace) = hung();
+        let (system, rest, mut workspace) = hung();
         let mut state = rest;
         for (v, x) in state.positions.iter_mut().enumerate().skip(41) {
             x.z += 3e-4 * (v as f64 * 1.7).sin();
         }
-        let weight: Vec<f64> = model.mass.iter().map(|m| m * 100.0).collect();
+        let weight: Vec<f64> = system.rest.mass.iter().map(|m| m * 100.0).collect();
         let target = state.positions.clone();
         let inertia = Inertia {
             weight: &weight,
@@ -141,14 +141,14 @@ mod tests {
         }
         assert!(
             workspace
-                .solve(&model, &mut state, &inertia, &settings)
+                .solve(&system, &mut state, &inertia, &settings)
                 .sound
         );
-        let before = residual(&model, &state, &mut workspace);
+        let before = residual(&system, &state, &mut workspace);
         let start = state.positions.clone();
-        let steps = workspace.follow_on(&model, &mut state, &inertia, LIMITS);
+        let steps = workspace.follow_on(&system, &mut state, &inertia, LIMITS);
         assert_eq!(steps == 0, state.positions == start);
-        (steps, [before, residual(&model, &state, &mut workspace)])
+        (steps, [before, residual(&system, &state, &mut workspace)])
     }
 
     #[test]
@@ -167,12 +167,15 @@ mod tests {
 
     #[test]
     fn numbers_that_are_none_are_left_alone() {
-        let (model, mut state, mut workspace) = hung();
+        let (system, mut state, mut workspace) = hung();
         let inertia = Inertia {
-            weight: &vec![1.0; model.vertex_count()],
+            weight: &vec![1.0; system.vertex_count()],
             target: &state.positions.clone(),
         };
         state.positions[800].x = f64::NAN;
-        assert_eq!(workspace.follow_on(&model, &mut state, &inertia, LIMITS), 0);
+        assert_eq!(
+            workspace.follow_on(&system, &mut state, &inertia, LIMITS),
+            0
+        );
     }
 }

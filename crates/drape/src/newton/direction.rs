@@ -2,11 +2,11 @@
 //! it may go.
 
 use super::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
-use crate::Model;
+use crate::System;
 use crate::hessian::{Direct, Hessian};
 use crate::laws::membrane::Curvature;
 use toile_geometry::Vec3;
-use toile_sparse::System;
+use toile_sparse::LinearSystem;
 use toile_sparse::dot;
 
 /// Times a direction is found anew because points come back from the limit of friction.
@@ -25,7 +25,7 @@ impl Workspace {
     /// kinks of contact that it runs into.
     pub(super) fn find_direction(
         &mut self,
-        model: &Model,
+        system: &System,
         x: &[Vec3],
         inertia: &Inertia,
         settings: &NewtonSettings,
@@ -33,11 +33,11 @@ impl Workspace {
     ) {
         if !matches!(settings.linear, LinearSolver::Direct { .. }) {
             report.curvature = Curvature::CONVEX;
-            self.solve_with(model, x, inertia, settings, report);
+            self.solve_with(system, x, inertia, settings, report);
             return;
         }
         report.curvature = settings.curvature;
-        self.solve_with(model, x, inertia, settings, report);
+        self.solve_with(system, x, inertia, settings, report);
         for _ in 0..FORESIGHTS {
             let promises = 0.5 * dot(&self.gradient, &self.direction);
             if !(self.contacts).foresee(x, &self.direction, promises) {
@@ -45,8 +45,8 @@ impl Workspace {
             }
             self.force.clone_from(&self.gradient);
             self.trial.clone_from(&self.direction);
-            self.contacts.pull_down(model, x, &mut self.gradient);
-            self.solve_with(model, x, inertia, settings, report);
+            self.contacts.pull_down(system, x, &mut self.gradient);
+            self.solve_with(system, x, inertia, settings, report);
             std::mem::swap(&mut self.force, &mut self.gradient);
             if dot(&self.gradient, &self.direction) <= 0.0 {
                 std::mem::swap(&mut self.trial, &mut self.direction);
@@ -59,47 +59,47 @@ impl Workspace {
     /// convex one always is.
     fn solve_with(
         &mut self,
-        model: &Model,
+        system: &System,
         x: &[Vec3],
         inertia: &Inertia,
         settings: &NewtonSettings,
         report: &mut NewtonReport,
     ) {
         while report.curvature != Curvature::CONVEX {
-            self.fill_hessian(model, x, inertia, report.curvature);
-            if self.solve_directly(model) {
+            self.fill_hessian(system, x, inertia, report.curvature);
+            if self.solve_directly(system) {
                 return;
             }
             report.curvature = report.curvature.less();
         }
-        self.fill_hessian(model, x, inertia, Curvature::CONVEX);
-        report.linear_iterations += self.solve_linear(model, settings.linear);
+        self.fill_hessian(system, x, inertia, Curvature::CONVEX);
+        report.linear_iterations += self.solve_linear(system, settings.linear);
     }
 
     /// Solves for the Newton direction, `gradient` holding its negative; returns the iterations
     /// taken.
-    pub(crate) fn solve_linear(&mut self, model: &Model, limits: LinearSolver) -> usize {
+    pub(crate) fn solve_linear(&mut self, system: &System, limits: LinearSolver) -> usize {
         let limits = match limits {
             LinearSolver::Iterative(limits) => limits,
             LinearSolver::Direct { otherwise } => {
-                if self.solve_directly(model) {
+                if self.solve_directly(system) {
                     return 0;
                 }
                 otherwise
             }
         };
         let hessian = Hessian {
-            model,
-            bending: self.terms.bending(model),
+            system,
+            bending: self.terms.bending(system),
             blocks: &self.blocks,
             secants: &self.secants,
             touching: &self.touching,
         };
         self.jacobi
-            .refresh(&model.pinned, |row| hessian.diagonal(row));
-        let system = System {
+            .refresh(&system.prescribed.pinned, |row| hessian.diagonal(row));
+        let system = LinearSystem {
             b: &self.gradient,
-            fixed: &model.pinned,
+            fixed: &system.prescribed.pinned,
             row: |row, p: &[Vec3]| hessian.row_times(row, p),
         };
         self.pcg
@@ -107,18 +107,19 @@ impl Workspace {
     }
 
     /// Solves for `gradient` by factorisation; false when the matrix is not positive definite.
-    fn solve_directly(&mut self, model: &Model) -> bool {
-        let fits = |direct: &Direct| direct.fits(model, &self.touching);
+    fn solve_directly(&mut self, system: &System) -> bool {
+        let fits = |direct: &Direct| direct.fits(system, &self.touching);
         let direct = match self.direct.take().filter(fits) {
             Some(direct) => self.direct.insert(direct),
             None => {
                 let near = self.contacts.cloth.couples();
-                self.direct.insert(Direct::new(model, &model.layout, &near))
+                self.direct
+                    .insert(Direct::new(system, &system.topology.layout, &near))
             }
         };
         let hessian = Hessian {
-            model,
-            bending: self.terms.bending(model),
+            system,
+            bending: self.terms.bending(system),
             blocks: &self.blocks,
             secants: &self.secants,
             touching: &self.touching,
@@ -139,12 +140,12 @@ impl Workspace {
 
     /// Shortens the direction where cloth would pass through cloth: vertex by vertex, or, where that
     /// would no longer lower the potential, as a whole.
-    pub(super) fn bound_moves(&mut self, model: &Model, x: &[Vec3]) {
-        if model.contact.cloth_offset <= 0.0 {
+    pub(super) fn bound_moves(&mut self, system: &System, x: &[Vec3]) {
+        if system.contact.cloth_offset <= 0.0 {
             return;
         }
         self.trial.clone_from(&self.direction);
-        let held = self.contacts.cloth.bound(model, x, &mut self.direction);
+        let held = self.contacts.cloth.bound(system, x, &mut self.direction);
         // `gradient` holds its negative after the linear solve.
         if held == 0 || dot(&self.gradient, &self.direction) > 0.0 {
             return;

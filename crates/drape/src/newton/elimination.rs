@@ -10,7 +10,7 @@ use super::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 use crate::laws::membrane::Curvature;
 use crate::merge::merge_map;
 use crate::part::Part;
-use crate::{Model, PcgLimits, State};
+use crate::{PcgLimits, State, System};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use toile_geometry::Vec3;
@@ -38,7 +38,7 @@ impl Workspace {
     /// over the cloth. The contacts in hand must be those of the state. Cloth that is tangled is left
     /// alone: what draws it out is found anew after every move. Returns whether anything moved;
     /// contacts are then to be found anew.
-    pub(crate) fn eliminate(&mut self, model: &Model, state: &mut State, enough: f64) -> bool {
+    pub(crate) fn eliminate(&mut self, system: &System, state: &mut State, enough: f64) -> bool {
         if !self.terms.are_of_stretch() || !self.contacts.cloth.is_in_order() {
             return false;
         }
@@ -46,13 +46,13 @@ impl Workspace {
         let mut moved = false;
         for _ in 0..PASSES {
             let x = &state.positions;
-            self.contacts.refresh_surfaces(model, state, x);
-            self.fill_gradient(model, x, None);
+            self.contacts.refresh_surfaces(system, state, x);
+            self.fill_gradient(system, x, None);
             let total = dot(&self.gradient, &self.gradient);
             if total.is_nan() || total <= enough * enough {
                 break;
             }
-            let regions = self.regions(model, total);
+            let regions = self.regions(system, total);
             let held = regions.iter().flatten().map(|&v| self.gradient[v as usize]);
             let outside = (total - held.map(|g| g.norm_squared()).sum::<f64>()).max(0.0);
             let calm = (CALM_OUTSIDE * outside.sqrt()).max(CALM_ENOUGH * enough);
@@ -61,7 +61,7 @@ impl Workspace {
             let parts: Vec<Part> = regions
                 .par_iter()
                 .filter_map(|own| {
-                    let mut part = Part::new(model, state, touching, own);
+                    let mut part = Part::new(system, state, touching, own);
                     bring_to_rest(&mut part, calm).then_some(part)
                 })
                 .collect();
@@ -73,27 +73,32 @@ impl Workspace {
                 state.positions[v as usize] = place;
             }
         }
-        moved && self.hold_back(model, state, start)
+        moved && self.hold_back(system, state, start)
     }
 
     /// Bounds what was moved so that no cloth passes through cloth, and takes it all back where the
     /// potential is then higher than before. Returns whether anything stays moved.
-    pub(super) fn hold_back(&mut self, model: &Model, state: &mut State, start: Vec<Vec3>) -> bool {
+    pub(super) fn hold_back(
+        &mut self,
+        system: &System,
+        state: &mut State,
+        start: Vec<Vec3>,
+    ) -> bool {
         let ways = state.positions.iter().zip(&start).map(|(x, s)| x - s);
         let mut ways: Vec<Vec3> = ways.collect();
-        if self.contacts.cloth.bound(model, &start, &mut ways) == 0 {
+        if self.contacts.cloth.bound(system, &start, &mut ways) == 0 {
             return true;
         }
         for ((x, s), d) in state.positions.iter_mut().zip(&start).zip(&ways) {
             *x = s + d;
         }
-        self.contacts.refresh_surfaces(model, state, &start);
+        self.contacts.refresh_surfaces(system, state, &start);
         let inertia = Inertia {
             weight: &vec![0.0; start.len()],
             target: &start,
         };
         let [before, after] =
-            [&start, &state.positions].map(|x| self.potential(model, x, &inertia));
+            [&start, &state.positions].map(|x| self.potential(system, x, &inertia));
         let lower = after < before;
         if !lower {
             state.positions = start;
@@ -104,7 +109,7 @@ impl Workspace {
     /// Regions of free vertices, each ascending, round those that hold most of the force; `total`
     /// is the sum of its squares. No two share a term of the potential. None where the force is
     /// spread over the cloth.
-    fn regions(&self, model: &Model, total: f64) -> Vec<Vec<u32>> {
+    fn regions(&self, system: &System, total: f64) -> Vec<Vec<u32>> {
         let squares: Vec<f64> = self.gradient.iter().map(Vec3::norm_squared).collect();
         let mut ring: Vec<u32> = (0..squares.len() as u32).collect();
         ring.sort_by(|&a, &b| squares[b as usize].total_cmp(&squares[a as usize]));
@@ -124,23 +129,23 @@ impl Workspace {
             if all.len() > most {
                 return Vec::new();
             }
-            let next = (ring.iter()).flat_map(|&v| model.pattern.row_columns(v as usize));
+            let next = (ring.iter()).flat_map(|&v| system.topology.pattern.row_columns(v as usize));
             ring = next.copied().collect();
         }
         let bent = all.iter().flat_map(|&v| {
-            let columns = model.bending.row_entries(v as usize).0;
+            let columns = system.rest.bending.row_entries(v as usize).0;
             columns.iter().map(move |&u| [v, u])
         });
-        let sewn = model.elastics.iter().filter_map(crate::Elastic::ends);
+        let sewn = system.couplings.ends();
         let touching = self.contacts.cloth.couples();
         let edges = all.iter().flat_map(|&v| {
-            let columns = model.pattern.row_columns(v as usize);
+            let columns = system.topology.pattern.row_columns(v as usize);
             columns.iter().map(move |&u| [v, u])
         });
         let pairs = bent.chain(edges).chain(sewn).chain(touching);
         let coupled = pairs.filter(|pair| pair.iter().all(|&v| inside[v as usize]));
         let (region_of, _) = merge_map(squares.len(), coupled);
-        all.retain(|&v| !model.pinned[v as usize]);
+        all.retain(|&v| !system.prescribed.pinned[v as usize]);
         all.sort_unstable();
         let mut regions: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for v in all {
@@ -155,17 +160,17 @@ impl Workspace {
 /// Contacts of cloth with cloth stay as they were found. Returns whether anything moved.
 fn bring_to_rest(part: &mut Part, calm: f64) -> bool {
     let Part {
-        model,
+        system,
         state,
         touching,
         ..
     } = part;
     let mut workspace = Workspace::default();
-    workspace.fit(model);
-    workspace.terms.hold_still(model, state);
+    workspace.fit(system);
+    workspace.terms.hold_still(system, state);
     let start = state.positions.clone();
     let inertia = Inertia {
-        weight: &vec![0.0; model.vertex_count()],
+        weight: &vec![0.0; system.vertex_count()],
         target: &start,
     };
     let mut settings = NewtonSettings {
@@ -184,9 +189,9 @@ fn bring_to_rest(part: &mut Part, calm: f64) -> bool {
     while report.iterations < ITERATIONS && settings.longest_move > 0.0 {
         workspace
             .contacts
-            .refresh_surfaces(model, state, &state.positions);
+            .refresh_surfaces(system, state, &state.positions);
         workspace.contacts.cloth.active.clone_from(touching);
-        if !workspace.iterate(model, state, &inertia, &settings, &mut report) {
+        if !workspace.iterate(system, state, &inertia, &settings, &mut report) {
             break;
         }
         if report.iterations == 1 {
@@ -201,12 +206,13 @@ fn bring_to_rest(part: &mut Part, calm: f64) -> bool {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::SystemBuilder;
     use crate::measure::residual;
     use crate::{Cloth, Material, PseudoTransientContinuation, RestSettings};
     use toile_geometry::TriangleMesh;
 
     /// A sheet of 40 x 40 squares of 10 mm at rest, hung by its upper edge.
-    pub fn hung() -> (Model, State, Workspace) {
+    pub fn hung() -> (System, State, Workspace) {
         let mut mesh = TriangleMesh::default();
         for v in 0..41 * 41u32 {
             let (x, y) = (0.01 * f64::from(v % 41), -0.01 * f64::from(v / 41));
@@ -219,18 +225,19 @@ pub(super) mod tests {
                 .extend([[a, a + 41, a + 1], [a + 1, a + 41, a + 42]]);
         }
         let cloth = Cloth::from_mesh("sheet", &mesh, Material::default()).unwrap();
-        let mut model = Model::new("sheet", &cloth).unwrap();
-        model.pinned[..41].fill(true);
-        let mut state = State::at_rest(&model, mesh.positions);
+        let mut builder = SystemBuilder::new("sheet", &cloth).unwrap();
+        builder.pinned[..41].fill(true);
+        let system = builder.build();
+        let mut state = State::at_rest(&system, mesh.positions);
         let mut workspace = Workspace::default();
         let mut rest = PseudoTransientContinuation::near(RestSettings {
             residual: 1e-6,
             ..RestSettings::default()
         });
         while !rest.finished() {
-            rest.advance(&model, &mut state, &mut workspace).unwrap();
+            rest.advance(&system, &mut state, &mut workspace).unwrap();
         }
-        (model, state, workspace)
+        (system, state, workspace)
     }
 
     /// Pushes the vertices within 20 mm of one out of the sheet and together.
@@ -246,22 +253,22 @@ pub(super) mod tests {
 
     #[test]
     fn dents_are_brought_to_rest_and_the_cloth_round_them_stays() {
-        let (model, rest, mut workspace) = hung();
+        let (system, rest, mut workspace) = hung();
         let mut state = rest.clone();
         let spots = [10 * 41 + 8, 28 * 41 + 32];
         for spot in spots {
             dent(&mut state, spot);
         }
         let start = state.clone();
-        let dented = residual(&model, &state, &mut workspace);
+        let dented = residual(&system, &state, &mut workspace);
         let total = dot(&workspace.gradient, &workspace.gradient);
-        let regions = workspace.regions(&model, total);
+        let regions = workspace.regions(&system, total);
         assert_eq!(regions.len(), 2);
         for (region, spot) in regions.iter().zip(spots) {
             assert!(region.contains(&(spot as u32)) && region.is_sorted());
         }
-        assert!(workspace.eliminate(&model, &mut state, 0.0));
-        let left = residual(&model, &state, &mut workspace);
+        assert!(workspace.eliminate(&system, &mut state, 0.0));
+        let left = residual(&system, &state, &mut workspace);
         assert!(left < 0.03 * dented, "{left} of {dented}");
         for ((now, before), rest) in state
             .positions
@@ -274,23 +281,23 @@ pub(super) mod tests {
             assert!((now - rest).norm() < 1e-3);
         }
         // What is enough is left alone.
-        let enough = 2.0 * left * crate::measure::weight_norm(&model);
-        assert!(!workspace.eliminate(&model, &mut state, enough));
+        let enough = 2.0 * left * crate::measure::weight_norm(&system);
+        assert!(!workspace.eliminate(&system, &mut state, enough));
     }
 
     #[test]
     fn force_spread_over_the_cloth_is_left_to_newton_and_so_are_numbers_that_are_none() {
-        let (model, rest, mut workspace) = hung();
+        let (system, rest, mut workspace) = hung();
         let mut state = rest.clone();
         for (v, x) in state.positions.iter_mut().enumerate().skip(41) {
             x.z += 1e-4 * (v as f64 * 1.7).sin();
         }
         let start = state.clone();
-        workspace.net_force(&model, &state);
-        assert!(!workspace.eliminate(&model, &mut state, 0.0));
+        workspace.net_force(&system, &state);
+        assert!(!workspace.eliminate(&system, &mut state, 0.0));
         assert_eq!(state, start);
         state.positions[800].x = f64::NAN;
-        workspace.net_force(&model, &state);
-        assert!(!workspace.eliminate(&model, &mut state, 0.0));
+        workspace.net_force(&system, &state);
+        assert!(!workspace.eliminate(&system, &mut state, 0.0));
     }
 }

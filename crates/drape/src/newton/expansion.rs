@@ -3,7 +3,7 @@
 use super::{Inertia, Workspace};
 use crate::collision::ClothContact;
 use crate::laws::membrane::Curvature;
-use crate::{Contact, Model, State};
+use crate::{Contact, State, System};
 use toile_geometry::Vec3;
 
 /// The potential of a state to the second order, without inertia.
@@ -25,24 +25,24 @@ impl Workspace {
     /// make the Hessian indefinite is in it.
     pub fn expand(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &State,
         curvature: Curvature,
         vectors: &[Vec<Vec3>],
     ) -> Expansion {
-        self.net_force(model, state);
+        self.net_force(system, state);
         let gradient = self.gradient.iter().map(|force| -force).collect();
-        let weight = vec![0.0; model.vertex_count()];
+        let weight = vec![0.0; system.vertex_count()];
         let inertia = Inertia {
             weight: &weight,
             target: &state.positions,
         };
-        let energy = self.potential(model, &state.positions, &inertia);
-        self.fill_hessian(model, &state.positions, &inertia, curvature);
-        let rows = 0..model.vertex_count();
+        let energy = self.potential(system, &state.positions, &inertia);
+        self.fill_hessian(system, &state.positions, &inertia, curvature);
+        let rows = 0..system.vertex_count();
         let times = |p: &Vec<Vec3>| {
             rows.clone()
-                .map(|row| self.hessian_row(model, row, p))
+                .map(|row| self.hessian_row(system, row, p))
                 .collect()
         };
         Expansion {

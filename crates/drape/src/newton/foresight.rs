@@ -2,7 +2,7 @@
 //! sticks as soon as it turns back, and that a point above a surface is stopped by it. Either kink,
 //! at a single point, would make the line search cut the step of all the cloth.
 
-use crate::Model;
+use crate::System;
 use crate::contacts::Contacts;
 use crate::laws::contact::{ContactLaw, ContactPlane};
 use toile_geometry::Vec3;
@@ -49,13 +49,13 @@ impl Contacts {
     }
 
     /// Adds to a force what draws points down that are about to land [N].
-    pub fn pull_down(&self, model: &Model, x: &[Vec3], force: &mut [Vec3]) {
+    pub fn pull_down(&self, system: &System, x: &[Vec3], force: &mut [Vec3]) {
         for contact in &self.active {
             let sample = &contact.point;
             let pull = contact.law.pull_down(&contact.plane, sample.place(x));
             let Some(pull) = pull else { continue };
             for (&v, &w) in sample.vertices.iter().zip(&sample.weights) {
-                if !model.pinned[v as usize] {
+                if !system.prescribed.pinned[v as usize] {
                     force[v as usize] += pull * w;
                 }
             }
@@ -64,7 +64,7 @@ impl Contacts {
             let pull = contact.law.pull_down(&contact.plane, contact.between(x));
             let Some(pull) = pull else { continue };
             for (v, w) in contact.vertices.into_iter().zip(contact.weights) {
-                if !model.pinned[v as usize] {
+                if !system.prescribed.pinned[v as usize] {
                     force[v as usize] += pull * w;
                 }
             }
@@ -76,19 +76,19 @@ impl Contacts {
 mod tests {
     use super::*;
     use crate::contacts::Contact;
-    use crate::{Cloth, Material, Model};
+    use crate::{Cloth, Material, System};
     use nalgebra::Matrix3;
     use toile_geometry::TriangleMesh;
 
     /// One triangle; its first vertex slides along x at the limit of friction on a level floor, the
     /// second hovers 1 mm above it.
-    fn scene() -> (Model, Contacts, Vec<Vec3>) {
+    fn scene() -> (System, Contacts, Vec<Vec3>) {
         let mesh = TriangleMesh {
             positions: vec![Vec3::zeros(), Vec3::new(0.1, 1e-3, 0.0), Vec3::z() * 0.1],
             triangles: vec![[0, 1, 2]],
         };
         let cloth = Cloth::from_mesh("triangle", &mesh, Material::default()).unwrap();
-        let model = Model::new("triangle", &cloth).unwrap();
+        let system = System::new("triangle", &cloth).unwrap();
         let law = ContactLaw {
             normal: 100.0,
             tangential: 50.0,
@@ -111,23 +111,23 @@ mod tests {
         contacts.active = vec![
             Contact {
                 sample: 0,
-                point: model.samples[0],
+                point: system.rest.samples[0],
                 plane: plane(0, 2e-4),
                 law,
             },
             Contact {
                 sample: 1,
-                point: model.samples[1],
+                point: system.rest.samples[1],
                 plane: plane(1, -1e-3),
                 law,
             },
         ];
-        (model, contacts, mesh.positions)
+        (system, contacts, mesh.positions)
     }
 
     #[test]
     fn kinks_are_seen_to_only_where_they_matter() {
-        let (model, mut contacts, x) = scene();
+        let (system, mut contacts, x) = scene();
         let back_and_down = [Vec3::x() * -1e-4, Vec3::y() * -3e-3, Vec3::zeros()];
         // 2.5e-7 J for the return, 2e-4 J for the landing.
         assert!(!contacts.foresee(&x, &back_and_down, 1.0));
@@ -143,7 +143,7 @@ mod tests {
         // Once seen they are foreseen.
         assert!(!contacts.foresee(&x, &back_and_down, 1e-9));
         let mut force = vec![Vec3::zeros(); 3];
-        contacts.pull_down(&model, &x, &mut force);
+        contacts.pull_down(&system, &x, &mut force);
         assert!((force[1] - Vec3::y() * -0.1).norm() < 1e-12 && force[0] == Vec3::zeros());
     }
 

@@ -20,7 +20,7 @@ use crate::contacts::Contacts;
 use crate::hessian::{Direct, Hessian};
 use crate::laws::membrane::Curvature;
 use crate::step_terms::{StepTerms, add_forces_of_motion};
-use crate::{Model, State};
+use crate::{State, System};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -140,28 +140,28 @@ impl Workspace {
         }
     }
 
-    pub(crate) fn fit(&mut self, model: &Model) {
-        let n = model.vertex_count();
+    pub(crate) fn fit(&mut self, system: &System) {
+        let n = system.vertex_count();
         self.gradient.resize(n, Vec3::zeros());
         self.direction.resize(n, Vec3::zeros());
         self.trial.resize(n, Vec3::zeros());
         self.diagonal.resize(n, Matrix3::zeros());
         self.corner_gradients
-            .resize(model.triangles.len(), [Vec3::zeros(); 3]);
+            .resize(system.topology.triangles.len(), [Vec3::zeros(); 3]);
         self.elements
-            .resize(model.triangles.len(), [Matrix3::zeros(); 6]);
+            .resize(system.topology.triangles.len(), [Matrix3::zeros(); 6]);
         self.blocks
-            .resize(model.pattern.block_count(), Matrix3::zeros());
-        self.secants.resize(model.elastics.len(), 0.0);
+            .resize(system.topology.pattern.block_count(), Matrix3::zeros());
+        self.secants.resize(system.elastic_count(), 0.0);
     }
 
     /// Net force on every vertex at the state's positions, inertia left out, zero at pins [N].
     /// Contact and friction (inside its cone) are part of it.
-    pub fn net_force(&mut self, model: &Model, state: &State) -> &[Vec3] {
-        self.fit(model);
-        self.terms.hold_still(model, state);
-        self.contacts.refresh(model, state, &state.positions);
-        self.fill_gradient(model, &state.positions, None);
+    pub fn net_force(&mut self, system: &System, state: &State) -> &[Vec3] {
+        self.fit(system);
+        self.terms.hold_still(system, state);
+        self.contacts.refresh(system, state, &state.positions);
+        self.fill_gradient(system, &state.positions, None);
         for g in &mut self.gradient {
             *g = -*g;
         }
@@ -170,11 +170,11 @@ impl Workspace {
 
     /// The same with the forces that depend on velocity, viscosity and the drag of the air on
     /// triangles, taken at the state's velocities [N]. Drag per mass is left to the caller.
-    pub(crate) fn force_in_motion(&mut self, model: &Model, state: &State, h: f64) -> &[Vec3] {
-        self.net_force(model, state);
-        add_forces_of_motion(model, state, &mut self.gradient);
-        self.contacts.damp(model, state, h, &mut self.gradient);
-        for (force, &pinned) in self.gradient.iter_mut().zip(&model.pinned) {
+    pub(crate) fn force_in_motion(&mut self, system: &System, state: &State, h: f64) -> &[Vec3] {
+        self.net_force(system, state);
+        add_forces_of_motion(system, state, &mut self.gradient);
+        self.contacts.damp(system, state, h, &mut self.gradient);
+        for (force, &pinned) in self.gradient.iter_mut().zip(&system.prescribed.pinned) {
             if pinned {
                 *force = Vec3::zeros();
             }
@@ -191,20 +191,20 @@ impl Workspace {
     /// anchors and time are left to the caller.
     pub fn solve(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         inertia: &Inertia,
         settings: &NewtonSettings,
     ) -> NewtonReport {
-        self.fit(model);
+        self.fit(system);
         let mut report = NewtonReport {
             sound: true,
             fraction: 1.0,
             ..NewtonReport::default()
         };
         for _ in 0..settings.iterations {
-            self.contacts.refresh(model, state, &state.positions);
-            if !self.iterate(model, state, inertia, settings, &mut report) {
+            self.contacts.refresh(system, state, &state.positions);
+            if !self.iterate(system, state, inertia, settings, &mut report) {
                 break;
             }
         }
@@ -214,13 +214,13 @@ impl Workspace {
     /// One iteration with the contacts in hand; false when there was none to take or it failed.
     fn iterate(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         inertia: &Inertia,
         settings: &NewtonSettings,
         report: &mut NewtonReport,
     ) -> bool {
-        self.fill_gradient(model, &state.positions, Some(inertia));
+        self.fill_gradient(system, &state.positions, Some(inertia));
         report.gradient = dot(&self.gradient, &self.gradient).sqrt();
         report.sound = report.gradient.is_finite();
         if !report.sound || report.gradient <= settings.tolerance {
@@ -228,10 +228,10 @@ impl Workspace {
         }
         report.iterations += 1;
         self.turn_gradient();
-        self.find_direction(model, &state.positions, inertia, settings, report);
+        self.find_direction(system, &state.positions, inertia, settings, report);
         self.limit_moves(settings.longest_move);
-        self.bound_moves(model, &state.positions);
-        report.fraction = self.line_search(model, &state.positions, inertia);
+        self.bound_moves(system, &state.positions);
+        report.fraction = self.line_search(system, &state.positions, inertia);
         report.sound = report.fraction > 0.0;
         if report.sound {
             std::mem::swap(&mut state.positions, &mut self.trial);
@@ -241,8 +241,9 @@ impl Workspace {
     }
 
     /// Potential at some positions, with the contact planes as they are [J].
-    pub(crate) fn potential(&self, model: &Model, x: &[Vec3], inertia: &Inertia) -> f64 {
-        let elements: Vec<f64> = model
+    pub(crate) fn potential(&self, system: &System, x: &[Vec3], inertia: &Inertia) -> f64 {
+        let elements: Vec<f64> = system
+            .topology
             .triangles
             .par_chunks(CHUNK)
             .enumerate()
@@ -250,8 +251,8 @@ impl Workspace {
                 let mut energy = 0.0;
                 for (k, corners) in triangles.iter().enumerate() {
                     let t = chunk * CHUNK + k;
-                    let law = self.terms.law(model, t);
-                    energy += model.elements[t].energy(&law, corners.map(|v| x[v as usize]));
+                    let law = self.terms.law(system, t);
+                    energy += system.rest.elements[t].energy(&law, corners.map(|v| x[v as usize]));
                 }
                 energy
             })
@@ -262,15 +263,15 @@ impl Workspace {
                 let mut energy = 0.0;
                 for v in chunk * CHUNK..((chunk + 1) * CHUNK).min(x.len()) {
                     let off = x[v] - inertia.target[v];
-                    energy += model.bending.row_energy(v, x)
+                    energy += system.rest.bending.row_energy(v, x)
                         + 0.5 * inertia.weight[v] * off.norm_squared()
-                        - model.mass[v] * model.gravity.dot(&x[v]);
+                        - system.rest.mass[v] * system.control.gravity.dot(&x[v]);
                 }
                 energy
             })
             .collect();
         let mut energy = elements.iter().sum::<f64>() + vertices.iter().sum::<f64>();
-        for elastic in &model.elastics {
+        for elastic in system.elastics() {
             energy += elastic.law.energy(elastic.gap(x));
         }
         for contact in &self.contacts.active {
@@ -280,29 +281,33 @@ impl Workspace {
         for contact in &self.contacts.cloth.active {
             energy += contact.law.energy(&contact.plane, contact.between(x));
         }
-        energy + self.terms.energy(model, x)
+        energy + self.terms.energy(system, x)
     }
 
     /// Gradient of the potential at `x`; zero at pins.
-    pub(crate) fn fill_gradient(&mut self, model: &Model, x: &[Vec3], inertia: Option<&Inertia>) {
+    pub(crate) fn fill_gradient(&mut self, system: &System, x: &[Vec3], inertia: Option<&Inertia>) {
         let terms = &self.terms;
         let each = self.corner_gradients.par_iter_mut().enumerate();
         each.with_min_len(CHUNK).for_each(|(t, out)| {
-            let corners = model.triangles[t].map(|v| x[v as usize]);
-            *out = model.elements[t].gradient(&terms.law(model, t), corners).1;
+            let corners = system.topology.triangles[t].map(|v| x[v as usize]);
+            *out = system.rest.elements[t]
+                .gradient(&terms.law(system, t), corners)
+                .1;
         });
-        for (secant, elastic) in self.secants.iter_mut().zip(&model.elastics) {
+        for (secant, elastic) in self.secants.iter_mut().zip(system.elastics()) {
             *secant = elastic.law.secant(elastic.gap(x));
         }
         let (corner_gradients, secants) = (&self.corner_gradients, &self.secants);
         let each = self.gradient.par_iter_mut().enumerate();
         each.with_min_len(CHUNK).for_each(|(v, out)| {
-            let mut g = model.bending.row_force(v, x) - model.gravity * model.mass[v];
-            let uses = model.corner_start[v] as usize..model.corner_start[v + 1] as usize;
-            for &corner in &model.corners[uses] {
+            let mut g =
+                system.rest.bending.row_force(v, x) - system.control.gravity * system.rest.mass[v];
+            let uses = system.topology.corner_start[v] as usize
+                ..system.topology.corner_start[v + 1] as usize;
+            for &corner in &system.topology.corners[uses] {
                 g += corner_gradients[corner as usize / 3][corner as usize % 3];
             }
-            for (e, other) in model.elastics_at(v) {
+            for (e, other) in system.elastics_at(v) {
                 g += (x[v] - other.place(x)) * secants[e];
             }
             if let Some(inertia) = inertia {
@@ -323,8 +328,8 @@ impl Workspace {
                 self.gradient[v as usize] += gradient * w;
             }
         }
-        self.terms.add_gradient(model, x, &mut self.gradient);
-        for (g, &pinned) in self.gradient.iter_mut().zip(&model.pinned) {
+        self.terms.add_gradient(system, x, &mut self.gradient);
+        for (g, &pinned) in self.gradient.iter_mut().zip(&system.prescribed.pinned) {
             if pinned {
                 *g = Vec3::zeros();
             }
@@ -335,7 +340,7 @@ impl Workspace {
     /// constant and stays in the model.
     pub(crate) fn fill_hessian(
         &mut self,
-        model: &Model,
+        system: &System,
         x: &[Vec3],
         inertia: &Inertia,
         curvature: Curvature,
@@ -343,13 +348,13 @@ impl Workspace {
         let terms = &self.terms;
         let each = self.elements.par_iter_mut().enumerate();
         each.with_min_len(CHUNK).for_each(|(t, out)| {
-            let corners = model.triangles[t].map(|v| x[v as usize]);
-            let law = terms.law(model, t);
-            *out = model.elements[t].hessian(&law, corners, curvature);
+            let corners = system.topology.triangles[t].map(|v| x[v as usize]);
+            let law = terms.law(system, t);
+            *out = system.rest.elements[t].hessian(&law, corners, curvature);
             terms.add_hessian(t, out);
         });
         for (v, d) in self.diagonal.iter_mut().enumerate() {
-            let pull: f64 = model.elastics_at(v).map(|(e, _)| self.secants[e]).sum();
+            let pull: f64 = system.elastics_at(v).map(|(e, _)| self.secants[e]).sum();
             *d = Matrix3::identity() * (inertia.weight[v] + pull);
         }
         for contact in &self.contacts.active {
@@ -369,7 +374,8 @@ impl Workspace {
             }
         }
         self.couple(x);
-        model
+        system
+            .topology
             .pattern
             .gather(&self.elements, &self.diagonal, &mut self.blocks);
     }
@@ -397,10 +403,10 @@ impl Workspace {
     }
 
     /// The Hessian filled last.
-    pub(crate) fn hessian<'a>(&'a self, model: &'a Model) -> Hessian<'a> {
+    pub(crate) fn hessian<'a>(&'a self, system: &'a System) -> Hessian<'a> {
         Hessian {
-            model,
-            bending: self.terms.bending(model),
+            system,
+            bending: self.terms.bending(system),
             blocks: &self.blocks,
             secants: &self.secants,
             touching: &self.touching,
@@ -408,24 +414,24 @@ impl Workspace {
     }
 
     /// One row of the Hessian filled last times a vector.
-    pub(crate) fn hessian_row(&self, model: &Model, row: usize, p: &[Vec3]) -> Vec3 {
-        self.hessian(model).row_times(row, p)
+    pub(crate) fn hessian_row(&self, system: &System, row: usize, p: &[Vec3]) -> Vec3 {
+        self.hessian(system).row_times(row, p)
     }
 
     /// The triangles' and elastics' rows of the Hessian filled last: columns and blocks, bending
     /// left out.
     pub(crate) fn hessian_blocks<'a>(
         &'a self,
-        model: &'a Model,
+        system: &'a System,
         row: usize,
     ) -> (&'a [u32], &'a [Matrix3<f64>]) {
-        model.pattern.row_entries(row, &self.blocks)
+        system.topology.pattern.row_entries(row, &self.blocks)
     }
 
     /// Halves the direction until the potential falls enough; the new positions are in `trial`.
     /// Returns the share taken, 0 when none lowers the potential.
-    fn line_search(&mut self, model: &Model, x: &[Vec3], inertia: &Inertia) -> f64 {
-        let start = self.potential(model, x, inertia);
+    fn line_search(&mut self, system: &System, x: &[Vec3], inertia: &Inertia) -> f64 {
+        let start = self.potential(system, x, inertia);
         // `gradient` holds its negative.
         let slope = -dot(&self.gradient, &self.direction);
         let mut fraction = 1.0;
@@ -433,7 +439,7 @@ impl Workspace {
             for ((trial, x), d) in self.trial.iter_mut().zip(x).zip(&self.direction) {
                 *trial = x + d * fraction;
             }
-            let energy = self.potential(model, &self.trial, inertia);
+            let energy = self.potential(system, &self.trial, inertia);
             // Below rounding of the potential itself nothing can be told apart: take the step.
             let noise = 1e-13 * start.abs().max(1.0);
             if energy <= start + DECREASE * fraction * slope + noise {

@@ -1,7 +1,7 @@
 //! Frequencies that bound the substeps.
 
 use crate::methods::largest_frequency;
-use crate::{Model, State};
+use crate::{State, System};
 use nalgebra::Matrix3;
 
 /// Squared stretch up to which a layout counts as isometric to the cloth at rest.
@@ -13,12 +13,12 @@ const SHORT: f64 = 2e-3;
 /// The fastest vibration of the cloth while no triangle is strained [rad/s], with the principal
 /// squared stretches of the layout: by Lanczos iteration where the layout is nearly isometric to
 /// the rest shapes, and otherwise by bounds that no layout changes.
-pub fn frequency_at_rest(model: &Model, [most, least]: [f64; 2]) -> f64 {
-    let bound = stiffest(model).0.hypot(soft_frequency(model));
+pub fn frequency_at_rest(system: &System, [most, least]: [f64; 2]) -> f64 {
+    let bound = stiffest(system).0.hypot(soft_frequency(system));
     if most < 1.0 + ISOMETRIC && least > 1.0 - ISOMETRIC {
-        let layout = State::at_rest(model, model.layout.clone());
+        let layout = State::at_rest(system, system.topology.layout.clone());
         // Squeezing lowers the frequency by the root of the square.
-        bound.min((1.0 + SHORT) * largest_frequency(model, &layout) / least.sqrt())
+        bound.min((1.0 + SHORT) * largest_frequency(system, &layout) / least.sqrt())
     } else {
         bound
     }
@@ -29,11 +29,11 @@ pub fn frequency_at_rest(model: &Model, [most, least]: [f64; 2]) -> f64 {
 ///
 /// With strain B u, energy A C : strain strain / 2 and density rho, w^2 is the largest eigenvalue
 /// of 3/rho L^T (B B^T) L, C = L L^T.
-pub fn stiffest(model: &Model) -> (f64, usize) {
+pub fn stiffest(system: &System) -> (f64, usize) {
     let mut best = (0.0, 0);
-    for (t, element) in model.elements.iter().enumerate() {
-        let material = model.material[t] as usize;
-        let [c11, c22, c12, g] = model.laws[material].stiffness;
+    for (t, element) in system.rest.elements.iter().enumerate() {
+        let material = system.materials.of_triangle[t] as usize;
+        let [c11, c22, c12, g] = system.materials.laws[material].stiffness;
         let sum = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
         let (a, b) = (element.warp, element.weft);
         let (aa, bb, ab) = (sum(a, a), sum(b, b), sum(a, b));
@@ -45,9 +45,9 @@ pub fn stiffest(model: &Model) -> (f64, usize) {
                 .max(),
             None => law.norm() * shapes.trace(),
         };
-        let squared = 3.0 / model.materials[material].density * largest;
+        let squared = 3.0 / system.materials.list[material].density * largest;
         if squared > best.0 {
-            best = (squared, model.triangles[t][0] as usize);
+            best = (squared, system.topology.triangles[t][0] as usize);
         }
     }
     (best.0.sqrt(), best.1)
@@ -55,13 +55,13 @@ pub fn stiffest(model: &Model) -> (f64, usize) {
 
 /// A bound on the fastest vibration by bending and elastics [rad/s]: the largest row sum of
 /// |K| / m (Gershgorin 1931).
-pub fn soft_frequency(model: &Model) -> f64 {
-    (0..model.vertex_count())
-        .filter(|&v| !model.pinned[v])
+pub fn soft_frequency(system: &System) -> f64 {
+    (0..system.vertex_count())
+        .filter(|&v| !system.prescribed.pinned[v])
         .map(|v| {
-            let (_, values) = model.bending.row_entries(v);
+            let (_, values) = system.rest.bending.row_entries(v);
             let bending: f64 = values.iter().map(|k| k.abs()).sum();
-            (bending + 2.0 * model.elastic_stiffness(v)) / model.mass[v]
+            (bending + 2.0 * system.elastic_stiffness(v)) / system.rest.mass[v]
         })
         .fold(0.0, f64::max)
         .sqrt()
@@ -107,14 +107,14 @@ mod tests {
             ..Material::default()
         };
         let cloth = Cloth::from_mesh("cloth", &mesh, material).unwrap();
-        let model = Model::new("cloth", &cloth).unwrap();
-        let exact = largest_frequency(&model, &State::at_rest(&model, mesh.positions.clone()));
-        let (bound, _) = stiffest(&model);
+        let system = System::new("cloth", &cloth).unwrap();
+        let exact = largest_frequency(&system, &State::at_rest(&system, mesh.positions.clone()));
+        let (bound, _) = stiffest(&system);
         assert!(bound >= exact && bound < 1.6 * exact, "{bound} {exact}");
         // A layout that is squeezed tells nothing about the cloth at rest.
-        let squeezed = frequency_at_rest(&model, [1.0, 0.5]);
+        let squeezed = frequency_at_rest(&system, [1.0, 0.5]);
         assert!((squeezed - bound).abs() < 1e-9 * bound);
-        let flat = frequency_at_rest(&model, [1.0, 1.0]);
+        let flat = frequency_at_rest(&system, [1.0, 1.0]);
         assert!(flat >= exact && flat < 1.003 * exact, "{flat} {exact}");
     }
 
@@ -126,11 +126,11 @@ mod tests {
             ..Material::default()
         };
         let cloth = Cloth::from_mesh("cloth", &mesh, material).unwrap();
-        let model = Model::new("cloth", &cloth).unwrap();
+        let system = System::new("cloth", &cloth).unwrap();
         let frequency = |drawn: [f64; 2]| {
             let places = mesh.positions.iter();
             let moved = places.map(|p| Vec3::new(p.x * drawn[0], p.y, p.z * drawn[1]));
-            largest_frequency(&model, &State::at_rest(&model, moved.collect()))
+            largest_frequency(&system, &State::at_rest(&system, moved.collect()))
         };
         let still = frequency([1.0, 1.0]);
         for [a, b] in [

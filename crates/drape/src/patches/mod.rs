@@ -37,7 +37,7 @@ mod touch;
 
 use crate::method::{Method, MethodSettings, StepReport};
 use crate::methods::{energy_bound, is_possible_speed};
-use crate::{ContactSample, DrapeError, Model, State};
+use crate::{ContactSample, DrapeError, State, System};
 use lane::Lane;
 use limits::stiffening;
 use sheet::Sheet;
@@ -81,26 +81,26 @@ impl PatchVerlet {
 
     fn advance_patches(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         step: f64,
     ) -> Result<StepReport, DrapeError> {
-        let mut sheet = match self.sheet.take().filter(|sheet| sheet.fits(model)) {
+        let mut sheet = match self.sheet.take().filter(|sheet| sheet.fits(system)) {
             Some(sheet) => sheet,
-            None => Sheet::new(model),
+            None => Sheet::new(system),
         };
         state.follow_samples();
-        sheet.start(model, state);
+        sheet.start(system, state);
         let before = sheet.energy();
         let taken = match self.substeps {
             Some(given) => {
                 let count = given.max(1) as usize;
-                sheet.advance(model, step / count as f64, count);
+                sheet.advance(system, step / count as f64, count);
                 Ok(count)
             }
-            None => take_automatic(&mut sheet, model, step),
+            None => take_automatic(&mut sheet, system, step),
         };
-        let bound = energy_bound(model, before, step);
+        let bound = energy_bound(system, before, step);
         let result = taken.and_then(|taken| {
             let (vertex, speed) = sheet.fastest();
             let energy = sheet.energy();
@@ -123,25 +123,25 @@ impl PatchVerlet {
 impl Method for PatchVerlet {
     fn advance(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         step: f64,
     ) -> Result<StepReport, DrapeError> {
-        if is_plain(model, &state.samples) {
+        if is_plain(system, &state.samples) {
             // Inside the pool, so that its threads need not be called again for every substep.
-            rayon::scope(|_| self.advance_patches(model, state, step))
+            rayon::scope(|_| self.advance_patches(system, state, step))
         } else {
-            self.general.advance(model, state, step)
+            self.general.advance(system, state, step)
         }
     }
 }
 
 /// Takes a step in as many substeps as the stretch asks for, looked at again and again.
-fn take_automatic(sheet: &mut Sheet, model: &Model, step: f64) -> Result<usize, DrapeError> {
+fn take_automatic(sheet: &mut Sheet, system: &System, step: f64) -> Result<usize, DrapeError> {
     let longest = 2.0 / sheet.frequency;
     let too_stiff = |substeps: f64| DrapeError::TooStiff {
         stage: STAGE,
-        vertex: limits::stiffest(model).1,
+        vertex: limits::stiffest(system).1,
         substeps,
     };
     let least = step / (SHARE * longest);
@@ -162,7 +162,7 @@ fn take_automatic(sheet: &mut Sheet, model: &Model, step: f64) -> Result<usize, 
                 return Err(blown_up(vertex, speed, length / count));
             }
             let h = length / count;
-            sheet.advance(model, h, count as usize);
+            sheet.advance(system, h, count as usize);
             taken += count as usize;
             let reached = sheet.stretch()[0];
             let sound = h * stiffening(reached) <= MOST_SHARE * longest;
@@ -201,12 +201,12 @@ fn blown_up(vertex: usize, speed: f64, substep: f64) -> DrapeError {
 }
 
 /// Whether nothing acts but what patches treat.
-fn is_plain(model: &Model, samples: &[ContactSample]) -> bool {
-    model.laws.iter().all(|law| law.is_linear())
-        && !model.has_viscous_stretch()
-        && model.viscous_bending.is_none()
-        && model.stencils.is_empty()
-        && !model.keeps_strain()
-        && !model.air.acts()
+fn is_plain(system: &System, samples: &[ContactSample]) -> bool {
+    system.materials.laws.iter().all(|law| law.is_linear())
+        && !system.materials.have_viscous_stretch()
+        && system.rest.viscous_bending.is_none()
+        && system.rest.stencils.is_empty()
+        && !system.materials.keep_strain()
+        && !system.control.air.acts()
         && samples.iter().all(|sample| sample.triangle.is_none())
 }

@@ -11,7 +11,7 @@ use super::octets::{PAD, Points, load, padded, parts, place, store};
 use super::rows::{Rows, rounding};
 use super::tensions::{Ground, Tensions, within};
 use super::touch::Touching;
-use crate::{Elastic, ElasticEnd, Model};
+use crate::{Elastic, ElasticEnd, System};
 use pulp::Simd;
 
 /// Vertices moved by one task.
@@ -77,11 +77,11 @@ impl Patch {
     /// Its vertices stand in the order of the model, or first all even and then all odd ones,
     /// whichever lets more operands lie side by side: on a grid with alternating diagonals every
     /// other vertex is alike.
-    pub fn new(model: &Model, owned: Vec<u32>, rings: usize) -> Self {
-        let in_turn = with_halo(model, owned, rings);
+    pub fn new(system: &System, owned: Vec<u32>, rings: usize) -> Self {
+        let in_turn = with_halo(system, owned, rings);
         let mut by_parity = in_turn.clone();
         by_parity.sort_unstable_by_key(|&(v, _)| (v % 2, v));
-        let [first, second] = [in_turn, by_parity].map(|order| Self::in_order(model, &order));
+        let [first, second] = [in_turn, by_parity].map(|order| Self::in_order(system, &order));
         if second.forces.cost() < first.forces.cost() {
             second
         } else {
@@ -90,19 +90,20 @@ impl Patch {
     }
 
     /// A patch of some vertices with their rings.
-    fn in_order(model: &Model, order: &[(u32, usize)]) -> Self {
+    fn in_order(system: &System, order: &[(u32, usize)]) -> Self {
         let (vertices, ring): (Vec<u32>, Vec<usize>) = order.iter().copied().unzip();
         let count = vertices.len();
-        let mut local = vec![NOWHERE; model.vertex_count()];
+        let mut local = vec![NOWHERE; system.vertex_count()];
         let (mut inverse_mass, mut falls) = (padded(count), padded(count));
         for (at, &v) in vertices.iter().enumerate() {
             local[v as usize] = at as u32;
-            if !model.pinned[v as usize] {
-                (inverse_mass[PAD + at], falls[PAD + at]) = (1.0 / model.mass[v as usize], 1.0);
+            if !system.prescribed.pinned[v as usize] {
+                (inverse_mass[PAD + at], falls[PAD + at]) =
+                    (1.0 / system.rest.mass[v as usize], 1.0);
             }
         }
         let within_it = |v: u32| Some(local[v as usize]).filter(|&at| at != NOWHERE);
-        let elastics = model.elastics.iter().filter_map(|elastic| {
+        let elastics = system.elastics().filter_map(|elastic| {
             Some(Elastic {
                 from: within_it(elastic.from)?,
                 to: match elastic.to {
@@ -112,7 +113,7 @@ impl Patch {
                 law: elastic.law,
             })
         });
-        let triangles: Vec<(usize, [u32; 3])> = (model.triangles.iter().enumerate())
+        let triangles: Vec<(usize, [u32; 3])> = (system.topology.triangles.iter().enumerate())
             .map(|(t, corners)| (t, corners.map(|v| local[v as usize])))
             .filter(|(_, corners)| !corners.contains(&NOWHERE))
             .collect();
@@ -120,9 +121,9 @@ impl Patch {
         Self {
             elastics: elastics.collect(),
             forces: Forces {
-                bending: Rows::new(&bending_rows(model, &vertices, within_it)),
+                bending: Rows::new(&bending_rows(system, &vertices, within_it)),
                 membrane: Tensions::new(&Ground {
-                    model,
+                    system,
                     triangles: &triangles,
                     ring: &ring,
                     vertices: &vertices,
@@ -403,18 +404,18 @@ impl Forces {
 /// The matrix stays symmetric, so momentum is kept, and the diagonal is minus the sum of the
 /// others, so that a shift of the cloth bends nothing.
 fn bending_rows(
-    model: &Model,
+    system: &System,
     vertices: &[u32],
     local: impl Fn(u32) -> Option<u32>,
 ) -> Vec<Vec<(u32, f64)>> {
-    let diagonals = (0..model.vertex_count()).map(|v| model.bending.diagonal(v));
+    let diagonals = (0..system.vertex_count()).map(|v| system.rest.bending.diagonal(v));
     let round = rounding(diagonals.fold(f64::MIN_POSITIVE, f64::max));
     let entry = |row: u32, column: u32| {
-        let (columns, values) = model.bending.row_entries(row as usize);
+        let (columns, values) = system.rest.bending.row_entries(row as usize);
         columns.binary_search(&column).map_or(0.0, |at| values[at])
     };
     let row = |&v: &u32| {
-        let (columns, _) = model.bending.row_entries(v as usize);
+        let (columns, _) = system.rest.bending.row_entries(v as usize);
         let mut row = Vec::new();
         let mut diagonal = 0.0;
         for &column in columns.iter().filter(|&&column| column != v) {
@@ -440,18 +441,10 @@ pub fn wider([most, least]: [f64; 2], [high, low]: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Where an elastic ends [m].
-pub fn end_of(elastic: &Elastic, positions: &[Lane]) -> Lane {
-    match elastic.to {
-        ElasticEnd::Vertex(v) => positions[v as usize],
-        ElasticEnd::Point(p) => p.into(),
-    }
-}
-
 /// Some vertices and those that forces at them look at, `rings` times, each with its ring, in the
 /// order of the model.
-fn with_halo(model: &Model, owned: Vec<u32>, rings: usize) -> Vec<(u32, usize)> {
-    let mut inside = vec![false; model.vertex_count()];
+fn with_halo(system: &System, owned: Vec<u32>, rings: usize) -> Vec<(u32, usize)> {
+    let mut inside = vec![false; system.vertex_count()];
     for &v in &owned {
         inside[v as usize] = true;
     }
@@ -461,10 +454,12 @@ fn with_halo(model: &Model, owned: Vec<u32>, rings: usize) -> Vec<(u32, usize)> 
         let end = vertices.len();
         for at in front..end {
             let v = vertices[at].0 as usize;
-            let uses = model.corner_start[v] as usize..model.corner_start[v + 1] as usize;
-            let corners = model.corners[uses].iter();
-            let triangles = corners.flat_map(|&corner| model.triangles[corner as usize / 3]);
-            let (columns, _) = model.bending.row_entries(v);
+            let uses = system.topology.corner_start[v] as usize
+                ..system.topology.corner_start[v + 1] as usize;
+            let corners = system.topology.corners[uses].iter();
+            let triangles =
+                corners.flat_map(|&corner| system.topology.triangles[corner as usize / 3]);
+            let (columns, _) = system.rest.bending.row_entries(v);
             for u in triangles.chain(columns.iter().copied()) {
                 if !std::mem::replace(&mut inside[u as usize], true) {
                     vertices.push((u, ring));

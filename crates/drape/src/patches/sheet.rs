@@ -2,12 +2,10 @@
 
 use super::Lane;
 use super::limits;
-use super::patch::{Course, Patch, end_of, wider};
+use super::patch::{Course, Patch, wider};
 use super::touch::{Touch, Touching};
-use crate::laws::membrane::MembraneElement;
-use crate::laws::stretch::MembraneLaw;
 use crate::methods::damped_contact_frequency;
-use crate::{Elastic, ElasticEnd, Model, State};
+use crate::{Attachments, Model, State, System};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
@@ -46,15 +44,10 @@ pub struct Sheet {
     saved: Saved,
 }
 
-/// What a sheet depends on.
+/// What a sheet was made from.
 struct Key {
-    mass: Vec<f64>,
-    pinned: Vec<bool>,
-    triangles: Vec<[u32; 3]>,
-    material: Vec<u16>,
-    elements: Vec<MembraneElement>,
-    laws: Vec<MembraneLaw>,
-    elastics: Vec<Elastic>,
+    model: Model,
+    attachments: Attachments,
     contact: f64,
 }
 
@@ -67,35 +60,34 @@ struct Saved {
 
 impl Sheet {
     /// A sheet for a model, cut as suits two cores.
-    pub fn new(model: &Model) -> Self {
-        // An elastic between two vertices may cross from any patch to any other.
-        let crosses = |elastic: &Elastic| matches!(elastic.to, ElasticEnd::Vertex(_));
-        let count = match model.vertex_count() {
-            n if n < CUT_FROM || model.elastics.iter().any(crosses) => 1,
+    pub fn new(system: &System) -> Self {
+        let count = match system.vertex_count() {
+            // An elastic between two vertices may cross from any patch to any other.
+            n if n < CUT_FROM || !system.couplings.all.is_empty() => 1,
             n => n.div_ceil(PATCH).max(2),
         };
-        Self::cut_into(model, count)
+        Self::cut_into(system, count)
     }
 
     /// A sheet of `count` patches.
-    fn cut_into(model: &Model, count: usize) -> Self {
+    fn cut_into(system: &System, count: usize) -> Self {
         let rings = match count {
             1 => 0,
-            _ if model.vertex_count() < SMALL => FEW_RINGS,
+            _ if system.vertex_count() < SMALL => FEW_RINGS,
             _ => RINGS,
         };
-        let mut patches: Vec<Patch> = cut(model, count)
+        let mut patches: Vec<Patch> = cut(system, count)
             .into_par_iter()
-            .map(|owned| Patch::new(model, owned, rings))
+            .map(|owned| Patch::new(system, owned, rings))
             .collect();
-        let mut looked_at = vec![false; model.vertex_count()];
+        let mut looked_at = vec![false; system.vertex_count()];
         for v in patches.iter().flat_map(|patch| patch.halo()) {
             looked_at[v as usize] = true;
         }
         for patch in &mut patches {
             patch.share(|v| looked_at[v as usize]);
         }
-        let mut home = vec![[0; 2]; model.vertex_count()];
+        let mut home = vec![[0; 2]; system.vertex_count()];
         for (patch, number) in patches.iter().zip(0..) {
             for (v, at) in patch.owned() {
                 home[v as usize] = [number, at];
@@ -104,14 +96,9 @@ impl Sheet {
         let mut sheet = Self {
             frequency: 0.0,
             key: Key {
-                mass: model.mass.clone(),
-                pinned: model.pinned.clone(),
-                triangles: model.triangles.clone(),
-                material: model.material.clone(),
-                elements: model.elements.clone(),
-                laws: model.laws.clone(),
-                elastics: model.elastics.clone(),
-                contact: damped_contact_frequency(model, &model.samples),
+                model: system.model.clone(),
+                attachments: system.control.attachments.clone(),
+                contact: damped_contact_frequency(system, &system.rest.samples),
             },
             patches,
             home,
@@ -121,39 +108,38 @@ impl Sheet {
             velocities: Vec::new(),
             saved: Saved::default(),
         };
-        sheet.start(model, &State::at_rest(model, model.layout.clone()));
-        let inner = limits::frequency_at_rest(model, sheet.stretch());
+        sheet.start(
+            system,
+            &State::at_rest(system, system.topology.layout.clone()),
+        );
+        let inner = limits::frequency_at_rest(system, sheet.stretch());
         sheet.frequency = inner.hypot(sheet.key.contact);
         sheet
     }
 
     /// Whether it is a sheet of this model still.
-    pub fn fits(&self, model: &Model) -> bool {
+    pub fn fits(&self, system: &System) -> bool {
         let key = &self.key;
-        key.mass == model.mass
-            && key.pinned == model.pinned
-            && key.triangles == model.triangles
-            && key.material == model.material
-            && key.elements == model.elements
-            && key.laws == model.laws
-            && key.elastics == model.elastics
-            && key.contact == damped_contact_frequency(model, &model.samples)
+        key.model.has_cloth_of(system)
+            && key.model.has_ties_of(system)
+            && key.attachments == system.control.attachments
+            && key.contact == damped_contact_frequency(system, &system.rest.samples)
     }
 
     /// Takes over a state.
-    pub fn start(&mut self, model: &Model, state: &State) {
+    pub fn start(&mut self, system: &System, state: &State) {
         self.positions.clear();
         self.positions
             .extend(state.positions.iter().map(|&p| Lane::from(p)));
         self.velocities.clear();
-        let velocities = state.velocities.iter().zip(&model.pinned);
+        let velocities = state.velocities.iter().zip(&system.prescribed.pinned);
         self.velocities.extend(
             velocities.map(|(v, &pinned)| if pinned { Lane::default() } else { (*v).into() }),
         );
         self.load();
-        self.touch.start(model, state);
+        self.touch.start(system, state);
         let time = self.touch.interval;
-        (self.touch).look(model, &self.positions, &self.velocities, time);
+        (self.touch).look(system, &self.positions, &self.velocities, time);
     }
 
     /// Gives every patch its part.
@@ -189,12 +175,12 @@ impl Sheet {
     }
 
     /// Moves on by `count` substeps of `h` [s].
-    pub fn advance(&mut self, model: &Model, h: f64, count: usize) {
+    pub fn advance(&mut self, system: &System, h: f64, count: usize) {
         let most = match self.patches.len() {
             1 => count,
             _ => self.rings,
         };
-        let touches = !model.colliders.is_empty();
+        let touches = !system.colliders.is_empty();
         // Substeps until the next look.
         let mut seen = if touches { 0 } else { count };
         let mut left = count;
@@ -204,7 +190,7 @@ impl Sheet {
                 let substeps = |touch: &Touch| ((touch.interval / h) as usize).clamp(1, left);
                 seen = substeps(&self.touch);
                 let (x, v) = (&self.positions, &self.velocities);
-                self.touch.look(model, x, v, h * seen as f64);
+                self.touch.look(system, x, v, h * seen as f64);
                 // What was found may ask for the next look sooner.
                 seen = seen.min(substeps(&self.touch));
             }
@@ -214,8 +200,8 @@ impl Sheet {
             let course = Course {
                 h,
                 count: now,
-                gravity: model.gravity.into(),
-                drag: model.air_drag,
+                gravity: system.control.gravity.into(),
+                drag: system.control.air_drag,
             };
             self.on_patches(|patch, touching| {
                 match looks {
@@ -275,11 +261,21 @@ impl Sheet {
     pub fn energy(&mut self) -> f64 {
         self.on_patches(|patch, _| patch.measure_energy());
         let own: f64 = self.patches.iter().map(|patch| patch.energy).sum();
-        let elastics = self.key.elastics.iter().map(|elastic| {
-            let from = self.positions[elastic.from as usize];
-            let gap = from.minus(end_of(elastic, &self.positions));
-            elastic.law.energy(gap.into())
+        let between = self
+            .key
+            .model
+            .couplings
+            .all
+            .iter()
+            .map(|&([from, to], law)| {
+                let [from, to] = [from, to].map(|v| self.positions[v as usize]);
+                law.energy(from.minus(to).into())
+            });
+        let to_places = self.key.attachments.all().iter().map(|one| {
+            let from = self.positions[one.vertex as usize];
+            one.law.energy(from.minus(one.place.into()).into())
         });
+        let elastics = between.chain(to_places);
         own + self.touch.energy(&self.positions) + elastics.sum::<f64>()
     }
 
@@ -302,17 +298,18 @@ impl Sheet {
 /// Cuts a cloth into `count` sets of nearly equal size: the next slices along the longest axis, or
 /// in the order of the vertices where that severs hardly more triangles, since it leaves whole
 /// rows of a grid in one patch. Within a set the vertices keep their order.
-fn cut(model: &Model, count: usize) -> Vec<Vec<u32>> {
-    let in_turn: Vec<u32> = (0..model.vertex_count() as u32).collect();
+fn cut(system: &System, count: usize) -> Vec<Vec<u32>> {
+    let in_turn: Vec<u32> = (0..system.vertex_count() as u32).collect();
     let size = in_turn.len().div_ceil(count).max(1);
-    let bounds = model
+    let bounds = system
+        .topology
         .layout
         .iter()
         .fold(None, |bounds: Option<(Vec3, Vec3)>, p| {
             Some(bounds.map_or((*p, *p), |(low, high)| (low.inf(p), high.sup(p))))
         });
     let axis = bounds.map_or(0, |(low, high)| (high - low).imax());
-    let key = |v: u32| model.layout[v as usize][axis];
+    let key = |v: u32| system.topology.layout[v as usize][axis];
     let mut along = in_turn.clone();
     along.sort_by(|&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
     let severed = |order: &[u32]| {
@@ -320,7 +317,11 @@ fn cut(model: &Model, count: usize) -> Vec<Vec<u32>> {
         for (at, &v) in order.iter().enumerate() {
             slice[v as usize] = at / size;
         }
-        let corners = model.triangles.iter().map(|t| t.map(|v| slice[v as usize]));
+        let corners = system
+            .topology
+            .triangles
+            .iter()
+            .map(|t| t.map(|v| slice[v as usize]));
         corners.filter(|[a, b, c]| a != b || a != c).count()
     };
     let order = match 4 * severed(&in_turn) <= 5 * severed(&along) {
@@ -338,6 +339,7 @@ fn cut(model: &Model, count: usize) -> Vec<Vec<u32>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::SystemBuilder;
     use crate::{Cloth, Collider, Material};
     use std::sync::Arc;
     use toile_geometry::{SurfaceTree, TriangleMesh};
@@ -361,7 +363,7 @@ mod tests {
     }
 
     /// A cloth that falls onto a floor, one corner held, with drag.
-    fn falling() -> (Model, State) {
+    fn falling() -> (System, State) {
         let mesh = grid(24, 0.24, 0.0055);
         let material = Material {
             stretch: [60.0, 50.0],
@@ -369,27 +371,28 @@ mod tests {
             ..Material::default()
         };
         let cloth = Cloth::from_mesh("cloth", &mesh, material).unwrap();
-        let mut model = Model::new("cloth", &cloth).unwrap();
-        model.pinned[0] = true;
-        model.air_drag = 0.5;
+        let mut builder = SystemBuilder::new("cloth", &cloth).unwrap();
+        builder.pinned[0] = true;
+        builder.control.air_drag = 0.5;
         let floor = SurfaceTree::new(grid(4, 2.0, 0.0));
-        model.colliders.push(Collider::new(Arc::new(floor)));
-        let mut state = State::at_rest(&model, mesh.positions.clone());
+        builder.colliders.push(Collider::new(Arc::new(floor)));
+        let system = builder.build();
+        let mut state = State::at_rest(&system, mesh.positions.clone());
         for (k, x) in state.positions.iter_mut().enumerate() {
             x.y += 1e-3 * (0.7 * k as f64).sin();
         }
         state.velocities.fill(Vec3::new(0.2, -0.3, 0.1));
-        (model, state)
+        (system, state)
     }
 
     #[test]
     fn patches_together_move_as_one() {
-        let (model, state) = falling();
+        let (system, state) = falling();
         let run = |count: usize| {
-            let mut sheet = Sheet::cut_into(&model, count);
-            sheet.start(&model, &state);
+            let mut sheet = Sheet::cut_into(&system, count);
+            sheet.start(&system, &state);
             // Patches meet between looks, too.
-            sheet.advance(&model, 1e-4, 50);
+            sheet.advance(&system, 1e-4, 50);
             sheet
         };
         let (whole, cut) = (run(1), run(4));
@@ -405,20 +408,24 @@ mod tests {
     #[test]
     fn looks_are_nearer_where_cloth_slides_over_what_is_curved() {
         for (curved, expected) in [(0.0, 1e-3), (50.0, 5e-4)] {
-            let (mut model, mut state) = falling();
-            model.pinned[0] = false;
+            let (mut system, mut state) = falling();
+            system = system.with(|builder| {
+                builder.pinned[0] = false;
+            });
             let mut floor = grid(200, 0.4, 0.0);
             for x in state.positions.iter_mut().chain(&mut floor.positions) {
                 x.y -= 0.5 * curved * x.x * x.x;
             }
             state.velocities.fill(Vec3::new(2.0, -0.5, 0.0));
-            model.colliders = vec![Collider::new(Arc::new(SurfaceTree::new(floor)))];
-            let mut sheet = Sheet::cut_into(&model, 2);
-            sheet.start(&model, &state);
+            system = system.with(|builder| {
+                builder.colliders = vec![Collider::new(Arc::new(SurfaceTree::new(floor)))];
+            });
+            let mut sheet = Sheet::cut_into(&system, 2);
+            sheet.start(&system, &state);
             assert_eq!(sheet.touch.interval, 5e-4, "nothing is known yet");
             let (mut longest, mut pressed) = (0.0f64, false);
             for _ in 0..8 {
-                sheet.advance(&model, 1e-4, 10);
+                sheet.advance(&system, 1e-4, 10);
                 pressed |= sheet.touch.near.iter().any(Touching::presses);
                 longest = longest.max(sheet.touch.interval);
             }
@@ -438,18 +445,19 @@ mod tests {
             }
         }
         let cloth = Cloth::from_mesh("cloth", &mesh, Material::default()).unwrap();
-        let mut model = Model::new("cloth", &cloth).unwrap();
-        model.pinned[0] = true;
-        let mut state = State::at_rest(&model, mesh.positions.clone());
+        let mut builder = SystemBuilder::new("cloth", &cloth).unwrap();
+        builder.pinned[0] = true;
+        let system = builder.build();
+        let mut state = State::at_rest(&system, mesh.positions.clone());
         for (k, x) in state.positions.iter_mut().enumerate() {
             x.y += 1e-3 * (0.7 * k as f64).sin();
         }
         let run = |count: usize| {
-            let mut sheet = Sheet::cut_into(&model, count);
+            let mut sheet = Sheet::cut_into(&system, count);
             let h = 0.5 / sheet.frequency;
-            sheet.start(&model, &state);
+            sheet.start(&system, &state);
             for _ in 0..3 {
-                sheet.advance(&model, h, 8);
+                sheet.advance(&system, h, 8);
             }
             sheet.positions
         };
@@ -461,18 +469,20 @@ mod tests {
 
     #[test]
     fn cloth_that_a_surface_was_put_over_is_not_thrown() {
-        let (mut model, mut state) = falling();
-        model.pinned[0] = false;
-        model.air_drag = 0.0;
+        let (mut system, mut state) = falling();
+        system = system.with(|builder| {
+            builder.pinned[0] = false;
+        });
+        system.control.air_drag = 0.0;
         for (x, v) in state.positions.iter_mut().zip(&mut state.velocities) {
             (x.y, *v) = (-0.02, Vec3::zeros());
         }
         let mut highest = f64::MIN;
-        let mut sheet = Sheet::cut_into(&model, 2);
+        let mut sheet = Sheet::cut_into(&system, 2);
         for _ in 0..40 {
             // As after a checkpoint: nothing but the state remembers.
-            sheet.start(&model, &state);
-            sheet.advance(&model, 1e-4, 50);
+            sheet.start(&system, &state);
+            sheet.advance(&system, 1e-4, 50);
             sheet.finish(&mut state);
             let top = state.positions.iter().map(|x| x.y).fold(f64::MIN, f64::max);
             highest = highest.max(top);
@@ -483,11 +493,11 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_seen_wherever_it_stands() {
-        let (model, mut state) = falling();
-        let mut sheet = Sheet::cut_into(&model, 3);
+        let (system, mut state) = falling();
+        let mut sheet = Sheet::cut_into(&system, 3);
         for at in [0, 300, 624] {
             let kept = std::mem::replace(&mut state.positions[at].y, f64::NAN);
-            sheet.start(&model, &state);
+            sheet.start(&system, &state);
             let found = sheet.stretch();
             assert!(found.iter().all(|stretch| stretch.is_nan()), "{at}");
             state.positions[at].y = kept;
@@ -496,18 +506,18 @@ mod tests {
 
     #[test]
     fn what_blew_up_leaves_nothing_behind_when_it_is_undone() {
-        let (model, state) = falling();
+        let (system, state) = falling();
         let run = |blow_up: bool| {
-            let mut sheet = Sheet::cut_into(&model, 3);
-            sheet.start(&model, &state);
+            let mut sheet = Sheet::cut_into(&system, 3);
+            sheet.start(&system, &state);
             sheet.save();
             if blow_up {
-                sheet.advance(&model, 1.0, 400);
+                sheet.advance(&system, 1.0, 400);
                 assert!(sheet.fastest().1.is_nan());
                 assert!(sheet.stretch().iter().all(|stretch| stretch.is_nan()));
             }
             sheet.restore();
-            sheet.advance(&model, 2e-4, 25);
+            sheet.advance(&system, 2e-4, 25);
             sheet.positions
         };
         assert!(run(true) == run(false));
@@ -515,18 +525,18 @@ mod tests {
 
     #[test]
     fn energy_is_kept_for_long() {
-        let (mut model, mut state) = falling();
-        model.colliders.clear();
-        model.air_drag = 0.0;
-        model.gravity = Vec3::zeros();
+        let (mut system, mut state) = falling();
+        system = system.with(|builder| builder.colliders.clear());
+        system.control.air_drag = 0.0;
+        system.control.gravity = Vec3::zeros();
         state.velocities[24] = Vec3::new(0.5, 1.0, 0.2);
-        let mut sheet = Sheet::cut_into(&model, 2);
-        sheet.start(&model, &state);
+        let mut sheet = Sheet::cut_into(&system, 2);
+        sheet.start(&system, &state);
         let before = sheet.energy();
         let h = 0.5 * 2.0 / sheet.frequency;
         let mut worst = 0.0f64;
         for _ in 0..40 {
-            sheet.advance(&model, h, 500);
+            sheet.advance(&system, h, 500);
             let now = sheet.energy();
             worst = worst.max((now / before - 1.0).abs());
         }
@@ -535,11 +545,10 @@ mod tests {
 
     #[test]
     fn another_model_needs_another_sheet() {
-        let (model, _) = falling();
-        let sheet = Sheet::new(&model);
-        assert!(sheet.fits(&model));
-        let (mut other, _) = falling();
-        other.pinned[3] = true;
+        let (system, _) = falling();
+        let sheet = Sheet::new(&system);
+        assert!(sheet.fits(&system));
+        let other = system.with(|builder| builder.pinned[3] = true);
         assert!(!sheet.fits(&other));
     }
 }

@@ -11,7 +11,7 @@ use super::octets::{
 };
 use super::rows::{Rows, least_run, rounding};
 use super::stretch::Stretches;
-use crate::Model;
+use crate::System;
 use pulp::Simd;
 use std::collections::BTreeMap;
 
@@ -47,7 +47,7 @@ pub struct Tensions {
 /// What tensions are made from: a patch's vertices in their order.
 pub struct Ground<'a> {
     /// The model.
-    pub model: &'a Model,
+    pub system: &'a System,
     /// Its triangles that lie in the patch, with their corners there.
     pub triangles: &'a [(usize, [u32; 3])],
     /// The ring of each vertex, zero for those the patch owns.
@@ -59,13 +59,13 @@ pub struct Ground<'a> {
 impl Tensions {
     /// The membrane on some ground.
     pub fn new(ground: &Ground) -> Self {
-        let Ground { model, ring, .. } = *ground;
+        let Ground { system, ring, .. } = *ground;
         let edges = Edges::new(ground.triangles.iter().map(|&(_, corners)| corners));
         let slots = edges.ends.len();
         let laws: Vec<Law> = ground
             .triangles
             .iter()
-            .map(|t| law(model, &edges, t))
+            .map(|t| law(system, &edges, t))
             .collect();
         let values = laws.iter().flat_map(|law| law.membrane.stiffness);
         let largest = values
@@ -297,10 +297,10 @@ struct Law {
     sides: [u32; 3],
 }
 
-fn law(model: &Model, edges: &Edges, &(t, [a, b, c]): &(usize, [u32; 3])) -> Law {
-    let law = model.laws[model.material[t] as usize].stiffness;
+fn law(system: &System, edges: &Edges, &(t, [a, b, c]): &(usize, [u32; 3])) -> Law {
+    let law = system.materials.law(t).stiffness;
     Law {
-        membrane: EdgeMembrane::new(&model.elements[t], law),
+        membrane: EdgeMembrane::new(&system.rest.elements[t], law),
         sides: [[a, b], [a, c], [b, c]].map(|[a, b]| edges.number(a, b).unwrap_or_default()),
     }
 }

@@ -5,7 +5,7 @@ use super::Lane;
 use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{damped_push, gentle_push};
 use crate::memory::Memory;
-use crate::{Model, State};
+use crate::{State, System};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
@@ -167,31 +167,31 @@ const CHUNK: usize = 256;
 
 impl Touch {
     /// Takes over the vertices of a model and what a state remembers of their contacts.
-    pub fn start(&mut self, model: &Model, state: &State) {
+    pub fn start(&mut self, system: &System, state: &State) {
         // Nothing but the state may decide what comes of it.
         self.interval = INTERVAL[0];
         self.places.clear();
-        if model.colliders.is_empty() {
+        if system.colliders.is_empty() {
             self.near.clear();
             return;
         }
         let buried = state.memory.buried();
         for (number, sample) in state.samples.iter().enumerate() {
             let vertex = sample.vertices[0];
-            if sample.triangle.is_some() || model.pinned[vertex as usize] {
+            if sample.triangle.is_some() || system.prescribed.pinned[vertex as usize] {
                 continue;
             }
             let anchor = state.anchors[number];
             self.places.push(Sample {
                 vertex,
                 number: number as u32,
-                stiffness: model.contact.stiffness * sample.area,
-                friction: if model.contact.friction {
+                stiffness: system.contact.stiffness * sample.area,
+                friction: if system.contact.friction {
                     sample.friction
                 } else {
                     0.0
                 },
-                offset: model.contact.offset + sample.extra_offset,
+                offset: system.contact.offset + sample.extra_offset,
                 last: Vec3::repeat(f64::INFINITY),
                 clearance: 0.0,
                 plane: None,
@@ -219,7 +219,7 @@ impl Touch {
     }
 
     /// Finds the vertices that can meet a surface within `time` [s].
-    pub fn look(&mut self, model: &Model, positions: &[Lane], velocities: &[Lane], time: f64) {
+    pub fn look(&mut self, system: &System, positions: &[Lane], velocities: &[Lane], time: f64) {
         if self.places.is_empty() {
             return;
         }
@@ -235,7 +235,8 @@ impl Touch {
                 for (k, sample) in samples.iter_mut().enumerate() {
                     let at = sample.vertex as usize;
                     let (place, velocity) = (positions[at], velocities[at]);
-                    if let Some(contact) = sample.near(model, place, velocity, time, &mut found.off)
+                    if let Some(contact) =
+                        sample.near(system, place, velocity, time, &mut found.off)
                     {
                         found.near.push(Touching {
                             place: (chunk * CHUNK + k) as u32,
@@ -306,7 +307,7 @@ impl Sample {
     /// The contact that it may have within `time` [s]; `off` grows to how far off its plane was, by the way.
     fn near(
         &mut self,
-        model: &Model,
+        system: &System,
         place: Lane,
         velocity: Lane,
         time: f64,
@@ -324,7 +325,7 @@ impl Sample {
             let before = self
                 .plane
                 .map(|(level, n)| level + (place - self.last).dot(&n));
-            self.measure(model, place);
+            self.measure(system, place);
             if let (Some(before), Some((now, _))) = (before, self.plane)
                 && before < self.offset
             {
@@ -356,10 +357,10 @@ impl Sample {
     }
 
     /// Measures the nearest surface at a place.
-    fn measure(&mut self, model: &Model, place: Vec3) {
+    fn measure(&mut self, system: &System, place: Vec3) {
         let was_near = self.plane.is_some();
         (self.last, self.plane, self.clearance) = (place, None, FIELD_REACH);
-        for collider in &model.colliders {
+        for collider in system.colliders.iter() {
             // Far away the exact distance is enough, and spares sampling the smooth one there.
             if !was_near {
                 let exact = collider.surface.closest_point(place, FIELD_REACH);

@@ -4,7 +4,7 @@ use super::colours::Colours;
 use super::pieces::Pieces;
 use crate::contacts::Contacts;
 use crate::methods::implicit::{Limits, Problem, Solver};
-use crate::{Contact, Model, NewtonReport, State, Workspace};
+use crate::{Contact, NewtonReport, State, System, Workspace};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -60,9 +60,9 @@ const LONGEST_MOVE: f64 = 0.02;
 const CHUNK: usize = 128;
 
 impl Touching {
-    fn gather(&mut self, model: &Model, contacts: &Contacts) {
+    fn gather(&mut self, system: &System, contacts: &Contacts) {
         self.start.clear();
-        self.start.resize(model.vertex_count() + 1, 0);
+        self.start.resize(system.vertex_count() + 1, 0);
         let uses = |contact: &Contact| {
             let sample = &contact.point;
             let used = if sample.triangle.is_some() { 3 } else { 1 };
@@ -73,13 +73,13 @@ impl Touching {
                 self.start[v as usize + 1] += 1;
             }
         }
-        for v in 0..model.vertex_count() {
+        for v in 0..system.vertex_count() {
             self.start[v + 1] += self.start[v];
         }
         let mut next = self.start.clone();
         self.entries.clear();
         self.entries
-            .resize(next[model.vertex_count()] as usize, (0, 0.0));
+            .resize(next[system.vertex_count()] as usize, (0, 0.0));
         for (at, contact) in contacts.active.iter().enumerate() {
             for (v, w) in uses(contact) {
                 self.entries[next[v as usize] as usize] = (at as u32, w);
@@ -105,34 +105,35 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
         x: &[Vec3],
         v: usize,
     ) -> (Vec3, Matrix3<f64>) {
-        let (model, terms) = (problem.model, &workspace.terms);
+        let (system, terms) = (problem.system, &workspace.terms);
         let weight = problem.inertia.weight[v];
-        let bending = terms.bending(model);
-        let mut gradient = bending.row_times(v, x) - model.gravity * model.mass[v]
+        let bending = terms.bending(system);
+        let mut gradient = bending.row_times(v, x) - system.control.gravity * system.rest.mass[v]
             + (x[v] - problem.inertia.target[v]) * weight;
         let mut hessian = Matrix3::identity() * (weight + bending.diagonal(v));
         if let Some(lagged) = self.lagged.get(v) {
             gradient += lagged;
         }
-        let uses = model.corner_start[v] as usize..model.corner_start[v + 1] as usize;
-        for &corner in &model.corners[uses] {
+        let uses =
+            system.topology.corner_start[v] as usize..system.topology.corner_start[v + 1] as usize;
+        for &corner in &system.topology.corners[uses] {
             let (t, i) = (corner as usize / 3, corner as usize % 3);
-            let places = model.triangles[t].map(|u| x[u as usize]);
-            let (g, h) = model.elements[t].corner(&terms.law(model, t), places, i);
+            let places = system.topology.triangles[t].map(|u| x[u as usize]);
+            let (g, h) = system.rest.elements[t].corner(&terms.law(system, t), places, i);
             gradient += g;
             hessian += h;
-            if model.air.acts() {
+            if system.control.air.acts() {
                 let mut blocks = [Matrix3::zeros(); 6];
                 terms.add_hessian(t, &mut blocks);
-                let starts = model.triangles[t].map(|u| self.before[u as usize]);
+                let starts = system.topology.triangles[t].map(|u| self.before[u as usize]);
                 let moved = places.iter().sum::<Vec3>() - starts.iter().sum::<Vec3>();
                 gradient += blocks[0] * moved;
                 hessian += blocks[0];
             }
         }
-        for (e, other) in model.elastics_at(v) {
+        for (e, other) in system.elastics_at(v) {
             let gap = x[v] - other.place(x);
-            let secant = model.elastics[e].law.secant(gap);
+            let secant = system.elastic_law(e).secant(gap);
             gradient += gap * secant;
             hessian += Matrix3::identity() * secant;
         }
@@ -148,17 +149,17 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
 
     /// Gradient of folds and air where the sweep starts, less what [`Self::local`] finds itself of
     /// it: their part that is linear about there.
-    fn lag(&mut self, model: &Model, workspace: &Workspace) {
+    fn lag(&mut self, system: &System, workspace: &Workspace) {
         self.lagged.clear();
-        let plain = model.viscous_bending.is_none() && !model.keeps_strain();
-        if plain && !model.air.acts() {
+        let plain = system.rest.viscous_bending.is_none() && !system.materials.keep_strain();
+        if plain && !system.control.air.acts() {
             return;
         }
         let (terms, x) = (&workspace.terms, &self.before);
-        let (held, elastic) = (terms.bending(model), &model.bending);
+        let (held, elastic) = (terms.bending(system), &system.rest.bending);
         self.lagged
             .extend((0..x.len()).map(|v| elastic.row_times(v, x) - held.row_times(v, x)));
-        terms.add_gradient(model, x, &mut self.lagged);
+        terms.add_gradient(system, x, &mut self.lagged);
     }
 
     /// Every vertex once; returns the sum of the squared forces met [N2].
@@ -180,7 +181,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
                 .zip(vertices.par_chunks(CHUNK))
                 .for_each(|(out, vertices)| {
                     for (out, &v) in out.iter_mut().zip(vertices) {
-                        *out = if problem.model.pinned[v as usize] {
+                        *out = if problem.system.prescribed.pinned[v as usize] {
                             (Vec3::zeros(), 0.0)
                         } else {
                             let (force, hessian) =
@@ -202,19 +203,19 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
 
     /// Puts the state at the lowest of where it is, where inertia takes it, and that with gravity.
     fn start(&self, problem: &Problem, state: &mut State, workspace: &mut Workspace) {
-        let model = problem.model;
+        let system = problem.system;
         let farthest = problem.longest_move(LONGEST_MOVE);
         let here = state.positions.clone();
         let lowest = |workspace: &mut Workspace, state: &State, x: &[Vec3]| {
-            workspace.contacts.refresh(model, state, x);
-            workspace.potential(model, x, &problem.inertia)
+            workspace.contacts.refresh(system, state, x);
+            workspace.potential(system, x, &problem.inertia)
         };
         let mut best = lowest(workspace, state, &here);
-        for fall in [Vec3::zeros(), model.gravity / problem.weight] {
+        for fall in [Vec3::zeros(), system.control.gravity / problem.weight] {
             let mut there = problem.inertia.target.to_vec();
             let mut longest = 0.0f64;
             for (v, x) in there.iter_mut().enumerate() {
-                if !model.pinned[v] {
+                if !system.prescribed.pinned[v] {
                     *x += fall;
                 }
                 longest = longest.max((*x - here[v]).norm());
@@ -254,10 +255,10 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
         state: &mut State,
         workspace: &mut Workspace,
     ) -> NewtonReport {
-        let model = problem.model;
-        workspace.fit(model);
-        if self.colours.fit(model) {
-            self.pieces.fit(model);
+        let system = problem.system;
+        workspace.fit(system);
+        if self.colours.fit(system) {
+            self.pieces.fit(system);
         }
         let first = state.positions.clone();
         self.start(problem, state, workspace);
@@ -274,11 +275,11 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
             if sweep % CHECK == 0 {
                 self.pieces.shift(problem, state, workspace);
             }
-            workspace.contacts.refresh(model, state, &state.positions);
-            self.touching.gather(model, &workspace.contacts);
+            workspace.contacts.refresh(system, state, &state.positions);
+            self.touching.gather(system, &workspace.contacts);
             if accelerating && sweep % CHECK == 0 {
-                let now = workspace.potential(model, &state.positions, &problem.inertia);
-                if now > workspace.potential(model, &self.best, &problem.inertia) {
+                let now = workspace.potential(system, &state.positions, &problem.inertia);
+                if now > workspace.potential(system, &self.best, &problem.inertia) {
                     state.positions.clone_from(&self.best);
                     accelerating = false;
                 }
@@ -286,7 +287,7 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
             }
             self.two_before.clone_from(&self.before);
             self.before.clone_from(&state.positions);
-            self.lag(model, workspace);
+            self.lag(system, workspace);
             let squares = self.sweep(problem, workspace, &mut state.positions, longest);
             report.iterations += 1;
             report.gradient = squares.sqrt();
@@ -304,9 +305,9 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
             }
         }
         self.pieces.shift(problem, state, workspace);
-        workspace.contacts.refresh(model, state, &state.positions);
-        let before = workspace.potential(model, &first, &problem.inertia);
-        let after = workspace.potential(model, &state.positions, &problem.inertia);
+        workspace.contacts.refresh(system, state, &state.positions);
+        let before = workspace.potential(system, &first, &problem.inertia);
+        let after = workspace.potential(system, &state.positions, &problem.inertia);
         report.sound = after <= before + 1e-12 * before.abs().max(1.0);
         report
     }

@@ -1,36 +1,36 @@
 //! Colours of vertices: two of one colour share no triangle, bending stencil or elastic.
 
-use crate::{Elastic, ElasticEnd, Model};
+use crate::{Model, System};
 
 /// Vertices by colour, worked out once for a model.
 #[derive(Default)]
 pub struct Colours {
     vertices: Vec<u32>,
     start: Vec<usize>,
-    elastics: Vec<Elastic>,
+    /// The model they are of.
+    made_for: Option<Model>,
 }
 
 impl Colours {
     /// Makes the colours those of a model; false when they already were.
-    pub fn fit(&mut self, model: &Model) -> bool {
-        if self.vertices.len() == model.vertex_count() && self.elastics == model.elastics {
+    pub fn fit(&mut self, system: &System) -> bool {
+        let fits = |of: &Model| of.has_cloth_of(system) && of.has_ties_of(system);
+        if self.made_for.as_ref().is_some_and(fits) {
             return false;
         }
-        let n = model.vertex_count();
-        self.elastics.clone_from(&model.elastics);
+        let n = system.vertex_count();
+        self.made_for = Some(system.model.clone());
         let mut pairs: Vec<Vec<u32>> = vec![Vec::new(); n];
-        for elastic in &model.elastics {
-            if let ElasticEnd::Vertex(to) = elastic.to {
-                pairs[elastic.from as usize].push(to);
-                pairs[to as usize].push(elastic.from);
-            }
+        for [from, to] in system.couplings.ends() {
+            pairs[from as usize].push(to);
+            pairs[to as usize].push(from);
         }
         // Greedy in the order of the vertices: the lowest colour no neighbour has.
         let mut colour_of = vec![u32::MAX; n];
         let mut taken: Vec<usize> = Vec::new();
         for v in 0..n {
-            let neighbours = model.pattern.row_columns(v).iter();
-            let bending = model.bending.row_entries(v).0.iter();
+            let neighbours = system.topology.pattern.row_columns(v).iter();
+            let bending = system.rest.bending.row_entries(v).0.iter();
             for &u in neighbours.chain(bending).chain(&pairs[v]) {
                 let colour = colour_of[u as usize];
                 if colour != u32::MAX {
@@ -86,16 +86,22 @@ mod tests {
             }
         }
         let cloth = Cloth::from_mesh("cloth", &mesh, Material::default()).unwrap();
-        let model = Model::new("cloth", &cloth).unwrap();
+        let system = System::new("cloth", &cloth).unwrap();
         let mut colours = Colours::default();
-        assert!(colours.fit(&model) && !colours.fit(&model));
+        assert!(colours.fit(&system) && !colours.fit(&system));
         let mut seen = [false; 100];
         for colour in 0..colours.count() {
             let own = colours.vertices(colour);
             for &v in own {
                 assert!(!std::mem::replace(&mut seen[v as usize], true));
-                let (columns, _) = model.bending.row_entries(v as usize);
-                for &u in model.pattern.row_columns(v as usize).iter().chain(columns) {
+                let (columns, _) = system.rest.bending.row_entries(v as usize);
+                for &u in system
+                    .topology
+                    .pattern
+                    .row_columns(v as usize)
+                    .iter()
+                    .chain(columns)
+                {
                     assert!(u == v || !own.contains(&u), "{u} and {v} share {colour}");
                 }
             }

@@ -13,9 +13,9 @@ const HALVINGS: usize = 16;
 
 /// Contacts and gradient at the state's positions; returns the gradient's norm [N].
 pub fn slope(problem: &Problem, state: &State, workspace: &mut Workspace) -> f64 {
-    let model = problem.model;
-    workspace.contacts.refresh(model, state, &state.positions);
-    workspace.fill_gradient(model, &state.positions, Some(&problem.inertia));
+    let system = problem.system;
+    workspace.contacts.refresh(system, state, &state.positions);
+    workspace.fill_gradient(system, &state.positions, Some(&problem.inertia));
     dot(&workspace.gradient, &workspace.gradient).sqrt()
 }
 
@@ -73,7 +73,7 @@ pub struct Line<'a> {
 /// Moves along `line.direction` by the largest of 1, 1/2, 1/4 ... that lowers the potential enough;
 /// returns the share, 0 when none does. The positions before are left in `workspace.trial`.
 pub fn search(problem: &Problem, state: &mut State, workspace: &mut Workspace, line: Line) -> f64 {
-    let model = problem.model;
+    let system = problem.system;
     let Line {
         direction,
         shares,
@@ -81,7 +81,7 @@ pub fn search(problem: &Problem, state: &mut State, workspace: &mut Workspace, l
     } = line;
     let start = known
         .take()
-        .unwrap_or_else(|| workspace.potential(model, &state.positions, &problem.inertia));
+        .unwrap_or_else(|| workspace.potential(system, &state.positions, &problem.inertia));
     let slope = dot(&workspace.gradient, direction);
     // Below rounding of the potential nothing can be told apart: take the step.
     let noise = 1e-13 * start.abs().max(1.0);
@@ -91,10 +91,10 @@ pub fn search(problem: &Problem, state: &mut State, workspace: &mut Workspace, l
         for ((trial, x), d) in trial.iter_mut().zip(&state.positions).zip(direction) {
             *trial = x + d * share;
         }
-        let energy = workspace.potential(model, &trial, &problem.inertia);
+        let energy = workspace.potential(system, &trial, &problem.inertia);
         if energy <= start + DECREASE * share * slope + noise {
             // With solid surfaces the planes, and with them the potential, are found anew.
-            *known = model.colliders.is_empty().then_some(energy);
+            *known = system.colliders.is_empty().then_some(energy);
             std::mem::swap(&mut state.positions, &mut trial);
             workspace.trial = trial;
             return share;

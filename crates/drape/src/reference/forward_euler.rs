@@ -1,7 +1,7 @@
 //! Forward Euler (Euler 1768): order 1, and unstable for every undamped vibration.
 
 use crate::methods::explicit::{Scheme, forces_and_settle};
-use crate::{Model, State, Workspace};
+use crate::{State, System, Workspace};
 
 /// x' = x + h v,  v' = v + h (f(x, v) / m - c v).
 ///
@@ -15,11 +15,11 @@ impl Scheme for ForwardEuler {
     const STAGE: &'static str = "forward Euler";
     const LIMIT: f64 = 2.0;
 
-    fn substep(&mut self, model: &Model, state: &mut State, workspace: &mut Workspace, h: f64) {
-        let force = forces_and_settle(model, state, workspace, h);
+    fn substep(&mut self, system: &System, state: &mut State, workspace: &mut Workspace, h: f64) {
+        let force = forces_and_settle(system, state, workspace, h);
         let moving = state.positions.iter_mut().zip(&mut state.velocities);
-        for ((x, v), (f, m)) in moving.zip(force.iter().zip(&model.mass)) {
-            let acceleration = f / *m - *v * model.air_drag;
+        for ((x, v), (f, m)) in moving.zip(force.iter().zip(&system.rest.mass)) {
+            let acceleration = f / *m - *v * system.control.air_drag;
             *x += *v * h;
             *v += acceleration * h;
         }

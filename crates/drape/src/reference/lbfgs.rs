@@ -31,7 +31,7 @@ impl Lbfgs {
     ) -> f64 {
         let metric = &mut self.metric;
         self.pairs.aim(&mut self.direction, |q, r| {
-            metric.solve(problem.model, q, r);
+            metric.solve(problem.system, q, r);
         });
         shorten(problem, &mut self.direction);
         let line = Line {
@@ -57,11 +57,11 @@ impl Solver for Lbfgs {
         state: &mut State,
         workspace: &mut Workspace,
     ) -> NewtonReport {
-        workspace.fit(problem.model);
+        workspace.fit(problem.system);
         self.direction
-            .resize(problem.model.vertex_count(), Vec3::zeros());
+            .resize(problem.system.vertex_count(), Vec3::zeros());
         self.pairs = Pairs::default();
-        if !self.metric.fit(problem.model, problem.weight) {
+        if !self.metric.fit(problem.system, problem.weight) {
             return NewtonReport::default();
         }
         let mut energy = None;

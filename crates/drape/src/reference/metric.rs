@@ -1,8 +1,8 @@
 //! The constant metric of projective dynamics: one scalar matrix for x, y and z, factorised once.
 
-use crate::laws::stretch::MembraneLaw;
 use crate::methods::implicit::Problem;
-use crate::{Elastic, ElasticEnd, Model, State, Workspace};
+use crate::{Attachments, ElasticEnd, Model, State, System, Workspace};
+use std::sync::Arc;
 use toile_geometry::Vec3;
 use toile_sparse::ScalarMatrix;
 use toile_sparse::factor::{Factor, Graph};
@@ -32,45 +32,41 @@ struct Made {
 }
 
 /// What the matrix was made of.
-#[derive(PartialEq)]
 struct Key {
     weight: f64,
-    mass: Vec<f64>,
-    pinned: Vec<bool>,
-    elastics: Vec<Elastic>,
-    laws: Vec<MembraneLaw>,
+    model: Model,
+    attachments: Attachments,
 }
 
 impl Key {
-    fn fits(&self, model: &Model, weight: f64) -> bool {
+    fn fits(&self, system: &System, weight: f64) -> bool {
         self.weight == weight
-            && self.pinned == model.pinned
-            && self.mass == model.mass
-            && self.elastics == model.elastics
-            && self.laws == model.laws
+            && self.model.has_cloth_of(system)
+            && self.model.has_ties_of(system)
+            && self.attachments == system.control.attachments
     }
 }
 
 impl Metric {
     /// Makes the metric that of a model with inertia's weight per mass `weight` [1/s2]; nothing to
     /// do when it is. False when the matrix cannot be factorised.
-    pub fn fit(&mut self, model: &Model, weight: f64) -> bool {
+    pub fn fit(&mut self, system: &System, weight: f64) -> bool {
         if let Some(made) = &self.made
-            && made.key.fits(model, weight)
+            && made.key.fits(system, weight)
         {
             return true;
         }
-        let matrix = stiffness(model);
-        let rows = 0..model.vertex_count();
+        let matrix = stiffness(system);
+        let rows = 0..system.vertex_count();
         let structure = match self.made.take() {
-            Some(made) if same_structure(&made, model) => made.factor,
+            Some(made) if same_structure(&made, system) => made.factor,
             _ => {
                 let pairs = rows.flat_map(|v| {
                     let columns = matrix.row_entries(v).0.iter();
                     columns.map(move |&u| [v as u32, u])
                 });
-                let graph = Graph::from_pairs(model.vertex_count(), pairs);
-                Factor::new(graph, &model.layout)
+                let graph = Graph::from_pairs(system.vertex_count(), pairs);
+                Factor::new(graph, &system.topology.layout)
             }
         };
         let mut factor = structure;
@@ -88,9 +84,9 @@ impl Metric {
                 };
                 let diagonal = u as usize == v;
                 if diagonal {
-                    value += weight * model.mass[v];
+                    value += weight * system.rest.mass[v];
                 }
-                if model.pinned[v] || model.pinned[u as usize] {
+                if system.prescribed.pinned[v] || system.prescribed.pinned[u as usize] {
                     value = if diagonal { 1.0 } else { 0.0 };
                 }
                 *out = [[value]];
@@ -103,10 +99,8 @@ impl Metric {
             factor,
             key: Key {
                 weight,
-                mass: model.mass.clone(),
-                pinned: model.pinned.clone(),
-                elastics: model.elastics.clone(),
-                laws: model.laws.clone(),
+                model: system.model.clone(),
+                attachments: system.control.attachments.clone(),
             },
         });
         true
@@ -129,13 +123,15 @@ impl Metric {
     }
 
     /// x = S A^-1 S b, zero at pins; A must fit.
-    pub fn solve(&mut self, model: &Model, b: &[Vec3], x: &mut [Vec3]) {
+    pub fn solve(&mut self, system: &System, b: &[Vec3], x: &mut [Vec3]) {
         self.right.clear();
-        self.right.extend(b.iter().zip(&model.pinned).map(
-            |(b, &pinned)| {
-                if pinned { Vec3::zeros() } else { *b }
-            },
-        ));
+        self.right.extend(
+            b.iter().zip(&system.prescribed.pinned).map(
+                |(b, &pinned)| {
+                    if pinned { Vec3::zeros() } else { *b }
+                },
+            ),
+        );
         shrink(&self.pressing, &mut self.right);
         if let Some(made) = &mut self.made {
             made.factor.solve(&self.right, x);
@@ -153,16 +149,19 @@ fn shrink(pressing: &[(u32, Vec3, f64)], vectors: &mut [Vec3]) {
 }
 
 /// Whether only numbers changed since the structure was worked out.
-fn same_structure(made: &Made, model: &Model) -> bool {
-    made.key.mass == model.mass && made.key.elastics == model.elastics
+fn same_structure(made: &Made, system: &System) -> bool {
+    let of = &made.key.model;
+    Arc::ptr_eq(&of.topology, &system.topology)
+        && Arc::ptr_eq(&of.rest, &system.rest)
+        && Arc::ptr_eq(&of.couplings, &system.couplings)
 }
 
 /// The constant stiffness: membrane, bending, elastics.
-fn stiffness(model: &Model) -> ScalarMatrix {
-    let mut entries = Vec::with_capacity(9 * model.triangles.len());
-    for (t, corners) in model.triangles.iter().enumerate() {
-        let element = &model.elements[t];
-        let [c11, c22, c12, g] = model.laws[model.material[t] as usize].stiffness;
+fn stiffness(system: &System) -> ScalarMatrix {
+    let mut entries = Vec::with_capacity(9 * system.topology.triangles.len());
+    for (t, corners) in system.topology.triangles.iter().enumerate() {
+        let element = &system.rest.elements[t];
+        let [c11, c22, c12, g] = system.materials.law(t).stiffness;
         let ratio = (c11 / c22).sqrt();
         let k_u = (c11 + c12.abs() * ratio).max(2.0 * g);
         let k_v = (c22 + c12.abs() / ratio).max(2.0 * g);
@@ -174,16 +173,16 @@ fn stiffness(model: &Model) -> ScalarMatrix {
             }
         }
     }
-    for v in 0..model.vertex_count() {
-        let (columns, values) = model.bending.row_entries(v);
+    for v in 0..system.vertex_count() {
+        let (columns, values) = system.rest.bending.row_entries(v);
         entries.extend(columns.iter().zip(values).map(|(&u, &b)| (v as u32, u, b)));
     }
-    for elastic in &model.elastics {
+    for elastic in system.elastics() {
         let (from, k) = (elastic.from, elastic.law.stiffness);
         entries.push((from, from, k));
         if let ElasticEnd::Vertex(to) = elastic.to {
             entries.extend([(to, to, k), (from, to, -k), (to, from, -k)]);
         }
     }
-    ScalarMatrix::from_entries(model.vertex_count(), &entries)
+    ScalarMatrix::from_entries(system.vertex_count(), &entries)
 }

@@ -1,7 +1,7 @@
 //! Pieces of cloth that hang together, and the shift of each as a whole that lowers the potential.
 
 use crate::methods::implicit::Problem;
-use crate::{ElasticEnd, Model, State, Workspace, merge_map};
+use crate::{State, System, Workspace, merge_map};
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 
@@ -22,16 +22,13 @@ struct Sum {
 
 impl Pieces {
     /// Finds the pieces: vertices joined by triangles or elastics.
-    pub fn fit(&mut self, model: &Model) {
-        let sides = model
+    pub fn fit(&mut self, system: &System) {
+        let sides = system
+            .topology
             .triangles
             .iter()
             .flat_map(|&[a, b, c]| [[a, b], [b, c]]);
-        let elastics = model.elastics.iter().filter_map(|e| match e.to {
-            ElasticEnd::Vertex(to) => Some([e.from, to]),
-            ElasticEnd::Point(_) => None,
-        });
-        let (label, count) = merge_map(model.vertex_count(), sides.chain(elastics));
+        let (label, count) = merge_map(system.vertex_count(), sides.chain(system.couplings.ends()));
         self.label = label;
         self.sums = vec![Sum::default(); count];
     }
@@ -42,24 +39,20 @@ impl Pieces {
     /// linear momentum is kept however little the sweeps have converged. Undone where the potential
     /// would rise.
     pub fn shift(&mut self, problem: &Problem, state: &mut State, workspace: &mut Workspace) {
-        let model = problem.model;
-        workspace.contacts.refresh(model, state, &state.positions);
-        workspace.fill_gradient(model, &state.positions, Some(&problem.inertia));
+        let system = problem.system;
+        workspace.contacts.refresh(system, state, &state.positions);
+        workspace.fill_gradient(system, &state.positions, Some(&problem.inertia));
         self.sums.fill(Sum::default());
         for (v, &label) in self.label.iter().enumerate() {
             let sum = &mut self.sums[label as usize];
-            sum.held |= model.pinned[v];
+            sum.held |= system.prescribed.pinned[v];
             sum.gradient += workspace.gradient[v];
             sum.hessian += Matrix3::identity() * problem.inertia.weight[v];
         }
-        for elastic in &model.elastics {
-            if let ElasticEnd::Point(point) = elastic.to {
-                let secant = elastic
-                    .law
-                    .secant(state.positions[elastic.from as usize] - point);
-                self.sums[self.label[elastic.from as usize] as usize].hessian +=
-                    Matrix3::identity() * secant;
-            }
+        for one in system.control.attachments.all() {
+            let v = one.vertex as usize;
+            let secant = one.law.secant(state.positions[v] - one.place);
+            self.sums[self.label[v] as usize].hessian += Matrix3::identity() * secant;
         }
         for contact in &workspace.contacts.active {
             let sample = &contact.point;
@@ -68,13 +61,13 @@ impl Pieces {
                 .evaluate(&contact.plane, sample.place(&state.positions));
             self.sums[self.label[sample.vertices[0] as usize] as usize].hessian += hessian;
         }
-        let before = workspace.potential(model, &state.positions, &problem.inertia);
+        let before = workspace.potential(system, &state.positions, &problem.inertia);
         let mut trial = std::mem::take(&mut workspace.trial);
         trial.clone_from(&state.positions);
         for (x, &label) in trial.iter_mut().zip(&self.label) {
             *x += self.sums[label as usize].step();
         }
-        if workspace.potential(model, &trial, &problem.inertia) < before {
+        if workspace.potential(system, &trial, &problem.inertia) < before {
             std::mem::swap(&mut state.positions, &mut trial);
         }
         workspace.trial = trial;

@@ -115,7 +115,7 @@ impl Projective {
         self.negative.extend(workspace.gradient.iter().map(|g| -g));
         self.metric.press(problem, state, workspace);
         self.metric
-            .solve(problem.model, &self.negative, &mut self.step);
+            .solve(problem.system, &self.negative, &mut self.step);
         self.remember(&state.positions);
         if self.accelerate() {
             let mut direction = std::mem::take(&mut self.accelerated);
@@ -175,11 +175,11 @@ impl Solver for Projective {
         state: &mut State,
         workspace: &mut Workspace,
     ) -> NewtonReport {
-        workspace.fit(problem.model);
+        workspace.fit(problem.system);
         self.step
-            .resize(problem.model.vertex_count(), Vec3::zeros());
+            .resize(problem.system.vertex_count(), Vec3::zeros());
         self.forget();
-        if !self.metric.fit(problem.model, problem.weight) {
+        if !self.metric.fit(problem.system, problem.weight) {
             return NewtonReport::default();
         }
         let mut energy = None;

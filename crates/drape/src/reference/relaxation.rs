@@ -4,7 +4,7 @@ use crate::laws::membrane::Curvature;
 use crate::measure::weight_norm;
 use crate::method::{Method, MethodSettings, StepReport};
 use crate::methods::explicit::forces_and_settle;
-use crate::{DrapeError, Inertia, Memory, Model, RelaxationMemory, State, Workspace};
+use crate::{DrapeError, Inertia, Memory, RelaxationMemory, State, System, Workspace};
 use toile_geometry::Vec3;
 use toile_sparse::dot;
 
@@ -54,8 +54,8 @@ impl Relaxation {
     }
 
     /// The run the state remembers, or a new one.
-    fn resume(&mut self, model: &Model, state: &mut State) -> RelaxationMemory {
-        let n = model.vertex_count();
+    fn resume(&mut self, system: &System, state: &mut State) -> RelaxationMemory {
+        let n = system.vertex_count();
         match std::mem::take(&mut state.memory) {
             Memory::Relaxation(run) if run.moves.len() == n => run,
             _ => RelaxationMemory {
@@ -70,27 +70,35 @@ impl Relaxation {
     }
 
     /// Masses that keep every vibration stable at the state's positions.
-    fn weigh(&mut self, model: &Model, state: &State, masses: &mut Vec<f64>) {
+    fn weigh(&mut self, system: &System, state: &State, masses: &mut Vec<f64>) {
         let workspace = &mut self.workspace;
-        self.zeros.resize(model.vertex_count(), 0.0);
+        self.zeros.resize(system.vertex_count(), 0.0);
         let inertia = Inertia {
             weight: &self.zeros,
             target: &state.positions,
         };
-        workspace.fit(model);
-        workspace.terms.hold_still(model, state);
-        workspace.contacts.refresh(model, state, &state.positions);
-        workspace.fill_gradient(model, &state.positions, Some(&inertia));
-        workspace.fill_hessian(model, &state.positions, &inertia, Curvature::CONVEX);
+        workspace.fit(system);
+        workspace.terms.hold_still(system, state);
+        workspace.contacts.refresh(system, state, &state.positions);
+        workspace.fill_gradient(system, &state.positions, Some(&inertia));
+        workspace.fill_hessian(system, &state.positions, &inertia, Curvature::CONVEX);
         masses.clear();
-        for v in 0..model.vertex_count() {
-            let mut sums =
-                Vec3::repeat(model.bending.row_entries(v).1.iter().map(|b| b.abs()).sum());
-            for block in workspace.hessian_blocks(model, v).1 {
+        for v in 0..system.vertex_count() {
+            let mut sums = Vec3::repeat(
+                system
+                    .rest
+                    .bending
+                    .row_entries(v)
+                    .1
+                    .iter()
+                    .map(|b| b.abs())
+                    .sum(),
+            );
+            for block in workspace.hessian_blocks(system, v).1 {
                 sums += block.abs().column_sum();
             }
             // An elastic between vertices adds its secant off the diagonal too.
-            let own = model.elastic_stiffness(v);
+            let own = system.elastic_stiffness(v);
             masses.push(0.25 * SAFETY * (sums.max() + own));
         }
         for contact in &workspace.contacts.active {
@@ -99,22 +107,22 @@ impl Relaxation {
                 masses[v as usize] += 0.25 * SAFETY * w * contact.law.normal;
             }
         }
-        for (mass, &real) in masses.iter_mut().zip(&model.mass) {
+        for (mass, &real) in masses.iter_mut().zip(&system.rest.mass) {
             *mass = mass.max(f64::MIN_POSITIVE + 1e-9 * real);
         }
     }
 
     /// One iteration; true when it was the last of a swing.
-    fn iterate(&mut self, model: &Model, state: &mut State, run: &mut RelaxationMemory) -> bool {
+    fn iterate(&mut self, system: &System, state: &mut State, run: &mut RelaxationMemory) -> bool {
         if run.still {
             let mut masses = std::mem::take(&mut run.masses);
-            self.weigh(model, state, &mut masses);
+            self.weigh(system, state, &mut masses);
             run.masses = masses;
         }
         // No substep: nothing moves in time, and no push can throw the cloth.
-        let force = forces_and_settle(model, state, &mut self.workspace, 0.0);
+        let force = forces_and_settle(system, state, &mut self.workspace, 0.0);
         run.iterations += 1;
-        run.residual = dot(force, force).sqrt() / weight_norm(model);
+        run.residual = dot(force, force).sqrt() / weight_norm(system);
         if run.residual <= self.tolerance {
             return true;
         }
@@ -155,16 +163,16 @@ impl Relaxation {
 impl Method for Relaxation {
     fn advance(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         _step: f64,
     ) -> Result<StepReport, DrapeError> {
         state.follow_samples();
         state.velocities.fill(Vec3::zeros());
-        let mut run = self.resume(model, state);
+        let mut run = self.resume(system, state);
         let first = run.iterations;
         for _ in 0..SWING {
-            if self.iterate(model, state, &mut run) {
+            if self.iterate(system, state, &mut run) {
                 break;
             }
         }

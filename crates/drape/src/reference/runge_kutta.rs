@@ -1,7 +1,7 @@
 //! The classical Runge-Kutta method: order 4.
 
 use crate::methods::explicit::{Scheme, forces, forces_and_settle};
-use crate::{Model, State, Workspace};
+use crate::{State, System, Workspace};
 use toile_geometry::Vec3;
 
 /// With y = (x, v) and y' = F(y) = (v, f(x, v) / m - c v):
@@ -31,22 +31,22 @@ impl Scheme for RungeKutta4 {
     const STAGE: &'static str = "Runge-Kutta 4";
     const LIMIT: f64 = 2.0 * std::f64::consts::SQRT_2;
 
-    fn substep(&mut self, model: &Model, state: &mut State, workspace: &mut Workspace, h: f64) {
+    fn substep(&mut self, system: &System, state: &mut State, workspace: &mut Workspace, h: f64) {
         self.places.clone_from(&state.positions);
         self.speeds.clone_from(&state.velocities);
         for sum in [&mut self.moved, &mut self.gained] {
             sum.clear();
-            sum.resize(model.vertex_count(), Vec3::zeros());
+            sum.resize(system.vertex_count(), Vec3::zeros());
         }
         for (stage, (along, weight)) in STAGES.into_iter().enumerate() {
             let force = if stage == 0 {
-                forces_and_settle(model, state, workspace, h)
+                forces_and_settle(system, state, workspace, h)
             } else {
-                forces(model, state, workspace, h)
+                forces(system, state, workspace, h)
             };
             for (i, f) in force.iter().enumerate() {
                 let v = state.velocities[i];
-                let acceleration = f / model.mass[i] - v * model.air_drag;
+                let acceleration = f / system.rest.mass[i] - v * system.control.air_drag;
                 self.moved[i] += v * weight;
                 self.gained[i] += acceleration * weight;
                 state.positions[i] = self.places[i] + v * (along * h);

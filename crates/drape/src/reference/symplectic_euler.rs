@@ -1,7 +1,7 @@
 //! Symplectic (semi-explicit) Euler: order 1, keeps energy for ever below its limit.
 
 use crate::methods::explicit::{Scheme, forces_and_settle};
-use crate::{Model, State, Workspace};
+use crate::{State, System, Workspace};
 
 /// v' = (v + h f(x) / m) / (1 + c h),  x' = x + h v'
 /// (de Vogelaere 1956; Hairer, Lubich and Wanner 2006, I.1.9).
@@ -15,11 +15,11 @@ impl Scheme for SymplecticEuler {
     const STAGE: &'static str = "symplectic Euler";
     const LIMIT: f64 = 2.0;
 
-    fn substep(&mut self, model: &Model, state: &mut State, workspace: &mut Workspace, h: f64) {
-        let slowing = 1.0 / (1.0 + model.air_drag * h);
-        let force = forces_and_settle(model, state, workspace, h);
+    fn substep(&mut self, system: &System, state: &mut State, workspace: &mut Workspace, h: f64) {
+        let slowing = 1.0 / (1.0 + system.control.air_drag * h);
+        let force = forces_and_settle(system, state, workspace, h);
         let moving = state.positions.iter_mut().zip(&mut state.velocities);
-        for ((x, v), (f, m)) in moving.zip(force.iter().zip(&model.mass)) {
+        for ((x, v), (f, m)) in moving.zip(force.iter().zip(&system.rest.mass)) {
             *v = (*v + f * (h / m)) * slowing;
             *x += *v * h;
         }

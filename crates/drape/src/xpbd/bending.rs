@@ -10,7 +10,7 @@
 use super::membrane::inverse_mass;
 use crate::lanes::{Corner, LANES, Point, Row, Triple, add_scaled, gather, parts, scatter, sub};
 use crate::laws::bending::RestSheet;
-use crate::{Material, Model};
+use crate::{Material, System};
 use nalgebra::Matrix3;
 use pulp::Simd;
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
@@ -33,7 +33,7 @@ pub struct BendingForce {
 impl BendingForce {
     /// From the model; `vertex_of` names the vertex in each slot, `slot_of` the slot of each
     /// vertex.
-    pub fn new(model: &Model, vertex_of: &[Option<u32>], slot_of: &[u32]) -> Self {
+    pub fn new(system: &System, vertex_of: &[Option<u32>], slot_of: &[u32]) -> Self {
         let mut force = Self {
             start: vec![0],
             ..Self::default()
@@ -42,13 +42,13 @@ impl BendingForce {
         for (block, vertices) in vertex_of.chunks(LANES).enumerate() {
             let first = force.columns.len();
             for (lane, vertex) in vertices.iter().enumerate() {
-                let Some(v) = vertex.filter(|&v| !model.pinned[v as usize]) else {
+                let Some(v) = vertex.filter(|&v| !system.prescribed.pinned[v as usize]) else {
                     continue;
                 };
-                let (columns, values) = model.bending.row_entries(v as usize);
+                let (columns, values) = system.rest.bending.row_entries(v as usize);
                 let sum: f64 = values.iter().map(|value| value.abs()).sum();
                 // Gershgorin's bound of the eigenvalues of W K.
-                largest = largest.max(sum * inverse_mass(model, v));
+                largest = largest.max(sum * inverse_mass(system, v));
                 let others = columns.iter().zip(values);
                 for (at, (&column, &value)) in others
                     .filter(|&(&column, &value)| column != v && value != 0.0)
@@ -176,27 +176,28 @@ pub struct Stencil {
 const LEAST_SHARE: f64 = 1e-6;
 
 /// The curvature stencils of a model, those without stiffness left out.
-pub fn stencils(model: &Model) -> Vec<Stencil> {
-    let rest: Vec<[Vec2; 3]> = model.elements.iter().map(|e| e.rest()).collect();
+pub fn stencils(system: &System) -> Vec<Stencil> {
+    let rest: Vec<[Vec2; 3]> = system.rest.elements.iter().map(|e| e.rest()).collect();
     let mesh = TriangleMesh {
-        positions: vec![Vec3::zeros(); model.vertex_count()],
-        triangles: model.triangles.clone(),
+        positions: vec![Vec3::zeros(); system.vertex_count()],
+        triangles: system.topology.triangles.clone(),
     };
     let topology = mesh.topology();
     let sheet = RestSheet {
-        triangles: &model.triangles,
+        triangles: &system.topology.triangles,
         rest: &rest,
         topology: &topology,
     };
-    let laws: Vec<_> = (model.materials.iter())
+    let laws: Vec<_> = (system.materials.list.iter())
         .map(Material::bending_matrix)
         .collect();
-    let mut stencils = Vec::with_capacity(model.triangles.len());
+    let mut stencils = Vec::with_capacity(system.topology.triangles.len());
     for (t, stencil) in sheet.stencils().into_iter().enumerate() {
-        let (weights, stiffness) = stencil.principal(laws[model.material[t] as usize]);
+        let (weights, stiffness) =
+            stencil.principal(laws[system.materials.of_triangle[t] as usize]);
         let largest = stiffness.iter().copied().fold(0.0, f64::max);
         if largest > 0.0 {
-            let area = model.elements[t].area;
+            let area = system.rest.elements[t].area;
             stencils.push(Stencil {
                 vertices: stencil.vertices,
                 weights,
@@ -226,7 +227,7 @@ pub type Sums = [Triple<Row>; 3];
 
 impl BendingBatch {
     /// A batch of up to sixteen stencils; `local` as for membranes.
-    pub fn new(model: &Model, members: &[&Stencil], local: impl Fn(u32) -> u32) -> Self {
+    pub fn new(system: &System, members: &[&Stencil], local: impl Fn(u32) -> u32) -> Self {
         let size = members.first().map_or(0, |s| s.vertices.len());
         let mut batch = Self {
             corners: vec![Corner([0; LANES]); size],
@@ -240,7 +241,7 @@ impl BendingBatch {
             for (k, (&v, weights)) in stencil.vertices.iter().zip(&stencil.weights).enumerate() {
                 batch.corners[k].0[lane] = local(v);
                 let b = nalgebra::Vector3::from(*weights);
-                matrix += b * b.transpose() * inverse_mass(model, v);
+                matrix += b * b.transpose() * inverse_mass(system, v);
                 for row in 0..3 {
                     batch.weights[k][row].0[lane] = weights[row] as f32;
                 }

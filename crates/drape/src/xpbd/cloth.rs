@@ -4,7 +4,7 @@ use super::contact::{ContactStencil, Touch};
 use super::{Xpbd, XpbdReport, middle};
 use crate::collision::{Ahead, ClothContact, ClothContacts, ImpactStats, Motions, Reach};
 use crate::laws::contact::HARDER;
-use crate::{DrapeError, Model, State};
+use crate::{DrapeError, State, System};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
@@ -66,24 +66,24 @@ impl ClothWatch {
     }
 
     /// Looks for contacts, which are to serve for a few substeps of so many seconds at the least.
-    fn look(&mut self, model: &Model, state: &mut State, substep: f64) {
-        let kept = model.contact.cloth_offset;
+    fn look(&mut self, system: &System, state: &mut State, substep: f64) {
+        let kept = system.contact.cloth_offset;
         let least = f64::from(FEWEST) * substep;
-        let speed = fastest(model, state, least);
+        let speed = fastest(system, state, least);
         let soon = (FARTHEST / speed).min(LONGEST);
         let longest = soon.max(least);
-        let fall = 0.5 * model.gravity.norm() * longest * longest;
+        let fall = 0.5 * system.control.gravity.norm() * longest * longest;
         let reach = Reach {
             most: kept + 2.0 * FARTHEST,
             ahead: Some(Ahead {
                 velocities: &state.velocities,
                 kept,
-                pinned: &model.pinned,
+                pinned: &system.prescribed.pinned,
                 time: longest,
                 least: (speed * longest + fall).clamp(LEAST_WAY, FARTHEST),
             }),
         };
-        self.contacts.find(model, state, &state.positions, &reach);
+        self.contacts.find(system, state, &state.positions, &reach);
         self.contacts.remember(state);
         let shifts = SHIFTS / self.shifting(&state.velocities);
         let least = f64::from(self.fewest()) * substep;
@@ -109,11 +109,11 @@ impl ClothWatch {
     }
 
     /// Corrects the way of the last substeps, `span` [s] long, where cloth would have passed through cloth.
-    fn keep_apart(&mut self, model: &Model, state: &mut State, span: f64) {
+    fn keep_apart(&mut self, system: &System, state: &mut State, span: f64) {
         let ways = state.positions.iter().zip(&self.before);
         self.moves.clear();
         self.moves.extend(ways.map(|(x, from)| x - from));
-        let masses = model.mass.iter().zip(&model.pinned);
+        let masses = system.rest.mass.iter().zip(&system.prescribed.pinned);
         self.lightness.clear();
         self.lightness
             .extend(masses.map(|(m, &pinned)| if pinned { 0.0 } else { 1.0 / m }));
@@ -124,7 +124,7 @@ impl ClothWatch {
             lightness: &self.lightness,
             span,
         };
-        let kept = self.contacts.keep_apart(model, &mut motion);
+        let kept = self.contacts.keep_apart(system, &mut motion);
         if kept != ImpactStats::default() {
             let ends = self.before.iter().zip(&self.moves);
             for (x, (from, way)) in state.positions.iter_mut().zip(ends) {
@@ -136,16 +136,16 @@ impl ClothWatch {
 
 /// Speed of what is fastest [m/s]: a vertex, one that is led, or a surface, in the next `soon` seconds or as
 /// long as contacts may serve.
-fn fastest(model: &Model, state: &State, soon: f64) -> f64 {
+fn fastest(system: &System, state: &State, soon: f64) -> f64 {
     let of_cloth = state.velocities.iter().map(Vec3::norm);
     let spans = [soon, LONGEST].into_iter();
     let led = spans.flat_map(|span| {
         let times = [state.time, state.time + span];
-        let of_bodies = model.colliders.iter().filter_map(move |collider| {
+        let of_bodies = system.colliders.iter().filter_map(move |collider| {
             let [from, to] = times.map(|time| collider.pose(time));
             Some(collider.travel(&from?, &to?) / span)
         });
-        let of_grips = model.grips.iter().map(move |grip| {
+        let of_grips = system.prescribed.grips.iter().map(move |grip| {
             let to = grip.motion.pose(times[1]).apply(grip.home);
             (to - state.positions[grip.vertex as usize]).norm() / span
         });
@@ -167,16 +167,16 @@ impl Xpbd {
     /// [`Xpbd::advance`] with contact of cloth with cloth, where the model has it.
     pub(crate) fn advance_touching(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         watch: &mut ClothWatch,
         span: &Span,
     ) -> Result<XpbdReport, DrapeError> {
-        if model.contact.cloth_offset <= 0.0 {
+        if system.contact.cloth_offset <= 0.0 {
             watch.forget();
-            return self.advance(model, state, span.substep, span.count, span.drag);
+            return self.advance(system, state, span.substep, span.count, span.drag);
         }
-        if self.take_up(model, &state.samples) {
+        if self.take_up(system, &state.samples) {
             // The contacts in hand are gone.
             watch.forget();
         }
@@ -188,15 +188,15 @@ impl Xpbd {
         while left > 0 {
             let least = f64::from(watch.fewest()) * span.substep;
             if watch.serves.is_none_or(|serves| serves < least) {
-                watch.look(model, state, span.substep);
+                watch.look(system, state, span.substep);
                 self.touch_cloth(&watch.contacts.active, 2.0 * FARTHEST);
             }
             let serves = watch.serves.map_or(0.0, |serves| serves / span.substep);
             let count = before_next(left, serves, watch.fewest());
             watch.before.clone_from(&state.positions);
-            report = self.advance_about(model, state, origin, &Span { count, ..*span })?;
+            report = self.advance_about(system, state, origin, &Span { count, ..*span })?;
             let time = span.substep * f64::from(count);
-            watch.keep_apart(model, state, time);
+            watch.keep_apart(system, state, time);
             pieces = pieces.max(report.pieces);
             watch.serves = watch.serves.map(|serves| serves - time);
             left -= count;
@@ -243,12 +243,13 @@ impl Xpbd {
 mod tests {
     use super::super::XpbdSettings;
     use super::*;
+    use crate::SystemBuilder;
     use crate::{Cloth, Material};
     use toile_geometry::TriangleMesh;
 
     /// A sheet of 60 by 60 cells of 10 mm in pleats 2.5 mm apart, and a flat one on it: more vertices than a
     /// domain holds.
-    fn pleats_under_a_sheet() -> (Model, State) {
+    fn pleats_under_a_sheet() -> (System, State) {
         let mut mesh = TriangleMesh::default();
         for flat in [false, true] {
             let first = mesh.positions.len() as u32;
@@ -273,15 +274,16 @@ mod tests {
             }
         }
         let cloth = Cloth::from_mesh("pleats", &mesh, Material::default()).expect("a cloth");
-        let mut model = Model::new("pleats", &cloth).expect("a model");
-        model.contact.cloth_offset = 3e-3;
-        let state = State::at_rest(&model, mesh.positions);
-        (model, state)
+        let mut builder = SystemBuilder::new("pleats", &cloth).expect("a model");
+        builder.contact.cloth_offset = 3e-3;
+        let system = builder.build();
+        let state = State::at_rest(&system, mesh.positions);
+        (system, state)
     }
 
     #[test]
     fn contacts_in_domains_across_cuts_and_alone_give_the_same_bytes_at_any_number_of_threads() {
-        let (model, start) = pleats_under_a_sheet();
+        let (system, start) = pleats_under_a_sheet();
         let span = Span {
             substep: 1.0 / 1200.0,
             count: 10,
@@ -294,10 +296,10 @@ mod tests {
                     iterations: 2,
                     ..XpbdSettings::default()
                 };
-                let mut solver = Xpbd::with_settings(&model, settings);
+                let mut solver = Xpbd::with_settings(&system, settings);
                 let (mut state, mut watch) = (start.clone(), ClothWatch::default());
                 solver
-                    .advance_touching(&model, &mut state, &mut watch, &span)
+                    .advance_touching(&system, &mut state, &mut watch, &span)
                     .expect("sound");
                 let held = |region: &super::super::region::Region| region.cloth.len();
                 let regions = &solver.regions;

@@ -6,7 +6,8 @@
 //! not creep. Contacts of cloth with cloth are stencils of the same form with other weights.
 
 use crate::lanes::{LANES, Point, Row, add_scaled, dot, load, store, sub};
-use crate::{ContactSample, Model, Pose};
+use crate::laws::elastic::ElasticLaw;
+use crate::{ContactSample, Pose, System};
 use pulp::Simd;
 use toile_geometry::Vec3;
 
@@ -56,16 +57,16 @@ const FLAT_SLOPE: f64 = 0.05;
 
 impl Touch {
     /// That of a sample, still to be looked up.
-    pub fn of_sample(model: &Model, (number, found): (usize, &ContactSample)) -> Self {
-        let friction = if model.contact.friction {
+    pub fn of_sample(system: &System, (number, found): (usize, &ContactSample)) -> Self {
+        let friction = if system.contact.friction {
             found.friction
         } else {
             0.0
         };
         Self {
-            softness: (1.0 / (model.contact.stiffness * found.area)).min(1e30) as f32,
+            softness: (1.0 / (system.contact.stiffness * found.area)).min(1e30) as f32,
             friction: friction as f32,
-            offset: (model.contact.offset + found.extra_offset) as f32,
+            offset: (system.contact.offset + found.extra_offset) as f32,
             sample: number as u32,
             ..Self::none()
         }
@@ -120,7 +121,7 @@ impl Touch {
         let reach = crate::contact_settings::FIELD_REACH;
         let mut nearest: Option<(f64, Vec3)> = None;
         let mut drift = Vec3::zeros();
-        for (k, collider) in solid.model.colliders.iter().enumerate() {
+        for (k, collider) in solid.system.colliders.iter().enumerate() {
             let poses = solid.poses.get(k).and_then(Option::as_ref);
             if let Some(found) = collider.distance(poses.map(|[_, to]| to), place)
                 && nearest.is_none_or(|(distance, _)| found.0 < distance)
@@ -207,7 +208,7 @@ fn aged(radius2: f32, travel: f32, near: bool) -> f32 {
 #[derive(Clone, Copy)]
 pub struct Solid<'a> {
     /// The model.
-    pub model: &'a Model,
+    pub system: &'a System,
     /// What the points' numbers are relative to [m].
     pub origin: Vec3,
     /// Where each collider that moves stands when the substep begins and when it ends; empty where
@@ -218,7 +219,7 @@ pub struct Solid<'a> {
 impl Solid<'_> {
     /// Whether there are any.
     pub fn stands(&self) -> bool {
-        !self.model.colliders.is_empty()
+        !self.system.colliders.is_empty()
     }
 }
 
@@ -502,27 +503,46 @@ pub fn solve_stencils(
 #[derive(Clone, Copy, Debug)]
 pub struct Tie {
     /// The vertex it pulls, as an index into the points of the region.
-    pub from: u32,
-    /// The vertex it pulls it to; with none, `place`.
-    pub to: Option<u32>,
-    /// Where it pulls it to [m].
-    pub place: [f32; 3],
+    from: u32,
+    to: TieEnd,
     /// Stiffness [N/m].
-    pub stiffness: f32,
+    stiffness: f32,
     /// Largest force [N].
-    pub most: f32,
+    most: f32,
     /// Impulse of the substep over its square [N s2].
     pub sum: [f32; 3],
-    /// The elastic in the model.
-    pub elastic: u32,
+}
+
+/// Where the other end of an elastic is.
+#[derive(Clone, Copy, Debug)]
+pub enum TieEnd {
+    /// A vertex, as an index into the points of the region.
+    Point(u32),
+    /// A place [m].
+    Place([f32; 3]),
+}
+
+impl Tie {
+    /// An elastic with its law.
+    pub fn new(from: u32, to: TieEnd, law: &ElasticLaw) -> Self {
+        Self {
+            from,
+            to,
+            stiffness: law.stiffness as f32,
+            most: law.largest_force.min(1e30) as f32,
+            sum: [0.0; 3],
+        }
+    }
 }
 
 /// Solves elastics in order.
 pub fn solve_ties(ties: &mut [Tie], points: &mut [Point], kappa: f32) {
     for tie in ties {
         let a = points[tie.from as usize];
-        let [x, y, z] = tie.place;
-        let b = tie.to.map_or([x, y, z, 0.0], |to| points[to as usize]);
+        let b = match tie.to {
+            TieEnd::Point(to) => points[to as usize],
+            TieEnd::Place([x, y, z]) => [x, y, z, 0.0],
+        };
         let soft = kappa / tie.stiffness;
         let weight = a[3] + b[3] + soft;
         let wanted = [0, 1, 2].map(|k| tie.sum[k] - (a[k] - b[k] + soft * tie.sum[k]) / weight);
@@ -534,7 +554,7 @@ pub fn solve_ties(ties: &mut [Tie], points: &mut [Point], kappa: f32) {
             let change = sum - tie.sum[k];
             tie.sum[k] = sum;
             points[tie.from as usize][k] += a[3] * change;
-            if let Some(to) = tie.to {
+            if let TieEnd::Point(to) = tie.to {
                 points[to as usize][k] -= b[3] * change;
             }
         }

@@ -15,7 +15,7 @@
 //! A law that is no straight line is linearised where the triangle is: with stress s and slope D,
 //! C becomes D^-1 s and S becomes D.
 
-use crate::Model;
+use crate::System;
 use crate::lanes::{
     Corner, LANES, Point, Row, add_scaled, blend, dot, gather, parts, scatter, sub,
 };
@@ -81,7 +81,7 @@ impl LawRow {
 impl MembraneBatch {
     /// A batch of up to sixteen triangles; `local` gives a vertex its index in the region, index 0
     /// being a point that nothing moves.
-    pub fn new(model: &Model, triangles: &[u32], local: impl Fn(u32) -> u32) -> Self {
+    pub fn new(system: &System, triangles: &[u32], local: impl Fn(u32) -> u32) -> Self {
         let mut batch = Self {
             corners: [Corner([0; LANES]); 3],
             warp: [Row::splat(0.0); 2],
@@ -91,13 +91,13 @@ impl MembraneBatch {
             scale: Row::splat(0.0),
             law: triangles
                 .first()
-                .map_or(0, |&t| u32::from(model.material[t as usize])),
+                .map_or(0, |&t| u32::from(system.materials.of_triangle[t as usize])),
             count: triangles.len() as u32,
         };
         for (lane, &t) in triangles.iter().enumerate() {
-            let element = &model.elements[t as usize];
-            let vertices = model.triangles[t as usize];
-            let weight = vertices.map(|v| inverse_mass(model, v));
+            let element = &system.rest.elements[t as usize];
+            let vertices = system.topology.triangles[t as usize];
+            let weight = vertices.map(|v| inverse_mass(system, v));
             let (a, b) = (element.warp, element.weft);
             let sum = |f: &dyn Fn(usize) -> f64| (0..3).map(|i| weight[i] * f(i)).sum::<f64>();
             let products = [
@@ -127,11 +127,11 @@ impl MembraneBatch {
 }
 
 /// Inverse mass of a vertex [1/kg]; zero at pins.
-pub fn inverse_mass(model: &Model, vertex: u32) -> f64 {
-    if model.pinned[vertex as usize] {
+pub fn inverse_mass(system: &System, vertex: u32) -> f64 {
+    if system.prescribed.pinned[vertex as usize] {
         0.0
     } else {
-        1.0 / model.mass[vertex as usize]
+        1.0 / system.rest.mass[vertex as usize]
     }
 }
 

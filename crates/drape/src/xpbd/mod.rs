@@ -35,7 +35,7 @@ mod run;
 use crate::collision::Tally;
 use crate::lanes::LANES;
 use crate::method::{Method, MethodSettings, StepReport};
-use crate::{ContactSample, DrapeError, Model, State};
+use crate::{ContactSample, DrapeError, Model, State, System};
 use bending::{BendingForce, Filter};
 use bounce::BounceStep;
 pub(crate) use cloth::{ClothWatch, Span};
@@ -109,89 +109,64 @@ pub struct Xpbd {
     /// The substep all is set up for [s], and its (1 + drag h) / h^2.
     step: f64,
     kappa: f64,
-    built_for: Fingerprint,
+    built_for: BuiltFor,
     domain_starts: Vec<usize>,
     settle_starts: Vec<usize>,
     cut_starts: Vec<usize>,
 }
 
-/// What of a model the constraints were built from.
-#[derive(Clone, PartialEq)]
-struct Fingerprint {
-    triangles: Vec<[u32; 3]>,
-    elements: Vec<crate::laws::membrane::MembraneElement>,
-    material: Vec<u16>,
-    materials: Vec<crate::Material>,
-    laws: Vec<crate::laws::stretch::MembraneLaw>,
-    mass: Vec<f64>,
-    pinned: Vec<bool>,
-    elastics: Vec<crate::Elastic>,
-    contact: crate::ContactSettings,
+/// What the constraints were built from.
+struct BuiltFor {
+    model: Model,
     samples: Arc<Vec<ContactSample>>,
-    solid: bool,
 }
 
-impl Fingerprint {
+impl BuiltFor {
     fn new(model: &Model, samples: &Arc<Vec<ContactSample>>) -> Self {
         Self {
-            triangles: model.triangles.clone(),
-            elements: model.elements.clone(),
-            material: model.material.clone(),
-            materials: model.materials.clone(),
-            laws: model.laws.clone(),
-            mass: model.mass.clone(),
-            pinned: model.pinned.clone(),
-            elastics: model.elastics.clone(),
-            contact: model.contact,
+            model: model.clone(),
             samples: samples.clone(),
-            solid: !model.colliders.is_empty(),
         }
     }
 
     fn fits(&self, model: &Model, samples: &Arc<Vec<ContactSample>>) -> bool {
-        self.triangles == model.triangles
-            && self.elements == model.elements
-            && self.material == model.material
-            && self.materials == model.materials
-            && self.laws == model.laws
-            && self.mass == model.mass
-            && self.pinned == model.pinned
-            && self.elastics == model.elastics
-            && self.contact == model.contact
+        self.model.has_cloth_of(model)
+            && self.model.has_ties_of(model)
+            && self.model.contact == model.contact
+            && self.model.colliders.is_empty() == model.colliders.is_empty()
             && Arc::ptr_eq(&self.samples, samples)
-            && self.solid != model.colliders.is_empty()
     }
 }
 
 impl Xpbd {
     /// Builds the constraints of a model.
-    pub fn new(model: &Model) -> Self {
-        Self::with_settings(model, XpbdSettings::default())
+    pub fn new(system: &System) -> Self {
+        Self::with_settings(system, XpbdSettings::default())
     }
 
     /// Builds the constraints of a model, to be solved as given.
-    pub fn with_settings(model: &Model, settings: XpbdSettings) -> Self {
-        Self::with_samples(model, &model.samples, settings)
+    pub fn with_settings(system: &System, settings: XpbdSettings) -> Self {
+        Self::with_samples(system, &system.rest.samples, settings)
     }
 
     /// The same for a state's samples.
     fn with_samples(
-        model: &Model,
+        system: &System,
         samples: &Arc<Vec<ContactSample>>,
         settings: XpbdSettings,
     ) -> Self {
-        let order = Order::new(model);
+        let order = Order::new(system);
         let mut regions = Regions::new(&order);
-        regions.add_membranes(model, &order);
-        regions.add_ties(model, &order);
+        regions.add_membranes(system, &order);
+        regions.add_ties(system, &order);
         let mut particles = Particles::new(order.len());
-        if !model.colliders.is_empty() {
-            regions.add_samples(model, samples, &order);
+        if !system.colliders.is_empty() {
+            regions.add_samples(system, samples, &order);
             for (index, sample) in samples.iter().enumerate() {
                 if sample.triangle.is_none() {
                     let slot = order.slot_of[sample.vertices[0] as usize];
                     let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
-                    particles.touch[block].set(lane, &Touch::of_sample(model, (index, sample)));
+                    particles.touch[block].set(lane, &Touch::of_sample(system, (index, sample)));
                 }
             }
         }
@@ -199,13 +174,13 @@ impl Xpbd {
             settings,
             regions,
             particles,
-            bending: BendingForce::new(model, &order.vertex_of, &order.slot_of),
+            bending: BendingForce::new(system, &order.vertex_of, &order.slot_of),
             has_bending_constraints: false,
             filter: None,
-            laws: model.laws.iter().map(LawRow::new).collect(),
+            laws: system.materials.laws.iter().map(LawRow::new).collect(),
             step: f64::NAN,
             kappa: f64::NAN,
-            built_for: Fingerprint::new(model, samples),
+            built_for: BuiltFor::new(system, samples),
             domain_starts: order.domain_starts(),
             settle_starts: order.settle_starts(),
             cut_starts: order.cut_starts(),
@@ -235,13 +210,13 @@ impl Xpbd {
     /// When a number is not finite at any size of substep; the state is then as it was.
     pub fn advance(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         substep: f64,
         count: u32,
         drag: f64,
     ) -> Result<XpbdReport, DrapeError> {
-        self.take_up(model, &state.samples);
+        self.take_up(system, &state.samples);
         let span = Span {
             substep,
             count,
@@ -249,14 +224,14 @@ impl Xpbd {
         };
         let origin = middle(&state.positions);
         self.forget_surfaces();
-        self.advance_about(model, state, origin, &span)
+        self.advance_about(system, state, origin, &span)
     }
 
     /// [`Xpbd::advance`] with numbers relative to `origin` [m], which what was looked up of surfaces is
     /// too.
     fn advance_about(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         origin: Vec3,
         &Span {
@@ -276,19 +251,19 @@ impl Xpbd {
             if halvings > 0 {
                 self.forget_surfaces();
             }
-            self.load(model, state, origin);
-            self.lead(model, state, substep * f64::from(count));
+            self.load(system, state, origin);
+            self.lead(system, state, substep * f64::from(count));
             let h = substep / f64::from(pieces);
             let motion = Free {
                 h,
                 drag,
                 time: state.time,
             };
-            self.run(model, origin, &motion, count * pieces);
+            self.run(system, origin, &motion, count * pieces);
             match self.first_not_finite() {
                 Some(vertex) => failed = vertex,
                 None => {
-                    let mut report = self.store(model, state, origin);
+                    let mut report = self.store(system, state, origin);
                     report.pieces = pieces;
                     state.time += substep * f64::from(count);
                     return Ok(report);
@@ -302,10 +277,10 @@ impl Xpbd {
     }
 
     /// Builds the constraints anew where the model has changed; whether it has.
-    fn take_up(&mut self, model: &Model, samples: &Arc<Vec<ContactSample>>) -> bool {
-        let changed = !self.built_for.fits(model, samples);
+    fn take_up(&mut self, system: &System, samples: &Arc<Vec<ContactSample>>) -> bool {
+        let changed = !self.built_for.fits(system, samples);
         if changed {
-            *self = Self::with_samples(model, samples, self.settings);
+            *self = Self::with_samples(system, samples, self.settings);
         }
         changed
     }
@@ -321,7 +296,7 @@ impl Xpbd {
     }
 
     /// Reads a state.
-    fn load(&mut self, model: &Model, state: &State, origin: Vec3) {
+    fn load(&mut self, system: &System, state: &State, origin: Vec3) {
         let particles = &mut self.particles;
         for (slot, vertex) in self.order.vertex_of.iter().enumerate() {
             let Some(v) = *vertex else {
@@ -329,7 +304,7 @@ impl Xpbd {
             };
             let place = state.positions[v as usize] - origin;
             let velocity = state.velocities[v as usize];
-            let weight = inverse_mass(model, v);
+            let weight = inverse_mass(system, v);
             let mut start = [0.0, 0.0, 0.0, weight as f32];
             for k in 0..3 {
                 start[k] = place[k] as f32;
@@ -346,18 +321,19 @@ impl Xpbd {
         for moves in &mut particles.bend {
             moves.fill([0.0; 4]);
         }
+        self.regions.hold_attachments(system, &self.order, origin);
         let iterated = self.settings.iterations > 1;
         for region in self.regions.all_mut() {
-            region.begin(model, origin, iterated);
+            region.begin(iterated);
         }
     }
 
     /// Gives pinned vertices that are led the velocity that takes them where they have to be after
     /// `span` [s].
-    fn lead(&mut self, model: &Model, state: &State, span: f64) {
-        for grip in &model.grips {
+    fn lead(&mut self, system: &System, state: &State, span: f64) {
+        for grip in &system.prescribed.grips {
             let v = grip.vertex as usize;
-            if !model.pinned[v] {
+            if !system.prescribed.pinned[v] {
                 continue;
             }
             let there = grip.motion.pose(state.time + span).apply(grip.home);
@@ -370,7 +346,7 @@ impl Xpbd {
     }
 
     /// Writes the state.
-    fn store(&self, model: &Model, state: &mut State, origin: Vec3) -> XpbdReport {
+    fn store(&self, system: &System, state: &mut State, origin: Vec3) -> XpbdReport {
         let particles = &self.particles;
         let mut fastest = 0f64;
         for (slot, vertex) in self.order.vertex_of.iter().enumerate() {
@@ -383,7 +359,7 @@ impl Xpbd {
                 particles.velocity[slot],
             );
             let wide = |p: [f32; 4]| Vec3::new(p[0].into(), p[1].into(), p[2].into());
-            if model.pinned[v as usize] {
+            if system.prescribed.pinned[v as usize] {
                 state.velocities[v as usize] = Vec3::zeros();
                 if velocity != [0.0; 4] {
                     state.positions[v as usize] = origin + (wide(start) + wide(low));
@@ -405,14 +381,14 @@ impl Xpbd {
             }
             state.normal_forces[at] = kappa * f64::from(touch.push);
             state.anchors[at] = (touch.push > 0.0).then(|| {
-                let stiffness = 0.5 * model.contact.stiffness * state.samples[at].area;
+                let stiffness = 0.5 * system.contact.stiffness * state.samples[at].area;
                 let rub = Vec3::from(touch.rub.map(f64::from)) * kappa;
                 state.samples[at].place(&state.positions) + rub / stiffness
             });
         }
         XpbdReport {
             pieces: 1,
-            kinetic_energy: state.kinetic_energy(model),
+            kinetic_energy: state.kinetic_energy(system),
             fastest: fastest.sqrt(),
         }
     }
@@ -427,11 +403,11 @@ impl Xpbd {
             .find_map(|(_, vertex)| vertex.map(|v| v as usize))
     }
 
-    fn run(&mut self, model: &Model, origin: Vec3, motion: &Free, count: u32) {
+    fn run(&mut self, system: &System, origin: Vec3, motion: &Free, count: u32) {
         let &Free { h, drag, time } = motion;
         let kappa = (1.0 + drag * h) / (h * h);
-        self.set_step(model, origin, h, kappa);
-        let g = model.gravity;
+        self.set_step(system, h, kappa);
+        let g = system.control.gravity;
         let motion = MotionStep {
             step: h as f32,
             gravity: [g.x as f32, g.y as f32, g.z as f32, 0.0],
@@ -442,7 +418,7 @@ impl Xpbd {
         let run = Run {
             sweep: SweepStep {
                 solid: Solid {
-                    model,
+                    system,
                     origin,
                     poses: &[],
                 },
@@ -453,7 +429,7 @@ impl Xpbd {
                 bends: self.filter.is_none(),
             },
             motion,
-            bounces: model.bounces().then_some(BounceStep {
+            bounces: system.materials.bounce().then_some(BounceStep {
                 step: h as f32,
                 gravity: g.norm() as f32,
             }),
@@ -478,7 +454,7 @@ impl Xpbd {
     }
 
     /// Sets up what depends on the size of the substep.
-    fn set_step(&mut self, model: &Model, origin: Vec3, h: f64, kappa: f64) {
+    fn set_step(&mut self, system: &System, h: f64, kappa: f64) {
         let iterated = self.settings.iterations > 1;
         if self.step != h {
             self.step = h;
@@ -488,11 +464,11 @@ impl Xpbd {
             };
         }
         if self.filter.is_none() && !self.has_bending_constraints {
-            self.regions.add_bending(model, &self.order);
+            self.regions.add_bending(system, &self.order);
             self.has_bending_constraints = true;
             self.kappa = f64::NAN;
             for region in self.regions.all_mut() {
-                region.begin(model, origin, iterated);
+                region.begin(iterated);
             }
         }
         if self.kappa != kappa {
@@ -563,21 +539,21 @@ impl Method for XpbdMethod {
 
     fn advance(
         &mut self,
-        model: &Model,
+        system: &System,
         state: &mut State,
         step: f64,
     ) -> Result<StepReport, DrapeError> {
         let settings = self.settings;
-        let solver = (self.solver).get_or_insert_with(|| Xpbd::with_settings(model, settings));
+        let solver = (self.solver).get_or_insert_with(|| Xpbd::with_settings(system, settings));
         let substep = step / f64::from(self.substeps);
         let span = Span {
             substep,
             count: self.substeps,
-            drag: model.air_drag,
+            drag: system.control.air_drag,
         };
         // A step must not depend on what was found before it.
         self.cloth.forget();
-        let report = solver.advance_touching(model, state, &mut self.cloth, &span)?;
+        let report = solver.advance_touching(system, state, &mut self.cloth, &span)?;
         let iterations = self.substeps * self.settings.iterations * report.pieces;
         Ok(StepReport {
             pieces: report.pieces,

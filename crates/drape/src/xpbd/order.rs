@@ -6,8 +6,8 @@
 //! elastic across the garment) comes last, alone. Two rounds are two barriers whatever the number
 //! of colours, and ranges are slices that two threads may hold at once.
 
+use crate::System;
 use crate::lanes::LANES;
-use crate::{ElasticEnd, Model};
 
 /// Vertices of a domain: two a side make a sheet of 10,000 vertices worth sharing.
 const DOMAIN: usize = 2500;
@@ -40,8 +40,8 @@ pub enum Place {
 
 impl Order {
     /// Sorts and cuts the vertices of a model.
-    pub fn new(model: &Model) -> Self {
-        let sorted = cuthill_mckee(model);
+    pub fn new(system: &System) -> Self {
+        let sorted = cuthill_mckee(system);
         let count = sorted.len();
         let domains = (count / DOMAIN).clamp(1, MOST_DOMAINS);
         let halves = 2 * domains;
@@ -155,16 +155,14 @@ impl Order {
 
 /// Vertices in reverse Cuthill-McKee order over triangles and elastics (Cuthill and McKee 1969):
 /// breadth first from a vertex at the rim, neighbours by their number of neighbours.
-fn cuthill_mckee(model: &Model) -> Vec<u32> {
-    let count = model.vertex_count();
+fn cuthill_mckee(system: &System) -> Vec<u32> {
+    let count = system.vertex_count();
     let mut pairs: Vec<(u32, u32)> = Vec::new();
-    for &[a, b, c] in &model.triangles {
+    for &[a, b, c] in &system.topology.triangles {
         pairs.extend([(a, b), (b, a), (b, c), (c, b), (c, a), (a, c)]);
     }
-    for elastic in &model.elastics {
-        if let ElasticEnd::Vertex(to) = elastic.to {
-            pairs.extend([(elastic.from, to), (to, elastic.from)]);
-        }
+    for [from, to] in system.couplings.ends() {
+        pairs.extend([(from, to), (to, from)]);
     }
     pairs.sort_unstable();
     pairs.dedup();

@@ -1,11 +1,13 @@
 //! A region: the constraints that one core solves in one go, on one slice of the points.
 
 use super::bending::{self, BendingBatch, Stencil};
-use super::contact::{ContactStencil, ContactStep, Solid, Tie, Touch, solve_stencils, solve_ties};
+use super::contact::{
+    ContactStencil, ContactStep, Solid, Tie, TieEnd, Touch, solve_stencils, solve_ties,
+};
 use super::membrane::{self, LawRow, MembraneBatch};
 use super::order::{Order, Place, batches};
 use crate::lanes::{LANES, Point, Row};
-use crate::{ContactSample, ElasticEnd, Model};
+use crate::{ContactSample, Model, System};
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -18,6 +20,7 @@ pub struct Region {
     bending: Vec<BendingBatch>,
     bending_sums: Vec<bending::Sums>,
     ties: Vec<Tie>,
+    attachments: Vec<Tie>,
     /// Contacts of points within triangles with surfaces.
     pub contacts: Vec<ContactStencil>,
     /// Contacts of cloth with cloth.
@@ -62,13 +65,17 @@ impl Regions {
     }
 
     /// Adds the membrane of every triangle that has a vertex to move.
-    pub fn add_membranes(&mut self, model: &Model, order: &Order) {
+    pub fn add_membranes(&mut self, system: &System, order: &Order) {
         let moves = |t: &u32| {
-            let corners = model.triangles[*t as usize];
-            corners.iter().any(|&v| !model.pinned[v as usize])
+            let corners = system.topology.triangles[*t as usize];
+            corners
+                .iter()
+                .any(|&v| !system.prescribed.pinned[v as usize])
         };
-        let triangles: Vec<u32> = (0..model.triangles.len() as u32).filter(moves).collect();
-        let corners = |&t: &u32| &model.triangles[t as usize][..];
+        let triangles: Vec<u32> = (0..system.topology.triangles.len() as u32)
+            .filter(moves)
+            .collect();
+        let corners = |&t: &u32| &system.topology.triangles[t as usize][..];
         for (place, members) in by_place(order, &triangles, corners) {
             let start = order.start(place) as u32;
             let local = |v: u32| order.slot_of[v as usize] - start;
@@ -77,20 +84,24 @@ impl Regions {
                 members.len(),
                 LANES,
                 |i| corners(members[i]),
-                |i| model.material[*members[i] as usize] as usize,
+                |i| system.materials.of_triangle[*members[i] as usize] as usize,
             ) {
                 let batch: Vec<u32> = batch.iter().map(|&i| *members[i]).collect();
                 region
                     .membrane
-                    .push(MembraneBatch::new(model, &batch, local));
+                    .push(MembraneBatch::new(system, &batch, local));
             }
         }
     }
 
     /// Adds bending as constraints.
-    pub fn add_bending(&mut self, model: &Model, order: &Order) {
-        let mut stencils = bending::stencils(model);
-        stencils.retain(|s| s.vertices.iter().any(|&v| !model.pinned[v as usize]));
+    pub fn add_bending(&mut self, system: &System, order: &Order) {
+        let mut stencils = bending::stencils(system);
+        stencils.retain(|s| {
+            s.vertices
+                .iter()
+                .any(|&v| !system.prescribed.pinned[v as usize])
+        });
         fn vertices(member: &Stencil) -> &[u32] {
             &member.vertices
         }
@@ -105,41 +116,48 @@ impl Regions {
                 |i| vertices(members[i]).len(),
             ) {
                 let batch: Vec<_> = batch.iter().map(|&i| members[i]).collect();
-                region.bending.push(BendingBatch::new(model, &batch, local));
+                region
+                    .bending
+                    .push(BendingBatch::new(system, &batch, local));
             }
         }
     }
 
-    /// Adds elastics.
+    /// Adds elastics between vertices.
     pub fn add_ties(&mut self, model: &Model, order: &Order) {
-        for (index, elastic) in model.elastics.iter().enumerate() {
-            let to = match elastic.to {
-                ElasticEnd::Vertex(to) => Some(to),
-                ElasticEnd::Point(_) => None,
-            };
-            let free = |v: u32| !model.pinned[v as usize];
-            let moves = free(elastic.from) || to.is_some_and(free);
-            if elastic.law.stiffness <= 0.0 || !moves || to == Some(elastic.from) {
+        for &(ends, law) in &model.couplings.all {
+            let moves = ends.iter().any(|&v| !model.prescribed.pinned[v as usize]);
+            if law.stiffness <= 0.0 || !moves || ends[0] == ends[1] {
                 continue;
             }
-            let ends = [elastic.from, to.unwrap_or(elastic.from)];
             let place = order.place(&ends);
             let start = order.start(place) as u32;
-            let local = |v: u32| order.slot_of[v as usize] - start;
-            self.at(place).ties.push(Tie {
-                from: local(elastic.from),
-                to: to.map(local),
-                place: [0.0; 3],
-                stiffness: elastic.law.stiffness as f32,
-                most: elastic.law.largest_force.min(1e30) as f32,
-                sum: [0.0; 3],
-                elastic: index as u32,
-            });
+            let [from, to] = ends.map(|v| order.slot_of[v as usize] - start);
+            let end = TieEnd::Point(to);
+            self.at(place).ties.push(Tie::new(from, end, &law));
+        }
+    }
+
+    /// Holds attachments to places in place of those held before; numbers are relative to `origin` [m].
+    pub fn hold_attachments(&mut self, system: &System, order: &Order, origin: Vec3) {
+        for region in self.all_mut() {
+            region.attachments.clear();
+        }
+        for one in system.control.attachments.all() {
+            if one.law.stiffness <= 0.0 || system.prescribed.pinned[one.vertex as usize] {
+                continue;
+            }
+            let place = order.place(&[one.vertex]);
+            let slot = order.slot_of[one.vertex as usize] - order.start(place) as u32;
+            let to = one.place - origin;
+            let end = TieEnd::Place([0, 1, 2].map(|k| to[k] as f32));
+            let attachments = &mut self.at(place).attachments;
+            attachments.push(Tie::new(slot, end, &one.law));
         }
     }
 
     /// Adds the contact samples that lie within triangles.
-    pub fn add_samples(&mut self, model: &Model, samples: &[ContactSample], order: &Order) {
+    pub fn add_samples(&mut self, system: &System, samples: &[ContactSample], order: &Order) {
         for (index, sample) in samples.iter().enumerate() {
             if sample.triangle.is_none() {
                 continue;
@@ -151,7 +169,7 @@ impl Regions {
             self.at(place).contacts.push(ContactStencil {
                 vertices: [a, b, c, 0],
                 weights: [p, q, r, 0.0],
-                touch: Touch::of_sample(model, (index, sample)),
+                touch: Touch::of_sample(system, (index, sample)),
                 restitution: None,
             });
         }
@@ -203,7 +221,7 @@ impl Regions {
 
     /// Elastics.
     pub fn tie_count(&self) -> usize {
-        self.all().map(|r| r.ties.len()).sum()
+        (self.all().map(|r| r.ties.len() + r.attachments.len())).sum()
     }
 }
 
@@ -255,14 +273,8 @@ impl Region {
         }
     }
 
-    /// Gets ready for an advance: places of elastics.
-    pub fn begin(&mut self, model: &Model, origin: Vec3, iterated: bool) {
-        for tie in &mut self.ties {
-            if let ElasticEnd::Point(point) = model.elastics[tie.elastic as usize].to {
-                let place = point - origin;
-                tie.place = [place.x as f32, place.y as f32, place.z as f32];
-            }
-        }
+    /// Gets ready for an advance.
+    pub fn begin(&mut self, iterated: bool) {
         if iterated {
             self.membrane_sums
                 .resize(self.membrane.len(), [Row::splat(0.0); 3]);
@@ -282,7 +294,7 @@ impl Region {
     fn clear(&mut self) {
         self.membrane_sums.fill([Row::splat(0.0); 3]);
         self.bending_sums.fill([[Row::splat(0.0); 3]; 3]);
-        for tie in &mut self.ties {
+        for tie in self.ties.iter_mut().chain(&mut self.attachments) {
             tie.sum = [0.0; 3];
         }
         for contact in self.contacts.iter_mut().chain(&mut self.cloth) {
@@ -318,6 +330,7 @@ impl Region {
             points,
         });
         solve_ties(&mut self.ties, points, step.contact.kappa);
+        solve_ties(&mut self.attachments, points, step.contact.kappa);
         solve_stencils(&mut self.contacts, points, starts, &step.contact);
         solve_stencils(&mut self.cloth, points, starts, &step.contact);
     }

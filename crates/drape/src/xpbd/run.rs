@@ -101,7 +101,7 @@ impl Run<'_> {
 
     /// Where moving surfaces stand before and after a substep; returns how far they move [m].
     fn place_surfaces(&self, number: u32, poses: &mut Vec<Option<[Pose; 2]>>) -> f32 {
-        let colliders = &self.sweep.solid.model.colliders;
+        let colliders = &self.sweep.solid.system.colliders;
         poses.clear();
         if colliders.iter().all(|collider| collider.motion.is_none()) {
             return 0.0;
@@ -109,7 +109,7 @@ impl Run<'_> {
         let step = f64::from(self.motion.step);
         let times = [0, 1].map(|k| self.time + step * f64::from(number + k));
         let mut travel = 0.0f64;
-        for collider in colliders {
+        for collider in colliders.iter() {
             let [from, to] = times.map(|time| collider.pose(time));
             let both = from.zip(to).map(|(from, to)| [from, to]);
             if let Some([from, to]) = &both {

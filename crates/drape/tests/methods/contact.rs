@@ -2,7 +2,7 @@
 
 use crate::fixtures::{ball, cloth, sheet};
 use std::sync::Arc;
-use toile_drape::{Collider, Material, MethodKind, MethodSettings, Model, State};
+use toile_drape::{Collider, Material, MethodKind, MethodSettings, State, System};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 /// Methods that run, at their own settings: all but the one that is never stable.
@@ -12,12 +12,12 @@ fn sound() -> impl Iterator<Item = (&'static str, MethodKind)> {
         .filter(|(_, kind)| *kind != MethodKind::ForwardEuler)
 }
 
-fn run(name: &str, kind: MethodKind, model: &Model, state: &mut State, steps: usize) {
+fn run(name: &str, kind: MethodKind, system: &System, state: &mut State, steps: usize) {
     let mut method = MethodSettings::from(kind).build();
     let steps = if kind.is_equilibrium() { 500 } else { steps };
     for _ in 0..steps {
         method
-            .advance(model, state, 1.0 / 60.0)
+            .advance(system, state, 1.0 / 60.0)
             .unwrap_or_else(|error| panic!("{name}: {error}"));
         if method.finished() {
             break;
@@ -36,10 +36,12 @@ fn cloth_lands_on_a_ball_and_stays_on_it() {
             shear: 20.0,
             ..Material::default()
         };
-        let (mut model, mut state) = cloth(&mesh, material);
-        model.colliders = vec![ball(0.1)];
-        model.air_drag = 3.0;
-        run(name, kind, &model, &mut state, 30);
+        let (mut system, mut state) = cloth(&mesh, material);
+        system = system.with(|builder| {
+            builder.colliders = vec![ball(0.1)];
+        });
+        system.control.air_drag = 3.0;
+        run(name, kind, &system, &mut state, 30);
         for x in &state.positions {
             assert!(x.norm() > 0.1, "{name}: {x:?} inside");
             assert!(x.y > -0.2, "{name} slid off: {x:?}");
@@ -51,7 +53,7 @@ fn cloth_lands_on_a_ball_and_stays_on_it() {
 }
 
 /// A patch lying on a plane with friction 0.5; gravity leans by `slope` [rad] instead of it.
-fn on_a_slope(slope: f64) -> (Model, State) {
+fn on_a_slope(slope: f64) -> (System, State) {
     let offset = toile_drape::ContactSettings::default().offset;
     let material = Material {
         friction: 0.5,
@@ -59,19 +61,21 @@ fn on_a_slope(slope: f64) -> (Model, State) {
     };
     let depth = material.density * 9.81 * slope.cos() / 1e6;
     let mesh = sheet([3, 3], [0.06, 0.06], |u, v| Vec3::new(u, offset - depth, v));
-    let (mut model, mut state) = cloth(&mesh, material);
+    let (mut system, mut state) = cloth(&mesh, material);
     let plane = TriangleMesh {
         positions: [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)]
             .map(|(x, z)| Vec3::new(x, 0.0, z))
             .to_vec(),
         triangles: vec![[0, 1, 2], [0, 2, 3]],
     };
-    model.colliders = vec![Collider::new(Arc::new(SurfaceTree::new(plane)))];
-    model.gravity = Vec3::new(slope.sin(), -slope.cos(), 0.0) * 9.81;
+    system = system.with(|builder| {
+        builder.colliders = vec![Collider::new(Arc::new(SurfaceTree::new(plane)))];
+    });
+    system.control.gravity = Vec3::new(slope.sin(), -slope.cos(), 0.0) * 9.81;
     for (force, sample) in state.normal_forces.iter_mut().zip(state.samples.iter()) {
         *force = depth * 1e6 * sample.area;
     }
-    (model, state)
+    (system, state)
 }
 
 #[test]
@@ -85,18 +89,18 @@ fn a_patch_sticks_below_the_angle_of_friction_and_slides_above_it() {
         sum / state.velocities.len() as f64
     };
     for (name, kind) in sound().filter(|(_, kind)| !kind.is_equilibrium()) {
-        let (model, mut state) = on_a_slope(0.45f64.atan());
+        let (system, mut state) = on_a_slope(0.45f64.atan());
         let start = middle(&state);
-        run(name, kind, &model, &mut state, 18);
+        run(name, kind, &system, &mut state, 18);
         let crept = middle(&state) - start;
         assert!(crept.abs() < 3e-4, "{name} crept {crept} m");
 
         let slope = 0.8f64.atan();
-        let (model, mut state) = on_a_slope(slope);
+        let (system, mut state) = on_a_slope(slope);
         // What a method that linearises once a step takes to notice that the patch slides.
-        run(name, kind, &model, &mut state, 6);
+        run(name, kind, &system, &mut state, 6);
         let first = speed(&state);
-        run(name, kind, &model, &mut state, 12);
+        run(name, kind, &system, &mut state, 12);
         let got = (speed(&state) - first) / 0.2;
         let expected = 9.81 * (slope.sin() - 0.5 * slope.cos());
         assert!(

@@ -2,20 +2,22 @@
 
 pub use crate::sheets::{cloth, sheet};
 use std::sync::Arc;
-use toile_drape::{Collider, Material, Method, MethodKind, MethodSettings, Model, State};
+use toile_drape::{Collider, Material, Method, MethodKind, MethodSettings, State, System};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 /// A soft square of 0.3 m, 6 x 6 cells, hanging in the xy plane from its upper row.
-pub fn hanging_square() -> (Model, State) {
+pub fn hanging_square() -> (System, State) {
     let mesh = sheet([6, 6], [0.3, 0.3], |u, v| Vec3::new(u, 1.0 - v, 0.0));
     let material = Material {
         stretch: [60.0, 50.0],
         shear: 15.0,
         ..Material::default()
     };
-    let (mut model, state) = cloth(&mesh, material);
-    model.pinned[..7].fill(true);
-    (model, state)
+    let (mut system, state) = cloth(&mesh, material);
+    system = system.with(|builder| {
+        builder.pinned[..7].fill(true);
+    });
+    (system, state)
 }
 
 /// A fixed number in -1..1 for an index.
@@ -25,9 +27,9 @@ pub fn scatter(index: usize) -> f64 {
 }
 
 /// Moves the free vertices by up to `amplitude` [m].
-pub fn shake(model: &Model, state: &mut State, amplitude: f64) {
+pub fn shake(system: &System, state: &mut State, amplitude: f64) {
     for (v, x) in state.positions.iter_mut().enumerate() {
-        if !model.pinned[v] {
+        if !system.prescribed.pinned[v] {
             *x += Vec3::from_fn(|axis, _| scatter(3 * v + axis) * amplitude);
         }
     }

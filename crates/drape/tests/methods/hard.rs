@@ -3,28 +3,28 @@
 use crate::fixtures::{ball, ball_mesh, cloth, hanging_square, shake, sheet};
 use std::sync::Arc;
 use toile_drape::{
-    Cloth, Collider, DrapeError, Material, MethodKind, MethodSettings, Model, State, Workspace,
-    largest_frequency, whole_energy,
+    Cloth, Collider, DrapeError, Material, MethodKind, MethodSettings, State, System,
+    SystemBuilder, Workspace, largest_frequency, whole_energy,
 };
 use toile_geometry::{SurfaceTree, Vec3};
 
 /// Five steps of 1/60 s with each method's own settings. Afterwards no vertex may be farther than
 /// `reach` [m] from where it was, and a failed step must leave the state alone.
-fn check(case: &str, make: impl Fn() -> (Model, State), reach: f64) {
+fn check(case: &str, make: impl Fn() -> (System, State), reach: f64) {
     for (name, kind) in MethodKind::ALL {
-        let (model, start) = make();
+        let (system, start) = make();
         let mut state = start.clone();
         let mut method = MethodSettings::from(kind).build();
         for _ in 0..5 {
             let before = state.clone();
-            if let Err(error) = method.advance(&model, &mut state, 1.0 / 60.0) {
+            if let Err(error) = method.advance(&system, &mut state, 1.0 / 60.0) {
                 assert!(state == before, "{case}, {name}: {error}");
                 let named = match &error {
                     DrapeError::NotFinite { stage, vertex }
                     | DrapeError::BlownUp { stage, vertex, .. }
                     | DrapeError::EnergyGrew { stage, vertex, .. }
                     | DrapeError::TooStiff { stage, vertex, .. } => {
-                        !stage.is_empty() && *vertex < model.vertex_count()
+                        !stage.is_empty() && *vertex < system.vertex_count()
                     }
                     DrapeError::NoProgress { stage, .. } => !stage.is_empty(),
                     _ => false,
@@ -40,14 +40,16 @@ fn check(case: &str, make: impl Fn() -> (Model, State), reach: f64) {
     }
 }
 
-fn stretched(by: f64, material: Material) -> (Model, State) {
+fn stretched(by: f64, material: Material) -> (System, State) {
     let mesh = sheet([6, 6], [0.3, 0.3], |u, v| Vec3::new(u, 1.0 - v, 0.0));
-    let (mut model, mut state) = cloth(&mesh, material);
-    model.pinned[..7].fill(true);
+    let (mut system, mut state) = cloth(&mesh, material);
+    system = system.with(|builder| {
+        builder.pinned[..7].fill(true);
+    });
     for x in &mut state.positions {
         x.y = 1.0 - (1.0 - x.y) * by;
     }
-    (model, state)
+    (system, state)
 }
 
 #[test]
@@ -58,9 +60,9 @@ fn stiff_cloth_under_compression() {
         ..Material::default()
     };
     let make = || {
-        let (model, mut state) = stretched(0.98, material.clone());
-        shake(&model, &mut state, 1e-5);
-        (model, state)
+        let (system, mut state) = stretched(0.98, material.clone());
+        shake(&system, &mut state, 1e-5);
+        (system, state)
     };
     // 2 % of compression holds Y/8 (1 - 0.98^2)^2 = 2e4 J/m2: 440 m/s at 0.2 kg/m2.
     check("compression at 1e8 N/m", make, 40.0);
@@ -80,9 +82,11 @@ fn meshes_with_slivers() {
         // A vertex drawn to a thousandth of an edge from its neighbour's edge.
         let (a, b) = (mesh.positions[24], mesh.positions[25]);
         mesh.positions[24] = a + (b - a) * 0.999;
-        let (mut model, state) = cloth(&mesh, Material::default());
-        model.pinned[..7].fill(true);
-        (model, state)
+        let (mut system, state) = cloth(&mesh, Material::default());
+        system = system.with(|builder| {
+            builder.pinned[..7].fill(true);
+        });
+        (system, state)
     };
     check("slivers", make, 1.0);
 }
@@ -106,10 +110,11 @@ fn contrasts_of_stiffness_and_mass() {
         for material in cloth.material.iter_mut().skip(36) {
             *material = 1;
         }
-        let mut model = Model::new("cloth", &cloth).expect("sound");
-        model.pinned[..7].fill(true);
-        let state = State::at_rest(&model, mesh.positions.clone());
-        (model, state)
+        let mut builder = SystemBuilder::new("cloth", &cloth).expect("sound");
+        builder.pinned[..7].fill(true);
+        let system = builder.build();
+        let state = State::at_rest(&system, mesh.positions.clone());
+        (system, state)
     };
     check("stiffness 1 to 1e4", || make(1e4, 1.0), 1.0);
     check("mass 1 to 1e3", || make(1.0, 1e3), 1.0);
@@ -121,10 +126,12 @@ fn a_body_that_jumps_into_the_cloth() {
         let mesh = sheet([8, 8], [0.2, 0.2], |u, v| {
             Vec3::new(u - 0.1, 0.085, v - 0.1)
         });
-        let (mut model, mut state) = cloth(&mesh, Material::default());
-        model.colliders = vec![ball(0.1)];
+        let (mut system, mut state) = cloth(&mesh, Material::default());
+        system = system.with(|builder| {
+            builder.colliders = vec![ball(0.1)];
+        });
         state.velocities.fill(Vec3::new(0.0, -3.0, 0.0));
-        (model, state)
+        (system, state)
     };
     // 15 mm deep at 1e6 N/m3: 112 J/m2, 34 m/s at 0.2 kg/m2.
     check("a body jumps", make, 4.0);
@@ -145,25 +152,29 @@ fn no_method_returns_a_step_with_ten_times_the_energy_that_a_body_that_jumped_ga
         MethodKind::Bdf2,
         MethodKind::ImplicitMidpoint,
     ] {
-        let (mut model, mut state) = cloth(&mesh, Material::default());
-        model.colliders = vec![ball(0.05)];
+        let (mut system, mut state) = cloth(&mesh, Material::default());
+        system = system.with(|builder| {
+            builder.colliders = vec![ball(0.05)];
+        });
         let mut method = MethodSettings::from(kind).build();
         for _ in 0..5 {
             method
-                .advance(&model, &mut state, 1.0 / 60.0)
+                .advance(&system, &mut state, 1.0 / 60.0)
                 .expect("sound");
         }
-        model.colliders = vec![jumped.clone()];
+        system = system.with(|builder| {
+            builder.colliders = vec![jumped.clone()];
+        });
         let mut workspace = Workspace::default();
-        let given = whole_energy(&model, &state, &mut workspace);
+        let given = whole_energy(&system, &state, &mut workspace);
         for step in 0..20 {
             let before = state.clone();
-            if let Err(error) = method.advance(&model, &mut state, 1.0 / 60.0) {
+            if let Err(error) = method.advance(&system, &mut state, 1.0 / 60.0) {
                 assert!(matches!(error, DrapeError::EnergyGrew { .. }), "{error}");
                 assert!(state == before, "{kind:?}: {error}");
                 break;
             }
-            let has = whole_energy(&model, &state, &mut workspace);
+            let has = whole_energy(&system, &state, &mut workspace);
             assert!(
                 has <= 10.0 * given,
                 "{kind:?}, step {step}: {given} J given, {has} J"
@@ -179,10 +190,10 @@ fn what_is_too_stiff_to_wait_for_is_refused_by_vertex() {
         shear: 1e14,
         ..Material::default()
     };
-    let (model, mut state) = stretched(1.0, material);
-    assert!(largest_frequency(&model, &state) > 1e8);
+    let (system, mut state) = stretched(1.0, material);
+    assert!(largest_frequency(&system, &state) > 1e8);
     let mut method = MethodSettings::from(MethodKind::VelocityVerlet).build();
-    let error = method.advance(&model, &mut state, 1.0);
+    let error = method.advance(&system, &mut state, 1.0);
     assert!(
         matches!(error, Err(DrapeError::TooStiff { substeps, .. }) if substeps > 1e6),
         "{error:?}"
@@ -197,7 +208,7 @@ fn settings_out_of_the_ordinary_do_no_harm() {
             (Some(1), Some(1), Some(f64::INFINITY)),
             (Some(2), Some(1), Some(0.0)),
         ] {
-            let (model, mut state) = hanging_square();
+            let (system, mut state) = hanging_square();
             let settings = MethodSettings {
                 kind,
                 substeps,
@@ -207,7 +218,7 @@ fn settings_out_of_the_ordinary_do_no_harm() {
             let mut method = settings.build();
             for _ in 0..3 {
                 let before = state.clone();
-                if method.advance(&model, &mut state, 1e-3).is_err() {
+                if method.advance(&system, &mut state, 1e-3).is_err() {
                     assert!(state == before, "{name}");
                 }
                 assert_eq!(state.first_not_finite(), None, "{name}");

@@ -1,11 +1,11 @@
 //! Orders in time, energy and angular momentum.
 
 use crate::fixtures::{cloth, method, sheet};
-use toile_drape::{Air, Material, MethodKind, MethodSettings, Model, State};
+use toile_drape::{Air, Material, MethodKind, MethodSettings, State, System};
 use toile_geometry::Vec3;
 
 /// A soft strip, bent and moving: everything in it is smooth over the time it runs.
-fn smooth() -> (Model, State) {
+fn smooth() -> (System, State) {
     let mesh = sheet([6, 3], [0.3, 0.15], |u, v| {
         Vec3::new(u, 0.02 * (9.0 * u).sin(), v)
     });
@@ -14,23 +14,25 @@ fn smooth() -> (Model, State) {
         shear: 3.0,
         ..Material::default()
     };
-    let (mut model, mut state) = cloth(&mesh, material);
-    model.pinned[0] = true;
-    model.pinned[6] = true;
-    model.air_drag = 0.5;
+    let (mut system, mut state) = cloth(&mesh, material);
+    system = system.with(|builder| {
+        builder.pinned[0] = true;
+        builder.pinned[6] = true;
+    });
+    system.control.air_drag = 0.5;
     for (v, x) in state.velocities.iter_mut().zip(&state.positions) {
         *v = Vec3::new(0.2 * (7.0 * x.z).sin(), 0.5 * x.x, 0.1 * (8.0 * x.x).cos());
     }
-    (model, state)
+    (system, state)
 }
 
 /// Where the strip is after 0.1 s in `steps` steps.
 fn after(kind: MethodKind, steps: u32) -> Vec<Vec3> {
-    let (model, state) = smooth();
-    run(kind, steps, &model, state)
+    let (system, state) = smooth();
+    run(kind, steps, &system, state)
 }
 
-fn run(kind: MethodKind, steps: u32, model: &Model, mut state: State) -> Vec<Vec3> {
+fn run(kind: MethodKind, steps: u32, system: &System, mut state: State) -> Vec<Vec3> {
     let settings = MethodSettings {
         substeps: Some(1),
         tolerance: Some(1e-11),
@@ -40,7 +42,7 @@ fn run(kind: MethodKind, steps: u32, model: &Model, mut state: State) -> Vec<Vec
     let mut method = settings.build();
     for _ in 0..steps {
         let name = kind.name();
-        let taken = method.advance(model, &mut state, 0.1 / f64::from(steps));
+        let taken = method.advance(system, &mut state, 0.1 / f64::from(steps));
         let report = taken.unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(report.pieces <= 1, "{name} cut its step");
     }
@@ -78,7 +80,7 @@ fn methods_converge_at_their_order() {
 }
 
 /// The strip with viscosity in stretch and fold, kept strain and wind.
-fn dissipative() -> (Model, State) {
+fn dissipative() -> (System, State) {
     let (plain, state) = smooth();
     let mesh = plain.mesh(&state.positions);
     let material = Material {
@@ -86,31 +88,33 @@ fn dissipative() -> (Model, State) {
         bend_viscosity: 2e-6,
         kept: [0.3, 0.3],
         relaxation_time: 0.05,
-        ..plain.materials[0].clone()
+        ..plain.materials.list[0].clone()
     };
-    let (mut model, mut held) = cloth(&mesh, material);
-    model.pinned = plain.pinned;
-    model.air_drag = plain.air_drag;
-    model.air = Air {
+    let (mut system, mut held) = cloth(&mesh, material);
+    system = system.with(|builder| {
+        builder.pinned.clone_from(&plain.prescribed.pinned);
+    });
+    system.control.air_drag = plain.control.air_drag;
+    system.control.air = Air {
         density: Air::SEA_LEVEL,
         wind: Vec3::new(1.0, 2.0, 0.5),
         ..Air::default()
     };
     held.velocities = state.velocities;
-    (model, held)
+    (system, held)
 }
 
 #[test]
 fn methods_on_one_potential_take_the_same_step() {
-    for (case, (model, state)) in [("plain", smooth()), ("dissipative", dissipative())] {
-        let exact = run(MethodKind::ImplicitEuler, 10, &model, state.clone());
+    for (case, (system, state)) in [("plain", smooth()), ("dissipative", dissipative())] {
+        let exact = run(MethodKind::ImplicitEuler, 10, &system, state.clone());
         for kind in [
             MethodKind::ProjectiveDynamics,
             MethodKind::Lbfgs,
             MethodKind::VertexBlockDescent,
             MethodKind::ChebyshevBlockDescent,
         ] {
-            let off = distance(&run(kind, 10, &model, state.clone()), &exact);
+            let off = distance(&run(kind, 10, &system, state.clone()), &exact);
             assert!(off < 1e-7, "{case}, {}: {off:e} m", kind.name());
         }
     }
@@ -123,19 +127,19 @@ fn automatic_substeps_allow_for_viscosity() {
         MethodKind::VelocityVerlet,
         MethodKind::RungeKutta4,
     ] {
-        let (model, mut state) = dissipative();
+        let (system, mut state) = dissipative();
         let mut method = MethodSettings::from(kind).build();
         let mut viscous = 0;
         for _ in 0..20 {
-            let step = method.advance(&model, &mut state, 0.01);
+            let step = method.advance(&system, &mut state, 0.01);
             viscous = step
                 .unwrap_or_else(|error| panic!("{}: {error}", kind.name()))
                 .iterations;
         }
-        let (model, mut state) = smooth();
+        let (system, mut state) = smooth();
         let plain = MethodSettings::from(kind)
             .build()
-            .advance(&model, &mut state, 0.01);
+            .advance(&system, &mut state, 0.01);
         assert!(plain.is_ok_and(|plain| plain.iterations < viscous));
     }
 }
@@ -149,8 +153,8 @@ fn angular_momentum_hardly_drifts_in_free_flight() {
         (MethodKind::ImplicitMidpoint, 1, 1e-8),
     ] {
         let mesh = sheet([4, 4], [0.2, 0.2], |u, v| Vec3::new(u - 0.1, 0.0, v - 0.1));
-        let (mut model, mut state) = cloth(&mesh, Material::default());
-        model.gravity = Vec3::zeros();
+        let (mut system, mut state) = cloth(&mesh, Material::default());
+        system.control.gravity = Vec3::zeros();
         let spin = Vec3::new(1.0, 2.0, 0.5);
         for (v, x) in state.velocities.iter_mut().zip(&state.positions) {
             *v = spin.cross(x);
@@ -158,14 +162,14 @@ fn angular_momentum_hardly_drifts_in_free_flight() {
         let angular = |state: &State| -> Vec3 {
             let moving = state.positions.iter().zip(&state.velocities);
             moving
-                .zip(&model.mass)
+                .zip(&system.rest.mass)
                 .map(|((x, v), m)| x.cross(v) * *m)
                 .sum()
         };
         let before = angular(&state);
         let mut method = method(kind, substeps);
         for _ in 0..250 {
-            let step = method.advance(&model, &mut state, 0.004);
+            let step = method.advance(&system, &mut state, 0.004);
             step.unwrap_or_else(|error| panic!("{}: {error}", kind.name()));
         }
         let off = (angular(&state) - before).norm() / before.norm();

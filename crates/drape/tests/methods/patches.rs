@@ -1,11 +1,11 @@
 //! Patch Verlet beyond what it shares with the other methods.
 
 use crate::fixtures::{ball, cloth, hanging_square, method, shake, sheet};
-use toile_drape::{Material, MethodKind, MethodSettings, Model, State, residual};
+use toile_drape::{Material, MethodKind, MethodSettings, State, System, residual};
 use toile_geometry::Vec3;
 
 /// A soft cloth falling onto a ball.
-fn onto_a_ball(cells: usize) -> (Model, State) {
+fn onto_a_ball(cells: usize) -> (System, State) {
     let mesh = sheet([cells, cells], [0.24, 0.24], |u, v| {
         Vec3::new(u - 0.12, 0.1045, v - 0.12)
     });
@@ -15,16 +15,18 @@ fn onto_a_ball(cells: usize) -> (Model, State) {
         friction: 0.4,
         ..Material::default()
     };
-    let (mut model, state) = cloth(&mesh, material);
-    model.colliders = vec![ball(0.1)];
-    model.air_drag = 1.0;
-    (model, state)
+    let (mut system, state) = cloth(&mesh, material);
+    system = system.with(|builder| {
+        builder.colliders = vec![ball(0.1)];
+    });
+    system.control.air_drag = 1.0;
+    (system, state)
 }
 
-fn after(kind: MethodKind, substeps: u32, (model, mut state): (Model, State)) -> State {
+fn after(kind: MethodKind, substeps: u32, (system, mut state): (System, State)) -> State {
     let mut method = method(kind, substeps);
     for _ in 0..6 {
-        let step = method.advance(&model, &mut state, 0.01);
+        let step = method.advance(&system, &mut state, 0.01);
         let report = step.unwrap_or_else(|error| panic!("{}: {error}", kind.name()));
         assert_eq!(report.iterations, substeps as usize, "as many as asked for");
     }
@@ -39,9 +41,9 @@ fn farthest(a: &State, b: &State) -> f64 {
 #[test]
 fn it_goes_where_velocity_verlet_goes() {
     let shaken = || {
-        let (model, mut state) = hanging_square();
-        shake(&model, &mut state, 1e-3);
-        (model, state)
+        let (system, mut state) = hanging_square();
+        shake(&system, &mut state, 1e-3);
+        (system, state)
     };
     let exact = after(MethodKind::VelocityVerlet, 1600, shaken());
     let [coarse, fine] =
@@ -68,11 +70,11 @@ fn a_cut_cloth_gives_the_same_bytes_on_any_number_of_threads() {
             .build()
             .expect("threads can be made");
         pool.install(|| {
-            let (model, mut state) = onto_a_ball(60);
+            let (system, mut state) = onto_a_ball(60);
             let mut method = MethodSettings::from(MethodKind::PatchVerlet).build();
             for _ in 0..3 {
                 method
-                    .advance(&model, &mut state, 1.0 / 60.0)
+                    .advance(&system, &mut state, 1.0 / 60.0)
                     .unwrap_or_else(|error| panic!("{error}"));
             }
             state
@@ -93,10 +95,12 @@ fn what_it_does_not_treat_is_left_to_velocity_verlet() {
             viscosity: 0.05,
             ..Material::default()
         };
-        let (mut model, mut state) = cloth(&mesh, material);
-        model.pinned[..7].fill(true);
-        shake(&model, &mut state, 1e-3);
-        (model, state)
+        let (mut system, mut state) = cloth(&mesh, material);
+        system = system.with(|builder| {
+            builder.pinned[..7].fill(true);
+        });
+        shake(&system, &mut state, 1e-3);
+        (system, state)
     };
     let [a, b] = [MethodKind::PatchVerlet, MethodKind::VelocityVerlet]
         .map(|kind| after(kind, 60, viscous()));
@@ -105,25 +109,25 @@ fn what_it_does_not_treat_is_left_to_velocity_verlet() {
 
 #[test]
 fn cloth_comes_to_rest_on_a_ball() {
-    let (mut model, mut state) = onto_a_ball(24);
-    model.air_drag = 12.0;
+    let (mut system, mut state) = onto_a_ball(24);
+    system.control.air_drag = 12.0;
     let mut method = MethodSettings::from(MethodKind::PatchVerlet).build();
     for _ in 0..240 {
         method
-            .advance(&model, &mut state, 1.0 / 60.0)
+            .advance(&system, &mut state, 1.0 / 60.0)
             .unwrap_or_else(|error| panic!("{error}"));
     }
-    let left = residual(&model, &state, &mut toile_drape::Workspace::default());
+    let left = residual(&system, &state, &mut toile_drape::Workspace::default());
     assert!(left < 2e-2, "{left}");
 }
 
 #[test]
 fn a_pull_that_stiffens_the_cloth_gets_more_substeps() {
-    let (model, mut state) = hanging_square();
+    let (system, mut state) = hanging_square();
     let mut method = MethodSettings::from(MethodKind::PatchVerlet).build();
     let mut still = state.clone();
     let few = method
-        .advance(&model, &mut still, 1.0 / 60.0)
+        .advance(&system, &mut still, 1.0 / 60.0)
         .expect("stable");
     // A throw that draws the cloth out by half.
     for v in &mut state.velocities[7..] {
@@ -131,7 +135,7 @@ fn a_pull_that_stiffens_the_cloth_gets_more_substeps() {
     }
     let mut most = 0;
     for _ in 0..10 {
-        let step = method.advance(&model, &mut state, 1.0 / 60.0);
+        let step = method.advance(&system, &mut state, 1.0 / 60.0);
         most = most.max(step.expect("stable").iterations);
     }
     assert!(most as f64 > 1.2 * few.iterations as f64, "{most} {few:?}");

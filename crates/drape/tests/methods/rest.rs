@@ -20,12 +20,14 @@ fn cloth_in_a_hollow_slides_to_its_lowest_place_in_few_steps() {
         friction: 0.0,
         ..Material::default()
     };
-    let (mut model, mut state) = cloth(&mesh, material);
+    let (mut system, mut state) = cloth(&mesh, material);
     let mut bowl = ball_mesh(0.05);
     for triangle in &mut bowl.triangles {
         triangle.swap(1, 2);
     }
-    model.colliders = vec![Collider::new(Arc::new(SurfaceTree::new(bowl)))];
+    system = system.with(|builder| {
+        builder.colliders = vec![Collider::new(Arc::new(SurfaceTree::new(bowl)))];
+    });
     let settings = RestSettings {
         residual: 1e-4,
         steps: 300,
@@ -34,7 +36,7 @@ fn cloth_in_a_hollow_slides_to_its_lowest_place_in_few_steps() {
     let mut run = PseudoTransientContinuation::near(settings);
     let mut workspace = Workspace::default();
     while !run.finished() {
-        run.advance(&model, &mut state, &mut workspace)
+        run.advance(&system, &mut state, &mut workspace)
             .expect("the way goes on");
     }
     assert!(run.residual() <= 1e-4, "{}", run.residual());

@@ -2,7 +2,7 @@
 
 use crate::fixtures::{ball, cloth, hanging_square, method, shake, sheet};
 use toile_drape::{
-    DrapeError, Material, MethodKind, MethodSettings, Model, State, Workspace, residual,
+    DrapeError, Material, MethodKind, MethodSettings, State, System, Workspace, residual,
 };
 use toile_geometry::Vec3;
 
@@ -42,8 +42,8 @@ fn assert_same(name: &str, a: &State, b: &State) {
     assert!(a == b, "{name}: states differ in more than place");
 }
 
-fn momentum(model: &Model, state: &State) -> Vec3 {
-    let pairs = state.velocities.iter().zip(&model.mass);
+fn momentum(system: &System, state: &State) -> Vec3 {
+    let pairs = state.velocities.iter().zip(&system.rest.mass);
     pairs.map(|(v, m)| v * *m).sum()
 }
 
@@ -75,12 +75,12 @@ fn fallen(kind: MethodKind, h: f64, n: u32) -> f64 {
 fn a_free_sheet_falls_as_the_method_says() {
     for (name, kind) in in_time() {
         let mesh = sheet([4, 4], [0.2, 0.2], |u, v| Vec3::new(u, 0.0, v));
-        let (model, mut state) = cloth(&mesh, Material::default());
+        let (system, mut state) = cloth(&mesh, Material::default());
         let steps = 10;
         let mut method = method(kind, substeps(kind));
         for _ in 0..steps {
             method
-                .advance(&model, &mut state, 0.005)
+                .advance(&system, &mut state, 0.005)
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
         }
         let h = 0.005 / f64::from(substeps(kind));
@@ -96,13 +96,13 @@ fn a_free_sheet_falls_as_the_method_says() {
 fn momentum_is_kept_in_free_flight() {
     for (name, kind) in in_time() {
         let mesh = sheet([5, 5], [0.2, 0.2], |u, v| Vec3::new(u, 0.0, v));
-        let (mut model, mut state) = cloth(&mesh, Material::default());
-        model.gravity = Vec3::zeros();
-        shake(&model, &mut state, 2e-3);
+        let (mut system, mut state) = cloth(&mesh, Material::default());
+        system.control.gravity = Vec3::zeros();
+        shake(&system, &mut state, 2e-3);
         for (v, velocity) in state.velocities.iter_mut().enumerate() {
             *velocity = Vec3::new(0.3, 0.1, -0.2) + Vec3::y() * (0.05 * v as f64).sin();
         }
-        let before = momentum(&model, &state);
+        let before = momentum(&system, &state);
         // Vertex by vertex, momentum is kept only as far as the sweeps have converged.
         let settings = MethodSettings {
             substeps: Some(substeps(kind)),
@@ -113,10 +113,10 @@ fn momentum_is_kept_in_free_flight() {
         let mut method = settings.build();
         for _ in 0..20 {
             method
-                .advance(&model, &mut state, 0.004)
+                .advance(&system, &mut state, 0.004)
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
         }
-        let off = (momentum(&model, &state) - before).norm() / before.norm();
+        let off = (momentum(&system, &state) - before).norm() / before.norm();
         // Iterative methods keep it to their tolerance of 1e-8 N over 80 ms, XPBD to the rounding
         // of single precision.
         let most = if kind == MethodKind::Xpbd { 1e-5 } else { 1e-6 };
@@ -128,10 +128,10 @@ fn momentum_is_kept_in_free_flight() {
 fn numbers_that_are_none_are_refused_by_vertex() {
     for (name, kind) in MethodKind::ALL {
         for (bad, value) in [(17usize, f64::NAN), (30, f64::INFINITY)] {
-            let (model, mut state) = hanging_square();
+            let (system, mut state) = hanging_square();
             state.velocities[bad].y = value;
             let mut method = method(kind, 2);
-            let error = method.advance(&model, &mut state, 0.01);
+            let error = method.advance(&system, &mut state, 0.01);
             assert!(
                 matches!(error, Err(DrapeError::NotFinite { vertex, .. }) if vertex == bad),
                 "{name}: {error:?}"
@@ -139,7 +139,7 @@ fn numbers_that_are_none_are_refused_by_vertex() {
             // Nothing is left behind in the method.
             state.velocities[bad].y = 0.0;
             method
-                .advance(&model, &mut state, 1e-4)
+                .advance(&system, &mut state, 1e-4)
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
         }
     }
@@ -149,12 +149,12 @@ fn numbers_that_are_none_are_refused_by_vertex() {
 fn steps_far_too_large_end_sound_or_say_so() {
     for (name, kind) in MethodKind::ALL {
         for step in [0.3, 1e3] {
-            let (model, mut state) = hanging_square();
-            shake(&model, &mut state, 0.02);
+            let (system, mut state) = hanging_square();
+            shake(&system, &mut state, 0.02);
             let mut method = method(kind, 1);
             for _ in 0..10 {
                 let before = state.clone();
-                match method.advance(&model, &mut state, step) {
+                match method.advance(&system, &mut state, step) {
                     Ok(_) => {
                         assert_eq!(state.first_not_finite(), None, "{name}");
                         let longest = state.positions.iter().map(Vec3::norm).fold(0.0, f64::max);
@@ -173,7 +173,7 @@ fn steps_far_too_large_end_sound_or_say_so() {
 }
 
 /// A cloth with everything in it: pins, elastics, a ball with friction, drag.
-fn busy() -> (Model, State) {
+fn busy() -> (System, State) {
     let mesh = sheet([20, 20], [0.24, 0.24], |u, v| {
         Vec3::new(u - 0.12, 0.1035 + 0.02 * u, v - 0.1)
     });
@@ -182,48 +182,56 @@ fn busy() -> (Model, State) {
         shear: 8.0,
         ..Material::default()
     };
-    let (mut model, mut state) = cloth(&mesh, material);
-    model.colliders = vec![ball(0.1)];
-    model.air_drag = 1.0;
-    model.pinned[0] = true;
+    let (mut system, mut state) = cloth(&mesh, material);
+    system = system.with(|builder| {
+        builder.colliders = vec![ball(0.1)];
+    });
+    system.control.air_drag = 1.0;
+    system = system.with(|builder| {
+        builder.pinned[0] = true;
+    });
     let law = toile_drape::laws::elastic::ElasticLaw {
         stiffness: 5.0,
         largest_force: 0.05,
     };
-    model.set_elastics(vec![
-        toile_drape::Elastic {
-            from: 20,
-            to: toile_drape::ElasticEnd::Point(Vec3::new(0.2, 0.2, -0.1)),
-            law,
-        },
-        toile_drape::Elastic {
-            from: 420,
-            to: toile_drape::ElasticEnd::Vertex(440),
-            law,
-        },
-    ]);
-    shake(&model, &mut state, 1e-4);
-    (model, state)
+    system = system.with(|builder| {
+        builder.elastics = vec![
+            toile_drape::Elastic {
+                from: 20,
+                to: toile_drape::ElasticEnd::Point(Vec3::new(0.2, 0.2, -0.1)),
+                law,
+            },
+            toile_drape::Elastic {
+                from: 420,
+                to: toile_drape::ElasticEnd::Vertex(440),
+                law,
+            },
+        ];
+    });
+    shake(&system, &mut state, 1e-4);
+    (system, state)
 }
 
 /// Cloth folded over itself, a layer and a half thick, pressed down by its weight.
-fn folded() -> (Model, State) {
+fn folded() -> (System, State) {
     let mesh = sheet([16, 16], [0.16, 0.16], |u, v| Vec3::new(u, 0.0, v));
-    let (mut model, mut state) = cloth(&mesh, Material::default());
-    model.colliders = vec![ball(0.1)];
-    model.contact.cloth_offset = 2e-3;
+    let (mut system, mut state) = cloth(&mesh, Material::default());
+    system = system.with(|builder| {
+        builder.colliders = vec![ball(0.1)];
+        builder.contact.cloth_offset = 2e-3;
+    });
     for place in &mut state.positions {
         let over = place.z > 0.085;
         place.z = if over { 0.17 - place.z } else { place.z } - 0.06;
         place.y = if over { 0.1055 } else { 0.103 };
         place.x -= 0.08;
     }
-    shake(&model, &mut state, 1e-4);
-    (model, state)
+    shake(&system, &mut state, 1e-4);
+    (system, state)
 }
 
 /// A model at its start, and what steps it.
-type Case = ((Model, State), Vec<(&'static str, MethodKind)>);
+type Case = ((System, State), Vec<(&'static str, MethodKind)>);
 
 /// Everything with every method; cloth on cloth with those that have it, `rest` or not.
 fn cases(rest: bool) -> [Case; 2] {
@@ -239,15 +247,15 @@ fn cases(rest: bool) -> [Case; 2] {
 }
 
 /// Steps a state.
-fn go(model: &Model, state: &mut State, (name, kind): (&str, MethodKind), steps: usize) {
+fn go(system: &System, state: &mut State, (name, kind): (&str, MethodKind), steps: usize) {
     let mut method = method(kind, substeps(kind));
     for _ in 0..steps {
-        let done = method.advance(model, state, 0.004);
+        let done = method.advance(system, state, 0.004);
         done.unwrap_or_else(|error| panic!("{name}: {error}"));
     }
-    if model.contact.cloth_offset > 0.0 {
+    if system.contact.cloth_offset > 0.0 {
         let mut contacts = toile_drape::collision::ClothContacts::default();
-        contacts.refresh(model, state, &state.positions);
+        contacts.refresh(system, state, &state.positions);
         assert!(contacts.active.len() > 100, "{name}: cloth lies on cloth");
     }
 }
@@ -256,13 +264,13 @@ fn go(model: &Model, state: &mut State, (name, kind): (&str, MethodKind), steps:
 fn a_saved_state_goes_on_with_a_fresh_method_to_the_same_bytes() {
     // The way to rest keeps the places of pairs that touched once in its matrix: with cloth on cloth
     // it goes on to the same shape, not to the same rounding.
-    for ((model, start), methods) in cases(false) {
+    for ((system, start), methods) in cases(false) {
         for (name, kind) in methods {
             let mut state = start.clone();
-            go(&model, &mut state, (name, kind), 4);
+            go(&system, &mut state, (name, kind), 4);
             let mut resumed = start.clone();
             for part in 0..2 {
-                go(&model, &mut resumed, (name, kind), 2);
+                go(&system, &mut resumed, (name, kind), 2);
                 assert!(resumed != start, "{name} moved by part {part}");
             }
             assert_same(name, &state, &resumed);
@@ -272,7 +280,7 @@ fn a_saved_state_goes_on_with_a_fresh_method_to_the_same_bytes() {
 
 #[test]
 fn thread_counts_give_the_same_bytes() {
-    for ((model, start), methods) in cases(true) {
+    for ((system, start), methods) in cases(true) {
         for (name, kind) in methods {
             // On the way to rest the crease springs open before the fold comes down.
             let steps = match kind {
@@ -284,7 +292,7 @@ fn thread_counts_give_the_same_bytes() {
                 let pool = pool.build().expect("threads can be made");
                 pool.install(|| {
                     let mut state = start.clone();
-                    go(&model, &mut state, (name, kind), steps);
+                    go(&system, &mut state, (name, kind), steps);
                     state
                 })
             };
@@ -304,14 +312,16 @@ fn a_hanging_strip_comes_to_the_same_rest() {
             shear: 6.0,
             ..Material::default()
         };
-        let (mut model, mut state) = cloth(&mesh, material);
-        model.pinned[..3].fill(true);
-        model.air_drag = 8.0;
-        shake(&model, &mut state, 1e-4);
-        (model, state)
+        let (mut system, mut state) = cloth(&mesh, material);
+        system = system.with(|builder| {
+            builder.pinned[..3].fill(true);
+        });
+        system.control.air_drag = 8.0;
+        shake(&system, &mut state, 1e-4);
+        (system, state)
     };
     let run = |name: &str, kind: MethodKind| {
-        let (model, mut state) = strip();
+        let (system, mut state) = strip();
         // Midpoint damps a vibration the less the more of it there is in a step: eight substeps.
         let count = match kind {
             MethodKind::ImplicitMidpoint => 8,
@@ -320,14 +330,14 @@ fn a_hanging_strip_comes_to_the_same_rest() {
         let mut method = method(kind, count);
         for _ in 0..3000 {
             method
-                .advance(&model, &mut state, 1.0 / 120.0)
+                .advance(&system, &mut state, 1.0 / 120.0)
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
-            let quiet = state.kinetic_energy(&model) < 1e-14;
+            let quiet = state.kinetic_energy(&system) < 1e-14;
             if method.finished() || quiet && state.time > 1.0 {
                 break;
             }
         }
-        let left = residual(&model, &state, &mut Workspace::default());
+        let left = residual(&system, &state, &mut Workspace::default());
         assert!(left < 2e-3, "{name}: residual {left}");
         state.positions
     };

@@ -102,7 +102,7 @@ fn momenta(run: &SceneRun) -> [Vec3; 2] {
         .positions
         .iter()
         .zip(&state.velocities)
-        .zip(&run.model.mass)
+        .zip(&run.system.rest.mass)
     {
         sums[0] += v * *m;
         sums[1] += x.cross(v) * *m;
@@ -119,8 +119,8 @@ pub fn run(hard: HardScene) -> (SceneRun, Outcome) {
         run.state.velocities[first..first + count].fill(*velocity);
         first += count;
     }
-    let mass: f64 = run.model.mass.iter().sum();
-    let motion = run.state.kinetic_energy(&run.model);
+    let mass: f64 = run.system.rest.mass.iter().sum();
+    let motion = run.state.kinetic_energy(&run.system);
     let mut outcome = Outcome {
         energy_scale: if motion > 0.0 {
             motion
@@ -142,8 +142,10 @@ pub fn run(hard: HardScene) -> (SceneRun, Outcome) {
             let energy = run.energy();
             if level.is_infinite() {
                 level = energy;
-                let weight = run.state.positions.iter().zip(&run.model.mass);
-                let fallen: f64 = weight.map(|(x, m)| m * run.model.gravity.dot(x)).sum();
+                let weight = run.state.positions.iter().zip(&run.system.rest.mass);
+                let fallen: f64 = weight
+                    .map(|(x, m)| m * run.system.control.gravity.dot(x))
+                    .sum();
                 outcome.energy_scale = outcome.energy_scale.max(energy + fallen);
             }
             outcome.energy_rise = outcome.energy_rise.max(energy - level);

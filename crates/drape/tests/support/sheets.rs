@@ -1,6 +1,6 @@
 //! Sheets of cloth that tests and benchmarks share.
 
-use toile_drape::{Cloth, Material, Model, ObjectKind, SceneObject, State};
+use toile_drape::{Cloth, Material, ObjectKind, SceneObject, State, System};
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// A grid of `cells` over `size` [m] in a plane, alternating diagonals.
@@ -40,11 +40,11 @@ pub fn grid(
 
 /// The model of a mesh and its state at rest; not for all who share this file.
 #[allow(dead_code)]
-pub fn cloth(mesh: &TriangleMesh, material: Material) -> (Model, State) {
+pub fn cloth(mesh: &TriangleMesh, material: Material) -> (System, State) {
     let cloth = Cloth::from_mesh("cloth", mesh, material).expect("sound");
-    let model = Model::new("cloth", &cloth).expect("sound");
-    let state = State::at_rest(&model, mesh.positions.clone());
-    (model, state)
+    let system = System::new("cloth", &cloth).expect("sound");
+    let state = State::at_rest(&system, mesh.positions.clone());
+    (system, state)
 }
 
 /// A cloth of a scene; not for all who share this file.

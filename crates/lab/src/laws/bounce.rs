@@ -4,7 +4,7 @@ use super::friction::board;
 use crate::check::{Cases, Expected};
 use crate::{Flat, LabError, MeshKind, Tolerance, rectangle};
 use std::sync::Arc;
-use toile_drape::{Collider, ContactSettings, Material, MethodKind, Model, State};
+use toile_drape::{Collider, ContactSettings, Material, MethodKind, State, SystemBuilder};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 
 /// Height that the cloth is dropped from [m].
@@ -32,17 +32,18 @@ fn back(restitution: f64) -> Result<f64, LabError> {
     };
     let ground = ContactSettings::default().offset;
     let cloth = flat.cloth(material, |p| Vec3::new(p.x, ground + HEIGHT, p.y));
-    let mut model = Model::new("cloth", &cloth)?;
+    let mut builder = SystemBuilder::new("cloth", &cloth)?;
     let board = Arc::new(SurfaceTree::new(board()));
-    model.colliders.push(Collider::new(board));
-    let mut state = State::at_rest(&model, cloth.positions);
+    builder.colliders.push(Collider::new(board));
+    let system = builder.build();
+    let mut state = State::at_rest(&system, cloth.positions);
     let all: Vec<u32> = (0..flat.points.len() as u32).collect();
     let fall = (2.0 * HEIGHT / 9.81).sqrt();
     let (mut down, mut highest) = (false, f64::NEG_INFINITY);
     let settings = MethodKind::Xpbd.into();
     // Down, and up again with that share of the speed.
     let duration = 1.05 * fall * (1.0 + restitution) + 0.05;
-    crate::settle::in_time(&model, &mut state, settings, [STEP, duration], |state| {
+    crate::settle::in_time(&system, &mut state, settings, [STEP, duration], |state| {
         let height = crate::settle::mean(&state.positions, &all).y - ground;
         down |= height < 0.05 * HEIGHT;
         let leaving = state.velocities.iter().map(|v| v.y).sum::<f64>() >= 0.0;

@@ -4,7 +4,7 @@ use crate::check::{Cases, Expected};
 use crate::flat::{STRAIGHT, clamped};
 use crate::settle::to_rest;
 use crate::{LabError, MeshKind, Tolerance, rectangle};
-use toile_drape::{Material, Model, State};
+use toile_drape::{Material, State, SystemBuilder};
 use toile_geometry::{Vec2, Vec3};
 
 /// q L^3 / sqrt(B C) at which a strip clamped on edge gives way sideways under its own weight
@@ -83,18 +83,19 @@ fn deflection(kind: MeshKind, [columns, rows]: [usize; 2], gamma: f64) -> Result
         let s = (p.x / LENGTH).max(0.0);
         Vec3::new(p.x, p.y, 0.2 * LENGTH * s * s)
     });
-    let mut model = Model::new("strip", &cloth)?;
+    let mut builder = SystemBuilder::new("strip", &cloth)?;
     for v in flat.chosen(|p| clamped(p.x, cell)) {
-        model.pinned[v as usize] = true;
+        builder.pinned[v as usize] = true;
     }
     let mut positions = cloth.positions;
     for (v, p) in positions.iter_mut().enumerate() {
-        if model.pinned[v] {
+        if builder.pinned[v] {
             p.z = 0.0;
         }
     }
-    let mut state = State::at_rest(&model, positions);
-    to_rest(&model, &mut state, 1e-6)?;
+    let system = builder.build();
+    let mut state = State::at_rest(&system, positions);
+    to_rest(&system, &mut state, 1e-6)?;
     let tip = flat.chosen(|p| p.x > LENGTH - 1e-9);
     Ok(crate::settle::mean(&state.positions, &tip).z / LENGTH)
 }

@@ -7,7 +7,7 @@ use crate::root::bisect;
 use crate::settle::{TIGHT, mean, to_rest};
 use crate::{LabError, MeshKind, Tolerance, rectangle};
 use std::time::Instant;
-use toile_drape::{Material, Model, State};
+use toile_drape::{Material, State, SystemBuilder};
 use toile_geometry::{Vec2, Vec3};
 use toile_session::Watcher;
 
@@ -60,12 +60,13 @@ impl Strip {
             ..Material::default()
         };
         let cloth = flat.cloth(material, |p| Vec3::new(p.x, 0.0, p.y));
-        let mut model = Model::new("strip", &cloth)?;
+        let mut builder = SystemBuilder::new("strip", &cloth)?;
         for v in flat.chosen(|p| clamped(p.x, cell)) {
-            model.pinned[v as usize] = true;
+            builder.pinned[v as usize] = true;
         }
-        let mut state = State::at_rest(&model, cloth.positions);
-        to_rest(&model, &mut state, TIGHT)?;
+        let system = builder.build();
+        let mut state = State::at_rest(&system, cloth.positions);
+        to_rest(&system, &mut state, TIGHT)?;
         let tip = mean(&state.positions, &flat.chosen(|p| p.x > to - 1e-9));
         Ok([-tip.y / LENGTH, tip.x / LENGTH])
     }

@@ -4,7 +4,9 @@ use crate::check::{Cases, Expected};
 use crate::{Flat, LabError, MeshKind, Tolerance, rectangle};
 use std::f64::consts::PI;
 use std::sync::Arc;
-use toile_drape::{Collider, ContactSettings, Material, MethodKind, MethodSettings, Model, State};
+use toile_drape::{
+    Collider, ContactSettings, Material, MethodKind, MethodSettings, State, System, SystemBuilder,
+};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 
 /// Radius of the cylinder [m] and its facets: they lie 4 micrometres inside it.
@@ -48,7 +50,7 @@ fn cylinder() -> TriangleMesh {
 }
 
 /// A strip over the cylinder, half round it, its ends hanging straight down.
-fn strip(kind: MeshKind, friction: f64) -> Result<(Flat, Model, State), LabError> {
+fn strip(kind: MeshKind, friction: f64) -> Result<(Flat, System, State), LabError> {
     let radius = RADIUS + ContactSettings::default().offset;
     let half = 0.5 * PI * radius;
     let length = 2.0 * (half + FREE);
@@ -73,15 +75,16 @@ fn strip(kind: MeshKind, friction: f64) -> Result<(Flat, Model, State), LabError
         let (sin, cos) = (p.x.clamp(-half, half) / radius).sin_cos();
         Vec3::new(radius * sin, radius * cos - beyond, p.y)
     });
-    let mut model = Model::new("strip", &cloth)?;
-    model.gravity = Vec3::zeros();
+    let mut builder = SystemBuilder::new("strip", &cloth)?;
+    builder.control.gravity = Vec3::zeros();
     let collider = Collider::new(Arc::new(SurfaceTree::new(cylinder())));
-    model.colliders.push(collider);
+    builder.colliders.push(collider);
     for v in flat.chosen(|p| p.x.abs() > 0.5 * length - 1e-9) {
-        model.pinned[v as usize] = true;
+        builder.pinned[v as usize] = true;
     }
-    let state = State::at_rest(&model, cloth.positions);
-    Ok((flat, model, state))
+    let system = builder.build();
+    let state = State::at_rest(&system, cloth.positions);
+    Ok((flat, system, state))
 }
 
 /// Mean tension along a stretch of the free strip [N/m]: S l = Y (l^2 - 1) / 2 l for the stretch l of
@@ -107,7 +110,7 @@ fn tension(flat: &Flat, state: &State, within: [f64; 2]) -> f64 {
 
 /// Ratio of the tensions at both ends when all of the strip slides to one side.
 fn ratio(kind: MeshKind, friction: f64) -> Result<f64, LabError> {
-    let (flat, model, mut state) = strip(kind, friction)?;
+    let (flat, system, mut state) = strip(kind, friction)?;
     let end = flat.points.iter().map(|p| p.x).fold(0.0, f64::max);
     let drawn = flat.chosen(|p| p.x > end - 1e-9);
     let mut method = MethodSettings::from(MethodKind::ImplicitEuler).build();
@@ -115,7 +118,7 @@ fn ratio(kind: MeshKind, friction: f64) -> Result<f64, LabError> {
         for &v in &drawn {
             state.positions[v as usize].y -= DRAWN / STEPS as f64;
         }
-        method.advance(&model, &mut state, STEP)?;
+        method.advance(&system, &mut state, STEP)?;
     }
     let [near, far] = [end - 0.8 * FREE, end - 0.2 * FREE];
     Ok(tension(&flat, &state, [near, far]) / tension(&flat, &state, [-far, -near]))

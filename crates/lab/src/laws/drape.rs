@@ -4,7 +4,9 @@ use crate::check::{Cases, Expected};
 use crate::outline::{fold_count, shadow};
 use crate::{LabError, Tolerance, disc};
 use toile_drape::fabrics::{LIBRARY, LibraryFabric};
-use toile_drape::{Material, Model, PseudoTransientContinuation, RestSettings, State, Workspace};
+use toile_drape::{
+    Material, PseudoTransientContinuation, RestSettings, State, System, SystemBuilder, Workspace,
+};
 use toile_geometry::{Vec3, total_area};
 
 /// Radius of the specimen and of the discs that hold it [m].
@@ -36,13 +38,14 @@ pub fn cusick(material: Material, cell: f64) -> Result<Drape, LabError> {
         let out = ((r - DISC) / (SPECIMEN - DISC)).max(0.0);
         Vec3::new(p.x, 2e-4 * wave * out, p.y)
     });
-    let mut model = Model::new("specimen", &cloth)?;
+    let mut builder = SystemBuilder::new("specimen", &cloth)?;
     for v in flat.chosen(|p| p.norm() < DISC + 0.51 * cell) {
-        model.pinned[v as usize] = true;
+        builder.pinned[v as usize] = true;
     }
-    let mut state = State::at_rest(&model, cloth.positions);
-    settle(&model, &mut state)?;
-    let shape = shadow(&state.positions, &model.triangles);
+    let system = builder.build();
+    let mut state = State::at_rest(&system, cloth.positions);
+    settle(&system, &mut state)?;
+    let shape = shadow(&state.positions, &system.topology.triangles);
     let area = |r: f64| std::f64::consts::PI * r * r;
     Ok(Drape {
         coefficient: (total_area(&shape) - area(DISC)) / (area(SPECIMEN) - area(DISC)),
@@ -58,7 +61,7 @@ const NEARLY_STILL: f64 = 2e-2;
 /// Steps to rest at the most.
 const STEPS: usize = 500;
 
-fn settle(model: &Model, state: &mut State) -> Result<(), LabError> {
+fn settle(system: &System, state: &mut State) -> Result<(), LabError> {
     let mut workspace = Workspace::default();
     let mut run = PseudoTransientContinuation::new(RestSettings {
         residual: STILL,
@@ -66,7 +69,7 @@ fn settle(model: &Model, state: &mut State) -> Result<(), LabError> {
         ..RestSettings::default()
     });
     while !run.finished() {
-        match run.advance(model, state, &mut workspace) {
+        match run.advance(system, state, &mut workspace) {
             Err(error) if run.residual() > NEARLY_STILL => return Err(error.into()),
             Err(_) => break,
             Ok(()) => {}

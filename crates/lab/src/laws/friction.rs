@@ -3,7 +3,7 @@
 use crate::check::{Cases, Expected};
 use crate::{Flat, LabError, MeshKind, Tolerance, rectangle};
 use std::sync::Arc;
-use toile_drape::{Collider, Material, MethodKind, Model, State};
+use toile_drape::{Collider, Material, MethodKind, State, SystemBuilder};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 
 /// Friction coefficient of the cloth.
@@ -43,22 +43,23 @@ fn slide(angle: f64) -> Result<[f64; 2], LabError> {
     };
     let offset = toile_drape::ContactSettings::default().offset;
     let cloth = flat.cloth(material, |p| Vec3::new(p.x, offset, p.y));
-    let mut model = Model::new("cloth", &cloth)?;
-    model
+    let mut builder = SystemBuilder::new("cloth", &cloth)?;
+    builder
         .colliders
         .push(Collider::new(Arc::new(SurfaceTree::new(board()))));
     // The board stays; gravity is inclined.
-    model.gravity = Vec3::new(angle.sin(), -angle.cos(), 0.0) * 9.81;
-    let mut state = State::at_rest(&model, cloth.positions);
+    builder.control.gravity = Vec3::new(angle.sin(), -angle.cos(), 0.0) * 9.81;
+    let system = builder.build();
+    let mut state = State::at_rest(&system, cloth.positions);
     let settings = MethodKind::ImplicitEuler.into();
     let velocity =
         |s: &State| s.velocities.iter().map(|v| v.x).sum::<f64>() / s.velocities.len() as f64;
     let step = 1.0 / 500.0;
-    crate::settle::in_time(&model, &mut state, settings, [step, 0.1], |_| {})?;
+    crate::settle::in_time(&system, &mut state, settings, [step, 0.1], |_| {})?;
     let before = velocity(&state);
     let all: Vec<u32> = (0..flat.points.len() as u32).collect();
     let from = crate::settle::mean(&state.positions, &all);
-    crate::settle::in_time(&model, &mut state, settings, [step, 0.2], |_| {})?;
+    crate::settle::in_time(&system, &mut state, settings, [step, 0.2], |_| {})?;
     let moved = crate::settle::mean(&state.positions, &all) - from;
     Ok([(velocity(&state) - before) / 0.2, moved.x])
 }

@@ -4,7 +4,7 @@ use crate::check::{Cases, Expected};
 use crate::root::bisect;
 use crate::settle::{TIGHT, mean, to_rest};
 use crate::{LabError, MeshKind, Tolerance, rectangle};
-use toile_drape::{Material, Model, State, Workspace};
+use toile_drape::{Material, State, SystemBuilder, Workspace};
 use toile_geometry::{Vec2, Vec3};
 
 const DENSITY: f64 = 0.2;
@@ -107,19 +107,20 @@ fn hung_with(kind: MeshKind, material: Material, elements: usize) -> Result<[f64
         [elements, rows],
     )?;
     let cloth = flat.cloth(material, |p| Vec3::new(0.0, -p.x, p.y));
-    let mut model = Model::new("strip", &cloth)?;
+    let mut builder = SystemBuilder::new("strip", &cloth)?;
     let top = flat.chosen(|p| p.x < 1e-9);
     for &v in &top {
-        model.pinned[v as usize] = true;
+        builder.pinned[v as usize] = true;
     }
-    let mut state = State::at_rest(&model, cloth.positions);
-    to_rest(&model, &mut state, TIGHT)?;
+    let system = builder.build();
+    let mut state = State::at_rest(&system, cloth.positions);
+    to_rest(&system, &mut state, TIGHT)?;
     let tip = mean(&state.positions, &flat.chosen(|p| p.x > LENGTH - 1e-9)).y;
-    for &v in &top {
-        model.pinned[v as usize] = false;
-    }
+    let system = system.with(|builder| {
+        top.iter().for_each(|&v| builder.pinned[v as usize] = false);
+    });
     let mut workspace = Workspace::default();
-    let forces = workspace.net_force(&model, &state);
+    let forces = workspace.net_force(&system, &state);
     let carried: f64 = top.iter().map(|&v| -forces[v as usize].y).sum();
     Ok([-tip - LENGTH, carried])
 }
@@ -165,11 +166,12 @@ fn sag(kind: MeshKind, distance: f64) -> Result<f64, LabError> {
         let s = p.x / LENGTH;
         Vec3::new(distance * s, -high * (pi * s).sin(), p.y)
     });
-    let mut model = Model::new("strip", &cloth)?;
+    let mut builder = SystemBuilder::new("strip", &cloth)?;
     for v in flat.chosen(|p| p.x < 1e-9 || p.x > LENGTH - 1e-9) {
-        model.pinned[v as usize] = true;
+        builder.pinned[v as usize] = true;
     }
-    let mut state = State::at_rest(&model, cloth.positions);
-    to_rest(&model, &mut state, 1e-5)?;
+    let system = builder.build();
+    let mut state = State::at_rest(&system, cloth.positions);
+    to_rest(&system, &mut state, 1e-5)?;
     Ok(-state.positions.iter().map(|p| p.y).fold(0.0, f64::min))
 }

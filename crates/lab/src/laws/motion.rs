@@ -4,11 +4,13 @@ use crate::check::{Cases, Expected};
 use crate::settle::{converged, in_time, methods_in_time, sound_step, to_rest};
 use crate::{LabError, MeshKind, Tolerance, rectangle};
 use toile_drape::laws::air::Air;
-use toile_drape::{Material, MethodKind, MethodSettings, Model, State, largest_frequency};
+use toile_drape::{
+    Material, MethodKind, MethodSettings, State, System, SystemBuilder, largest_frequency,
+};
 use toile_geometry::{Vec2, Vec3};
 
 /// A small square of soft cloth, free and without gravity.
-fn square(material: Material) -> Result<(Model, State), LabError> {
+fn square(material: Material) -> Result<(System, State), LabError> {
     let flat = rectangle(
         MeshKind::Delaunay,
         Vec2::zeros(),
@@ -16,10 +18,11 @@ fn square(material: Material) -> Result<(Model, State), LabError> {
         [8, 8],
     )?;
     let cloth = flat.cloth(material, |p| Vec3::new(p.x, 1.0, p.y));
-    let mut model = Model::new("square", &cloth)?;
-    model.gravity = Vec3::zeros();
-    let state = State::at_rest(&model, cloth.positions);
-    Ok((model, state))
+    let mut builder = SystemBuilder::new("square", &cloth)?;
+    builder.control.gravity = Vec3::zeros();
+    let system = builder.build();
+    let state = State::at_rest(&system, cloth.positions);
+    Ok((system, state))
 }
 
 fn soft() -> Material {
@@ -32,15 +35,15 @@ fn soft() -> Material {
     }
 }
 
-fn momentum(model: &Model, state: &State) -> Vec3 {
-    let terms = state.velocities.iter().zip(&model.mass);
+fn momentum(system: &System, state: &State) -> Vec3 {
+    let terms = state.velocities.iter().zip(&system.rest.mass);
     terms.map(|(v, m)| v * *m).sum()
 }
 
-fn angular_momentum(model: &Model, state: &State) -> Vec3 {
+fn angular_momentum(system: &System, state: &State) -> Vec3 {
     let terms = state.positions.iter().zip(&state.velocities);
     terms
-        .zip(&model.mass)
+        .zip(&system.rest.mass)
         .map(|((x, v), m)| x.cross(v) * *m)
         .sum()
 }
@@ -96,9 +99,9 @@ fn momentum_left(kind: MethodKind) -> Tolerance {
 /// A spinning, trembling cloth in free flight keeps its momentum.
 pub(super) fn flight(cases: &mut Cases) -> Result<(), LabError> {
     for (name, kind) in methods_in_time() {
-        let (model, mut state) = square(soft())?;
+        let (system, mut state) = square(soft())?;
         let settings = converged(kind, SOLVED, 100);
-        let step = sound_step(&model, &state, settings, 2e-3)?;
+        let step = sound_step(&system, &state, settings, 2e-3)?;
         for (k, (v, x)) in state
             .velocities
             .iter_mut()
@@ -110,9 +113,9 @@ pub(super) fn flight(cases: &mut Cases) -> Result<(), LabError> {
             let tremble = Vec3::new((1.1 * k).sin(), (2.3 * k).cos(), (0.7 * k).sin()) * 0.05;
             *v = Vec3::new(1.0, -0.5, 0.3) + spin + tremble;
         }
-        let before = momentum(&model, &state);
-        let spin = angular_momentum(&model, &state);
-        let outcome = in_time(&model, &mut state, settings, [step, 1000.0 * step], |_| {});
+        let before = momentum(&system, &state);
+        let spin = angular_momentum(&system, &state);
+        let outcome = in_time(&system, &mut state, settings, [step, 1000.0 * step], |_| {});
         let failed = outcome.err();
         let word = failed.as_ref().map(ToString::to_string);
         cases.measure(
@@ -120,11 +123,11 @@ pub(super) fn flight(cases: &mut Cases) -> Result<(), LabError> {
             Expected::zero(momentum_left(kind), before.norm()),
             || match failed {
                 Some(error) => Err(error),
-                None => Ok((momentum(&model, &state) - before).norm()),
+                None => Ok((momentum(&system, &state) - before).norm()),
             },
         )?;
         if SPINNING.contains(&name) && word.is_none() {
-            let (after, kind) = (angular_momentum(&model, &state), name);
+            let (after, kind) = (angular_momentum(&system, &state), name);
             cases.measure(
                 format!("{kind}, 1000 steps of {step:.1e} s"),
                 Expected::zero(SPIN, spin.norm()),
@@ -151,16 +154,16 @@ pub(super) const FALL: [Tolerance; 1] = [FALLEN];
 pub(super) fn fall(cases: &mut Cases) -> Result<(), LabError> {
     let (time, wanted) = (FALLING, LONGEST);
     for (name, kind) in methods_in_time() {
-        let (mut model, mut state) = square(soft())?;
+        let (mut system, mut state) = square(soft())?;
         let settings = kind.into();
-        let step = sound_step(&model, &state, settings, wanted)?;
-        model.gravity = Vec3::new(0.0, -9.81, 0.0);
+        let step = sound_step(&system, &state, settings, wanted)?;
+        system.control.gravity = Vec3::new(0.0, -9.81, 0.0);
         let drop = 0.5 * 9.81 * time * time;
         cases.measure(
             format!("{name}, steps of {step:.1e} s"),
             Expected::value(FALLEN, drop).within(half_step(step)),
             || {
-                in_time(&model, &mut state, settings, [step, time], |_| {})?;
+                in_time(&system, &mut state, settings, [step, time], |_| {})?;
                 let mean: f64 = state.positions.iter().map(|p| p.y).sum();
                 // The run ends on a whole number of steps.
                 let taken = (time / step).round() * step;
@@ -188,10 +191,10 @@ pub(super) fn terminal(cases: &mut Cases) -> Result<(), LabError> {
         density: Air::SEA_LEVEL,
         ..Air::default()
     };
-    let linear = |model: &mut Model| model.air_drag = 4.0;
+    let linear = |system: &mut System| system.control.air_drag = 4.0;
     fall_at_last(cases, "drag 4 per s", 9.81 / 4.0, linear)?;
     let flat = falling_flat(soft().density, &air);
-    let square = |model: &mut Model| model.air = air;
+    let square = |system: &mut System| system.control.air = air;
     fall_at_last(cases, "face on through air at sea level", flat, square)
 }
 
@@ -199,15 +202,15 @@ fn fall_at_last(
     cases: &mut Cases,
     what: &str,
     expected: f64,
-    put: impl Fn(&mut Model),
+    put: impl Fn(&mut System),
 ) -> Result<(), LabError> {
     for (name, kind) in methods_in_time() {
-        let (mut model, mut state) = square(soft())?;
+        let (mut system, mut state) = square(soft())?;
         let settings: MethodSettings = kind.into();
-        let step = sound_step(&model, &state, settings, 5e-3)?;
-        model.gravity = Vec3::new(0.0, -9.81, 0.0);
-        put(&mut model);
-        if kind == MethodKind::Xpbd && model.air.acts() {
+        let step = sound_step(&system, &state, settings, 5e-3)?;
+        system.control.gravity = Vec3::new(0.0, -9.81, 0.0);
+        put(&mut system);
+        if kind == MethodKind::Xpbd && system.control.air.acts() {
             // The air's forces on triangles do not act in XPBD.
             continue;
         }
@@ -215,9 +218,9 @@ fn fall_at_last(
             format!("{name}, {what}"),
             Expected::value(LAST, expected),
             || {
-                in_time(&model, &mut state, settings, [step, 3.0], |_| {})?;
-                let total = momentum(&model, &state).y;
-                Ok(-total / model.mass.iter().sum::<f64>())
+                in_time(&system, &mut state, settings, [step, 3.0], |_| {})?;
+                let total = momentum(&system, &state).y;
+                Ok(-total / system.rest.mass.iter().sum::<f64>())
             },
         )?;
     }
@@ -236,56 +239,57 @@ pub(super) fn corner(cases: &mut Cases) -> Result<(), LabError> {
         poisson: 0.2,
         ..Material::default()
     };
-    let (mut model, start) = square(material)?;
-    model.gravity = Vec3::new(0.0, -9.81, 0.0);
-    model.pinned[0] = true;
+    let (mut system, start) = square(material)?;
+    system.control.gravity = Vec3::new(0.0, -9.81, 0.0);
+    system = system.with(|builder| builder.pinned[0] = true);
     cases.measure("way to rest", Expected::zero(NET_FORCE, 1.0), || {
         let mut state = start.clone();
-        to_rest(&model, &mut state, 1e-6)?;
+        to_rest(&system, &mut state, 1e-6)?;
         let mut workspace = toile_drape::Workspace::default();
-        Ok(toile_drape::residual(&model, &state, &mut workspace))
+        Ok(toile_drape::residual(&system, &state, &mut workspace))
     })?;
     // The energy to lose: the weight times the size.
-    let fall = model.mass.iter().sum::<f64>() * 9.81 * 0.2;
-    model.air_drag = 3.0;
+    let fall = system.rest.mass.iter().sum::<f64>() * 9.81 * 0.2;
+    system.control.air_drag = 3.0;
     for (name, kind) in methods_in_time() {
         let settings: MethodSettings = kind.into();
         cases.measure(
             format!("{name}, 6 s with drag 3 per s"),
             Expected::zero(ENERGY_LEFT, fall),
-            || swing_out(&model, &start, settings),
+            || swing_out(&system, &start, settings),
         )?;
     }
     Ok(())
 }
 
-fn swing_out(model: &Model, start: &State, settings: MethodSettings) -> Result<f64, LabError> {
+fn swing_out(system: &System, start: &State, settings: MethodSettings) -> Result<f64, LabError> {
     let mut state = start.clone();
-    let mut still = Model::new("square", &cloth_of(model, start))?;
-    still.gravity = Vec3::zeros();
+    let mut still = System::new("square", &cloth_of(system, start))?;
+    still.control.gravity = Vec3::zeros();
     let mut step = sound_step(&still, start, settings, 5e-3)?;
     if settings.kind == MethodKind::ImplicitMidpoint {
         // It damps nothing itself, and drag damps a vibration w by only 1 / (1 + (h w / 2)^2) of
         // what it should: steps that resolve the fastest one.
         step = step.min(4.0 / largest_frequency(&still, start));
     }
-    in_time(model, &mut state, settings, [step, 6.0], |_| {})?;
-    Ok(state.kinetic_energy(model))
+    in_time(system, &mut state, settings, [step, 6.0], |_| {})?;
+    Ok(state.kinetic_energy(system))
 }
 
 /// The cloth of a flat model, its present shape as rest.
-fn cloth_of(model: &Model, state: &State) -> toile_drape::Cloth {
+fn cloth_of(system: &System, state: &State) -> toile_drape::Cloth {
     let place = |v: u32| state.positions[v as usize];
     toile_drape::Cloth {
         positions: state.positions.clone(),
-        triangles: model.triangles.clone(),
-        rest: model
+        triangles: system.topology.triangles.clone(),
+        rest: system
+            .topology
             .triangles
             .iter()
             .map(|t| t.map(|v| Vec2::new(place(v).x, place(v).z)))
             .collect(),
-        material: model.material.clone(),
-        panel: vec![0; model.triangles.len()],
-        materials: model.materials.clone(),
+        material: system.materials.of_triangle.clone(),
+        panel: vec![0; system.topology.triangles.len()],
+        materials: system.materials.list.clone(),
     }
 }

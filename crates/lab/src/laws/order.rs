@@ -3,7 +3,7 @@
 use crate::check::{Cases, Expected};
 use crate::settle::{in_time, methods_in_time, sound_step};
 use crate::{LabError, MeshKind, Tolerance, rectangle};
-use toile_drape::{Material, MethodKind, MethodSettings, Model, State};
+use toile_drape::{Material, MethodKind, MethodSettings, State, SystemBuilder};
 use toile_geometry::{Vec2, Vec3};
 
 /// Methods whose error falls with the square of the step; the others are of first order, but for
@@ -47,12 +47,13 @@ pub(super) fn in_time_order(cases: &mut Cases) -> Result<(), LabError> {
         ..Material::default()
     };
     let cloth = flat.cloth(material, |p| Vec3::new(p.x, 0.0, p.y));
-    let mut model = Model::new("strip", &cloth)?;
+    let mut builder = SystemBuilder::new("strip", &cloth)?;
     for v in flat.chosen(|p| p.x < 1e-9) {
-        model.pinned[v as usize] = true;
+        builder.pinned[v as usize] = true;
     }
-    model.gravity = Vec3::zeros();
-    let start = State::at_rest(&model, cloth.positions);
+    builder.control.gravity = Vec3::zeros();
+    let mut system = builder.build();
+    let start = State::at_rest(&system, cloth.positions);
     for (name, kind) in methods_in_time() {
         let settings = MethodSettings {
             tolerance: Some(1e-14),
@@ -60,11 +61,11 @@ pub(super) fn in_time_order(cases: &mut Cases) -> Result<(), LabError> {
             substeps: Some(1),
             ..kind.into()
         };
-        model.gravity = Vec3::zeros();
+        system.control.gravity = Vec3::zeros();
         // Single precision drowns the differences of smaller steps.
         let wanted = if kind == MethodKind::Xpbd { 4e-3 } else { 1e-3 };
-        let sound = sound_step(&model, &start, settings, wanted)?;
-        model.gravity = Vec3::new(0.0, -9.81, 0.0);
+        let sound = sound_step(&system, &start, settings, wanted)?;
+        system.control.gravity = Vec3::new(0.0, -9.81, 0.0);
         let expected = order_of(name);
         let duration = 0.064;
         // A whole number of steps in the duration, four sizes.
@@ -77,7 +78,7 @@ pub(super) fn in_time_order(cases: &mut Cases) -> Result<(), LabError> {
                 for halvings in 0..4 {
                     let step = coarsest / f64::from(1 << halvings);
                     let mut state = start.clone();
-                    in_time(&model, &mut state, settings, [step, duration], |_| {})?;
+                    in_time(&system, &mut state, settings, [step, duration], |_| {})?;
                     ends.push(state.positions);
                 }
                 let apart = |a: &[Vec3], b: &[Vec3]| -> f64 {

@@ -6,7 +6,7 @@ use crate::flat::{STRAIGHT, clamped};
 use crate::settle::{mean, to_rest};
 use crate::{Flat, LabError, MeshKind, Tolerance, propped_elastica, rectangle};
 use std::sync::Arc;
-use toile_drape::{Collider, ContactSettings, Material, Model, State};
+use toile_drape::{Collider, ContactSettings, Material, State, System, SystemBuilder};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
 
 /// Length of the strip [m], elements along it, and its bending stiffness [N m].
@@ -24,7 +24,7 @@ const SLID: f64 = 3e-4;
 /// A strip upright over a table, its tip on it.
 struct Strip {
     flat: Flat,
-    model: Model,
+    system: System,
     state: State,
     tip: Vec<u32>,
 }
@@ -57,18 +57,19 @@ impl Strip {
             let bow = 0.02 * LENGTH * s * s * (1.0 - s);
             Vec3::new(bow, offset + LENGTH - p.x, p.y)
         });
-        let mut model = Model::new("strip", &cloth)?;
-        model.gravity = Vec3::zeros();
+        let mut builder = SystemBuilder::new("strip", &cloth)?;
+        builder.control.gravity = Vec3::zeros();
         let table = SurfaceTree::new(board());
-        model.colliders.push(Collider::new(Arc::new(table)));
+        builder.colliders.push(Collider::new(Arc::new(table)));
         for v in flat.chosen(|p| clamped(p.x, cell)) {
-            model.pinned[v as usize] = true;
+            builder.pinned[v as usize] = true;
         }
+        let system = builder.build();
         let tip = flat.chosen(|p| p.x > LENGTH - 1e-9);
-        let state = State::at_rest(&model, cloth.positions);
+        let state = State::at_rest(&system, cloth.positions);
         Ok(Self {
             flat,
-            model,
+            system,
             state,
             tip,
         })
@@ -79,11 +80,11 @@ impl Strip {
         let stages = ((to - from) / 0.005).ceil().max(1.0);
         for _ in 0..stages as usize {
             for v in 0..self.flat.points.len() {
-                if self.model.pinned[v] {
+                if self.system.prescribed.pinned[v] {
                     self.state.positions[v].y -= (to - from) / stages * LENGTH;
                 }
             }
-            to_rest(&self.model, &mut self.state, RESIDUAL)?;
+            to_rest(&self.system, &mut self.state, RESIDUAL)?;
         }
         Ok(())
     }
@@ -95,7 +96,7 @@ impl Strip {
         }
         let before = mean(&self.state.positions, &self.tip).x;
         let mut state = self.state.clone();
-        to_rest(&self.model, &mut state, RESIDUAL)?;
+        to_rest(&self.system, &mut state, RESIDUAL)?;
         let moved = mean(&state.positions, &self.tip).x - before;
         Ok(moved.abs() < SLID * LENGTH)
     }

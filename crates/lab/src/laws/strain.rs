@@ -4,7 +4,7 @@ use crate::check::{Cases, Expected};
 use crate::settle::to_rest;
 use crate::{Flat, LabError, MeshKind, Tolerance, rectangle};
 use nalgebra::{Matrix2, Rotation3};
-use toile_drape::{Material, Model, State, Workspace};
+use toile_drape::{Material, State, SystemBuilder, Workspace};
 use toile_geometry::{Vec2, Vec3};
 
 const LENGTH: f64 = 0.2;
@@ -52,10 +52,11 @@ fn forces(
     place: impl Fn(Vec2) -> Vec3,
 ) -> Result<Vec<Vec3>, LabError> {
     let cloth = flat.cloth(material, place);
-    let mut model = Model::new("sheet", &cloth)?;
-    model.gravity = Vec3::zeros();
-    let state = State::at_rest(&model, cloth.positions);
-    Ok(Workspace::default().net_force(&model, &state).to_vec())
+    let mut builder = SystemBuilder::new("sheet", &cloth)?;
+    builder.control.gravity = Vec3::zeros();
+    let system = builder.build();
+    let state = State::at_rest(&system, cloth.positions);
+    Ok(Workspace::default().net_force(&system, &state).to_vec())
 }
 
 fn largest(forces: &[Vec3], chosen: &[u32]) -> f64 {
@@ -174,25 +175,27 @@ fn pull(kind: MeshKind, stretch: f64) -> Result<f64, LabError> {
     let narrow = (1.0 + 2.0 * across).max(0.0).sqrt();
     let flat = sheet(kind)?;
     let cloth = flat.cloth(material, |p| Vec3::new(p.x * stretch, p.y * narrow, 0.0));
-    let mut model = Model::new("strip", &cloth)?;
-    model.gravity = Vec3::zeros();
+    let mut builder = SystemBuilder::new("strip", &cloth)?;
+    builder.control.gravity = Vec3::zeros();
     let ends = flat.chosen(|p| p.x.abs() > 0.1 - 1e-9);
     for &v in &ends {
-        model.pinned[v as usize] = true;
+        builder.pinned[v as usize] = true;
     }
-    let mut state = State::at_rest(&model, cloth.positions);
+    let system = builder.build();
+    let mut state = State::at_rest(&system, cloth.positions);
     for (v, p) in state.positions.iter_mut().enumerate() {
-        if !model.pinned[v] {
+        if !system.prescribed.pinned[v] {
             let k = v as f64;
             *p += Vec3::new((1.3 * k).sin(), (1.7 * k).cos(), 0.0) * 5e-5;
         }
     }
-    to_rest(&model, &mut state, 1e-6)?;
-    for &v in &ends {
-        model.pinned[v as usize] = false;
-    }
+    to_rest(&system, &mut state, 1e-6)?;
+    let system = system.with(|builder| {
+        ends.iter()
+            .for_each(|&v| builder.pinned[v as usize] = false);
+    });
     let mut workspace = Workspace::default();
-    let forces = workspace.net_force(&model, &state);
+    let forces = workspace.net_force(&system, &state);
     let right = flat.chosen(|p| p.x > 0.1 - 1e-9);
     let total: f64 = right.iter().map(|&v| -forces[v as usize].x).sum();
     Ok(total / WIDTH)

@@ -4,7 +4,7 @@ use crate::check::{Cases, Expected};
 use crate::flat::{STRAIGHT, clamped};
 use crate::settle::{converged, in_time, methods_in_time, sound_step};
 use crate::{LabError, MeshKind, Tolerance, rectangle};
-use toile_drape::{Material, MethodKind, MethodSettings, Model, State};
+use toile_drape::{Material, MethodKind, MethodSettings, State, System, SystemBuilder};
 use toile_geometry::{Vec2, Vec3};
 
 /// Zeros of the Bessel function J0, halved: circular frequencies of a hanging chain in units of
@@ -29,7 +29,7 @@ const SOLVED: f64 = 1e-13;
 
 /// A strip about to move in a shape.
 struct Swing {
-    model: Model,
+    system: System,
     rest: Vec<Vec3>,
     shape: Vec<f64>,
     amplitude: f64,
@@ -42,14 +42,14 @@ impl Swing {
         let away = Vec3::new(0.0, 0.0, self.amplitude);
         let place = |(p, s): (&Vec3, &f64)| p + away * *s;
         let positions = self.rest.iter().zip(&self.shape).map(place).collect();
-        let mut state = State::at_rest(&self.model, positions);
+        let mut state = State::at_rest(&self.system, positions);
         let period = std::f64::consts::TAU / expected;
-        let resting = State::at_rest(&self.model, self.rest.clone());
-        let step = sound_step(&self.model, &resting, settings, period / STEPS)?;
+        let resting = State::at_rest(&self.system, self.rest.clone());
+        let step = sound_step(&self.system, &resting, settings, period / STEPS)?;
         let mut crossings: Vec<f64> = Vec::new();
         let mut last = (0.0, self.project(&state));
         in_time(
-            &self.model,
+            &self.system,
             &mut state,
             settings,
             [step, 1.3 * period],
@@ -72,7 +72,7 @@ impl Swing {
     fn project(&self, state: &State) -> f64 {
         let terms = state.positions.iter().zip(&self.rest).zip(&self.shape);
         terms
-            .zip(&self.model.mass)
+            .zip(&self.system.rest.mass)
             .map(|(((p, rest), shape), mass)| mass * shape * (p.z - rest.z))
             .sum()
     }
@@ -101,18 +101,19 @@ fn chain(mesh: MeshKind, mode: usize) -> Result<Swing, LabError> {
         ..Material::default()
     };
     let cloth = flat.cloth(material, |p| Vec3::new(p.y, -p.x, 0.0));
-    let mut model = Model::new("strip", &cloth)?;
+    let mut builder = SystemBuilder::new("strip", &cloth)?;
     for v in flat.chosen(|p| p.x < 1e-9) {
-        model.pinned[v as usize] = true;
+        builder.pinned[v as usize] = true;
     }
+    let system = builder.build();
     // From its own stretched rest, or it would bounce too.
-    let mut state = State::at_rest(&model, cloth.positions);
-    crate::settle::to_rest(&model, &mut state, 1e-6)?;
+    let mut state = State::at_rest(&system, cloth.positions);
+    crate::settle::to_rest(&system, &mut state, 1e-6)?;
     let shape = |p: &Vec2| bessel(2.0 * CHAIN[mode] * (1.0 - p.x / length).max(0.0).sqrt());
     Ok(Swing {
         shape: flat.points.iter().map(shape).collect(),
         rest: state.positions,
-        model,
+        system,
         amplitude: 1e-3 * length,
     })
 }
@@ -137,11 +138,12 @@ fn beam(mesh: MeshKind) -> Result<(Swing, f64), LabError> {
         ..Material::default()
     };
     let cloth = flat.cloth(material, |p| Vec3::new(p.x, p.y, 0.0));
-    let mut model = Model::new("strip", &cloth)?;
-    model.gravity = Vec3::zeros();
+    let mut builder = SystemBuilder::new("strip", &cloth)?;
+    builder.control.gravity = Vec3::zeros();
     for v in flat.chosen(|p| clamped(p.x, cell)) {
-        model.pinned[v as usize] = true;
+        builder.pinned[v as usize] = true;
     }
+    let system = builder.build();
     let k = BEAM_ROOT;
     let ratio = (k.cosh() + k.cos()) / (k.sinh() + k.sin());
     let shape = |p: &Vec2| {
@@ -151,7 +153,7 @@ fn beam(mesh: MeshKind) -> Result<(Swing, f64), LabError> {
     let swing = Swing {
         shape: flat.points.iter().map(shape).collect(),
         rest: cloth.positions,
-        model,
+        system,
         amplitude: 1e-3 * length,
     };
     Ok((swing, BEAM * (bend / (DENSITY * length.powi(4))).sqrt()))

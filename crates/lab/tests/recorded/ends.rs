@@ -95,7 +95,7 @@ fn worn(setup: GarmentSetup) -> Size {
         run.advance().unwrap();
     }
     let mut workspace = toile_drape::Workspace::default();
-    let measures = measure(&run.model, &run.state, &mut workspace, &[]);
+    let measures = measure(&run.system, &run.state, &mut workspace, &[]);
     assert!(measures.residual < REST, "{measures:?}");
     assert_eq!(measures.body_intersections, 0);
     assert_eq!(measures.self_intersections, 0);
@@ -122,14 +122,14 @@ fn cloth(name: &str, place: impl Fn(Vec2) -> Vec3, layer: u16) -> SceneObject {
 
 /// Sheets above the ball of the standard scene.
 fn falling(sheets: u16) -> Scene {
-    let model = card("sphere")
-        .and_then(|card| card.model(&card.cloth(0)?, &[]))
+    let system = card("sphere")
+        .and_then(|card| card.system(&card.cloth(0)?, &[]))
         .unwrap()
         .0;
     let ball = SceneObject {
         name: "ball".to_owned(),
         kind: ObjectKind::Static,
-        mesh: model.colliders[0].surface.mesh().clone(),
+        mesh: system.colliders[0].surface.mesh().clone(),
         cloth: None,
         layer: 0,
     };

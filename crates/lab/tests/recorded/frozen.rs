@@ -34,7 +34,7 @@ pub fn note(record: &mut Record) {
     }
 }
 
-fn note_potential(record: &mut Record, name: &str, (model, state): &Frozen) {
+fn note_potential(record: &mut Record, name: &str, (system, state): &Frozen) {
     let mut numbers = Numbers(42);
     let vector = |_| {
         state
@@ -46,7 +46,7 @@ fn note_potential(record: &mut Record, name: &str, (model, state): &Frozen) {
     let vectors: Vec<Vec<Vec3>> = (0..VECTORS).map(vector).collect();
     for (kind, curvature) in [("convex", Curvature::CONVEX), ("exact", Curvature::EXACT)] {
         let of = |what: &str| format!("{name}, {kind}, {what}");
-        let expansion: Expansion = Workspace::default().expand(model, state, curvature, &vectors);
+        let expansion: Expansion = Workspace::default().expand(system, state, curvature, &vectors);
         for (k, product) in expansion.products.iter().enumerate() {
             record.vectors(&of(&format!("Hessian times vector {k}")), product);
         }
@@ -79,24 +79,24 @@ fn note_potential(record: &mut Record, name: &str, (model, state): &Frozen) {
             vertices.into_iter().chain(contact.weights).chain(rest)
         });
         record.list(&of("contacts with cloth"), cloth);
-        let tree = SurfaceTree::new(model.mesh(&state.positions));
+        let tree = SurfaceTree::new(system.mesh(&state.positions));
         record.numbers(&of("crossings"), &[tree.self_intersections().len() as f64]);
     }
 }
 
 /// When features of the state that are brought near one another meet.
-fn note_impacts(record: &mut Record, name: &str, (model, state): &Frozen) {
+fn note_impacts(record: &mut Record, name: &str, (system, state): &Frozen) {
     let mut numbers = Numbers(3);
     let mut any = |below: usize| (numbers.next() * below as f64) as usize;
     let mut times = Vec::new();
     for _ in 0..IMPACTS {
         let [vertex, first, second] = [
             state.positions.len(),
-            model.triangles.len(),
-            model.triangles.len(),
+            system.topology.triangles.len(),
+            system.topology.triangles.len(),
         ]
         .map(&mut any);
-        let corners = |t: usize| model.triangles[t].map(|v| state.positions[v as usize]);
+        let corners = |t: usize| system.topology.triangles[t].map(|v| state.positions[v as usize]);
         let (a, b) = (corners(first), corners(second));
         let middle = |t: [Vec3; 3]| (t[0] + t[1] + t[2]) / 3.0;
         // The face is put beside the vertex, the edge beside the other edge.
@@ -120,26 +120,26 @@ fn note_impacts(record: &mut Record, name: &str, (model, state): &Frozen) {
 }
 
 /// How far cloth may move of a motion that would cross itself.
-fn note_moves(record: &mut Record, name: &str, (model, state): &Frozen) {
-    if model.contact.cloth_offset <= 0.0 {
+fn note_moves(record: &mut Record, name: &str, (system, state): &Frozen) {
+    if system.contact.cloth_offset <= 0.0 {
         return;
     }
     let mut contacts = ClothContacts::default();
-    let reach = Reach::all(2.0 * model.contact.cloth_offset);
-    contacts.find(model, state, &state.positions, &reach);
+    let reach = Reach::all(2.0 * system.contact.cloth_offset);
+    contacts.find(system, state, &state.positions, &reach);
     let mut numbers = Numbers(5);
     let moves = state.positions.iter().map(|_| numbers.vector(MOVE));
     let mut moves: Vec<Vec3> = moves.collect();
-    let held = contacts.bound(model, &state.positions, &mut moves);
+    let held = contacts.bound(system, &state.positions, &mut moves);
     record.numbers(&format!("{name}, vertices held back"), &[held as f64]);
     record.vectors(&format!("{name}, truncated moves"), &moves);
 }
 
 /// One step by implicit Euler: what depends on the motion, too.
-fn note_step(record: &mut Record, name: &str, (model, state): &Frozen) {
+fn note_step(record: &mut Record, name: &str, (system, state): &Frozen) {
     let mut state = state.clone();
     let mut method = MethodSettings::from(MethodKind::ImplicitEuler).build();
-    method.advance(model, &mut state, 1.0 / 120.0).unwrap();
+    method.advance(system, &mut state, 1.0 / 120.0).unwrap();
     record.vectors(&format!("{name}, places after a step"), &state.positions);
     let settled = state
         .settled

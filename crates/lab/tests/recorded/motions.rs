@@ -32,13 +32,13 @@ pub fn note_methods(record: &mut Record) {
         ("shirt", states::scene("shirt")),
         ("three layers", states::three_layers()),
     ];
-    for (case, (model, start)) in &cases {
+    for (case, (system, start)) in &cases {
         for (method, kind) in MethodKind::ALL {
             let mut state = start.clone();
             let mut advancing = MethodSettings::from(kind).build();
             for step in 1..=10 {
                 let name = format!("{case}, {method}, step {step}");
-                if let Err(error) = advancing.advance(model, &mut state, STEP) {
+                if let Err(error) = advancing.advance(system, &mut state, STEP) {
                     record.words(&name, &error.to_string());
                     break;
                 }
@@ -82,14 +82,14 @@ pub fn note_stages(record: &mut Record) {
     // The standard shirt is sewn already: it is merged at once and swings.
     let scene = card("shirt").unwrap();
     let cloth = scene.cloth(0).unwrap();
-    let (model, _) = scene.model(&cloth, &[]).unwrap();
+    let (system, _) = scene.system(&cloth, &[]).unwrap();
     let setup = GarmentSetup {
         counted: vec![true; cloth.triangles.len()],
         levels: vec![GarmentLevel {
             cloth,
             ..GarmentLevel::default()
         }],
-        colliders: model.colliders.iter().map(surface_of).collect(),
+        colliders: system.colliders.iter().map(surface_of).collect(),
         contact: ContactSettings {
             cloth_offset: 2e-3,
             ..ContactSettings::default()
@@ -109,7 +109,7 @@ pub fn note_stages(record: &mut Record) {
     let (mut state, mut workspace) = (run.state.clone(), Workspace::default());
     let mut rest = PseudoTransientContinuation::new(RestSettings::default());
     for _ in 0..STAGE_STEPS {
-        rest.advance(&run.model, &mut state, &mut workspace)
+        rest.advance(&run.system, &mut state, &mut workspace)
             .unwrap();
     }
     note(record, "rest", &state);

@@ -1,12 +1,12 @@
 //! Frozen states: a sheet, a ball, a worn shirt, three layers, a fold, a tangle; and a sheet of each law.
 
 use crate::numbers::Numbers;
-use toile_drape::{Cloth, Compression, Material, Model, State};
+use toile_drape::{Cloth, Compression, Material, State, System, SystemBuilder};
 use toile_geometry::{Vec2, Vec3};
 use toile_lab::{Flat, MeshKind, card, rectangle};
 
 /// A model and a state of it.
-pub type Frozen = (Model, State);
+pub type Frozen = (System, State);
 
 /// Distance kept between cloths [m].
 const APART: f64 = 2e-3;
@@ -15,30 +15,30 @@ const APART: f64 = 2e-3;
 pub fn scene(name: &str) -> Frozen {
     let card = card(name).unwrap();
     let cloth = card.cloth(0).unwrap();
-    card.model(&cloth, &card.cloths[0].pins).unwrap()
+    card.system(&cloth, &card.cloths[0].pins).unwrap()
 }
 
 /// The same with some noise in its places, so that nothing is balanced.
 pub fn stirred(name: &str, by: f64) -> Frozen {
-    let (model, mut state) = scene(name);
+    let (system, mut state) = scene(name);
     let mut numbers = Numbers(7);
-    for (place, pinned) in state.positions.iter_mut().zip(&model.pinned) {
+    for (place, pinned) in state.positions.iter_mut().zip(&system.prescribed.pinned) {
         if !pinned {
             *place += numbers.vector(by);
         }
     }
-    (model, state)
+    (system, state)
 }
 
 /// A sheet that lies on the ball of the scene, within the reach of contact.
 pub fn on_the_ball() -> Frozen {
-    let (model, mut state) = stirred("sphere", 1e-4);
+    let (system, mut state) = stirred("sphere", 1e-4);
     let radius = 0.12f64;
     for place in &mut state.positions {
         let flat = place.x.hypot(place.z).min(0.98 * radius);
         place.y = (radius * radius - flat * flat).sqrt() + 2e-3;
     }
-    (model, state)
+    (system, state)
 }
 
 fn square(cells: usize) -> Flat {
@@ -65,10 +65,11 @@ fn together(sheets: &[Cloth]) -> Cloth {
 }
 
 fn touching(cloth: &Cloth) -> Frozen {
-    let mut model = Model::new("frozen", cloth).unwrap();
-    model.contact.cloth_offset = APART;
-    let state = State::at_rest(&model, cloth.positions.clone());
-    (model, state)
+    let mut builder = SystemBuilder::new("frozen", cloth).unwrap();
+    builder.contact.cloth_offset = APART;
+    let system = builder.build();
+    let state = State::at_rest(&system, cloth.positions.clone());
+    (system, state)
 }
 
 /// Three sheets in order, nearer than they keep apart.
@@ -84,9 +85,11 @@ pub fn three_layers() -> Frozen {
         })
         .collect();
     let each = flat.points.len();
-    let (mut model, state) = touching(&together(&sheets));
-    model.layer = (0..3 * each).map(|v| (v / each) as u16).collect();
-    (model, state)
+    let (mut system, state) = touching(&together(&sheets));
+    system = system.with(|builder| {
+        builder.layer = (0..3 * each).map(|v| (v / each) as u16).collect();
+    });
+    (system, state)
 }
 
 /// A sheet folded over itself, its leaves nearer than they keep apart.
@@ -128,14 +131,15 @@ pub fn laws() -> Vec<(&'static str, Frozen)> {
             let wave = 6e-3 * (40.0 * p.x).sin() * (30.0 * p.y).cos();
             Vec3::new(1.03 * p.x + 0.1 * p.y, wave, 0.97 * p.y)
         });
-        let mut model = Model::new(name, &cloth).unwrap();
-        model.pinned[0] = true;
-        model.pinned[8] = true;
-        let mut state = State::at_rest(&model, cloth.positions.clone());
+        let mut builder = SystemBuilder::new(name, &cloth).unwrap();
+        builder.pinned[0] = true;
+        builder.pinned[8] = true;
+        let system = builder.build();
+        let mut state = State::at_rest(&system, cloth.positions.clone());
         for (velocity, place) in state.velocities.iter_mut().zip(&state.positions) {
             *velocity = Vec3::new(place.y, place.z, -place.x) * 2.0;
         }
-        (name, (model, state))
+        (name, (system, state))
     };
     vec![
         of("linear", plain.clone()),

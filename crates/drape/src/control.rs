@@ -1,0 +1,96 @@
+//! What may change with every step of a simulation without another structure.
+
+use crate::laws::air::Air;
+use crate::laws::elastic::ElasticLaw;
+use toile_geometry::Vec3;
+
+/// A vertex drawn to a place: the pull of a hand, or an elastic whose other end is fixed in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attachment {
+    /// The vertex.
+    pub vertex: u32,
+    /// Where it is drawn to [m].
+    pub place: Vec3,
+    /// Its force law.
+    pub law: ElasticLaw,
+}
+
+/// Attachments in the order of their vertices.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Attachments(Vec<Attachment>);
+
+impl Attachments {
+    /// Those at a vertex, with the first one's number.
+    pub(crate) fn at(&self, vertex: usize) -> (usize, &[Attachment]) {
+        if self.0.is_empty() {
+            return (0, &[]);
+        }
+        let first = self.0.partition_point(|one| (one.vertex as usize) < vertex);
+        let behind = &self.0[first..];
+        let count = behind.partition_point(|one| one.vertex as usize == vertex);
+        (first, &behind[..count])
+    }
+
+    /// All of them.
+    pub fn all(&self) -> &[Attachment] {
+        &self.0
+    }
+}
+
+impl FromIterator<Attachment> for Attachments {
+    fn from_iter<I: IntoIterator<Item = Attachment>>(all: I) -> Self {
+        let mut all: Vec<Attachment> = all.into_iter().collect();
+        all.sort_by_key(|one| one.vertex);
+        Self(all)
+    }
+}
+
+/// What acts on the cloth from outside in the present step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Control {
+    /// Acceleration of gravity [m/s2].
+    pub gravity: Vec3,
+    /// Drag per mass, of the air and of Rayleigh damping together [1/s]: a free velocity falls by
+    /// exp(-drag t).
+    pub air_drag: f64,
+    /// What the air does to triangles; its own `drag` is in [`Control::air_drag`].
+    pub air: Air,
+    /// Vertices drawn to places.
+    pub attachments: Attachments,
+}
+
+impl Default for Control {
+    /// Gravity on earth, still air that resists nothing, no hand on the cloth.
+    fn default() -> Self {
+        Self {
+            gravity: Vec3::new(0.0, -9.81, 0.0),
+            air_drag: 0.0,
+            air: Air::default(),
+            attachments: Attachments::default(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn attachments_are_found_by_their_vertex_in_the_order_given() {
+        let law = ElasticLaw {
+            stiffness: 1.0,
+            largest_force: 1.0,
+        };
+        let one = |vertex, x| Attachment {
+            vertex,
+            place: Vec3::new(x, 0.0, 0.0),
+            law,
+        };
+        let some: Attachments = [one(7, 1.0), one(2, 2.0), one(7, 3.0)]
+            .into_iter()
+            .collect();
+        assert_eq!(some.at(7), (1, &[one(7, 1.0), one(7, 3.0)][..]));
+        assert_eq!(some.at(2), (0, &[one(2, 2.0)][..]));
+        assert!(some.at(3).1.is_empty() && Attachments::default().at(0).1.is_empty());
+    }
+}
