@@ -9,6 +9,7 @@
 //! as they were. Cloth without caps is left untouched.
 
 use crate::Cloth;
+use crate::laws::bending::IllConditioned;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use toile_geometry::Vec2;
@@ -26,28 +27,84 @@ const SAME_LENGTH: f64 = 1e-6;
 /// Flips for every triangle at the most; each lowers the largest angle of its pair.
 const MOST_FLIPS: usize = 8;
 
+/// One exchange: the long edge of a cap for the other diagonal of its pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Exchange {
+    /// The cap, and its corner with the large angle.
+    cap: (u32, usize),
+    /// The triangle behind its long edge, and the corner where that edge begins.
+    behind: (u32, usize),
+}
+
 /// The cloth with the long edges of its caps exchanged where that makes the pair's largest angle
-/// smaller. Triangles keep their indices, material and panel; a pair shares its area anew.
-pub(crate) fn without_caps(cloth: &Cloth) -> Cow<'_, Cloth> {
+/// smaller, and the exchanges. Triangles keep their indices, material and panel; a pair shares its area
+/// anew.
+pub(crate) fn without_caps(cloth: &Cloth) -> (Cow<'_, Cloth>, Vec<Exchange>) {
     let caps: Vec<u32> = (0..cloth.triangles.len() as u32)
         .filter(|&t| largest_angle(cloth.rest[t as usize]).1 < CAP)
         .collect();
     if caps.is_empty() {
-        return Cow::Borrowed(cloth);
+        return (Cow::Borrowed(cloth), Vec::new());
     }
     let mut flipper = Flipper::new(cloth.clone());
+    let mut exchanges = Vec::new();
     let mut left = MOST_FLIPS * caps.len();
     let mut open = caps;
     while let Some(t) = open.pop() {
         if left == 0 {
             break;
         }
-        if let Some(other) = flipper.flip(t) {
+        if let Some(exchange) = flipper.flip(t) {
             left -= 1;
-            open.extend([t, other]);
+            open.extend([t, exchange.behind.0]);
+            exchanges.push(exchange);
         }
     }
-    Cow::Owned(flipper.cloth)
+    (Cow::Owned(flipper.cloth), exchanges)
+}
+
+/// Rest shapes after the same exchanges as those of another cloth with the same triangles.
+///
+/// # Errors
+/// The cap of a pair that cannot be exchanged with these rest shapes.
+pub(crate) fn exchange_again(
+    mut rest: Vec<[Vec2; 3]>,
+    exchanges: &[Exchange],
+) -> Result<Vec<[Vec2; 3]>, IllConditioned> {
+    for exchange in exchanges {
+        let (cap, _) = exchange.cap;
+        let pair = exchanged(&rest, exchange).ok_or(IllConditioned {
+            triangle: cap as usize,
+        })?;
+        [rest[cap as usize], rest[exchange.behind.0 as usize]] = pair;
+    }
+    Ok(rest)
+}
+
+/// The rest shapes of a pair once its long edge is exchanged: those of the cap and of the triangle behind
+/// it. Nothing where that would turn the warp or one of the two over.
+fn exchanged(rest: &[[Vec2; 3]], exchange: &Exchange) -> Option<[[Vec2; 3]; 2]> {
+    let ((t, k), (s, at)) = (exchange.cap, exchange.behind);
+    let [pn, pa, pb] = [0, 1, 2].map(|i| rest[t as usize][(k + i) % 3]);
+    let pd = unfolded(rest[s as usize], at, [pa, pb])?;
+    let hand = twice_area([pn, pa, pb]);
+    let pair = [[pn, pa, pd], [pd, pb, pn]];
+    let convex = pair.iter().all(|&p| twice_area(p) * hand > 0.0);
+    convex.then_some(pair)
+}
+
+/// The far corner of a triangle moved rigidly so that its edge from corner `at` lies on `pb`, `pa`; nothing
+/// where that would turn the warp or the edge is a seam with ease.
+fn unfolded(corners: [Vec2; 3], at: usize, [pa, pb]: [Vec2; 2]) -> Option<Vec2> {
+    let [qb, qa, qd] = [0, 1, 2].map(|i| corners[(at + i) % 3]);
+    let (from, to) = ((qb - qa).try_normalize(0.0)?, (pb - pa).try_normalize(0.0)?);
+    let lengths = (qb - qa).norm() / (pb - pa).norm();
+    if from.dot(&to) < SAME_WARP || (lengths - 1.0).abs() > SAME_LENGTH {
+        return None;
+    }
+    let left = |d: Vec2| Vec2::new(-d.y, d.x);
+    let off = qd - (qa + qb) * 0.5;
+    Some((pa + pb) * 0.5 + to * off.dot(&from) + left(to) * off.dot(&left(from)))
 }
 
 /// The corner with the largest angle and the cosine there.
@@ -96,17 +153,16 @@ impl Flipper {
         Self { cloth, edges }
     }
 
-    /// Exchanges the long edge of a cap; the other triangle that was changed, nothing where the
-    /// triangle is no cap, its long edge is free, sewn or between unlike cloths, or where the
+    /// Exchanges the long edge of a cap; nothing where the triangle is no cap, its long edge is free, sewn or between unlike cloths, or where the
     /// exchange would help nothing.
-    fn flip(&mut self, t: u32) -> Option<u32> {
+    fn flip(&mut self, t: u32) -> Option<Exchange> {
         let (k, cosine) = largest_angle(self.cloth.rest[t as usize]);
         if cosine >= CAP {
             return None;
         }
         // The cap n a b with its large angle at n, and the far corner d behind a b.
         let [n, a, b] = [0, 1, 2].map(|i| self.cloth.triangles[t as usize][(k + i) % 3]);
-        let [pn, pa, pb] = [0, 1, 2].map(|i| self.cloth.rest[t as usize][(k + i) % 3]);
+        let [_, pa, pb] = [0, 1, 2].map(|i| self.cloth.rest[t as usize][(k + i) % 3]);
         let &[first, second] = self.edges.get(&key(a, b))?.as_slice() else {
             return None;
         };
@@ -120,12 +176,14 @@ impl Flipper {
         if d == n || self.edges.contains_key(&key(n, d)) {
             return None;
         }
-        let pd = self.unfolded(s, at, [pa, pb])?;
-        let hand = twice_area([pn, pa, pb]);
-        let pair = [[pn, pa, pd], [pd, pb, pn]];
+        let exchange = Exchange {
+            cap: (t, k),
+            behind: (s, at),
+        };
+        let pair = exchanged(&self.cloth.rest, &exchange)?;
+        let pd = pair[0][2];
         let before = cosine.min(largest_angle([pb, pa, pd]).1);
-        let convex = pair.iter().all(|&p| twice_area(p) * hand > 0.0);
-        if !convex || pair.iter().any(|&p| largest_angle(p).1 <= before) {
+        if pair.iter().any(|&p| largest_angle(p).1 <= before) {
             return None;
         }
         for (triangle, vertices, rest) in [(t, [n, a, d], pair[0]), (s, [d, b, n], pair[1])] {
@@ -141,21 +199,7 @@ impl Flipper {
                 }
             }
         }
-        Some(s)
-    }
-
-    /// The far corner of triangle `s` moved rigidly so that its edge from corner `at` lies on
-    /// `pb`, `pa`; nothing where that would turn the warp or take it to the other side.
-    fn unfolded(&self, s: u32, at: usize, [pa, pb]: [Vec2; 2]) -> Option<Vec2> {
-        let [qb, qa, qd] = [0, 1, 2].map(|i| self.cloth.rest[s as usize][(at + i) % 3]);
-        let (from, to) = ((qb - qa).try_normalize(0.0)?, (pb - pa).try_normalize(0.0)?);
-        let lengths = (qb - qa).norm() / (pb - pa).norm();
-        if from.dot(&to) < SAME_WARP || (lengths - 1.0).abs() > SAME_LENGTH {
-            return None;
-        }
-        let left = |d: Vec2| Vec2::new(-d.y, d.x);
-        let off = qd - (qa + qb) * 0.5;
-        Some((pa + pb) * 0.5 + to * off.dot(&from) + left(to) * off.dot(&left(from)))
+        Some(exchange)
     }
 }
 
@@ -207,14 +251,17 @@ mod tests {
     #[test]
     fn cloth_without_caps_is_left_alone() {
         let cloth = square(&[]);
-        assert!(matches!(without_caps(&cloth), Cow::Borrowed(_)));
+        assert!(matches!(without_caps(&cloth).0, Cow::Borrowed(_)));
     }
 
     #[test]
     fn caps_inside_are_exchanged_and_nothing_else_changes() {
         let cloth = square(&[2, 9, 21]);
         assert!(widest(&cloth) > 170.0);
-        let eased = without_caps(&cloth);
+        let (eased, exchanges) = without_caps(&cloth);
+        assert!(exchanges.len() >= 3);
+        let again = exchange_again(cloth.rest.clone(), &exchanges).unwrap();
+        assert_eq!(again, eased.rest);
         assert!(widest(&eased) < 120.0, "{}", widest(&eased));
         let area = |cloth: &Cloth| {
             let areas = cloth.rest.iter().map(|&rest| 0.5 * twice_area(rest));
@@ -246,11 +293,11 @@ mod tests {
             Vec2::new(0.005, 0.0001),
         ]];
         cloth.triangles = vec![[0, 1, 5]];
-        assert_eq!(without_caps(&cloth).triangles, cloth.triangles);
+        assert_eq!(without_caps(&cloth).0.triangles, cloth.triangles);
         let mut two = square(&[2]);
         two.materials.push(Material::default());
         two.material[3] = 1;
-        assert_eq!(without_caps(&two).triangles, two.triangles);
+        assert_eq!(without_caps(&two).0.triangles, two.triangles);
     }
 
     #[test]

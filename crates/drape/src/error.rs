@@ -1,5 +1,7 @@
 //! What can go wrong in building or running a simulation.
 
+use crate::laws::bending::IllConditioned;
+
 /// Why a simulation could not be built or went no further.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DrapeError {
@@ -18,6 +20,14 @@ pub enum DrapeError {
     EmptyTriangle {
         /// Name of the object.
         object: String,
+        /// Index of the triangle.
+        triangle: usize,
+    },
+    /// Rest shapes changed so far that the triangles of their panel do not serve any more.
+    #[error(
+        "triangle {triangle} is too far from the shape its mesh was made for; mesh its panel again"
+    )]
+    NeedsRemesh {
         /// Index of the triangle.
         triangle: usize,
     },
@@ -116,4 +126,10 @@ pub enum DrapeError {
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<IllConditioned> for DrapeError {
+    fn from(IllConditioned { triangle }: IllConditioned) -> Self {
+        Self::NeedsRemesh { triangle }
+    }
 }

@@ -7,8 +7,8 @@ use crate::kinetic_damping::KineticDamping;
 use crate::measure::{Measures, measure};
 use crate::merge::merged_layers;
 use crate::{
-    Carry, Cloth, Collider, ContactSettings, DrapeError, PseudoTransientContinuation, RestSettings,
-    SewRun, SewSettings, State, System, SystemBuilder, Workspace, merge_map,
+    Carry, Cloth, Collider, ContactSettings, DrapeError, Equilibrium, PseudoTransientContinuation,
+    RestSettings, SewRun, SewSettings, State, System, SystemBuilder, Workspace, merge_map,
 };
 use std::sync::Arc;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
@@ -426,6 +426,16 @@ impl GarmentRun {
         self.stage = Stage::Swinging;
         self.show(0.5);
         Ok(())
+    }
+
+    /// The garment at rest, to be predicted and corrected under other rest shapes; nothing before it is
+    /// [`Stage::Finished`].
+    pub fn into_equilibrium(self) -> Option<Equilibrium> {
+        let finished = self.stage == Stage::Finished;
+        finished.then(|| {
+            let settings = self.setup.rest;
+            Equilibrium::new(self.system, self.state, self.workspace, self.rest, settings)
+        })
     }
 
     /// The way to rest on the present level: a coarser one is left when its large motion is over.

@@ -177,12 +177,16 @@ impl Direct {
         }
     }
 
+    /// Whether it is over the free vertices of a model with the same triangles.
+    pub fn is_of(&self, model: &Model) -> bool {
+        self.model.has_structure_of(model) && self.model.has_ties_of(model)
+    }
+
     /// Whether the structure is that of a model where some vertices of cloths touch.
     pub fn fits(&self, system: &System, touching: &Couplings) -> bool {
         let graph = self.factor.graph();
         let has = |[a, b]: [u32; 2]| graph.row(a as usize).binary_search(&b).is_ok();
-        self.model.has_structure_of(system)
-            && self.model.has_ties_of(system)
+        self.is_of(system)
             && (touching.places())
                 .filter_map(|pair| self.unknowns.pair(pair))
                 .all(has)

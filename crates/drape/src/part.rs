@@ -187,7 +187,7 @@ impl Part {
         let layout = taken(&vertices, &system.topology.layout);
         let part = System {
             model: Model::of(ModelParts {
-                topology: Arc::new(Topology::new(layout, triangles, None)),
+                topology: Arc::new(Topology::new(layout, triangles)),
                 rest: Arc::new(rest),
                 materials: Arc::new(materials),
                 prescribed: Arc::new(Prescribed {

@@ -97,6 +97,11 @@ impl PseudoTransientContinuation {
         self.memory.residual
     }
 
+    /// Next pseudo step [s].
+    pub(crate) fn pseudo_step(&self) -> f64 {
+        self.memory.pseudo_step
+    }
+
     /// Steps taken.
     pub fn steps(&self) -> usize {
         self.memory.steps

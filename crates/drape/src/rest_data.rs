@@ -1,12 +1,14 @@
 //! What follows from the rest shapes of a cloth and its materials: elements, bending, masses.
 
 use crate::contact_sample::ContactSample;
-use crate::laws::bending::{BendingMatrix, BendingStencil, RestSheet};
+use crate::laws::bending::{BendingMatrix, BendingStencil};
 use crate::laws::membrane::MembraneElement;
 use crate::materials::Materials;
-use crate::{Cloth, DrapeError, Material};
+use crate::topology::Topology;
+use crate::{DrapeError, Material};
 use nalgebra::Vector3;
 use std::sync::Arc;
+use toile_geometry::Vec2;
 use toile_sparse::ScalarMatrix;
 
 /// What follows from rest shapes and materials.
@@ -28,25 +30,28 @@ pub struct RestData {
 }
 
 impl RestData {
-    /// Of a cloth whose caps are exchanged.
+    /// Of rest shapes of a topology's triangles, caps exchanged.
     ///
     /// # Errors
-    /// A triangle without area, told as one of `object`.
+    /// A triangle without area, told as one of `object`, or one whose curvature cannot be estimated where
+    /// the topology keeps what it is estimated from.
     pub(crate) fn new(
         object: &str,
-        cloth: &Cloth,
+        topology: &Topology,
+        rest: &[[Vec2; 3]],
         materials: &Materials,
     ) -> Result<Self, DrapeError> {
-        let mut elements = Vec::with_capacity(cloth.triangles.len());
-        for (triangle, &rest) in cloth.rest.iter().enumerate() {
+        let mut elements = Vec::with_capacity(rest.len());
+        for (triangle, &rest) in rest.iter().enumerate() {
             let empty = || DrapeError::EmptyTriangle {
                 object: object.to_owned(),
                 triangle,
             };
             elements.push(MembraneElement::new(rest).ok_or_else(empty)?);
         }
-        let bending = Bending::new(cloth, &elements);
-        let (mass, samples) = lump(cloth, materials, &elements);
+        let stencils = topology.stencils(rest)?;
+        let bending = Bending::new(topology.layout.len(), stencils, materials, &elements);
+        let (mass, samples) = lump(topology, materials, &elements);
         Ok(Self {
             elements,
             bending: bending.elastic,
@@ -56,21 +61,26 @@ impl RestData {
             samples: Arc::new(samples),
         })
     }
+
+    /// The rest shape of every triangle, its warp along the first axis [m].
+    pub(crate) fn shapes(&self) -> Vec<[Vec2; 3]> {
+        self.elements.iter().map(MembraneElement::rest).collect()
+    }
 }
 
 /// Lumps mass, area and friction at the vertices: a third of each triangle to each corner. A vertex on
 /// no triangle has no sample, and a mass of 1 kg so that nothing is divided by zero.
 fn lump(
-    cloth: &Cloth,
+    topology: &Topology,
     materials: &Materials,
     elements: &[MembraneElement],
 ) -> (Vec<f64>, Vec<ContactSample>) {
-    let count = cloth.positions.len();
+    let count = topology.layout.len();
     let mut mass = vec![0.0; count];
     let mut area = vec![0.0; count];
     let mut friction = vec![0.0; count];
     let mut restitution = vec![[0.0; 2]; count];
-    for (t, corners) in cloth.triangles.iter().enumerate() {
+    for (t, corners) in topology.triangles.iter().enumerate() {
         let share = elements[t].area / 3.0;
         let material = materials.of(t);
         for &v in corners {
@@ -111,19 +121,17 @@ struct Bending {
 }
 
 impl Bending {
-    fn new(cloth: &Cloth, elements: &[MembraneElement]) -> Self {
-        let topology = cloth.mesh().topology();
-        let sheet = RestSheet {
-            triangles: &cloth.triangles,
-            rest: &cloth.rest,
-            topology: &topology,
-        };
-        let stencils = sheet.stencils();
+    fn new(
+        count: usize,
+        stencils: Vec<BendingStencil>,
+        materials: &Materials,
+        elements: &[MembraneElement],
+    ) -> Self {
         let sum = |of: fn(&Material) -> BendingMatrix| {
-            let laws: Vec<_> = cloth.materials.iter().map(of).collect();
+            let laws: Vec<_> = materials.list.iter().map(of).collect();
             let mut entries = Vec::with_capacity(100 * stencils.len());
             for (t, stencil) in stencils.iter().enumerate() {
-                let law = laws[cloth.material[t] as usize];
+                let law = laws[materials.of_triangle[t] as usize];
                 let stiffness = stencil.stiffness(law) * elements[t].area;
                 for (&i, p) in stencil.vertices.iter().zip(&stencil.weights) {
                     let moment = stiffness * Vector3::from(*p);
@@ -132,15 +140,15 @@ impl Bending {
                     }
                 }
             }
-            ScalarMatrix::from_entries(cloth.positions.len(), &entries)
+            ScalarMatrix::from_entries(count, &entries)
         };
         let elastic = sum(Material::bending_matrix);
-        let viscous = cloth
-            .materials
+        let viscous = materials
+            .list
             .iter()
             .any(|m| m.is_viscous()[1])
             .then(|| sum(Material::viscous_bend));
-        let kept = cloth.materials.iter().any(|m| m.kept[1] > 0.0);
+        let kept = materials.list.iter().any(|m| m.kept[1] > 0.0);
         Self {
             elastic,
             stencils: if kept || viscous.is_some() {

@@ -1,6 +1,6 @@
 //! What is simulated: a constant model and the control of the present step; how both are made.
 
-use crate::caps::without_caps;
+use crate::caps::{exchange_again, without_caps};
 use crate::collider::{Collider, Grip};
 use crate::control::{Attachment, Control};
 use crate::elastic::{Elastic, ElasticCouplings, ElasticEnd};
@@ -12,6 +12,7 @@ use crate::topology::Topology;
 use crate::{Cloth, ContactSettings, DrapeError};
 use std::ops::Deref;
 use std::sync::Arc;
+use toile_geometry::Vec2;
 
 /// A model and what acts on it in the present step. Between steps the control may change freely; another
 /// structure is another model.
@@ -64,6 +65,38 @@ impl System {
         let mut builder = self.edit();
         change(&mut builder);
         builder.build()
+    }
+
+    /// The same with another rest shape for each triangle of [`Topology::surface_triangles`], in the same
+    /// order [m]: what hangs on the triangles alone stays the same one, but that the first change keeps what
+    /// curvatures are estimated from.
+    ///
+    /// # Errors
+    /// Another number of shapes, one without area, and [`DrapeError::NeedsRemesh`] for shapes that the
+    /// triangles do not serve; told as those of `object`.
+    pub fn reshaped(&self, object: &str, rest: Vec<[Vec2; 3]>) -> Result<Self, DrapeError> {
+        let count = self.topology.triangles.len();
+        if rest.len() != count {
+            return Err(DrapeError::Scene {
+                place: object.to_owned(),
+                what: format!("{} rest shapes are given for {count} triangles", rest.len()),
+                remedy: "give one for each triangle".to_owned(),
+            });
+        }
+        let rest = exchange_again(rest, &self.topology.exchanges)?;
+        let topology = match self.topology.rings {
+            Some(_) => self.topology.clone(),
+            None => Arc::new(self.topology.with_rings_of(&self.rest.shapes())?),
+        };
+        let rest = RestData::new(object, &topology, &rest, &self.materials)?;
+        Ok(Self {
+            model: Model::of(ModelParts {
+                topology,
+                rest: Arc::new(rest),
+                ..ModelParts::clone(&self.model)
+            }),
+            control: self.control.clone(),
+        })
     }
 
     /// Has other elastics between vertices; all other parts of its model stay the ones they are.
@@ -163,12 +196,11 @@ impl SystemBuilder {
         for material in &cloth.materials {
             material.check(object)?;
         }
-        let cloth = &*without_caps(cloth);
-        let exchanged = cloth.triangles != mesh.triangles;
-        let surface = exchanged.then_some(mesh.triangles);
+        let (cloth, exchanges) = without_caps(cloth);
         let materials = Materials::new(cloth.materials.clone(), cloth.material.clone());
-        let rest = RestData::new(object, cloth, &materials)?;
-        let topology = Topology::new(cloth.positions.clone(), cloth.triangles.clone(), surface);
+        let topology = Topology::new(cloth.positions.clone(), cloth.triangles.clone())
+            .with_exchanges(mesh.triangles, exchanges);
+        let rest = RestData::new(object, &topology, &cloth.rest, &materials)?;
         let mut pinned = vec![true; cloth.positions.len()];
         for sample in rest.samples.iter() {
             pinned[sample.vertices[0] as usize] = false;

@@ -1,9 +1,12 @@
 //! What of a cloth stays the same whatever its rest shapes: triangles and the structure of its matrices.
 
-use toile_geometry::{TriangleMesh, Vec3};
+use crate::caps::Exchange;
+use crate::laws::bending::{BendingStencil, IllConditioned, RestSheet};
+use toile_geometry::{TriangleMesh, Vec2, Vec3};
 use toile_sparse::BlockPattern;
 
 /// Triangles of a cloth and what follows from them alone.
+#[derive(Clone)]
 pub struct Topology {
     /// Corners of the triangles: those of the cloth, but that caps (an angle near 180 degrees)
     /// have exchanged their long edge for the other diagonal of their pair.
@@ -18,15 +21,16 @@ pub struct Topology {
     pub(crate) corner_start: Vec<u32>,
     /// For each vertex the corners (3 t + k) that use it, ascending.
     pub(crate) corners: Vec<u32>,
+    /// The long edges of caps that were exchanged, in order.
+    pub(crate) exchanges: Vec<Exchange>,
+    /// The rings of neighbours that curvatures are estimated from, for each edge, once they are not chosen by
+    /// the rest shapes any more: then the pattern of the bending matrix stays whatever these are.
+    pub(crate) rings: Option<Vec<Option<u8>>>,
 }
 
 impl Topology {
-    /// Of triangles between the vertices of a layout; `surface` as in the field.
-    pub(crate) fn new(
-        layout: Vec<Vec3>,
-        triangles: Vec<[u32; 3]>,
-        surface: Option<Vec<[u32; 3]>>,
-    ) -> Self {
+    /// Of triangles between the vertices of a layout.
+    pub(crate) fn new(layout: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let (corner_start, corners) = corner_lists(layout.len(), &triangles);
         Self {
             pattern: BlockPattern::new(layout.len(), &triangles),
@@ -34,8 +38,51 @@ impl Topology {
             corners,
             layout,
             triangles,
-            surface,
+            surface: None,
+            exchanges: Vec::new(),
+            rings: None,
         }
+    }
+
+    /// Of a surface whose caps were exchanged to give `triangles`.
+    pub(crate) fn with_exchanges(self, surface: Vec<[u32; 3]>, exchanges: Vec<Exchange>) -> Self {
+        Self {
+            surface: (!exchanges.is_empty()).then_some(surface),
+            exchanges,
+            ..self
+        }
+    }
+
+    /// The curvatures of every triangle for some rest shapes.
+    ///
+    /// # Errors
+    /// A triangle whose curvature these rest shapes leave without an estimate, where the rings are kept.
+    pub(crate) fn stencils(
+        &self,
+        rest: &[[Vec2; 3]],
+    ) -> Result<Vec<BendingStencil>, IllConditioned> {
+        self.on_sheet(rest, |sheet| sheet.stencils())
+    }
+
+    /// The same with the rings kept that some rest shapes choose.
+    pub(crate) fn with_rings_of(&self, rest: &[[Vec2; 3]]) -> Result<Self, IllConditioned> {
+        Ok(Self {
+            rings: Some(self.on_sheet(rest, |sheet| sheet.rings())?),
+            ..self.clone()
+        })
+    }
+
+    fn on_sheet<T>(&self, rest: &[[Vec2; 3]], of: impl FnOnce(&RestSheet) -> T) -> T {
+        let mesh = TriangleMesh {
+            positions: vec![Vec3::zeros(); self.layout.len()],
+            triangles: self.triangles.clone(),
+        };
+        of(&RestSheet {
+            triangles: &self.triangles,
+            rest,
+            topology: &mesh.topology(),
+            rings: self.rings.as_deref(),
+        })
     }
 
     /// Corners (3 t + k) that use a vertex.

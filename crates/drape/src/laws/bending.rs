@@ -28,6 +28,17 @@ pub struct RestSheet<'a> {
     pub rest: &'a [[Vec2; 3]],
     /// Edges of the triangles.
     pub topology: &'a Topology,
+    /// For each edge how many rings of neighbours its estimate is made from, as [`RestSheet::rings`] found them
+    /// for other rest shapes; nothing chooses them by these.
+    pub rings: Option<&'a [Option<u8>]>,
+}
+
+/// A triangle whose curvature cannot be estimated from the rings that are given: its neighbours lie close to
+/// a conic, or on a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IllConditioned {
+    /// The triangle.
+    pub triangle: usize,
 }
 
 /// Curvatures of one triangle as combinations of vertex positions.
@@ -100,6 +111,8 @@ struct Across {
     vertices: Vec<u32>,
     /// [1/m]
     weights: Vec<f64>,
+    /// Rings of neighbours it is made from.
+    rings: u8,
 }
 
 /// Largest trace of the inverse of the scaled normal matrix of a fit: beyond it the vertices lie
@@ -107,21 +120,51 @@ struct Across {
 const LARGEST_INVERSE: f64 = 1e3;
 
 /// Rings of neighbours looked at before an estimate settles for the two triangles.
-const MOST_RINGS: usize = 3;
+const MOST_RINGS: u8 = 3;
 
 /// Weights below this share of the largest are rounding and left out.
 const SMALLEST_WEIGHT: f64 = 1e-11;
 
 impl RestSheet<'_> {
-    /// The stencil of every triangle.
-    pub fn stencils(&self) -> Vec<BendingStencil> {
-        let across: Vec<Option<Across>> = (0..self.topology.edges.len())
-            .into_par_iter()
-            .map(|edge| self.across(edge))
-            .collect();
-        (0..self.triangles.len())
-            .into_par_iter()
+    /// The stencil of every triangle. Where the rings are given its vertices hang on the triangles alone,
+    /// whatever the rest shapes; else vertices whose weight is rounding are left out.
+    ///
+    /// # Errors
+    /// A triangle that the given rings do not serve.
+    pub fn stencils(&self) -> Result<Vec<BendingStencil>, IllConditioned> {
+        let across = self.all_across()?;
+        let stencils = (0..self.triangles.len()).into_par_iter();
+        Ok(stencils
             .map(|triangle| self.stencil(triangle, &across))
+            .collect())
+    }
+
+    /// For each edge how many rings of neighbours its estimate is made from; nothing for one without.
+    ///
+    /// # Errors
+    /// As [`Self::stencils`].
+    pub fn rings(&self) -> Result<Vec<Option<u8>>, IllConditioned> {
+        let across = self.all_across()?;
+        Ok(across.iter().map(|a| Some(a.as_ref()?.rings)).collect())
+    }
+
+    fn all_across(&self) -> Result<Vec<Option<Across>>, IllConditioned> {
+        let edges = (0..self.topology.edges.len()).into_par_iter();
+        edges
+            .map(|edge| {
+                let rings = self.rings.map(|rings| rings[edge]);
+                let across = match rings {
+                    Some(None) => None,
+                    Some(Some(rings)) => self.across(edge, Some(rings)),
+                    None => self.across(edge, None),
+                };
+                match (&across, rings) {
+                    (None, Some(Some(_))) => Err(IllConditioned {
+                        triangle: self.topology.edge_triangles[edge][0] as usize,
+                    }),
+                    _ => Ok(across),
+                }
+            })
             .collect()
     }
 
@@ -172,13 +215,16 @@ impl RestSheet<'_> {
             }
         }
         stencil.free = free;
-        stencil.trim();
+        if self.rings.is_none() {
+            stencil.trim();
+        }
         stencil
     }
 
     /// The estimate of the derivative across an edge between two triangles; nothing at a free
-    /// edge and where more than two meet.
-    fn across(&self, edge: usize) -> Option<Across> {
+    /// edge, where more than two meet, and where the number of rings that is asked for does not serve. With
+    /// none asked for, from as few as serve.
+    fn across(&self, edge: usize, asked: Option<u8>) -> Option<Across> {
         let [first, second] = self.topology.edge_triangles[edge][..] else {
             return None;
         };
@@ -206,20 +252,29 @@ impl RestSheet<'_> {
             .map(|&(v, _)| start.iter().filter(|s| s.0 == v).map(|s| s.1 * scale).sum())
             .collect();
         let mut weights = start.clone();
-        for _ in 0..MOST_RINGS {
+        let mut rings = 0;
+        for ring in 1..=asked.unwrap_or(MOST_RINGS) {
             front = self.next_ring(&front, &mut visited);
             collect(self.triangles, &front, &mut points);
+            if asked.is_some_and(|asked| ring < asked) {
+                continue;
+            }
             let scaled: Vec<Vec2> = points.iter().map(|(_, p)| (p - middle) / scale).collect();
             if let Some(corrected) = correct(&scaled, &start, n) {
                 weights = corrected;
+                rings = ring;
                 break;
             }
             if front.is_empty() {
                 break;
             }
         }
+        if asked.is_some_and(|asked| rings != asked) {
+            return None;
+        }
         points.truncate(weights.len());
         Some(Across {
+            rings,
             first,
             vertices: points.iter().map(|p| p.0).collect(),
             weights: weights.iter().map(|w| w / scale).collect(),
@@ -472,9 +527,10 @@ mod tests {
             triangles,
             rest: &rest,
             topology: &topology,
+            rings: None,
         };
         let (mut energy, mut area) = (0.0, 0.0);
-        for (corners, stencil) in rest.iter().zip(sheet.stencils()) {
+        for (corners, stencil) in rest.iter().zip(sheet.stencils().unwrap()) {
             if !stencil.free.is_empty() {
                 continue;
             }
@@ -524,9 +580,10 @@ mod tests {
             triangles: &triangles,
             rest: &rest,
             topology: &topology,
+            rings: None,
         };
         let turn = nalgebra::Rotation3::from_euler_angles(0.4, 1.0, -0.3);
-        for stencil in sheet.stencils() {
+        for stencil in sheet.stencils().unwrap() {
             for c in 0..3 {
                 let k: Vec3 = stencil
                     .vertices
@@ -562,8 +619,10 @@ mod tests {
                 triangles: &triangles,
                 rest,
                 topology: &topology,
+                rings: None,
             }
             .stencils()
+            .unwrap()
         };
         for (a, b) in stencils(&straight).iter().zip(&stencils(&other)).take(16) {
             assert_eq!(a.vertices, b.vertices);

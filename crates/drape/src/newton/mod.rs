@@ -11,9 +11,11 @@ mod direction;
 mod elimination;
 mod expansion;
 mod foresight;
+mod prediction;
 
 pub(crate) use chord::ChordLimits;
 pub use expansion::Expansion;
+pub(crate) use prediction::FirstOrder;
 
 use crate::collision::Couplings;
 use crate::contacts::Contacts;

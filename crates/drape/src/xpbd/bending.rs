@@ -9,11 +9,9 @@
 
 use super::membrane::inverse_mass;
 use crate::lanes::{Corner, LANES, Point, Row, Triple, add_scaled, gather, parts, scatter, sub};
-use crate::laws::bending::RestSheet;
 use crate::{Material, System};
 use nalgebra::Matrix3;
 use pulp::Simd;
-use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
 /// K as rows over the slots of the vertices, without its diagonal: sixteen rows side by side, as
 /// many entries each as the longest has.
@@ -177,22 +175,13 @@ const LEAST_SHARE: f64 = 1e-6;
 
 /// The curvature stencils of a model, those without stiffness left out.
 pub fn stencils(system: &System) -> Vec<Stencil> {
-    let rest: Vec<[Vec2; 3]> = system.rest.elements.iter().map(|e| e.rest()).collect();
-    let mesh = TriangleMesh {
-        positions: vec![Vec3::zeros(); system.vertex_count()],
-        triangles: system.topology.triangles.clone(),
-    };
-    let topology = mesh.topology();
-    let sheet = RestSheet {
-        triangles: &system.topology.triangles,
-        rest: &rest,
-        topology: &topology,
-    };
+    // Rest shapes that cannot be estimated were refused when the model was made.
+    let all = system.topology.stencils(&system.rest.shapes());
     let laws: Vec<_> = (system.materials.list.iter())
         .map(Material::bending_matrix)
         .collect();
     let mut stencils = Vec::with_capacity(system.topology.triangles.len());
-    for (t, stencil) in sheet.stencils().into_iter().enumerate() {
+    for (t, stencil) in all.unwrap_or_default().into_iter().enumerate() {
         let (weights, stiffness) =
             stencil.principal(laws[system.materials.of_triangle[t] as usize]);
         let largest = stiffness.iter().copied().fold(0.0, f64::max);
