@@ -244,10 +244,14 @@ impl PieceMesh {
     /// Moves the vertices to where a piece with these samples has them; says whether the triangles
     /// are sound there.
     fn follow(&mut self, piece: &Piece, table: &EdgeTable, sampling: &Sampling) -> bool {
-        let boundary = Boundary::sampled(self.draft_piece, table, sampling);
         let range = table.of_piece(self.draft_piece);
         self.edge_fractions = sampling.fractions[range].to_vec();
         let source = &self.source;
+        if source.has_shape_of(piece, &self.edge_fractions) {
+            self.points.clone_from(&source.points);
+            return true;
+        }
+        let boundary = Boundary::sampled(self.draft_piece, table, sampling);
         let mut given = boundary.points.clone();
         for place in &source.line_places {
             let Some(point) = place.point(piece) else {
@@ -257,10 +261,6 @@ impl PieceMesh {
         }
         let count = given.len();
         if given == self.points[..count] {
-            return true;
-        }
-        if given == source.points[..count] {
-            self.points.clone_from(&source.points);
             return true;
         }
         if boundary.check(piece).is_err() {
