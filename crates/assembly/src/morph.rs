@@ -180,8 +180,12 @@ fn fractions(source: &EdgeSource, nodes: &Nodes, edge: usize) -> Option<Vec<f64>
             continue;
         }
         let stretched = (new_end - new) / (old_end - old);
-        for sample in samples[0]..samples[1] {
-            fractions[sample] = new + (source.fractions[sample] - old) * stretched;
+        let range = samples[0]..samples[1];
+        for (fraction, was) in fractions[range.clone()]
+            .iter_mut()
+            .zip(&source.fractions[range])
+        {
+            *fraction = new + (was - old) * stretched;
         }
         fractions[samples[1]] = new_end;
     }
