@@ -1,6 +1,8 @@
 //! Small drafts for tests: garments of straight edges drawn in a few lines.
 #![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
+pub mod edits;
+
 use toile_assembly::{Levels, Limb, Wearer};
 use toile_geometry::{Curve, SurfaceTree, TriangleMesh, Vec2, Vec3};
 use toile_pattern::{
