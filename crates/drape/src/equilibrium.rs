@@ -72,6 +72,11 @@ impl Equilibrium {
         &self.state
     }
 
+    /// How often the structure of its matrix was worked out.
+    pub fn structures(&self) -> usize {
+        self.workspace.structures()
+    }
+
     /// Net force over weight after the last step.
     pub fn residual(&self) -> f64 {
         self.continuation.residual()

@@ -253,6 +253,13 @@ impl GarmentRun {
         self.tally.then(self.workspace.contacts.cloth.tally)
     }
 
+    /// How often the structure of what is solved was worked out for the present stage: once a stage, and for
+    /// every other model.
+    pub fn structures(&self) -> usize {
+        let swing = self.swing.as_ref().map_or(0, KineticDamping::builds);
+        swing + self.workspace.structures()
+    }
+
     /// What went less than well, in plain words.
     pub fn warnings(&self) -> &[String] {
         &self.warnings

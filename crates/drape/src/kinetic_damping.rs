@@ -70,6 +70,11 @@ impl KineticDamping {
         self.cloth.contacts.tally
     }
 
+    /// How often the constraints were built.
+    pub fn builds(&self) -> usize {
+        self.xpbd.builds()
+    }
+
     /// Whether the motion has died out, or has had its time.
     pub fn finished(&self) -> bool {
         self.calm || self.stuck() || self.time >= self.longest

@@ -113,6 +113,7 @@ impl Workspace {
             Some(direct) => self.direct.insert(direct),
             None => {
                 let near = self.contacts.cloth.couples();
+                self.structures += 1;
                 self.direct
                     .insert(Direct::new(system, &system.topology.layout, &near))
             }

@@ -122,6 +122,7 @@ pub struct Workspace {
     pcg: Pcg,
     jacobi: BlockJacobi,
     direct: Option<Direct>,
+    structures: usize,
 }
 
 /// Elements handled by one task.
@@ -134,6 +135,11 @@ const DECREASE: f64 = 1e-4;
 const HALVINGS: usize = 12;
 
 impl Workspace {
+    /// How often the structure of a factorisation was worked out.
+    pub fn structures(&self) -> usize {
+        self.structures
+    }
+
     /// Forgets which pairs of cloth were near, and the places they took in the matrix.
     pub(crate) fn forget_pairs(&mut self) {
         self.contacts.cloth.forget();

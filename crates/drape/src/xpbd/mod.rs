@@ -113,6 +113,8 @@ pub struct Xpbd {
     domain_starts: Vec<usize>,
     settle_starts: Vec<usize>,
     cut_starts: Vec<usize>,
+    /// How often constraints were built.
+    builds: usize,
 }
 
 /// What the constraints were built from.
@@ -185,7 +187,13 @@ impl Xpbd {
             settle_starts: order.settle_starts(),
             cut_starts: order.cut_starts(),
             order,
+            builds: 1,
         }
+    }
+
+    /// How often constraints were built: once, and for every other model.
+    pub fn builds(&self) -> usize {
+        self.builds
     }
 
     /// Constraints of one sweep at the last substep's size.
@@ -280,7 +288,9 @@ impl Xpbd {
     fn take_up(&mut self, system: &System, samples: &Arc<Vec<ContactSample>>) -> bool {
         let changed = !self.built_for.fits(system, samples);
         if changed {
+            let builds = self.builds + 1;
             *self = Self::with_samples(system, samples, self.settings);
+            self.builds = builds;
         }
         changed
     }
