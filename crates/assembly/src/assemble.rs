@@ -3,6 +3,7 @@
 use crate::mesh::{PieceMeshes, mesh_pieces};
 use crate::placement::{crossing_triangles, place};
 use crate::{AssemblyError, Diagnostic, Garment, GarmentPanel, Wearer};
+use std::sync::Arc;
 use toile_geometry::TriangleMesh;
 use toile_pattern::Draft;
 
@@ -24,6 +25,8 @@ impl Default for AssemblyOptions {
 pub struct Assembled {
     /// The placed, unsewn garment.
     pub garment: Garment,
+    /// The meshes it was made from, which can follow an edit of the draft: see [`crate::morph`].
+    pub meshes: Arc<PieceMeshes>,
     /// What is worth telling.
     pub diagnostics: Vec<Diagnostic>,
     /// Pairs of cloth and skin triangles that cross: 0 unless a diagnostic says why.
@@ -78,7 +81,24 @@ pub fn assemble(
         diagnostics,
         body_intersections,
         panel_intersections: crossings.len(),
+        meshes: Arc::new(meshes),
     })
+}
+
+impl Garment {
+    /// The same garment with the shapes of an edited draft: its panels and seams as `draft` has them,
+    /// the same triangles at the points of `meshes`, placed as it is.
+    ///
+    /// # Panics
+    /// When `meshes` has other triangles: it must come from this garment's meshes by
+    /// [`crate::morph`] to `draft`.
+    #[must_use]
+    pub fn with_shapes(&self, draft: &Draft, meshes: &PieceMeshes) -> Self {
+        let shaped = garment(draft, meshes, self.positions.clone());
+        assert_eq!(shaped.flat.len(), self.flat.len(), "as many vertices");
+        assert!(shaped.triangles == self.triangles, "the same triangles");
+        shaped
+    }
 }
 
 fn garment(draft: &Draft, meshes: &PieceMeshes, positions: Vec<toile_geometry::Vec3>) -> Garment {

@@ -37,6 +37,13 @@ impl Boundary {
         table: &EdgeTable,
         sampling: &Sampling,
     ) -> Result<Self, AssemblyError> {
+        let boundary = Self::sampled(index, table, sampling);
+        boundary.check(piece)?;
+        Ok(boundary)
+    }
+
+    /// Samples the loops of a piece, whether they can be meshed or not.
+    pub fn sampled(index: usize, table: &EdgeTable, sampling: &Sampling) -> Self {
         let mut boundary = Self::default();
         let mut contour = usize::MAX;
         for edge in table.of_piece(index) {
@@ -67,10 +74,9 @@ impl Boundary {
                 *last = range.start;
             }
         }
-        boundary.check(piece)?;
         let outline = &boundary.points[boundary.loops[0].clone()];
         boundary.counter_clockwise = polygon_area(outline) > 0.0;
-        Ok(boundary)
+        boundary
     }
 
     /// Whether a point lies inside the outline and outside the holes.
@@ -89,7 +95,11 @@ impl Boundary {
         })
     }
 
-    fn check(&self, piece: &Piece) -> Result<(), AssemblyError> {
+    /// Whether its loops enclose area and neither cross nor touch each other.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    pub fn check(&self, piece: &Piece) -> Result<(), AssemblyError> {
         let error = |reason: String, remedy: &str| AssemblyError::Outline {
             piece: piece.name.clone(),
             reason,

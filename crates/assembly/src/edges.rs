@@ -81,8 +81,20 @@ fn outline_error(piece: &Piece, reason: impl Into<String>, remedy: &str) -> Asse
 }
 
 impl EdgeTable {
-    /// Measures every edge of the chosen pieces.
+    /// Measures every edge of the chosen pieces, and what size their shape asks for.
     pub fn new(draft: &Draft, chosen: &[bool], spacing: f64) -> Result<Self, AssemblyError> {
+        let mut table = Self::measured(draft, chosen)?;
+        for piece in 0..draft.pieces.len() {
+            let edges = table.of_piece(piece);
+            if !edges.is_empty() {
+                set_shape_sizes(&mut table.edges[edges], spacing);
+            }
+        }
+        Ok(table)
+    }
+
+    /// Measures every edge of the chosen pieces, without the sizes their shape asks for.
+    pub fn measured(draft: &Draft, chosen: &[bool]) -> Result<Self, AssemblyError> {
         let mut table = Self::default();
         for (index, piece) in draft.pieces.iter().enumerate() {
             table.first.push(table.edges.len());
@@ -92,8 +104,6 @@ impl EdgeTable {
             for (contour, edges) in contours(piece).enumerate() {
                 table.add_contour(piece, index, contour, edges)?;
             }
-            let first = table.first[index];
-            set_shape_sizes(&mut table.edges[first..], spacing);
         }
         table.first.push(table.edges.len());
         Ok(table)

@@ -2,15 +2,18 @@
 
 use crate::boundary::Boundary;
 use crate::chain::match_seams;
+use crate::creases::Creases;
 use crate::edges::EdgeTable;
 use crate::planar::{Frame, Planar, PlanarError};
 use crate::quality::{MeshQuality, smallest_angle};
 use crate::refinement::refine;
 use crate::sampling::{Sampling, sample};
 use crate::size_field::SizeField;
+use crate::source::{EdgeSource, MeshSource};
 use crate::{AssemblyError, Diagnostic, Stitch};
-use toile_geometry::{Vec2, segments_cross};
-use toile_pattern::{Draft, Piece};
+use std::sync::Arc;
+use toile_geometry::Vec2;
+use toile_pattern::{Draft, Piece, PieceId};
 
 /// Most vertices a draft may ask for.
 const MOST_VERTICES: f64 = 5e6;
@@ -18,6 +21,8 @@ const MOST_VERTICES: f64 = 5e6;
 /// One piece of a draft as a triangle mesh.
 #[derive(Clone, Debug)]
 pub struct PieceMesh {
+    /// Which piece it is.
+    pub piece: PieceId,
     /// Index into the draft's pieces.
     pub draft_piece: usize,
     /// Vertices in the piece's plane [m]: boundary loops first.
@@ -28,6 +33,10 @@ pub struct PieceMesh {
     pub loops: Vec<Vec<u32>>,
     /// Vertices of each edge's samples, ends included.
     pub edge_vertices: Vec<Vec<u32>>,
+    /// Arc-length fraction of each edge's samples, in the order of its vertices.
+    pub edge_fractions: Vec<Vec<f64>>,
+    /// What it was made from: a later shape of the piece is told by its difference from this.
+    pub(crate) source: Arc<MeshSource>,
 }
 
 /// Meshed pieces and how they are sewn.
@@ -39,6 +48,8 @@ pub struct PieceMeshes {
     pub stitches: Vec<Stitch>,
     /// What is worth telling.
     pub diagnostics: Vec<Diagnostic>,
+    /// The mean edge that was asked for [m].
+    pub edge_length: f64,
 }
 
 /// Meshes the sewn pieces of a draft: seams sampled first, so that both sides match vertex to
@@ -70,6 +81,7 @@ pub(crate) fn mesh_chosen(
     let sampling = sample(draft, &table, &matching, edge_length);
     let mut meshes = PieceMeshes {
         diagnostics: matching.diagnostics,
+        edge_length,
         ..PieceMeshes::default()
     };
     let mut first_vertex = vec![0; draft.pieces.len()];
@@ -78,11 +90,25 @@ pub(crate) fn mesh_chosen(
         first_vertex[index] = count;
         if chosen[index] {
             let boundary = Boundary::new(piece, index, &table, &sampling)?;
-            let mesh = mesh_piece(piece, boundary, edge_length, &mut meshes.diagnostics)?;
-            count += mesh.points.len();
+            let creases = Creases::new(piece, &boundary, edge_length);
+            meshes.diagnostics.extend(creases.note(piece));
+            let planar = mesh_piece(piece, &boundary, &creases, edge_length)?;
+            let edges = EdgeSource::of_piece(piece, table.of_piece(index), &sampling);
+            let source = MeshSource::new(piece, planar.points.clone(), edges, creases);
+            count += planar.points.len();
             meshes.pieces.push(PieceMesh {
+                piece: piece.id,
                 draft_piece: index,
-                ..mesh
+                triangles: wound(&planar.triangles, boundary.counter_clockwise),
+                points: planar.points,
+                loops: (boundary.loops.iter())
+                    .map(|r| r.clone().map(|v| v as u32).collect())
+                    .collect(),
+                edge_vertices: (boundary.samples.iter())
+                    .map(|list| list.iter().map(|&v| v as u32).collect())
+                    .collect(),
+                edge_fractions: sampling.fractions[table.of_piece(index)].to_vec(),
+                source: Arc::new(source),
             });
         }
     }
@@ -113,7 +139,8 @@ fn refuse_too_large(table: &EdgeTable, edge_length: f64) -> Result<(), AssemblyE
     Ok(())
 }
 
-fn stitches(
+/// Vertices that are sewn together, numbered piece after piece.
+pub(crate) fn stitches(
     draft: &Draft,
     table: &EdgeTable,
     sampling: &Sampling,
@@ -146,13 +173,12 @@ fn stitches(
 
 fn mesh_piece(
     piece: &Piece,
-    boundary: Boundary,
+    boundary: &Boundary,
+    creases: &Creases,
     edge_length: f64,
-    diagnostics: &mut Vec<Diagnostic>,
-) -> Result<PieceMesh, AssemblyError> {
-    let (creases, crease_points) = creases(piece, &boundary, edge_length, diagnostics);
+) -> Result<Planar, AssemblyError> {
     let mut points = boundary.points.clone();
-    points.extend(crease_points);
+    points.extend(&creases.points);
     let walls: Vec<[usize; 2]> = boundary
         .segments()
         .map(|[a, b]| {
@@ -166,14 +192,13 @@ fn mesh_piece(
     let frame = Frame {
         walls,
         fixed: points.len(),
-        creases,
+        creases: creases.segments.clone(),
     };
     let crease_segments: Vec<[Vec2; 2]> =
         frame.creases.iter().map(|c| c.map(|v| points[v])).collect();
-    let field = SizeField::new(&boundary, &crease_segments, edge_length);
-    let seeds = field.lattice(&boundary);
-    let planar = refine(points, seeds, &frame, &field).map_err(|e| planar_error(piece, e))?;
-    Ok(to_mesh(&boundary, planar))
+    let field = SizeField::new(boundary, &crease_segments, edge_length);
+    let seeds = field.lattice(boundary);
+    refine(points, seeds, &frame, &field).map_err(|e| planar_error(piece, e))
 }
 
 fn planar_error(piece: &Piece, error: PlanarError) -> AssemblyError {
@@ -189,91 +214,17 @@ fn planar_error(piece: &Piece, error: PlanarError) -> AssemblyError {
     }
 }
 
-fn to_mesh(boundary: &Boundary, planar: Planar) -> PieceMesh {
-    let triangles = planar
-        .triangles
-        .iter()
-        .map(|t| {
-            let [a, b, c] = t.map(|v| v as u32);
-            if boundary.counter_clockwise {
-                [a, b, c]
-            } else {
-                [a, c, b]
-            }
-        })
-        .collect();
-    let narrow = |list: &Vec<usize>| list.iter().map(|&v| v as u32).collect();
-    PieceMesh {
-        draft_piece: 0,
-        points: planar.points,
-        triangles,
-        loops: boundary
-            .loops
-            .iter()
-            .map(|r| r.clone().map(|v| v as u32).collect())
-            .collect(),
-        edge_vertices: boundary.samples.iter().map(narrow).collect(),
-    }
-}
-
-/// Samples the internal lines of a piece: the segments the mesh follows, as pairs of vertices
-/// numbered after the boundary's, and their points [m].
-fn creases(
-    piece: &Piece,
-    boundary: &Boundary,
-    edge_length: f64,
-    diagnostics: &mut Vec<Diagnostic>,
-) -> (Vec<[usize; 2]>, Vec<Vec2>) {
-    let walls: Vec<[Vec2; 2]> = boundary
-        .segments()
-        .map(|s| s.map(|v| boundary.points[v]))
-        .collect();
-    let field = SizeField::new(boundary, &[], edge_length);
-    let base = boundary.points.len();
-    let (mut segments, mut points): (Vec<[usize; 2]>, Vec<Vec2>) = Default::default();
-    let mut left_out = 0;
-    for line in &piece.internal_lines {
-        let mut previous: Option<usize> = None;
-        for curve in line.curves.iter().filter(|c| c.is_finite()) {
-            let count = (curve.length() / edge_length).round().clamp(1.0, 1e5) as usize;
-            for p in curve.sample(0.0, 1.0, count) {
-                if previous.is_some_and(|v| (points[v] - p).norm() < 1e-6) {
-                    continue;
-                }
-                let clear = points.iter().all(|q| (q - p).norm() > 0.4 * edge_length);
-                if field.boundary_distance(p) < 0.5 * edge_length || !clear || !boundary.contains(p)
-                {
-                    previous = None;
-                    left_out += usize::from(!clear);
-                    continue;
-                }
-                points.push(p);
-                let here = points.len() - 1;
-                if let Some(before) = previous {
-                    let segment = [points[before], p];
-                    let free = walls.iter().all(|w| !segments_cross(*w, segment))
-                        && segments.iter().all(|s: &[usize; 2]| {
-                            s.contains(&(before + base))
-                                || !segments_cross(s.map(|v| points[v - base]), segment)
-                        });
-                    if free {
-                        segments.push([before + base, here + base]);
-                    } else {
-                        left_out += 1;
-                    }
-                }
-                previous = Some(here);
-            }
+/// Counter-clockwise triangles wound like the outline.
+fn wound(triangles: &[[usize; 3]], counter_clockwise: bool) -> Vec<[u32; 3]> {
+    let turned = |t: &[usize; 3]| {
+        let [a, b, c] = t.map(|v| v as u32);
+        if counter_clockwise {
+            [a, b, c]
+        } else {
+            [a, c, b]
         }
-    }
-    if left_out > 0 {
-        diagnostics.push(Diagnostic::note(
-            &piece.name,
-            format!("{left_out} points of internal lines cross others and are not meshed exactly"),
-            "keep internal lines apart",
-        ));
-    }
-    (segments, points)
+    };
+    triangles.iter().map(turned).collect()
 }
 
 impl PieceMesh {

@@ -88,6 +88,20 @@ impl Planar {
         Ok(planar)
     }
 
+    /// The Delaunay triangulation of a mesh's points inside its boundary: its triangles, which
+    /// are counter-clockwise, with edges flipped.
+    pub fn delaunay(points: Vec<Vec2>, triangles: Vec<[usize; 3]>) -> Self {
+        let mut planar = Self {
+            points,
+            triangles,
+            ..Self::default()
+        };
+        planar.connect();
+        planar.lock(&Frame::default());
+        planar.make_delaunay();
+        planar
+    }
+
     /// Rebuilds the neighbours from the triangles.
     fn connect(&mut self) {
         let mut edges: Vec<([usize; 2], usize, usize)> = Vec::new();

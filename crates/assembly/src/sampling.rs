@@ -28,6 +28,8 @@ pub(crate) struct SampleStitch {
 pub(crate) struct Sampling {
     /// Arc-length fractions of each edge's samples, both ends included.
     pub fractions: Vec<Vec<f64>>,
+    /// Which samples of each edge are nodes, the ends included.
+    pub nodes: Vec<Vec<usize>>,
     /// Stitches, seam by seam in walking order.
     pub stitches: Vec<SampleStitch>,
 }
@@ -315,11 +317,9 @@ fn assemble(
         }
     }
     let mut fractions: Vec<Vec<f64>> = vec![vec![0.0]; table.edges.len()];
-    // Index of each interval's first sample on its edge.
-    let mut offset = Vec::with_capacity(intervals.len());
+    let mut nodes: Vec<Vec<usize>> = vec![vec![0]; table.edges.len()];
     for (m, interval) in intervals.iter().enumerate() {
         let list = &mut fractions[interval.edge];
-        offset.push(list.len() - 1);
         let (c, reversed) = class_of[m];
         let count = steps[c].len() - 1;
         for k in 1..=count {
@@ -334,17 +334,30 @@ fn assemble(
                 interval.from + along * (interval.to - interval.from)
             });
         }
+        nodes[interval.edge].push(list.len() - 1);
     }
     let mut sampling = Sampling {
         fractions,
+        nodes,
         stitches: Vec::new(),
     };
-    for sewing in &matching.sewings {
-        stitch(&mut sampling, matching, sewing, first, &|m| {
-            (intervals[m].edge, offset[m], steps[class_of[m].0].len() - 1)
-        });
-    }
+    sampling.stitch(matching, intervals, first);
     sampling
+}
+
+impl Sampling {
+    /// Adds the stitches between samples that are given. Each edge must have as many nodes here as in
+    /// the matching.
+    pub fn sew(&mut self, table: &EdgeTable, matching: &Matching) {
+        let (intervals, first) = intervals(table, &matching.nodes);
+        self.stitch(matching, &intervals, &first);
+    }
+
+    fn stitch(&mut self, matching: &Matching, intervals: &[Interval], first: &[usize]) {
+        for sewing in &matching.sewings {
+            stitch(self, matching, sewing, first, intervals);
+        }
+    }
 }
 
 fn stitch(
@@ -352,21 +365,27 @@ fn stitch(
     matching: &Matching,
     sewing: &Sewing,
     first: &[usize],
-    samples_of: &dyn Fn(usize) -> (usize, usize, usize),
+    intervals: &[Interval],
 ) {
+    let samples_of = |sampling: &Sampling, m: usize| {
+        let edge = intervals[m].edge;
+        // The m-th interval of all lies between this node of its edge and the next.
+        let nodes = &sampling.nodes[edge][m - first[edge]..];
+        (edge, nodes[0], nodes[1] - nodes[0])
+    };
     let sides = [0, 1].map(|side| spanned(&matching.nodes, first, sewing, side));
     let mut previous: Option<[(usize, usize); 2]> = None;
     for (a, b) in sides[0].iter().zip(&sides[1]) {
         let (&Some(a), &Some(b)) = (a, b) else {
             continue;
         };
-        let walk = |(m, backward): (usize, bool), k: usize| {
-            let (edge, offset, count) = samples_of(m);
+        let ends = [a, b].map(|(m, backward)| (samples_of(sampling, m), backward));
+        let walk = |((edge, offset, count), backward): ((usize, usize, usize), bool), k: usize| {
             (edge, offset + if backward { count - k } else { k })
         };
-        let count = samples_of(a.0).2.min(samples_of(b.0).2);
+        let count = ends[0].0.2.min(ends[1].0.2);
         for k in 0..=count {
-            let samples = [walk(a, k), walk(b, k)];
+            let samples = ends.map(|end| walk(end, k));
             // Where a chain passes from one edge to the next, both vertices of the joint are
             // sewn to the other side, so that merging makes one of all of them.
             if previous != Some(samples) {

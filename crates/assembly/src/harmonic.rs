@@ -1,0 +1,168 @@
+//! Harmonic interpolation over a plane mesh: free vertices move as the given ones round them do.
+
+use crate::planar::Planar;
+use toile_geometry::Vec2;
+use toile_sparse::ScalarMatrix;
+use toile_sparse::factor::{Factor, Graph, NotPositive};
+
+/// Least weight of an edge [-]: edges whose weight is nought but for rounding are kept, so that
+/// every free vertex is tied to given ones.
+const LEAST_WEIGHT: f64 = 1e-12;
+
+/// Displacements [m] of all vertices from those of the first ones, `given`: each free vertex moves
+/// by the mean of its neighbours, weighted by half the sum of the cotangents opposite the edge
+/// between them (Pinkall and Polthier 1993).
+///
+/// The weights are those of the Delaunay triangulation of the same points and boundary (Bobenko and
+/// Springborn 2007): none is negative there, so the mean is a convex combination, and affine maps are
+/// reproduced whatever the triangles of the mesh. `triangles` are wound counter-clockwise.
+///
+/// # Errors
+/// Where the points give no finite weights.
+pub(crate) fn harmonic(
+    points: &[Vec2],
+    triangles: Vec<[usize; 3]>,
+    given: &[Vec2],
+) -> Result<Vec<Vec2>, NotPositive> {
+    let first = given.len();
+    let free = points.len() - first;
+    let mut all = given.to_vec();
+    all.resize(points.len(), Vec2::zeros());
+    if free == 0 {
+        return Ok(all);
+    }
+    let mut entries: Vec<(u32, u32, f64)> = Vec::new();
+    let mut pairs: Vec<[u32; 2]> = Vec::new();
+    let mut right = vec![0.0; 2 * free];
+    for ([a, b], weight) in weights(points, triangles) {
+        for (from, to) in [(a, b), (b, a)] {
+            let Some(row) = from.checked_sub(first) else {
+                continue;
+            };
+            entries.push((row as u32, row as u32, weight));
+            if let Some(column) = to.checked_sub(first) {
+                entries.push((row as u32, column as u32, -weight));
+                pairs.push([row as u32, column as u32]);
+            } else {
+                right[2 * row] += weight * given[to].x;
+                right[2 * row + 1] += weight * given[to].y;
+            }
+        }
+    }
+    let matrix = ScalarMatrix::from_entries(free, &entries);
+    let places: Vec<_> = points[first..].iter().map(|p| p.push(0.0)).collect();
+    let mut factor: Factor<1> = Factor::new(Graph::from_pairs(free, pairs), &places);
+    factor.factorise(|row, _, out| {
+        for (out, &value) in out.iter_mut().zip(matrix.row_entries(row).1) {
+            *out = [[value]];
+        }
+    })?;
+    let mut solution = vec![0.0; 2 * free];
+    factor.solve_columns(2, &right, &mut solution);
+    for (place, pair) in all[first..].iter_mut().zip(solution.chunks_exact(2)) {
+        *place = Vec2::new(pair[0], pair[1]);
+    }
+    Ok(all)
+}
+
+/// The edges of the Delaunay triangulation with their weights, each once, in order.
+fn weights(points: &[Vec2], triangles: Vec<[usize; 3]>) -> Vec<([usize; 2], f64)> {
+    let planar = Planar::delaunay(points.to_vec(), triangles);
+    let mut halves: Vec<([usize; 2], f64)> = Vec::with_capacity(3 * planar.triangles.len());
+    for t in 0..planar.triangles.len() {
+        let (v, p) = (planar.triangles[t], planar.corners(t));
+        for k in 0..3 {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            let (u, w) = (p[i] - p[k], p[j] - p[k]);
+            let ends = [v[i].min(v[j]), v[i].max(v[j])];
+            halves.push((ends, 0.5 * u.dot(&w) / u.perp(&w)));
+        }
+    }
+    halves.sort_by_key(|half| half.0);
+    let mut edges: Vec<([usize; 2], f64)> = Vec::with_capacity(halves.len());
+    for (ends, half) in halves {
+        match edges.last_mut() {
+            Some((last, weight)) if *last == ends => *weight += half,
+            _ => edges.push((ends, half)),
+        }
+    }
+    for (_, weight) in &mut edges {
+        // Not `max`, which would hide a weight that is no number.
+        if *weight < LEAST_WEIGHT {
+            *weight = LEAST_WEIGHT;
+        }
+    }
+    edges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ring of points on a circle, one boundary, with free points inside; the triangles are those
+    /// of a fan of strips that are far from Delaunay.
+    fn skewed() -> (Vec<Vec2>, Vec<[usize; 3]>, usize) {
+        let (columns, rows) = (9, 7);
+        let at = |i: usize, j: usize| {
+            let (x, y) = (i as f64, j as f64);
+            Vec2::new(x + 0.7 * y + 0.1 * (x * y).sin(), 0.6 * y)
+        };
+        let inner = |i: usize, j: usize| i > 0 && j > 0 && i < columns - 1 && j < rows - 1;
+        let all = || (0..rows).flat_map(move |j| (0..columns).map(move |i| (i, j)));
+        let mut order: Vec<(usize, usize)> = all().filter(|&(i, j)| !inner(i, j)).collect();
+        let given = order.len();
+        order.extend(all().filter(|&(i, j)| inner(i, j)));
+        let number = |i: usize, j: usize| order.iter().position(|&o| o == (i, j)).unwrap();
+        let mut triangles = Vec::new();
+        for j in 0..rows - 1 {
+            for i in 0..columns - 1 {
+                let [a, b] = [number(i, j), number(i + 1, j)];
+                let [c, d] = [number(i + 1, j + 1), number(i, j + 1)];
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+        (
+            order.iter().map(|&(i, j)| at(i, j)).collect(),
+            triangles,
+            given,
+        )
+    }
+
+    #[test]
+    fn affine_maps_are_reproduced_by_triangles_that_are_not_delaunay() {
+        let (points, triangles, given) = skewed();
+        let map = |p: &Vec2| Vec2::new(0.3 * p.x - 0.2 * p.y + 1.0, 0.5 * p.x + 0.1 * p.y - 2.0);
+        let moved: Vec<Vec2> = points.iter().map(map).collect();
+        let found = harmonic(&points, triangles, &moved[..given]).unwrap();
+        for (found, wanted) in found.iter().zip(&moved) {
+            assert!((found - wanted).norm() < 1e-12, "{found} {wanted}");
+        }
+    }
+
+    #[test]
+    fn no_displacement_is_larger_than_those_given() {
+        let (points, triangles, given) = skewed();
+        for v in 0..given {
+            let mut moved = vec![Vec2::zeros(); given];
+            moved[v] = Vec2::new(1.0, -1.0);
+            for d in harmonic(&points, triangles.clone(), &moved).unwrap() {
+                assert!(
+                    (-1e-14..=1.0 + 1e-14).contains(&d.x) && (d.x + d.y).abs() < 1e-14,
+                    "{d}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn points_without_area_are_refused() {
+        let points = vec![
+            Vec2::zeros(),
+            Vec2::x(),
+            2.0 * Vec2::x(),
+            Vec2::new(f64::NAN, 0.0),
+        ];
+        let triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        assert!(harmonic(&points, triangles, &[Vec2::zeros(); 3]).is_err());
+    }
+}

@@ -1,0 +1,363 @@
+//! Meshes that follow an edit of the pattern: the same triangles at new places.
+
+use crate::boundary::Boundary;
+use crate::chain::{Nodes, match_seams};
+use crate::creases::left_out_note;
+use crate::edges::EdgeTable;
+use crate::harmonic::harmonic;
+use crate::mesh::stitches;
+use crate::quality::smallest_angle;
+use crate::sampling::Sampling;
+use crate::source::EdgeSource;
+use crate::{AssemblyError, PieceMesh, PieceMeshes, Stitch};
+use std::collections::{HashMap, VecDeque};
+use toile_geometry::{Vec2, orient2d};
+use toile_pattern::{Draft, Piece, PieceId, SeamOrigin};
+
+/// Smallest angle of a triangle that follows an edit [rad], 15 degrees: membrane forces of sharper ones
+/// are stiff across and inexact along them. Fresh meshes have angles over 25 degrees.
+const SMALLEST_ANGLE: f64 = 0.261_799_387_799_149_4;
+/// How much smaller the angle may become of a triangle that was made sharper than that [rad], 1 degree:
+/// a narrow corner of an outline has such triangles in every mesh.
+const ANGLE_LOSS: f64 = 0.017_453_292_519_943_295;
+/// How long an edge may be as a share of its length when it was made, at least and at most.
+const LENGTH_SHARES: [f64; 2] = [0.5, 1.5];
+/// A node that moved by less than this share of its edge did not move: the search for the place of a
+/// notch and shares of a chain's length are no more exact.
+const SAME_FRACTION: f64 = 1e-9;
+
+/// Why meshes cannot follow an edit.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MorphError {
+    /// These pieces are no longer what was meshed, or too far from it: sorted, each once.
+    #[error("{} pieces changed too much for their triangles to follow; mesh the draft anew", .0.len())]
+    NeedsRemesh(Vec<PieceId>),
+    /// The edited draft cannot be meshed at all.
+    #[error(transparent)]
+    Draft(#[from] AssemblyError),
+}
+
+/// Gives the meshes of an earlier draft the shapes of an edited one: triangles, stitched vertices and
+/// their order stay, points change.
+///
+/// Samples of the outline keep their share of their edge, and of the stretch between two points that
+/// must be vertices (ends of spans, notches) where these moved. Points of internal lines keep their
+/// share of their curve. All others follow by harmonic weights, from where they were when the piece
+/// was meshed: the result depends on that mesh and on `draft`, not on edits in between, and a piece
+/// that gets its shape back gets its points back, to the bit.
+///
+/// Cost: one factorisation for each piece whose outline or internal lines moved.
+///
+/// # Errors
+/// [`MorphError::NeedsRemesh`] where pieces were added, removed or put in another order; edges or
+/// internal lines too; where seams sew other points or ask for more or fewer; where an outline
+/// crosses itself, a triangle turned over, has an angle under 15 degrees (or lost 1 degree, if it
+/// was made sharper) or an edge under half or over 1.5 times as long as when it was made.
+/// [`MorphError::Draft`] where the draft has no meshes, see [`crate::mesh_pieces`].
+pub fn morph(meshes: &PieceMeshes, draft: &Draft) -> Result<PieceMeshes, MorphError> {
+    let chosen: Vec<bool> = draft.pieces.iter().map(|p| p.sewn).collect();
+    let mut pieces = meshes.pieces.clone();
+    find_pieces(&mut pieces, draft)?;
+    let table = EdgeTable::measured(draft, &chosen)?;
+    let matching = match_seams(draft, &table, &chosen, meshes.edge_length)?;
+    let (mut sampling, mut fits) = sampled(&pieces, draft, &table, &matching.nodes);
+    let mut sewn = Vec::new();
+    if !fits.contains(&false) {
+        sampling.sew(&table, &matching);
+        let fresh = stitches(
+            draft,
+            &table,
+            &sampling,
+            &pieces,
+            &first_vertices(&pieces, draft),
+        );
+        match renumbered(&meshes.stitches, &fresh) {
+            Ok(stitches) => sewn = stitches,
+            Err(others) => mark_owners(&pieces, &others, &mut fits),
+        }
+    }
+    for (mesh, fits) in pieces.iter_mut().zip(&mut fits) {
+        *fits = *fits && mesh.follow(&draft.pieces[mesh.draft_piece], &table, &sampling);
+    }
+    if fits.contains(&false) {
+        let stale = pieces.iter().zip(&fits).filter(|(_, fits)| !**fits);
+        return Err(needs_remesh(stale.map(|(mesh, _)| mesh.piece).collect()));
+    }
+    let mut diagnostics = matching.diagnostics;
+    diagnostics.extend(
+        pieces.iter().filter_map(|mesh| {
+            left_out_note(&draft.pieces[mesh.draft_piece], mesh.source.left_out)
+        }),
+    );
+    Ok(PieceMeshes {
+        pieces,
+        stitches: sewn,
+        diagnostics,
+        edge_length: meshes.edge_length,
+    })
+}
+
+fn needs_remesh(mut pieces: Vec<PieceId>) -> MorphError {
+    pieces.sort_unstable();
+    pieces.dedup();
+    MorphError::NeedsRemesh(pieces)
+}
+
+/// Finds the meshed pieces in a draft that sews the same ones in the same order.
+fn find_pieces(pieces: &mut [PieceMesh], draft: &Draft) -> Result<(), MorphError> {
+    let sewn: Vec<usize> = (0..draft.pieces.len())
+        .filter(|&k| draft.pieces[k].sewn)
+        .collect();
+    let id = |&k: &usize| draft.pieces[k].id;
+    if pieces.iter().map(|m| m.piece).eq(sewn.iter().map(id)) {
+        for (mesh, k) in pieces.iter_mut().zip(sewn) {
+            mesh.draft_piece = k;
+        }
+        return Ok(());
+    }
+    let old: Vec<PieceId> = pieces.iter().map(|m| m.piece).collect();
+    let new: Vec<PieceId> = sewn.iter().map(id).collect();
+    let [removed, added] = [(&old, &new), (&new, &old)]
+        .map(|(these, others)| these.iter().filter(|p| !others.contains(p)).copied());
+    let mut changed: Vec<PieceId> = removed.chain(added).collect();
+    if changed.is_empty() {
+        // The same pieces in another order.
+        let both = old.iter().zip(&new).filter(|(a, b)| a != b);
+        changed = both.flat_map(|(a, b)| [*a, *b]).collect();
+    }
+    Err(needs_remesh(changed))
+}
+
+/// The samples of all edges, none where the piece has other edges or other nodes; and which pieces have
+/// the same.
+fn sampled(
+    pieces: &[PieceMesh],
+    draft: &Draft,
+    table: &EdgeTable,
+    nodes: &Nodes,
+) -> (Sampling, Vec<bool>) {
+    let mut sampling = Sampling {
+        fractions: vec![Vec::new(); table.edges.len()],
+        nodes: vec![Vec::new(); table.edges.len()],
+        stitches: Vec::new(),
+    };
+    let mut fits = Vec::with_capacity(pieces.len());
+    for mesh in pieces {
+        let range = table.of_piece(mesh.draft_piece);
+        let edges = &mesh.source.edges;
+        let fractions: Option<Vec<Vec<f64>>> = (edges.iter().zip(range.clone()))
+            .map(|(edge, k)| fractions(edge, nodes, k))
+            .collect();
+        let fractions = fractions.filter(|_| mesh.source.is_of(&draft.pieces[mesh.draft_piece]));
+        fits.push(fractions.is_some());
+        for ((k, edge), list) in range.zip(edges).zip(fractions.into_iter().flatten()) {
+            sampling.fractions[k] = list;
+            sampling.nodes[k].clone_from(&edge.nodes);
+        }
+    }
+    (sampling, fits)
+}
+
+/// Fractions of an edge's samples that keep their share between nodes; none where there are more or
+/// fewer nodes.
+fn fractions(source: &EdgeSource, nodes: &Nodes, edge: usize) -> Option<Vec<f64>> {
+    let list = &nodes.on_edge[edge];
+    if list.len() != source.nodes.len() {
+        return None;
+    }
+    let mut fractions = source.fractions.clone();
+    let ends = list.iter().zip(&source.nodes);
+    let ends: Vec<[f64; 2]> = ends
+        .map(|(&node, &sample)| {
+            let (old, new) = (source.fractions[sample], nodes.all[node].fraction);
+            let moved = (new - old).abs() > SAME_FRACTION;
+            [old, if moved { new } else { old }]
+        })
+        .collect();
+    for (pair, samples) in ends.windows(2).zip(source.nodes.windows(2)) {
+        let ([old, new], [old_end, new_end]) = (pair[0], pair[1]);
+        if [old, old_end] == [new, new_end] {
+            continue;
+        }
+        let stretched = (new_end - new) / (old_end - old);
+        for sample in samples[0]..samples[1] {
+            fractions[sample] = new + (source.fractions[sample] - old) * stretched;
+        }
+        fractions[samples[1]] = new_end;
+    }
+    Some(fractions)
+}
+
+/// First vertex of each piece of the draft.
+fn first_vertices(pieces: &[PieceMesh], draft: &Draft) -> Vec<usize> {
+    let mut first = vec![0; draft.pieces.len()];
+    let mut count = 0;
+    for mesh in pieces {
+        first[mesh.draft_piece] = count;
+        count += mesh.points.len();
+    }
+    first
+}
+
+/// The old stitches in their order, numbered by the seams of the new draft.
+///
+/// # Errors
+/// Vertices that are sewn in one of both alone.
+fn renumbered(old: &[Stitch], new: &[Stitch]) -> Result<Vec<Stitch>, Vec<u32>> {
+    let mut known: HashMap<(SeamOrigin, [u32; 2]), VecDeque<usize>> = HashMap::new();
+    for s in new {
+        let seams = known.entry((s.seam, s.vertices)).or_default();
+        seams.push_back(s.draft_seam);
+    }
+    let mut others = Vec::new();
+    let mut stitches = Vec::with_capacity(old.len());
+    for &stitch in old {
+        let found = known.get_mut(&(stitch.seam, stitch.vertices));
+        match found.and_then(VecDeque::pop_front) {
+            Some(draft_seam) => stitches.push(Stitch {
+                draft_seam,
+                ..stitch
+            }),
+            None => others.extend(stitch.vertices),
+        }
+    }
+    let added = known.iter().filter(|(_, seams)| !seams.is_empty());
+    others.extend(added.flat_map(|((_, vertices), _)| *vertices));
+    if others.is_empty() {
+        Ok(stitches)
+    } else {
+        Err(others)
+    }
+}
+
+/// Marks the pieces of some vertices as not fit.
+fn mark_owners(pieces: &[PieceMesh], vertices: &[u32], fits: &mut [bool]) {
+    let mut first = 0;
+    for (mesh, fits) in pieces.iter().zip(fits) {
+        let range = first..first + mesh.points.len();
+        *fits &= !vertices.iter().any(|&v| range.contains(&(v as usize)));
+        first = range.end;
+    }
+}
+
+impl PieceMesh {
+    /// Moves the vertices to where a piece with these samples has them; says whether the triangles
+    /// are sound there.
+    fn follow(&mut self, piece: &Piece, table: &EdgeTable, sampling: &Sampling) -> bool {
+        let boundary = Boundary::sampled(self.draft_piece, table, sampling);
+        let range = table.of_piece(self.draft_piece);
+        self.edge_fractions = sampling.fractions[range].to_vec();
+        let source = &self.source;
+        let mut given = boundary.points.clone();
+        for place in &source.line_places {
+            let Some(point) = place.point(piece) else {
+                return false;
+            };
+            given.push(point);
+        }
+        let count = given.len();
+        if given == self.points[..count] {
+            return true;
+        }
+        if given == source.points[..count] {
+            self.points.clone_from(&source.points);
+            return true;
+        }
+        if boundary.check(piece).is_err() {
+            return false;
+        }
+        let way: Vec<Vec2> = (given.iter().zip(&source.points))
+            .map(|(new, old)| new - old)
+            .collect();
+        let Ok(way) = harmonic(&source.points, self.counter_clockwise(), &way) else {
+            return false;
+        };
+        // Those that are given exactly, the others by their displacement.
+        given.extend((source.points.iter().zip(&way).skip(count)).map(|(p, d)| p + d));
+        self.points = given;
+        let old = &self.source.points;
+        let corners = |points: &[Vec2], t: &[u32; 3]| t.map(|v| points[v as usize]);
+        (self.triangles.iter()).all(|t| is_sound(corners(old, t), corners(&self.points, t)))
+    }
+
+    /// The triangles as they were made, counter-clockwise.
+    fn counter_clockwise(&self) -> Vec<[usize; 3]> {
+        let p = |v: usize| self.source.points[v];
+        let turned = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| v as usize);
+            if orient2d(p(a), p(b), p(c)) < 0.0 {
+                [a, c, b]
+            } else {
+                [a, b, c]
+            }
+        };
+        self.triangles.iter().map(turned).collect()
+    }
+}
+
+/// Whether a triangle has not turned over and keeps its angles and edges within the bounds.
+fn is_sound(old: [Vec2; 3], new: [Vec2; 3]) -> bool {
+    let side = |[a, b, c]: [Vec2; 3]| orient2d(a, b, c);
+    let angle = smallest_angle(old);
+    let least = if angle < SMALLEST_ANGLE {
+        angle - ANGLE_LOSS
+    } else {
+        SMALLEST_ANGLE
+    };
+    side(old) * side(new) > 0.0
+        && smallest_angle(new) >= least
+        && (0..3).all(|k| {
+            let length = |p: [Vec2; 3]| (p[(k + 1) % 3] - p[k]).norm();
+            let share = length(new) / length(old);
+            (LENGTH_SHARES[0]..=LENGTH_SHARES[1]).contains(&share)
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EVEN: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.9]];
+
+    fn sound(old: [[f64; 2]; 3], new: [[f64; 2]; 3]) -> bool {
+        is_sound(old.map(Vec2::from), new.map(Vec2::from))
+    }
+
+    fn scaled(triangle: [[f64; 2]; 3], x: f64, y: f64) -> [[f64; 2]; 3] {
+        triangle.map(|p| [p[0] * x, p[1] * y])
+    }
+
+    #[test]
+    fn lengths_stay_within_half_and_one_and_a_half() {
+        for (scale, wanted) in [(0.49, false), (0.51, true), (1.49, true), (1.51, false)] {
+            assert_eq!(sound(EVEN, scaled(EVEN, scale, scale)), wanted, "{scale}");
+        }
+    }
+
+    #[test]
+    fn a_triangle_that_turned_over_or_lost_its_area_is_refused() {
+        assert!(!sound(EVEN, scaled(EVEN, -1.0, 1.0)));
+        assert!(!sound(EVEN, [[0.0, 0.0], [1.0, 0.0], [0.5, 0.0]]));
+        assert!(!sound(EVEN, [[0.0, 0.0], [1.0, 0.0], [f64::NAN, 0.9]]));
+        // As it was made, whichever way that is.
+        assert!(sound(scaled(EVEN, -1.0, 1.0), scaled(EVEN, -1.1, 1.0)));
+    }
+
+    #[test]
+    fn angles_stay_over_fifteen_degrees_or_within_one_of_what_they_were() {
+        let with = |degrees: f64| {
+            let (sine, cosine) = degrees.to_radians().sin_cos();
+            [[0.0, 0.0], [1.0, 0.0], [cosine, sine]]
+        };
+        for (old, new, wanted) in [
+            (20.0, 15.01, true),
+            (20.0, 14.99, false),
+            (14.9, 13.95, true),
+            (14.9, 13.85, false),
+            (5.0, 4.1, true),
+            (5.0, 3.9, false),
+        ] {
+            assert_eq!(sound(with(old), with(new)), wanted, "{old} {new}");
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! What the mesh of a piece was made from, so that its triangles can follow a later shape.
+
+use crate::creases::{Creases, LinePlace};
+use crate::edges::contours;
+use crate::sampling::Sampling;
+use std::ops::Range;
+use toile_geometry::Vec2;
+use toile_pattern::{EdgeOrigin, LineName, Piece};
+
+/// One edge of a piece as it was sampled.
+#[derive(Clone, Debug)]
+pub(crate) struct EdgeSource {
+    /// Which edge of the panel it is.
+    pub origin: EdgeOrigin,
+    /// Whether it runs against the edge as drawn.
+    pub reversed: bool,
+    /// Which closed loop of the piece: 0 the outline, then the holes.
+    pub contour: usize,
+    /// Arc-length fractions of its samples, both ends included.
+    pub fractions: Vec<f64>,
+    /// Which samples are nodes, the ends included.
+    pub nodes: Vec<usize>,
+}
+
+/// The shape a piece had when it was meshed.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MeshSource {
+    /// Vertices [m]: boundary, points of internal lines, then those that are free.
+    pub points: Vec<Vec2>,
+    /// Its edges: outline first, then each hole.
+    pub edges: Vec<EdgeSource>,
+    /// Its internal lines, with the number of curves of each.
+    pub lines: Vec<(LineName, usize)>,
+    /// Where on an internal line each vertex is that follows the boundary's.
+    pub line_places: Vec<LinePlace>,
+    /// Points of internal lines that the mesh does not follow.
+    pub left_out: usize,
+}
+
+/// The internal lines of a piece, with the number of curves of each.
+fn lines(piece: &Piece) -> Vec<(LineName, usize)> {
+    let lines = piece.internal_lines.iter();
+    lines.map(|line| (line.name, line.curves.len())).collect()
+}
+
+/// The edges of a piece, with the number of the loop each is of.
+fn edges(piece: &Piece) -> impl Iterator<Item = (EdgeOrigin, bool, usize)> + '_ {
+    contours(piece).enumerate().flat_map(|(contour, edges)| {
+        let named = move |e: &toile_pattern::PieceEdge| (e.origin, e.reversed, contour);
+        edges.iter().map(named)
+    })
+}
+
+impl EdgeSource {
+    /// The edges of a piece, which are `range` of the sampled ones.
+    pub fn of_piece(piece: &Piece, range: Range<usize>, sampling: &Sampling) -> Vec<Self> {
+        let sampled = range.zip(edges(piece));
+        sampled
+            .map(|(edge, (origin, reversed, contour))| Self {
+                origin,
+                reversed,
+                contour,
+                fractions: sampling.fractions[edge].clone(),
+                nodes: sampling.nodes[edge].clone(),
+            })
+            .collect()
+    }
+}
+
+impl MeshSource {
+    /// What a mesh of these points was made from.
+    pub fn new(piece: &Piece, points: Vec<Vec2>, edges: Vec<EdgeSource>, creases: Creases) -> Self {
+        Self {
+            points,
+            edges,
+            lines: lines(piece),
+            line_places: creases.places,
+            left_out: creases.left_out,
+        }
+    }
+
+    /// Whether a piece has the same edges and internal lines, whatever their shape.
+    pub fn is_of(&self, piece: &Piece) -> bool {
+        let own = self.edges.iter().map(|e| (e.origin, e.reversed, e.contour));
+        own.eq(edges(piece)) && self.lines == lines(piece)
+    }
+}
