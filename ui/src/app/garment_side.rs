@@ -120,6 +120,7 @@ impl ToileApp {
         match self.making.shown() {
             Shown::Nothing => String::new(),
             Shown::Preparing => "Cutting the cloth into triangles and placing it\u{2026}".into(),
+            Shown::Moving if rests => "Moving: taking over the change".into(),
             Shown::Moving => format!("Moving: {state}"),
             Shown::Held => format!("Paused: {state}"),
             Shown::Stopped => format!("Stopped: {state}"),
