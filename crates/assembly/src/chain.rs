@@ -3,6 +3,7 @@
 
 use crate::edges::EdgeTable;
 use crate::{AssemblyError, Diagnostic};
+use toile_geometry::{Curve, Vec2};
 use toile_pattern::{Draft, DraftSeam, DraftSpan};
 
 /// Points of the two sides nearer than this share of the edge length are taken for one.
@@ -297,18 +298,25 @@ fn check_span(
 }
 
 /// Edge and arc-length fraction of the outline point nearest to a point.
-fn nearest_on_piece(
-    table: &EdgeTable,
-    piece: usize,
-    point: toile_geometry::Vec2,
-) -> Option<(usize, f64)> {
+fn nearest_on_piece(table: &EdgeTable, piece: usize, point: Vec2) -> Option<(usize, f64)> {
+    // Edges that may come nearest first: once a point is nearer than the others can be, they are
+    // not sampled.
+    let mut edges: Vec<(f64, usize)> = table
+        .of_piece(piece)
+        .map(|edge| (least_distance(&table.edges[edge].curve, point), edge))
+        .collect();
+    edges.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut best: Option<(f64, usize, f64)> = None;
-    for edge in table.of_piece(piece) {
+    for (least, edge) in edges {
+        if best.is_some_and(|b| least > b.0) {
+            break;
+        }
         let count = 64;
         for k in 0..=count {
             let fraction = f64::from(k) / f64::from(count);
             let distance = (table.edges[edge].point(fraction) - point).norm();
-            if best.is_none_or(|b| distance < b.0) {
+            // Of points equally near, the first along the outline.
+            if best.is_none_or(|b| distance < b.0 || (distance == b.0 && edge < b.1)) {
                 best = Some((distance, edge, fraction));
             }
         }
@@ -328,6 +336,20 @@ fn nearest_on_piece(
         }
     }
     Some((edge, 0.5 * (low + high)))
+}
+
+/// A distance [m] that no point of a curve is nearer than: that of the box round the points that
+/// define it, but for rounding; nought for arcs, which lie outside it.
+fn least_distance(curve: &Curve, point: Vec2) -> f64 {
+    if matches!(curve, Curve::Arc { .. }) {
+        return 0.0;
+    }
+    let (mut low, mut high) = (curve.start(), curve.start());
+    for p in curve.defining_points() {
+        (low, high) = (low.inf(&p), high.sup(&p));
+    }
+    let rounding = 1e-9;
+    (point - point.sup(&low).inf(&high)).norm() - rounding
 }
 
 impl Stretch {

@@ -180,8 +180,12 @@ fn fractions(source: &EdgeSource, nodes: &Nodes, edge: usize) -> Option<Vec<f64>
             continue;
         }
         let stretched = (new_end - new) / (old_end - old);
-        for sample in samples[0]..samples[1] {
-            fractions[sample] = new + (source.fractions[sample] - old) * stretched;
+        let range = samples[0]..samples[1];
+        for (fraction, was) in fractions[range.clone()]
+            .iter_mut()
+            .zip(&source.fractions[range])
+        {
+            *fraction = new + (was - old) * stretched;
         }
         fractions[samples[1]] = new_end;
     }
@@ -244,10 +248,14 @@ impl PieceMesh {
     /// Moves the vertices to where a piece with these samples has them; says whether the triangles
     /// are sound there.
     fn follow(&mut self, piece: &Piece, table: &EdgeTable, sampling: &Sampling) -> bool {
-        let boundary = Boundary::sampled(self.draft_piece, table, sampling);
         let range = table.of_piece(self.draft_piece);
         self.edge_fractions = sampling.fractions[range].to_vec();
         let source = &self.source;
+        if source.has_shape_of(piece, &self.edge_fractions) {
+            self.points.clone_from(&source.points);
+            return true;
+        }
+        let boundary = Boundary::sampled(self.draft_piece, table, sampling);
         let mut given = boundary.points.clone();
         for place in &source.line_places {
             let Some(point) = place.point(piece) else {
@@ -257,10 +265,6 @@ impl PieceMesh {
         }
         let count = given.len();
         if given == self.points[..count] {
-            return true;
-        }
-        if given == source.points[..count] {
-            self.points.clone_from(&source.points);
             return true;
         }
         if boundary.check(piece).is_err() {

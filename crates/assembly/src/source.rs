@@ -4,8 +4,8 @@ use crate::creases::{Creases, LinePlace};
 use crate::edges::contours;
 use crate::sampling::Sampling;
 use std::ops::Range;
-use toile_geometry::Vec2;
-use toile_pattern::{EdgeOrigin, LineName, Piece};
+use toile_geometry::{Curve, Vec2};
+use toile_pattern::{EdgeOrigin, Piece, PieceEdge, PieceLine};
 
 /// One edge of a piece as it was sampled.
 #[derive(Clone, Debug)]
@@ -16,6 +16,8 @@ pub(crate) struct EdgeSource {
     pub reversed: bool,
     /// Which closed loop of the piece: 0 the outline, then the holes.
     pub contour: usize,
+    /// Its curve [m].
+    pub curve: Curve,
     /// Arc-length fractions of its samples, both ends included.
     pub fractions: Vec<f64>,
     /// Which samples are nodes, the ends included.
@@ -29,26 +31,18 @@ pub(crate) struct MeshSource {
     pub points: Vec<Vec2>,
     /// Its edges: outline first, then each hole.
     pub edges: Vec<EdgeSource>,
-    /// Its internal lines, with the number of curves of each.
-    pub lines: Vec<(LineName, usize)>,
+    /// Its internal lines.
+    pub lines: Vec<PieceLine>,
     /// Where on an internal line each vertex is that follows the boundary's.
     pub line_places: Vec<LinePlace>,
     /// Points of internal lines that the mesh does not follow.
     pub left_out: usize,
 }
 
-/// The internal lines of a piece, with the number of curves of each.
-fn lines(piece: &Piece) -> Vec<(LineName, usize)> {
-    let lines = piece.internal_lines.iter();
-    lines.map(|line| (line.name, line.curves.len())).collect()
-}
-
 /// The edges of a piece, with the number of the loop each is of.
-fn edges(piece: &Piece) -> impl Iterator<Item = (EdgeOrigin, bool, usize)> + '_ {
-    contours(piece).enumerate().flat_map(|(contour, edges)| {
-        let named = move |e: &toile_pattern::PieceEdge| (e.origin, e.reversed, contour);
-        edges.iter().map(named)
-    })
+fn edges(piece: &Piece) -> impl Iterator<Item = (usize, &PieceEdge)> {
+    let loops = contours(piece).enumerate();
+    loops.flat_map(|(contour, edges)| edges.iter().map(move |edge| (contour, edge)))
 }
 
 impl EdgeSource {
@@ -56,10 +50,11 @@ impl EdgeSource {
     pub fn of_piece(piece: &Piece, range: Range<usize>, sampling: &Sampling) -> Vec<Self> {
         let sampled = range.zip(edges(piece));
         sampled
-            .map(|(edge, (origin, reversed, contour))| Self {
-                origin,
-                reversed,
+            .map(|(edge, (contour, drawn))| Self {
+                origin: drawn.origin,
+                reversed: drawn.reversed,
                 contour,
+                curve: drawn.curve,
                 fractions: sampling.fractions[edge].clone(),
                 nodes: sampling.nodes[edge].clone(),
             })
@@ -73,7 +68,7 @@ impl MeshSource {
         Self {
             points,
             edges,
-            lines: lines(piece),
+            lines: piece.internal_lines.clone(),
             line_places: creases.places,
             left_out: creases.left_out,
         }
@@ -82,6 +77,16 @@ impl MeshSource {
     /// Whether a piece has the same edges and internal lines, whatever their shape.
     pub fn is_of(&self, piece: &Piece) -> bool {
         let own = self.edges.iter().map(|e| (e.origin, e.reversed, e.contour));
-        own.eq(edges(piece)) && self.lines == lines(piece)
+        let named = |line: &PieceLine| (line.name, line.curves.len());
+        own.eq(edges(piece).map(|(contour, e)| (e.origin, e.reversed, contour)))
+            && (self.lines.iter().map(named)).eq(piece.internal_lines.iter().map(named))
+    }
+
+    /// Whether a piece with the same edges and lines has them where they were, with samples at the
+    /// same fractions.
+    pub fn has_shape_of(&self, piece: &Piece, fractions: &[Vec<f64>]) -> bool {
+        let own = self.edges.iter().map(|e| (e.curve, &e.fractions));
+        own.eq(edges(piece).map(|(_, e)| e.curve).zip(fractions))
+            && self.lines == piece.internal_lines
     }
 }
