@@ -356,11 +356,8 @@ impl ToileApp {
                         self.stage.set_body(mannequin.skin());
                     }
                 }
-                News::Begun(job) => {
-                    self.stage.set_garment(&job);
-                    self.stage.set_frame(&first_frame(&job));
-                }
-                News::Frame(frame) => self.stage.set_frame(&frame),
+                News::Begun(job) => self.stage.set_frame(first_frame(&job)),
+                News::Frame(frame) => self.stage.set_frame(frame),
                 News::Finished(events) => {
                     let warned = events.into_iter().filter_map(|event| match event {
                         Event::Warned { message } => Some(message),
