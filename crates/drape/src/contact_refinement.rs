@@ -1,8 +1,9 @@
 //! Contact tested more finely where cloth went on crossing a solid surface.
 
 use crate::contact_settings::MOST_EXTRA;
-use crate::{ContactSample, Model, State};
+use crate::{ContactSample, Memory, Model, State};
 use std::sync::Arc;
+use toile_geometry::Vec3;
 
 /// How much farther a triangle is kept each time it is found crossing again [m]: a quarter of the
 /// usual offset.
@@ -18,6 +19,31 @@ impl State {
             refine(model, samples, triangle);
         }
         self.follow_samples();
+    }
+
+    /// Goes on at a standstill where it is under other rest shapes of the same triangles: cloth sticks where it
+    /// stuck, and is tested against solids where it was.
+    pub(crate) fn follow_shapes(&mut self, model: &Model) {
+        let at_vertices = model.rest.samples.iter().copied();
+        let mut samples: Vec<ContactSample> = at_vertices.collect();
+        for (sample, before) in samples.iter_mut().zip(self.samples.iter()) {
+            sample.extra_offset = before.extra_offset;
+        }
+        let within = self
+            .samples
+            .iter()
+            .filter(|sample| sample.triangle.is_some());
+        samples.extend(within.map(|sample| {
+            ContactSample {
+                area: sample
+                    .triangle
+                    .map_or(sample.area, |t| model.rest_area(t as usize) / 3.0),
+                ..*sample
+            }
+        }));
+        self.samples = Arc::new(samples);
+        self.velocities.fill(Vec3::zeros());
+        self.memory = Memory::Nothing;
     }
 }
 

@@ -490,37 +490,53 @@ impl GarmentRun {
                 remedy: "give one for each, or mesh it again".to_owned(),
             });
         }
-        let count = self.state.positions.len();
-        let place = |&v: &u32| self.state.positions[v as usize];
-        let cloth = Cloth {
-            positions: self.target.iter().map(place).collect(),
-            rest,
-            ..level.cloth.clone()
+        // A triangle that lost a corner to a seam is not in the merged cloth.
+        let is_whole = |&t: &usize| {
+            let [a, b, c] = level.cloth.triangles[t].map(|v| self.target[v as usize]);
+            a != b && b != c && c != a
         };
-        let mut model = Model::new("garment", &cloth.merged(&self.target, count))?;
-        model.colliders = std::mem::take(&mut self.model.colliders);
-        model.contact = self.setup.contact;
-        model.gravity = self.setup.gravity;
-        model.layer = std::mem::take(&mut self.model.layer);
-        let mut state = State::at_rest(&model, std::mem::take(&mut self.state.positions));
-        state.time = self.state.time;
-        let known = self.state.samples.iter().zip(&self.state.anchors);
-        for ((new, anchor), (old, kept)) in state.samples.iter().zip(&mut state.anchors).zip(known)
-        {
-            if (new.triangle, new.vertices) == (old.triangle, old.vertices) {
-                *anchor = *kept;
+        let merged = (0..wanted).filter(is_whole).map(|t| rest[t]).collect();
+        match self.system.reshaped("garment", merged) {
+            Ok(system) => {
+                self.state.follow_shapes(&system);
+                self.system = system;
             }
+            // The triangles serve, but not with what curvatures were estimated from.
+            Err(DrapeError::NeedsRemesh { .. }) => self.rebuild(rest.clone())?,
+            Err(error) => return Err(error),
         }
-        self.tally = self.cloth_tally();
-        self.workspace = Workspace::default();
-        self.model = model;
-        self.state = state;
-        self.setup.levels[self.level].cloth.rest = cloth.rest;
+        self.setup.levels[self.level].cloth.rest = rest;
         self.setup.counted = counted;
         self.steps[1] += self.rest.steps();
         self.rest = PseudoTransientContinuation::near(self.rest_settings());
         self.swing = None;
         self.go_on_from_here();
+        Ok(())
+    }
+
+    /// Makes the system of the merged cloth anew with other rest shapes for its panels, where it lies.
+    fn rebuild(&mut self, rest: Vec<[Vec2; 3]>) -> Result<(), DrapeError> {
+        let count = self.state.positions.len();
+        let place = |&v: &u32| self.state.positions[v as usize];
+        let cloth = Cloth {
+            positions: self.target.iter().map(place).collect(),
+            rest,
+            ..self.setup.levels[self.level].cloth.clone()
+        };
+        let mut builder = SystemBuilder::new("garment", &cloth.merged(&self.target, count))?;
+        builder.colliders = self.system.colliders.to_vec();
+        builder.contact = self.system.contact;
+        builder.control = self.system.control.clone();
+        builder.layer = self.system.layer.to_vec();
+        let system = builder.build();
+        let state = State::at_rest(&system, std::mem::take(&mut self.state.positions));
+        self.state = State {
+            time: self.state.time,
+            ..state
+        };
+        self.tally = self.cloth_tally();
+        self.workspace = Workspace::default();
+        self.system = system;
         Ok(())
     }
 
@@ -533,7 +549,7 @@ impl GarmentRun {
     /// garment is then as it was.
     pub fn remesh(&mut self, level: GarmentLevel, counted: Vec<bool>) -> Result<(), DrapeError> {
         self.refuse_edit()?;
-        Model::new("garment", &level.cloth)?;
+        System::new("garment", &level.cloth)?;
         let old = &self.setup.levels[self.level].cloth;
         let merged = |t: &[u32; 3]| t.map(|v| self.target[v as usize]);
         let shape = TriangleMesh {
