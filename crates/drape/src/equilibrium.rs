@@ -7,12 +7,13 @@ use toile_geometry::{Vec2, Vec3};
 
 /// A system at rest with all that led there: the last factor of its matrix, pseudo step and kept curvature.
 pub struct Equilibrium {
-    /// What is simulated.
-    system: System,
-    state: State,
-    workspace: Workspace,
-    continuation: PseudoTransientContinuation,
-    settings: RestSettings,
+    pub(crate) system: System,
+    pub(crate) state: State,
+    pub(crate) workspace: Workspace,
+    pub(crate) continuation: PseudoTransientContinuation,
+    pub(crate) settings: RestSettings,
+    /// The triangle of the panels for each of the surface: those that seams collapsed are none.
+    pub(crate) merged: Vec<usize>,
 }
 
 /// Where a garment goes when its rest shapes change, to first order. It is shown, never replayed.
@@ -45,23 +46,6 @@ impl Prediction {
 }
 
 impl Equilibrium {
-    /// Of a state that was brought to rest by a continuation in a workspace.
-    pub(crate) fn new(
-        system: System,
-        state: State,
-        workspace: Workspace,
-        continuation: PseudoTransientContinuation,
-        settings: RestSettings,
-    ) -> Self {
-        Self {
-            system,
-            state,
-            workspace,
-            continuation,
-            settings,
-        }
-    }
-
     /// What is simulated.
     pub fn system(&self) -> &System {
         &self.system
@@ -82,13 +66,22 @@ impl Equilibrium {
         self.continuation.residual()
     }
 
-    /// Where it goes to first order with another rest shape for each triangle of the surface [m]: one gradient
+    /// Its system with another rest shape for each triangle of the panels [m].
+    ///
+    /// # Errors
+    /// As [`System::reshaped`].
+    pub fn reshaped(&self, rest: &[[Vec2; 3]]) -> Result<System, DrapeError> {
+        let merged = self.merged.iter().filter_map(|&t| rest.get(t).copied());
+        self.system.reshaped("garment", merged.collect())
+    }
+
+    /// Where it goes to first order with another rest shape for each triangle of the panels [m]: one gradient
     /// and one solution with the last factor. Nothing of it changes but its caches.
     ///
     /// # Errors
     /// As [`System::reshaped`]; numbers that are not finite.
-    pub fn predict(&mut self, rest: Vec<[Vec2; 3]>) -> Result<Prediction, DrapeError> {
-        let system = self.system.reshaped("garment", rest)?;
+    pub fn predict(&mut self, rest: &[[Vec2; 3]]) -> Result<Prediction, DrapeError> {
+        let system = self.reshaped(rest)?;
         let step = self.workspace.first_order(
             &system,
             &self.state,
@@ -107,6 +100,7 @@ impl Equilibrium {
     /// Goes on from what was predicted: it is at rest no longer.
     pub fn take(&mut self, prediction: Prediction) {
         self.system = prediction.system;
+        self.state.follow_shapes(&self.system);
         self.state.positions = prediction.step.positions;
         self.continuation
             .go_on(self.settings.residual, self.settings.steps);

@@ -440,8 +440,15 @@ impl GarmentRun {
     pub fn into_equilibrium(self) -> Option<Equilibrium> {
         let finished = self.stage == Stage::Finished;
         finished.then(|| {
-            let settings = self.setup.rest;
-            Equilibrium::new(self.system, self.state, self.workspace, self.rest, settings)
+            let cloth = &self.setup.levels[self.level].cloth;
+            Equilibrium {
+                merged: merged_triangles(cloth, &self.target),
+                settings: self.setup.rest,
+                system: self.system,
+                state: self.state,
+                workspace: self.workspace,
+                continuation: self.rest,
+            }
         })
     }
 
@@ -490,12 +497,8 @@ impl GarmentRun {
                 remedy: "give one for each, or mesh it again".to_owned(),
             });
         }
-        // A triangle that lost a corner to a seam is not in the merged cloth.
-        let is_whole = |&t: &usize| {
-            let [a, b, c] = level.cloth.triangles[t].map(|v| self.target[v as usize]);
-            a != b && b != c && c != a
-        };
-        let merged = (0..wanted).filter(is_whole).map(|t| rest[t]).collect();
+        let merged = merged_triangles(&level.cloth, &self.target);
+        let merged = merged.into_iter().map(|t| rest[t]).collect();
         match self.system.reshaped("garment", merged) {
             Ok(system) => {
                 self.state.follow_shapes(&system);
@@ -593,6 +596,15 @@ impl GarmentRun {
             Stage::Settling | Stage::Finished => 0.7,
         };
     }
+}
+
+/// Triangles of a cloth that are in it once vertices are merged: those that lose no corner to a seam.
+fn merged_triangles(cloth: &Cloth, target: &[u32]) -> Vec<usize> {
+    let is_whole = |&t: &usize| {
+        let [a, b, c] = cloth.triangles[t].map(|v| target[v as usize]);
+        a != b && b != c && c != a
+    };
+    (0..cloth.triangles.len()).filter(is_whole).collect()
 }
 
 /// Keeps outer layers farther from the body, each by the distance between two cloths: while a garment is

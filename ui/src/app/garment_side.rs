@@ -3,7 +3,9 @@
 use super::ToileApp;
 use super::making::{Moment, Shown};
 use crate::theme::{self, Palette};
-use egui::{Button, ComboBox, Panel, Rect, RichText, Ui, pos2, vec2};
+use egui::{
+    Align, Button, ComboBox, Label, Layout, Panel, Rect, RichText, Ui, UiBuilder, pos2, vec2,
+};
 use toile_session::{Command, Quality, Stage};
 
 /// Height of the strip over the view [pixels].
@@ -103,20 +105,28 @@ impl ToileApp {
             ui.painter().rect_filled(done, 0.0, palette.accent);
         }
         let line = Rect::from_min_max(
-            pos2(view.left() + 12.0, view.bottom() - 34.0),
-            pos2(view.right() - 12.0, view.bottom() - 10.0),
+            pos2(view.left() + 12.0, view.bottom() - 80.0),
+            pos2(view.right() - 12.0, view.bottom() - 12.0),
         );
-        ui.scope_builder(egui::UiBuilder::new().max_rect(line), |ui| {
-            let words = RichText::new(words).color(palette.ink_soft);
-            ui.add(egui::Label::new(words).truncate());
+        let (colour, is_old) = match self.making.shown() {
+            Shown::OutOfDate(_) => (palette.warning, true),
+            _ => (palette.ink_soft, false),
+        };
+        let layout = Layout::bottom_up(Align::Min);
+        ui.scope_builder(UiBuilder::new().max_rect(line).layout(layout), |ui| {
+            let label = Label::new(RichText::new(words).color(colour));
+            // Why it is out of date takes the lines it needs.
+            ui.add(match is_old {
+                true => label.wrap(),
+                false => label.truncate(),
+            });
         });
     }
 
     fn drape_words(&self) -> String {
-        let state = self
-            .making
-            .moment()
-            .map_or_else(String::new, |m| moment_words(&m));
+        let moment = self.making.moment();
+        let state = moment.map_or_else(String::new, |moment| moment_words(&moment));
+        let rests = moment.is_some_and(|moment| moment.stage == Stage::Finished);
         match self.making.shown() {
             Shown::Nothing => String::new(),
             Shown::Preparing => "Cutting the cloth into triangles and placing it\u{2026}".into(),
@@ -148,6 +158,7 @@ fn moment_words(moment: &Moment) -> String {
         Stage::Swinging => "swinging under its own weight".to_owned(),
         Stage::Settling => {
             let force = match moment.residual {
+                unknown if unknown.is_infinite() => return format!("settling, step {step}"),
                 many if many >= 1.0 => format!("{many:.0} times the weight"),
                 few => format!("{:.2} % of the weight", few * 100.0),
             };
