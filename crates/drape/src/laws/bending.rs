@@ -28,9 +28,6 @@ pub struct RestSheet<'a> {
     pub rest: &'a [[Vec2; 3]],
     /// Edges of the triangles.
     pub topology: &'a Topology,
-    /// For each edge how many rings of neighbours its estimate is made from, as [`RestSheet::rings`] found them
-    /// for other rest shapes; nothing chooses them by these.
-    pub rings: Option<&'a [Option<u8>]>,
 }
 
 /// A triangle whose curvature cannot be estimated from the rings that are given: its neighbours lie close to
@@ -126,46 +123,62 @@ const MOST_RINGS: u8 = 3;
 const SMALLEST_WEIGHT: f64 = 1e-11;
 
 impl RestSheet<'_> {
-    /// The stencil of every triangle. Where the rings are given its vertices hang on the triangles alone,
-    /// whatever the rest shapes; else vertices whose weight is rounding are left out.
-    ///
-    /// # Errors
-    /// A triangle that the given rings do not serve.
-    pub fn stencils(&self) -> Result<Vec<BendingStencil>, IllConditioned> {
-        let across = self.all_across()?;
-        let stencils = (0..self.triangles.len()).into_par_iter();
-        Ok(stencils
-            .map(|triangle| self.stencil(triangle, &across))
-            .collect())
+    /// The stencil of every triangle, without vertices whose weight is rounding.
+    pub fn stencils(&self) -> Vec<BendingStencil> {
+        let across = self.all_across();
+        let stencil = |triangle| {
+            let mut stencil = self.stencil(triangle, &across);
+            stencil.trim();
+            stencil
+        };
+        (0..self.triangles.len())
+            .into_par_iter()
+            .map(stencil)
+            .collect()
     }
 
     /// For each edge how many rings of neighbours its estimate is made from; nothing for one without.
-    ///
-    /// # Errors
-    /// As [`Self::stencils`].
-    pub fn rings(&self) -> Result<Vec<Option<u8>>, IllConditioned> {
-        let across = self.all_across()?;
-        Ok(across.iter().map(|a| Some(a.as_ref()?.rings)).collect())
+    pub fn rings(&self) -> Vec<Option<u8>> {
+        let across = self.all_across();
+        across.iter().map(|a| Some(a.as_ref()?.rings)).collect()
     }
 
-    fn all_across(&self) -> Result<Vec<Option<Across>>, IllConditioned> {
+    fn all_across(&self) -> Vec<Option<Across>> {
         let edges = (0..self.topology.edges.len()).into_par_iter();
-        edges
-            .map(|edge| {
-                let rings = self.rings.map(|rings| rings[edge]);
-                let across = match rings {
-                    Some(None) => None,
-                    Some(Some(rings)) => self.across(edge, Some(rings)),
-                    None => self.across(edge, None),
-                };
-                match (&across, rings) {
-                    (None, Some(Some(_))) => Err(IllConditioned {
-                        triangle: self.topology.edge_triangles[edge][0] as usize,
-                    }),
-                    _ => Ok(across),
+        edges.map(|edge| self.across(edge, None)).collect()
+    }
+
+    /// The stencils of some triangles from rings of neighbours that were found for other rest shapes: their
+    /// vertices hang on the triangles and the rings alone.
+    ///
+    /// # Errors
+    /// A triangle that these rings do not serve any more.
+    pub fn stencils_with(
+        &self,
+        rings: &[Option<u8>],
+        triangles: &[u32],
+    ) -> Result<Vec<BendingStencil>, IllConditioned> {
+        let mut asked = vec![None; rings.len()];
+        for &t in triangles {
+            let corners = self.triangles[t as usize];
+            for k in 0..3 {
+                if let Some(edge) = self.topology.edge(corners[k], corners[(k + 1) % 3]) {
+                    asked[edge] = rings[edge];
                 }
-            })
-            .collect()
+            }
+        }
+        let estimate = |(edge, asked): (usize, Option<u8>)| {
+            let Some(asked) = asked else {
+                return Ok(None);
+            };
+            let triangle = self.topology.edge_triangles[edge][0] as usize;
+            let across = self.across(edge, Some(asked));
+            across.map(Some).ok_or(IllConditioned { triangle })
+        };
+        let edges = asked.into_par_iter().enumerate().with_min_len(64);
+        let across: Vec<Option<Across>> = edges.map(estimate).collect::<Result<_, _>>()?;
+        let each = triangles.par_iter().with_min_len(64);
+        Ok(each.map(|&t| self.stencil(t as usize, &across)).collect())
     }
 
     fn stencil(&self, triangle: usize, across: &[Option<Across>]) -> BendingStencil {
@@ -215,9 +228,6 @@ impl RestSheet<'_> {
             }
         }
         stencil.free = free;
-        if self.rings.is_none() {
-            stencil.trim();
-        }
         stencil
     }
 
@@ -527,10 +537,9 @@ mod tests {
             triangles,
             rest: &rest,
             topology: &topology,
-            rings: None,
         };
         let (mut energy, mut area) = (0.0, 0.0);
-        for (corners, stencil) in rest.iter().zip(sheet.stencils().unwrap()) {
+        for (corners, stencil) in rest.iter().zip(sheet.stencils()) {
             if !stencil.free.is_empty() {
                 continue;
             }
@@ -580,10 +589,9 @@ mod tests {
             triangles: &triangles,
             rest: &rest,
             topology: &topology,
-            rings: None,
         };
         let turn = nalgebra::Rotation3::from_euler_angles(0.4, 1.0, -0.3);
-        for stencil in sheet.stencils().unwrap() {
+        for stencil in sheet.stencils() {
             for c in 0..3 {
                 let k: Vec3 = stencil
                     .vertices
@@ -619,7 +627,6 @@ mod tests {
                 triangles: &triangles,
                 rest,
                 topology: &topology,
-                rings: None,
             }
             .stencils()
             .unwrap()
