@@ -11,7 +11,7 @@ use crate::{
     RestSettings, SewRun, SewSettings, State, Workspace, merge_map,
 };
 use std::sync::Arc;
-use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 
 /// One mesh of a garment's panels and how it is sewn.
 #[derive(Clone, Debug, Default)]
@@ -68,7 +68,7 @@ pub struct Progress {
     pub gap: f64,
     /// Net force over weight.
     pub residual: f64,
-    /// Rough share of the whole way, 0..=1, never falling.
+    /// Rough share of the whole way, 0..=1; only an edit makes it fall.
     pub share: f64,
 }
 
@@ -446,6 +446,116 @@ impl GarmentRun {
             Vec::new()
         };
         measure(&self.model, &self.state, &mut self.workspace, &counted)
+    }
+
+    /// Whether an edit of the pattern can be taken: the finest mesh is in hand and its seams are closed.
+    pub fn takes_edits(&self) -> bool {
+        self.is_finest() && self.stage != Stage::Sewing
+    }
+
+    /// Gives the triangles of the finest mesh other rest shapes, and those where strain counts. The cloth
+    /// goes on from where it hangs, without velocity; contact samples keep where they stick.
+    ///
+    /// # Errors
+    /// While it is sewn or on a coarser mesh; shapes that are too few, too many or without area. The garment
+    /// is then as it was.
+    pub fn reshape(&mut self, rest: Vec<[Vec2; 3]>, counted: Vec<bool>) -> Result<(), DrapeError> {
+        self.refuse_edit()?;
+        let level = &self.setup.levels[self.level];
+        let [given, wanted] = [rest.len(), level.cloth.triangles.len()];
+        if given != wanted {
+            return Err(DrapeError::Scene {
+                place: "the edited garment".to_owned(),
+                what: format!("it has {given} rest shapes for {wanted} triangles"),
+                remedy: "give one for each, or mesh it again".to_owned(),
+            });
+        }
+        let count = self.state.positions.len();
+        let place = |&v: &u32| self.state.positions[v as usize];
+        let cloth = Cloth {
+            positions: self.target.iter().map(place).collect(),
+            rest,
+            ..level.cloth.clone()
+        };
+        let mut model = Model::new("garment", &cloth.merged(&self.target, count))?;
+        model.colliders = std::mem::take(&mut self.model.colliders);
+        model.contact = self.setup.contact;
+        model.gravity = self.setup.gravity;
+        model.layer = std::mem::take(&mut self.model.layer);
+        let mut state = State::at_rest(&model, std::mem::take(&mut self.state.positions));
+        state.time = self.state.time;
+        let known = self.state.samples.iter().zip(&self.state.anchors);
+        for ((new, anchor), (old, kept)) in state.samples.iter().zip(&mut state.anchors).zip(known)
+        {
+            if (new.triangle, new.vertices) == (old.triangle, old.vertices) {
+                *anchor = *kept;
+            }
+        }
+        self.tally = self.cloth_tally();
+        self.workspace = Workspace::default();
+        self.model = model;
+        self.state = state;
+        self.setup.levels[self.level].cloth.rest = cloth.rest;
+        self.setup.counted = counted;
+        self.steps[1] += self.rest.steps();
+        self.rest = PseudoTransientContinuation::near(self.rest_settings());
+        self.swing = None;
+        self.go_on_from_here();
+        Ok(())
+    }
+
+    /// Puts another mesh of the same panels in the place of the finest one, and those of its triangles where
+    /// strain counts. It takes over the shape by place in the panels; seams that are closed there are merged
+    /// at once, others are sewn from there. Where cloth stuck and what strain it kept is let go.
+    ///
+    /// # Errors
+    /// While it is sewn or on a coarser mesh; a mesh that cannot be simulated or has other panels. The
+    /// garment is then as it was.
+    pub fn remesh(&mut self, level: GarmentLevel, counted: Vec<bool>) -> Result<(), DrapeError> {
+        self.refuse_edit()?;
+        Model::new("garment", &level.cloth)?;
+        let old = &self.setup.levels[self.level].cloth;
+        let merged = |t: &[u32; 3]| t.map(|v| self.target[v as usize]);
+        let shape = TriangleMesh {
+            positions: self.state.positions.clone(),
+            triangles: old.triangles.iter().map(merged).collect(),
+        };
+        let carried = Carry::new(old, &level.cloth)?.apply(&shape);
+        self.steps = self.steps();
+        self.setup.levels[self.level] = level;
+        self.setup.counted = counted;
+        self.begin(self.level, carried)?;
+        self.go_on_from_here();
+        Ok(())
+    }
+
+    fn refuse_edit(&self) -> Result<(), DrapeError> {
+        let what = match self.stage {
+            _ if self.takes_edits() => return Ok(()),
+            Stage::Sewing => "it is still being sewn",
+            _ => "it still hangs on a coarser mesh",
+        };
+        Err(DrapeError::Scene {
+            place: "the edited garment".to_owned(),
+            what: what.to_owned(),
+            remedy: "edit it once the seams of its finest mesh are closed".to_owned(),
+        })
+    }
+
+    /// What was done to bring the garment to rest is to be done again; the share of the way falls.
+    fn go_on_from_here(&mut self) {
+        if matches!(self.stage, Stage::Finished) {
+            self.stage = Stage::Settling;
+        }
+        self.cut_short = false;
+        (self.swings, self.refinements) = (0, 0);
+        self.look_below = FIRST_LOOK;
+        self.warnings.clear();
+        self.share = match self.stage {
+            Stage::Sewing => 0.0,
+            Stage::Swinging => 0.5,
+            Stage::Settling | Stage::Finished => 0.7,
+        };
     }
 }
 
