@@ -369,7 +369,11 @@ fn drape_runs_live_is_held_goes_on_and_stops() {
     assert!(window.query_by_label_contains("Stopped").is_some());
     let start = place(&window, "Point hem_side of front");
     drag(&mut window, start, vec2(10.0, 0.0));
-    assert!(window.query_by_label_contains("drape it again").is_some());
+    let stands = |window: &Window| {
+        let words = window.query_by_label_contains("Out of date: the drape was stopped");
+        words.is_some() && window.state().stage().is_out_of_date()
+    };
+    assert!(wait(&mut window, 6000, stands), "not told out of date");
 }
 
 #[test]
@@ -388,7 +392,7 @@ fn a_garment_at_rest_is_the_sessions_until_the_pattern_changes() {
         .unwrap();
     assert!(dir.join("garment.glb").exists());
     // A garment of an older pattern is not taken.
-    press(&mut window, "Drape");
+    press(&mut window, "Hang again");
     let start = place(&window, "Point a of front");
     drag(&mut window, start, vec2(-22.0, 0.0));
     assert!(window.state().is_unsaved());

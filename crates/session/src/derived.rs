@@ -3,50 +3,25 @@
 use crate::NestOptions;
 use crate::choice::BodyChoice;
 use crate::drape::{Drape, drape};
-use crate::dressed::{DraftedPart, Dressed, checked, tell_apart};
+use crate::dressed::{DraftedPart, Dressed, MeshedPart, checked, tell_apart};
 use crate::fabrics::{FabricChoice, unseen_at_rest};
 use crate::kept_markers::KeptMarkers;
 use crate::laying::lay_watched;
+use crate::mannequin_source::MannequinSource;
 use crate::setup::{self, GarmentJob};
 use crate::{Project, SessionError, StampedInput, Watcher};
 use std::sync::Arc;
 use toile_assembly::{AssemblyOptions, assemble};
-use toile_body::{BodyError, Description, Figure, Mannequin};
+use toile_body::{BodyError, Mannequin};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
 use toile_marker::{Garments, Laying};
-use toile_measure::Measurements;
 use toile_pattern::{Diagnostic, Draft, Evaluation, Panel, Pattern, Size, SizeId, Wearer};
-
-/// What a mannequin is made from.
-#[derive(Clone, PartialEq)]
-enum Source {
-    /// Grown to measurements.
-    Grown(Figure, Measurements),
-    /// Standing as its description says.
-    Shaped(Arc<Description>),
-}
-
-impl Source {
-    fn of(project: &Project) -> Self {
-        match &project.body {
-            BodyChoice::Shaped { description, .. } => Self::Shaped(description.clone()),
-            _ => Self::Grown(project.figure(), project.wearer()),
-        }
-    }
-
-    fn make(&self) -> Result<Mannequin, BodyError> {
-        match self {
-            Self::Grown(figure, measurements) => Mannequin::new(measurements, *figure),
-            Self::Shaped(description) => Mannequin::from_description(description),
-        }
-    }
-}
 
 /// A mannequin and what it was made from.
 #[derive(Clone)]
 struct KeptMannequin {
-    source: Source,
+    source: MannequinSource,
     mannequin: Arc<Mannequin>,
     skin: Arc<SurfaceTree>,
 }
@@ -230,7 +205,10 @@ impl Derived {
     }
 
     /// The same, if nothing keeps any of them from being made.
-    fn sound_parts(&mut self, project: &Project) -> Result<Arc<Vec<DraftedPart>>, SessionError> {
+    pub fn sound_parts(
+        &mut self,
+        project: &Project,
+    ) -> Result<Arc<Vec<DraftedPart>>, SessionError> {
         let parts = self.parts(project);
         for part in parts.iter() {
             part.refuse_faults()?;
@@ -244,7 +222,7 @@ impl Derived {
     }
 
     fn kept_mannequin(&mut self, project: &Project) -> Result<&KeptMannequin, SessionError> {
-        let source = Source::of(project);
+        let source = MannequinSource::of(project);
         let kept = match self.mannequin.take() {
             Some(kept) if kept.source == source => kept,
             _ => {
@@ -308,7 +286,8 @@ impl Derived {
     pub fn job(&mut self, project: &Project) -> Result<GarmentJob, SessionError> {
         let dressed = self.dressed(project)?;
         let skin = self.kept_mannequin(project)?.skin.clone();
-        let mut job = setup::job(&dressed, skin, project.quality);
+        let source = MannequinSource::of(project);
+        let mut job = setup::job(&dressed, (source, skin), project.quality);
         // Gathers have as many folds as the mesh they swing in can hold.
         let gathers = dressed.draft.seams.iter().any(|seam| seam.gathered);
         let first = project.quality.first_edge_length();
@@ -372,7 +351,11 @@ fn assembled(
         };
         let found = assembled.diagnostics.iter();
         notes.extend(found.map(|note| format!("{prefix}{note}")));
-        meshed.push((part.clone(), assembled.garment));
+        meshed.push(MeshedPart {
+            part: part.clone(),
+            meshes: assembled.meshes,
+            garment: assembled.garment,
+        });
     }
     Ok((Dressed::new(meshed), notes))
 }

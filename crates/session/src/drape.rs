@@ -34,9 +34,10 @@ pub(crate) struct Drape {
 
 impl Drape {
     /// A finished run as a product.
-    pub fn of(handled: HandledRun) -> Self {
+    pub fn of(handled: &mut HandledRun) -> Self {
         let held = handled.is_held();
-        let (job, mut run, inputs) = handled.into_parts();
+        let inputs = handled.applied().to_vec();
+        let (job, run) = handled.parts();
         let measures = run.measure();
         let mesh = run.model.mesh(&run.state.positions);
         let origin = (0..job.garment.triangles.len() as u32)
@@ -56,8 +57,8 @@ impl Drape {
             steps: run.steps(),
             seam_gap: run.gap_before_merging(),
             tally: run.cloth_tally(),
-            target: run.target,
-            job,
+            target: run.target.clone(),
+            job: job.clone(),
             mesh,
             origin,
             measures,
@@ -171,7 +172,7 @@ pub(crate) fn drape(
             break;
         }
     }
-    Ok(Drape::of(run))
+    Ok(Drape::of(&mut run))
 }
 
 /// What is said of a garment that ends with folds of its cloth in one another.

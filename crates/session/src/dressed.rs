@@ -7,7 +7,7 @@ use crate::{Project, SessionError, WornGarment};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
-use toile_assembly::Garment;
+use toile_assembly::{Garment, PieceMeshes};
 use toile_cut::cut_diagnostics;
 use toile_geometry::TriangleMesh;
 use toile_interchange::ObjMesh;
@@ -110,18 +110,28 @@ pub(crate) fn tell_apart(parts: &mut [DraftedPart]) {
     }
 }
 
+/// A garment that is worn, meshed by itself.
+#[derive(Clone)]
+pub(crate) struct MeshedPart {
+    pub part: DraftedPart,
+    pub meshes: Arc<PieceMeshes>,
+    pub garment: Garment,
+}
+
 /// The garments worn as one: its draft, its mesh, and the parts it is made of.
 pub(crate) struct Dressed {
     pub draft: Arc<Draft>,
     pub garment: Arc<Garment>,
     pub parts: Arc<Vec<GarmentPart>>,
+    /// What it was put together from.
+    pub meshed: Arc<Vec<MeshedPart>>,
 }
 
 impl Dressed {
     /// Puts parts together, in their order; there is at least one. Where there are several, pieces and
     /// seams are named after their garment.
-    pub fn new(parts: Vec<(DraftedPart, Garment)>) -> Self {
-        let several = parts.len() > 1;
+    pub fn new(meshed: Vec<MeshedPart>) -> Self {
+        let several = meshed.len() > 1;
         let mut whole = Draft {
             name: String::new(),
             pieces: Vec::new(),
@@ -130,7 +140,7 @@ impl Dressed {
         };
         let mut mesh = Garment::default();
         let mut listed = Vec::new();
-        for (part, garment) in parts {
+        for MeshedPart { part, garment, .. } in &meshed {
             let first = [
                 mesh.panels.len(),
                 mesh.positions.len(),
@@ -140,11 +150,11 @@ impl Dressed {
                 true => format!("{}: ", part.name),
                 false => String::new(),
             };
-            add_garment(&mut mesh, garment, &whole, &prefix);
-            add_draft(&mut whole, &part, &prefix);
+            add_garment(&mut mesh, garment.clone(), &whole, &prefix);
+            add_draft(&mut whole, part, &prefix);
             listed.push(GarmentPart {
-                name: part.name,
-                source: part.source,
+                name: part.name.clone(),
+                source: part.source.clone(),
                 layer: part.layer,
                 panels: first[0]..mesh.panels.len(),
                 vertices: first[1]..mesh.positions.len(),
@@ -155,6 +165,7 @@ impl Dressed {
             draft: Arc::new(whole),
             garment: Arc::new(mesh),
             parts: Arc::new(listed),
+            meshed: Arc::new(meshed),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! A garment's run with hands on the cloth: inputs stamped with the step they apply to.
 
+use crate::rest_change::RestChange;
 use crate::{GarmentJob, SessionError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -122,9 +123,38 @@ impl HandledRun {
         self.waiting.entry(step).or_default().push(input);
     }
 
-    /// What it is made from, the garment, and the inputs it was made with.
-    pub fn into_parts(self) -> (GarmentJob, GarmentRun, Vec<StampedInput>) {
-        (self.job, self.run, self.applied)
+    /// What it is made from, and the garment.
+    pub fn parts(&mut self) -> (&GarmentJob, &mut GarmentRun) {
+        (&self.job, &mut self.run)
+    }
+
+    /// Whether an edit of the pattern can be taken.
+    pub fn takes_edits(&self) -> bool {
+        self.run.takes_edits()
+    }
+
+    /// Goes on to what an edit of the pattern asks for, from where it hangs. On a new mesh the hands let
+    /// go.
+    pub fn edit(&mut self, job: GarmentJob, change: RestChange) -> Result<Progress, DrapeError> {
+        let finest = |job: &GarmentJob| job.setup.levels.last().cloned().unwrap_or_default();
+        let (old, new) = (finest(&self.job), finest(&job));
+        let counted = job.setup.counted.clone();
+        match change {
+            RestChange::Nothing => {}
+            // What is drawn on the cloth may have changed, or a seam's allowance.
+            RestChange::Shapes if old.cloth.rest == new.cloth.rest => {}
+            RestChange::Shapes => self.run.reshape(new.cloth.rest, counted)?,
+            RestChange::Mesh => {
+                self.run.remesh(new, counted)?;
+                self.held.clear();
+                self.waiting.clear();
+            }
+        }
+        self.job = job;
+        if self.is_held() {
+            self.pull()?;
+        }
+        Ok(self.run.progress())
     }
 
     /// The inputs applied so far.

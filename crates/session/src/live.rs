@@ -1,7 +1,9 @@
 //! A drape that runs on its own thread while somebody watches and takes hold of the cloth.
 
 use crate::drape::{Drape, DrapeResult};
+use crate::garment_edit::GarmentEdit;
 use crate::hands::HandledRun;
+use crate::rest_change::RestChange;
 use crate::{GarmentJob, LiveInput, SessionError, StampedInput};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -9,25 +11,29 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
-use toile_drape::{DrapeError, Stage};
+use toile_drape::{DrapeError, Progress, Stage};
 use toile_geometry::Vec3;
 
 /// One moment of a live drape.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct LiveFrame {
+    /// The garment it shows, of the newest edit that was taken.
+    pub job: Arc<GarmentJob>,
     /// Positions of the vertices [m]; fewer after merging.
     pub positions: Vec<Vec3>,
     /// Vertex of this frame for every vertex of the job's garment.
     pub target: Vec<u32>,
     /// What is being done.
     pub stage: Stage,
+    /// Whether an edit can be taken: its finest mesh is in hand, with closed seams.
+    pub takes_edits: bool,
     /// Net force over weight; infinite while sewing.
     pub residual: f64,
     /// Largest seam gap [m].
     pub gap: f64,
     /// Steps taken in all.
     pub step: usize,
-    /// Share of the way done, 0..=1, never falling.
+    /// Share of the way done, 0..=1; only an edit makes it fall.
     pub share: f64,
 }
 
@@ -35,9 +41,16 @@ pub struct LiveFrame {
 #[derive(Default)]
 struct Orders {
     paused: bool,
+    stands: bool,
     stop: bool,
     /// Inputs not yet taken, with the step they are for.
     inputs: Vec<(LiveInput, Option<u64>)>,
+    /// An edit not yet taken.
+    edit: Option<GarmentEdit>,
+    /// The garment the thread has in hand.
+    job: Option<Arc<GarmentJob>>,
+    /// The thread has ended.
+    ended: bool,
 }
 
 #[derive(Default)]
@@ -47,14 +60,13 @@ struct Shared {
     latest: Mutex<Option<LiveFrame>>,
     applied: Mutex<Vec<StampedInput>>,
     outcome: Mutex<Option<Result<DrapeResult, String>>>,
+    warnings: Mutex<Vec<String>>,
     finished: AtomicBool,
 }
 
-/// A garment sewn and draped on its own thread. Only the newest frame is kept. While the cloth is
-/// held it does not end: at rest it waits for the hand to move or let go. Dropping it stops the
-/// thread and waits for it.
+/// A garment sewn and draped on its own thread, which then waits for what comes: a hand on the cloth, an
+/// edit of the pattern. Only the newest frame is kept. Dropping it stops the thread and waits for it.
 pub struct LiveRun {
-    job: GarmentJob,
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
 }
@@ -77,19 +89,23 @@ impl LiveRun {
     /// Starts the thread. Should it panic, the run ends with a failure that says so.
     pub fn start(job: GarmentJob) -> Self {
         let shared = Arc::new(Shared::default());
-        let (of_thread, its_job) = (shared.clone(), job.clone());
+        let job = Arc::new(job);
+        lock(&shared.orders).job = Some(job.clone());
+        let of_thread = shared.clone();
         let thread = std::thread::spawn(move || {
             // After a panic nothing is used but what the locks guard, each of it whole.
-            let work = AssertUnwindSafe(|| run(&of_thread, its_job));
-            let outcome = match catch_unwind(work) {
-                Ok(outcome) => outcome.map_err(|error| error.to_string()),
-                Err(panic) => Err(fault(&*panic)),
+            let work = AssertUnwindSafe(|| run(&of_thread, job));
+            let failure = match catch_unwind(work) {
+                Ok(ended) => ended.err().map(|error| error.to_string()),
+                Err(panic) => Some(fault(&*panic)),
             };
-            *lock(&of_thread.outcome) = outcome.transpose();
+            lock(&of_thread.orders).ended = true;
+            if let Some(words) = failure {
+                *lock(&of_thread.outcome) = Some(Err(words));
+            }
             of_thread.finished.store(true, Ordering::Release);
         });
         Self {
-            job,
             shared,
             thread: Some(thread),
         }
@@ -101,7 +117,7 @@ impl LiveRun {
     }
 
     /// Does something to the cloth before the next step. Of several inputs for one vertex that
-    /// come between two steps only the newest counts. After the end nothing happens.
+    /// come between two steps only the newest counts. A garment at rest moves again.
     ///
     /// # Errors
     /// A vertex or a place that is not there.
@@ -119,10 +135,36 @@ impl LiveRun {
     }
 
     fn order(&self, input: LiveInput, step: Option<u64>) -> Result<(), SessionError> {
-        input.check(&self.job)?;
-        lock(&self.shared.orders).inputs.push((input, step));
-        self.shared.woken.notify_all();
+        let mut orders = lock(&self.shared.orders);
+        if let Some(job) = &orders.job {
+            input.check(job)?;
+        }
+        orders.inputs.push((input, step));
+        self.shared.begin_again(&orders);
         Ok(())
+    }
+
+    /// Has the garment go on from where it hangs to what an edit of the pattern asks for, as soon as the
+    /// seams of its finest mesh are closed. `edit` follows from the garment given last: here, or with the
+    /// edit before. An edit that still waits is replaced. Hands stay on the cloth unless it is meshed
+    /// anew. A garment that stands still goes on.
+    ///
+    /// What comes to rest then is no [`LiveRun::result`]: it hangs as its way was, and a drape of the
+    /// pattern does not, bit by bit.
+    pub fn edit(&self, mut edit: GarmentEdit) {
+        let mut orders = lock(&self.shared.orders);
+        if let Some(replaced) = orders.edit.take() {
+            edit.change = edit.change.max(replaced.change);
+        }
+        orders.edit = Some(edit);
+        orders.stands = false;
+        self.shared.begin_again(&orders);
+    }
+
+    /// Holds the garment where it hangs until an edit comes that it can follow. While it is sewn it goes on
+    /// until its seams are closed.
+    pub fn stand_still(&self) {
+        lock(&self.shared.orders).stands = true;
     }
 
     /// Everything that was done to the cloth so far, each with the step it was applied at. The
@@ -153,7 +195,8 @@ impl LiveRun {
         self.shared.woken.notify_all();
     }
 
-    /// Whether the run has ended: at rest, stopped or failed.
+    /// Whether nothing moves any more: at rest, stopped or failed. What is done to a garment at rest
+    /// begins it again.
     pub fn is_finished(&self) -> bool {
         self.shared.finished.load(Ordering::Acquire)
     }
@@ -163,10 +206,15 @@ impl LiveRun {
         lock(&self.shared.outcome).as_ref()?.as_ref().err().cloned()
     }
 
-    /// The draped garment, once it hangs at rest; nothing before, and nothing of a run that was
-    /// stopped or failed.
+    /// The draped garment, once it hangs at rest; nothing before, nothing of a run that was stopped or
+    /// failed, and nothing after an edit that changed it.
     pub fn result(&self) -> Option<DrapeResult> {
         lock(&self.shared.outcome).as_ref()?.as_ref().ok().cloned()
+    }
+
+    /// What a garment that rests ought not to have, in plain words, also after an edit.
+    pub fn warnings(&self) -> Vec<String> {
+        lock(&self.shared.warnings).clone()
     }
 }
 
@@ -180,21 +228,59 @@ impl Drop for LiveRun {
     }
 }
 
+/// What a thread does next.
+enum Turn {
+    /// A step.
+    Step,
+    /// An edit.
+    Edit(Box<GarmentEdit>),
+    /// What is told of a garment that has come to rest.
+    Tell,
+    /// Nothing any more.
+    End,
+}
+
 impl Shared {
-    /// Waits while the run is paused, or at rest with the cloth held. Hands the inputs that came
-    /// to the run; `false` means stop.
-    fn wait_for_turn(&self, run: &mut HandledRun) -> bool {
+    /// Wakes the thread for something new; after the end nothing happens.
+    fn begin_again(&self, orders: &Orders) {
+        if !orders.ended {
+            *lock(&self.outcome) = None;
+            self.finished.store(false, Ordering::Release);
+            self.woken.notify_all();
+        }
+    }
+
+    /// Waits while the run is paused, stands still, or is at rest with nothing to be done. Hands the
+    /// inputs that came to the run.
+    fn wait_for_turn(&self, run: &mut HandledRun, told: Option<&Told>) -> Turn {
         let mut orders = lock(&self.orders);
         loop {
             if orders.stop {
-                return false;
+                return Turn::End;
             }
             if !orders.paused {
                 for (input, step) in orders.inputs.drain(..) {
                     run.give(input, step);
                 }
-                if !(run.at_rest() && run.is_held()) {
-                    return true;
+                if run.takes_edits()
+                    && let Some(edit) = orders.edit.take()
+                {
+                    orders.job = Some(Arc::new(edit.job.clone()));
+                    return Turn::Edit(Box::new(edit));
+                }
+                match told {
+                    _ if !run.at_rest() => {
+                        if !(orders.stands && run.takes_edits()) {
+                            return Turn::Step;
+                        }
+                    }
+                    _ if run.is_held() => {}
+                    None => return Turn::Tell,
+                    Some(told) => {
+                        *lock(&self.outcome) = told.result.clone().map(Ok);
+                        lock(&self.warnings).clone_from(&told.warnings);
+                        self.finished.store(true, Ordering::Release);
+                    }
                 }
             }
             orders = self
@@ -203,36 +289,71 @@ impl Shared {
                 .unwrap_or_else(PoisonError::into_inner);
         }
     }
-}
 
-/// Runs to rest; nothing means that it was stopped.
-fn run(shared: &Shared, job: GarmentJob) -> Result<Option<DrapeResult>, DrapeError> {
-    let start = Instant::now();
-    let mut run = HandledRun::new(job)?;
-    let mut seconds = start.elapsed().as_secs_f64();
-    while shared.wait_for_turn(&mut run) {
-        let start = Instant::now();
-        if run.at_rest() {
-            let drape = Arc::new(Drape::of(run));
-            seconds += start.elapsed().as_secs_f64();
-            return Ok(Some(DrapeResult { drape, seconds }));
-        }
-        let progress = run.advance()?;
-        seconds += start.elapsed().as_secs_f64();
-        let mut applied = lock(&shared.applied);
-        let known = applied.len();
-        applied.extend_from_slice(&run.applied()[known..]);
-        drop(applied);
+    fn show(
+        &self,
+        run: &mut HandledRun,
+        job: &Arc<GarmentJob>,
+        progress: Progress,
+    ) -> Result<(), DrapeError> {
         let (positions, target) = run.shape()?;
-        *lock(&shared.latest) = Some(LiveFrame {
+        *lock(&self.latest) = Some(LiveFrame {
+            job: job.clone(),
             positions,
             target,
             stage: progress.stage,
+            takes_edits: run.takes_edits(),
             residual: progress.residual,
             gap: progress.gap,
             step: run.steps() as usize,
             share: progress.share,
         });
+        Ok(())
     }
-    Ok(None)
+}
+
+/// What is told of a garment at rest.
+struct Told {
+    /// Its drape, unless it followed an edit.
+    result: Option<DrapeResult>,
+    warnings: Vec<String>,
+}
+
+/// Runs until it is stopped.
+fn run(shared: &Shared, mut job: Arc<GarmentJob>) -> Result<(), DrapeError> {
+    let start = Instant::now();
+    let mut run = HandledRun::new((*job).clone())?;
+    let mut seconds = start.elapsed().as_secs_f64();
+    let mut told: Option<Told> = None;
+    let mut is_edited = false;
+    loop {
+        let turn = shared.wait_for_turn(&mut run, told.as_ref());
+        let start = Instant::now();
+        told = None;
+        match turn {
+            Turn::End => return Ok(()),
+            Turn::Tell => {
+                let drape = Arc::new(Drape::of(&mut run));
+                seconds += start.elapsed().as_secs_f64();
+                let warnings = drape.warnings.clone();
+                let result = (!is_edited).then_some(DrapeResult { drape, seconds });
+                told = Some(Told { result, warnings });
+            }
+            Turn::Edit(edit) => {
+                is_edited |= edit.change != RestChange::Nothing;
+                job = Arc::new(edit.job.clone());
+                let progress = run.edit(edit.job, edit.change)?;
+                shared.show(&mut run, &job, progress)?;
+            }
+            Turn::Step => {
+                let progress = run.advance()?;
+                seconds += start.elapsed().as_secs_f64();
+                let mut applied = lock(&shared.applied);
+                let known = applied.len();
+                applied.extend_from_slice(&run.applied()[known..]);
+                drop(applied);
+                shared.show(&mut run, &job, progress)?;
+            }
+        }
+    }
 }

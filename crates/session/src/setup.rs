@@ -1,8 +1,9 @@
 //! The one function that turns draft, fabrics and mannequin into a drape.
 
 use crate::Quality;
-use crate::dressed::{Dressed, GarmentPart};
+use crate::dressed::{DraftedPart, Dressed, GarmentPart, MeshedPart};
 use crate::fabrics::cloth_material;
+use crate::mannequin_source::MannequinSource;
 use std::sync::Arc;
 use toile_assembly::{Garment, Levels, Limb, Wearer};
 use toile_body::{Mannequin, Part};
@@ -26,6 +27,19 @@ pub struct GarmentJob {
     pub panels: Arc<Vec<JobPanel>>,
     /// The garments it is made of, the project's own first.
     pub parts: Arc<Vec<GarmentPart>>,
+    /// What an edit of the pattern is compared with.
+    pub(crate) origin: Arc<JobOrigin>,
+}
+
+/// What a garment was made from.
+pub(crate) struct JobOrigin {
+    /// Whom it was placed round.
+    pub body: MannequinSource,
+    pub quality: Quality,
+    /// The garments as drafted now.
+    pub drafted: Vec<DraftedPart>,
+    /// The same as drafted when they were meshed.
+    pub meshed: Arc<Vec<MeshedPart>>,
 }
 
 /// What a picture or a file needs to know of a piece of a garment.
@@ -40,7 +54,11 @@ pub struct JobPanel {
 }
 
 /// Builds the drape of a garment that was meshed and placed.
-pub(crate) fn job(dressed: &Dressed, skin: Arc<SurfaceTree>, quality: Quality) -> GarmentJob {
+pub(crate) fn job(
+    dressed: &Dressed,
+    (body, skin): (MannequinSource, Arc<SurfaceTree>),
+    quality: Quality,
+) -> GarmentJob {
     let (draft, garment) = (&*dressed.draft, dressed.garment.clone());
     let panels = garment
         .panels
@@ -76,6 +94,12 @@ pub(crate) fn job(dressed: &Dressed, skin: Arc<SurfaceTree>, quality: Quality) -
         garment,
         panels: Arc::new(panels),
         parts: dressed.parts.clone(),
+        origin: Arc::new(JobOrigin {
+            body,
+            quality,
+            drafted: dressed.meshed.iter().map(|m| m.part.clone()).collect(),
+            meshed: dressed.meshed.clone(),
+        }),
     }
 }
 

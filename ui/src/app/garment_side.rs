@@ -1,9 +1,11 @@
 //! The side of the window with the garment on the mannequin.
 
 use super::ToileApp;
-use super::making::Moment;
+use super::making::{Moment, Shown};
 use crate::theme::{self, Palette};
-use egui::{Button, ComboBox, Panel, Rect, RichText, Ui, pos2, vec2};
+use egui::{
+    Align, Button, ComboBox, Label, Layout, Panel, Rect, RichText, Ui, UiBuilder, pos2, vec2,
+};
 use toile_session::{Command, Quality, Stage};
 
 /// Height of the strip over the view [pixels].
@@ -22,6 +24,8 @@ impl ToileApp {
             true => "Making the mannequin\u{2026}",
             false => "No mannequin yet",
         };
+        let is_old = matches!(self.making.shown(), Shown::OutOfDate(_));
+        self.stage.set_out_of_date(is_old);
         self.stage.show(ui, empty);
         self.drape_progress(ui, view);
     }
@@ -45,7 +49,11 @@ impl ToileApp {
     pub(crate) fn drape_strip(&mut self, ui: &mut Ui) {
         ui.horizontal_centered(|ui| {
             let palette = Palette::of(ui.ctx());
-            if let Some(command) = super::command_table::named("Drape") {
+            let name = match self.making.hangs() {
+                true => "Hang again",
+                false => "Drape",
+            };
+            if let Some(command) = super::command_table::named(name) {
                 let words = RichText::new(command.name).color(palette.on_accent);
                 let button = Button::new(words).fill(palette.accent);
                 self.command_widget(ui, command, button, None);
@@ -97,31 +105,37 @@ impl ToileApp {
             ui.painter().rect_filled(done, 0.0, palette.accent);
         }
         let line = Rect::from_min_max(
-            pos2(view.left() + 12.0, view.bottom() - 34.0),
-            pos2(view.right() - 12.0, view.bottom() - 10.0),
+            pos2(view.left() + 12.0, view.bottom() - 80.0),
+            pos2(view.right() - 12.0, view.bottom() - 12.0),
         );
-        ui.scope_builder(egui::UiBuilder::new().max_rect(line), |ui| {
-            let words = RichText::new(words).color(palette.ink_soft);
-            ui.add(egui::Label::new(words).truncate());
+        let (colour, is_old) = match self.making.shown() {
+            Shown::OutOfDate(_) => (palette.warning, true),
+            _ => (palette.ink_soft, false),
+        };
+        let layout = Layout::bottom_up(Align::Min);
+        ui.scope_builder(UiBuilder::new().max_rect(line).layout(layout), |ui| {
+            let label = Label::new(RichText::new(words).color(colour));
+            // Why it is out of date takes the lines it needs.
+            ui.add(match is_old {
+                true => label.wrap(),
+                false => label.truncate(),
+            });
         });
     }
 
     fn drape_words(&self) -> String {
-        if self.making.is_preparing() {
-            return "Cutting the cloth into triangles and placing it\u{2026}".into();
-        }
-        let Some(moment) = self.making.moment() else {
-            return String::new();
-        };
-        let state = moment_words(&moment);
-        let current = self.making.revision() == Some(self.session.revision());
-        match () {
-            () if !current => format!("The pattern has changed: drape it again. {state}"),
-            () if self.making.is_paused() => format!("{state}. Paused"),
-            () if !self.making.is_draping() && moment.stage != Stage::Finished => {
-                format!("{state}. Stopped")
-            }
-            () => state,
+        let moment = self.making.moment();
+        let state = moment.map_or_else(String::new, |moment| moment_words(&moment));
+        let rests = moment.is_some_and(|moment| moment.stage == Stage::Finished);
+        match self.making.shown() {
+            Shown::Nothing => String::new(),
+            Shown::Preparing => "Cutting the cloth into triangles and placing it\u{2026}".into(),
+            Shown::Moving if rests => "Moving: taking over the change".into(),
+            Shown::Moving => format!("Moving: {state}"),
+            Shown::Held => format!("Paused: {state}"),
+            Shown::Stopped => format!("Stopped: {state}"),
+            Shown::AtRest => state,
+            Shown::OutOfDate(why) => format!("Out of date: {why}"),
         }
     }
 }
@@ -139,15 +153,16 @@ fn moment_words(moment: &Moment) -> String {
     match moment.stage {
         Stage::Sewing => {
             let gap = moment.gap * 1000.0;
-            format!("Sewing, step {step}: seams up to {gap:.1} mm apart")
+            format!("sewing, step {step}, seams up to {gap:.1} mm apart")
         }
-        Stage::Swinging => "Swinging under its own weight".to_owned(),
+        Stage::Swinging => "swinging under its own weight".to_owned(),
         Stage::Settling => {
             let force = match moment.residual {
+                unknown if unknown.is_infinite() => return format!("settling, step {step}"),
                 many if many >= 1.0 => format!("{many:.0} times the weight"),
                 few => format!("{:.2} % of the weight", few * 100.0),
             };
-            format!("Settling, step {step}: net force {force}")
+            format!("settling, step {step}, net force {force}")
         }
         Stage::Finished => format!("At rest after {step} steps"),
     }

@@ -1,24 +1,55 @@
 //! Work that must not hold up the window: the mannequin and the meshed garment are made on a
-//! thread of their own from a snapshot, then the drape runs live.
+//! thread of their own from a snapshot, then the drape runs live. A garment that hangs follows the
+//! edits of its pattern from there; how it does is found on a thread of its own, too.
 
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use toile_session::{Event, GarmentJob, LiveFrame, LiveRun, Session, SessionError, Stage};
+use toile_session::{
+    Event, GarmentEdit, GarmentJob, LiveFrame, LiveRun, Project, RestChange, Session, SessionError,
+    Stage, Standstill,
+};
 
 /// What is being made.
 #[derive(Default)]
 pub struct Making {
-    body: Option<Receiver<Made>>,
-    garment: Option<Receiver<Made>>,
+    body: Option<Receiver<Made<Result<(), SessionError>>>>,
+    garment: Option<Receiver<Made<Result<GarmentJob, SessionError>>>>,
+    edit: Option<Receiver<Made<Result<GarmentEdit, Standstill>>>>,
     run: Option<LiveRun>,
     last: Option<Moment>,
-    /// Revision of the project the garment was made from.
-    revision: Option<u64>,
+    /// The garment as it is to hang, by the edit that was given last.
+    given: Option<Arc<GarmentJob>>,
+    /// The project that the garment was last made for or compared with, and its revision.
+    compared: Option<(Project, u64)>,
+    /// Why the garment cannot go on to the present project.
+    standstill: Option<String>,
+    /// What there is to tell of the garment at rest was told.
+    told: bool,
 }
 
 /// What a thread hands back.
-struct Made {
+struct Made<T> {
     session: Session,
-    result: Result<Option<Box<GarmentJob>>, SessionError>,
+    result: T,
+}
+
+/// What the picture of the garment shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// No garment.
+    Nothing,
+    /// A garment that is being meshed.
+    Preparing,
+    /// The garment of the pattern, on its way.
+    Moving,
+    /// The same, held by Pause.
+    Held,
+    /// The same where it was stopped.
+    Stopped,
+    /// The same at rest.
+    AtRest,
+    /// The garment of an earlier pattern, and why.
+    OutOfDate(String),
 }
 
 /// A live drape in a few numbers.
@@ -34,6 +65,24 @@ pub struct Moment {
     pub residual: f64,
     /// Share of the way done, 0..=1.
     pub share: f64,
+    /// Revision of the project it shows.
+    revision: u64,
+    /// Whether an edit can be taken.
+    takes_edits: bool,
+}
+
+impl From<&LiveFrame> for Moment {
+    fn from(frame: &LiveFrame) -> Self {
+        Self {
+            stage: frame.stage,
+            step: frame.step,
+            gap: frame.gap,
+            residual: frame.residual,
+            share: frame.share,
+            revision: frame.job.revision,
+            takes_edits: frame.takes_edits,
+        }
+    }
 }
 
 /// Something that came about since the last look.
@@ -41,12 +90,13 @@ pub enum News {
     /// The session knows its mannequin now.
     Body,
     /// The garment is meshed and placed; the drape begins.
-    Begun(Box<GarmentJob>),
+    Begun(Arc<GarmentJob>),
     /// The cloth has moved.
     Frame(LiveFrame),
-    /// The drape has ended by itself. What the session tells of it; nothing when the pattern has
-    /// changed since.
+    /// The drape has come to rest, and is the session's. What is told of it.
     Finished(Vec<Event>),
+    /// The garment that followed an edit has come to rest with shortcomings.
+    Warned(Vec<String>),
     /// It cannot be done.
     Failed(String),
 }
@@ -55,18 +105,15 @@ impl Making {
     /// Begins to make the mannequin of a session's wearer.
     pub fn start_body(&mut self, session: &Session) {
         self.body = Some(on_thread(session, |session| {
-            session.mannequin().map(|_| None)
+            session.mannequin().map(|_| ())
         }));
     }
 
     /// Begins to make and drape a session's garment. A drape that runs is ended.
     pub fn start_garment(&mut self, session: &Session) {
-        self.stop();
-        self.last = None;
-        self.revision = Some(session.revision());
-        self.garment = Some(on_thread(session, |session| {
-            session.garment_setup().map(|job| Some(Box::new(job)))
-        }));
+        self.clear();
+        self.compared = Some((session.project().clone(), session.revision()));
+        self.garment = Some(on_thread(session, Session::garment_setup));
     }
 
     /// Ends the drape. What it has reached stays.
@@ -78,8 +125,12 @@ impl Making {
     /// Forgets the garment.
     pub fn clear(&mut self) {
         self.stop();
+        self.edit = None;
         self.last = None;
-        self.revision = None;
+        self.given = None;
+        self.compared = None;
+        self.standstill = None;
+        self.told = false;
     }
 
     /// Holds the drape, or lets it go on.
@@ -96,14 +147,9 @@ impl Making {
         self.run.as_ref().is_some_and(LiveRun::is_paused)
     }
 
-    /// Whether a garment is being meshed or draped.
+    /// Whether a garment is being meshed or draped, or is held meanwhile.
     pub fn is_draping(&self) -> bool {
-        self.garment.is_some() || self.run.is_some()
-    }
-
-    /// Whether the garment is still being meshed.
-    pub fn is_preparing(&self) -> bool {
-        self.garment.is_some()
+        self.garment.is_some() || self.is_moving() || self.is_paused()
     }
 
     /// Whether the mannequin is being made.
@@ -111,9 +157,22 @@ impl Making {
         self.body.is_some()
     }
 
+    /// Whether a garment is shown that can be hung again.
+    pub fn hangs(&self) -> bool {
+        self.given.is_some()
+    }
+
     /// Whether anything may change without the person doing something.
     pub fn is_busy(&self) -> bool {
-        self.body.is_some() || self.is_draping() && !self.is_paused()
+        let works = self.body.is_some() || self.garment.is_some() || self.edit.is_some();
+        works || self.is_moving()
+    }
+
+    /// Whether the cloth moves.
+    fn is_moving(&self) -> bool {
+        let stands = self.standstill.is_some() && self.last.is_some_and(|last| last.takes_edits);
+        let moves = |run: &LiveRun| !run.is_finished() && !run.is_paused();
+        !stands && self.run.as_ref().is_some_and(moves)
     }
 
     /// The drape at its newest.
@@ -121,63 +180,148 @@ impl Making {
         self.last
     }
 
-    /// Revision of the project that the garment shown was made from.
-    pub fn revision(&self) -> Option<u64> {
-        self.revision
+    /// What the picture shows.
+    pub fn shown(&self) -> Shown {
+        if self.garment.is_some() {
+            return Shown::Preparing;
+        }
+        let (Some(given), Some(last)) = (&self.given, self.last) else {
+            return Shown::Nothing;
+        };
+        if let Some(why) = &self.standstill {
+            return Shown::OutOfDate(why.clone());
+        }
+        let waits = last.revision != given.revision;
+        match last.stage {
+            _ if waits && self.run.is_none() => Shown::OutOfDate(STOPPED.to_owned()),
+            _ if waits && self.is_paused() => {
+                Shown::OutOfDate("it is held: Pause lets it follow".to_owned())
+            }
+            Stage::Sewing if waits => Shown::OutOfDate(
+                "it is still being sewn, and follows when its seams are closed".to_owned(),
+            ),
+            _ if waits && !last.takes_edits => Shown::OutOfDate(
+                "it still hangs on a coarse mesh, and follows on the fine one".to_owned(),
+            ),
+            _ if self.is_paused() => Shown::Held,
+            Stage::Finished if !waits && self.edit.is_none() => Shown::AtRest,
+            _ if self.run.is_none() => Shown::Stopped,
+            _ => Shown::Moving,
+        }
     }
 
     /// What came about since the last look. What threads derived goes to the session.
     pub fn news(&mut self, session: &mut Session) -> Vec<News> {
         let mut news = Vec::new();
-        if let Some(made) = take(&mut self.body) {
-            news.push(match made {
-                Ok(made) => received(made, session).map_or_else(News::Failed, |_| News::Body),
-                Err(words) => News::Failed(words),
-            });
+        match take(&mut self.body, session) {
+            Some(Ok(Ok(()))) => news.push(News::Body),
+            Some(Ok(Err(error))) => news.push(News::Failed(error.to_string())),
+            Some(Err(words)) => news.push(News::Failed(words)),
+            None => {}
         }
-        if let Some(made) = take(&mut self.garment) {
-            match made.and_then(|made| received(made, session)) {
-                Ok(Some(job)) => {
-                    self.run = Some(LiveRun::start((*job).clone()));
-                    news.extend([News::Body, News::Begun(job)]);
-                }
-                Ok(None) => {}
-                Err(words) => news.push(News::Failed(words)),
+        match take(&mut self.garment, session) {
+            Some(Ok(Ok(job))) => {
+                self.run = Some(LiveRun::start(job.clone()));
+                let job = Arc::new(job);
+                self.given = Some(job.clone());
+                news.extend([News::Body, News::Begun(job)]);
             }
+            Some(Ok(Err(error))) => news.push(News::Failed(error.to_string())),
+            Some(Err(words)) => news.push(News::Failed(words)),
+            None => {}
         }
-        self.follow(session, &mut news);
+        self.follow_edits(session);
+        self.follow_run(session, &mut news);
         news
     }
 
-    fn follow(&mut self, session: &mut Session, news: &mut Vec<News>) {
+    /// Has the garment that hangs follow the pattern, one edit after the other.
+    fn follow_edits(&mut self, session: &mut Session) {
+        match take(&mut self.edit, session) {
+            Some(Ok(Ok(edit))) => self.give(edit),
+            Some(Ok(Err(why))) => self.stand_still(why.to_string()),
+            Some(Err(words)) => self.stand_still(words),
+            None => {}
+        }
+        let (Some(given), Some((project, revision))) = (&self.given, &self.compared) else {
+            return;
+        };
+        let waits = self.edit.is_some() || session.is_previewing();
+        if waits || *revision == session.revision() {
+            return;
+        }
+        let now = session.project();
+        let is_same = Arc::ptr_eq(&project.pattern, &now.pattern) && project == now;
+        let given = given.clone();
+        self.compared = Some((now.clone(), session.revision()));
+        if !is_same {
+            self.edit = Some(on_thread(session, move |session| {
+                session.garment_edit(&given)
+            }));
+        } else if self.standstill.is_none() {
+            // A gesture was left: the garment is of this revision, too.
+            let mut job = (*given).clone();
+            job.revision = session.revision();
+            let change = RestChange::Nothing;
+            self.give(GarmentEdit { job, change });
+        }
+    }
+
+    fn give(&mut self, edit: GarmentEdit) {
+        let Some(run) = &self.run else {
+            let follows = edit.change == RestChange::Nothing;
+            self.standstill = (!follows).then(|| STOPPED.to_owned());
+            return;
+        };
+        self.standstill = None;
+        self.told = false;
+        self.given = Some(Arc::new(edit.job.clone()));
+        run.edit(edit);
+    }
+
+    fn stand_still(&mut self, why: String) {
+        self.standstill = Some(why);
+        if let Some(run) = &self.run {
+            run.stand_still();
+        }
+    }
+
+    fn follow_run(&mut self, session: &mut Session, news: &mut Vec<News>) {
         let Some(run) = &self.run else { return };
         // Asked before the last frame is taken, or that frame could be missed.
         let finished = run.is_finished();
         if let Some(frame) = run.latest() {
-            self.last = Some(Moment {
-                stage: frame.stage,
-                step: frame.step,
-                gap: frame.gap,
-                residual: frame.residual,
-                share: frame.share,
-            });
+            self.last = Some(Moment::from(&frame));
             news.push(News::Frame(frame));
         }
-        if finished {
-            let adopted = run.result().and_then(|result| session.adopt_drape(result));
-            news.push(match (run.failure(), adopted) {
-                (Some(words), _) => News::Failed(words),
-                (None, events) => News::Finished(events.unwrap_or_default()),
-            });
+        if !finished {
+            self.told = false;
+        } else if let Some(words) = run.failure() {
+            news.push(News::Failed(words));
             self.run = None;
+        } else if !self.told && !session.is_previewing() {
+            self.told = true;
+            match run.result() {
+                Some(result) if session.draped().is_none() => {
+                    news.extend(session.adopt_drape(result).map(News::Finished));
+                }
+                Some(_) => {}
+                None => {
+                    let warnings = Some(run.warnings()).filter(|words| !words.is_empty());
+                    news.extend(warnings.map(News::Warned));
+                }
+            }
         }
     }
 }
 
-fn on_thread(
+/// Why a garment that was stopped is out of date.
+const STOPPED: &str = "the drape was stopped; hang it again";
+
+fn on_thread<T: Send + 'static>(
     session: &Session,
-    work: impl FnOnce(&mut Session) -> Result<Option<Box<GarmentJob>>, SessionError> + Send + 'static,
-) -> Receiver<Made> {
+    work: impl FnOnce(&mut Session) -> T + Send + 'static,
+) -> Receiver<Made<T>> {
     let mut session = session.snapshot();
     let (sender, receiver) = channel();
     std::thread::spawn(move || {
@@ -188,10 +332,17 @@ fn on_thread(
     receiver
 }
 
-/// What a thread has sent, if it has; a thread that ended without a word is a failure.
-fn take(receiver: &mut Option<Receiver<Made>>) -> Option<Result<Made, String>> {
+/// What a thread has sent, if it has; what it derived goes to the session. A thread that ended
+/// without a word is a failure.
+fn take<T>(
+    receiver: &mut Option<Receiver<Made<T>>>,
+    session: &mut Session,
+) -> Option<Result<T, String>> {
     let made = match receiver.as_ref()?.try_recv() {
-        Ok(made) => Ok(made),
+        Ok(made) => {
+            session.adopt(made.session);
+            Ok(made.result)
+        }
         Err(TryRecvError::Empty) => return None,
         Err(TryRecvError::Disconnected) => {
             Err("the work ended unexpectedly: save the pattern and try again".to_owned())
@@ -199,9 +350,4 @@ fn take(receiver: &mut Option<Receiver<Made>>) -> Option<Result<Made, String>> {
     };
     *receiver = None;
     Some(made)
-}
-
-fn received(made: Made, session: &mut Session) -> Result<Option<Box<GarmentJob>>, String> {
-    session.adopt(made.session);
-    made.result.map_err(|error| error.to_string())
 }

@@ -356,11 +356,8 @@ impl ToileApp {
                         self.stage.set_body(mannequin.skin());
                     }
                 }
-                News::Begun(job) => {
-                    self.stage.set_garment(&job);
-                    self.stage.set_frame(&first_frame(&job));
-                }
-                News::Frame(frame) => self.stage.set_frame(&frame),
+                News::Begun(job) => self.stage.set_frame(first_frame(&job)),
+                News::Frame(frame) => self.stage.set_frame(frame),
                 News::Finished(events) => {
                     let warned = events.into_iter().filter_map(|event| match event {
                         Event::Warned { message } => Some(message),
@@ -372,6 +369,7 @@ impl ToileApp {
                         false => Notice::warning(warned.join("; ")),
                     };
                 }
+                News::Warned(words) => self.notice = Notice::warning(words.join("; ")),
                 News::Failed(words) => self.notice = Notice::fault(words),
             }
         }

@@ -419,6 +419,14 @@ pub static TOOL_COMMANDS: &[UiCommand] = &[
     ),
     command(
         Menu::Garment,
+        "Hang again",
+        None,
+        "Sew the garment anew and let it hang from the start, as it is exported",
+        |app| app.has_panels() && app.making.hangs(),
+        ToileApp::drape,
+    ),
+    command(
+        Menu::Garment,
         "Pause",
         key(PLAIN, Key::F6),
         "Hold the drape, or let it go on",

@@ -68,12 +68,15 @@ const PANEL_SHADES: [f64; 3] = [1.0, 0.93, 1.05];
 /// The colour of seam lines on cloth of that colour (both linear): darker on light cloth, lighter
 /// on dark.
 fn seam_ink(cloth: [f32; 3]) -> [f32; 3] {
-    // Luminance of sRGB primaries (IEC 61966-2-1).
-    let luminance = 0.2126 * cloth[0] + 0.7152 * cloth[1] + 0.0722 * cloth[2];
-    match luminance > 0.08 {
+    match luminance(cloth) > 0.08 {
         true => cloth.map(|c| 0.2 * c),
         false => cloth.map(|c| 0.12 + 0.7 * c),
     }
+}
+
+/// Luminance of a linear colour of sRGB primaries (IEC 61966-2-1).
+fn luminance([red, green, blue]: [f32; 3]) -> f32 {
+    0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
 
 /// Unit normals of the vertices, weighted by the triangles' areas.
@@ -148,6 +151,27 @@ pub struct ClothSolid {
     pub lines: Vec<Corner>,
 }
 
+/// Greys of cloth that is out of date, of black and of white cloth, linear: apart from the mannequin
+/// and from every colour of the cloth.
+const OLD_GREYS: [f32; 2] = [0.18, 0.40];
+/// Grey of its seam lines.
+const OLD_INK: f32 = 0.04;
+
+impl ClothSolid {
+    /// Takes the colour away: what is shown is out of date.
+    pub fn fade(&mut self) {
+        let [black, white] = OLD_GREYS;
+        for corner in &mut self.corners {
+            let [red, green, blue, finish] = corner.colour;
+            let grey = black + (white - black) * luminance([red, green, blue]).clamp(0.0, 1.0);
+            corner.colour = [grey, grey, grey, finish];
+        }
+        for corner in &mut self.lines {
+            corner.colour = [OLD_INK, OLD_INK, OLD_INK, corner.colour[3]];
+        }
+    }
+}
+
 impl ClothLook {
     /// The look of a garment's cloth.
     pub fn new(job: &GarmentJob) -> Self {
@@ -215,9 +239,11 @@ impl ClothLook {
 }
 
 /// The garment before its first step.
-pub fn first_frame(job: &GarmentJob) -> LiveFrame {
+pub fn first_frame(job: &Arc<GarmentJob>) -> LiveFrame {
     let garment = &job.garment;
     LiveFrame {
+        job: job.clone(),
+        takes_edits: false,
         positions: garment.positions.clone(),
         target: (0..garment.positions.len() as u32).collect(),
         stage: Stage::Sewing,

@@ -6,6 +6,7 @@ use crate::gpu::{CornerBuffer, StageRenderer};
 use crate::theme::{self, Palette};
 use eframe::egui_wgpu::RenderState;
 use egui::{Align2, CursorIcon, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use std::sync::Arc;
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_session::{GarmentJob, LiveFrame};
 
@@ -19,7 +20,9 @@ pub struct GarmentView {
     body_bounds: Option<[Vec3; 2]>,
     body_buffer: CornerBuffer,
     floor_buffer: CornerBuffer,
-    look: Option<ClothLook>,
+    look: Option<(Arc<GarmentJob>, ClothLook)>,
+    frame: Option<LiveFrame>,
+    is_old: bool,
     cloth: ClothSolid,
     cloth_buffer: CornerBuffer,
     line_buffer: CornerBuffer,
@@ -65,16 +68,35 @@ impl GarmentView {
         self.wants_fit |= first;
     }
 
-    /// Shows another garment, from now on at the frames given.
-    pub fn set_garment(&mut self, job: &GarmentJob) {
-        self.look = Some(ClothLook::new(job));
+    /// Shows a garment at one moment.
+    pub fn set_frame(&mut self, frame: LiveFrame) {
+        let known = self.look.take();
+        let known = known.filter(|(job, _)| Arc::ptr_eq(job, &frame.job));
+        self.look = Some(known.unwrap_or_else(|| (frame.job.clone(), ClothLook::new(&frame.job))));
+        self.vertices = frame.positions.len();
+        self.frame = Some(frame);
+        self.make_cloth();
     }
 
-    /// Shows the garment at one moment.
-    pub fn set_frame(&mut self, frame: &LiveFrame) {
-        if let Some(look) = &self.look {
+    /// Shows the garment grey while it is that of an earlier pattern.
+    pub fn set_out_of_date(&mut self, is_old: bool) {
+        if self.is_old != is_old {
+            self.is_old = is_old;
+            self.make_cloth();
+        }
+    }
+
+    /// Whether the garment is shown grey.
+    pub fn is_out_of_date(&self) -> bool {
+        self.is_old
+    }
+
+    fn make_cloth(&mut self) {
+        if let (Some((_, look)), Some(frame)) = (&self.look, &self.frame) {
             self.cloth = look.solid(frame);
-            self.vertices = frame.positions.len();
+            if self.is_old {
+                self.cloth.fade();
+            }
             self.stale.cloth = true;
         }
     }
@@ -82,6 +104,7 @@ impl GarmentView {
     /// Shows no garment.
     pub fn clear_garment(&mut self) {
         self.look = None;
+        self.frame = None;
         self.cloth = ClothSolid::default();
         self.vertices = 0;
         self.stale.cloth = true;
@@ -118,6 +141,9 @@ impl GarmentView {
         response.widget_info(|| {
             let words = match self.vertices {
                 0 => "3D view".to_owned(),
+                count if self.is_old => {
+                    format!("3D view, garment of {count} vertices, out of date")
+                }
                 count => format!("3D view, garment of {count} vertices"),
             };
             WidgetInfo::labeled(Role::Canvas, true, words)

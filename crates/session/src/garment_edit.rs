@@ -1,0 +1,191 @@
+//! How a garment that is worn follows an edit of its pattern: with other rest shapes of the same
+//! triangles, on another mesh, or not at all.
+
+use crate::derived::Derived;
+use crate::dressed::{DraftedPart, Dressed, MeshedPart};
+use crate::fabrics::cloth_material;
+use crate::mannequin_source::MannequinSource;
+use crate::rest_change::RestChange;
+use crate::setup::{self, JobOrigin};
+use crate::{GarmentJob, Project, Session, SessionError};
+use std::sync::Arc;
+use toile_assembly::{PieceMeshes, morph};
+use toile_pattern::{Draft, Piece};
+
+/// What an edit of the pattern means for a garment that is worn.
+pub struct GarmentEdit {
+    /// The garment as it is to be. Where it is not meshed anew, its triangles are those it had.
+    pub job: GarmentJob,
+    /// What changes.
+    pub change: RestChange,
+}
+
+/// Why a worn garment cannot go on to the pattern as it is now.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Standstill {
+    /// Panels were added, removed or put in another order.
+    #[error("the pattern has other panels now; hang it again")]
+    Panels,
+    /// Another body.
+    #[error("the body is another now; hang it again")]
+    Body,
+    /// Another quality.
+    #[error("the cloth is to be finer or coarser now; hang it again")]
+    Quality,
+    /// A panel is cut from cloth of another kind.
+    #[error("the fabric of \"{0}\" is another now; hang it again")]
+    Fabric(String),
+    /// Other garments are worn, or in other layers.
+    #[error("other garments are worn together now, or in other layers; hang them again")]
+    Garments,
+    /// The pattern has faults.
+    #[error("the pattern has faults; the garment goes on when they are mended")]
+    Faults,
+    /// The pattern cannot be meshed or sewn as it is, for another reason.
+    #[error("it cannot be made as it is now: {0}")]
+    NotMade(String),
+}
+
+impl Session {
+    /// How a worn garment, made from an earlier state of this project, follows to the present one. Without
+    /// it being worn anew: that is for [`Session::garment_setup`].
+    ///
+    /// # Errors
+    /// Why it cannot.
+    pub fn garment_edit(&mut self, worn: &GarmentJob) -> Result<GarmentEdit, Standstill> {
+        let mut edit = self.derived.garment_edit(&self.project, worn)?;
+        edit.job.revision = self.revision;
+        Ok(edit)
+    }
+}
+
+impl Derived {
+    fn garment_edit(
+        &mut self,
+        project: &Project,
+        worn: &GarmentJob,
+    ) -> Result<GarmentEdit, Standstill> {
+        let origin = &*worn.origin;
+        if origin.quality != project.quality {
+            return Err(Standstill::Quality);
+        }
+        if origin.body != MannequinSource::of(project) {
+            return Err(Standstill::Body);
+        }
+        refuse_other_garments(&origin.drafted, &self.parts(project))?;
+        let parts = self.sound_parts(project).map_err(cannot_be_made)?;
+        refuse_other_pieces(&origin.drafted, &parts)?;
+        let is_same = |(old, new): (&DraftedPart, &DraftedPart)| has_same_cloth(old, new);
+        if origin.drafted.iter().zip(parts.iter()).all(is_same) {
+            let mut job = worn.clone();
+            for (listed, part) in Arc::make_mut(&mut job.parts).iter_mut().zip(&*parts) {
+                listed.name.clone_from(&part.name);
+                listed.source.clone_from(&part.source);
+            }
+            let change = RestChange::Nothing;
+            return Ok(GarmentEdit { job, change });
+        }
+        let morphed: Option<Vec<MeshedPart>> = origin
+            .meshed
+            .iter()
+            .zip(parts.iter())
+            .map(morphed)
+            .collect();
+        let (dressed, meshed, change) = match morphed {
+            Some(parts) => (
+                Arc::new(Dressed::new(parts)),
+                origin.meshed.clone(),
+                RestChange::Shapes,
+            ),
+            None => {
+                let dressed = self.dressed(project).map_err(cannot_be_made)?;
+                let meshed = dressed.meshed.clone();
+                (dressed, meshed, RestChange::Mesh)
+            }
+        };
+        let skin = worn.setup.colliders.first();
+        let skin = skin.ok_or(Standstill::Body)?.clone();
+        let mut job = setup::job(&dressed, (origin.body.clone(), skin), project.quality);
+        // The coarser meshes are behind it.
+        let coarse = worn.setup.levels.len().saturating_sub(1);
+        let finest = std::mem::take(&mut job.setup.levels);
+        job.setup.levels = worn.setup.levels[..coarse].to_vec();
+        job.setup.levels.extend(finest);
+        job.origin = Arc::new(JobOrigin {
+            body: origin.body.clone(),
+            quality: origin.quality,
+            drafted: parts.to_vec(),
+            meshed,
+        });
+        Ok(GarmentEdit { job, change })
+    }
+}
+
+/// A garment of the same triangles with the shapes of another draft, if that can be.
+fn morphed((old, new): (&MeshedPart, &DraftedPart)) -> Option<MeshedPart> {
+    let meshes = match has_same_cloth(&old.part, new) {
+        true => PieceMeshes::clone(&old.meshes),
+        false => morph(&old.meshes, &new.draft).ok()?,
+    };
+    let garment = old.garment.with_shapes(&new.draft, &meshes);
+    Some(MeshedPart {
+        part: new.clone(),
+        meshes: Arc::new(meshes),
+        garment,
+    })
+}
+
+fn cannot_be_made(error: SessionError) -> Standstill {
+    match error {
+        SessionError::Faults { .. } => Standstill::Faults,
+        other => Standstill::NotMade(other.to_string()),
+    }
+}
+
+/// Whether cloth of two drafts is the same, names apart.
+fn has_same_cloth(a: &DraftedPart, b: &DraftedPart) -> bool {
+    let (a, b) = (&*a.draft, &*b.draft);
+    std::ptr::eq(a, b) || a.pieces == b.pieces && a.seams == b.seams && a.fabrics == b.fabrics
+}
+
+/// Refuses garments that are others than those before, or lack a panel that was sewn.
+fn refuse_other_garments(before: &[DraftedPart], now: &[DraftedPart]) -> Result<(), Standstill> {
+    if before.len() != now.len() {
+        return Err(Standstill::Garments);
+    }
+    for (k, (before, now)) in before.iter().zip(now).enumerate() {
+        // The project's own garment, the first, may be saved under another name.
+        let is_other = k > 0 && before.source != now.source;
+        if is_other || before.layer != now.layer {
+            return Err(Standstill::Garments);
+        }
+        let mut pieces = sewn(&before.draft);
+        if pieces.any(|piece| now.pattern.panel(piece.id.panel).is_none()) {
+            return Err(Standstill::Panels);
+        }
+    }
+    Ok(())
+}
+
+/// Refuses garments whose pieces are others than those before, or cut from other cloth.
+fn refuse_other_pieces(before: &[DraftedPart], now: &[DraftedPart]) -> Result<(), Standstill> {
+    for (before, now) in before.iter().zip(now) {
+        let [old, new] = [before, now].map(|part| sewn(&part.draft).collect::<Vec<_>>());
+        let mut pairs = old.iter().zip(&new);
+        if old.len() != new.len() || pairs.any(|(a, b)| a.id != b.id) {
+            return Err(Standstill::Panels);
+        }
+        let material =
+            |draft: &Draft, piece: &Piece| draft.fabrics.get(piece.fabric).map(cloth_material);
+        let mut pairs = old.iter().zip(&new);
+        let other = pairs.find(|(a, b)| material(&before.draft, a) != material(&now.draft, b));
+        if let Some((_, piece)) = other {
+            return Err(Standstill::Fabric(piece.name.clone()));
+        }
+    }
+    Ok(())
+}
+
+fn sewn(draft: &Draft) -> impl Iterator<Item = &Piece> {
+    draft.pieces.iter().filter(|piece| piece.sewn)
+}
