@@ -2,8 +2,9 @@
 //! where their products stand in the matrix.
 
 use crate::Material;
-use crate::laws::bending::{BendingMatrix, BendingStencil, IllConditioned, RestSheet};
+use crate::laws::bending::{BendingMatrix, BendingStencil};
 use crate::laws::membrane::MembraneElement;
+use crate::laws::rest_sheet::{IllConditioned, RestSheet};
 use crate::materials::Materials;
 use nalgebra::Vector3;
 use std::sync::Arc;

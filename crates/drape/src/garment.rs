@@ -176,7 +176,9 @@ impl GarmentRun {
             ..self.setup.contact
         };
         builder.control.gravity = Vec3::zeros();
-        part_layers(&mut builder, layer, self.setup.contact.cloth_offset);
+        // While a garment is sewn its layers pass through each other; so most of each comes to lie where it
+        // belongs.
+        builder.keep_layers_off(layer, self.setup.contact.cloth_offset);
         let mut system = builder.build();
         self.target = (0..positions.len() as u32).collect();
         self.state = State::at_rest(&system, positions);
@@ -442,7 +444,7 @@ impl GarmentRun {
         finished.then(|| {
             let cloth = &self.setup.levels[self.level].cloth;
             Equilibrium {
-                merged: merged_triangles(cloth, &self.target),
+                merged: cloth.merged_triangles(&self.target),
                 settings: self.setup.rest,
                 system: self.system,
                 state: self.state,
@@ -497,7 +499,7 @@ impl GarmentRun {
                 remedy: "give one for each, or mesh it again".to_owned(),
             });
         }
-        let merged = merged_triangles(&level.cloth, &self.target);
+        let merged = level.cloth.merged_triangles(&self.target);
         let merged = merged.into_iter().map(|t| rest[t]).collect();
         match self.system.reshaped("garment", merged) {
             Ok(system) => {
@@ -596,26 +598,4 @@ impl GarmentRun {
             Stage::Settling | Stage::Finished => 0.7,
         };
     }
-}
-
-/// Triangles of a cloth that are in it once vertices are merged: those that lose no corner to a seam.
-fn merged_triangles(cloth: &Cloth, target: &[u32]) -> Vec<usize> {
-    let is_whole = |&t: &usize| {
-        let [a, b, c] = cloth.triangles[t].map(|v| target[v as usize]);
-        a != b && b != c && c != a
-    };
-    (0..cloth.triangles.len()).filter(is_whole).collect()
-}
-
-/// Keeps outer layers farther from the body, each by the distance between two cloths: while a garment is
-/// sewn its layers pass through each other, and so most of each comes to lie where it belongs.
-fn part_layers(builder: &mut SystemBuilder, layer: &[u16], cloth_offset: f64) {
-    let mut layers = layer.to_vec();
-    layers.sort_unstable();
-    layers.dedup();
-    builder.keep_off(|vertex| {
-        let own = layer.get(vertex as usize);
-        let below = own.map_or(0, |own| layers.partition_point(|other| other < own));
-        below as f64 * cloth_offset
-    });
 }

@@ -247,12 +247,17 @@ impl SystemBuilder {
         self.pinned.len()
     }
 
-    /// Keeps the samples of some vertices farther from solids than the contact settings say, each by what
-    /// `extra` gives for it [m].
-    pub(crate) fn keep_off(&mut self, extra: impl Fn(u32) -> f64) {
+    /// Keeps outer layers farther from solids than the contact settings say, each by `apart` [m] more than the
+    /// one below; `layer` is that of each vertex, or empty.
+    pub(crate) fn keep_layers_off(&mut self, layer: &[u16], apart: f64) {
+        let mut layers = layer.to_vec();
+        layers.sort_unstable();
+        layers.dedup();
         let mut samples = self.rest.samples.to_vec();
         for sample in &mut samples {
-            sample.extra_offset = extra(sample.vertices[0]);
+            let own = layer.get(sample.vertices[0] as usize);
+            let below = own.map_or(0, |own| layers.partition_point(|other| other < own));
+            sample.extra_offset = below as f64 * apart;
         }
         let rest = RestData {
             samples: Arc::new(samples),

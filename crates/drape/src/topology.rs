@@ -2,7 +2,8 @@
 
 use crate::bending_structure::BendingStructure;
 use crate::caps::Exchange;
-use crate::laws::bending::{BendingStencil, RestSheet};
+use crate::laws::bending::BendingStencil;
+use crate::laws::rest_sheet::RestSheet;
 use std::sync::Arc;
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 use toile_sparse::BlockPattern;
