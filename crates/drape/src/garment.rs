@@ -176,8 +176,7 @@ impl GarmentRun {
             ..self.setup.contact
         };
         builder.control.gravity = Vec3::zeros();
-        // While a garment is sewn its layers pass through each other; so most of each comes to lie where it
-        // belongs.
+        // Layers pass through each other meanwhile; so most of each comes to lie where it belongs.
         builder.keep_layers_off(layer, self.setup.contact.cloth_offset);
         let mut system = builder.build();
         self.target = (0..positions.len() as u32).collect();
