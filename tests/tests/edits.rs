@@ -2,8 +2,8 @@
 //! need no other structure.
 #![allow(clippy::unwrap_used)]
 
-use toile_drape::{Attachment, Attachments, GarmentRun, Stage};
 use toile_drape::laws::elastic::ElasticLaw;
+use toile_drape::{Attachment, Attachments, GarmentRun, Stage};
 use toile_geometry::Vec3;
 use toile_session::{Command, Quality, Session, Silent};
 use toile_tests::edits::{Ends, Hung, draped};
@@ -33,7 +33,10 @@ fn swinging() -> GarmentRun {
     let path = root().join("patterns/t-shirt.toile.json");
     let mut session = Session::new();
     let quality = Quality::Preview;
-    for command in [Command::OpenPattern { path }, Command::SetQuality { quality }] {
+    for command in [
+        Command::OpenPattern { path },
+        Command::SetQuality { quality },
+    ] {
         session.execute(command, &mut Silent).unwrap();
     }
     let mut run = GarmentRun::new(session.garment_setup().unwrap().setup).unwrap();
