@@ -111,11 +111,13 @@ fn a_moved_point_moves_the_garment_that_hangs_and_what_is_exported_is_made_from_
     // Up by 5 mm, a millimetre a key.
     press(&mut window, "Point d of front");
     let revision = window.state().session().revision();
+    let mut moved = false;
     for _ in 0..5 {
         window.key_press(Key::ArrowUp);
         window.step();
+        moved |= says(&window, "Moving:");
     }
-    assert!(wait(&mut window, |window| says(window, "Moving:")));
+    assert!(moved || wait(&mut window, |window| says(window, "Moving:")));
     assert_eq!(window.state().session().revision(), revision + 5);
     assert!(!is_grey(&window));
     assert!(wait(&mut window, is_at_rest));
@@ -144,11 +146,14 @@ fn a_moved_point_moves_the_garment_that_hangs_and_what_is_exported_is_made_from_
     }
 
     // Undone it hangs as the pattern first was, and that is no product either.
+    let mut moved = false;
     for _ in 0..5 {
         window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         window.step();
+        // It may be at rest again before the last of them is undone.
+        moved |= says(&window, "Moving:");
     }
-    assert!(wait(&mut window, |window| says(window, "Moving:")));
+    assert!(moved || wait(&mut window, |window| says(window, "Moving:")));
     assert!(wait(&mut window, is_at_rest));
     assert!(
         window
