@@ -236,6 +236,10 @@ fn a_new_process_goes_on_to_the_same_bytes() {
     check("merged", &mut run, task(23));
     advance_to(&mut run, within(Stage::Swinging, 0, 0));
     check("swinging", &mut run, task(25));
+    for _ in 0..2 {
+        advance_to(&mut run, within(Stage::Swinging, 0, 0));
+    }
+    check("swinging slowly", &mut run, task(5));
     advance_to(&mut run, within(Stage::Settling, 0, 0));
     check("settling on the coarse mesh", &mut run, task(10));
     advance_to(&mut run, within(Stage::Swinging, 1, 0));
