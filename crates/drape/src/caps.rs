@@ -9,7 +9,7 @@
 //! as they were. Cloth without caps is left untouched.
 
 use crate::Cloth;
-use crate::laws::bending::IllConditioned;
+use crate::laws::rest_sheet::IllConditioned;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use toile_geometry::Vec2;

@@ -90,15 +90,22 @@ impl Cloth {
             materials: self.materials.clone(),
             ..Self::default()
         };
-        for (t, corners) in self.triangles.iter().enumerate() {
-            let corners = corners.map(|v| target[v as usize]);
-            if corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0] {
-                merged.triangles.push(corners);
-                merged.rest.push(self.rest[t]);
-                merged.material.push(self.material[t]);
-                merged.panel.push(self.panel[t]);
-            }
+        for t in self.merged_triangles(target) {
+            let corners = self.triangles[t].map(|v| target[v as usize]);
+            merged.triangles.push(corners);
+            merged.rest.push(self.rest[t]);
+            merged.material.push(self.material[t]);
+            merged.panel.push(self.panel[t]);
         }
         merged
+    }
+
+    /// Triangles that are still there when vertices are joined as in [`Self::merged`], ascending.
+    pub fn merged_triangles(&self, target: &[u32]) -> Vec<usize> {
+        let keeps_corners = |&t: &usize| {
+            let [a, b, c] = self.triangles[t].map(|v| target[v as usize]);
+            a != b && b != c && c != a
+        };
+        (0..self.triangles.len()).filter(keeps_corners).collect()
     }
 }

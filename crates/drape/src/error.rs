@@ -1,6 +1,6 @@
 //! What can go wrong in building or running a simulation.
 
-use crate::laws::bending::IllConditioned;
+use crate::laws::rest_sheet::IllConditioned;
 
 /// Why a simulation could not be built or went no further.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

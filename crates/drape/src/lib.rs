@@ -5,6 +5,7 @@
 //! recomputed, [`Workspace`] is private memory sized once.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+mod bending_structure;
 mod caps;
 mod carry;
 mod cloth;

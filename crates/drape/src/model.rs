@@ -93,7 +93,7 @@ impl ModelParts {
     /// Whether matrices of another model have the very same structure, elastics between vertices apart.
     pub(crate) fn has_structure_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.topology, &other.topology)
-            && (self.topology.rings.is_some() || Arc::ptr_eq(&self.rest, &other.rest))
+            && (self.topology.bending.is_some() || Arc::ptr_eq(&self.rest, &other.rest))
     }
 
     /// Whether another model has the very same vertices held and the same elastics between vertices.

@@ -177,6 +177,7 @@ impl Part {
             bending: ScalarMatrix::from_entries(count, &bending),
             viscous_bending: None,
             stencils: Vec::new(),
+            curvatures: Vec::new(),
             mass: taken(&vertices, &system.rest.mass),
             samples: own_samples,
         };

@@ -1,5 +1,6 @@
 //! What follows from the rest shapes of a cloth and its materials: elements, bending, masses.
 
+use crate::bending_structure::{BendingStructure, Stencils};
 use crate::contact_sample::ContactSample;
 use crate::laws::bending::{BendingMatrix, BendingStencil};
 use crate::laws::membrane::MembraneElement;
@@ -22,6 +23,8 @@ pub struct RestData {
     pub(crate) viscous_bending: Option<ScalarMatrix>,
     /// Curvatures of each triangle; empty unless folds are viscous or kept.
     pub(crate) stencils: Vec<BendingStencil>,
+    /// The same of a topology that keeps its structure of bending; else empty.
+    pub(crate) curvatures: Stencils,
     /// Mass of each vertex [kg].
     pub mass: Vec<f64>,
     /// Where the cloth is tested against solids from the start: at its vertices. A state has more where
@@ -33,23 +36,15 @@ impl RestData {
     /// Of rest shapes of a topology's triangles, caps exchanged.
     ///
     /// # Errors
-    /// A triangle without area, told as one of `object`, or one whose curvature cannot be estimated where
-    /// the topology keeps what it is estimated from.
+    /// A triangle without area, told as one of `object`.
     pub(crate) fn new(
         object: &str,
         topology: &Topology,
         rest: &[[Vec2; 3]],
         materials: &Materials,
     ) -> Result<Self, DrapeError> {
-        let mut elements = Vec::with_capacity(rest.len());
-        for (triangle, &rest) in rest.iter().enumerate() {
-            let empty = || DrapeError::EmptyTriangle {
-                object: object.to_owned(),
-                triangle,
-            };
-            elements.push(MembraneElement::new(rest).ok_or_else(empty)?);
-        }
-        let stencils = topology.stencils(rest)?;
+        let elements = elements(object, rest)?;
+        let stencils = topology.stencils(rest);
         let bending = Bending::new(topology.layout.len(), stencils, materials, &elements);
         let (mass, samples) = lump(topology, materials, &elements);
         Ok(Self {
@@ -57,6 +52,41 @@ impl RestData {
             bending: bending.elastic,
             viscous_bending: bending.viscous,
             stencils: bending.stencils,
+            curvatures: Vec::new(),
+            mass,
+            samples: Arc::new(samples),
+        })
+    }
+
+    /// The same for other rest shapes of the same topology, which keeps its structure of bending; what did not
+    /// change is shared. [`Self::curvatures`] must be those of these rest shapes.
+    ///
+    /// # Errors
+    /// A triangle without area, told as one of `object`, and one that the structure does not serve.
+    pub(crate) fn reshaped(
+        &self,
+        object: &str,
+        (topology, structure): (&Topology, &BendingStructure),
+        rest: &[[Vec2; 3]],
+        materials: &Materials,
+    ) -> Result<Self, DrapeError> {
+        let elements = elements(object, rest)?;
+        let curvatures = structure.stencils((&self.shapes(), &self.curvatures), rest)?;
+        let matrix = |law| structure.matrix(&curvatures, materials, law, &elements);
+        let viscous = self.viscous_bending.as_ref();
+        let (mass, samples) = lump(topology, materials, &elements);
+        let own = curvatures
+            .iter()
+            .map(|stencil| BendingStencil::clone(stencil));
+        Ok(Self {
+            bending: matrix(Material::bending_matrix),
+            viscous_bending: viscous.map(|_| matrix(Material::viscous_bend)),
+            stencils: match self.stencils.is_empty() {
+                true => Vec::new(),
+                false => own.collect(),
+            },
+            elements,
+            curvatures,
             mass,
             samples: Arc::new(samples),
         })
@@ -66,6 +96,17 @@ impl RestData {
     pub(crate) fn shapes(&self) -> Vec<[Vec2; 3]> {
         self.elements.iter().map(MembraneElement::rest).collect()
     }
+}
+
+fn elements(object: &str, rest: &[[Vec2; 3]]) -> Result<Vec<MembraneElement>, DrapeError> {
+    let element = |(triangle, &rest): (usize, &[Vec2; 3])| {
+        let empty = || DrapeError::EmptyTriangle {
+            object: object.to_owned(),
+            triangle,
+        };
+        MembraneElement::new(rest).ok_or_else(empty)
+    };
+    rest.iter().enumerate().map(element).collect()
 }
 
 /// Lumps mass, area and friction at the vertices: a third of each triangle to each corner. A vertex on

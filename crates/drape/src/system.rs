@@ -1,5 +1,6 @@
 //! What is simulated: a constant model and the control of the present step; how both are made.
 
+use crate::bending_structure::BendingStructure;
 use crate::caps::{exchange_again, without_caps};
 use crate::collider::{Collider, Grip};
 use crate::control::{Attachment, Control};
@@ -84,11 +85,12 @@ impl System {
             });
         }
         let rest = exchange_again(rest, &self.topology.exchanges)?;
-        let topology = match self.topology.rings {
-            Some(_) => self.topology.clone(),
-            None => Arc::new(self.topology.with_rings_of(&self.rest.shapes())?),
+        let (topology, structure, before) = match &self.topology.bending {
+            Some(structure) => (self.topology.clone(), structure.clone(), self.rest.clone()),
+            None => self.with_structure()?,
         };
-        let rest = RestData::new(object, &topology, &rest, &self.materials)?;
+        let parts = (&*topology, &*structure);
+        let rest = before.reshaped(object, parts, &rest, &self.materials)?;
         Ok(Self {
             model: Model::of(ModelParts {
                 topology,
@@ -97,6 +99,26 @@ impl System {
             }),
             control: self.control.clone(),
         })
+    }
+
+    /// Its topology with the structure of bending kept that its rest shapes choose, and its rest data with
+    /// the curvatures of that structure.
+    fn with_structure(
+        &self,
+    ) -> Result<(Arc<Topology>, Arc<BendingStructure>, Arc<RestData>), DrapeError> {
+        let (triangles, shapes) = (&self.topology.triangles, self.rest.shapes());
+        let (structure, curvatures) =
+            BendingStructure::new(self.vertex_count(), triangles, &shapes)?;
+        let structure = Arc::new(structure);
+        let topology = Topology {
+            bending: Some(structure.clone()),
+            ..Topology::clone(&self.topology)
+        };
+        let rest = RestData {
+            curvatures,
+            ..RestData::clone(&self.rest)
+        };
+        Ok((Arc::new(topology), structure, Arc::new(rest)))
     }
 
     /// Has other elastics between vertices; all other parts of its model stay the ones they are.
@@ -225,12 +247,17 @@ impl SystemBuilder {
         self.pinned.len()
     }
 
-    /// Keeps the samples of some vertices farther from solids than the contact settings say, each by what
-    /// `extra` gives for it [m].
-    pub(crate) fn keep_off(&mut self, extra: impl Fn(u32) -> f64) {
+    /// Keeps outer layers farther from solids than the contact settings say, each by `apart` [m] more than the
+    /// one below; `layer` is that of each vertex, or empty.
+    pub(crate) fn keep_layers_off(&mut self, layer: &[u16], apart: f64) {
+        let mut layers = layer.to_vec();
+        layers.sort_unstable();
+        layers.dedup();
         let mut samples = self.rest.samples.to_vec();
         for sample in &mut samples {
-            sample.extra_offset = extra(sample.vertices[0]);
+            let own = layer.get(sample.vertices[0] as usize);
+            let below = own.map_or(0, |own| layers.partition_point(|other| other < own));
+            sample.extra_offset = below as f64 * apart;
         }
         let rest = RestData {
             samples: Arc::new(samples),

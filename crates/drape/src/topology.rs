@@ -1,7 +1,10 @@
 //! What of a cloth stays the same whatever its rest shapes: triangles and the structure of its matrices.
 
+use crate::bending_structure::BendingStructure;
 use crate::caps::Exchange;
-use crate::laws::bending::{BendingStencil, IllConditioned, RestSheet};
+use crate::laws::bending::BendingStencil;
+use crate::laws::rest_sheet::RestSheet;
+use std::sync::Arc;
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 use toile_sparse::BlockPattern;
 
@@ -23,9 +26,8 @@ pub struct Topology {
     pub(crate) corners: Vec<u32>,
     /// The long edges of caps that were exchanged, in order.
     pub(crate) exchanges: Vec<Exchange>,
-    /// The rings of neighbours that curvatures are estimated from, for each edge, once they are not chosen by
-    /// the rest shapes any more: then the pattern of the bending matrix stays whatever these are.
-    pub(crate) rings: Option<Vec<Option<u8>>>,
+    /// The structure of bending, once it is not chosen by the rest shapes any more.
+    pub(crate) bending: Option<Arc<BendingStructure>>,
 }
 
 impl Topology {
@@ -40,7 +42,7 @@ impl Topology {
             triangles,
             surface: None,
             exchanges: Vec::new(),
-            rings: None,
+            bending: None,
         }
     }
 
@@ -53,36 +55,19 @@ impl Topology {
         }
     }
 
-    /// The curvatures of every triangle for some rest shapes.
-    ///
-    /// # Errors
-    /// A triangle whose curvature these rest shapes leave without an estimate, where the rings are kept.
-    pub(crate) fn stencils(
-        &self,
-        rest: &[[Vec2; 3]],
-    ) -> Result<Vec<BendingStencil>, IllConditioned> {
-        self.on_sheet(rest, |sheet| sheet.stencils())
-    }
-
-    /// The same with the rings kept that some rest shapes choose.
-    pub(crate) fn with_rings_of(&self, rest: &[[Vec2; 3]]) -> Result<Self, IllConditioned> {
-        Ok(Self {
-            rings: Some(self.on_sheet(rest, |sheet| sheet.rings())?),
-            ..self.clone()
-        })
-    }
-
-    fn on_sheet<T>(&self, rest: &[[Vec2; 3]], of: impl FnOnce(&RestSheet) -> T) -> T {
+    /// The curvatures of every triangle for some rest shapes, which choose the neighbours that each is
+    /// estimated from.
+    pub(crate) fn stencils(&self, rest: &[[Vec2; 3]]) -> Vec<BendingStencil> {
         let mesh = TriangleMesh {
             positions: vec![Vec3::zeros(); self.layout.len()],
             triangles: self.triangles.clone(),
         };
-        of(&RestSheet {
+        let sheet = RestSheet {
             triangles: &self.triangles,
             rest,
             topology: &mesh.topology(),
-            rings: self.rings.as_deref(),
-        })
+        };
+        sheet.stencils()
     }
 
     /// Corners (3 t + k) that use a vertex.

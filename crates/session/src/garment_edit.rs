@@ -38,9 +38,12 @@ pub enum Standstill {
     /// Other garments are worn, or in other layers.
     #[error("other garments are worn together now, or in other layers; hang them again")]
     Garments,
-    /// The pattern cannot be made as it is.
-    #[error("the pattern cannot be sewn as it is, and the garment goes on when it can: {0}")]
-    Faults(String),
+    /// The pattern has faults.
+    #[error("the pattern has faults; the garment goes on when they are mended")]
+    Faults,
+    /// The pattern cannot be meshed or sewn as it is, for another reason.
+    #[error("it cannot be made as it is now: {0}")]
+    NotMade(String),
 }
 
 impl Session {
@@ -133,14 +136,10 @@ fn morphed((old, new): (&MeshedPart, &DraftedPart)) -> Option<MeshedPart> {
 }
 
 fn cannot_be_made(error: SessionError) -> Standstill {
-    Standstill::Faults(match error {
-        SessionError::Faults { faults, .. } => match &*faults {
-            [fault] => fault.clone(),
-            [first, others @ ..] => format!("{first}; and {} more faults", others.len()),
-            [] => "it has faults".to_owned(),
-        },
-        other => other.to_string(),
-    })
+    match error {
+        SessionError::Faults { .. } => Standstill::Faults,
+        other => Standstill::NotMade(other.to_string()),
+    }
 }
 
 /// Whether cloth of two drafts is the same, names apart.

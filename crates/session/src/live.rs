@@ -60,6 +60,7 @@ struct Shared {
     latest: Mutex<Option<LiveFrame>>,
     applied: Mutex<Vec<StampedInput>>,
     outcome: Mutex<Option<Result<DrapeResult, String>>>,
+    warnings: Mutex<Vec<String>>,
     finished: AtomicBool,
 }
 
@@ -210,6 +211,11 @@ impl LiveRun {
     pub fn result(&self) -> Option<DrapeResult> {
         lock(&self.shared.outcome).as_ref()?.as_ref().ok().cloned()
     }
+
+    /// What a garment that rests ought not to have, in plain words, also after an edit.
+    pub fn warnings(&self) -> Vec<String> {
+        lock(&self.shared.warnings).clone()
+    }
 }
 
 impl Drop for LiveRun {
@@ -271,7 +277,8 @@ impl Shared {
                     _ if run.is_held() => {}
                     None => return Turn::Tell,
                     Some(told) => {
-                        *lock(&self.outcome) = told.clone().map(Ok);
+                        *lock(&self.outcome) = told.result.clone().map(Ok);
+                        lock(&self.warnings).clone_from(&told.warnings);
                         self.finished.store(true, Ordering::Release);
                     }
                 }
@@ -305,8 +312,12 @@ impl Shared {
     }
 }
 
-/// What is told of a garment at rest: its drape, unless it followed an edit.
-type Told = Option<DrapeResult>;
+/// What is told of a garment at rest.
+struct Told {
+    /// Its drape, unless it followed an edit.
+    result: Option<DrapeResult>,
+    warnings: Vec<String>,
+}
 
 /// Runs until it is stopped.
 fn run(shared: &Shared, mut job: Arc<GarmentJob>) -> Result<(), DrapeError> {
@@ -322,9 +333,11 @@ fn run(shared: &Shared, mut job: Arc<GarmentJob>) -> Result<(), DrapeError> {
         match turn {
             Turn::End => return Ok(()),
             Turn::Tell => {
-                let drape = (!is_edited).then(|| Arc::new(Drape::of(&mut run)));
+                let drape = Arc::new(Drape::of(&mut run));
                 seconds += start.elapsed().as_secs_f64();
-                told = Some(drape.map(|drape| DrapeResult { drape, seconds }));
+                let warnings = drape.warnings.clone();
+                let result = (!is_edited).then_some(DrapeResult { drape, seconds });
+                told = Some(Told { result, warnings });
             }
             Turn::Edit(edit) => {
                 is_edited |= edit.change != RestChange::Nothing;

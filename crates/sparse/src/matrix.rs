@@ -73,6 +73,33 @@ impl ScalarMatrix {
         }
     }
 
+    /// Where an entry stands among the values; nothing for one that the pattern has not.
+    pub fn place(&self, row: u32, column: u32) -> Option<usize> {
+        let first = self.row_start[row as usize] as usize;
+        let end = self.row_start[row as usize + 1] as usize;
+        let found = self.columns[first..end].binary_search(&column).ok()?;
+        Some(first + found)
+    }
+
+    /// A matrix of the same pattern with the values that `fill` adds to zeros, each at its
+    /// [`Self::place`].
+    #[must_use]
+    pub fn filled(&self, fill: impl FnOnce(&mut [f64])) -> Self {
+        let mut matrix = Self {
+            row_start: self.row_start.clone(),
+            columns: self.columns.clone(),
+            values: vec![0.0; self.values.len()],
+            diagonal: vec![0.0; self.diagonal.len()],
+        };
+        fill(&mut matrix.values);
+        for row in 0..matrix.diagonal.len() as u32 {
+            if let Some(at) = matrix.place(row, row) {
+                matrix.diagonal[row as usize] = matrix.values[at];
+            }
+        }
+        matrix
+    }
+
     /// The entry on the diagonal of a row.
     pub fn diagonal(&self, row: usize) -> f64 {
         self.diagonal[row]

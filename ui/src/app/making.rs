@@ -95,6 +95,8 @@ pub enum News {
     Frame(LiveFrame),
     /// The drape has come to rest, and is the session's. What is told of it.
     Finished(Vec<Event>),
+    /// The garment that followed an edit has come to rest with shortcomings.
+    Warned(Vec<String>),
     /// It cannot be done.
     Failed(String),
 }
@@ -299,10 +301,16 @@ impl Making {
             self.run = None;
         } else if !self.told && !session.is_previewing() {
             self.told = true;
-            let is_new = session.draped().is_none();
-            let result = run.result().filter(|_| is_new);
-            let adopted = result.and_then(|result| session.adopt_drape(result));
-            news.extend(adopted.map(News::Finished));
+            match run.result() {
+                Some(result) if session.draped().is_none() => {
+                    news.extend(session.adopt_drape(result).map(News::Finished));
+                }
+                Some(_) => {}
+                None => {
+                    let warnings = Some(run.warnings()).filter(|words| !words.is_empty());
+                    news.extend(warnings.map(News::Warned));
+                }
+            }
         }
     }
 }

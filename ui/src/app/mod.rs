@@ -369,6 +369,7 @@ impl ToileApp {
                         false => Notice::warning(warned.join("; ")),
                     };
                 }
+                News::Warned(words) => self.notice = Notice::warning(words.join("; ")),
                 News::Failed(words) => self.notice = Notice::fault(words),
             }
         }

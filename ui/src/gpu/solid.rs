@@ -153,16 +153,21 @@ pub struct ClothSolid {
 
 /// Greys of cloth that is out of date, of black and of white cloth, linear: apart from the mannequin
 /// and from every colour of the cloth.
-const OLD_GREYS: [f32; 2] = [0.06, 0.30];
+const OLD_GREYS: [f32; 2] = [0.18, 0.40];
+/// Grey of its seam lines.
+const OLD_INK: f32 = 0.04;
 
 impl ClothSolid {
     /// Takes the colour away: what is shown is out of date.
     pub fn fade(&mut self) {
-        for corner in self.corners.iter_mut().chain(&mut self.lines) {
+        let [black, white] = OLD_GREYS;
+        for corner in &mut self.corners {
             let [red, green, blue, finish] = corner.colour;
-            let [black, white] = OLD_GREYS;
             let grey = black + (white - black) * luminance([red, green, blue]).clamp(0.0, 1.0);
             corner.colour = [grey, grey, grey, finish];
+        }
+        for corner in &mut self.lines {
+            corner.colour = [OLD_INK, OLD_INK, OLD_INK, corner.colour[3]];
         }
     }
 }

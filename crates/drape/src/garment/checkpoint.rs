@@ -61,7 +61,7 @@ impl GarmentRun {
         let topology = &self.system.topology;
         let edited = self.made_for.as_ref().map(|made_for| EditedShapes {
             made_for: made_for.clone(),
-            is_reshaped: topology.rings.is_some(),
+            is_reshaped: topology.bending.is_some(),
             rest: self.setup.levels[self.level].cloth.rest.clone(),
             counted: self.setup.counted.clone(),
         });

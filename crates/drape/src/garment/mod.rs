@@ -16,7 +16,6 @@ use crate::collision::{ClothMemory, Tally};
 use crate::kinetic_damping::{KineticDamping, SwingWorkspace};
 use crate::measure::{Measures, measure};
 use crate::{Carry, Cloth, DrapeError, Equilibrium, SewRun, State, System, Workspace};
-use setup::merged_triangles;
 use stage::{Attempts, Settling, StageState, Swinging};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
@@ -410,7 +409,7 @@ impl GarmentRun {
         };
         let cloth = &self.setup.levels[self.level].cloth;
         Some(Equilibrium {
-            merged: merged_triangles(cloth, &self.target),
+            merged: cloth.merged_triangles(&self.target),
             settings: self.setup.rest,
             system: self.system,
             state: self.state,

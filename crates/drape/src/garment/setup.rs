@@ -87,7 +87,8 @@ impl GarmentSetup {
             ..self.contact
         };
         builder.control.gravity = Vec3::zeros();
-        part_layers(&mut builder, layer, self.contact.cloth_offset);
+        // Layers pass through each other meanwhile; so most of each comes to lie where it belongs.
+        builder.keep_layers_off(layer, self.contact.cloth_offset);
         Ok(builder.build())
     }
 
@@ -120,34 +121,12 @@ impl GarmentSetup {
     }
 }
 
-/// Triangles of a cloth that are in it once vertices are merged: those that lose no corner to a seam.
-pub(super) fn merged_triangles(cloth: &Cloth, target: &[u32]) -> Vec<usize> {
-    let is_whole = |&t: &usize| {
-        let [a, b, c] = cloth.triangles[t].map(|v| target[v as usize]);
-        a != b && b != c && c != a
-    };
-    (0..cloth.triangles.len()).filter(is_whole).collect()
-}
-
 /// Rest shapes of the triangles of the merged cloth from those of its panels.
 pub(super) fn merged_shapes(
     cloth: &Cloth,
     target: &[u32],
     rest: &[[Vec2; 3]],
 ) -> Vec<[Vec2; 3]> {
-    let merged = merged_triangles(cloth, target);
+    let merged = cloth.merged_triangles(target);
     merged.into_iter().map(|t| rest[t]).collect()
-}
-
-/// Keeps outer layers farther from the body, each by the distance between two cloths: while a garment is
-/// sewn its layers pass through each other, and so most of each comes to lie where it belongs.
-fn part_layers(builder: &mut SystemBuilder, layer: &[u16], cloth_offset: f64) {
-    let mut layers = layer.to_vec();
-    layers.sort_unstable();
-    layers.dedup();
-    builder.keep_off(|vertex| {
-        let own = layer.get(vertex as usize);
-        let below = own.map_or(0, |own| layers.partition_point(|other| other < own));
-        below as f64 * cloth_offset
-    });
 }

@@ -16,30 +16,9 @@
 //! constant positive semidefinite Hessian that is the same for x, y and z. At a free edge no moment
 //! crosses it: the gradient across is what makes the triangle's energy least.
 
-use nalgebra::{Matrix3, Matrix6, SVector, Vector3, Vector6};
+use super::rest_sheet::{Across, IllConditioned, RestSheet, hat_gradients, outward};
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
-use toile_geometry::{Topology, Vec2};
-
-/// A sheet of triangles at rest, each flat in its own material plane (warp along the first axis).
-pub struct RestSheet<'a> {
-    /// Corners of the triangles.
-    pub triangles: &'a [[u32; 3]],
-    /// Place of each corner in the material plane [m].
-    pub rest: &'a [[Vec2; 3]],
-    /// Edges of the triangles.
-    pub topology: &'a Topology,
-    /// For each edge how many rings of neighbours its estimate is made from, as [`RestSheet::rings`] found them
-    /// for other rest shapes; nothing chooses them by these.
-    pub rings: Option<&'a [Option<u8>]>,
-}
-
-/// A triangle whose curvature cannot be estimated from the rings that are given: its neighbours lie close to
-/// a conic, or on a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct IllConditioned {
-    /// The triangle.
-    pub triangle: usize,
-}
 
 /// Curvatures of one triangle as combinations of vertex positions.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -103,69 +82,66 @@ impl BendingStencil {
     }
 }
 
-/// The derivative across an edge at its middle, out of the edge's first triangle, as a combination
-/// of vertex positions.
-struct Across {
-    /// The triangle it points out of.
-    first: u32,
-    vertices: Vec<u32>,
-    /// [1/m]
-    weights: Vec<f64>,
-    /// Rings of neighbours it is made from.
-    rings: u8,
-}
-
-/// Largest trace of the inverse of the scaled normal matrix of a fit: beyond it the vertices lie
-/// close to a conic and the next ring is taken in.
-const LARGEST_INVERSE: f64 = 1e3;
-
-/// Rings of neighbours looked at before an estimate settles for the two triangles.
-const MOST_RINGS: u8 = 3;
-
 /// Weights below this share of the largest are rounding and left out.
 const SMALLEST_WEIGHT: f64 = 1e-11;
 
 impl RestSheet<'_> {
-    /// The stencil of every triangle. Where the rings are given its vertices hang on the triangles alone,
-    /// whatever the rest shapes; else vertices whose weight is rounding are left out.
-    ///
-    /// # Errors
-    /// A triangle that the given rings do not serve.
-    pub fn stencils(&self) -> Result<Vec<BendingStencil>, IllConditioned> {
-        let across = self.all_across()?;
-        let stencils = (0..self.triangles.len()).into_par_iter();
-        Ok(stencils
-            .map(|triangle| self.stencil(triangle, &across))
-            .collect())
+    /// The stencil of every triangle, without vertices whose weight is rounding.
+    pub fn stencils(&self) -> Vec<BendingStencil> {
+        let across = self.all_across();
+        let stencil = |triangle| {
+            let mut stencil = self.stencil(triangle, &across);
+            stencil.trim();
+            stencil
+        };
+        (0..self.triangles.len())
+            .into_par_iter()
+            .map(stencil)
+            .collect()
     }
 
     /// For each edge how many rings of neighbours its estimate is made from; nothing for one without.
-    ///
-    /// # Errors
-    /// As [`Self::stencils`].
-    pub fn rings(&self) -> Result<Vec<Option<u8>>, IllConditioned> {
-        let across = self.all_across()?;
-        Ok(across.iter().map(|a| Some(a.as_ref()?.rings)).collect())
+    pub fn rings(&self) -> Vec<Option<u8>> {
+        let across = self.all_across();
+        across.iter().map(|a| Some(a.as_ref()?.rings)).collect()
     }
 
-    fn all_across(&self) -> Result<Vec<Option<Across>>, IllConditioned> {
+    fn all_across(&self) -> Vec<Option<Across>> {
         let edges = (0..self.topology.edges.len()).into_par_iter();
-        edges
-            .map(|edge| {
-                let rings = self.rings.map(|rings| rings[edge]);
-                let across = match rings {
-                    Some(None) => None,
-                    Some(Some(rings)) => self.across(edge, Some(rings)),
-                    None => self.across(edge, None),
-                };
-                match (&across, rings) {
-                    (None, Some(Some(_))) => Err(IllConditioned {
-                        triangle: self.topology.edge_triangles[edge][0] as usize,
-                    }),
-                    _ => Ok(across),
+        edges.map(|edge| self.across(edge, None)).collect()
+    }
+
+    /// The stencils of some triangles from rings of neighbours that were found for other rest shapes: their
+    /// vertices hang on the triangles and the rings alone.
+    ///
+    /// # Errors
+    /// A triangle that these rings do not serve any more.
+    pub fn stencils_with(
+        &self,
+        rings: &[Option<u8>],
+        triangles: &[u32],
+    ) -> Result<Vec<BendingStencil>, IllConditioned> {
+        let mut asked = vec![None; rings.len()];
+        for &t in triangles {
+            let corners = self.triangles[t as usize];
+            for k in 0..3 {
+                if let Some(edge) = self.topology.edge(corners[k], corners[(k + 1) % 3]) {
+                    asked[edge] = rings[edge];
                 }
-            })
-            .collect()
+            }
+        }
+        let estimate = |(edge, asked): (usize, Option<u8>)| {
+            let Some(asked) = asked else {
+                return Ok(None);
+            };
+            let triangle = self.topology.edge_triangles[edge][0] as usize;
+            let across = self.across(edge, Some(asked));
+            across.map(Some).ok_or(IllConditioned { triangle })
+        };
+        let edges = asked.into_par_iter().enumerate().with_min_len(64);
+        let across: Vec<Option<Across>> = edges.map(estimate).collect::<Result<_, _>>()?;
+        let each = triangles.par_iter().with_min_len(64);
+        Ok(each.map(|&t| self.stencil(t as usize, &across)).collect())
     }
 
     fn stencil(&self, triangle: usize, across: &[Option<Across>]) -> BendingStencil {
@@ -215,171 +191,7 @@ impl RestSheet<'_> {
             }
         }
         stencil.free = free;
-        if self.rings.is_none() {
-            stencil.trim();
-        }
         stencil
-    }
-
-    /// The estimate of the derivative across an edge between two triangles; nothing at a free
-    /// edge, where more than two meet, and where the number of rings that is asked for does not serve. With
-    /// none asked for, from as few as serve.
-    fn across(&self, edge: usize, asked: Option<u8>) -> Option<Across> {
-        let [first, second] = self.topology.edge_triangles[edge][..] else {
-            return None;
-        };
-        let rest = self.rest[first as usize];
-        let k = self.edge_of(first, edge)?;
-        let [a, b] = [rest[k], rest[(k + 1) % 3]];
-        let n = outward(rest, k).try_normalize(0.0)?;
-        let mut visited = vec![first, second];
-        let ends = [0, 1].map(|i| self.triangles[first as usize][(k + i) % 3]);
-        let unfolded = self.unfold(second, ends, [a, b], rest[(k + 2) % 3])?;
-        let middle = (a + b) * 0.5;
-        let mut points: Vec<(u32, Vec2)> = Vec::with_capacity(12);
-        let mut front = vec![(first, rest), (second, unfolded)];
-        collect(self.triangles, &front, &mut points);
-        let scale = {
-            let square: f64 = points
-                .iter()
-                .map(|(_, p)| (p - middle).norm_squared())
-                .sum();
-            (square / points.len() as f64).sqrt()
-        };
-        let start = self.blend([first, second], [rest, unfolded], edge, n)?;
-        let start: Vec<f64> = points
-            .iter()
-            .map(|&(v, _)| start.iter().filter(|s| s.0 == v).map(|s| s.1 * scale).sum())
-            .collect();
-        let mut weights = start.clone();
-        let mut rings = 0;
-        for ring in 1..=asked.unwrap_or(MOST_RINGS) {
-            front = self.next_ring(&front, &mut visited);
-            collect(self.triangles, &front, &mut points);
-            if asked.is_some_and(|asked| ring < asked) {
-                continue;
-            }
-            let scaled: Vec<Vec2> = points.iter().map(|(_, p)| (p - middle) / scale).collect();
-            if let Some(corrected) = correct(&scaled, &start, n) {
-                weights = corrected;
-                rings = ring;
-                break;
-            }
-            if front.is_empty() {
-                break;
-            }
-        }
-        if asked.is_some_and(|asked| rings != asked) {
-            return None;
-        }
-        points.truncate(weights.len());
-        Some(Across {
-            rings,
-            first,
-            vertices: points.iter().map(|p| p.0).collect(),
-            weights: weights.iter().map(|w| w / scale).collect(),
-        })
-    }
-
-    /// Which edge of a triangle an edge of the mesh is.
-    fn edge_of(&self, triangle: u32, edge: usize) -> Option<usize> {
-        let vertices = self.triangles[triangle as usize];
-        (0..3).find(|&k| self.topology.edge(vertices[k], vertices[(k + 1) % 3]) == Some(edge))
-    }
-
-    /// The derivative along `n` of the two triangles, each counted by its height over the edge:
-    /// no weight grows without bound when one of them is a sliver.
-    fn blend(
-        &self,
-        pair: [u32; 2],
-        places: [[Vec2; 3]; 2],
-        edge: usize,
-        n: Vec2,
-    ) -> Option<Vec<(u32, f64)>> {
-        let mut weights = Vec::with_capacity(6);
-        let mut heights = 0.0;
-        for (t, corners) in pair.into_iter().zip(places) {
-            let k = self.edge_of(t, edge)?;
-            let (side, other) = (corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3]);
-            let height = side.perp(&(other - corners[k])).abs() / side.norm();
-            heights += height;
-            for (&v, g) in self.triangles[t as usize]
-                .iter()
-                .zip(hat_gradients(corners))
-            {
-                weights.push((v, height * g.dot(&n)));
-            }
-        }
-        for weight in &mut weights {
-            weight.1 /= heights;
-        }
-        Some(weights)
-    }
-
-    /// Triangles across the free edges of `front`, unfolded into its plane.
-    fn next_ring(
-        &self,
-        front: &[(u32, [Vec2; 3])],
-        visited: &mut Vec<u32>,
-    ) -> Vec<(u32, [Vec2; 3])> {
-        let mut ring = Vec::new();
-        for &(t, corners) in front {
-            let vertices = self.triangles[t as usize];
-            for k in 0..3 {
-                let (a, b) = (vertices[k], vertices[(k + 1) % 3]);
-                let Some(edge) = self.topology.edge(a, b) else {
-                    continue;
-                };
-                let [first, second] = self.topology.edge_triangles[edge][..] else {
-                    continue;
-                };
-                let other = if first == t { second } else { first };
-                if visited.contains(&other) {
-                    continue;
-                }
-                if let Some(unfolded) = self.unfold(
-                    other,
-                    [a, b],
-                    [corners[k], corners[(k + 1) % 3]],
-                    corners[(k + 2) % 3],
-                ) {
-                    visited.push(other);
-                    ring.push((other, unfolded));
-                }
-            }
-        }
-        ring
-    }
-
-    /// Corners of `triangle` moved rigidly in the plane so that the edge `[a, b]` lies on `onto`
-    /// (middle and direction), on the far side of `away`.
-    fn unfold(
-        &self,
-        triangle: u32,
-        [a, b]: [u32; 2],
-        onto: [Vec2; 2],
-        away: Vec2,
-    ) -> Option<[Vec2; 3]> {
-        let t = triangle as usize;
-        let place = |v: u32| {
-            self.triangles[t]
-                .iter()
-                .position(|&w| w == v)
-                .map(|k| self.rest[t][k])
-        };
-        let (pa, pb) = (place(a)?, place(b)?);
-        let from = (pb - pa).try_normalize(0.0)?;
-        let to = (onto[1] - onto[0]).try_normalize(0.0)?;
-        let (from_middle, to_middle) = ((pa + pb) * 0.5, (onto[0] + onto[1]) * 0.5);
-        let left = |d: Vec2| Vec2::new(-d.y, d.x);
-        let far = self.triangles[t].iter().position(|&w| w != a && w != b)?;
-        let same_hand =
-            (self.rest[t][far] - from_middle).dot(&left(from)) * (away - to_middle).dot(&left(to));
-        let hand = if same_hand > 0.0 { -1.0 } else { 1.0 };
-        Some(self.rest[t].map(|p| {
-            let d = p - from_middle;
-            to_middle + to * d.dot(&from) + left(to) * (hand * d.dot(&left(from)))
-        }))
     }
 }
 
@@ -399,71 +211,10 @@ impl BendingStencil {
     }
 }
 
-/// Normal of edge `k` out of a triangle, as long as the edge.
-fn outward(corners: [Vec2; 3], k: usize) -> Vec2 {
-    let edge = corners[(k + 1) % 3] - corners[k];
-    let normal = Vec2::new(edge.y, -edge.x);
-    if normal.dot(&(corners[(k + 2) % 3] - corners[k])) > 0.0 {
-        -normal
-    } else {
-        normal
-    }
-}
-
-/// Gradients of the linear functions that are one at one corner and zero at the others [1/m].
-fn hat_gradients(corners: [Vec2; 3]) -> [Vec2; 3] {
-    let twice = (corners[1] - corners[0]).perp(&(corners[2] - corners[0]));
-    [0, 1, 2].map(|k| {
-        let edge = corners[(k + 2) % 3] - corners[(k + 1) % 3];
-        Vec2::new(-edge.y, edge.x) / twice
-    })
-}
-
-/// Adds the vertices of triangles that are not there yet.
-fn collect(triangles: &[[u32; 3]], ring: &[(u32, [Vec2; 3])], points: &mut Vec<(u32, Vec2)>) {
-    for (t, corners) in ring {
-        for (&v, &p) in triangles[*t as usize].iter().zip(corners) {
-            if points.iter().all(|&(known, _)| known != v) {
-                points.push((v, p));
-            }
-        }
-    }
-}
-
-/// The smallest change of `start` (weights of the first points, zero for the others) that makes the
-/// derivative along `n` at the origin exact for every parabola; near points may change more
-/// (inverse fourth power of the distance). Nothing when the points do not determine it.
-fn correct(points: &[Vec2], start: &[f64], n: Vec2) -> Option<Vec<f64>> {
-    if points.len() < 6 {
-        return None;
-    }
-    let row = |p: &Vec2| Vector6::new(1.0, p.x, p.y, 0.5 * p.x * p.x, p.x * p.y, 0.5 * p.y * p.y);
-    let freedom = |p: &Vec2| 1.0 / (p.norm_squared() + 0.25).powi(2);
-    let mut normal = Matrix6::zeros();
-    let mut missing: SVector<f64, 6> = Vector6::new(0.0, n.x, n.y, 0.0, 0.0, 0.0);
-    for (i, p) in points.iter().enumerate() {
-        let r = row(p);
-        normal += r * r.transpose() * freedom(p);
-        missing -= r * start.get(i).copied().unwrap_or(0.0);
-    }
-    let inverse = normal.cholesky()?.inverse();
-    if inverse.trace() > LARGEST_INVERSE {
-        return None;
-    }
-    let force = inverse * missing;
-    Some(
-        points
-            .iter()
-            .enumerate()
-            .map(|(i, p)| start.get(i).copied().unwrap_or(0.0) + freedom(p) * row(p).dot(&force))
-            .collect(),
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_geometry::{TriangleMesh, Vec3};
+    use toile_geometry::{TriangleMesh, Vec2, Vec3};
 
     /// A jittered sheet of right triangles, alternating or not.
     fn sheet(n: usize, jitter: f64, alternate: bool) -> (Vec<Vec2>, Vec<[u32; 3]>) {
@@ -527,10 +278,9 @@ mod tests {
             triangles,
             rest: &rest,
             topology: &topology,
-            rings: None,
         };
         let (mut energy, mut area) = (0.0, 0.0);
-        for (corners, stencil) in rest.iter().zip(sheet.stencils().unwrap()) {
+        for (corners, stencil) in rest.iter().zip(sheet.stencils()) {
             if !stencil.free.is_empty() {
                 continue;
             }
@@ -580,10 +330,9 @@ mod tests {
             triangles: &triangles,
             rest: &rest,
             topology: &topology,
-            rings: None,
         };
         let turn = nalgebra::Rotation3::from_euler_angles(0.4, 1.0, -0.3);
-        for stencil in sheet.stencils().unwrap() {
+        for stencil in sheet.stencils() {
             for c in 0..3 {
                 let k: Vec3 = stencil
                     .vertices
@@ -619,10 +368,8 @@ mod tests {
                 triangles: &triangles,
                 rest,
                 topology: &topology,
-                rings: None,
             }
             .stencils()
-            .unwrap()
         };
         for (a, b) in stencils(&straight).iter().zip(&stencils(&other)).take(16) {
             assert_eq!(a.vertices, b.vertices);

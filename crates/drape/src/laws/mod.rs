@@ -6,4 +6,5 @@ pub mod contact;
 pub mod elastic;
 pub mod fold;
 pub mod membrane;
+pub mod rest_sheet;
 pub mod stretch;

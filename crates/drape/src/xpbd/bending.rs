@@ -175,13 +175,16 @@ const LEAST_SHARE: f64 = 1e-6;
 
 /// The curvature stencils of a model, those without stiffness left out.
 pub fn stencils(system: &System) -> Vec<Stencil> {
-    // Rest shapes that cannot be estimated were refused when the model was made.
-    let all = system.topology.stencils(&system.rest.shapes());
+    let kept = system.rest.curvatures.iter();
+    let all = match system.topology.bending {
+        Some(_) => kept.map(|stencil| (**stencil).clone()).collect(),
+        None => system.topology.stencils(&system.rest.shapes()),
+    };
     let laws: Vec<_> = (system.materials.list.iter())
         .map(Material::bending_matrix)
         .collect();
     let mut stencils = Vec::with_capacity(system.topology.triangles.len());
-    for (t, stencil) in all.unwrap_or_default().into_iter().enumerate() {
+    for (t, stencil) in all.into_iter().enumerate() {
         let (weights, stiffness) =
             stencil.principal(laws[system.materials.of_triangle[t] as usize]);
         let largest = stiffness.iter().copied().fold(0.0, f64::max);
