@@ -18,7 +18,11 @@ fn ball(radius: f64) -> TriangleMesh {
     let mut faces: Vec<[Vec3; 3]> = Vec::new();
     for signs in 0..8u32 {
         let [a, b, c] = [0, 1, 2].map(|k| axes[k] * if signs >> k & 1 == 0 { 1.0 } else { -1.0 });
-        faces.push(if signs.count_ones() % 2 == 0 { [a, b, c] } else { [a, c, b] });
+        faces.push(if signs.count_ones() % 2 == 0 {
+            [a, b, c]
+        } else {
+            [a, c, b]
+        });
     }
     for _ in 0..4 {
         let cut = |[a, b, c]: [Vec3; 3]| {
@@ -65,7 +69,9 @@ fn level(n: usize) -> GarmentLevel {
             let away = side * (0.22 + 0.1 * f64::from(tube));
             for (i, j) in (0..=rows).flat_map(|j| (0..=n).map(move |i| (i, j))) {
                 let p = flat(i, j);
-                cloth.positions.push(Vec3::new(p.x * side, p.y + 0.95, away));
+                cloth
+                    .positions
+                    .push(Vec3::new(p.x * side, p.y + 0.95, away));
                 level.layer.push(tube);
             }
             let at = |i: usize, j: usize| first + (j * (n + 1) + i) as u32;
@@ -84,7 +90,9 @@ fn level(n: usize) -> GarmentLevel {
                     level.stitches.push([at(n, j), at(0, j) + per_panel]);
                 }
                 for i in (0..=n).filter(|i| i * 3 <= n || (n - i) * 3 <= n) {
-                    level.stitches.push([at(i, rows), at(n - i, rows) + per_panel]);
+                    level
+                        .stitches
+                        .push([at(i, rows), at(n - i, rows) + per_panel]);
                 }
             }
         }
@@ -174,7 +182,9 @@ fn be_the_new_process(file: &str) {
 fn check(name: &str, run: &mut GarmentRun, task: Task) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("run.json");
-    let checkpoint = run.checkpoint().unwrap_or_else(|| panic!("{name}: no checkpoint"));
+    let checkpoint = run
+        .checkpoint()
+        .unwrap_or_else(|| panic!("{name}: no checkpoint"));
     let text = write_checkpoint(&checkpoint).unwrap();
     write_atomically(&file, text.as_bytes()).unwrap();
     let before = told(run);
@@ -196,7 +206,10 @@ fn check(name: &str, run: &mut GarmentRun, task: Task) {
         let got = std::fs::read_to_string(&out).unwrap();
         let head = |text: &str| text.lines().next().unwrap().to_owned();
         assert_eq!(head(&got), head(&expected), "{name}, {threads} threads");
-        assert!(got == expected, "{name}, {threads} threads: the states differ");
+        assert!(
+            got == expected,
+            "{name}, {threads} threads: the states differ"
+        );
     }
 }
 
@@ -293,10 +306,18 @@ fn a_checkpoint_of_another_garment_is_refused_by_what_differs() {
         ("count of meshes", &|s| s.levels.truncate(1)),
         ("count of vertices", &|s| s.levels[1] = level(12)),
         ("count of stitches", &|s| s.levels[0].stitches.truncate(5)),
-        ("triangles and seams", &|s| s.levels[0].cloth.triangles[3].rotate_left(1)),
-        ("shape of the panels", &|s| s.levels[1].cloth.rest[3][0].x += 1e-6),
-        ("fabrics", &|s| s.levels[0].cloth.materials[0].density *= 2.0),
-        ("body", &|s| s.colliders[0] = Arc::new(SurfaceTree::new(ball(0.15)))),
+        ("triangles and seams", &|s| {
+            s.levels[0].cloth.triangles[3].rotate_left(1)
+        }),
+        ("shape of the panels", &|s| {
+            s.levels[1].cloth.rest[3][0].x += 1e-6
+        }),
+        ("fabrics", &|s| {
+            s.levels[0].cloth.materials[0].density *= 2.0
+        }),
+        ("body", &|s| {
+            s.colliders[0] = Arc::new(SurfaceTree::new(ball(0.15)))
+        }),
         ("settings", &|s| s.rest.residual *= 2.0),
     ];
     for (what, change) in cases {
@@ -315,13 +336,20 @@ fn a_damaged_file_is_refused_with_place_and_remedy() {
     let newer = text.replacen("\"version\":1", "\"version\":2", 1);
     let digit = text.rfind(|c: char| c.is_ascii_digit()).unwrap();
     let mut changed = text.clone();
-    let other = if &text[digit..=digit] == "7" { "8" } else { "7" };
+    let other = if &text[digit..=digit] == "7" {
+        "8"
+    } else {
+        "7"
+    };
     changed.replace_range(digit..=digit, other);
     let head = text.lines().next().unwrap();
     let cases = [
         ("", "line 1: this is no checkpoint"),
         ("{}", "line 1: this is no checkpoint"),
-        ("{\"format\":\"toile-marker\",\"version\":1}\n{}", "line 1: this is no checkpoint"),
+        (
+            "{\"format\":\"toile-marker\",\"version\":1}\n{}",
+            "line 1: this is no checkpoint",
+        ),
         (&head[..head.len() - 3], "line 1: "),
         (&newer, "version: it is 2; only version 1 is known"),
         (head, "line 2: it was cut short or changed"),
@@ -345,5 +373,8 @@ fn a_damaged_file_is_refused_with_place_and_remedy() {
     assert!(said.starts_with("state, velocities: "), "{said}");
     value["more"] = true.into();
     let unknown = serde_json::from_value::<toile_drape::Checkpoint>(value).unwrap_err();
-    assert!(unknown.to_string().contains("unknown field `more`"), "{unknown}");
+    assert!(
+        unknown.to_string().contains("unknown field `more`"),
+        "{unknown}"
+    );
 }

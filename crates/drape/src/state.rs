@@ -105,8 +105,14 @@ impl State {
             ("anchors", self.anchors.len() == samples),
             ("normal_forces", self.normal_forces.len() == samples),
             ("cloth.places", is_full(cloth.places.len(), count)),
-            ("cloth.held", held.all(|pair| pair.into_iter().all(is_vertex))),
-            ("cloth.held", cloth.held.is_empty() || !cloth.places.is_empty()),
+            (
+                "cloth.held",
+                held.all(|pair| pair.into_iter().all(is_vertex)),
+            ),
+            (
+                "cloth.held",
+                cloth.held.is_empty() || !cloth.places.is_empty(),
+            ),
             ("cloth.drawn", drawn.all(is_vertex)),
             ("cloth.crossed_for", is_full(cloth.crossed_for.len(), count)),
             ("settled", is_full(self.settled.len(), triangles)),

@@ -56,7 +56,10 @@ pub fn read_checkpoint(text: &str) -> Result<Checkpoint, FormatError> {
     if head.version != VERSION {
         return Err(FormatError::new(
             "version",
-            format!("it is {}; only version {VERSION} is known here", head.version),
+            format!(
+                "it is {}; only version {VERSION} is known here",
+                head.version
+            ),
             "go on with the program that wrote it, or drape from the start",
         ));
     }

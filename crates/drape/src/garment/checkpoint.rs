@@ -108,7 +108,9 @@ impl GarmentRun {
         let (mut system, target) = match &mut stage {
             StageState::Sewing(sewing) => {
                 let mut system = setup.panels(level, setup.solids())?;
-                let GarmentLevel { cloth, stitches, .. } = &setup.levels[level];
+                let GarmentLevel {
+                    cloth, stitches, ..
+                } = &setup.levels[level];
                 sewing.resume(&mut system, stitches.clone());
                 (system, (0..cloth.positions.len() as u32).collect())
             }
@@ -153,7 +155,10 @@ impl EditedShapes {
     fn check(&self, triangles: usize) -> Result<(), DrapeError> {
         for (what, shapes) in [("made_for", &self.made_for), ("rest", &self.rest)] {
             if shapes.len() != triangles {
-                let found = format!("{} shapes are given for {triangles} triangles", shapes.len());
+                let found = format!(
+                    "{} shapes are given for {triangles} triangles",
+                    shapes.len()
+                );
                 return Err(damaged(&format!("edited.{what}"), &found));
             }
         }

@@ -130,7 +130,10 @@ impl SetupDigest {
             differs("count of triangles", own.triangles, given.triangles)?;
             differs("count of stitches", own.stitches, given.stitches)?;
             same("triangles and seams", own.structure == given.structure)?;
-            same("shape of the panels", is_edited || own.shapes == given.shapes)?;
+            same(
+                "shape of the panels",
+                is_edited || own.shapes == given.shapes,
+            )?;
         }
         same("body", self.body == other.body)?;
         same("fabrics", self.fabrics == other.fabrics)?;

@@ -122,11 +122,7 @@ impl GarmentSetup {
 }
 
 /// Rest shapes of the triangles of the merged cloth from those of its panels.
-pub(super) fn merged_shapes(
-    cloth: &Cloth,
-    target: &[u32],
-    rest: &[[Vec2; 3]],
-) -> Vec<[Vec2; 3]> {
+pub(super) fn merged_shapes(cloth: &Cloth, target: &[u32], rest: &[[Vec2; 3]]) -> Vec<[Vec2; 3]> {
     let merged = cloth.merged_triangles(target);
     merged.into_iter().map(|t| rest[t]).collect()
 }
