@@ -246,15 +246,13 @@ fn a_new_process_goes_on_to_the_same_bytes() {
     advance_to(&mut run, within(Stage::Sewing, 0, 1));
     check("sewing", &mut run, task(2));
     advance_to(&mut run, within(Stage::Swinging, 0, 0));
-    check("merged", &mut run, task(23));
+    check("merged", &mut run, task(43));
     advance_to(&mut run, within(Stage::Swinging, 0, 0));
     check("swinging", &mut run, task(25));
-    for _ in 0..2 {
-        advance_to(&mut run, within(Stage::Swinging, 0, 0));
-    }
+    advance_to(&mut run, within(Stage::Swinging, 0, 0));
     check("swinging slowly", &mut run, task(5));
     advance_to(&mut run, within(Stage::Settling, 0, 0));
-    check("settling on the coarse mesh", &mut run, task(10));
+    check("settling on the coarse mesh", &mut run, task(4));
     advance_to(&mut run, within(Stage::Swinging, 1, 0));
     let hand = hand(&run, 40);
     run.system.control.attachments = [hand].into_iter().collect();
@@ -371,6 +369,11 @@ fn a_damaged_file_is_refused_with_place_and_remedy() {
         Ok(_) => panic!("it goes on"),
     };
     assert!(said.starts_with("state, velocities: "), "{said}");
+    let read = |value| serde_json::from_value::<toile_drape::Checkpoint>(value);
+    value["gap_before_merging"] = "much".into();
+    let word = read(value.clone()).unwrap_err().to_string();
+    assert!(word.contains("expected a number, \"infinite\""), "{word}");
+    value["gap_before_merging"] = 0.0.into();
     value["more"] = true.into();
     let unknown = serde_json::from_value::<toile_drape::Checkpoint>(value).unwrap_err();
     assert!(

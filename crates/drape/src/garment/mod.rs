@@ -62,9 +62,10 @@ pub struct GarmentRun {
 }
 
 /// Steps of a stage after which contacts are found anew, whatever was found before: what is kept from look to
-/// look changes which of several right answers is found, and is not saved. A round of the swing is a step.
+/// look changes which of several right answers is found, and is not saved. A round of the swing is a step; there
+/// one search of all in 40 costs less than 1 %.
 const SEWING_SPAN: usize = 8;
-const SWINGING_SPAN: usize = 20;
+const SWINGING_SPAN: usize = 40;
 const SETTLING_SPAN: usize = 8;
 
 /// Rounds of finer contact testing before crossings of the body are left and reported.
