@@ -135,7 +135,7 @@ impl GarmentRun {
             system,
             state,
             target,
-            level: level,
+            level,
             made_for,
             setup,
             stage,
