@@ -46,6 +46,10 @@ fn ball(radius: f64) -> TriangleMesh {
     mesh
 }
 
+/// Cells across a panel of the finest mesh, and of the one that it is meshed anew with.
+const FINE: usize = 16;
+const ANEW: usize = 18;
+
 /// Two tubes of two panels each, the second worn over the first; `n` cells across a panel.
 fn level(n: usize) -> GarmentLevel {
     let mut level = GarmentLevel {
@@ -101,8 +105,13 @@ fn level(n: usize) -> GarmentLevel {
 }
 
 fn setup() -> GarmentSetup {
+    setup_of(FINE)
+}
+
+/// The garment with so many cells across a panel of its finest mesh.
+fn setup_of(fine: usize) -> GarmentSetup {
     GarmentSetup {
-        levels: vec![level(10), level(16)],
+        levels: vec![level(10), level(fine)],
         counted: Vec::new(),
         colliders: vec![Arc::new(SurfaceTree::new(ball(0.16)))],
         contact: ContactSettings {
@@ -121,7 +130,7 @@ fn setup() -> GarmentSetup {
 
 /// Rest shapes of the finest mesh, wider by a share at the hem of the outer tube.
 fn wider(by: f64) -> Vec<[Vec2; 3]> {
-    let cloth = level(16).cloth;
+    let cloth = level(FINE).cloth;
     let shapes = cloth.rest.iter().zip(&cloth.panel);
     let wide = |p: Vec2, panel: u32| match panel {
         0 | 1 => p,
@@ -146,6 +155,8 @@ struct Task {
     steps: usize,
     /// The hem is made wider at first.
     edit: bool,
+    /// Cells across a panel of the finest mesh.
+    fine: usize,
 }
 
 fn go_on(run: &mut GarmentRun, task: Task) -> String {
@@ -159,21 +170,23 @@ fn go_on(run: &mut GarmentRun, task: Task) -> String {
 }
 
 /// What the process that goes on is told by its environment: the checkpoint, where to write what came of it,
-/// how many steps to take and whether the hem is made wider.
+/// how many steps to take, whether the hem is made wider, and the finest mesh.
 const FILE: &str = "TOILE_CHECKPOINT";
 const OUT: &str = "TOILE_CHECKPOINT_OUT";
 const STEPS: &str = "TOILE_CHECKPOINT_STEPS";
 const EDIT: &str = "TOILE_CHECKPOINT_EDIT";
+const MESH: &str = "TOILE_CHECKPOINT_MESH";
 
 /// Goes on as the environment says.
 fn be_the_new_process(file: &str) {
     let value = |name: &str| std::env::var(name).unwrap();
     let checkpoint = read_checkpoint(&read_text(Path::new(file)).unwrap()).unwrap();
-    let mut run = GarmentRun::resume(setup(), checkpoint).unwrap();
     let task = Task {
         steps: value(STEPS).parse().unwrap(),
         edit: value(EDIT) == "true",
+        fine: value(MESH).parse().unwrap(),
     };
+    let mut run = GarmentRun::resume(setup_of(task.fine), checkpoint).unwrap();
     std::fs::write(value(OUT), go_on(&mut run, task)).unwrap();
 }
 
@@ -199,6 +212,7 @@ fn check(name: &str, run: &mut GarmentRun, task: Task) {
             .env(OUT, &out)
             .env(STEPS, task.steps.to_string())
             .env(EDIT, task.edit.to_string())
+            .env(MESH, task.fine.to_string())
             .output()
             .unwrap();
         let said = String::from_utf8_lossy(&done.stdout);
@@ -239,8 +253,19 @@ fn a_new_process_goes_on_to_the_same_bytes() {
     if let Ok(file) = std::env::var(FILE) {
         return be_the_new_process(&file);
     }
-    let task = |steps| Task { steps, edit: false };
-    let edit = |steps| Task { steps, edit: true };
+    let task = |steps| Task {
+        steps,
+        edit: false,
+        fine: FINE,
+    };
+    let edit = |steps| Task {
+        edit: true,
+        ..task(steps)
+    };
+    let anew = |steps| Task {
+        fine: ANEW,
+        ..task(steps)
+    };
     let mut run = GarmentRun::new(setup()).unwrap();
     check("placed", &mut run, task(2));
     advance_to(&mut run, within(Stage::Sewing, 0, 1));
@@ -268,6 +293,10 @@ fn a_new_process_goes_on_to_the_same_bytes() {
     advance_to(&mut run, |_| true);
     run.reshape(wider(0.03), Vec::new()).unwrap();
     check("after another edit, edited once more", &mut run, edit(9));
+    run.remesh(level(ANEW), Vec::new()).unwrap();
+    check("meshed anew", &mut run, anew(4));
+    advance_to(&mut run, within(Stage::Settling, 1, 0));
+    check("settling on the new mesh", &mut run, anew(9));
 }
 
 /// A hand that holds a vertex a little higher.

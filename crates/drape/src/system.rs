@@ -103,9 +103,7 @@ impl System {
 
     /// Its topology with the structure of bending kept that its rest shapes choose, and its rest data with
     /// the curvatures of that structure.
-    fn with_structure(
-        &self,
-    ) -> Result<(Arc<Topology>, Arc<BendingStructure>, Arc<RestData>), DrapeError> {
+    fn with_structure(&self) -> Result<Structured, DrapeError> {
         let (triangles, shapes) = (&self.topology.triangles, self.rest.shapes());
         let (structure, curvatures) =
             BendingStructure::new(self.vertex_count(), triangles, &shapes)?;
@@ -179,6 +177,9 @@ impl System {
         between.chain(to_places.map(|one| one.law.stiffness)).sum()
     }
 }
+
+/// A topology that keeps its structure of bending, that structure, and rest data of it.
+type Structured = (Arc<Topology>, Arc<BendingStructure>, Arc<RestData>);
 
 /// A system in the making: of a cloth, its fields say what holds it, what it meets and what acts on it.
 pub struct SystemBuilder {

@@ -127,3 +127,65 @@ impl GarmentRun {
         self.warnings.clear();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ContactSettings, GarmentSetup, Material, RestSettings, SewSettings};
+    use toile_geometry::{TriangleMesh, Vec3};
+
+    /// A sheet of 8 x 8 squares of 20 mm that falls.
+    fn setup() -> GarmentSetup {
+        let mut mesh = TriangleMesh::default();
+        for v in 0..81u32 {
+            let [x, y] = [v % 9, v / 9].map(|k| 0.02 * f64::from(k));
+            mesh.positions.push(Vec3::new(x, y, 0.1 * x * y));
+        }
+        for q in 0..64u32 {
+            let a = q / 8 * 9 + q % 8;
+            mesh.triangles
+                .extend([[a, a + 1, a + 10], [a, a + 10, a + 9]]);
+        }
+        GarmentSetup {
+            levels: vec![GarmentLevel {
+                cloth: Cloth::from_mesh("sheet", &mesh, Material::default()).unwrap(),
+                ..GarmentLevel::default()
+            }],
+            counted: Vec::new(),
+            colliders: Vec::new(),
+            contact: ContactSettings::default(),
+            gravity: Vec3::new(0.0, -9.81, 0.0),
+            sew: SewSettings::default(),
+            rest: RestSettings::default(),
+        }
+    }
+
+    #[test]
+    fn a_garment_made_anew_where_it_hangs_goes_on_from_a_checkpoint() {
+        let mut run = GarmentRun::new(setup()).unwrap();
+        for _ in 0..3 {
+            run.advance().unwrap();
+        }
+        assert!(!run.is_checkpoint());
+        let wider = |shape: &[Vec2; 3]| shape.map(|p| Vec2::new(1.1 * p.x, p.y));
+        let rest: Vec<_> = setup().levels[0].cloth.rest.iter().map(wider).collect();
+        run.rebuild(&rest).unwrap();
+        run.setup.levels[0].cloth.rest = rest;
+        run.go_on_from_here();
+        let checkpoint = run.checkpoint().unwrap();
+        let mut resumed = GarmentRun::resume(setup(), checkpoint).unwrap();
+        assert_eq!(resumed.system.topology.layout, run.system.topology.layout);
+        for run in [&mut run, &mut resumed] {
+            for _ in 0..3 {
+                run.advance().unwrap();
+            }
+            // It is edited under the structure that it was made anew for.
+            let rest = setup().levels[0].cloth.rest.clone();
+            run.reshape(rest, Vec::new()).unwrap();
+            for _ in 0..3 {
+                run.advance().unwrap();
+            }
+        }
+        assert!(resumed.state == run.state);
+    }
+}
