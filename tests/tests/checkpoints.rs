@@ -311,6 +311,9 @@ fn hand(run: &GarmentRun, vertex: u32) -> Attachment {
     }
 }
 
+/// What makes another setup of one.
+type Change<'a> = &'a dyn Fn(&mut GarmentSetup);
+
 /// Why a setup does not go on from a checkpoint.
 fn refusal(setup: GarmentSetup, text: &str) -> String {
     match GarmentRun::resume(setup, read_checkpoint(text).unwrap()) {
@@ -324,12 +327,12 @@ fn refusal(setup: GarmentSetup, text: &str) -> String {
 fn a_checkpoint_of_another_garment_is_refused_by_what_differs() {
     let run = GarmentRun::new(setup()).unwrap();
     let text = write_checkpoint(&run.checkpoint().unwrap()).unwrap();
-    let with = |change: &dyn Fn(&mut GarmentSetup)| {
+    let with = |change: Change| {
         let mut other = setup();
         change(&mut other);
         refusal(other, &text)
     };
-    let cases: [(&str, &dyn Fn(&mut GarmentSetup)); 8] = [
+    let cases: [(&str, Change); 8] = [
         ("count of meshes", &|s| s.levels.truncate(1)),
         ("count of vertices", &|s| s.levels[1] = level(12)),
         ("count of stitches", &|s| s.levels[0].stitches.truncate(5)),
