@@ -1,6 +1,6 @@
 //! What follows from the rest shapes of a cloth and its materials: elements, bending, masses.
 
-use crate::bending_structure::{BendingStructure, Stencils};
+use crate::bending_structure::Stencils;
 use crate::contact_sample::ContactSample;
 use crate::laws::bending::{BendingMatrix, BendingStencil};
 use crate::laws::membrane::MembraneElement;
@@ -58,18 +58,21 @@ impl RestData {
         })
     }
 
-    /// The same for other rest shapes of the same topology, which keeps its structure of bending; what did not
-    /// change is shared. [`Self::curvatures`] must be those of these rest shapes.
+    /// The same for other rest shapes of the same topology. Where that keeps its structure of bending, what did
+    /// not change is shared, and [`Self::curvatures`] must be those of these rest shapes.
     ///
     /// # Errors
     /// A triangle without area, told as one of `object`, and one that the structure does not serve.
     pub(crate) fn reshaped(
         &self,
         object: &str,
-        (topology, structure): (&Topology, &BendingStructure),
+        topology: &Topology,
         rest: &[[Vec2; 3]],
         materials: &Materials,
     ) -> Result<Self, DrapeError> {
+        let Some(structure) = &topology.bending else {
+            return Self::new(object, topology, rest, materials);
+        };
         let elements = elements(object, rest)?;
         let curvatures = structure.stencils((&self.shapes(), &self.curvatures), rest)?;
         let matrix = |law| structure.matrix(&curvatures, materials, law, &elements);

@@ -85,38 +85,38 @@ impl System {
             });
         }
         let rest = exchange_again(rest, &self.topology.exchanges)?;
-        let (topology, structure, before) = match &self.topology.bending {
-            Some(structure) => (self.topology.clone(), structure.clone(), self.rest.clone()),
-            None => self.with_structure()?,
+        let kept = match &self.topology.bending {
+            Some(_) => self.model.clone(),
+            None => self.with_bending_structure()?,
         };
-        let parts = (&*topology, &*structure);
-        let rest = before.reshaped(object, parts, &rest, &self.materials)?;
+        let rest = (kept.rest).reshaped(object, &kept.topology, &rest, &self.materials)?;
         Ok(Self {
             model: Model::of(ModelParts {
-                topology,
                 rest: Arc::new(rest),
-                ..ModelParts::clone(&self.model)
+                ..ModelParts::clone(&kept)
             }),
             control: self.control.clone(),
         })
     }
 
-    /// Its topology with the structure of bending kept that its rest shapes choose, and its rest data with
-    /// the curvatures of that structure.
-    fn with_structure(&self) -> Result<Structured, DrapeError> {
+    /// The same model, its topology with the structure of bending that its rest shapes choose.
+    fn with_bending_structure(&self) -> Result<Model, DrapeError> {
         let (triangles, shapes) = (&self.topology.triangles, self.rest.shapes());
         let (structure, curvatures) =
             BendingStructure::new(self.vertex_count(), triangles, &shapes)?;
-        let structure = Arc::new(structure);
         let topology = Topology {
-            bending: Some(structure.clone()),
+            bending: Some(Arc::new(structure)),
             ..Topology::clone(&self.topology)
         };
         let rest = RestData {
             curvatures,
             ..RestData::clone(&self.rest)
         };
-        Ok((Arc::new(topology), structure, Arc::new(rest)))
+        Ok(Model::of(ModelParts {
+            topology: Arc::new(topology),
+            rest: Arc::new(rest),
+            ..ModelParts::clone(&self.model)
+        }))
     }
 
     /// Has other elastics between vertices; all other parts of its model stay the ones they are.
@@ -177,9 +177,6 @@ impl System {
         between.chain(to_places.map(|one| one.law.stiffness)).sum()
     }
 }
-
-/// A topology that keeps its structure of bending, that structure, and rest data of it.
-type Structured = (Arc<Topology>, Arc<BendingStructure>, Arc<RestData>);
 
 /// A system in the making: of a cloth, its fields say what holds it, what it meets and what acts on it.
 pub struct SystemBuilder {
