@@ -1,9 +1,11 @@
 //! Points of the cloth that are tested against solid surfaces.
 
+use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
 /// A point of the cloth that is tested against surfaces.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ContactSample {
     /// The triangle it lies on; none for a sample at a vertex (then `vertices[0]`).
     pub triangle: Option<u32>,

@@ -55,6 +55,12 @@ impl Contacts {
         self.refresh_surfaces(model, state, positions);
     }
 
+    /// Finds all of them anew at the next look, so that what is found does not depend on what was before.
+    pub(crate) fn forget(&mut self) {
+        self.memory.clear();
+        self.cloth.forget();
+    }
+
     /// Finds those with solid surfaces alone.
     pub(crate) fn refresh_surfaces(&mut self, model: &Model, state: &State, positions: &[Vec3]) {
         if model.colliders.is_empty() {

@@ -2,10 +2,12 @@
 
 use crate::laws::air::Air;
 use crate::laws::elastic::ElasticLaw;
+use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
 /// A vertex drawn to a place: the pull of a hand, or an elastic whose other end is fixed in space.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Attachment {
     /// The vertex.
     pub vertex: u32,
@@ -16,7 +18,8 @@ pub struct Attachment {
 }
 
 /// Attachments in the order of their vertices.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(from = "Vec<Attachment>")]
 pub struct Attachments(Vec<Attachment>);
 
 impl Attachments {
@@ -37,6 +40,12 @@ impl Attachments {
     }
 }
 
+impl From<Vec<Attachment>> for Attachments {
+    fn from(all: Vec<Attachment>) -> Self {
+        all.into_iter().collect()
+    }
+}
+
 impl FromIterator<Attachment> for Attachments {
     fn from_iter<I: IntoIterator<Item = Attachment>>(all: I) -> Self {
         let mut all: Vec<Attachment> = all.into_iter().collect();
@@ -46,7 +55,8 @@ impl FromIterator<Attachment> for Attachments {
 }
 
 /// What acts on the cloth from outside in the present step.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Control {
     /// Acceleration of gravity [m/s2].
     pub gravity: Vec3,

@@ -151,6 +151,8 @@ pub struct Direct {
     unknowns: Unknowns,
     /// The model the structure was worked out for.
     model: Model,
+    /// Vertices of cloths that may touch, as it was made for them: the order of elimination follows.
+    touching: Vec<[u32; 2]>,
     /// Right side and solution at the unknowns.
     right: Vec<Vec3>,
     found: Vec<Vec3>,
@@ -170,11 +172,17 @@ impl Direct {
         Self {
             factor: Factor::new(graph, &places),
             model: system.model.clone(),
+            touching: touching.to_vec(),
             right: Vec::new(),
             found: vec![Vec3::zeros(); places.len()],
             unknowns,
             ready: false,
         }
+    }
+
+    /// Vertices of cloths that may touch, as the structure was worked out for them.
+    pub fn touching(&self) -> &[[u32; 2]] {
+        &self.touching
     }
 
     /// Whether it is over the free vertices of a model with the same triangles.

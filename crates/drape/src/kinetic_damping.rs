@@ -5,20 +5,50 @@
 use crate::collision::Tally;
 use crate::xpbd::{ClothWatch, Span};
 use crate::{DrapeError, State, System, Xpbd};
+use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
 /// A swing on its way to calm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct KineticDamping {
-    xpbd: Xpbd,
-    cloth: ClothWatch,
+    /// Substep [s].
     substep: f64,
+    /// Rounds of substeps taken.
+    rounds: u32,
     time: f64,
     energy: f64,
     calm: bool,
     longest: f64,
     /// Lowest peak of kinetic energy [J], and the peaks since.
+    #[serde(with = "crate::exact")]
     lowest: f64,
     waited: u32,
+}
+
+/// What is found anew for a swing: its constraints, and the contacts in hand.
+#[derive(Default)]
+pub struct SwingWorkspace {
+    xpbd: Option<Xpbd>,
+    cloth: ClothWatch,
+}
+
+impl SwingWorkspace {
+    /// What contact of cloth with cloth found and did.
+    pub fn cloth_tally(&self) -> Tally {
+        self.cloth.contacts.tally
+    }
+
+    /// How often the constraints were built.
+    pub fn builds(&self) -> usize {
+        self.xpbd.as_ref().map_or(0, Xpbd::builds)
+    }
+
+    /// Looks for contacts anew, whatever was found before.
+    pub fn forget_contacts(&mut self) {
+        self.cloth.forget();
+        self.cloth.contacts.forget();
+    }
 }
 
 /// Edges that a wave in the cloth may cross in a substep. What one sweep of XPBD leaves unsolved
@@ -42,12 +72,11 @@ const LOWER: f64 = 0.8;
 const PATIENCE: u32 = 12;
 
 impl KineticDamping {
-    /// Prepares the constraints of a model.
+    /// A swing from where the cloth is.
     pub fn new(system: &System) -> Self {
         Self {
-            xpbd: Xpbd::new(system),
-            cloth: ClothWatch::default(),
             substep: substep(system),
+            rounds: 0,
             time: 0.0,
             energy: 0.0,
             calm: false,
@@ -65,14 +94,9 @@ impl KineticDamping {
         }
     }
 
-    /// What contact of cloth with cloth found and did.
-    pub fn cloth_tally(&self) -> Tally {
-        self.cloth.contacts.tally
-    }
-
-    /// How often the constraints were built.
-    pub fn builds(&self) -> usize {
-        self.xpbd.builds()
+    /// Rounds of substeps taken.
+    pub fn rounds(&self) -> u32 {
+        self.rounds
     }
 
     /// Whether the motion has died out, or has had its time.
@@ -86,8 +110,8 @@ impl KineticDamping {
     }
 
     /// Whether it ended before the cloth was calm, with crossings of cloth left.
-    pub fn left_crossings(&self) -> bool {
-        !self.calm && !self.cloth.contacts.is_in_order()
+    pub fn left_crossings(&self, workspace: &SwingWorkspace) -> bool {
+        !self.calm && !workspace.cloth.contacts.is_in_order()
     }
 
     /// Rough share of the way to calm, 0..=1.
@@ -100,29 +124,34 @@ impl KineticDamping {
     ///
     /// # Errors
     /// When a substep fails at every size; the state is as it was.
-    pub fn advance(&mut self, system: &System, state: &mut State) -> Result<(), DrapeError> {
+    pub fn advance(
+        &mut self,
+        system: &System,
+        state: &mut State,
+        workspace: &mut SwingWorkspace,
+    ) -> Result<(), DrapeError> {
         let span = Span {
             substep: self.substep,
             count: ROUND,
             drag: DRAG,
         };
         let before = state.clone();
-        let report = match self
-            .xpbd
-            .advance_touching(system, state, &mut self.cloth, &span)
-        {
+        let SwingWorkspace { xpbd, cloth } = workspace;
+        let xpbd = xpbd.get_or_insert_with(|| Xpbd::for_state(system, state));
+        let report = match xpbd.advance_touching(system, state, cloth, &span) {
             Ok(report) => report,
             Err(error) => {
                 *state = before;
-                self.cloth.forget();
+                cloth.forget();
                 return Err(error);
             }
         };
+        self.rounds += 1;
         self.time += self.substep * f64::from(ROUND);
         if report.kinetic_energy < self.energy {
             let mass: f64 = system.rest.mass.iter().sum();
             self.calm = self.energy < 0.5 * mass * CALM * CALM;
-            self.watch_crossings();
+            self.watch_crossings(cloth.contacts.is_in_order());
             self.energy = 0.0;
             stop(state);
         } else {
@@ -138,8 +167,8 @@ impl KineticDamping {
 impl KineticDamping {
     /// Counts the peaks of kinetic energy without a new low while cloth crosses cloth or layers lie
     /// in the wrong order.
-    fn watch_crossings(&mut self) {
-        if self.energy < LOWER * self.lowest || self.cloth.contacts.is_in_order() {
+    fn watch_crossings(&mut self, in_order: bool) {
+        if self.energy < LOWER * self.lowest || in_order {
             self.lowest = self.energy;
             self.waited = 0;
         }
@@ -202,9 +231,10 @@ mod tests {
     fn a_strip_let_go_swings_down_and_is_calm_before_its_time_is_up() {
         let (system, mut state) = strip(0.01);
         let mut run = KineticDamping::new(&system);
+        let mut caches = SwingWorkspace::default();
         let mut stops = 0;
         while !run.finished() {
-            run.advance(&system, &mut state).unwrap();
+            run.advance(&system, &mut state, &mut caches).unwrap();
             stops += usize::from(run.energy == 0.0);
             assert!((0.0..=1.0 + 1e-9).contains(&run.share()));
         }

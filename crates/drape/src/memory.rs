@@ -1,11 +1,13 @@
 //! What methods remember from one step to the next: plain data of a state.
 
 use crate::laws::membrane::Curvature;
+use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
 /// What a method must remember from one step to the next beyond positions and velocities. Another
 /// method than the one that wrote it takes no notice of it.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub enum Memory {
     /// Nothing.
     #[default]
@@ -47,14 +49,17 @@ impl Memory {
 }
 
 /// How the way to rest stands between two steps.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct RestMemory {
     /// Next pseudo time step [s], and its bound.
     pub(crate) pseudo_step: f64,
     pub(crate) longest_step: f64,
     pub(crate) steps: usize,
     /// Net force over weight after the last step, and its lowest so far.
+    #[serde(with = "crate::exact")]
     pub(crate) residual: f64,
+    #[serde(with = "crate::exact")]
     pub(crate) best: f64,
     /// Steps since the residual found a new low.
     pub(crate) waited: usize,
@@ -63,7 +68,8 @@ pub struct RestMemory {
 }
 
 /// How a relaxation stands between two steps.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct RelaxationMemory {
     /// Moves per iteration, half an iteration back [m].
     pub(crate) moves: Vec<Vec3>,
@@ -74,5 +80,6 @@ pub struct RelaxationMemory {
     /// Whether the next iteration starts from standstill.
     pub(crate) still: bool,
     pub(crate) iterations: usize,
+    #[serde(with = "crate::exact")]
     pub(crate) residual: f64,
 }

@@ -14,10 +14,12 @@ use crate::{
     DrapeError, Inertia, LinearSolver, NewtonReport, NewtonSettings, PcgLimits, State, System,
     Workspace,
 };
+use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
 /// When the way to rest ends, and how fast it may go.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct RestSettings {
     /// Stop when net force over weight is below this.
     pub residual: f64,
@@ -39,7 +41,8 @@ impl Default for RestSettings {
 }
 
 /// A drape on its way to rest.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PseudoTransientContinuation {
     settings: RestSettings,
     memory: RestMemory,

@@ -5,9 +5,11 @@ use crate::laws::elastic::ElasticLaw;
 use crate::laws::membrane::Curvature;
 use crate::step::{StepSettings, step_in_time};
 use crate::{DrapeError, LinearSolver, NewtonSettings, PcgLimits, State, System, Workspace};
+use serde::{Deserialize, Serialize};
 
 /// How panels are drawn together.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SewSettings {
     /// Gap at which the two sides of a seam may be merged [m].
     pub merge_within: f64,
@@ -26,14 +28,19 @@ impl Default for SewSettings {
 }
 
 /// Panels on their way together.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SewRun {
     settings: SewSettings,
+    /// Those of the level it is of: not saved.
+    #[serde(skip)]
     stitches: Vec<[u32; 2]>,
     stiffness: f64,
     force: f64,
     steps: usize,
+    #[serde(with = "crate::exact")]
     gap: f64,
+    #[serde(with = "crate::exact")]
     best_gap: f64,
     waited: usize,
 }
@@ -75,6 +82,12 @@ impl SewRun {
         };
         run.set_elastics(system);
         run
+    }
+
+    /// Goes on with the stitches of its level, which become the elastics of a system of it again.
+    pub(crate) fn resume(&mut self, system: &mut System, stitches: Vec<[u32; 2]>) {
+        self.stitches = stitches;
+        self.set_elastics(system);
     }
 
     fn set_elastics(&mut self, system: &mut System) {

@@ -1,12 +1,14 @@
 //! The state: what changes as a simulation runs; a complete checkpoint.
 
 use crate::collision::ClothMemory;
-use crate::{ContactSample, InternalStrain, Memory, Model};
+use crate::{ContactSample, DrapeError, InternalStrain, Memory, Model};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toile_geometry::Vec3;
 
 /// Positions, velocities, and what contact remembers.
-#[derive(Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct State {
     /// Positions [m].
     pub positions: Vec<Vec3>,
@@ -81,6 +83,54 @@ impl State {
     pub fn follow_samples(&mut self) {
         self.anchors.resize(self.samples.len(), None);
         self.normal_forces.resize(self.samples.len(), 0.0);
+    }
+
+    /// Refuses a state that does not fit a model, by the field.
+    pub(crate) fn check(&self, model: &Model) -> Result<(), DrapeError> {
+        let [count, triangles] = [model.vertex_count(), model.topology.triangles.len()];
+        let samples = self.samples.len();
+        let of_sample = |sample: &ContactSample| {
+            let corners = sample.vertices.iter().all(|&v| (v as usize) < count);
+            corners && sample.triangle.is_none_or(|t| (t as usize) < triangles)
+        };
+        let is_vertex = |v: u32| (v as usize) < count;
+        let cloth = &self.cloth;
+        let mut held = cloth.held.iter().map(|held| held.pair.vertices());
+        let mut drawn = cloth.drawn.iter().map(|drawn| drawn.vertex);
+        let is_full = |length: usize, whole: usize| length == 0 || length == whole;
+        let fits = [
+            ("positions", self.positions.len() == count),
+            ("velocities", self.velocities.len() == count),
+            ("samples", self.samples.iter().all(of_sample)),
+            ("anchors", self.anchors.len() == samples),
+            ("normal_forces", self.normal_forces.len() == samples),
+            ("cloth.places", is_full(cloth.places.len(), count)),
+            (
+                "cloth.held",
+                held.all(|pair| pair.into_iter().all(is_vertex)),
+            ),
+            (
+                "cloth.held",
+                cloth.held.is_empty() || !cloth.places.is_empty(),
+            ),
+            ("cloth.drawn", drawn.all(is_vertex)),
+            ("cloth.crossed_for", is_full(cloth.crossed_for.len(), count)),
+            ("settled", is_full(self.settled.len(), triangles)),
+        ];
+        if let Some((field, _)) = fits.iter().find(|(_, fits)| !fits) {
+            return Err(DrapeError::Scene {
+                place: format!("state, {field}"),
+                what: format!("it does not fit a cloth of {count} vertices"),
+                remedy: "take another state of this cloth: this one is damaged".to_owned(),
+            });
+        }
+        match self.first_not_finite() {
+            Some(vertex) => Err(DrapeError::NotFinite {
+                stage: "saved state",
+                vertex,
+            }),
+            None => Ok(()),
+        }
     }
 
     /// First vertex with a position or velocity that is not finite.

@@ -19,12 +19,14 @@ use crate::laws::contact::{ContactLaw, ContactPlane};
 use crate::{Model, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::sync::Arc;
 use toile_geometry::Vec3;
 
 /// What was found and done so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Tally {
     /// Looks.
     pub looks: usize,

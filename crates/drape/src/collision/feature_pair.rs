@@ -1,7 +1,10 @@
 //! Two features that might touch.
 
+use serde::{Deserialize, Serialize};
+
 /// Two features that might touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub enum FeaturePair {
     /// A vertex and the corners of a face.
     VertexFace([u32; 4]),

@@ -1,10 +1,12 @@
 //! What contact of cloth with cloth remembers from step to step: plain data of a state.
 
 use super::feature_pair::FeaturePair;
+use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
 /// What a contact remembers from step to step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ContactFrictionState {
     /// The features.
     pub pair: FeaturePair,
@@ -15,7 +17,8 @@ pub struct ContactFrictionState {
 }
 
 /// What contact of cloth with cloth remembers of the last step.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ClothMemory {
     /// Positions then [m].
     pub places: Vec<Vec3>,
@@ -31,7 +34,8 @@ pub struct ClothMemory {
 }
 
 /// Which way a vertex at a crossing was drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct RecoveryDirection {
     /// The vertex.
     pub vertex: u32,

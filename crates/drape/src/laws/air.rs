@@ -6,10 +6,12 @@
 //! F is minus the slope by w of rho A / 6 (C_n |w_n|^3 + C_t |w_t|^3), which is convex.
 
 use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
 /// The air round a cloth.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Air {
     /// Drag per mass [1/s]: a free velocity falls by exp(-drag t). Crude, but cheap.
     pub drag: f64,

@@ -1,14 +1,17 @@
 //! Elastics: attachment forces that draw two points together.
 
+use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
 /// The force law of an elastic of rest length zero: proportional to the gap up to a largest
 /// force, constant beyond (so that far panels are drawn, not torn).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ElasticLaw {
     /// Stiffness at small gaps [N/m].
     pub stiffness: f64,
     /// Largest force [N]; infinite for a plain spring.
+    #[serde(with = "crate::exact")]
     pub largest_force: f64,
 }
 

@@ -7,6 +7,7 @@
 
 use crate::laws::stretch::StrainLaw;
 use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
 use toile_geometry::{Vec2, Vec3};
 
 /// A triangle at rest: how its corners give the tangents, and its area.
@@ -22,7 +23,7 @@ pub struct MembraneElement {
 
 /// Share of the destabilising curvature that a Hessian keeps, 0..=1: with all of it it is exact,
 /// and indefinite where cloth is about to buckle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curvature(pub f64);
 
 impl Curvature {

@@ -22,7 +22,7 @@ use crate::contacts::Contacts;
 use crate::hessian::{Direct, Hessian};
 use crate::laws::membrane::Curvature;
 use crate::step_terms::{StepTerms, add_forces_of_motion};
-use crate::{State, System};
+use crate::{Model, State, System};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -138,6 +138,22 @@ impl Workspace {
     /// How often the structure of a factorisation was worked out.
     pub fn structures(&self) -> usize {
         self.structures
+    }
+
+    /// Vertices of cloths that may touch, as the structure of the factor was worked out for them: the order of
+    /// elimination follows, and with it what rounding leaves. None while there is none for a model.
+    pub(crate) fn eliminated_pairs(&self, model: &Model) -> Option<Vec<[u32; 2]>> {
+        let direct = self.direct.as_ref().filter(|direct| direct.is_of(model))?;
+        let mut pairs = direct.touching().to_vec();
+        pairs.sort_unstable();
+        pairs.dedup();
+        Some(pairs)
+    }
+
+    /// Works out the structure that [`Self::eliminated_pairs`] told of.
+    pub(crate) fn eliminate_pairs(&mut self, system: &System, pairs: &[[u32; 2]]) {
+        self.structures += 1;
+        self.direct = Some(Direct::new(system, &system.topology.layout, pairs));
     }
 
     /// Forgets which pairs of cloth were near, and the places they took in the matrix.

@@ -151,6 +151,11 @@ impl Xpbd {
         Self::with_samples(system, &system.rest.samples, settings)
     }
 
+    /// Builds the constraints of a model and of a state's samples.
+    pub(crate) fn for_state(system: &System, state: &State) -> Self {
+        Self::with_samples(system, &state.samples, XpbdSettings::default())
+    }
+
     /// The same for a state's samples.
     fn with_samples(
         system: &System,

@@ -1,0 +1,45 @@
+//! Numbers of saved states that may be infinite, which JSON has no number for: those are written as words.
+//! For fields, by `#[serde(with = "crate::exact")]`.
+
+use serde::de::{Error, Unexpected};
+use serde::{Deserialize, Deserializer, Serializer};
+
+/// Words for what is not finite.
+const WORDS: [(&str, f64); 3] = [
+    ("infinite", f64::INFINITY),
+    ("-infinite", f64::NEG_INFINITY),
+    ("none", f64::NAN),
+];
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Written {
+    Number(f64),
+    Word(String),
+}
+
+/// Writes a number, or the word for it.
+pub(crate) fn serialize<S: Serializer>(number: &f64, to: S) -> Result<S::Ok, S::Error> {
+    let word = WORDS
+        .iter()
+        .find(|(_, known)| known.total_cmp(number).is_eq() || known.is_nan() && number.is_nan());
+    match word {
+        Some((word, _)) => to.serialize_str(word),
+        None => to.serialize_f64(*number),
+    }
+}
+
+/// Reads it again.
+pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    match Written::deserialize(from)? {
+        Written::Number(number) => Ok(number),
+        Written::Word(word) => {
+            let known = WORDS.iter().find(|(known, _)| *known == word);
+            let unknown = || {
+                let found = Unexpected::Str(&word);
+                D::Error::invalid_value(found, &"a number, \"infinite\", \"-infinite\" or \"none\"")
+            };
+            known.map(|(_, number)| *number).ok_or_else(unknown)
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! A garment's run saved between two steps, and gone on with.
+
+use super::digest::SetupDigest;
+use super::setup::merged_shapes;
+use super::stage::StageState;
+use super::{GarmentLevel, GarmentRun, GarmentSetup};
+use crate::collision::Tally;
+use crate::kinetic_damping::SwingWorkspace;
+use crate::{Cloth, Control, DrapeError, State, System, Workspace};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use toile_geometry::{Vec2, Vec3};
+
+/// All that a garment's run is between two steps but its setup, which it is resumed with: plain data, to be
+/// written to a file.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Checkpoint {
+    /// What it is of.
+    setup: SetupDigest,
+    level: usize,
+    stage: StageState,
+    state: State,
+    control: Control,
+    /// Where merged vertices lay when they were merged [m]: orders of elimination follow. Empty while sewn.
+    layout: Vec<Vec3>,
+    /// Shapes after an edit.
+    edited: Option<EditedShapes>,
+    /// Vertices that might touch when the factor's structure was worked out for them.
+    eliminated_pairs: Option<Vec<[u32; 2]>>,
+    #[serde(with = "crate::exact")]
+    gap_before_merging: f64,
+    share: f64,
+    warnings: Vec<String>,
+    steps: [usize; 2],
+    tally: Tally,
+}
+
+/// Shapes of a garment whose pattern was edited while it was worn.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EditedShapes {
+    /// Rest shapes that the structure was made for [m].
+    made_for: Vec<[Vec2; 3]>,
+    /// Whether others came after them.
+    is_reshaped: bool,
+    /// Rest shapes now [m].
+    rest: Vec<[Vec2; 3]>,
+    /// Where strain counts.
+    counted: Vec<bool>,
+}
+
+impl GarmentRun {
+    /// All that it takes to go on from here in another process to the same bytes; nothing but where
+    /// [`GarmentRun::is_checkpoint`].
+    pub fn checkpoint(&self) -> Option<Checkpoint> {
+        if !self.is_checkpoint() {
+            return None;
+        }
+        let is_sewn = matches!(self.stage, StageState::Sewing(_));
+        let topology = &self.system.topology;
+        let edited = self.made_for.as_ref().map(|made_for| EditedShapes {
+            made_for: made_for.clone(),
+            is_reshaped: topology.bending.is_some(),
+            rest: self.setup.levels[self.level].cloth.rest.clone(),
+            counted: self.setup.counted.clone(),
+        });
+        Some(Checkpoint {
+            setup: SetupDigest::of(&self.setup, self.level),
+            level: self.level,
+            stage: self.stage.clone(),
+            state: self.state.clone(),
+            control: self.system.control.clone(),
+            layout: match is_sewn {
+                true => Vec::new(),
+                false => topology.layout.clone(),
+            },
+            edited,
+            eliminated_pairs: self.workspace.eliminated_pairs(&self.system),
+            gap_before_merging: self.gap_before_merging,
+            share: self.share,
+            warnings: self.warnings.clone(),
+            steps: self.steps,
+            tally: self.cloth_tally(),
+        })
+    }
+
+    /// Goes on from a checkpoint, with the setup that it was saved of; after an edit, with one of the same
+    /// meshes, whose rest shapes do not count.
+    ///
+    /// # Errors
+    /// A checkpoint of another setup, by what differs; one that does not fit itself.
+    pub fn resume(setup: GarmentSetup, checkpoint: Checkpoint) -> Result<Self, DrapeError> {
+        let mut setup = setup.prepared()?;
+        let (level, edited) = (checkpoint.level, checkpoint.edited);
+        let given = SetupDigest::of(&setup, level);
+        checkpoint.setup.check(&given, edited.is_some())?;
+        if level >= setup.levels.len() {
+            return Err(damaged("level", "there is no such mesh"));
+        }
+        let made_for = edited.as_ref().map(|edited| edited.made_for.clone());
+        if let Some(edited) = &edited {
+            edited.check(setup.levels[level].cloth.triangles.len())?;
+            setup.levels[level].cloth.rest.clone_from(&edited.rest);
+            setup.counted.clone_from(&edited.counted);
+        }
+        let mut stage = checkpoint.stage;
+        let (mut system, target) = match &mut stage {
+            StageState::Sewing(sewing) => {
+                let mut system = setup.panels(level, setup.solids())?;
+                let GarmentLevel {
+                    cloth, stitches, ..
+                } = &setup.levels[level];
+                sewing.resume(&mut system, stitches.clone());
+                (system, (0..cloth.positions.len() as u32).collect())
+            }
+            _ => merged(&setup, level, &checkpoint.layout, edited.as_ref())?,
+        };
+        system.control = checkpoint.control;
+        check_control(&system)?;
+        let mut state = checkpoint.state;
+        state.check(&system)?;
+        if *state.samples == *system.rest.samples {
+            state.samples = Arc::clone(&system.rest.samples);
+        }
+        let mut workspace = Workspace::default();
+        if let Some(pairs) = &checkpoint.eliminated_pairs {
+            let count = system.vertex_count();
+            if pairs.iter().flatten().any(|&v| v as usize >= count) {
+                return Err(damaged("eliminated_pairs", "there are fewer vertices"));
+            }
+            workspace.eliminate_pairs(&system, pairs);
+        }
+        Ok(Self {
+            system,
+            state,
+            target,
+            level,
+            made_for,
+            setup,
+            stage,
+            gap_before_merging: checkpoint.gap_before_merging,
+            share: checkpoint.share,
+            warnings: checkpoint.warnings,
+            steps: checkpoint.steps,
+            tally: checkpoint.tally,
+            workspace,
+            swing_workspace: SwingWorkspace::default(),
+            forgot_contacts: true,
+        })
+    }
+}
+
+impl EditedShapes {
+    fn check(&self, triangles: usize) -> Result<(), DrapeError> {
+        for (what, shapes) in [("made_for", &self.made_for), ("rest", &self.rest)] {
+            if shapes.len() != triangles {
+                let found = format!(
+                    "{} shapes are given for {triangles} triangles",
+                    shapes.len()
+                );
+                return Err(damaged(&format!("edited.{what}"), &found));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The merged cloth of a level as it was made, and what its vertices became.
+fn merged(
+    setup: &GarmentSetup,
+    level: usize,
+    layout: &[Vec3],
+    edited: Option<&EditedShapes>,
+) -> Result<(System, Vec<u32>), DrapeError> {
+    let (target, count) = setup.levels[level].merge_map();
+    if layout.len() != count {
+        let found = format!("{} places for {count} vertices", layout.len());
+        return Err(damaged("layout", &found));
+    }
+    let panels = &setup.levels[level].cloth;
+    let cloth = Cloth {
+        positions: layout.to_vec(),
+        ..match edited {
+            None => panels.merged(&target, count),
+            Some(edited) => Cloth {
+                rest: edited.made_for.clone(),
+                ..panels.clone()
+            }
+            .merged(&target, count),
+        }
+    };
+    let system = setup.merged(level, &cloth, setup.solids())?;
+    let system = match edited.filter(|edited| edited.is_reshaped) {
+        None => system,
+        Some(edited) => {
+            let shapes = merged_shapes(panels, &target, &edited.rest);
+            system.reshaped("garment", shapes)?
+        }
+    };
+    Ok((system, target))
+}
+
+fn check_control(system: &System) -> Result<(), DrapeError> {
+    let count = system.vertex_count();
+    let all = system.control.attachments.all();
+    match all.iter().all(|one| (one.vertex as usize) < count) {
+        true => Ok(()),
+        false => Err(damaged("control.attachments", "there are fewer vertices")),
+    }
+}
+
+/// A checkpoint whose parts do not fit each other.
+pub(super) fn damaged(place: &str, what: &str) -> DrapeError {
+    DrapeError::Scene {
+        place: format!("checkpoint, {place}"),
+        what: what.to_owned(),
+        remedy: "take another checkpoint: this one is damaged".to_owned(),
+    }
+}

@@ -1,0 +1,490 @@
+//! A garment's whole way: sewn, merged, draped to rest, from the coarsest mesh of its panels to
+//! the finest. One `advance` is one step, so that a command line, a window and a test drive it
+//! alike; between some steps it can be saved and goes on in another process to the byte.
+
+mod checkpoint;
+mod digest;
+mod edit;
+mod setup;
+mod stage;
+
+pub use checkpoint::Checkpoint;
+pub use setup::{GarmentLevel, GarmentSetup};
+pub use stage::Stage;
+
+use crate::collision::{ClothMemory, Tally};
+use crate::kinetic_damping::{KineticDamping, SwingWorkspace};
+use crate::measure::{Measures, measure};
+use crate::{Carry, Cloth, DrapeError, Equilibrium, SewRun, State, System, Workspace};
+use stage::{Attempts, Settling, StageState, Swinging};
+use toile_geometry::{TriangleMesh, Vec2, Vec3};
+
+/// How far a garment is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// The stage.
+    pub stage: Stage,
+    /// Steps taken in it.
+    pub step: usize,
+    /// Largest seam gap [m].
+    pub gap: f64,
+    /// Net force over weight.
+    pub residual: f64,
+    /// Rough share of the whole way, 0..=1; only an edit makes it fall.
+    pub share: f64,
+}
+
+/// A garment being sewn and draped.
+pub struct GarmentRun {
+    /// The model of the present stage and what acts on it. From outside its control may be changed, no more:
+    /// what else is changed is not saved.
+    pub system: System,
+    /// The state of the present stage.
+    pub state: State,
+    /// New index of every vertex of the present level's cloth; the identity until merged.
+    pub target: Vec<u32>,
+    setup: GarmentSetup,
+    level: usize,
+    stage: StageState,
+    /// Rest shapes of the panels that the structure of the merged cloth was made for, where an edit came after.
+    made_for: Option<Vec<[Vec2; 3]>>,
+    gap_before_merging: f64,
+    share: f64,
+    warnings: Vec<String>,
+    /// Steps of sewing and of settling in the stages left behind.
+    steps: [usize; 2],
+    /// What contact of cloth with cloth found and did before the caches in hand were made.
+    tally: Tally,
+    workspace: Workspace,
+    swing_workspace: SwingWorkspace,
+    /// Whether contacts are found at the next look as if none had been found before.
+    forgot_contacts: bool,
+}
+
+/// Steps of a stage after which contacts are found anew, whatever was found before: what is kept from look to
+/// look changes which of several right answers is found, and is not saved. A round of the swing is a step; there
+/// one search of all in 40 costs less than 1 %.
+const SEWING_SPAN: usize = 8;
+const SWINGING_SPAN: usize = 40;
+const SETTLING_SPAN: usize = 8;
+
+/// Rounds of finer contact testing before crossings of the body are left and reported.
+const MOST_REFINEMENTS: usize = 12;
+
+/// Swings of a level at the most: each begins anew where crossings that had ended one are undone.
+const MOST_SWINGS: usize = 3;
+
+/// Residual below which crossings of the body are looked for next, as a share of the last.
+const NEXT_LOOK: f64 = 0.1;
+
+impl GarmentRun {
+    /// Prepares the first step.
+    ///
+    /// # Errors
+    /// Meshes and materials that cannot be simulated, a setup without any level.
+    pub fn new(setup: GarmentSetup) -> Result<Self, DrapeError> {
+        let setup = setup.prepared()?;
+        let mut system = setup.panels(0, setup.solids())?;
+        let mut run = Self {
+            target: Vec::new(),
+            level: 0,
+            state: State::default(),
+            stage: StageState::Sewing(SewRun::new(&mut system, Vec::new(), setup.sew)),
+            made_for: None,
+            gap_before_merging: 0.0,
+            share: 0.0,
+            warnings: Vec::new(),
+            steps: [0; 2],
+            tally: Tally::default(),
+            workspace: Workspace::default(),
+            swing_workspace: SwingWorkspace::default(),
+            forgot_contacts: true,
+            system: system.clone(),
+            setup,
+        };
+        let placed = run.setup.levels[0].cloth.positions.clone();
+        run.begin(system, placed)?;
+        Ok(run)
+    }
+
+    /// Starts on the present level with its panels at some positions; seams that are closed there already
+    /// are merged at once.
+    fn begin(&mut self, mut system: System, positions: Vec<Vec3>) -> Result<(), DrapeError> {
+        let stitches = self.setup.levels[self.level].stitches.clone();
+        self.target = (0..positions.len() as u32).collect();
+        self.state = State::at_rest(&system, positions);
+        let mut sewing = SewRun::new(&mut system, stitches, self.setup.sew);
+        sewing.look(&self.state);
+        let closed = sewing.closed();
+        self.stage = StageState::Sewing(sewing);
+        self.system = system;
+        self.made_for = None;
+        self.begin_caches();
+        if closed {
+            self.merge()?;
+        }
+        Ok(())
+    }
+
+    /// Whether the present level is the garment wanted.
+    fn is_finest(&self) -> bool {
+        self.level + 1 == self.setup.levels.len()
+    }
+
+    /// Level of the mesh in hand, and how many there are.
+    pub fn level(&self) -> [usize; 2] {
+        [self.level, self.setup.levels.len()]
+    }
+
+    /// Where it is.
+    pub fn progress(&self) -> Progress {
+        let (gap, residual) = match &self.stage {
+            StageState::Sewing(sewing) => (sewing.last_gap(), f64::INFINITY),
+            StageState::Swinging(_) => (0.0, f64::INFINITY),
+            StageState::Settling(settling) | StageState::Finished(settling) => {
+                (0.0, settling.continuation.residual())
+            }
+        };
+        Progress {
+            stage: self.stage.stage(),
+            step: self.stage.steps().into_iter().sum(),
+            gap,
+            residual,
+            share: self.share,
+        }
+    }
+
+    /// Lets a merged garment settle anew, with all the steps of its setup again: for when the
+    /// elastics of [`GarmentRun::system`] were changed from outside. While it is sewn nothing
+    /// changes.
+    pub fn unsettle(&mut self) {
+        if let StageState::Settling(settling) | StageState::Finished(settling) = &self.stage {
+            let mut settling = settling.clone();
+            let settings = self.setup.rest_on(self.level);
+            settling
+                .continuation
+                .go_on(settings.residual, settings.steps);
+            self.stage = StageState::Settling(settling);
+            self.warnings.clear();
+        }
+    }
+
+    /// Largest seam gap in the step before merging [m].
+    pub fn gap_before_merging(&self) -> f64 {
+        self.gap_before_merging
+    }
+
+    /// Steps of sewing and of settling; the swing is not counted.
+    pub fn steps(&self) -> [usize; 2] {
+        let [sewing, settling] = self.stage.steps();
+        [self.steps[0] + sewing, self.steps[1] + settling]
+    }
+
+    /// What contact of cloth with cloth found and did.
+    pub fn cloth_tally(&self) -> Tally {
+        let swinging = self.swing_workspace.cloth_tally();
+        let settling = self.workspace.contacts.cloth.tally;
+        self.tally.then(swinging).then(settling)
+    }
+
+    /// How often the structure of what is solved was worked out for the present stage: once a stage, and for
+    /// every other model.
+    pub fn structures(&self) -> usize {
+        self.swing_workspace.builds() + self.workspace.structures()
+    }
+
+    /// What went less than well, in plain words.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// Seams that do not close, numbers that leave the finite ones, no progress: always with the
+    /// last good state kept.
+    pub fn advance(&mut self) -> Result<Progress, DrapeError> {
+        match self.stage.stage() {
+            Stage::Sewing => self.sew()?,
+            Stage::Swinging => self.swing()?,
+            Stage::Settling => self.settle()?,
+            Stage::Finished => {}
+        }
+        Ok(self.progress())
+    }
+
+    /// Shows a share of the way on the present level. A level takes about a quarter of the time of the
+    /// next.
+    fn show(&mut self, share: f64) {
+        let after = 4f64.powi(self.level as i32 + 1 - self.setup.levels.len() as i32);
+        let before = if self.level == 0 { 0.0 } else { 0.25 * after };
+        self.share = self.share.max(before + (after - before) * share);
+    }
+
+    fn sew(&mut self) -> Result<(), DrapeError> {
+        let StageState::Sewing(sewing) = &mut self.stage else {
+            return Ok(());
+        };
+        self.forgot_contacts = false;
+        sewing.advance(&mut self.system, &mut self.state, &mut self.workspace)?;
+        let (gap, closed, steps) = (sewing.last_gap(), sewing.closed(), sewing.steps());
+        let start = 0.3;
+        self.show(0.5 * (1.0 - (gap / start).min(1.0)));
+        if closed {
+            return self.merge();
+        }
+        self.forget_after(steps, SEWING_SPAN);
+        Ok(())
+    }
+
+    fn swing(&mut self) -> Result<(), DrapeError> {
+        let StageState::Swinging(Swinging { damping, attempts }) = &mut self.stage else {
+            return Ok(());
+        };
+        self.forgot_contacts = false;
+        damping.advance(&self.system, &mut self.state, &mut self.swing_workspace)?;
+        let shown = 0.5 + 0.2 * damping.share();
+        let rounds = damping.rounds() as usize;
+        if damping.finished() {
+            let cut_short = damping.left_crossings(&self.swing_workspace);
+            attempts.swings += 1;
+            let settings = self.setup.rest_on(self.level);
+            self.stage = StageState::Settling(Settling {
+                cut_short,
+                ..Settling::near(settings, *attempts)
+            });
+            self.tally = self.tally.then(self.swing_workspace.cloth_tally());
+            self.swing_workspace = SwingWorkspace::default();
+            self.forget_contacts();
+        } else {
+            self.forget_after(rounds, SWINGING_SPAN);
+        }
+        self.show(shown);
+        Ok(())
+    }
+
+    fn settle(&mut self) -> Result<(), DrapeError> {
+        let StageState::Settling(settling) = &mut self.stage else {
+            return Ok(());
+        };
+        self.forgot_contacts = false;
+        let continuation = &mut settling.continuation;
+        continuation.advance(&self.system, &mut self.state, &mut self.workspace)?;
+        let (residual, steps) = (continuation.residual(), continuation.steps());
+        let finished = continuation.finished();
+        if settling.cut_short && self.workspace.contacts.cloth.is_in_order() {
+            settling.cut_short = false;
+            if settling.attempts.swings < MOST_SWINGS {
+                self.swing_again();
+                return Ok(());
+            }
+        }
+        let decades = (1.0 / residual.max(1e-9)).log10() / 3.0;
+        self.show((0.7 + 0.3 * decades.clamp(0.0, 1.0)).min(0.99));
+        if finished && !self.is_finest() {
+            return self.refine();
+        }
+        if self.is_finest() {
+            self.finish();
+        }
+        match self.stage {
+            StageState::Finished(_) => self.forget_contacts(),
+            _ => self.forget_after(steps, SETTLING_SPAN),
+        }
+        Ok(())
+    }
+
+    /// Sees to crossings of the body on the finest mesh, and ends its way where it is at rest.
+    fn finish(&mut self) {
+        let StageState::Settling(settling) = &mut self.stage else {
+            return;
+        };
+        let finished = settling.continuation.finished();
+        let residual = settling.continuation.residual();
+        if finished || residual < settling.attempts.look_below {
+            settling.attempts.look_below = NEXT_LOOK * residual;
+            let offenders = body_crossings(&self.system, &self.state);
+            if !offenders.is_empty() && settling.attempts.refinements < MOST_REFINEMENTS {
+                settling.attempts.refinements += 1;
+                for triangle in offenders {
+                    self.state.refine_contact(&self.system, triangle);
+                }
+                if finished {
+                    let settings = self.setup.rest;
+                    settling
+                        .continuation
+                        .go_on(settings.residual, settings.steps / 4);
+                    return;
+                }
+            }
+        }
+        if !finished {
+            return;
+        }
+        if residual > self.setup.rest.residual {
+            self.warnings.push(format!(
+                "the drape stopped after {} steps with net force {residual:.1e} of the weight, above the {:.1e} asked for",
+                settling.continuation.steps(),
+                self.setup.rest.residual
+            ));
+        }
+        self.stage = StageState::Finished(settling.clone());
+        self.share = 1.0;
+    }
+
+    /// Swings again: what had ended the last swing too early is undone.
+    fn swing_again(&mut self) {
+        let StageState::Settling(settling) = &self.stage else {
+            return;
+        };
+        self.steps[1] += settling.continuation.steps();
+        let attempts = settling.attempts;
+        self.state.cloth = ClothMemory::default();
+        self.stage = self.swinging(attempts);
+        let cloth = &mut self.workspace.contacts.cloth;
+        self.tally = self.tally.then(std::mem::take(&mut cloth.tally));
+        self.forget_contacts();
+    }
+
+    /// A swing of the merged cloth of the present level.
+    fn swinging(&self, attempts: Attempts) -> StageState {
+        let damping = match self.level {
+            0 => KineticDamping::new(&self.system),
+            _ => KineticDamping::carried(&self.system),
+        };
+        StageState::Swinging(Swinging { damping, attempts })
+    }
+
+    /// Goes on to the next finer level with the shape reached.
+    fn refine(&mut self) -> Result<(), DrapeError> {
+        let [coarse, fine] = [0, 1].map(|k| &self.setup.levels[self.level + k].cloth);
+        let carried = Carry::new(coarse, fine)?.apply(&self.panels_as_they_lie());
+        let solids = self.system.colliders.to_vec();
+        let system = self.setup.panels(self.level + 1, solids)?;
+        self.steps = self.steps();
+        self.level += 1;
+        self.begin(system, carried)
+    }
+
+    /// The triangles of the present level's panels where the cloth is.
+    fn panels_as_they_lie(&self) -> TriangleMesh {
+        let joined = |t: &[u32; 3]| t.map(|v| self.target[v as usize]);
+        let triangles = &self.setup.levels[self.level].cloth.triangles;
+        TriangleMesh {
+            positions: self.state.positions.clone(),
+            triangles: triangles.iter().map(joined).collect(),
+        }
+    }
+
+    /// Joins the stitched vertices; gravity and friction act from here on.
+    fn merge(&mut self) -> Result<(), DrapeError> {
+        let StageState::Sewing(sewing) = &self.stage else {
+            return Ok(());
+        };
+        let (gap, steps) = (sewing.last_gap(), sewing.steps());
+        let level = &self.setup.levels[self.level];
+        let (target, count) = level.merge_map();
+        let placed = Cloth {
+            positions: self.state.positions.clone(),
+            ..level.cloth.clone()
+        };
+        let merged = placed.merged(&target, count);
+        let solids = self.system.colliders.to_vec();
+        let system = self.setup.merged(self.level, &merged, solids)?;
+        self.state = State::at_rest(&system, merged.positions);
+        self.system = system;
+        self.target = target;
+        self.steps[0] += steps;
+        self.gap_before_merging = gap;
+        self.stage = self.swinging(Attempts::default());
+        self.begin_caches();
+        self.show(0.5);
+        Ok(())
+    }
+
+    /// The garment at rest, to be predicted and corrected under other rest shapes; nothing before it is
+    /// [`Stage::Finished`].
+    pub fn into_equilibrium(self) -> Option<Equilibrium> {
+        let StageState::Finished(settling) = self.stage else {
+            return None;
+        };
+        let cloth = &self.setup.levels[self.level].cloth;
+        Some(Equilibrium {
+            merged: cloth.merged_triangles(&self.target),
+            settings: self.setup.rest,
+            system: self.system,
+            state: self.state,
+            workspace: self.workspace,
+            continuation: settling.continuation,
+        })
+    }
+
+    /// Measures the present state, which changes nothing. Strain counts only where the setup says so.
+    pub fn measure(&self) -> Measures {
+        let counted = match self.system.topology.triangles.len() == self.setup.counted.len() {
+            true => &self.setup.counted[..],
+            false => &[],
+        };
+        measure(
+            &self.system,
+            &self.state,
+            &mut Workspace::default(),
+            counted,
+        )
+    }
+
+    /// Whether contacts are found at the next look as if none had been found before: from here another
+    /// process goes on to the same bytes.
+    pub fn is_checkpoint(&self) -> bool {
+        self.forgot_contacts
+    }
+
+    /// Steps to the next checkpoint at the most: the end of a stage is one, too.
+    pub fn steps_to_checkpoint(&self) -> usize {
+        if self.forgot_contacts {
+            return 0;
+        }
+        let (steps, span) = match &self.stage {
+            StageState::Sewing(sewing) => (sewing.steps(), SEWING_SPAN),
+            StageState::Swinging(swinging) => (swinging.damping.rounds() as usize, SWINGING_SPAN),
+            StageState::Settling(settling) | StageState::Finished(settling) => {
+                (settling.continuation.steps(), SETTLING_SPAN)
+            }
+        };
+        span - steps % span
+    }
+
+    /// Has contacts found anew once a stage took a number of steps that `span` divides.
+    fn forget_after(&mut self, steps: usize, span: usize) {
+        if steps.is_multiple_of(span) {
+            self.forget_contacts();
+        }
+    }
+
+    fn forget_contacts(&mut self) {
+        self.workspace.contacts.forget();
+        self.swing_workspace.forget_contacts();
+        self.forgot_contacts = true;
+    }
+
+    /// Caches for another cloth.
+    fn begin_caches(&mut self) {
+        self.tally = self.cloth_tally();
+        self.workspace = Workspace::default();
+        self.swing_workspace = SwingWorkspace::default();
+        self.forgot_contacts = true;
+    }
+}
+
+/// Cloth triangles that cross a solid surface, exactly.
+fn body_crossings(system: &System, state: &State) -> Vec<u32> {
+    let mesh = system.mesh(&state.positions);
+    let mut crossing: Vec<u32> = Vec::new();
+    for collider in system.colliders.iter() {
+        let pairs = collider.crossings(state.time, &mesh);
+        crossing.extend(pairs.iter().map(|pair| pair[0]));
+    }
+    crossing.sort_unstable();
+    crossing.dedup();
+    crossing
+}
