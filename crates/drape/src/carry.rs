@@ -88,6 +88,17 @@ impl Carry {
             })
             .collect()
     }
+
+    /// Vectors at the old mesh's vertices, at the new ones: straight over the triangle each lies in, whose
+    /// corners `triangles` gives by the same number.
+    pub fn interpolate(&self, triangles: &[[u32; 3]], values: &[Vec3]) -> Vec<Vec3> {
+        let one = |&(triangle, weights): &(u32, [f64; 3])| {
+            let corners = triangles[triangle as usize];
+            let three = corners.iter().zip(weights);
+            three.map(|(&v, weight)| values[v as usize] * weight).sum()
+        };
+        self.places.iter().map(one).collect()
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 use crate::contact_settings::MOST_EXTRA;
 use crate::{ContactSample, Memory, Model, State};
 use std::sync::Arc;
-use toile_geometry::Vec3;
 
 /// How much farther a triangle is kept each time it is found crossing again [m]: a quarter of the
 /// usual offset.
@@ -21,8 +20,8 @@ impl State {
         self.follow_samples();
     }
 
-    /// Goes on at a standstill where it is under other rest shapes of the same triangles: cloth sticks where it
-    /// stuck, and is tested against solids where it was.
+    /// Goes on where it is under other rest shapes of the same triangles: cloth sticks where it stuck, and is
+    /// tested against solids where it was. A way to rest begins anew.
     pub(crate) fn follow_shapes(&mut self, model: &Model) {
         let at_vertices = model.rest.samples.iter().copied();
         let mut samples: Vec<ContactSample> = at_vertices.collect();
@@ -42,8 +41,9 @@ impl State {
             }
         }));
         self.samples = Arc::new(samples);
-        self.velocities.fill(Vec3::zeros());
-        self.memory = Memory::Nothing;
+        if let Memory::Rest(_) | Memory::Relaxation(_) = self.memory {
+            self.memory = Memory::Nothing;
+        }
     }
 }
 

@@ -1,8 +1,10 @@
 //! What may change with every step of a simulation without another structure.
 
 use crate::laws::air::Air;
+use crate::Motion;
 use crate::laws::elastic::ElasticLaw;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use toile_geometry::Vec3;
 
 /// A vertex drawn to a place: the pull of a hand, or an elastic whose other end is fixed in space.
@@ -15,6 +17,27 @@ pub struct Attachment {
     pub place: Vec3,
     /// Its force law.
     pub law: ElasticLaw,
+}
+
+/// A vertex drawn to a point of a solid that moves. Only XPBD draws it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FrameAttachment {
+    /// The vertex.
+    pub vertex: u32,
+    /// Where the point is while the solid stands as it was loaded [m].
+    pub point: Vec3,
+    /// How the solid moves.
+    pub motion: Arc<Motion>,
+    /// Its force law.
+    pub law: ElasticLaw,
+}
+
+impl FrameAttachment {
+    /// Where the vertex is drawn to at a time \[s\], in metres.
+    pub fn place(&self, time: f64) -> Vec3 {
+        self.motion.pose(time).apply(self.point)
+    }
 }
 
 /// Attachments in the order of their vertices.
@@ -67,6 +90,9 @@ pub struct Control {
     pub air: Air,
     /// Vertices drawn to places.
     pub attachments: Attachments,
+    /// Vertices drawn to points of solids that move.
+    #[serde(default)]
+    pub frames: Vec<FrameAttachment>,
 }
 
 impl Default for Control {
@@ -77,6 +103,7 @@ impl Default for Control {
             air_drag: 0.0,
             air: Air::default(),
             attachments: Attachments::default(),
+            frames: Vec::new(),
         }
     }
 }

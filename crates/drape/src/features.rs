@@ -1,9 +1,10 @@
-//! What a scene may ask for beyond cloth that hangs and falls, which method knows what of it, and the
-//! refusal of a scene that asks its method for more.
+//! What a world may ask for beyond cloth that hangs and falls, which method knows what of it, and the
+//! refusal of a world that asks its method for more.
 
-use crate::{Compression, DrapeError, Material, MethodKind, ObjectKind, Scene, SceneObject};
+use crate::world::{Kind, Object, World};
+use crate::{Compression, DrapeError, Material, MethodKind};
 
-/// What a scene may ask for that not every method knows, or that acts only where it is asked for.
+/// What a world may ask for that not every method knows, or that acts only where it is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Feature {
     /// Solid objects that move.
@@ -60,47 +61,46 @@ impl Feature {
         matches!(self, Self::MassDrag | Self::Viscosity)
     }
 
-    /// Where a scene asks for it, by the fields of a scene file; nothing where it does not.
-    pub fn asked_by(self, scene: &Scene) -> Option<String> {
+    /// Where a world asks for it, by the fields of a scene file; nothing where it does not.
+    pub fn asked_by(self, world: &World) -> Option<String> {
+        let environment = world.environment();
         match self {
             Self::MovingObjects => {
-                let moves = |o: &&SceneObject| matches!(o.kind, ObjectKind::Animated { .. });
-                let object = scene.objects.iter().find(moves)?;
+                let (_, object) = world.objects().find(|(_, o)| o.kind == Kind::Animated)?;
                 Some(format!("motion of \"{}\"", object.name))
             }
             Self::Grips => {
-                let grip = scene.grips.first()?;
-                let object = scene.objects.get(grip.object)?;
+                let grips = |o: &Object| o.kind == Kind::Deformable && !o.grips.is_empty();
+                let (_, object) = world.objects().find(|(_, object)| grips(object))?;
                 Some(format!("grips of \"{}\"", object.name))
             }
-            Self::Restitution => cloth(scene, "restitution", |m| m.restitution.is_some()),
+            Self::Restitution => cloth(world, "restitution", |m| m.restitution.is_some()),
             Self::ClothContact => {
-                let apart = scene.contact.cloth_offset > 0.0;
+                let apart = environment.contact.cloth_offset > 0.0;
                 apart.then(|| "collision.cloth_offset".to_owned())
             }
             Self::Layers => {
-                let mut cloths = (scene.objects.iter())
-                    .filter(|o| matches!(o.kind, ObjectKind::Deformable { .. }));
-                let first = cloths.next()?.layer;
-                let other = cloths.find(|object| object.layer != first)?;
+                let mut cloths = world.objects().filter(|(_, o)| o.kind == Kind::Deformable);
+                let (_, first) = cloths.next()?;
+                let (_, other) = cloths.find(|(_, object)| object.layers != first.layers)?;
                 Some(format!("layer of \"{}\"", other.name))
             }
-            Self::MassDrag => match (scene.air.drag > 0.0, scene.damping.mass > 0.0) {
+            Self::MassDrag => match (environment.air.drag > 0.0, environment.damping.mass > 0.0) {
                 (true, _) => Some("air.drag".to_owned()),
                 (false, true) => Some("damping.mass".to_owned()),
                 (false, false) => None,
             },
-            Self::TriangleDrag => (scene.air.acts()).then(|| "air.density".to_owned()),
-            Self::Viscosity if scene.damping.stiffness > 0.0 => {
+            Self::TriangleDrag => (environment.air.acts()).then(|| "air.density".to_owned()),
+            Self::Viscosity if environment.damping.stiffness > 0.0 => {
                 Some("damping.stiffness".to_owned())
             }
-            Self::Viscosity => cloth(scene, "viscosity", |m| m.is_viscous().contains(&true)),
-            Self::KeptStrain => cloth(scene, "kept share", Material::keeps_strain),
-            Self::Hardening => cloth(scene, "hardening", |m| m.hardening.iter().any(|&k| k > 0.0)),
-            Self::StrainLimit => cloth(scene, "strain limit", |m| {
+            Self::Viscosity => cloth(world, "viscosity", |m| m.is_viscous().contains(&true)),
+            Self::KeptStrain => cloth(world, "kept share", Material::keeps_strain),
+            Self::Hardening => cloth(world, "hardening", |m| m.hardening.iter().any(|&k| k > 0.0)),
+            Self::StrainLimit => cloth(world, "strain limit", |m| {
                 m.strain_limit.iter().any(|limit| limit.is_finite())
             }),
-            Self::TensionField => cloth(scene, "compression", |m| {
+            Self::TensionField => cloth(world, "compression", |m| {
                 m.compression == Compression::TensionField
             }),
         }
@@ -108,11 +108,9 @@ impl Feature {
 }
 
 /// The first cloth of a material that has something, as the place of a message.
-fn cloth(scene: &Scene, what: &str, has: impl Fn(&Material) -> bool) -> Option<String> {
-    let object = scene
-        .objects
-        .iter()
-        .find(|object| Scene::materials_of(object).iter().any(&has))?;
+fn cloth(world: &World, what: &str, has: impl Fn(&Material) -> bool) -> Option<String> {
+    let (id, _) = (world.cloths()).find(|(_, cloth)| cloth.materials.iter().any(&has))?;
+    let object = world.object(id)?;
     Some(format!("{what} of \"{}\"", object.name))
 }
 
@@ -136,13 +134,12 @@ impl MethodKind {
     }
 }
 
-impl Scene {
-    /// Refuses what the scene asks for and its method leaves out.
-    pub(crate) fn check_features(&self) -> Result<(), DrapeError> {
+impl World {
+    /// Refuses what it asks for and a method leaves out.
+    pub(crate) fn check_features(&self, kind: MethodKind) -> Result<(), DrapeError> {
         let all = Feature::ALL.iter().map(|&(_, feature)| feature);
         let asked = all.filter_map(|feature| Some((feature, feature.asked_by(self)?)));
         let asked: Vec<(Feature, String)> = asked.collect();
-        let kind = self.method.kind;
         let Some((feature, place)) = asked.iter().find(|(feature, _)| !kind.supports(*feature))
         else {
             return Ok(());

@@ -53,6 +53,7 @@ mod step;
 mod step_terms;
 mod system;
 mod topology;
+mod world;
 mod xpbd;
 
 pub use carry::Carry;
@@ -61,7 +62,7 @@ pub use collider::{Collider, Grip};
 pub use contact_sample::ContactSample;
 pub use contact_settings::{ContactSettings, MOST_OFFSET};
 pub use contacts::{Contact, Contacts};
-pub use control::{Attachment, Attachments, Control};
+pub use control::{Attachment, Attachments, Control, FrameAttachment};
 pub use elastic::{Elastic, ElasticCouplings, ElasticEnd};
 pub use equilibrium::{Equilibrium, Prediction};
 pub use error::DrapeError;
@@ -87,11 +88,15 @@ pub use rest_data::RestData;
 pub use scene::{
     Damping, MOST_LAYER, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject,
 };
-pub use scene_run::SceneRun;
+pub use scene_run::{SceneRun, Surface, TimeSettings};
 pub use sew::{SewRun, SewSettings};
 pub use state::State;
 pub use step::{StepSettings, step_in_time};
 pub use system::{System, SystemBuilder};
 pub use toile_sparse::PcgLimits;
 pub use topology::Topology;
+pub use world::{
+    AttachmentEnd, AttachmentId, Edited, Environment, Kind, Layers, MeshVertex, Object,
+    ObjectAttachment, ObjectId, Simulation, VertexGrip, VertexMap, World, WorldEdit,
+};
 pub use xpbd::{ConstraintCount, Xpbd, XpbdReport, XpbdSettings};

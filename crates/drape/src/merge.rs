@@ -1,7 +1,6 @@
 //! Merging: vertices that seams have drawn together become one.
 
 use crate::collision::layer_order::BETWEEN_LAYERS;
-use toile_geometry::Vec3;
 
 /// Union-find: sets of vertices, each known by its smallest.
 struct Sets {
@@ -53,18 +52,18 @@ pub fn merge_map(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> (Ve
     (target, next as usize)
 }
 
-/// Keeps of some pairs, in order, those that may be joined: none that would make one vertex of two
-/// that are held, unless `together` says that these two can be one.
+/// Which of some pairs, in order, may be joined: none that would make one vertex of two that are held,
+/// unless `together` says that these two can be one; none that is not there.
 pub(crate) fn joinable(
-    pairs: impl IntoIterator<Item = [u32; 2]>,
+    pairs: impl IntoIterator<Item = Option<[u32; 2]>>,
     held: &[bool],
     together: impl Fn(u32, u32) -> bool,
-) -> Vec<[u32; 2]> {
+) -> Vec<bool> {
     let mut sets = Sets::new(held.len());
     // A held vertex of each set, at its root.
     let own = held.iter().enumerate();
     let mut holder: Vec<Option<u32>> = own.map(|(v, &held)| held.then_some(v as u32)).collect();
-    let may = |pair: &[u32; 2]| {
+    let mut may = |pair: [u32; 2]| {
         let roots = pair.map(|v| sets.root(v));
         let [a, b] = roots.map(|root| holder[root as usize]);
         if let (Some(a), Some(b)) = (a, b)
@@ -77,34 +76,7 @@ pub(crate) fn joinable(
         holder[roots[0].min(roots[1]) as usize] = a.or(b);
         true
     };
-    pairs.into_iter().filter(may).collect()
-}
-
-/// Places [m] and velocities [m/s] of merged vertices, `target[v]` being the new index of old vertex
-/// `v`. One that is held stays where it is, exactly; others meet at their mean, weighted by `mass`
-/// [kg], so that momentum is kept. A vertex without cloth has no mass to draw others by.
-pub(crate) fn merged_motion(
-    (positions, velocities): (&[Vec3], &[Vec3]),
-    mass: &[f64],
-    held: &[bool],
-    (target, count): (&[u32], usize),
-) -> (Vec<Vec3>, Vec<Vec3>) {
-    let mut of: Vec<Vec<usize>> = vec![Vec::new(); count];
-    for (v, &to) in target.iter().enumerate() {
-        of[to as usize].push(v);
-    }
-    let motion = |joined: &Vec<usize>| {
-        let kept = joined.iter().find(|&&v| held[v]);
-        if let Some(&v) = kept.or(joined.first().filter(|_| joined.len() == 1)) {
-            return (positions[v], velocities[v]);
-        }
-        let whole: f64 = joined.iter().map(|&v| mass[v]).sum();
-        let weight = |v: usize| if whole > 0.0 { mass[v] } else { 1.0 };
-        let total: f64 = joined.iter().map(|&v| weight(v)).sum();
-        let mean = |of: &[Vec3]| joined.iter().map(|&v| of[v] * weight(v)).sum::<Vec3>() / total;
-        (mean(positions), mean(velocities))
-    };
-    of.iter().map(motion).unzip()
+    (pairs.into_iter().map(|pair| pair.is_some_and(&mut may))).collect()
 }
 
 /// Layer of each merged vertex from those that became it; [`BETWEEN_LAYERS`] where they differ, and

@@ -44,6 +44,11 @@ pub trait Method: Send {
         None
     }
 
+    /// Whether it draws vertices to points of solids that move; a system that asks another for that is refused.
+    fn follows_frames(&self) -> bool {
+        false
+    }
+
     /// Net force over weight after the last step, where the method knows it.
     fn residual(&self) -> Option<f64> {
         None

@@ -1,10 +1,12 @@
 //! Prescribed rigid motion: keys in time, straight between them.
 
 use nalgebra::Rotation3;
+use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
 /// Where a body stands at one time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct MotionKey {
     /// The time [s]; times rise from key to key.
     pub time: f64,
@@ -16,7 +18,8 @@ pub struct MotionKey {
 
 /// A rigid motion. Between two keys translation and rotation vector change evenly, so a body turns
 /// steadily where the axis stays; before the first and after the last it stands still.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Motion {
     /// The place it is turned about, as loaded [m].
     pub pivot: Vec3,

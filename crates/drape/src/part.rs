@@ -208,6 +208,7 @@ impl Part {
                 air_drag: 0.0,
                 air: system.control.air,
                 attachments,
+                frames: Vec::new(),
             },
         };
         Self {

@@ -217,7 +217,6 @@ impl Scene {
         self.check_distances()?;
         self.check_layers()?;
         self.check_motions()?;
-        self.check_features()?;
         for (index, elastic) in self.elastics.iter().enumerate() {
             let place = format!("elastics[{index}]");
             if !(elastic.stiffness.is_finite() && elastic.stiffness >= 0.0) {
@@ -236,13 +235,6 @@ impl Scene {
                             "name an object of the scene",
                         );
                     };
-                    if let ObjectKind::Animated { .. } = named.kind {
-                        return refuse(
-                            place,
-                            format!("\"{}\" moves by itself", named.name),
-                            "tie cloth to cloth, to what stands still or to a place",
-                        );
-                    }
                     if vertex as usize >= named.mesh.positions.len() {
                         let what = format!("\"{}\" has no vertex {vertex}", named.name);
                         return refuse(

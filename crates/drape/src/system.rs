@@ -193,7 +193,7 @@ pub struct SystemBuilder {
     /// Layer of each vertex, larger numbers farther out, or
     /// [`BETWEEN_LAYERS`](crate::collision::BETWEEN_LAYERS); empty where all are of one.
     pub layer: Vec<u16>,
-    /// What acts at first; its attachments are those of `elastics`.
+    /// What acts at first; its attachments to places are those of `elastics`.
     pub control: Control,
     topology: Arc<Topology>,
     rest: Arc<RestData>,
@@ -221,12 +221,8 @@ impl SystemBuilder {
         let topology = Topology::new(cloth.positions.clone(), cloth.triangles.clone())
             .with_exchanges(mesh.triangles, exchanges);
         let rest = RestData::new(object, &topology, &cloth.rest, &materials)?;
-        let mut pinned = vec![true; cloth.positions.len()];
-        for sample in rest.samples.iter() {
-            pinned[sample.vertices[0] as usize] = false;
-        }
-        Ok(Self {
-            pinned,
+        let mut builder = Self {
+            pinned: vec![true; cloth.positions.len()],
             grips: Vec::new(),
             elastics: Vec::new(),
             colliders: Vec::new(),
@@ -237,7 +233,17 @@ impl SystemBuilder {
             rest: Arc::new(rest),
             materials: Arc::new(materials),
             from: None,
-        })
+        };
+        builder.release();
+        Ok(builder)
+    }
+
+    /// Lets every vertex go that is on a triangle.
+    pub(crate) fn release(&mut self) {
+        self.pinned.fill(true);
+        for sample in self.rest.samples.iter() {
+            self.pinned[sample.vertices[0] as usize] = false;
+        }
     }
 
     /// Number of vertices.

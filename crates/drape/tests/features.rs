@@ -10,7 +10,7 @@ mod solids;
 use sheets::{object, sheet};
 use toile_drape::{
     Air, Compression, DrapeError, Feature, Material, MethodKind, Motion, MotionKey, ObjectKind,
-    Scene, SceneGrip, SceneObject, SceneRun,
+    Scene, SceneGrip, SceneObject, SceneRun, World,
 };
 use toile_geometry::{TriangleMesh, Vec3};
 
@@ -184,7 +184,7 @@ fn sliding() -> Scene {
 /// Positions after some steps.
 fn after(mut scene: Scene, kind: MethodKind) -> Result<Vec<TriangleMesh>, DrapeError> {
     scene.method = kind.into();
-    let mut run = SceneRun::new(scene)?;
+    let mut run = SceneRun::new(&scene)?;
     for _ in 0..12 {
         run.advance()?;
     }
@@ -205,7 +205,7 @@ fn every_method_acts_on_what_a_scene_asks_for_or_refuses_it_by_name_and_rest_kno
     for (feature_name, feature) in Feature::ALL {
         for (name, kind) in MethodKind::ALL {
             for scenes in cases(feature) {
-                let place = feature.asked_by(&scenes[1]);
+                let place = feature.asked_by(&World::of_scene(&scenes[1]).unwrap());
                 let place = place.unwrap_or_else(|| panic!("not asked for: {feature_name}"));
                 let [without, with] = both(&scenes, kind);
                 match with {
@@ -255,7 +255,7 @@ fn what_no_method_knows_together_is_said() {
         s.air.density = 1.2;
         s.method = MethodKind::Xpbd.into();
     });
-    let error = SceneRun::new(windy).err().map(|e| e.to_string());
+    let error = SceneRun::new(&windy).err().map(|e| e.to_string());
     let error = error.unwrap_or_default();
     for part in [
         "air.density",

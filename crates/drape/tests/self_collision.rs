@@ -289,7 +289,7 @@ fn fall(method: MethodKind, cloth_offset: f64) -> (bool, Measures) {
         objects: vec![object("low", low, corners), object("high", high, vec![])],
         ..Scene::default()
     };
-    let mut run = SceneRun::new(scene).unwrap();
+    let mut run = SceneRun::new(&scene).unwrap();
     while !run.finished() {
         run.advance().unwrap();
     }
@@ -379,7 +379,7 @@ fn pressed_by_substeps(slope: f64, duration: f64) -> (f64, [f64; 2]) {
         objects: vec![object("low", low, every), object("high", high, vec![])],
         ..Scene::default()
     };
-    let mut run = SceneRun::new(scene).unwrap();
+    let mut run = SceneRun::new(&scene).unwrap();
     while !run.finished() {
         run.advance().unwrap();
     }
@@ -445,7 +445,7 @@ fn a_planted_crossing_is_undone() {
         ],
         ..Scene::default()
     };
-    let mut run = SceneRun::new(scene).unwrap();
+    let mut run = SceneRun::new(&scene).unwrap();
     assert!(run.measure().self_intersections > 4);
     while !run.finished() {
         run.advance().unwrap();

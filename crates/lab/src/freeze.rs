@@ -319,7 +319,7 @@ fn shirt(files: &mut Vec<File>) -> Result<(), LabError> {
     while run.progress().stage == Stage::Sewing {
         run.advance()?;
     }
-    let mut sewn = placed.merged(&run.target, run.state.positions.len());
+    let mut sewn = placed.merged(run.target(), run.state.positions.len());
     sewn.positions.clone_from(&run.state.positions);
     files.push(("shirt-a.obj".to_owned(), cloth_obj(&sewn)?));
     card.cloths.push(ClothCard {

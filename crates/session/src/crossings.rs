@@ -26,14 +26,14 @@ const STEPS_TO_REST: usize = 8;
 impl Crossings {
     /// Counts where a run begins.
     pub fn new(run: &SceneRun) -> Self {
-        let scene = run.scene();
+        let settings = run.settings();
         let count = run.crossings();
-        let steps = (scene.duration / scene.step / COUNTS).ceil().max(1.0);
+        let steps = (settings.duration / settings.step / COUNTS).ceil().max(1.0);
         Self {
             start: count,
             most: count,
             end: count,
-            every: match scene.method.kind.is_equilibrium() {
+            every: match settings.method.kind.is_equilibrium() {
                 true => STEPS_TO_REST,
                 false => steps as usize,
             },

@@ -42,7 +42,7 @@ impl Drape {
         let mesh = run.system.mesh(&run.state.positions);
         let origin = (0..job.garment.triangles.len() as u32)
             .filter(|&t| {
-                let [a, b, c] = job.garment.triangles[t as usize].map(|v| run.target[v as usize]);
+                let [a, b, c] = job.garment.triangles[t as usize].map(|v| run.target()[v as usize]);
                 a != b && b != c && c != a
             })
             .collect();
@@ -57,7 +57,7 @@ impl Drape {
             steps: run.steps(),
             seam_gap: run.gap_before_merging(),
             tally: run.cloth_tally(),
-            target: run.target.clone(),
+            target: run.target().to_vec(),
             job: job.clone(),
             mesh,
             origin,

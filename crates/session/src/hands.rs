@@ -232,7 +232,7 @@ impl HandledRun {
         for (&vertex, &place) in &self.held {
             let handle = self.handle(vertex)?;
             attachments.push(Attachment {
-                vertex: self.run.target[handle as usize],
+                vertex: self.run.target()[handle as usize],
                 place,
                 law: HAND,
             });
@@ -272,10 +272,10 @@ impl HandledRun {
         let levels = &self.job.setup.levels;
         let [level, count] = self.run.level();
         if level + 1 == count {
-            return Ok((self.run.state.positions.clone(), self.run.target.clone()));
+            return Ok((self.run.state.positions.clone(), self.run.target().to_vec()));
         }
         let (coarse, fine) = (&levels[level].cloth, &levels[count - 1].cloth);
-        let joined = |t: &[u32; 3]| t.map(|v| self.run.target[v as usize]);
+        let joined = |t: &[u32; 3]| t.map(|v| self.run.target()[v as usize]);
         let shape = TriangleMesh {
             positions: self.run.state.positions.clone(),
             triangles: coarse.triangles.iter().map(joined).collect(),

@@ -7,11 +7,13 @@ use crate::scene_builder::Builder;
 use crate::timing::Timing;
 use crate::watcher::tell;
 use crate::{SessionError, Watcher};
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use toile_drape::{ObjectKind, Scene, SceneObject, SceneRun};
+use toile_drape::{Kind, Layers, Object, ObjectId, Scene, SceneRun, Surface, World};
 use toile_interchange::{
-    FormatError, ObjMesh, Wanted, read_scene, write_all_atomically, write_obj,
+    FormatError, ObjGroup, ObjMesh, Wanted, read_scene, write_all_atomically, write_obj,
 };
 
 /// What running a scene made.
@@ -56,10 +58,10 @@ pub fn run_scene(
     let scene = builder.scene(watcher)?;
     timing.add("read", start);
     let start = Instant::now();
-    let names = state_names(&scene).map_err(wrong)?;
     let frame_step = scene.frame_step;
     check_frames(&scene).map_err(wrong)?;
-    let mut run = SceneRun::new(scene)?;
+    let mut run = SceneRun::new(&scene)?;
+    let names = state_names(run.world()).map_err(wrong)?;
     let mut crossings = Crossings::new(&run);
     let mut written: Vec<PathBuf> = Vec::new();
     let mut write = |files: &[(String, Vec<u8>)]| {
@@ -111,45 +113,53 @@ fn check_frames(scene: &Scene) -> Result<(), FormatError> {
     }
 }
 
-/// Names of the files of the objects that move, of each its index; two of one name are refused.
-fn state_names(scene: &Scene) -> Result<Vec<(usize, String)>, FormatError> {
-    let mut names: Vec<(usize, String)> = Vec::new();
-    for (index, object) in scene.objects.iter().enumerate() {
-        if object.kind == ObjectKind::Static {
+/// Names of the files of the surfaces that move, each with the objects that are sewn together in it or are to
+/// be; two of one name are refused.
+fn state_names(world: &World) -> Result<Vec<(Vec<ObjectId>, String)>, FormatError> {
+    let mut names: Vec<(Vec<ObjectId>, String)> = Vec::new();
+    let objects: BTreeMap<ObjectId, &Object> = world.objects().collect();
+    for group in world.groups() {
+        let of_group: Vec<&Object> = group.iter().map(|id| objects[id]).collect();
+        if of_group.iter().all(|object| object.kind == Kind::Static) {
             continue;
         }
-        let name = file_name(&object.name);
-        let same = |(_, known): &&(usize, String)| known.to_lowercase() == name.to_lowercase();
+        let each: Vec<&str> = of_group.iter().map(|o| o.name.as_str()).collect();
+        let whole = each.join("+");
+        let name = file_name(&whole);
+        let same = |(_, known): &&(_, String)| known.to_lowercase() == name.to_lowercase();
         if let Some((other, _)) = names.iter().find(same) {
-            let other = &scene.objects[*other].name;
+            let other: Vec<&str> = other.iter().map(|id| objects[id].name.as_str()).collect();
+            let other = other.join("+");
             return Err(FormatError::new(
-                format!("objects[{index}]"),
-                format!(
-                    "{:?} and {other:?} would be written to one file",
-                    object.name
-                ),
+                format!("object {whole:?}"),
+                format!("{whole:?} and {other:?} would be written to one file"),
                 "give one of them another name",
             ));
         }
-        names.push((index, name));
+        names.push((group, name));
     }
     Ok(names)
 }
 
-/// The objects that move as OBJ files.
+/// The surfaces that move as OBJ files, a group for each object.
 fn state_files(
     run: &SceneRun,
-    (names, prefix): (&[(usize, String)], &str),
+    (names, prefix): (&[(Vec<ObjectId>, String)], &str),
 ) -> Result<Vec<(String, Vec<u8>)>, SessionError> {
     let mut files = Vec::new();
-    let mut meshes: Vec<_> = run.meshes().into_iter().map(Some).collect();
-    for (index, name) in names {
-        let Some(mesh) = meshes.get_mut(*index).and_then(Option::take) else {
-            continue;
+    for (objects, name) in names {
+        let Surface { objects, mesh } = run.surface(objects);
+        let group = |(id, triangles): (ObjectId, Range<usize>)| {
+            let name = run.world().object(id)?.name.clone();
+            Some(ObjGroup { name, triangles })
         };
         let obj = ObjMesh {
             positions: mesh.positions,
             triangles: mesh.triangles,
+            groups: match objects.len() {
+                1 => Vec::new(),
+                _ => objects.into_iter().filter_map(group).collect(),
+            },
             ..ObjMesh::default()
         };
         let text = write_obj(&obj).map_err(cannot("the state"))?;
@@ -161,10 +171,6 @@ fn state_files(
 fn report(run: &mut SceneRun, notes: Vec<String>, crossings: &Crossings) -> serde_json::Value {
     let measures = run.measure();
     let mut warnings = notes;
-    warnings.extend(run.sewn_objects().iter().map(|pair| {
-        let [a, b] = pair.map(|index| &run.scene().objects[index].name);
-        format!("{a:?} and {b:?} were sewn together; they are still written as two files, each with its own copy of the seam's vertices")
-    }));
     if run.split_steps() > 0 {
         warnings.push(format!(
             "{} steps failed and were taken in smaller ones",
@@ -173,10 +179,11 @@ fn report(run: &mut SceneRun, notes: Vec<String>, crossings: &Crossings) -> serd
     }
     warnings.extend(crossings.warning(run.system.contact.cloth_offset));
     let layers = measures.layers.iter().map(|layer| {
-        let of_layer = |o: &&SceneObject| {
-            o.layer == layer.layer && matches!(o.kind, ObjectKind::Deformable { .. })
+        let of_layer = |o: &&Object| {
+            o.kind == Kind::Deformable && o.layers == Layers::One(layer.layer)
         };
-        let names = run.scene().objects.iter().filter(of_layer).map(|o| &o.name);
+        let objects = run.world().objects().map(|(_, object)| object);
+        let names = objects.filter(of_layer).map(|o| &o.name);
         serde_json::json!({
             "layer": layer.layer,
             "objects": names.collect::<Vec<_>>(),
@@ -188,7 +195,7 @@ fn report(run: &mut SceneRun, notes: Vec<String>, crossings: &Crossings) -> serd
     });
     let layers: Vec<_> = layers.collect();
     serde_json::json!({
-        "method": run.scene().method.kind.name(),
+        "method": run.settings().method.kind.name(),
         "vertices": run.state.positions.len(),
         "triangles": run.system.topology.triangles.len(),
         "steps": run.steps(),

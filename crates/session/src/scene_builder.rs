@@ -280,10 +280,10 @@ impl Builder<'_> {
             )?;
         }
         let count = run.state.positions.len();
-        for (position, &to) in cloth.positions.iter_mut().zip(&run.target) {
+        for (position, &to) in cloth.positions.iter_mut().zip(run.target()) {
             *position = run.state.positions[to as usize];
         }
-        Ok(cloth.merged(&run.target, count))
+        Ok(cloth.merged(run.target(), count))
     }
 }
 

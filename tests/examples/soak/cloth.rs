@@ -17,7 +17,7 @@ use hard_run::run;
 use hard_scenes::{Size, hard_scenes};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use toile_drape::{ObjectKind, SceneRun};
+use toile_drape::{Kind, SceneRun};
 use toile_picture::{Finish, Scene, Sheet, Surface, drape_picture};
 
 /// Colours of the cloths of a scene, in turn.
@@ -104,7 +104,7 @@ pub fn tangles(arguments: &[String]) -> Result<(), String> {
     for seed in 0..count {
         let said = |error: toile_drape::DrapeError| format!("seed {seed}: {error}");
         let start = Instant::now();
-        let mut run = SceneRun::new(planted::tangle(seed)).map_err(said)?;
+        let mut run = SceneRun::new(&planted::tangle(seed)).map_err(said)?;
         let before = run.measure();
         while !run.finished() {
             run.advance().map_err(said)?;
@@ -132,8 +132,8 @@ pub fn tangles(arguments: &[String]) -> Result<(), String> {
 fn picture(run: &SceneRun, file: &Path) -> Result<(), String> {
     let mut surfaces = Vec::new();
     let mut cloths = COLOURS.iter().cycle();
-    for (object, mesh) in run.scene().objects.iter().zip(run.meshes()) {
-        if let ObjectKind::Deformable { .. } = object.kind {
+    for ((_, object), mesh) in run.world().objects().zip(run.meshes()) {
+        if object.kind == Kind::Deformable {
             let colour = cloths.next().copied().unwrap_or_default();
             surfaces.push(Surface::plain(mesh, colour, Finish::Cloth));
         } else if !matches!(

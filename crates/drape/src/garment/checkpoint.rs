@@ -1,12 +1,13 @@
 //! A garment's run saved between two steps, and gone on with.
 
 use super::digest::SetupDigest;
-use super::setup::merged_shapes;
+use super::setup::GarmentWorld;
 use super::stage::StageState;
-use super::{GarmentLevel, GarmentRun, GarmentSetup};
+use super::{GarmentRun, GarmentSetup};
 use crate::collision::Tally;
 use crate::kinetic_damping::SwingWorkspace;
-use crate::{Cloth, Control, DrapeError, State, System, Workspace};
+use crate::world::{ObjectId, Simulation, WorldEdit};
+use crate::{Control, DrapeError, State, System, Workspace};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toile_geometry::{Vec2, Vec3};
@@ -22,7 +23,7 @@ pub struct Checkpoint {
     stage: StageState,
     state: State,
     control: Control,
-    /// Where merged vertices lay when they were merged [m]: orders of elimination follow. Empty while sewn.
+    /// Where the vertices lay when the structure was made [m]: orders of elimination follow.
     layout: Vec<Vec3>,
     /// Shapes after an edit.
     edited: Option<EditedShapes>,
@@ -57,7 +58,6 @@ impl GarmentRun {
         if !self.is_checkpoint() {
             return None;
         }
-        let is_sewn = matches!(self.stage, StageState::Sewing(_));
         let topology = &self.system.topology;
         let edited = self.made_for.as_ref().map(|made_for| EditedShapes {
             made_for: made_for.clone(),
@@ -71,10 +71,7 @@ impl GarmentRun {
             stage: self.stage.clone(),
             state: self.state.clone(),
             control: self.system.control.clone(),
-            layout: match is_sewn {
-                true => Vec::new(),
-                false => topology.layout.clone(),
-            },
+            layout: topology.layout.clone(),
             edited,
             eliminated_pairs: self.workspace.eliminated_pairs(&self.system),
             gap_before_merging: self.gap_before_merging,
@@ -105,21 +102,17 @@ impl GarmentRun {
             setup.counted.clone_from(&edited.counted);
         }
         let mut stage = checkpoint.stage;
-        let (mut system, target) = match &mut stage {
-            StageState::Sewing(sewing) => {
-                let mut system = setup.panels(level, setup.solids())?;
-                let GarmentLevel {
-                    cloth, stitches, ..
-                } = &setup.levels[level];
-                sewing.resume(&mut system, stitches.clone());
-                (system, (0..cloth.positions.len() as u32).collect())
-            }
-            _ => merged(&setup, level, &checkpoint.layout, edited.as_ref())?,
-        };
+        let is_sewn = matches!(stage, StageState::Sewing(_));
+        let made_as = (is_sewn, checkpoint.layout, edited.as_ref());
+        let (mut simulation, garment) = restored(&setup, level, made_as)?;
+        let Simulation { system, state, .. } = &mut simulation;
+        if let StageState::Sewing(sewing) = &mut stage {
+            sewing.resume(system, setup.levels[level].stitches.clone());
+        }
         system.control = checkpoint.control;
-        check_control(&system)?;
-        let mut state = checkpoint.state;
-        state.check(&system)?;
+        check_control(system)?;
+        *state = checkpoint.state;
+        state.check(system)?;
         if *state.samples == *system.rest.samples {
             state.samples = Arc::clone(&system.rest.samples);
         }
@@ -129,12 +122,11 @@ impl GarmentRun {
             if pairs.iter().flatten().any(|&v| v as usize >= count) {
                 return Err(damaged("eliminated_pairs", "there are fewer vertices"));
             }
-            workspace.eliminate_pairs(&system, pairs);
+            workspace.eliminate_pairs(system, pairs);
         }
         Ok(Self {
-            system,
-            state,
-            target,
+            simulation,
+            garment,
             level,
             made_for,
             setup,
@@ -166,39 +158,31 @@ impl EditedShapes {
     }
 }
 
-/// The merged cloth of a level as it was made, and what its vertices became.
-fn merged(
+/// The world of a level as it was made: whether it is still sewn, where its vertices lay, and what edits came.
+fn restored(
     setup: &GarmentSetup,
     level: usize,
-    layout: &[Vec3],
-    edited: Option<&EditedShapes>,
-) -> Result<(System, Vec<u32>), DrapeError> {
-    let (target, count) = setup.levels[level].merge_map();
-    if layout.len() != count {
-        let found = format!("{} places for {count} vertices", layout.len());
-        return Err(damaged("layout", &found));
+    (is_sewn, layout, edited): (bool, Vec<Vec3>, Option<&EditedShapes>),
+) -> Result<(Simulation, ObjectId), DrapeError> {
+    let mut made = setup.clone();
+    if let Some(edited) = edited {
+        made.levels[level].cloth.rest.clone_from(&edited.made_for);
     }
-    let panels = &setup.levels[level].cloth;
-    let cloth = Cloth {
-        positions: layout.to_vec(),
-        ..match edited {
-            None => panels.merged(&target, count),
-            Some(edited) => Cloth {
-                rest: edited.made_for.clone(),
-                ..panels.clone()
-            }
-            .merged(&target, count),
-        }
-    };
-    let system = setup.merged(level, &cloth, setup.solids())?;
-    let system = match edited.filter(|edited| edited.is_reshaped) {
-        None => system,
-        Some(edited) => {
-            let shapes = merged_shapes(panels, &target, &edited.rest);
-            system.reshaped("garment", shapes)?
-        }
-    };
-    Ok((system, target))
+    let GarmentWorld {
+        mut world,
+        garment,
+        solids,
+    } = made.world(level);
+    if !is_sewn {
+        world.merge(made.levels[level].seams(garment));
+        world.set_environment(made.worn_environment());
+    }
+    let simulation = Simulation::laid_out(world, layout, solids);
+    let mut simulation = simulation.map_err(|error| damaged("layout", &error.to_string()))?;
+    if let Some(edited) = edited.filter(|edited| edited.is_reshaped) {
+        simulation.edit(WorldEdit::Reshape(garment, edited.rest.clone()))?;
+    }
+    Ok((simulation, garment))
 }
 
 fn check_control(system: &System) -> Result<(), DrapeError> {

@@ -1,11 +1,11 @@
 //! Edits of the pattern under a worn garment: other rest shapes, or another mesh of the same panels. It goes
 //! on from where it hangs.
 
-use super::setup::merged_shapes;
 use super::stage::{Attempts, Settling};
 use super::{GarmentLevel, GarmentRun, Stage, StageState};
-use crate::{Carry, Cloth, DrapeError, State, System, SystemBuilder};
-use toile_geometry::Vec2;
+use crate::DrapeError;
+use crate::world::WorldEdit;
+use toile_geometry::{Vec2, Vec3};
 
 impl GarmentRun {
     /// Whether an edit of the pattern can be taken: the finest mesh is in hand and its seams are closed.
@@ -30,48 +30,23 @@ impl GarmentRun {
                 remedy: "give one for each, or mesh it again".to_owned(),
             });
         }
-        let merged = merged_shapes(&level.cloth, &self.target, &rest);
-        match self.system.reshaped("garment", merged) {
-            Ok(system) => {
-                self.state.follow_shapes(&system);
-                self.system = system;
-                let before = &level.cloth.rest;
-                self.made_for.get_or_insert_with(|| before.clone());
+        let before = level.cloth.rest.clone();
+        let edit = WorldEdit::Reshape(self.garment, rest.clone());
+        match self.simulation.edit(edit)?.is_restructured {
+            false => {
+                self.simulation.state.velocities.fill(Vec3::zeros());
+                self.made_for.get_or_insert(before);
             }
-            // The triangles serve, but not with what curvatures were estimated from.
-            Err(DrapeError::NeedsRemesh { .. }) => self.rebuild(&rest)?,
-            Err(error) => return Err(error),
+            true => {
+                self.simulation.let_rest();
+                self.made_for = Some(rest.clone());
+                self.begin_caches();
+            }
         }
         self.setup.levels[self.level].cloth.rest = rest;
         self.setup.counted = counted;
         self.steps = self.steps();
         self.go_on_from_here();
-        Ok(())
-    }
-
-    /// Makes the system of the merged cloth anew with other rest shapes for its panels, where it lies.
-    fn rebuild(&mut self, rest: &[[Vec2; 3]]) -> Result<(), DrapeError> {
-        let count = self.state.positions.len();
-        let place = |&v: &u32| self.state.positions[v as usize];
-        let cloth = Cloth {
-            positions: self.target.iter().map(place).collect(),
-            rest: rest.to_vec(),
-            ..self.setup.levels[self.level].cloth.clone()
-        };
-        let mut builder = SystemBuilder::new("garment", &cloth.merged(&self.target, count))?;
-        builder.colliders = self.system.colliders.to_vec();
-        builder.contact = self.system.contact;
-        builder.control = self.system.control.clone();
-        builder.layer = self.system.layer.to_vec();
-        let system = builder.build();
-        let state = State::at_rest(&system, std::mem::take(&mut self.state.positions));
-        self.state = State {
-            time: self.state.time,
-            ..state
-        };
-        self.system = system;
-        self.made_for = Some(rest.to_vec());
-        self.begin_caches();
         Ok(())
     }
 
@@ -84,15 +59,11 @@ impl GarmentRun {
     /// garment is then as it was.
     pub fn remesh(&mut self, level: GarmentLevel, counted: Vec<bool>) -> Result<(), DrapeError> {
         self.refuse_edit()?;
-        System::new("garment", &level.cloth)?;
-        let old = &self.setup.levels[self.level].cloth;
-        let carried = Carry::new(old, &level.cloth)?.apply(&self.panels_as_they_lie());
+        self.replace_mesh(&level)?;
         self.steps = self.steps();
         self.setup.levels[self.level] = level;
         self.setup.counted = counted;
-        let solids = self.system.colliders.to_vec();
-        let system = self.setup.panels(self.level, solids)?;
-        self.begin(system, carried)?;
+        self.begin()?;
         self.go_on_from_here();
         Ok(())
     }
@@ -132,7 +103,7 @@ impl GarmentRun {
 mod tests {
     use super::*;
     use crate::{ContactSettings, GarmentSetup, Material, RestSettings, SewSettings};
-    use toile_geometry::{TriangleMesh, Vec3};
+    use toile_geometry::TriangleMesh;
 
     /// A sheet of 8 x 8 squares of 20 mm that falls.
     fn setup() -> GarmentSetup {
@@ -167,11 +138,11 @@ mod tests {
             run.advance().unwrap();
         }
         assert!(!run.is_checkpoint());
-        let wider = |shape: &[Vec2; 3]| shape.map(|p| Vec2::new(1.1 * p.x, p.y));
-        let rest: Vec<_> = setup().levels[0].cloth.rest.iter().map(wider).collect();
-        run.rebuild(&rest).unwrap();
-        run.setup.levels[0].cloth.rest = rest;
-        run.go_on_from_here();
+        // So narrow that the neighbours chosen for curvatures serve no more.
+        let narrow = |shape: &[Vec2; 3]| shape.map(|p| Vec2::new(0.01 * p.x, p.y));
+        let rest: Vec<_> = setup().levels[0].cloth.rest.iter().map(narrow).collect();
+        run.reshape(rest, Vec::new()).unwrap();
+        assert!(run.system.topology.bending.is_none(), "the structure was not made anew");
         let checkpoint = run.checkpoint().unwrap();
         let mut resumed = GarmentRun::resume(setup(), checkpoint).unwrap();
         assert_eq!(resumed.system.topology.layout, run.system.topology.layout);

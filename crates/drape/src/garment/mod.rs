@@ -15,9 +15,12 @@ pub use stage::Stage;
 use crate::collision::{ClothMemory, Tally};
 use crate::kinetic_damping::{KineticDamping, SwingWorkspace};
 use crate::measure::{Measures, measure};
-use crate::{Carry, Cloth, DrapeError, Equilibrium, SewRun, State, System, Workspace};
+use crate::world::{MeetingPlace, ObjectId, Simulation, WorldEdit};
+use crate::{DrapeError, Equilibrium, SewRun, State, System, Workspace};
+use setup::GarmentWorld;
 use stage::{Attempts, Settling, StageState, Swinging};
-use toile_geometry::{TriangleMesh, Vec2, Vec3};
+use std::ops::{Deref, DerefMut};
+use toile_geometry::Vec2;
 
 /// How far a garment is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,13 +39,11 @@ pub struct Progress {
 
 /// A garment being sewn and draped.
 pub struct GarmentRun {
-    /// The model of the present stage and what acts on it. From outside its control may be changed, no more:
-    /// what else is changed is not saved.
-    pub system: System,
-    /// The state of the present stage.
-    pub state: State,
-    /// New index of every vertex of the present level's cloth; the identity until merged.
-    pub target: Vec<u32>,
+    /// The world of the present stage. From outside the control of its system may be changed, no more: what else
+    /// is changed is not saved.
+    simulation: Simulation,
+    /// Which of its objects the garment is.
+    garment: ObjectId,
     setup: GarmentSetup,
     level: usize,
     stage: StageState,
@@ -77,6 +78,20 @@ const MOST_SWINGS: usize = 3;
 /// Residual below which crossings of the body are looked for next, as a share of the last.
 const NEXT_LOOK: f64 = 0.1;
 
+impl Deref for GarmentRun {
+    type Target = Simulation;
+
+    fn deref(&self) -> &Simulation {
+        &self.simulation
+    }
+}
+
+impl DerefMut for GarmentRun {
+    fn deref_mut(&mut self) -> &mut Simulation {
+        &mut self.simulation
+    }
+}
+
 impl GarmentRun {
     /// Prepares the first step.
     ///
@@ -84,12 +99,18 @@ impl GarmentRun {
     /// Meshes and materials that cannot be simulated, a setup without any level.
     pub fn new(setup: GarmentSetup) -> Result<Self, DrapeError> {
         let setup = setup.prepared()?;
-        let mut system = setup.panels(0, setup.solids())?;
+        let GarmentWorld {
+            world,
+            garment,
+            solids,
+        } = setup.world(0);
+        let mut simulation = Simulation::with_solids(world, solids)?;
+        let sewing = SewRun::new(&mut simulation.system, Vec::new(), setup.sew);
         let mut run = Self {
-            target: Vec::new(),
+            simulation,
+            garment,
             level: 0,
-            state: State::default(),
-            stage: StageState::Sewing(SewRun::new(&mut system, Vec::new(), setup.sew)),
+            stage: StageState::Sewing(sewing),
             made_for: None,
             gap_before_merging: 0.0,
             share: 0.0,
@@ -99,31 +120,44 @@ impl GarmentRun {
             workspace: Workspace::default(),
             swing_workspace: SwingWorkspace::default(),
             forgot_contacts: true,
-            system: system.clone(),
             setup,
         };
-        let placed = run.setup.levels[0].cloth.positions.clone();
-        run.begin(system, placed)?;
+        run.begin()?;
         Ok(run)
     }
 
-    /// Starts on the present level with its panels at some positions; seams that are closed there already
-    /// are merged at once.
-    fn begin(&mut self, mut system: System, positions: Vec<Vec3>) -> Result<(), DrapeError> {
+    /// Starts to sew the present level's panels where they lie; seams that are closed there already are merged
+    /// at once.
+    fn begin(&mut self) -> Result<(), DrapeError> {
         let stitches = self.setup.levels[self.level].stitches.clone();
-        self.target = (0..positions.len() as u32).collect();
-        self.state = State::at_rest(&system, positions);
-        let mut sewing = SewRun::new(&mut system, stitches, self.setup.sew);
-        sewing.look(&self.state);
+        let Simulation { system, state, .. } = &mut self.simulation;
+        let mut sewing = SewRun::new(system, stitches, self.setup.sew);
+        sewing.look(state);
         let closed = sewing.closed();
         self.stage = StageState::Sewing(sewing);
-        self.system = system;
         self.made_for = None;
         self.begin_caches();
         if closed {
             self.merge()?;
         }
         Ok(())
+    }
+
+    /// Puts the mesh of a level in the place of the one in hand, its seams open, at rest in the shape reached.
+    fn replace_mesh(&mut self, level: &GarmentLevel) -> Result<(), DrapeError> {
+        let cloth = Box::new(level.cloth.clone());
+        let edits = vec![
+            WorldEdit::SetEnvironment(Box::new(self.setup.sewing_environment())),
+            WorldEdit::ReplaceMesh(self.garment, cloth, level.layers()),
+        ];
+        self.simulation.edit_all(edits, MeetingPlace::Midpoint)?;
+        self.simulation.let_rest();
+        Ok(())
+    }
+
+    /// Merged vertex of every vertex of the present level's cloth; the identity until merged.
+    pub fn target(&self) -> &[u32] {
+        &self.simulation.map().target
     }
 
     /// Whether the present level is the garment wanted.
@@ -226,7 +260,8 @@ impl GarmentRun {
             return Ok(());
         };
         self.forgot_contacts = false;
-        sewing.advance(&mut self.system, &mut self.state, &mut self.workspace)?;
+        let Simulation { system, state, .. } = &mut self.simulation;
+        sewing.advance(system, state, &mut self.workspace)?;
         let (gap, closed, steps) = (sewing.last_gap(), sewing.closed(), sewing.steps());
         let start = 0.3;
         self.show(0.5 * (1.0 - (gap / start).min(1.0)));
@@ -242,7 +277,8 @@ impl GarmentRun {
             return Ok(());
         };
         self.forgot_contacts = false;
-        damping.advance(&self.system, &mut self.state, &mut self.swing_workspace)?;
+        let Simulation { system, state, .. } = &mut self.simulation;
+        damping.advance(system, state, &mut self.swing_workspace)?;
         let shown = 0.5 + 0.2 * damping.share();
         let rounds = damping.rounds() as usize;
         if damping.finished() {
@@ -269,7 +305,8 @@ impl GarmentRun {
         };
         self.forgot_contacts = false;
         let continuation = &mut settling.continuation;
-        continuation.advance(&self.system, &mut self.state, &mut self.workspace)?;
+        let Simulation { system, state, .. } = &mut self.simulation;
+        continuation.advance(system, state, &mut self.workspace)?;
         let (residual, steps) = (continuation.residual(), continuation.steps());
         let finished = continuation.finished();
         if settling.cut_short && self.workspace.contacts.cloth.is_in_order() {
@@ -303,11 +340,12 @@ impl GarmentRun {
         let residual = settling.continuation.residual();
         if finished || residual < settling.attempts.look_below {
             settling.attempts.look_below = NEXT_LOOK * residual;
-            let offenders = body_crossings(&self.system, &self.state);
+            let Simulation { system, state, .. } = &mut self.simulation;
+            let offenders = body_crossings(system, state);
             if !offenders.is_empty() && settling.attempts.refinements < MOST_REFINEMENTS {
                 settling.attempts.refinements += 1;
                 for triangle in offenders {
-                    self.state.refine_contact(&self.system, triangle);
+                    state.refine_contact(system, triangle);
                 }
                 if finished {
                     let settings = self.setup.rest;
@@ -357,23 +395,11 @@ impl GarmentRun {
 
     /// Goes on to the next finer level with the shape reached.
     fn refine(&mut self) -> Result<(), DrapeError> {
-        let [coarse, fine] = [0, 1].map(|k| &self.setup.levels[self.level + k].cloth);
-        let carried = Carry::new(coarse, fine)?.apply(&self.panels_as_they_lie());
-        let solids = self.system.colliders.to_vec();
-        let system = self.setup.panels(self.level + 1, solids)?;
+        let finer = self.setup.levels[self.level + 1].clone();
+        self.replace_mesh(&finer)?;
         self.steps = self.steps();
         self.level += 1;
-        self.begin(system, carried)
-    }
-
-    /// The triangles of the present level's panels where the cloth is.
-    fn panels_as_they_lie(&self) -> TriangleMesh {
-        let joined = |t: &[u32; 3]| t.map(|v| self.target[v as usize]);
-        let triangles = &self.setup.levels[self.level].cloth.triangles;
-        TriangleMesh {
-            positions: self.state.positions.clone(),
-            triangles: triangles.iter().map(joined).collect(),
-        }
+        self.begin()
     }
 
     /// Joins the stitched vertices; gravity and friction act from here on.
@@ -382,18 +408,12 @@ impl GarmentRun {
             return Ok(());
         };
         let (gap, steps) = (sewing.last_gap(), sewing.steps());
-        let level = &self.setup.levels[self.level];
-        let (target, count) = level.merge_map();
-        let placed = Cloth {
-            positions: self.state.positions.clone(),
-            ..level.cloth.clone()
-        };
-        let merged = placed.merged(&target, count);
-        let solids = self.system.colliders.to_vec();
-        let system = self.setup.merged(self.level, &merged, solids)?;
-        self.state = State::at_rest(&system, merged.positions);
-        self.system = system;
-        self.target = target;
+        let edits = vec![
+            WorldEdit::SetEnvironment(Box::new(self.setup.worn_environment())),
+            WorldEdit::Merge(self.setup.levels[self.level].seams(self.garment)),
+        ];
+        self.simulation.edit_all(edits, MeetingPlace::Midpoint)?;
+        self.simulation.let_rest();
         self.steps[0] += steps;
         self.gap_before_merging = gap;
         self.stage = self.swinging(Attempts::default());
@@ -408,12 +428,12 @@ impl GarmentRun {
         let StageState::Finished(settling) = self.stage else {
             return None;
         };
-        let cloth = &self.setup.levels[self.level].cloth;
+        let triangles = self.simulation.map().triangles.iter();
         Some(Equilibrium {
-            merged: cloth.merged_triangles(&self.target),
+            merged: triangles.map(|&t| t as usize).collect(),
             settings: self.setup.rest,
-            system: self.system,
-            state: self.state,
+            system: self.simulation.system,
+            state: self.simulation.state,
             workspace: self.workspace,
             continuation: settling.continuation,
         })

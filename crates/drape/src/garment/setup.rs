@@ -1,11 +1,9 @@
-//! What a garment's drape is made from, and the systems of its levels.
+//! What a garment's drape is made from, and the world that it is.
 
-use crate::merge::{merge_map, merged_layers};
-use crate::{
-    Cloth, Collider, ContactSettings, DrapeError, RestSettings, SewSettings, System, SystemBuilder,
-};
+use crate::world::{Environment, Layers, MeshVertex, Object, ObjectId, Solids, World};
+use crate::{Air, Cloth, Collider, ContactSettings, Damping, DrapeError, RestSettings, SewSettings};
 use std::sync::Arc;
-use toile_geometry::{SurfaceTree, Vec2, Vec3};
+use toile_geometry::{SurfaceTree, Vec3};
 
 /// One mesh of a garment's panels and how it is sewn.
 #[derive(Clone, Debug, Default)]
@@ -42,11 +40,27 @@ pub struct GarmentSetup {
 const COARSE_RESIDUAL: f64 = 2e-2;
 
 impl GarmentLevel {
-    /// New index of every vertex once stitched ones are one, and how many are left.
-    pub(super) fn merge_map(&self) -> (Vec<u32>, usize) {
-        let pairs = self.stitches.iter().copied();
-        merge_map(self.cloth.positions.len(), pairs)
+    /// The layers of its cloth.
+    pub(super) fn layers(&self) -> Layers {
+        match self.layer.is_empty() {
+            true => Layers::One(0),
+            false => Layers::Each(self.layer.clone()),
+        }
     }
+
+    /// The vertex pairs that its seams join, of the object that it is.
+    pub(super) fn seams(&self, object: ObjectId) -> Vec<[MeshVertex; 2]> {
+        let of_object = |vertex| MeshVertex { object, vertex };
+        let stitches = self.stitches.iter();
+        stitches.map(|pair| pair.map(of_object)).collect()
+    }
+}
+
+/// A garment's world, which object the garment is, and the solids with their distance fields.
+pub(super) struct GarmentWorld {
+    pub world: World,
+    pub garment: ObjectId,
+    pub solids: Solids,
 }
 
 impl GarmentSetup {
@@ -67,46 +81,51 @@ impl GarmentSetup {
         Ok(self)
     }
 
-    /// Its solid surfaces.
-    pub(super) fn solids(&self) -> Vec<Collider> {
-        self.colliders.iter().cloned().map(Collider::new).collect()
+    /// What acts on panels that are sewn: no gravity, no friction. Layers pass through each other meanwhile; each
+    /// is kept off solids by as much more as it lies farther out, so that most of it comes to lie where it belongs.
+    pub(super) fn sewing_environment(&self) -> Environment {
+        Environment {
+            gravity: Vec3::zeros(),
+            contact: ContactSettings {
+                friction: false,
+                cloth_offset: 0.0,
+                ..self.contact
+            },
+            layers_apart: Some(self.contact.cloth_offset),
+            ..self.worn_environment()
+        }
     }
 
-    /// The panels of a level while they are sewn: no gravity, no friction, layers apart.
-    pub(super) fn panels(
-        &self,
-        level: usize,
-        colliders: Vec<Collider>,
-    ) -> Result<System, DrapeError> {
-        let GarmentLevel { cloth, layer, .. } = &self.levels[level];
-        let mut builder = SystemBuilder::new("garment", cloth)?;
-        builder.colliders = colliders;
-        builder.contact = ContactSettings {
-            friction: false,
-            cloth_offset: 0.0,
-            ..self.contact
-        };
-        builder.control.gravity = Vec3::zeros();
-        // Layers pass through each other meanwhile; so most of each comes to lie where it belongs.
-        builder.keep_layers_off(layer, self.contact.cloth_offset);
-        Ok(builder.build())
+    /// What acts on the merged garment: gravity and friction.
+    pub(super) fn worn_environment(&self) -> Environment {
+        Environment {
+            gravity: self.gravity,
+            air: Air::default(),
+            damping: Damping::default(),
+            contact: self.contact,
+            layers_apart: None,
+        }
     }
 
-    /// The cloth of a level once it is merged: gravity and friction act.
-    pub(super) fn merged(
-        &self,
-        level: usize,
-        cloth: &Cloth,
-        colliders: Vec<Collider>,
-    ) -> Result<System, DrapeError> {
+    /// The solids, and the panels of a level with their seams open, while they are sewn.
+    pub(super) fn world(&self, level: usize) -> GarmentWorld {
+        let mut world = World::new("garment", self.sewing_environment());
+        let mut solids = Solids::new();
+        for (index, surface) in self.colliders.iter().enumerate() {
+            let solid = Object::fixed(format!("solid {index}"), surface.mesh().clone());
+            let (mesh, collider) = (solid.mesh.clone(), Collider::new(surface.clone()));
+            solids.insert(world.insert(solid), (mesh, collider));
+        }
         let level = &self.levels[level];
-        let (target, count) = level.merge_map();
-        let mut builder = SystemBuilder::new("garment", cloth)?;
-        builder.colliders = colliders;
-        builder.contact = self.contact;
-        builder.control.gravity = self.gravity;
-        builder.layer = merged_layers(&level.layer, &target, count);
-        Ok(builder.build())
+        let garment = world.insert(Object {
+            layers: level.layers(),
+            ..Object::deformable("garment", level.cloth.clone())
+        });
+        GarmentWorld {
+            world,
+            garment,
+            solids,
+        }
     }
 
     /// The way to rest on a level: a coarser one is left when its large motion is over.
@@ -119,10 +138,4 @@ impl GarmentSetup {
             },
         }
     }
-}
-
-/// Rest shapes of the triangles of the merged cloth from those of its panels.
-pub(super) fn merged_shapes(cloth: &Cloth, target: &[u32], rest: &[[Vec2; 3]]) -> Vec<[Vec2; 3]> {
-    let merged = cloth.merged_triangles(target);
-    merged.into_iter().map(|t| rest[t]).collect()
 }

@@ -31,6 +31,13 @@ impl<M: Method> Method for Guarded<M> {
             let stage = "start of a step";
             return Err(DrapeError::NotFinite { stage, vertex });
         }
+        if !system.control.frames.is_empty() && !self.method.follows_frames() {
+            return Err(DrapeError::Scene {
+                place: "attachments".to_owned(),
+                what: "the method knows no attachments to solids that move".to_owned(),
+                remedy: "attach cloth to places, or use xpbd".to_owned(),
+            });
+        }
         self.start.clone_from(state);
         let result = self.method.advance(system, state, step);
         if result.is_ok() {

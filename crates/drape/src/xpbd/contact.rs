@@ -504,7 +504,8 @@ pub fn solve_stencils(
 pub struct Tie {
     /// The vertex it pulls, as an index into the points of the region.
     from: u32,
-    to: TieEnd,
+    /// Where its other end is.
+    pub to: TieEnd,
     /// Stiffness [N/m].
     stiffness: f32,
     /// Largest force [N].

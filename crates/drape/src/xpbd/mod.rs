@@ -548,6 +548,10 @@ impl XpbdMethod {
 }
 
 impl Method for XpbdMethod {
+    fn follows_frames(&self) -> bool {
+        true
+    }
+
     fn cloth_tally(&self) -> Option<Tally> {
         Some(self.cloth.contacts.tally)
     }

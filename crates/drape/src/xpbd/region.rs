@@ -21,6 +21,8 @@ pub struct Region {
     bending_sums: Vec<bending::Sums>,
     ties: Vec<Tie>,
     attachments: Vec<Tie>,
+    /// Which of the attachments end on moving solids: their numbers, and those in the control.
+    frames: Vec<[u32; 2]>,
     /// Contacts of points within triangles with surfaces.
     pub contacts: Vec<ContactStencil>,
     /// Contacts of cloth with cloth.
@@ -142,6 +144,7 @@ impl Regions {
     pub fn hold_attachments(&mut self, system: &System, order: &Order, origin: Vec3) {
         for region in self.all_mut() {
             region.attachments.clear();
+            region.frames.clear();
         }
         for one in system.control.attachments.all() {
             if one.law.stiffness <= 0.0 || system.prescribed.pinned[one.vertex as usize] {
@@ -153,6 +156,28 @@ impl Regions {
             let end = TieEnd::Place([0, 1, 2].map(|k| to[k] as f32));
             let attachments = &mut self.at(place).attachments;
             attachments.push(Tie::new(slot, end, &one.law));
+        }
+        for (number, one) in (0..).zip(&system.control.frames) {
+            if one.law.stiffness <= 0.0 || system.prescribed.pinned[one.vertex as usize] {
+                continue;
+            }
+            let place = order.place(&[one.vertex]);
+            let slot = order.slot_of[one.vertex as usize] - order.start(place) as u32;
+            let region = self.at(place);
+            let tie = Tie::new(slot, TieEnd::Place([0.0; 3]), &one.law);
+            region.frames.push([region.attachments.len() as u32, number]);
+            region.attachments.push(tie);
+        }
+    }
+
+    /// Moves the ends of attachments that lie on moving solids to where these stand at a time [s].
+    pub fn move_frames(&mut self, system: &System, origin: Vec3, time: f64) {
+        for region in self.all_mut() {
+            for &[tie, frame] in &region.frames {
+                let to = system.control.frames[frame as usize].place(time) - origin;
+                let end = TieEnd::Place([0, 1, 2].map(|k| to[k] as f32));
+                region.attachments[tie as usize].to = end;
+            }
         }
     }
 

@@ -46,6 +46,11 @@ impl Run<'_> {
         self.look_ahead(particles);
         for number in 0..count {
             let travel = self.place_surfaces(number, &mut poses);
+            let Solid { system, origin, .. } = self.sweep.solid;
+            if !system.control.frames.is_empty() {
+                let end = self.time + f64::from(self.motion.step) * f64::from(number + 1);
+                regions.move_frames(system, origin, end);
+            }
             let sweep = SweepStep {
                 solid: Solid {
                     poses: &poses,

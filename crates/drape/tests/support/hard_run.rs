@@ -112,10 +112,10 @@ fn momenta(run: &SceneRun) -> [Vec3; 2] {
 
 /// Runs a scene to its end.
 pub fn run(hard: HardScene) -> (SceneRun, Outcome) {
-    let mut run = SceneRun::new(hard.scene).expect("a sound scene");
+    let mut run = SceneRun::new(&hard.scene).expect("a sound scene");
     let mut first = 0;
     for (object, velocity) in hard.velocities.iter().enumerate() {
-        let count = run.scene().objects[object].mesh.positions.len();
+        let count = hard.scene.objects[object].mesh.positions.len();
         run.state.velocities[first..first + count].fill(*velocity);
         first += count;
     }

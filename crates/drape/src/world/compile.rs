@@ -1,0 +1,173 @@
+//! From a world to the system that is simulated.
+
+use super::{Kind, ObjectId, VertexMap, World};
+use crate::merge::merged_layers;
+use crate::{Cloth, Collider, Control, DrapeError, Grip, System, SystemBuilder};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
+
+/// Solid surfaces with the meshes they were made of: their distance fields serve again while an object has its
+/// mesh.
+pub(crate) type Solids = BTreeMap<ObjectId, (Arc<TriangleMesh>, Collider)>;
+
+impl World {
+    /// The cloths of its objects laid end to end, not merged, at the places from which they start.
+    pub(super) fn panels(&self) -> Cloth {
+        let mut all = Cloth::default();
+        for (_, cloth) in self.cloths() {
+            append(&mut all, cloth);
+        }
+        for material in &mut all.materials {
+            material.stiffness_damping += self.environment.damping.stiffness;
+        }
+        all
+    }
+
+    /// The merged cloth with its vertices at some places [m].
+    pub(super) fn merged_cloth(&self, map: &VertexMap, places: Vec<Vec3>) -> Cloth {
+        let panels = self.panels();
+        let mut merged = panels.merged(&map.target, map.count);
+        merged.positions = places;
+        merged
+    }
+
+    /// The system of its present structure, laid out where the vertices are [m].
+    ///
+    /// # Errors
+    /// No cloth, bad meshes, materials that cannot be simulated.
+    pub(super) fn compile(
+        &self,
+        map: &VertexMap,
+        places: Vec<Vec3>,
+        solids: &mut Solids,
+    ) -> Result<System, DrapeError> {
+        let merged = self.merged_cloth(map, places);
+        if merged.triangles.is_empty() {
+            return Err(DrapeError::Scene {
+                place: "objects".to_owned(),
+                what: "no deformable object has any triangle".to_owned(),
+                remedy: "add an object of kind \"deformable\"".to_owned(),
+            });
+        }
+        let builder = SystemBuilder::new(self.name, &merged)?;
+        Ok(self.furnish(map, builder, solids))
+    }
+
+    /// Gives a cloth its solids, pins, grips, attachments and what acts on it.
+    pub(super) fn furnish(
+        &self,
+        map: &VertexMap,
+        mut builder: SystemBuilder,
+        solids: &mut Solids,
+    ) -> System {
+        let environment = &self.environment;
+        builder.colliders = self.solids(solids);
+        let materials = self.cloths().flat_map(|(_, cloth)| &cloth.materials);
+        builder.contact = environment.contact.for_cloth(materials);
+        let layers = self.layers(map);
+        match environment.layers_apart {
+            None => builder.layer = merged_layers(&layers, &map.target, map.count),
+            Some(apart) => {
+                builder.layer = Vec::new();
+                let own = merged_layers(&layers, &map.target, map.count);
+                builder.keep_layers_off(&own, apart);
+            }
+        }
+        let attachments = self.resolve_attachments(map);
+        builder.control = Control {
+            gravity: environment.gravity,
+            air_drag: environment.air.drag + environment.damping.mass,
+            air: environment.air,
+            frames: attachments.frames,
+            ..Control::default()
+        };
+        builder.elastics = attachments.elastics;
+        builder.release();
+        builder.grips = self.grips(map);
+        let pins = self.pins(map).chain(builder.grips.iter().map(|g| g.vertex));
+        for vertex in pins.collect::<Vec<_>>() {
+            builder.pinned[vertex as usize] = true;
+        }
+        builder.build()
+    }
+
+    /// Its solid objects, in order.
+    fn solids(&self, had: &mut Solids) -> Vec<Collider> {
+        let mut solids = Vec::new();
+        for (id, object) in self.objects() {
+            let motion = match object.kind {
+                Kind::Deformable => continue,
+                Kind::Static => None,
+                Kind::Animated => object.motion.clone(),
+            };
+            had.retain(|other, (mesh, _)| *other != id || Arc::ptr_eq(mesh, &object.mesh));
+            let (_, collider) = had.entry(id).or_insert_with(|| {
+                let surface = SurfaceTree::new(TriangleMesh::clone(&object.mesh));
+                (object.mesh.clone(), Collider::new(Arc::new(surface)))
+            });
+            let mut collider = collider.clone();
+            collider.motion = motion;
+            solids.push(collider);
+        }
+        solids
+    }
+
+    /// The layer of each vertex of the cloths laid end to end; empty where all are of one.
+    fn layers(&self, map: &VertexMap) -> Vec<u16> {
+        let mut layers: Vec<u16> = Vec::with_capacity(map.target.len());
+        for id in map.objects() {
+            let Some(object) = self.object(id) else {
+                continue;
+            };
+            layers.extend((0..object.vertex_count()).map(|v| object.layers.of(v)));
+        }
+        match layers.windows(2).all(|pair| pair[0] == pair[1]) {
+            true => Vec::new(),
+            false => layers,
+        }
+    }
+
+    /// Merged vertices that pins hold.
+    pub(super) fn pins<'a>(&'a self, map: &'a VertexMap) -> impl Iterator<Item = u32> + 'a {
+        map.objects().flat_map(move |id| {
+            let object = self.object(id);
+            let pins = object.into_iter().flat_map(|object| object.pins.iter());
+            let own = map.vertices_of(id).unwrap_or(&[]);
+            pins.filter_map(|&pin| own.get(pin as usize).copied())
+        })
+    }
+
+    fn grips(&self, map: &VertexMap) -> Vec<Grip> {
+        let mut grips = Vec::new();
+        for id in map.objects() {
+            let (Some(object), Some(own)) = (self.object(id), map.vertices_of(id)) else {
+                continue;
+            };
+            for grip in &object.grips {
+                grips.extend(grip.vertices.iter().map(|&v| Grip {
+                    vertex: own[v as usize],
+                    home: object.mesh.positions[v as usize],
+                    motion: grip.motion.clone(),
+                }));
+            }
+        }
+        grips
+    }
+}
+
+/// Adds a cloth's vertices, triangles and materials to others.
+fn append(all: &mut Cloth, cloth: &Cloth) {
+    let vertex = all.positions.len() as u32;
+    let material = all.materials.len() as u16;
+    all.positions.extend(&cloth.positions);
+    let triangles = cloth.triangles.iter();
+    all.triangles
+        .extend(triangles.map(|t| t.map(|v| v + vertex)));
+    all.rest.extend(&cloth.rest);
+    all.material
+        .extend(cloth.material.iter().map(|m| m + material));
+    let panel = all.panel.iter().max().map_or(0, |p| p + 1);
+    all.panel.extend(cloth.panel.iter().map(|p| p + panel));
+    all.materials.extend(cloth.materials.iter().cloned());
+}

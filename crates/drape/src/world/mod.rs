@@ -1,0 +1,233 @@
+//! The world: objects with stable numbers, their own meshes, which vertices of them are merged, attachments
+//! and the environment. A system is compiled from it; an edit of it gives another system, and what the state
+//! remembers is transferred.
+
+mod attachment;
+mod compile;
+mod edit;
+mod object;
+mod present;
+mod simulation;
+mod transfer;
+mod vertex_map;
+
+pub use attachment::{AttachmentEnd, AttachmentId, ObjectAttachment};
+pub use edit::{Edited, WorldEdit};
+pub use object::{Kind, Layers, MeshVertex, Object, ObjectId, VertexGrip};
+pub use simulation::Simulation;
+pub use vertex_map::VertexMap;
+pub(crate) use compile::Solids;
+pub(crate) use transfer::MeetingPlace;
+
+use crate::scene::{SceneEnd, SceneObject};
+use crate::{Air, Cloth, ContactSettings, Damping, DrapeError, Scene};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+use toile_geometry::Vec3;
+
+/// What acts on every object alike.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Environment {
+    /// Acceleration of gravity [m/s2].
+    pub gravity: Vec3,
+    /// The air.
+    pub air: Air,
+    /// Damping of everything alike.
+    pub damping: Damping,
+    /// How cloth meets surfaces, and itself.
+    pub contact: ContactSettings,
+    /// Where layers pass through each other, the distance [m] that each is kept farther from solids than the
+    /// one below it; none where they keep their order.
+    pub layers_apart: Option<f64>,
+}
+
+/// Objects, attachments and environment: all that a system is compiled from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct World {
+    /// What messages call it.
+    name: &'static str,
+    environment: Environment,
+    objects: BTreeMap<ObjectId, Arc<Object>>,
+    attachments: BTreeMap<AttachmentId, ObjectAttachment>,
+    /// Pairs of vertices that are one.
+    merged: BTreeSet<[MeshVertex; 2]>,
+    next_object: u32,
+    next_attachment: u32,
+}
+
+impl World {
+    /// Without any object; `name` is what messages call it.
+    pub fn new(name: &'static str, environment: Environment) -> Self {
+        Self {
+            name,
+            environment,
+            objects: BTreeMap::new(),
+            attachments: BTreeMap::new(),
+            merged: BTreeSet::new(),
+            next_object: 0,
+            next_attachment: 0,
+        }
+    }
+
+    /// Of a scene, whose objects get the numbers 0, 1, ... in their order.
+    ///
+    /// # Errors
+    /// Whatever [`Scene::check`] refuses.
+    pub fn of_scene(scene: &Scene) -> Result<Self, DrapeError> {
+        scene.check()?;
+        let mut world = Self::new(
+            "scene",
+            Environment {
+                gravity: scene.gravity,
+                air: scene.air,
+                damping: scene.damping,
+                contact: scene.contact,
+                layers_apart: None,
+            },
+        );
+        for (index, object) in scene.objects.iter().enumerate() {
+            let grips = scene.grips.iter().filter(|grip| grip.object == index);
+            let grips = grips.map(|grip| VertexGrip {
+                vertices: grip.vertices.clone(),
+                motion: Arc::new(grip.motion.clone()),
+            });
+            world.insert(Object {
+                grips: grips.collect(),
+                ..Object::of_scene(object)?
+            });
+        }
+        for elastic in &scene.elastics {
+            let ends = [elastic.from, elastic.to].map(|end| match end {
+                SceneEnd::Point(place) => AttachmentEnd::Point(place),
+                SceneEnd::Vertex { object, vertex } => AttachmentEnd::Vertex(MeshVertex {
+                    object: ObjectId(object as u32),
+                    vertex,
+                }),
+            });
+            world.attach(ObjectAttachment {
+                ends,
+                stiffness: elastic.stiffness,
+                merge_within: elastic.merge_within,
+            });
+        }
+        Ok(world)
+    }
+
+    /// Adds an object that was checked.
+    pub(crate) fn insert(&mut self, object: Object) -> ObjectId {
+        let id = ObjectId(self.next_object);
+        self.next_object += 1;
+        self.objects.insert(id, Arc::new(object));
+        id
+    }
+
+    /// Adds an attachment.
+    fn attach(&mut self, attachment: ObjectAttachment) -> AttachmentId {
+        let id = AttachmentId(self.next_attachment);
+        self.next_attachment += 1;
+        self.attachments.insert(id, attachment);
+        id
+    }
+
+    /// Lets something else act.
+    pub(crate) fn set_environment(&mut self, environment: Environment) {
+        self.environment = environment;
+    }
+
+    /// Makes the vertices of pairs one.
+    pub(crate) fn merge(&mut self, pairs: impl IntoIterator<Item = [MeshVertex; 2]>) {
+        let pairs = pairs.into_iter().map(MeshVertex::pair);
+        self.merged.extend(pairs);
+    }
+
+    /// What acts on every object alike.
+    pub fn environment(&self) -> &Environment {
+        &self.environment
+    }
+
+    /// Its objects in order of their numbers.
+    pub fn objects(&self) -> impl Iterator<Item = (ObjectId, &Object)> {
+        self.objects.iter().map(|(&id, object)| (id, &**object))
+    }
+
+    /// An object; none where it was removed.
+    pub fn object(&self, id: ObjectId) -> Option<&Object> {
+        self.objects.get(&id).map(|object| &**object)
+    }
+
+    /// An object that an edit names.
+    fn existing(&self, id: ObjectId) -> Result<&Object, DrapeError> {
+        self.object(id).ok_or_else(|| id.missing())
+    }
+
+    /// An object to be changed.
+    fn existing_mut(&mut self, id: ObjectId) -> Result<&mut Object, DrapeError> {
+        let found = self.objects.get_mut(&id).map(Arc::make_mut);
+        found.ok_or_else(|| id.missing())
+    }
+
+    fn check_vertex(&self, vertex: MeshVertex) -> Result<(), DrapeError> {
+        let object = self.existing(vertex.object)?;
+        match (vertex.vertex as usize) < object.vertex_count() {
+            true => Ok(()),
+            false => {
+                let what = format!("it has no vertex {}", vertex.vertex);
+                Err(object.refuse(&what, "name a vertex below its vertex count"))
+            }
+        }
+    }
+
+    /// Its attachments in order of their numbers.
+    pub fn attachments(&self) -> impl Iterator<Item = (AttachmentId, &ObjectAttachment)> {
+        self.attachments.iter().map(|(&id, attachment)| (id, attachment))
+    }
+
+    /// Pairs of vertices that are one.
+    pub fn merged(&self) -> impl Iterator<Item = [MeshVertex; 2]> + '_ {
+        self.merged.iter().copied()
+    }
+
+    /// The objects that are cloth, in order.
+    pub fn cloths(&self) -> impl Iterator<Item = (ObjectId, &Cloth)> {
+        let all = self.objects();
+        all.filter_map(|(id, object)| Some((id, object.deformable_cloth()?)))
+    }
+
+    /// Objects that are sewn together or are to be, in order of their first ones; each other object alone.
+    pub fn groups(&self) -> Vec<Vec<ObjectId>> {
+        let ids: Vec<ObjectId> = self.objects.keys().copied().collect();
+        let number = |id: ObjectId| ids.binary_search(&id).ok().map(|at| at as u32);
+        let to_merge = self.attachments.values().filter_map(|attachment| {
+            attachment.merge_within?;
+            self.cloth_ends(attachment)
+        });
+        let pairs = self.merged().chain(to_merge).filter_map(|pair| {
+            let [a, b] = pair.map(|vertex| number(vertex.object));
+            Some([a?, b?])
+        });
+        let (group, count) = crate::merge_map(ids.len(), pairs);
+        let mut groups = vec![Vec::new(); count];
+        for (id, group) in ids.into_iter().zip(group) {
+            groups[group as usize].push(id);
+        }
+        groups
+    }
+}
+
+impl ObjectId {
+    /// The error of an edit that names an object which is not there.
+    fn missing(self) -> DrapeError {
+        DrapeError::Scene {
+            place: format!("object {}", self.0),
+            what: "it is not there".to_owned(),
+            remedy: "name an object of the world".to_owned(),
+        }
+    }
+}
+
+impl SceneObject {
+    /// The number that the object at an index of a scene gets.
+    pub fn id(index: usize) -> ObjectId {
+        ObjectId(index as u32)
+    }
+}

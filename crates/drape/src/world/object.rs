@@ -1,0 +1,222 @@
+//! Objects of a world: surfaces with what moves them and what they are made of.
+
+use crate::scene::{MOST_LAYER, ObjectKind, SceneObject};
+use crate::{Cloth, DrapeError, Material, Motion};
+use std::sync::Arc;
+use toile_geometry::TriangleMesh;
+
+/// The number of an object: in order of creation, never given twice in a world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ObjectId(pub(super) u32);
+
+/// A vertex of an object's own mesh, whatever it is merged with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct MeshVertex {
+    /// The object.
+    pub object: ObjectId,
+    /// The vertex of its mesh.
+    pub vertex: u32,
+}
+
+impl MeshVertex {
+    /// Two vertices in the order in which a world has pairs.
+    pub(super) fn pair([a, b]: [Self; 2]) -> [Self; 2] {
+        [a.min(b), a.max(b)]
+    }
+}
+
+/// What moves an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Nothing: cloth collides with it.
+    Static,
+    /// Its motion, which nothing can stop: cloth collides with it.
+    Animated,
+    /// The simulation: it is cloth.
+    Deformable,
+}
+
+/// Vertices of a cloth that are led along a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VertexGrip {
+    /// The vertices of its mesh.
+    pub vertices: Vec<u32>,
+    /// The motion; it starts from where the mesh lay when it was added.
+    pub motion: Arc<Motion>,
+}
+
+/// Places of the vertices of a cloth among cloths worn over one another: larger numbers lie farther out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Layers {
+    /// All of one.
+    One(u16),
+    /// One for each vertex.
+    Each(Vec<u16>),
+}
+
+impl Layers {
+    /// The layer of a vertex.
+    pub(super) fn of(&self, vertex: usize) -> u16 {
+        match self {
+            Self::One(layer) => *layer,
+            Self::Each(layers) => layers.get(vertex).copied().unwrap_or(0),
+        }
+    }
+}
+
+/// An object. Kind, shape, material and motion are properties of their own: an object that changes its kind
+/// loses none of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Unique name.
+    pub name: String,
+    /// What moves it.
+    pub kind: Kind,
+    /// Its surface as it was added, or where it stood when it became solid [m].
+    pub mesh: Arc<TriangleMesh>,
+    /// Rest shape of its triangles and what they are made of, with places from which it starts [m]; made from
+    /// the mesh and the material when it first becomes deformable.
+    pub cloth: Option<Arc<Cloth>>,
+    /// What it is made of where no cloth says so.
+    pub material: Option<Material>,
+    /// How it moves while it is animated.
+    pub motion: Option<Arc<Motion>>,
+    /// Vertices that do not move while it is deformable.
+    pub pins: Vec<u32>,
+    /// Vertices that are led while it is deformable.
+    pub grips: Vec<VertexGrip>,
+    /// Its layers while it is deformable.
+    pub layers: Layers,
+}
+
+impl Object {
+    /// A surface that stands.
+    pub fn fixed(name: impl Into<String>, mesh: TriangleMesh) -> Self {
+        Self {
+            name: name.into(),
+            kind: Kind::Static,
+            mesh: Arc::new(mesh),
+            cloth: None,
+            material: None,
+            motion: None,
+            pins: Vec::new(),
+            grips: Vec::new(),
+            layers: Layers::One(0),
+        }
+    }
+
+    /// A cloth in one layer, which nothing holds.
+    pub fn deformable(name: impl Into<String>, cloth: Cloth) -> Self {
+        Self {
+            kind: Kind::Deformable,
+            cloth: Some(Arc::new(cloth.clone())),
+            ..Self::fixed(name, cloth.mesh())
+        }
+    }
+
+    /// Of a scene's object, its grips apart.
+    ///
+    /// # Errors
+    /// A mesh without a rest shape.
+    pub(super) fn of_scene(object: &SceneObject) -> Result<Self, DrapeError> {
+        let mut own = Self {
+            cloth: object.cloth.clone().map(Arc::new),
+            layers: Layers::One(object.layer),
+            ..Self::fixed(&object.name, object.mesh.clone())
+        };
+        match &object.kind {
+            ObjectKind::Static => {}
+            ObjectKind::Animated { motion } => {
+                own.kind = Kind::Animated;
+                own.motion = Some(Arc::new(motion.clone()));
+            }
+            ObjectKind::Deformable { material, pins } => {
+                own.kind = Kind::Deformable;
+                own.material = Some(material.clone());
+                own.pins.clone_from(pins);
+                own.ensure_cloth()?;
+            }
+        }
+        Ok(own)
+    }
+
+    /// Makes its cloth from its mesh and its material where it has none.
+    ///
+    /// # Errors
+    /// No material, a mesh that cannot be a rest shape.
+    pub(super) fn ensure_cloth(&mut self) -> Result<(), DrapeError> {
+        if self.cloth.is_some() {
+            return Ok(());
+        }
+        let Some(material) = self.material.clone() else {
+            return Err(self.refuse("it has no material", "give it one to make it deformable"));
+        };
+        let cloth = Cloth::from_mesh(&self.name, &self.mesh, material)?;
+        self.cloth = Some(Arc::new(cloth));
+        Ok(())
+    }
+
+    /// Whether it is cloth, and what its cloth is.
+    pub fn deformable_cloth(&self) -> Option<&Cloth> {
+        match self.kind {
+            Kind::Deformable => self.cloth.as_deref(),
+            _ => None,
+        }
+    }
+
+    /// How many vertices its mesh has.
+    pub fn vertex_count(&self) -> usize {
+        self.mesh.positions.len()
+    }
+
+    /// Refuses an object that cannot be simulated as its kind says.
+    ///
+    /// # Errors
+    /// The first of its properties that does not fit, with the remedy.
+    pub(super) fn check(&self) -> Result<(), DrapeError> {
+        self.mesh.check().map_err(|defect| DrapeError::Mesh {
+            object: self.name.clone(),
+            defect,
+        })?;
+        let count = self.vertex_count();
+        let of_grips = self.grips.iter().flat_map(|grip| &grip.vertices);
+        if let Some(v) = (self.pins.iter().chain(of_grips)).find(|&&v| v as usize >= count) {
+            let what = format!("it has no vertex {v}");
+            return Err(self.refuse(&what, "name vertices below its vertex count"));
+        }
+        let motions = self.motion.iter().chain(self.grips.iter().map(|g| &g.motion));
+        if let Some(what) = motions.filter_map(|motion| motion.defect()).next() {
+            return Err(self.refuse(&what, "give keys with rising times and finite numbers"));
+        }
+        match (self.kind, &self.cloth) {
+            (Kind::Animated, _) if self.motion.is_none() => {
+                Err(self.refuse("it has no motion", "give it one, or let it stand"))
+            }
+            (Kind::Deformable, Some(cloth)) => {
+                if cloth.triangles != self.mesh.triangles || cloth.positions.len() != count {
+                    let remedy = "give cloth and surface the same triangles";
+                    return Err(self.refuse("its cloth is of another mesh", remedy));
+                }
+                let most = (0..count).map(|v| self.layers.of(v)).max().unwrap_or(0);
+                if most > MOST_LAYER {
+                    let what = format!("layer {most} is out of range");
+                    return Err(self.refuse(&what, "give numbers from 0 to 999"));
+                }
+                for material in &cloth.materials {
+                    material.check(&self.name)?;
+                }
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// An error about it.
+    pub(super) fn refuse(&self, what: &str, remedy: &str) -> DrapeError {
+        DrapeError::Scene {
+            place: format!("\"{}\"", self.name),
+            what: what.to_owned(),
+            remedy: remedy.to_owned(),
+        }
+    }
+}
