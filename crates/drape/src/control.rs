@@ -1,7 +1,7 @@
 //! What may change with every step of a simulation without another structure.
 
-use crate::laws::air::Air;
 use crate::Motion;
+use crate::laws::air::Air;
 use crate::laws::elastic::ElasticLaw;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

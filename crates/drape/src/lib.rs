@@ -16,6 +16,7 @@ mod contact_sample;
 mod contact_settings;
 mod contacts;
 mod control;
+mod digest;
 mod elastic;
 mod equilibrium;
 mod error;
@@ -88,7 +89,7 @@ pub use rest_data::RestData;
 pub use scene::{
     Damping, MOST_LAYER, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject,
 };
-pub use scene_run::{SceneRun, Surface, TimeSettings};
+pub use scene_run::{SceneCheckpoint, SceneRun, Surface, TimeSettings};
 pub use sew::{SewRun, SewSettings};
 pub use state::State;
 pub use step::{StepSettings, step_in_time};

@@ -2,14 +2,16 @@
 //! together is merged.
 
 use crate::collision::Tally;
+use crate::digest::Digest;
 use crate::measure::{Measures, measure};
 use crate::method::Method;
 use crate::methods::whole_energy;
-use crate::world::{Edited, ObjectId, Simulation, World, WorldEdit};
-use crate::{DrapeError, Elastic, MethodSettings, Scene, Workspace};
+use crate::world::{Edited, MeshVertex, ObjectId, Simulation, Solids, World, WorldEdit};
+use crate::{Control, DrapeError, Elastic, MethodKind, MethodSettings, Scene, State, Workspace};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::{Deref, DerefMut, Range};
-use toile_geometry::{SurfaceTree, TriangleMesh};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 /// How long a scene is stepped and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +33,30 @@ pub struct SceneRun {
     steps: usize,
     split_steps: usize,
     refinements: usize,
-    /// What methods counted before the last change of structure.
+    /// What methods counted before the one in hand was built.
+    tally: Option<Tally>,
+    /// Whether the method was built anew after the last step.
+    is_renewed: bool,
+    /// Whether the world is not, or no more, the one of a scene.
+    is_edited: bool,
+}
+
+/// All that a scene's run is between two steps but the scene itself, which it is resumed with: plain data, to be
+/// written to a file.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneCheckpoint {
+    /// Digest of the scene.
+    scene: u64,
+    /// Pairs of vertices that were merged on the way.
+    merged: Vec<[MeshVertex; 2]>,
+    /// Where the vertices lay when the structure was made [m].
+    layout: Vec<Vec3>,
+    state: State,
+    control: Control,
+    steps: usize,
+    split_steps: usize,
+    refinements: usize,
     tally: Option<Tally>,
 }
 
@@ -63,20 +88,134 @@ impl SceneRun {
     pub fn new(scene: &Scene) -> Result<Self, DrapeError> {
         let world = World::of_scene(scene)?;
         world.check_features(scene.method.kind)?;
+        let settings = TimeSettings {
+            duration: scene.duration,
+            step: scene.step,
+            method: scene.method,
+        };
+        let run = Self::of_simulation(Simulation::new(world)?, settings)?;
         Ok(Self {
-            simulation: Simulation::new(world)?,
-            settings: TimeSettings {
-                duration: scene.duration,
-                step: scene.step,
-                method: scene.method,
-            },
+            is_edited: false,
+            ..run
+        })
+    }
+
+    /// Steps a simulation in time from its present state: a garment that was draped, for instance.
+    ///
+    /// # Errors
+    /// A world that asks the method for what that does not know.
+    pub fn of_simulation(
+        simulation: Simulation,
+        settings: TimeSettings,
+    ) -> Result<Self, DrapeError> {
+        simulation.world().check_features(settings.method.kind)?;
+        Ok(Self {
+            simulation,
+            settings,
             workspace: Workspace::default(),
-            method: scene.method.build(),
+            method: settings.method.build(),
             steps: 0,
             split_steps: 0,
             refinements: 0,
             tally: None,
+            is_renewed: true,
+            is_edited: true,
         })
+    }
+
+    /// Goes on from a checkpoint of a scene.
+    ///
+    /// # Errors
+    /// A checkpoint of another scene, or one that does not fit itself.
+    pub fn resume(scene: &Scene, checkpoint: SceneCheckpoint) -> Result<Self, DrapeError> {
+        let refuse = |place: &str, what: String| DrapeError::Scene {
+            place: format!("checkpoint, {place}"),
+            what,
+            remedy: "go on with the scene that it was saved of, or begin anew".to_owned(),
+        };
+        if checkpoint.scene != digest(scene) {
+            return Err(refuse("scene", "it was saved of another scene".to_owned()));
+        }
+        let mut run = Self::new(scene)?;
+        let mut world = run.world().clone();
+        for &vertex in checkpoint.merged.iter().flatten() {
+            world.check_vertex(vertex)?;
+        }
+        world.merge(checkpoint.merged);
+        let simulation = Simulation::laid_out(world, checkpoint.layout, Solids::new());
+        run.simulation = simulation.map_err(|error| refuse("layout", error.to_string()))?;
+        run.go_on_from(checkpoint.state, checkpoint.control)?;
+        run.steps = checkpoint.steps;
+        run.split_steps = checkpoint.split_steps;
+        run.refinements = checkpoint.refinements;
+        run.tally = checkpoint.tally;
+        Ok(run)
+    }
+
+    /// Steps to the next checkpoint at the most: where cloth meets cloth there is one each simulated second and
+    /// wherever something is merged; else after every step.
+    pub fn steps_to_checkpoint(&self) -> usize {
+        match self.is_renewed || !self.meets_itself() {
+            true => 0,
+            false => self.span() - self.steps % self.span(),
+        }
+    }
+
+    /// All that it takes to go on from here with its scene in another process to the same bytes.
+    ///
+    /// # Errors
+    /// Between two checkpoints, after edits from outside, and for methods that keep what no state has.
+    pub fn checkpoint(&self, scene: &Scene) -> Result<SceneCheckpoint, DrapeError> {
+        let refuse = |what: String, remedy: &str| {
+            Err(DrapeError::Scene {
+                place: "checkpoint".to_owned(),
+                what,
+                remedy: remedy.to_owned(),
+            })
+        };
+        let kind = self.settings.method.kind;
+        if kind.is_equilibrium() || kind == MethodKind::ImplicitMidpoint {
+            let what = format!("a run by \"{}\" has none", kind.name());
+            return refuse(what, "run it to its end, or use another method");
+        }
+        if self.is_edited {
+            let what = "the world was edited, and is not the scene's";
+            return refuse(what.to_owned(), "save a run of a scene before edits");
+        }
+        if self.steps_to_checkpoint() > 0 {
+            let what = format!("the next one is {} steps off", self.steps_to_checkpoint());
+            return refuse(what, "take these steps first");
+        }
+        Ok(SceneCheckpoint {
+            scene: digest(scene),
+            merged: self.world().merged().collect(),
+            layout: self.system.topology.layout.clone(),
+            state: self.state.clone(),
+            control: self.system.control.clone(),
+            steps: self.steps,
+            split_steps: self.split_steps,
+            refinements: self.refinements,
+            tally: self.cloth_tally(),
+        })
+    }
+
+    /// Whether contact of cloth with cloth is looked for: what was found at one look changes which of several right
+    /// answers is found at the next.
+    fn meets_itself(&self) -> bool {
+        self.system.contact.cloth_offset > 0.0
+    }
+
+    /// Steps of a simulated second.
+    fn span(&self) -> usize {
+        ((1.0 / self.settings.step).round() as usize).max(1)
+    }
+
+    /// Builds the method anew; what it has to remember is in the state.
+    fn renew(&mut self) {
+        self.tally = self.cloth_tally();
+        self.method = self.settings.method.build();
+        self.workspace = Workspace::default();
+        self.is_renewed = true;
     }
 
     /// How long it is stepped and how.
@@ -126,12 +265,19 @@ impl SceneRun {
         let report = self.method.advance(system, state, self.settings.step)?;
         self.split_steps += usize::from(report.pieces > 1);
         self.steps += 1;
+        self.is_renewed = false;
         if self.steps.is_multiple_of(STEPS_TO_REFINE) {
             self.refine();
         }
         let closed = self.simulation.closed_pairs();
         if !closed.is_empty() {
-            self.edit(WorldEdit::Merge(closed))?;
+            self.simulation.edit(WorldEdit::Merge(closed))?;
+            self.refinements = 0;
+            self.renew();
+        }
+        let in_time = !self.settings.method.kind.is_equilibrium();
+        if in_time && self.meets_itself() && self.steps.is_multiple_of(self.span()) {
+            self.renew();
         }
         Ok(())
     }
@@ -147,11 +293,10 @@ impl SceneRun {
             self.simulation = before;
             return Err(error);
         }
+        self.is_edited = true;
         if edited.is_restructured {
             self.refinements = 0;
-            self.workspace = Workspace::default();
-            self.tally = self.cloth_tally();
-            self.method = self.settings.method.build();
+            self.renew();
         }
         Ok(edited)
     }
@@ -262,6 +407,13 @@ impl SceneRun {
         let Simulation { system, state, .. } = &self.simulation;
         measure(system, state, &mut self.workspace, &[])
     }
+}
+
+/// Of all that a scene says: numbers are told apart to the last bit.
+fn digest(scene: &Scene) -> u64 {
+    let mut digest = Digest::new();
+    digest.text(&format!("{scene:?}"));
+    digest.value()
 }
 
 /// Some objects as one surface.

@@ -131,8 +131,17 @@ fn cloth_tied_to_a_moving_solid_goes_with_it() {
         let from = |p: &Vec3| (p - corner).norm();
         from(a).total_cmp(&from(b))
     };
-    let start = *scene.objects[0].mesh.positions.iter().min_by(nearest).unwrap();
-    let index = scene.objects[0].mesh.positions.iter().position(|p| *p == start);
+    let start = *scene.objects[0]
+        .mesh
+        .positions
+        .iter()
+        .min_by(nearest)
+        .unwrap();
+    let index = scene.objects[0]
+        .mesh
+        .positions
+        .iter()
+        .position(|p| *p == start);
     let vertex = index.unwrap() as u32;
     scene.contact.offset = 0.0;
     scene.elastics.push(SceneElastic {
@@ -148,8 +157,14 @@ fn cloth_tied_to_a_moving_solid_goes_with_it() {
     while !run.finished() {
         run.advance().unwrap();
     }
-    let ends = [run.meshes()[0].positions[vertex as usize], run.meshes()[1].positions[0]];
-    assert!((ends[1] - corner).norm() > 0.19, "the solid stands still: {ends:?}");
+    let ends = [
+        run.meshes()[0].positions[vertex as usize],
+        run.meshes()[1].positions[0],
+    ];
+    assert!(
+        (ends[1] - corner).norm() > 0.19,
+        "the solid stands still: {ends:?}"
+    );
     assert!((ends[0] - ends[1]).norm() < 2e-3, "{ends:?}");
     // A method that knows no moving solids refuses it by name.
     scene.method = MethodKind::ImplicitEuler.into();

@@ -14,8 +14,8 @@ use numbers::Numbers;
 use sheets::{object, sheet};
 use std::collections::BTreeMap;
 use toile_drape::{
-    AttachmentEnd, Cloth, ContactSettings, Material, MeshVertex, MethodKind,
-    Object, ObjectAttachment, ObjectId, ObjectKind, Scene, SceneObject, SceneRun, WorldEdit,
+    AttachmentEnd, Cloth, ContactSettings, Material, MeshVertex, MethodKind, Object,
+    ObjectAttachment, ObjectId, ObjectKind, Scene, SceneObject, SceneRun, WorldEdit,
 };
 use toile_geometry::Vec3;
 
@@ -42,7 +42,9 @@ fn scene(seed: u64) -> Scene {
         object("beside", flat(0.105, 0.22), vec![]),
         object(
             "lying",
-            sheet([4, 4], [0.1, 0.1], |u, v| Vec3::new(u - 0.25, 0.004, v - 0.05)),
+            sheet([4, 4], [0.1, 0.1], |u, v| {
+                Vec3::new(u - 0.25, 0.004, v - 0.05)
+            }),
             vec![],
         ),
     ];
@@ -83,7 +85,11 @@ fn remembered(run: &SceneRun, id: ObjectId) -> Vec<u64> {
             let none = Vec3::repeat(f64::NAN);
             write(&state.anchors[index].unwrap_or(none));
             write(&Vec3::x().scale(state.normal_forces[index]));
-            write(&Vec3::new(sample.area, sample.extra_offset, sample.friction));
+            write(&Vec3::new(
+                sample.area,
+                sample.extra_offset,
+                sample.friction,
+            ));
         }
     }
     for held in &state.cloth.held {
@@ -169,7 +175,9 @@ fn edit(random: &mut Numbers, run: &SceneRun, number: usize) -> Option<(WorldEdi
         }
         5 if all.len() > 3 => {
             let gone = any(random, &all[3..]);
-            let partners = merged.iter().filter(|pair| pair.iter().any(|v| v.object == gone));
+            let partners = merged
+                .iter()
+                .filter(|pair| pair.iter().any(|v| v.object == gone));
             let touched = partners.flatten().map(|v| v.object).chain([gone]);
             (WorldEdit::Remove(gone), touched.collect())
         }
@@ -223,6 +231,7 @@ fn a_hundred_sequences_of_edits_keep_momentum_pins_and_what_they_do_not_touch() 
             let untouched: Vec<ObjectId> = groups.flatten().filter(is_cloth).collect();
             let before: Vec<_> = untouched.iter().map(|&id| remembered(&run, id)).collect();
             let (momentum, size, kinetic) = motion(&run);
+            let triangles = run.map().triangles.len();
             let held = pins(&run);
             let merges = matches!(&edit, WorldEdit::Merge(_));
             let merges_held = match &edit {
@@ -248,14 +257,19 @@ fn a_hundred_sequences_of_edits_keep_momentum_pins_and_what_they_do_not_touch() 
             let (after, _, kinetic_after) = motion(&run);
             if merges {
                 assert!(kinetic_after <= kinetic * (1.0 + 1e-12), "{said}");
-                if !merges_held {
+                // A triangle whose corners became one is gone with its mass and its motion.
+                if !merges_held && run.map().triangles.len() == triangles {
                     let off = (after - momentum).norm();
-                    assert!(off <= 1e-12 * size, "{said}: momentum off by {off:e} of {size:e}");
+                    assert!(
+                        off <= 1e-12 * size,
+                        "{said}: momentum off by {off:e} of {size:e}"
+                    );
                     counts[3] += 1;
                 }
             }
             if !pinned_anew {
-                let now: BTreeMap<_, _> = pins(&run).into_iter().map(|p| ((p.0, p.1), p.2)).collect();
+                let now: BTreeMap<_, _> =
+                    pins(&run).into_iter().map(|p| ((p.0, p.1), p.2)).collect();
                 for (id, pin, place) in held {
                     let is = now.get(&(id, pin));
                     assert!(is.is_none_or(|is| *is == place), "{said}: a pin moved");
@@ -323,7 +337,10 @@ fn a_sheet_at_rest_on_a_slope_stays_where_it_is_when_something_else_is_merged() 
             let each = a.iter().zip(b).map(|(a, b)| (a - b).norm());
             each.fold(0.0, f64::max)
         };
-        assert!(slip(&before, &settled) < 1e-4, "{kind:?} had not come to rest");
+        assert!(
+            slip(&before, &settled) < 1e-4,
+            "{kind:?} had not come to rest"
+        );
         let seam = (0..5).map(|j| {
             let end = |object, vertex| MeshVertex {
                 object: SceneObject::id(object),

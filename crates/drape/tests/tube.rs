@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 use toile_drape::{
-    Cloth, ContactSettings, GarmentLevel, GarmentRun, GarmentSetup, Material, RestSettings,
-    SewSettings, Stage,
+    Cloth, ContactSettings, GarmentLevel, GarmentRun, GarmentSetup, Kind, Material, MeshVertex,
+    MethodKind, Motion, MotionKey, ObjectId, RestSettings, SceneRun, SewSettings, Stage,
+    TimeSettings, WorldEdit,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 
@@ -133,4 +134,66 @@ fn a_tube_is_sewn_and_comes_to_rest_on_a_ball() {
         "{measures:?}"
     );
     assert_eq!(run.system.mesh(&run.state.positions).component_count(), 1);
+}
+
+/// A body that stands, rises by 0.1 m within half a second and stands again.
+fn rising(start: f64) -> Motion {
+    let key = |time, height| MotionKey {
+        time,
+        translation: Vec3::y() * height,
+        rotation: Vec3::zeros(),
+    };
+    Motion {
+        pivot: Vec3::zeros(),
+        keys: vec![key(start, 0.0), key(start + 0.5, 0.1)],
+    }
+}
+
+#[test]
+fn a_draped_tube_goes_along_with_its_ball_and_falls_when_its_seams_are_opened() {
+    let mut run = GarmentRun::new(setup(12)).expect("sound input");
+    while run.progress().stage != Stage::Finished {
+        run.advance().expect("no failure");
+    }
+    let simulation = run.into_simulation();
+    let settings = TimeSettings {
+        duration: f64::INFINITY,
+        step: 1.0 / 60.0,
+        method: MethodKind::Xpbd.into(),
+    };
+    let start = simulation.state.time;
+    let ids: Vec<(ObjectId, Kind)> = (simulation.world().objects())
+        .map(|(id, object)| (id, object.kind))
+        .collect();
+    let of = |kind| ids.iter().find(|(_, k)| *k == kind).unwrap().0;
+    let (ball, tube) = (of(Kind::Static), of(Kind::Deformable));
+    let mut run = SceneRun::of_simulation(simulation, settings).unwrap();
+    let height = |run: &SceneRun| {
+        let places = &run.state.positions;
+        places.iter().map(|p| p.y).sum::<f64>() / places.len() as f64
+    };
+    // Another step may come between, so the ball starts later.
+    run.edit(WorldEdit::SetMotion(ball, rising(start + 0.1)))
+        .unwrap();
+    run.edit(WorldEdit::ChangeKind(ball, Kind::Animated))
+        .unwrap();
+    let before = height(&run);
+    for _ in 0..60 {
+        run.advance().unwrap();
+    }
+    let lifted = height(&run) - before;
+    assert!((lifted - 0.1).abs() < 0.02, "it was lifted by {lifted} m");
+    assert_eq!(run.measure().body_intersections, 0);
+
+    let pairs: Vec<[MeshVertex; 2]> = run.world().merged().collect();
+    let (count, seams) = (run.state.positions.len(), pairs.len());
+    assert!(pairs.iter().flatten().all(|vertex| vertex.object == tube));
+    run.edit(WorldEdit::Open(pairs)).unwrap();
+    assert_eq!(run.state.positions.len(), count + seams);
+    let before = height(&run);
+    for _ in 0..40 {
+        run.advance().unwrap();
+    }
+    let fallen = before - height(&run);
+    assert!(fallen > 0.3, "it fell by {fallen} m");
 }

@@ -1,10 +1,11 @@
-//! Checkpoints of a garment's run as files: two lines of JSON, what the file is and the checkpoint. Numbers are
+//! Checkpoints of the run of a garment or a scene as files: two lines of JSON, what the file is and the checkpoint. Numbers are
 //! written so that they are read again to the last bit; a checksum finds what was changed since.
 
 use crate::FormatError;
 use crate::scene::json_error;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use toile_drape::Checkpoint;
+use toile_drape::{Checkpoint, SceneCheckpoint};
 
 /// What the first line says.
 #[derive(Serialize, Deserialize)]
@@ -16,10 +17,22 @@ struct Head {
     checksum: u32,
 }
 
-/// The name of the format, and the version that is written and read: what was saved by another goes on to
-/// other bytes.
-const FORMAT: &str = "toile-checkpoint";
-const VERSION: u32 = 1;
+/// What may be saved as a checkpoint, with the name of its format.
+pub trait CheckpointFormat: Serialize + DeserializeOwned {
+    /// The name of the format.
+    const FORMAT: &'static str;
+}
+
+impl CheckpointFormat for Checkpoint {
+    const FORMAT: &'static str = "toile-checkpoint";
+}
+
+impl CheckpointFormat for SceneCheckpoint {
+    const FORMAT: &'static str = "toile-scene-checkpoint";
+}
+
+/// The version that is written and read: what was saved by another goes on to other bytes.
+const VERSION: u32 = 2;
 
 /// What to do about a file that does not serve.
 const REMEDY: &str = "take another checkpoint, or drape from the start";
@@ -28,10 +41,10 @@ const REMEDY: &str = "take another checkpoint, or drape from the start";
 ///
 /// # Errors
 /// One that JSON has no words for.
-pub fn write_checkpoint(checkpoint: &Checkpoint) -> Result<String, FormatError> {
+pub fn write_checkpoint<C: CheckpointFormat>(checkpoint: &C) -> Result<String, FormatError> {
     let body = serde_json::to_string(checkpoint).map_err(|error| json_error(&error))?;
     let head = Head {
-        format: FORMAT.to_owned(),
+        format: C::FORMAT.to_owned(),
         version: VERSION,
         checksum: crc32fast::hash(body.as_bytes()),
     };
@@ -43,15 +56,15 @@ pub fn write_checkpoint(checkpoint: &Checkpoint) -> Result<String, FormatError> 
 ///
 /// # Errors
 /// Text that is no checkpoint, of another version, cut short or changed, by the place and what to do.
-pub fn read_checkpoint(text: &str) -> Result<Checkpoint, FormatError> {
+pub fn read_checkpoint<C: CheckpointFormat>(text: &str) -> Result<C, FormatError> {
     let (head, body) = text.split_once('\n').unwrap_or((text, ""));
-    let is_ours = head.contains(FORMAT);
+    let is_ours = head.contains(C::FORMAT);
     let head: Head = serde_json::from_str(head).map_err(|error| match is_ours {
         true => FormatError::new("line 1", error.to_string(), REMEDY),
-        false => no_checkpoint(),
+        false => no_checkpoint(C::FORMAT),
     })?;
-    if head.format != FORMAT {
-        return Err(no_checkpoint());
+    if head.format != C::FORMAT {
+        return Err(no_checkpoint(C::FORMAT));
     }
     if head.version != VERSION {
         return Err(FormatError::new(
@@ -79,10 +92,10 @@ pub fn read_checkpoint(text: &str) -> Result<Checkpoint, FormatError> {
     })
 }
 
-fn no_checkpoint() -> FormatError {
+fn no_checkpoint(format: &str) -> FormatError {
     FormatError::new(
         "line 1",
-        format!("this is no checkpoint: the format is not \"{FORMAT}\""),
+        format!("this is no checkpoint: the format is not \"{format}\""),
         "choose the file of a checkpoint",
     )
 }

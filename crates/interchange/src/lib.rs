@@ -49,7 +49,7 @@ mod xml;
 
 pub use atomic::{write_all_atomically, write_atomically};
 pub use bvh::read_bvh;
-pub use checkpoint::{read_checkpoint, write_checkpoint};
+pub use checkpoint::{CheckpointFormat, read_checkpoint, write_checkpoint};
 pub use error::{FileError, FormatError, read_text};
 pub use fabric_file::{FabricFile, read_fabric};
 pub use fabric_test::{FabricTest, read_fabric_test};

@@ -179,9 +179,8 @@ fn report(run: &mut SceneRun, notes: Vec<String>, crossings: &Crossings) -> serd
     }
     warnings.extend(crossings.warning(run.system.contact.cloth_offset));
     let layers = measures.layers.iter().map(|layer| {
-        let of_layer = |o: &&Object| {
-            o.kind == Kind::Deformable && o.layers == Layers::One(layer.layer)
-        };
+        let of_layer =
+            |o: &&Object| o.kind == Kind::Deformable && o.layers == Layers::One(layer.layer);
         let objects = run.world().objects().map(|(_, object)| object);
         let names = objects.filter(of_layer).map(|o| &o.name);
         serde_json::json!({

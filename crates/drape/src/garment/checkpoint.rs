@@ -7,9 +7,8 @@ use super::{GarmentRun, GarmentSetup};
 use crate::collision::Tally;
 use crate::kinetic_damping::SwingWorkspace;
 use crate::world::{ObjectId, Simulation, WorldEdit};
-use crate::{Control, DrapeError, State, System, Workspace};
+use crate::{Control, DrapeError, State, Workspace};
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 use toile_geometry::{Vec2, Vec3};
 
 /// All that a garment's run is between two steps but its setup, which it is resumed with: plain data, to be
@@ -105,17 +104,11 @@ impl GarmentRun {
         let is_sewn = matches!(stage, StageState::Sewing(_));
         let made_as = (is_sewn, checkpoint.layout, edited.as_ref());
         let (mut simulation, garment) = restored(&setup, level, made_as)?;
-        let Simulation { system, state, .. } = &mut simulation;
         if let StageState::Sewing(sewing) = &mut stage {
-            sewing.resume(system, setup.levels[level].stitches.clone());
+            sewing.resume(&mut simulation.system, setup.levels[level].stitches.clone());
         }
-        system.control = checkpoint.control;
-        check_control(system)?;
-        *state = checkpoint.state;
-        state.check(system)?;
-        if *state.samples == *system.rest.samples {
-            state.samples = Arc::clone(&system.rest.samples);
-        }
+        simulation.go_on_from(checkpoint.state, checkpoint.control)?;
+        let system = &simulation.system;
         let mut workspace = Workspace::default();
         if let Some(pairs) = &checkpoint.eliminated_pairs {
             let count = system.vertex_count();
@@ -183,15 +176,6 @@ fn restored(
         simulation.edit(WorldEdit::Reshape(garment, edited.rest.clone()))?;
     }
     Ok((simulation, garment))
-}
-
-fn check_control(system: &System) -> Result<(), DrapeError> {
-    let count = system.vertex_count();
-    let all = system.control.attachments.all();
-    match all.iter().all(|one| (one.vertex as usize) < count) {
-        true => Ok(()),
-        false => Err(damaged("control.attachments", "there are fewer vertices")),
-    }
 }
 
 /// A checkpoint whose parts do not fit each other.

@@ -2,8 +2,8 @@
 
 use super::{GarmentLevel, GarmentSetup};
 use crate::DrapeError;
+use crate::digest::Digest;
 use serde::{Deserialize, Serialize};
-use toile_geometry::{Vec2, Vec3};
 
 /// A setup from one of its levels on, in short.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,41 +30,6 @@ struct MeshDigest {
     shapes: u64,
 }
 
-/// FNV-1a over the bits of numbers.
-struct Hash(u64);
-
-impl Hash {
-    fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-
-    fn bytes(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-
-    fn whole(&mut self, numbers: impl IntoIterator<Item = u32>) {
-        let numbers: Vec<u32> = numbers.into_iter().collect();
-        self.bytes(&(numbers.len() as u64).to_le_bytes());
-        for number in numbers {
-            self.bytes(&number.to_le_bytes());
-        }
-    }
-
-    fn places(&mut self, places: &[Vec3]) {
-        for number in places.iter().flat_map(Vec3::iter) {
-            self.bytes(&number.to_bits().to_le_bytes());
-        }
-    }
-
-    fn shapes(&mut self, shapes: &[[Vec2; 3]]) {
-        for number in shapes.iter().flatten().flat_map(Vec2::iter) {
-            self.bytes(&number.to_bits().to_le_bytes());
-        }
-    }
-}
-
 impl MeshDigest {
     fn of(level: &GarmentLevel) -> Self {
         let GarmentLevel {
@@ -72,21 +37,21 @@ impl MeshDigest {
             stitches,
             layer,
         } = level;
-        let mut structure = Hash::new();
+        let mut structure = Digest::new();
         structure.whole(cloth.triangles.iter().flatten().copied());
         structure.whole(cloth.panel.iter().copied());
         structure.whole(cloth.material.iter().map(|&m| u32::from(m)));
         structure.whole(stitches.iter().flatten().copied());
         structure.whole(layer.iter().map(|&l| u32::from(l)));
-        let mut shapes = Hash::new();
+        let mut shapes = Digest::new();
         shapes.shapes(&cloth.rest);
         shapes.places(&cloth.positions);
         Self {
             vertices: cloth.positions.len(),
             triangles: cloth.triangles.len(),
             stitches: stitches.len(),
-            structure: structure.0,
-            shapes: shapes.0,
+            structure: structure.value(),
+            shapes: shapes.value(),
         }
     }
 }
@@ -94,7 +59,7 @@ impl MeshDigest {
 impl SetupDigest {
     /// Of a setup from a level on.
     pub fn of(setup: &GarmentSetup, level: usize) -> Self {
-        let mut body = Hash::new();
+        let mut body = Digest::new();
         for surface in &setup.colliders {
             let mesh = surface.mesh();
             body.places(&mesh.positions);
@@ -102,9 +67,9 @@ impl SetupDigest {
         }
         // As written, numbers are told apart to the last bit.
         let written = |words: String| {
-            let mut hash = Hash::new();
-            hash.bytes(words.as_bytes());
-            hash.0
+            let mut hash = Digest::new();
+            hash.text(&words);
+            hash.value()
         };
         let fabrics = setup.levels.iter().skip(level);
         let fabrics: Vec<_> = fabrics.map(|level| &level.cloth.materials).collect();
@@ -113,7 +78,7 @@ impl SetupDigest {
             levels: setup.levels.len(),
             meshes: meshes.map(MeshDigest::of).collect(),
             fabrics: written(format!("{fabrics:?}")),
-            body: body.0,
+            body: body.value(),
             settings: written(format!(
                 "{:?} {:?} {:?} {:?}",
                 setup.contact, setup.gravity, setup.sew, setup.rest

@@ -102,7 +102,7 @@ impl GarmentRun {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ContactSettings, GarmentSetup, Material, RestSettings, SewSettings};
+    use crate::{Cloth, ContactSettings, GarmentSetup, Material, RestSettings, SewSettings};
     use toile_geometry::TriangleMesh;
 
     /// A sheet of 8 x 8 squares of 20 mm that falls.
@@ -142,7 +142,10 @@ mod tests {
         let narrow = |shape: &[Vec2; 3]| shape.map(|p| Vec2::new(0.01 * p.x, p.y));
         let rest: Vec<_> = setup().levels[0].cloth.rest.iter().map(narrow).collect();
         run.reshape(rest, Vec::new()).unwrap();
-        assert!(run.system.topology.bending.is_none(), "the structure was not made anew");
+        assert!(
+            run.system.topology.bending.is_none(),
+            "the structure was not made anew"
+        );
         let checkpoint = run.checkpoint().unwrap();
         let mut resumed = GarmentRun::resume(setup(), checkpoint).unwrap();
         assert_eq!(resumed.system.topology.layout, run.system.topology.layout);

@@ -422,6 +422,12 @@ impl GarmentRun {
         Ok(())
     }
 
+    /// The garment in its present stage, to be stepped in time as it is: merged once its finest mesh has left
+    /// [`Stage::Sewing`].
+    pub fn into_simulation(self) -> Simulation {
+        self.simulation
+    }
+
     /// The garment at rest, to be predicted and corrected under other rest shapes; nothing before it is
     /// [`Stage::Finished`].
     pub fn into_equilibrium(self) -> Option<Equilibrium> {

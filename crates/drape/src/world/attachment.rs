@@ -2,9 +2,9 @@
 //! solids, which may move.
 
 use super::MeshVertex;
+use super::World;
 use super::object::{Kind, ObjectId};
 use super::vertex_map::VertexMap;
-use super::World;
 use crate::control::FrameAttachment;
 use crate::laws::elastic::ElasticLaw;
 use crate::{DrapeError, Elastic, ElasticEnd};
@@ -145,7 +145,10 @@ impl World {
         for end in attachment.ends {
             match end {
                 AttachmentEnd::Point(place) if !place.iter().all(|x| x.is_finite()) => {
-                    return refuse("a place is not finite".to_owned(), "give finite numbers in m");
+                    return refuse(
+                        "a place is not finite".to_owned(),
+                        "give finite numbers in m",
+                    );
                 }
                 AttachmentEnd::Point(_) => {}
                 AttachmentEnd::Vertex(vertex) => self.check_vertex(vertex)?,

@@ -5,7 +5,7 @@ use super::object::{Kind, Layers, MeshVertex, Object, ObjectId};
 use super::present::Present;
 use super::transfer::StartingMotion;
 use super::{Environment, World};
-use crate::{Carry, Cloth, DrapeError};
+use crate::{Carry, Cloth, DrapeError, Motion};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_geometry::{Vec2, Vec3};
@@ -20,6 +20,8 @@ pub enum WorldEdit {
     /// Lets another rule move an object. What becomes solid stays as it lies, its seams open; what becomes cloth
     /// starts where it stands, without velocity.
     ChangeKind(ObjectId, Kind),
+    /// Gives an object a motion for while it is animated; it starts from where the mesh lay when it was added.
+    SetMotion(ObjectId, Motion),
     /// Adds an attachment.
     Attach(ObjectAttachment),
     /// Removes an attachment.
@@ -114,7 +116,8 @@ impl World {
             WorldEdit::Remove(id) => {
                 let was = self.existing(id)?.kind;
                 self.let_go(id);
-                self.attachments.retain(|_, attachment| !attachment.names(id));
+                self.attachments
+                    .retain(|_, attachment| !attachment.names(id));
                 self.objects.remove(&id);
                 match was {
                     Kind::Deformable => Change::of_structure(),
@@ -122,6 +125,12 @@ impl World {
                 }
             }
             WorldEdit::ChangeKind(id, kind) => self.change_kind(id, kind, before)?,
+            WorldEdit::SetMotion(id, motion) => {
+                let object = self.existing_mut(id)?;
+                object.motion = Some(Arc::new(motion));
+                object.check()?;
+                Change::Furnishing
+            }
             WorldEdit::Attach(attachment) => {
                 self.check_attachment(&attachment)?;
                 edited.attachment = Some(self.attach(attachment));
@@ -171,7 +180,8 @@ impl World {
 
     /// Opens the seams of an object.
     fn let_go(&mut self, id: ObjectId) {
-        self.merged.retain(|pair| pair.iter().all(|vertex| vertex.object != id));
+        self.merged
+            .retain(|pair| pair.iter().all(|vertex| vertex.object != id));
     }
 
     fn check_pairs(&self, pairs: &[[MeshVertex; 2]]) -> Result<(), DrapeError> {
@@ -285,7 +295,8 @@ impl World {
         object.grips.clear();
         object.check()?;
         self.let_go(id);
-        self.attachments.retain(|_, attachment| !attachment.names(id));
+        self.attachments
+            .retain(|_, attachment| !attachment.names(id));
         Ok(Change::Structure(starting))
     }
 }
@@ -301,4 +312,3 @@ impl ObjectAttachment {
         })
     }
 }
-

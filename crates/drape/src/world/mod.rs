@@ -12,12 +12,12 @@ mod transfer;
 mod vertex_map;
 
 pub use attachment::{AttachmentEnd, AttachmentId, ObjectAttachment};
+pub(crate) use compile::Solids;
 pub use edit::{Edited, WorldEdit};
 pub use object::{Kind, Layers, MeshVertex, Object, ObjectId, VertexGrip};
 pub use simulation::Simulation;
-pub use vertex_map::VertexMap;
-pub(crate) use compile::Solids;
 pub(crate) use transfer::MeetingPlace;
+pub use vertex_map::VertexMap;
 
 use crate::scene::{SceneEnd, SceneObject};
 use crate::{Air, Cloth, ContactSettings, Damping, DrapeError, Scene};
@@ -166,7 +166,7 @@ impl World {
         found.ok_or_else(|| id.missing())
     }
 
-    fn check_vertex(&self, vertex: MeshVertex) -> Result<(), DrapeError> {
+    pub(crate) fn check_vertex(&self, vertex: MeshVertex) -> Result<(), DrapeError> {
         let object = self.existing(vertex.object)?;
         match (vertex.vertex as usize) < object.vertex_count() {
             true => Ok(()),
@@ -179,7 +179,9 @@ impl World {
 
     /// Its attachments in order of their numbers.
     pub fn attachments(&self) -> impl Iterator<Item = (AttachmentId, &ObjectAttachment)> {
-        self.attachments.iter().map(|(&id, attachment)| (id, attachment))
+        self.attachments
+            .iter()
+            .map(|(&id, attachment)| (id, attachment))
     }
 
     /// Pairs of vertices that are one.

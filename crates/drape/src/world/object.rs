@@ -2,15 +2,17 @@
 
 use crate::scene::{MOST_LAYER, ObjectKind, SceneObject};
 use crate::{Cloth, DrapeError, Material, Motion};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use toile_geometry::TriangleMesh;
 
 /// The number of an object: in order of creation, never given twice in a world.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ObjectId(pub(super) u32);
 
 /// A vertex of an object's own mesh, whatever it is merged with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct MeshVertex {
     /// The object.
     pub object: ObjectId,
@@ -184,7 +186,10 @@ impl Object {
             let what = format!("it has no vertex {v}");
             return Err(self.refuse(&what, "name vertices below its vertex count"));
         }
-        let motions = self.motion.iter().chain(self.grips.iter().map(|g| &g.motion));
+        let motions = self
+            .motion
+            .iter()
+            .chain(self.grips.iter().map(|g| &g.motion));
         if let Some(what) = motions.filter_map(|motion| motion.defect()).next() {
             return Err(self.refuse(&what, "give keys with rising times and finite numbers"));
         }

@@ -26,7 +26,10 @@ impl Present<'_> {
             }
             (None, Kind::Animated) => {
                 let pose = object.motion.as_ref()?.pose(self.state.time);
-                moved(mesh, mesh.positions.iter().map(|&p| pose.apply(p)).collect())
+                moved(
+                    mesh,
+                    mesh.positions.iter().map(|&p| pose.apply(p)).collect(),
+                )
             }
             _ => TriangleMesh::clone(mesh),
         })

@@ -6,8 +6,9 @@ use super::object::{MeshVertex, ObjectId};
 use super::present::Present;
 use super::transfer::{MeetingPlace, StartingMotion, Transfer};
 use super::{VertexMap, World};
-use crate::{DrapeError, State, System};
+use crate::{Control, DrapeError, State, System};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use toile_geometry::{TriangleMesh, Vec3};
 
 /// A world with its system and its state.
@@ -139,6 +140,30 @@ impl Simulation {
             }
         }
         Ok(edited)
+    }
+
+    /// Goes on from a state and a control that were saved.
+    ///
+    /// # Errors
+    /// Those of another system, by the field.
+    pub(crate) fn go_on_from(&mut self, state: State, control: Control) -> Result<(), DrapeError> {
+        let count = self.system.vertex_count() as u32;
+        let attachments = control.attachments.all().iter().map(|one| one.vertex);
+        let frames = control.frames.iter().map(|one| one.vertex);
+        if attachments.chain(frames).any(|vertex| vertex >= count) {
+            return Err(DrapeError::Scene {
+                place: "checkpoint, control.attachments".to_owned(),
+                what: "there are fewer vertices".to_owned(),
+                remedy: "take another checkpoint: this one is damaged".to_owned(),
+            });
+        }
+        state.check(&self.system)?;
+        self.system.control = control;
+        self.state = state;
+        if *self.state.samples == *self.system.rest.samples {
+            self.state.samples = Arc::clone(&self.system.rest.samples);
+        }
+        Ok(())
     }
 
     /// Brings everything to rest where it is; contacts and methods remember nothing.

@@ -231,7 +231,9 @@ impl Transfer {
     }
 
     fn internal_strain(&self, settled: &[InternalStrain]) -> Vec<InternalStrain> {
-        let one = |former: &Option<u32>| former.map_or_else(InternalStrain::default, |t| settled[t as usize]);
+        let one = |former: &Option<u32>| {
+            former.map_or_else(InternalStrain::default, |t| settled[t as usize])
+        };
         self.triangles.iter().map(one).collect()
     }
 
@@ -376,7 +378,13 @@ impl Sticking {
 /// The mean of vectors at some vertices by their weights; without any, by number.
 fn mean(from: &[u32], weights: &[f64], of: &[Vec3]) -> Vec3 {
     let whole: f64 = from.iter().map(|&v| weights[v as usize]).sum();
-    let weight = |v: u32| if whole > 0.0 { weights[v as usize] } else { 1.0 };
+    let weight = |v: u32| {
+        if whole > 0.0 {
+            weights[v as usize]
+        } else {
+            1.0
+        }
+    };
     let total: f64 = from.iter().map(|&v| weight(v)).sum();
     let sum: Vec3 = from.iter().map(|&v| of[v as usize] * weight(v)).sum();
     sum / total

@@ -165,7 +165,9 @@ impl Regions {
             let slot = order.slot_of[one.vertex as usize] - order.start(place) as u32;
             let region = self.at(place);
             let tie = Tie::new(slot, TieEnd::Place([0.0; 3]), &one.law);
-            region.frames.push([region.attachments.len() as u32, number]);
+            region
+                .frames
+                .push([region.attachments.len() as u32, number]);
             region.attachments.push(tie);
         }
     }
