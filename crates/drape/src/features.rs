@@ -1,4 +1,4 @@
-//! What a scene may ask for beyond cloth that hangs and falls, which method knows what of it, and the
+//! Features that a scene may ask for beyond cloth that hangs and falls, the methods that support each, and the
 //! refusal of a scene that asks its method for more.
 
 use crate::{Compression, DrapeError, Material, MethodKind, ObjectKind, Scene, SceneObject};
