@@ -208,6 +208,116 @@ fn used_of_geometry(text: &str) -> Vec<&str> {
     words
 }
 
+/// The words in backticks of a line.
+fn quoted(line: &str) -> impl Iterator<Item = &str> {
+    line.split('`').skip(1).step_by(2)
+}
+
+/// Complaints about source files and folders that a page names in backticks and that are not there: each
+/// must be the end of a path in the project.
+fn lost_places(page: &str, sources: &[String]) -> Vec<String> {
+    let is_there = |word: &str| {
+        let end = format!("/{word}");
+        match word.ends_with('/') {
+            true => sources.iter().any(|path| path.contains(&end)),
+            false => sources.iter().any(|path| path.ends_with(&end)),
+        }
+    };
+    let words = page.lines().flat_map(quoted);
+    let places = words.filter(|word| word.ends_with(".rs") || word.ends_with('/'));
+    places
+        .filter(|word| !is_there(word))
+        .map(|word| format!("there is no `{word}`"))
+        .collect()
+}
+
+/// Complaints about the answers under "Where is": a place is a path from the root or from `crates/`; a name
+/// after it is a function defined in that file, or a type, constant or variant that occurs in it.
+fn wrong_answers(page: &str) -> Vec<String> {
+    let mut complaints = Vec::new();
+    let after = page.split("\n## Where is").nth(1).unwrap_or_default();
+    let section = after.split("\n## ").next().unwrap_or_default();
+    for row in section.lines().filter(|line| line.starts_with('|')) {
+        let mut file: Option<(&str, String)> = None;
+        for word in quoted(row) {
+            if word.contains('/') {
+                let places = [root().join(word), root().join("crates").join(word)];
+                let found = places.iter().find(|place| place.exists());
+                if found.is_none() {
+                    complaints.push(format!("there is no `{word}`"));
+                }
+                let text = found.and_then(|place| fs::read_to_string(place).ok());
+                file = text.map(|text| (word, text));
+            } else if let Some((name, text)) = &file {
+                if !word.split("::").all(|part| holds(text, part)) {
+                    complaints.push(format!("`{name}` has no `{word}`"));
+                }
+            } else {
+                complaints.push(format!("`{word}` stands behind no file that is there"));
+            }
+        }
+    }
+    complaints
+}
+
+/// Whether a source has a function of a name, or anything else that begins with a capital letter.
+fn holds(source: &str, name: &str) -> bool {
+    if name.starts_with(char::is_lowercase) {
+        return ["(", "<"]
+            .iter()
+            .any(|end| source.contains(&format!("fn {name}{end}")));
+    }
+    let mut words = source.split(|c: char| !c.is_alphanumeric() && c != '_');
+    words.any(|word| word == name)
+}
+
+#[test]
+fn documents_name_places_that_are_there() {
+    let sources: Vec<String> = files_below(&root(), ".rs")
+        .iter()
+        .map(|path| path.display().to_string().replace('\\', "/"))
+        .collect();
+    let mut pages = files_below(&root().join("docs/methods"), ".md");
+    let architecture = root().join("docs/ARCHITECTURE.md");
+    pages.push(architecture.clone());
+    let mut complaints = Vec::new();
+    for page in &pages {
+        let text = fs::read_to_string(page).expect("readable");
+        let lost = lost_places(&text, &sources);
+        complaints.extend(
+            lost.into_iter()
+                .map(|what| format!("{}: {what}", page.display())),
+        );
+    }
+    let text = fs::read_to_string(architecture).expect("readable");
+    complaints.extend(wrong_answers(&text));
+    assert!(complaints.is_empty(), "\n{}", complaints.join("\n"));
+}
+
+#[test]
+fn places_and_names_that_are_gone_are_told() {
+    let sources = ["/toile/crates/drape/src/merge.rs".to_owned()];
+    let page = "`merge.rs`, `drape/src/` and `erge.rs`, `src/drape/`, `gone.rs`";
+    let lost = ["erge.rs", "src/drape/", "gone.rs"].map(|word| format!("there is no `{word}`"));
+    assert_eq!(lost_places(page, &sources), lost);
+
+    let row = |answer: &str| {
+        wrong_answers(&format!(
+            "# A\n\n## Where is it\n\n| x | {answer} |\n\n## B\n"
+        ))
+    };
+    let here = "`tests/tests/house_rules.rs`";
+    assert!(
+        row(&format!(
+            "{here} (`row`, `holds`, `LONGEST_FILE`), `drape/src/`"
+        ))
+        .len()
+            == 1
+    );
+    assert!(row(&format!("{here} (`holds`, `LONGEST_FILE`), `drape/src/`")).is_empty());
+    assert_eq!(row("`drape/src/gone.rs` (`run`)").len(), 2);
+}
+
 #[test]
 fn source_files_stay_short() {
     for path in files_below(&root(), ".rs") {

@@ -1,5 +1,5 @@
-//! What of bending stays the same while rest shapes change: which neighbours curvatures are estimated from, and
-//! where their products stand in the matrix.
+//! The structure of bending, which stays while rest shapes change: the neighbours that curvatures are estimated
+//! from, and the places of their products in the matrix.
 
 use crate::Material;
 use crate::laws::bending::{BendingMatrix, BendingStencil};

@@ -13,7 +13,7 @@ pub(crate) const MOST_EXTRA: f64 = 8e-3;
 /// triangle that goes on crossing is kept farther off.
 pub const MOST_OFFSET: f64 = FIELD_REACH - MOST_EXTRA;
 
-/// How cloth meets solid surfaces.
+/// How cloth meets solid surfaces and other cloth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSettings {
     /// Distance kept between the middle of the cloth and a surface [m], at most [`MOST_OFFSET`]; half

@@ -1,4 +1,4 @@
-//! What a world may ask for beyond cloth that hangs and falls, which method knows what of it, and the
+//! Features that a world may ask for beyond cloth that hangs and falls, the methods that support each, and the
 //! refusal of a world that asks its method for more.
 
 use crate::world::{Kind, Object, World};

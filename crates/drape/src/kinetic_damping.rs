@@ -1,6 +1,6 @@
-//! The big swing: what a garment does before it is near rest, by small XPBD steps with kinetic
-//! damping. A substep costs less than a thousandth of a Newton step and leaves saddles as the real
-//! cloth does; Newton's method finishes.
+//! The swing, a garment's stage between sewing and settling: small XPBD steps with kinetic damping. A substep
+//! costs less than a thousandth of a Newton step and leaves saddles as the real cloth does; Newton's method
+//! finishes.
 
 use crate::collision::Tally;
 use crate::xpbd::{ClothWatch, Span};

@@ -40,7 +40,7 @@ pub struct Material {
     pub kept: [f64; 2],
     /// Time in which the kept share settles [s].
     pub relaxation_time: f64,
-    /// Coulomb friction coefficient against solid surfaces.
+    /// Coulomb friction coefficient: against solid surfaces it acts alone, between two cloths the mean of both.
     pub friction: f64,
     /// Share of the normal speed of an impact that comes back, 0 to 1; none leaves it to the spring of
     /// the contact. Only `xpbd` knows it.

@@ -1,4 +1,4 @@
-//! What is measured on a drape: residual, strain, seam gaps, penetration, crossings.
+//! Measures of a drape: residual (net force over weight), strain, penetration, crossings.
 
 use crate::collision::{ClothSurface, layers_of, strays_from};
 use crate::{State, System, Workspace};

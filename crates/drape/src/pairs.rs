@@ -1,4 +1,4 @@
-//! The memory of L-BFGS: steps, and the changes of the gradient over them.
+//! The memory of L-BFGS: pairs of a step and the change of the gradient over it.
 
 use std::collections::VecDeque;
 use toile_geometry::Vec3;

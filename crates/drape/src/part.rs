@@ -1,4 +1,4 @@
-//! A part of a model whose rim stands still: what is solved apart from the rest.
+//! A submodel whose rim is pinned: a region that nonlinear elimination brings to rest by itself.
 
 use crate::collision::ClothContact;
 use crate::laws::elastic::ElasticLaw;

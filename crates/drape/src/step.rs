@@ -1,5 +1,6 @@
-//! Steps in time by implicit Euler, with recovery: a failed step is undone and tried with half
-//! the size; if that goes on failing it is an error, never a result.
+//! Steps of sewing by implicit Euler, with recovery: a failed step is undone and tried with half
+//! the size; if that goes on failing it is an error, never a result. The method `implicit-euler` of scenes is
+//! in `methods/implicit.rs`.
 
 use crate::laws::membrane::Curvature;
 use crate::{

@@ -103,8 +103,8 @@ pub(crate) fn job(
     }
 }
 
-/// Distance kept between two layers of a garment [m]: half of what is kept from the body, so that
-/// layers fit between body and air.
+/// Distance kept between cloth and cloth, in one layer and between two [m]: half of the distance kept from the
+/// body, so that layers fit between body and air.
 const CLOTH_OFFSET: f64 = 2e-3;
 
 pub(crate) fn level(dressed: &Dressed) -> GarmentLevel {

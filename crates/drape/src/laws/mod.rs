@@ -1,4 +1,5 @@
-//! Force laws: pure functions over small stencils giving energy, gradient and Hessian.
+//! Force laws of materials, contact, elastics and air: pure functions over small stencils giving energy,
+//! gradient and Hessian. The physical laws that a simulation is tested by are in crate `lab`.
 
 pub mod air;
 pub mod bending;

@@ -1,4 +1,5 @@
-//! The laws: small scenes with a known outcome.
+//! Physical laws that the simulation is validated against: small scenes with a known outcome. The force laws
+//! of materials and contact are in crate `drape`.
 
 mod bounce;
 mod buckling;
