@@ -387,7 +387,9 @@ fn a_damaged_file_is_refused_with_place_and_remedy() {
         (&changed, "line 2: it was cut short or changed"),
     ];
     for (text, begins) in cases {
-        let said = read_checkpoint(text).unwrap_err().to_string();
+        let said = read_checkpoint::<toile_drape::Checkpoint>(text)
+            .unwrap_err()
+            .to_string();
         assert!(said.starts_with(begins), "{said}");
         assert!(said.contains("; "), "{said}");
     }

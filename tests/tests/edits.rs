@@ -73,7 +73,7 @@ fn dragged(count: usize) -> Vec<Vec3> {
         run.advance().unwrap();
         assert_eq!(run.structures(), structures);
     }
-    run.state.positions
+    run.into_simulation().state.positions
 }
 
 #[test]
