@@ -1,6 +1,6 @@
 //! Finding where the cloth touches solid surfaces: recomputed as it moves.
 
-use crate::collision::ClothContacts;
+use crate::collision::{ContactDetector, ContactSet};
 use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{ContactLaw, ContactPlane, damped_push, gentle_push};
 use crate::memory::Memory as StateMemory;
@@ -28,7 +28,8 @@ pub struct Contacts {
     /// Contacts in order of their samples.
     pub active: Vec<Contact>,
     /// Contacts of cloth with cloth.
-    pub cloth: ClothContacts,
+    pub cloth: ContactSet,
+    detector: ContactDetector,
     memory: Vec<Memory>,
 }
 
@@ -51,14 +52,31 @@ impl Contacts {
     /// Finds the contacts of the present positions. A sample is skipped only when the distance it
     /// moved proves that it is out of reach.
     pub fn refresh(&mut self, model: &Model, state: &State, positions: &[Vec3]) {
-        self.cloth.refresh(model, state, positions);
+        let (memory, found) = (&state.cloth, &mut self.cloth);
+        self.detector.refresh(model, memory, positions, found);
         self.refresh_surfaces(model, state, positions);
     }
 
     /// Finds all of them anew at the next look, so that what is found does not depend on what was before.
     pub(crate) fn forget(&mut self) {
         self.memory.clear();
-        self.cloth.forget();
+        self.detector.forget();
+    }
+
+    /// Finds all contacts of cloth with cloth anew at the next look.
+    pub(crate) fn forget_cloth(&mut self) {
+        self.detector.forget();
+    }
+
+    /// Shortens moves from `x` so that cloth does not pass through cloth, but for pairs that the contacts in
+    /// hand exempt; returns the number of vertices held back.
+    pub(crate) fn truncate_moves(
+        &mut self,
+        model: &Model,
+        x: &[Vec3],
+        moves: &mut [Vec3],
+    ) -> usize {
+        (self.detector).truncate_moves(model, &self.cloth.exemptions, x, moves)
     }
 
     /// Finds those with solid surfaces alone.

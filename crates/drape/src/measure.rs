@@ -1,6 +1,6 @@
 //! What is measured on a drape: residual, strain, seam gaps, penetration, crossings.
 
-use crate::collision::{ClothSurface, layers_of, strays_from};
+use crate::collision::{ClothSurface, layer_violations_of, layers_of};
 use crate::{State, System, Workspace};
 use rayon::prelude::*;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
@@ -152,7 +152,7 @@ fn by_layer(
     };
     let layers = layers_of(&surface).into_iter().map(|layer| {
         let mut astray = Vec::new();
-        strays_from(&surface, layer, &mesh.positions, ORDER_REACH, &mut astray);
+        layer_violations_of(&surface, layer, &mesh.positions, ORDER_REACH, &mut astray);
         let count = |found: &mut dyn Iterator<Item = bool>| found.filter(|&x| x).count();
         let of_both = |&[t, u]: &[u32; 2]| [layer_of(t), layer_of(u)];
         LayerMeasures {
