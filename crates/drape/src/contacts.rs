@@ -4,9 +4,10 @@ use crate::collision::{ContactDetector, ContactSet};
 use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{ContactLaw, ContactPlane, damped_push, gentle_push};
 use crate::memory::Memory as StateMemory;
-use crate::{ContactSample, Model, Pose, State};
+use crate::{Collider, ContactSample, Model, PairPolicies, Pose, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
+use std::sync::Arc;
 use toile_geometry::Vec3;
 
 /// One sample near one surface.
@@ -31,6 +32,7 @@ pub struct Contacts {
     pub cloth: ContactSet,
     detector: ContactDetector,
     memory: Vec<Memory>,
+    measured_for: Option<MeasuredFor>,
 }
 
 /// Where a sample was last measured and how far from every surface it was: until it has moved
@@ -39,6 +41,21 @@ pub struct Contacts {
 struct Memory {
     place: Vec3,
     clearance: f64,
+}
+
+/// What the memories of samples were measured for: they are valid while these are the same ones.
+struct MeasuredFor {
+    colliders: Arc<Vec<Collider>>,
+    policies: Arc<PairPolicies>,
+    samples: Arc<Vec<ContactSample>>,
+}
+
+impl MeasuredFor {
+    fn fits(&self, model: &Model, state: &State) -> bool {
+        Arc::ptr_eq(&self.colliders, &model.colliders)
+            && Arc::ptr_eq(&self.policies, &model.policies)
+            && Arc::ptr_eq(&self.samples, &state.samples)
+    }
 }
 
 /// Planes are kept from this many offsets away, so that a step is stopped before it lands.
@@ -89,6 +106,15 @@ impl Contacts {
             place: Vec3::repeat(f64::INFINITY),
             clearance: 0.0,
         };
+        let fits = |of: &MeasuredFor| of.fits(model, state);
+        if !self.measured_for.as_ref().is_some_and(fits) {
+            self.memory.clear();
+            self.measured_for = Some(MeasuredFor {
+                colliders: model.colliders.clone(),
+                policies: model.policies.clone(),
+                samples: state.samples.clone(),
+            });
+        }
         self.memory.resize(state.samples.len(), unknown);
         let poses: Vec<Option<Pose>> = model.colliders.iter().map(|c| c.pose(state.time)).collect();
         if poses.iter().any(Option::is_some) {
@@ -213,7 +239,11 @@ fn find(
     }
     let mut nearest: Option<(f64, Vec3)> = None;
     let mut owner = None;
-    for (collider, pose) in model.colliders.iter().zip(*poses) {
+    let object = model.policies.object_of_sample(&sample.vertices);
+    for (k, (collider, pose)) in model.colliders.iter().zip(*poses).enumerate() {
+        if model.policies.ignores_solid(object, k) {
+            continue;
+        }
         if let Some(found) = collider.distance(pose.as_ref(), place)
             && nearest.is_none_or(|(distance, _)| found.0 < distance)
         {

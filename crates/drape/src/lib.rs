@@ -39,6 +39,7 @@ mod methods;
 mod model;
 mod motion;
 mod newton;
+mod pair_policies;
 mod pairs;
 mod part;
 mod patches;
@@ -82,6 +83,7 @@ pub use methods::{largest_frequency, whole_energy};
 pub use model::{Model, ModelParts, Prescribed};
 pub use motion::{Motion, MotionKey, Pose};
 pub use newton::{Expansion, Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
+pub use pair_policies::{BETWEEN_OBJECTS, PairPolicies};
 pub use pseudo_transient::{PseudoTransientContinuation, RestSettings};
 pub use rest_data::RestData;
 pub use scene::{

@@ -5,7 +5,8 @@ use crate::{State, System, Workspace};
 use rayon::prelude::*;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// Measures of one state.
+/// Measures of one state. Crossings are counted as they are, also those of objects that ignore each other
+/// ([`PairPolicies`](crate::PairPolicies)).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measures {
     /// Norm of the net forces over the norm of the weights, over free vertices; contact and

@@ -202,6 +202,7 @@ impl Part {
                     ..system.contact
                 },
                 layer: Arc::default(),
+                policies: Arc::new(system.policies.taken(&vertices)),
             }),
             control: Control {
                 gravity: system.control.gravity,

@@ -79,7 +79,7 @@ impl ContactDetector {
     ) {
         set.contacts.clear();
         set.recovery.clear();
-        set.exemptions.reset(x.len(), &model.layer);
+        set.exemptions.reset(model);
         (set.crossings, set.violations, set.layer_reach) = (0, 0, None);
         if model.contact.cloth_offset <= 0.0 {
             return;
@@ -87,7 +87,7 @@ impl ContactDetector {
         let clearance = Self::clearance(model.contact.cloth_offset);
         self.surface(model)
             .look(LinearTrajectories::still(x), reach, clearance);
-        let entangled = Entanglement::find(&self.surface, x, memory.stray_reach);
+        let entangled = Entanglement::find(&self.surface, &model.policies, x, memory.stray_reach);
         set.crossings = entangled.crossing_count();
         set.violations = entangled.violations.len();
         set.layer_reach = Some(entangled.layer_reach);

@@ -6,6 +6,7 @@ use super::entanglement::Entanglement;
 use super::feature_pair::FeaturePair;
 use super::layer_order::layer_order;
 use super::surface::ClothSurface;
+use crate::{Model, PairPolicies};
 use std::cmp::Ordering;
 use std::sync::Arc;
 
@@ -24,6 +25,8 @@ pub struct ContactExemptions {
     pub crossed_for: Vec<u32>,
     /// Layer of each vertex; empty where all are of one.
     pub layer: Arc<Vec<u16>>,
+    /// Objects that ignore each other: their pairs are exempt from both.
+    pub policies: Arc<PairPolicies>,
 }
 
 /// Whether any vertex of a feature is marked.
@@ -34,10 +37,13 @@ fn any(marks: &[bool], feature: &[u32]) -> bool {
 impl ContactExemptions {
     /// Whether two features may pass through each other: in one layer where both have a vertex at a
     /// crossing or both one round a crossing that persists, between layers where either has a
-    /// disordered vertex.
+    /// disordered vertex; and where their objects ignore each other.
     pub fn exempts_impact(&self, pair: FeaturePair) -> bool {
         let vertices = pair.vertices();
         let (first, second) = vertices.split_at(pair.first());
+        if self.policies.ignores(first, second) {
+            return true;
+        }
         if layer_order(&self.layer, first[0], second[0]) == Ordering::Equal {
             let both = |marks| any(marks, first) && any(marks, second);
             both(&self.crossed) || both(&self.loosened)
@@ -56,20 +62,25 @@ impl ContactExemptions {
             _ => &self.disordered,
         };
         let (first, second) = vertices.split_at(pair.first());
+        if self.policies.ignores(first, second) {
+            return true;
+        }
         let loose =
             ordered == Ordering::Equal && any(&self.loosened, first) && any(&self.loosened, second);
         any(marks, &vertices) || loose
     }
 
-    /// Exempts nothing of so many vertices.
-    pub(super) fn reset(&mut self, count: usize, layer: &Arc<Vec<u16>>) {
+    /// Exempts nothing but what the policies of a model say.
+    pub(super) fn reset(&mut self, model: &Model) {
+        let count = model.vertex_count();
         for marks in [&mut self.crossed, &mut self.disordered] {
             marks.clear();
             marks.resize(count, false);
         }
         self.loosened.clear();
         self.crossed_for.clear();
-        self.layer.clone_from(layer);
+        self.layer.clone_from(&model.layer);
+        self.policies.clone_from(&model.policies);
     }
 
     /// Exempts what is entangled, and, round crossings that persist, what lies about them. `crossed_for`

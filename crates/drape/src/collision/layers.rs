@@ -5,8 +5,10 @@
 use super::intersections::EdgeFaceIntersection;
 use super::layer_order::{BETWEEN_LAYERS, layer_order};
 use super::surface::ClothSurface;
+use crate::PairPolicies;
 use rayon::prelude::*;
 use std::cmp::Ordering;
+use std::collections::{BTreeMap, BTreeSet};
 use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3, closest_on_face};
 
 /// A vertex of an outer cloth on the inside of an inner one.
@@ -35,16 +37,30 @@ pub fn layers_of(surface: &ClothSurface) -> Vec<u16> {
 
 /// Every vertex on the inside of a layer that it belongs outside of, no farther from it than `reach`
 /// [m], in order of layers and vertices. A vertex nearest to the border of a cloth is on no side of it.
-pub fn layer_violations(surface: &ClothSurface, x: &[Vec3], reach: f64) -> Vec<LayerViolation> {
+/// Objects that ignore each other are in no order.
+pub fn layer_violations(
+    surface: &ClothSurface,
+    policies: &PairPolicies,
+    x: &[Vec3],
+    reach: f64,
+) -> Vec<LayerViolation> {
     let layers = layers_of(surface);
     let mut found = Vec::new();
     for &inner in layers.iter().rev().skip(1).rev() {
-        layer_violations_of(surface, inner, x, reach, &mut found);
+        match policies.ignored().is_empty() {
+            true => layer_violations_of(surface, inner, x, reach, &mut found),
+            false => found.extend(violations_between_objects(
+                surface,
+                policies,
+                inner,
+                (x, reach),
+            )),
+        }
     }
     found
 }
 
-/// [`layer_violations`] of one inner layer, added to those found.
+/// [`layer_violations`] of one inner layer, whatever the policies, added to those found.
 pub fn layer_violations_of(
     surface: &ClothSurface,
     inner: u16,
@@ -52,23 +68,72 @@ pub fn layer_violations_of(
     reach: f64,
     found: &mut Vec<LayerViolation>,
 ) {
-    let of_inner = |t: &&[u32; 3]| t.iter().all(|&v| surface.layer[v as usize] == inner);
-    let triangles: Vec<[u32; 3]> = surface.triangles.iter().filter(of_inner).copied().collect();
-    if triangles.is_empty() {
-        return;
+    let faces = faces_of(surface, inner).collect();
+    let is_outer = |v: usize| is_outside(surface, inner, v);
+    found.extend(vertices_inside(surface, faces, is_outer, x, reach));
+}
+
+/// [`layer_violations`] of one inner layer under policies: objects that ignore the same others are searched
+/// for together, against the faces that they do not ignore.
+fn violations_between_objects(
+    surface: &ClothSurface,
+    policies: &PairPolicies,
+    inner: u16,
+    (x, reach): (&[Vec3], f64),
+) -> Vec<LayerViolation> {
+    let object_of = |v: usize| policies.object_of(&[v as u32]);
+    let outer = (0..x.len()).filter(|&v| is_outside(surface, inner, v));
+    let objects: BTreeSet<Option<u16>> = outer.map(object_of).collect();
+    let mut alike: BTreeMap<Vec<u16>, Vec<Option<u16>>> = BTreeMap::new();
+    for object in objects {
+        let ignored = object.map_or_else(Vec::new, |object| policies.ignored_by(object));
+        alike.entry(ignored).or_default().push(object);
+    }
+    let mut found = Vec::new();
+    for (ignored, objects) in alike {
+        let meets = |face: &[u32; 3]| {
+            let object = policies.object_of(face);
+            object.is_none_or(|object| ignored.binary_search(&object).is_err())
+        };
+        let faces = faces_of(surface, inner).filter(meets).collect();
+        let is_outer = |v: usize| is_outside(surface, inner, v) && objects.contains(&object_of(v));
+        found.extend(vertices_inside(surface, faces, is_outer, x, reach));
+    }
+    found.sort_by_key(|violation| violation.vertex);
+    found
+}
+
+/// The faces of a layer.
+fn faces_of(surface: &ClothSurface, layer: u16) -> impl Iterator<Item = [u32; 3]> {
+    let is_of = move |face: &[u32; 3]| face.iter().all(|&v| surface.layer[v as usize] == layer);
+    surface.triangles.iter().copied().filter(is_of)
+}
+
+/// Whether a vertex belongs outside of a layer.
+fn is_outside(surface: &ClothSurface, inner: u16, v: usize) -> bool {
+    let layer = surface.layer[v];
+    layer > inner && layer != BETWEEN_LAYERS
+}
+
+/// Outer vertices on the inside of some faces, no farther from them than `reach` [m], in order.
+fn vertices_inside(
+    surface: &ClothSurface,
+    faces: Vec<[u32; 3]>,
+    is_outer: impl Fn(usize) -> bool + Sync,
+    x: &[Vec3],
+    reach: f64,
+) -> Vec<LayerViolation> {
+    if faces.is_empty() {
+        return Vec::new();
     }
     let tree = SurfaceTree::new(TriangleMesh {
         positions: x.to_vec(),
-        triangles,
+        triangles: faces,
     });
-    let outside = |v: usize| {
-        let layer = surface.layer[v];
-        layer > inner && layer != BETWEEN_LAYERS
-    };
     let each = (0..x.len()).into_par_iter().with_min_len(64);
     let violations: Vec<Option<LayerViolation>> = each
         .map(|v| {
-            let closest = outside(v).then(|| tree.closest_point(x[v], reach))??;
+            let closest = is_outer(v).then(|| tree.closest_point(x[v], reach))??;
             let face = tree.mesh().triangles[closest.triangle as usize];
             if closest.signed_distance >= 0.0 || on_border(surface, face, &closest) {
                 return None;
@@ -82,7 +147,7 @@ pub fn layer_violations_of(
             })
         })
         .collect();
-    found.extend(violations.into_iter().flatten());
+    violations.into_iter().flatten().collect()
 }
 
 /// Whether the closest point lies on an edge that has cloth on one side only.
@@ -157,6 +222,7 @@ fn normal_of([a, b, c]: [Vec3; 3]) -> Vec3 {
 mod tests {
     use super::super::trajectories::LinearTrajectories;
     use super::*;
+    use crate::BETWEEN_OBJECTS;
 
     /// Two squares of two triangles, the second `height` [m] above the first; normals point up.
     fn squares(height: f64) -> (ClothSurface, Vec<Vec3>) {
@@ -174,27 +240,44 @@ mod tests {
         (surface, mesh.positions)
     }
 
+    fn violations(surface: &ClothSurface, x: &[Vec3], reach: f64) -> Vec<LayerViolation> {
+        layer_violations(surface, &PairPolicies::default(), x, reach)
+    }
+
+    #[test]
+    fn cloth_that_ignores_the_inner_layer_does_not_violate_the_order() {
+        let (surface, x) = squares(-0.1);
+        let all = violations(&surface, &x, 0.5);
+        let found = |ignored: &[[u16; 2]]| {
+            // The last vertex of the upper square hangs in several objects.
+            let objects = vec![0, 0, 0, 0, 1, 1, 2, BETWEEN_OBJECTS];
+            let policies = PairPolicies::new(objects, ignored.to_vec(), []);
+            layer_violations(&surface, &policies, &x, 0.5)
+        };
+        assert_eq!(found(&[[1, 2]]), all, "none ignores the inner one");
+        assert_eq!(found(&[[0, 1]]), all[2..]);
+        assert_eq!(found(&[[0, 2]]), [all[0], all[1], all[3]]);
+        assert_eq!(found(&[[0, 1], [0, 2]]), all[3..]);
+    }
+
     #[test]
     fn cloth_beneath_the_inner_layer_violates_the_order() {
         let (surface, x) = squares(0.1);
-        assert!(layer_violations(&surface, &x, 0.5).is_empty());
+        assert!(violations(&surface, &x, 0.5).is_empty());
         let (mut surface, x) = squares(-0.1);
-        let found = layer_violations(&surface, &x, 0.5);
+        let found = violations(&surface, &x, 0.5);
         assert_eq!(found.len(), 4);
         for violation in &found {
             assert!(violation.vertex >= 4 && violation.face.iter().all(|&v| v < 4));
             assert!((violation.direction - Vec3::y()).norm() < 1e-12);
             assert!((violation.depth - 0.1).abs() < 1e-12);
         }
-        assert!(
-            layer_violations(&surface, &x, 0.05).is_empty(),
-            "out of reach"
-        );
+        assert!(violations(&surface, &x, 0.05).is_empty(), "out of reach");
         // The other order, and none.
         surface.layer = vec![3, 3, 3, 3, 2, 2, 2, 2];
-        assert!(layer_violations(&surface, &x, 0.5).is_empty());
+        assert!(violations(&surface, &x, 0.5).is_empty());
         surface.layer = vec![2; 8];
-        assert!(layer_violations(&surface, &x, 0.5).is_empty());
+        assert!(violations(&surface, &x, 0.5).is_empty());
     }
 
     #[test]
@@ -203,7 +286,7 @@ mod tests {
         for p in &mut x[4..] {
             p.x += 2.0;
         }
-        assert!(layer_violations(&surface, &x, 5.0).is_empty());
+        assert!(violations(&surface, &x, 5.0).is_empty());
     }
 
     #[test]
