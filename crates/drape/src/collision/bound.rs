@@ -10,7 +10,7 @@ use super::impact::{edge_edge_impact, vertex_face_impact};
 use super::motions::Motions;
 use super::nearness::{Nearness, closest, is_far};
 use super::reach::Reach;
-use super::sieve::Sieve;
+use super::separation_filter::SeparationFilter;
 use super::surface::{ClothSurface, Near};
 use super::trajectories::LinearTrajectories;
 use super::zones::Zones;
@@ -172,8 +172,8 @@ fn met(
             .fold(0.0, f64::max)
             .sqrt()
     };
-    let sieve = Sieve::together(x, target, REACH_OF_WAYS);
-    let mut found = surface.sifted(Near::Listed, Some(&sieve), |pair, _, found| {
+    let filter = SeparationFilter::together(x, target, REACH_OF_WAYS);
+    let mut found = surface.filtered(Near::Listed, Some(&filter), |pair, _, found| {
         let is_stirred = |flags: &[bool]| pair.vertices().iter().any(|&v| flags[v as usize]);
         if !stirred.is_none_or(is_stirred) {
             return;
@@ -248,7 +248,7 @@ pub fn truncate_moves(
     truncate_pairs(surface, &near, exemptions, x, moves)
 }
 
-/// [`truncate_moves`] for pairs of clusters that hold all that may meet.
+/// [`truncate_moves`] for pairs of leaves that hold all features which may meet.
 fn truncate_pairs(
     surface: &ClothSurface,
     near: &[[u32; 2]],

@@ -4,8 +4,8 @@
 mod apart;
 mod bound;
 mod boxes;
+mod bvtt_front;
 mod cloth_contact;
-mod clusters;
 mod contact_set;
 mod coupling;
 mod curvature;
@@ -15,15 +15,18 @@ mod exemptions;
 mod fade;
 mod feature_pair;
 mod friction_memory;
-mod front;
+mod front_entry;
+mod front_query;
 mod impact;
 mod intersections;
 pub(crate) mod layer_order;
 mod layers;
+mod leaf_aabbs;
 mod memory;
 mod motions;
 mod moves;
 mod nearness;
+mod neighbour_lists;
 #[cfg(test)]
 #[path = "../../tests/support/numbers.rs"]
 mod numbers;
@@ -31,7 +34,7 @@ mod proximity;
 mod reach;
 mod recovery;
 mod regions;
-mod sieve;
+mod separation_filter;
 mod surface;
 mod surface_view;
 mod tally;
