@@ -11,7 +11,9 @@ const EXTRA_OFFSET: f64 = 1e-3;
 impl State {
     /// Tests a triangle at its middle and the middles of its edges too, where it is too large
     /// for the curve it lies on; when it is tested so already, keeps it and its corners farther
-    /// from the surface.
+    /// from the surface. Whoever looks for triangles that cross a surface may count those of an object
+    /// that ignores it ([`PairPolicies`](crate::PairPolicies)): its samples then grow more, and still do not
+    /// feel that surface.
     pub fn refine_contact(&mut self, model: &Model, triangle: u32) {
         let samples = Arc::make_mut(&mut self.samples);
         for triangle in under(model, triangle) {

@@ -1,12 +1,13 @@
 //! Finding where the cloth touches solid surfaces: recomputed as it moves.
 
-use crate::collision::ClothContacts;
+use crate::collision::{ContactDetector, ContactSet};
 use crate::contact_settings::FIELD_REACH;
 use crate::laws::contact::{ContactLaw, ContactPlane, damped_push, gentle_push};
 use crate::memory::Memory as StateMemory;
-use crate::{ContactSample, Model, Pose, State};
+use crate::{Collider, ContactSample, Model, PairPolicies, Pose, State};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
+use std::sync::Arc;
 use toile_geometry::Vec3;
 
 /// One sample near one surface.
@@ -28,8 +29,10 @@ pub struct Contacts {
     /// Contacts in order of their samples.
     pub active: Vec<Contact>,
     /// Contacts of cloth with cloth.
-    pub cloth: ClothContacts,
+    pub cloth: ContactSet,
+    detector: ContactDetector,
     memory: Vec<Memory>,
+    measured_for: Option<MeasuredFor>,
 }
 
 /// Where a sample was last measured and how far from every surface it was: until it has moved
@@ -38,6 +41,21 @@ pub struct Contacts {
 struct Memory {
     place: Vec3,
     clearance: f64,
+}
+
+/// What the memories of samples were measured for: they are valid while these are the same ones.
+struct MeasuredFor {
+    colliders: Arc<Vec<Collider>>,
+    policies: Arc<PairPolicies>,
+    samples: Arc<Vec<ContactSample>>,
+}
+
+impl MeasuredFor {
+    fn fits(&self, model: &Model, state: &State) -> bool {
+        Arc::ptr_eq(&self.colliders, &model.colliders)
+            && Arc::ptr_eq(&self.policies, &model.policies)
+            && Arc::ptr_eq(&self.samples, &state.samples)
+    }
 }
 
 /// Planes are kept from this many offsets away, so that a step is stopped before it lands.
@@ -51,14 +69,31 @@ impl Contacts {
     /// Finds the contacts of the present positions. A sample is skipped only when the distance it
     /// moved proves that it is out of reach.
     pub fn refresh(&mut self, model: &Model, state: &State, positions: &[Vec3]) {
-        self.cloth.refresh(model, state, positions);
+        let (memory, found) = (&state.cloth, &mut self.cloth);
+        self.detector.refresh(model, memory, positions, found);
         self.refresh_surfaces(model, state, positions);
     }
 
     /// Finds all of them anew at the next look, so that what is found does not depend on what was before.
     pub(crate) fn forget(&mut self) {
         self.memory.clear();
-        self.cloth.forget();
+        self.detector.forget();
+    }
+
+    /// Finds all contacts of cloth with cloth anew at the next look.
+    pub(crate) fn forget_cloth(&mut self) {
+        self.detector.forget();
+    }
+
+    /// Shortens moves from `x` so that cloth does not pass through cloth, but for pairs that the contacts in
+    /// hand exempt; returns the number of vertices held back.
+    pub(crate) fn truncate_moves(
+        &mut self,
+        model: &Model,
+        x: &[Vec3],
+        moves: &mut [Vec3],
+    ) -> usize {
+        (self.detector).truncate_moves(model, &self.cloth.exemptions, x, moves)
     }
 
     /// Finds those with solid surfaces alone.
@@ -71,6 +106,15 @@ impl Contacts {
             place: Vec3::repeat(f64::INFINITY),
             clearance: 0.0,
         };
+        let fits = |of: &MeasuredFor| of.fits(model, state);
+        if !self.measured_for.as_ref().is_some_and(fits) {
+            self.memory.clear();
+            self.measured_for = Some(MeasuredFor {
+                colliders: model.colliders.clone(),
+                policies: model.policies.clone(),
+                samples: state.samples.clone(),
+            });
+        }
         self.memory.resize(state.samples.len(), unknown);
         let poses: Vec<Option<Pose>> = model.colliders.iter().map(|c| c.pose(state.time)).collect();
         if poses.iter().any(Option::is_some) {
@@ -195,7 +239,11 @@ fn find(
     }
     let mut nearest: Option<(f64, Vec3)> = None;
     let mut owner = None;
-    for (collider, pose) in model.colliders.iter().zip(*poses) {
+    let object = model.policies.object_of_sample(&sample.vertices);
+    for (k, (collider, pose)) in model.colliders.iter().zip(*poses).enumerate() {
+        if model.policies.ignores_solid(object, k) {
+            continue;
+        }
         if let Some(found) = collider.distance(pose.as_ref(), place)
             && nearest.is_none_or(|(distance, _)| found.0 < distance)
         {

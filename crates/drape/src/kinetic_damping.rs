@@ -46,8 +46,7 @@ impl SwingWorkspace {
 
     /// Looks for contacts anew, whatever was found before.
     pub fn forget_contacts(&mut self) {
-        self.cloth.forget();
-        self.cloth.contacts.forget();
+        self.cloth.forget_all();
     }
 }
 

@@ -40,6 +40,7 @@ mod methods;
 mod model;
 mod motion;
 mod newton;
+mod pair_policies;
 mod pairs;
 mod part;
 mod patches;
@@ -84,6 +85,7 @@ pub use methods::{largest_frequency, whole_energy};
 pub use model::{Model, ModelParts, Prescribed};
 pub use motion::{Motion, MotionKey, Pose};
 pub use newton::{Expansion, Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
+pub use pair_policies::{BETWEEN_OBJECTS, PairPolicies};
 pub use pseudo_transient::{PseudoTransientContinuation, RestSettings};
 pub use rest_data::RestData;
 pub use scene::{
@@ -98,6 +100,6 @@ pub use toile_sparse::PcgLimits;
 pub use topology::Topology;
 pub use world::{
     AttachmentEnd, AttachmentId, Edited, Environment, Kind, Layers, MeshVertex, Object,
-    ObjectAttachment, ObjectId, Simulation, VertexGrip, VertexMap, World, WorldEdit,
+    ObjectAttachment, ObjectId, PairPolicy, Simulation, VertexGrip, VertexMap, World, WorldEdit,
 };
 pub use xpbd::{ConstraintCount, Xpbd, XpbdReport, XpbdSettings};

@@ -1,11 +1,12 @@
 //! Measures of a drape: residual (net force over weight), strain, penetration, crossings.
 
-use crate::collision::{ClothSurface, layers_of, strays_from};
+use crate::collision::{ClothSurface, layer_violations_of, layers_of};
 use crate::{State, System, Workspace};
 use rayon::prelude::*;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// Measures of one state.
+/// Measures of one state. Crossings are counted as they are, also those of objects that ignore each other
+/// ([`PairPolicies`](crate::PairPolicies)).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measures {
     /// Norm of the net forces over the norm of the weights, over free vertices; contact and
@@ -152,7 +153,7 @@ fn by_layer(
     };
     let layers = layers_of(&surface).into_iter().map(|layer| {
         let mut astray = Vec::new();
-        strays_from(&surface, layer, &mesh.positions, ORDER_REACH, &mut astray);
+        layer_violations_of(&surface, layer, &mesh.positions, ORDER_REACH, &mut astray);
         let count = |found: &mut dyn Iterator<Item = bool>| found.filter(|&x| x).count();
         let of_both = |&[t, u]: &[u32; 2]| [layer_of(t), layer_of(u)];
         LayerMeasures {

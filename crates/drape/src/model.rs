@@ -4,6 +4,7 @@ use crate::ContactSettings;
 use crate::collider::{Collider, Grip};
 use crate::elastic::ElasticCouplings;
 use crate::materials::Materials;
+use crate::pair_policies::PairPolicies;
 use crate::rest_data::RestData;
 use crate::topology::Topology;
 use std::fmt;
@@ -41,6 +42,8 @@ pub struct ModelParts {
     /// Layer of each vertex, larger numbers farther out, or
     /// [`BETWEEN_LAYERS`](crate::collision::BETWEEN_LAYERS); empty where all are of one.
     pub layer: Arc<Vec<u16>>,
+    /// Which objects of the cloth do not meet each other, or which solids.
+    pub policies: Arc<PairPolicies>,
 }
 
 /// The constant part of a simulation, made by a [`SystemBuilder`](crate::SystemBuilder). Nothing assigns to

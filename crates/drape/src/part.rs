@@ -202,6 +202,7 @@ impl Part {
                     ..system.contact
                 },
                 layer: Arc::default(),
+                policies: Arc::new(system.policies.taken(&vertices)),
             }),
             control: Control {
                 gravity: system.control.gravity,
@@ -294,12 +295,12 @@ mod tests {
 
         let mut whole = Workspace::default();
         let forces = whole.net_force(&system, &state).to_vec();
-        let part = Part::new(&system, &state, &whole.contacts.cloth.active, &own);
+        let part = Part::new(&system, &state, &whole.contacts.cloth.contacts, &own);
         assert!(!part.touching.is_empty() && part.system.elastic_count() == 3);
         let mut alone = Workspace::default();
         alone.fit(&part.system);
         alone.terms.hold_still(&part.system, &part.state);
-        alone.contacts.cloth.active.clone_from(&part.touching);
+        alone.contacts.cloth.contacts.clone_from(&part.touching);
         let places = &part.state.positions;
         (alone.contacts).refresh_surfaces(&part.system, &part.state, places);
         assert!(alone.contacts.active.iter().any(|c| c.plane.depth > 0.0));

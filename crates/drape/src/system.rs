@@ -8,6 +8,7 @@ use crate::elastic::{Elastic, ElasticCouplings, ElasticEnd};
 use crate::laws::elastic::ElasticLaw;
 use crate::materials::Materials;
 use crate::model::{Model, ModelParts, Prescribed};
+use crate::pair_policies::PairPolicies;
 use crate::rest_data::RestData;
 use crate::topology::Topology;
 use crate::{Cloth, ContactSettings, DrapeError};
@@ -52,6 +53,7 @@ impl System {
             colliders: self.colliders.to_vec(),
             contact: self.contact,
             layer: self.layer.to_vec(),
+            policies: PairPolicies::clone(&self.policies),
             control: self.control.clone(),
             topology: self.topology.clone(),
             rest: self.rest.clone(),
@@ -193,6 +195,8 @@ pub struct SystemBuilder {
     /// Layer of each vertex, larger numbers farther out, or
     /// [`BETWEEN_LAYERS`](crate::collision::BETWEEN_LAYERS); empty where all are of one.
     pub layer: Vec<u16>,
+    /// Which objects of the cloth do not meet each other, or which of `colliders`; at first all meet.
+    pub policies: PairPolicies,
     /// What acts at first; its attachments to places are those of `elastics`.
     pub control: Control,
     topology: Arc<Topology>,
@@ -228,6 +232,7 @@ impl SystemBuilder {
             colliders: Vec::new(),
             contact: ContactSettings::default(),
             layer: Vec::new(),
+            policies: PairPolicies::default(),
             control: Control::default(),
             topology: Arc::new(topology),
             rest: Arc::new(rest),
@@ -302,6 +307,7 @@ impl SystemBuilder {
             },
             contact: self.contact,
             layer: shared(from.map(|m| &m.layer), self.layer),
+            policies: shared(from.map(|m| &m.policies), self.policies),
         };
         System {
             model: Model::of(parts),

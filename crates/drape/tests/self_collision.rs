@@ -14,8 +14,8 @@ use crumpled::{all_pairs, crumpled};
 use numbers::Numbers;
 use sheets::{object, sheet};
 use toile_drape::collision::{
-    ClothContacts, ClothSurface, FeaturePair, Knots, LinearTrajectories, Motions, Nearness, Reach,
-    bound_moves, crossings, nearnesses,
+    ClothSurface, ContactDetector, ContactExemptions, ContactSet, FeaturePair, LinearTrajectories,
+    Motions, Nearness, Reach, crossings, nearnesses, truncate_moves,
 };
 use toile_drape::{
     Cloth, ContactSettings, Material, Measures, MethodKind, PseudoTransientContinuation,
@@ -126,8 +126,9 @@ fn what_came_nearer_since_it_was_looked_at_is_still_kept_apart() {
     let system = builder.build();
     let lightness: Vec<f64> = system.rest.mass.iter().map(|m| 1.0 / m).collect();
     let state = State::at_rest(&system, mesh.positions.clone());
-    let mut contacts = ClothContacts::default();
-    contacts.refresh(&system, &state, &state.positions);
+    let mut contacts = ContactSet::default();
+    let mut detector = ContactDetector::default();
+    detector.refresh(&system, &state.cloth, &state.positions, &mut contacts);
     let towards = |way: f64| -> Vec<Vec3> {
         let sign = |v: usize| if v < half { 1.0 } else { -1.0 };
         (0..2 * half).map(|v| Vec3::y() * (sign(v) * way)).collect()
@@ -149,7 +150,7 @@ fn what_came_nearer_since_it_was_looked_at_is_still_kept_apart() {
         lightness: &lightness,
         span: 1.0,
     };
-    let kept = contacts.keep_apart(&system, &mut motion);
+    let kept = detector.resolve_impacts(&system, &contacts.exemptions, &mut motion);
     assert!(kept.impulses > 0, "{kept:?}");
     // A tenth of a millimetre apart when the motion began, of which nine tenths are kept.
     let ends: Vec<Vec3> = x.iter().zip(&moves).map(|(x, d)| x + d).collect();
@@ -189,7 +190,8 @@ fn bounded_moves_never_cross() {
                 .iter()
                 .map(|_| numbers.vector(0.02))
                 .collect();
-            held += bound_moves(&mut surface, Knots::default(), &mesh.positions, &mut moves);
+            let none = ContactExemptions::default();
+            held += truncate_moves(&mut surface, &none, &mesh.positions, &mut moves);
             for (x, d) in mesh.positions.iter_mut().zip(&moves) {
                 *x += d;
             }
@@ -224,8 +226,9 @@ fn impulses_keep_layers_apart_and_keep_their_momentum() {
     for seed in 0..40 {
         let mut numbers = Numbers(seed);
         let state = State::at_rest(&system, mesh.positions.clone());
-        let mut contacts = ClothContacts::default();
-        contacts.refresh(&system, &state, &state.positions);
+        let mut contacts = ContactSet::default();
+        let mut detector = ContactDetector::default();
+        detector.refresh(&system, &state.cloth, &state.positions, &mut contacts);
         // All fly along; every second run is wilder than impulses may undo.
         let wild = if seed % 2 == 0 { 2e-2 } else { 0.2 };
         let along = Vec3::new(0.01, -0.02, 0.005);
@@ -245,7 +248,7 @@ fn impulses_keep_layers_apart_and_keep_their_momentum() {
             lightness: &lightness,
             span: 1.0,
         };
-        let kept = contacts.keep_apart(&system, &mut motion);
+        let kept = detector.resolve_impacts(&system, &contacts.exemptions, &mut motion);
         impulses += kept.impulses;
         let end: Vec<Vec3> = mesh
             .positions
@@ -466,13 +469,14 @@ fn contacts_do_not_depend_on_threads_and_push_both_ways_alike() {
             .num_threads(threads)
             .build()
             .unwrap();
-        let mut contacts = ClothContacts::default();
-        pool.install(|| contacts.find(&system, &state, &state.positions, &Reach::all(8e-3)));
+        let (mut detector, mut contacts) = (ContactDetector::default(), ContactSet::default());
+        let (memory, x, reach) = (&state.cloth, &state.positions, Reach::all(8e-3));
+        pool.install(|| detector.detect(&system, memory, x, &reach, &mut contacts));
         contacts
     };
     let one = found(1);
-    assert!(!one.active.is_empty());
-    for contact in &one.active {
+    assert!(!one.is_empty());
+    for contact in one.all() {
         assert!(
             contact.weights.iter().sum::<f64>().abs() < 1e-12,
             "momentum is kept"
@@ -480,9 +484,9 @@ fn contacts_do_not_depend_on_threads_and_push_both_ways_alike() {
     }
     for threads in [2, 5] {
         let other = found(threads);
-        assert_eq!(one.active, other.active);
-        assert_eq!(one.piercings, other.piercings);
+        assert!(one.all().eq(other.all()));
+        assert_eq!(one.crossings, other.crossings);
     }
     let crossing = SurfaceTree::new(mesh).self_intersections().len();
-    assert_eq!(crossing > 0, one.piercings > 0);
+    assert_eq!(crossing > 0, one.crossings > 0);
 }

@@ -15,7 +15,7 @@ use sheets::{object, sheet};
 use std::collections::BTreeMap;
 use toile_drape::{
     AttachmentEnd, Cloth, ContactSettings, Material, MeshVertex, MethodKind, Object,
-    ObjectAttachment, ObjectId, ObjectKind, Scene, SceneObject, SceneRun, WorldEdit,
+    ObjectAttachment, ObjectId, ObjectKind, PairPolicy, Scene, SceneObject, SceneRun, WorldEdit,
 };
 use toile_geometry::Vec3;
 
@@ -355,4 +355,74 @@ fn a_sheet_at_rest_on_a_slope_stays_where_it_is_when_something_else_is_merged() 
         let slid = slip(&settled, &after);
         assert!(slid < 1e-4, "{kind:?}: it slid {slid} m");
     }
+}
+
+#[test]
+fn objects_that_ignore_each_other_pass_through_each_other_until_they_are_told_to_meet() {
+    // A sheet held by its border, one that falls on it, and a block below.
+    let border = (0..25)
+        .filter(|v| v % 5 % 4 == 0 || v / 5 % 4 == 0)
+        .collect();
+    let level = |height| sheet([4, 4], [0.1; 2], move |u, v| Vec3::new(u, height, v));
+    let low = Vec3::new(-0.1, -0.2, -0.1);
+    let scene = Scene {
+        objects: vec![
+            object("held", level(0.1), border),
+            object("falling", level(0.12), vec![]),
+            standing("block", solids::block(low, Vec3::new(0.2, 0.0, 0.2))),
+        ],
+        contact: ContactSettings {
+            cloth_offset: 2e-3,
+            ..ContactSettings::default()
+        },
+        duration: 9.0,
+        ..Scene::default()
+    };
+    let [held, falling, block] = [0, 1, 2].map(SceneObject::id);
+    for kind in [MethodKind::Xpbd, MethodKind::ImplicitEuler] {
+        let lowest = |run: &SceneRun| {
+            let places = run.mesh_of(falling).unwrap().positions;
+            places.iter().map(|p| p.y).fold(f64::INFINITY, f64::min)
+        };
+        let mut run = SceneRun::new(&Scene {
+            method: kind.into(),
+            ..scene.clone()
+        })
+        .unwrap();
+        run.edit(WorldEdit::SetPolicy([falling, held], PairPolicy::Ignore))
+            .unwrap();
+        assert_eq!(run.world().policy([held, falling]), PairPolicy::Ignore);
+        let steps = |run: &mut SceneRun, count| {
+            for _ in 0..count {
+                run.advance().unwrap();
+            }
+        };
+        steps(&mut run, 48);
+        let height = lowest(&run);
+        assert!(
+            (0.002..0.02).contains(&height),
+            "{kind:?}: the block did not stop it: {height}"
+        );
+        run.edit(WorldEdit::SetPolicy([block, falling], PairPolicy::Ignore))
+            .unwrap();
+        steps(&mut run, 48);
+        let height = lowest(&run);
+        assert!(
+            height < -0.05,
+            "{kind:?}: the block still holds it: {height}"
+        );
+        let error = run.edit(WorldEdit::Remove(held)).err();
+        assert!(error.is_none(), "{error:?}");
+        assert!(
+            run.edit(WorldEdit::SetPolicy([held, falling], PairPolicy::Meet))
+                .is_err()
+        );
+    }
+    // Without a policy the held sheet catches the other one.
+    let mut run = SceneRun::new(&scene).unwrap();
+    for _ in 0..48 {
+        run.advance().unwrap();
+    }
+    let places = run.mesh_of(falling).unwrap().positions;
+    assert!(places.iter().all(|p| p.y > 0.05), "it fell through");
 }

@@ -8,7 +8,8 @@ use crate::clock::Clock;
 use crate::scenes::card;
 use crate::{LabError, MeshKind, rectangle, subdivided};
 use toile_drape::collision::{
-    Clearance, ClothContacts, ClothSurface, LinearTrajectories, Near, Reach, crossings, nearnesses,
+    Clearance, ClothSurface, ContactDetector, LinearTrajectories, Near, Reach, crossings,
+    nearnesses,
 };
 use toile_drape::{Cloth, MethodKind, MethodSettings, State, System};
 use toile_geometry::{TriangleMesh, Vec2, Vec3};
@@ -123,7 +124,7 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
     let (system, state) = worn(cuts)?;
     result.vertices = system.vertex_count();
     let mut surface = ClothSurface::new(&system);
-    let (x, clearance) = (&state.positions, ClothContacts::clearance(OFFSET));
+    let (x, clearance) = (&state.positions, ContactDetector::clearance(OFFSET));
     let counted = &mut result.counted;
     let mut look = |name: &str, near: &mut dyn FnMut(&mut ClothSurface) -> Vec<[u32; 2]>| {
         let (clock, mut found) = (Clock::start(), [0; 3]);
@@ -190,7 +191,7 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
 /// Finds contacts and crossings at places along a path; what a look takes [s], and how many regions it opens
 /// and looks at closely.
 fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>]) -> [f64; 3] {
-    let clearance = ClothContacts::clearance(OFFSET);
+    let clearance = ContactDetector::clearance(OFFSET);
     let [of_ways, of_contacts] = [WAYS_REACH, REACH].map(Reach::all);
     let mut opened = [0; 2];
     surface.look(LinearTrajectories::still(&path[0]), &of_contacts, clearance);

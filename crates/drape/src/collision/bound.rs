@@ -4,13 +4,13 @@
 //! even then is cut, vertex by vertex, until nothing meets any more.
 
 use super::curvature::{Clearance, longest};
+use super::exemptions::ContactExemptions;
 use super::feature_pair::FeaturePair;
 use super::impact::{edge_edge_impact, vertex_face_impact};
-use super::layers::Knots;
 use super::motions::Motions;
 use super::nearness::{Nearness, closest, is_far};
 use super::reach::Reach;
-use super::sieve::Sieve;
+use super::separation_filter::SeparationFilter;
 use super::surface::{ClothSurface, Near};
 use super::trajectories::LinearTrajectories;
 use super::zones::Zones;
@@ -81,11 +81,11 @@ pub struct ImpactStats {
     pub cut: usize,
 }
 
-/// Corrects a motion so that no two features of the cloth meet on the way; pairs that `knots` lets
-/// through are left alone, and so are regions that keep their `clearance` in the motion given.
-pub fn keep_apart(
+/// Corrects a motion so that no two features of the cloth meet on the way; pairs that
+/// are exempt are left alone, and so are regions that keep their `clearance` in the motion given.
+pub fn resolve_impacts(
     surface: &mut ClothSurface,
-    knots: Knots,
+    exemptions: &ContactExemptions,
     motion: &mut Motions,
     clearance: Clearance,
 ) -> ImpactStats {
@@ -102,7 +102,7 @@ pub fn keep_apart(
             clearance,
             stirred.as_deref(),
         );
-        let met = met(surface, knots, motion, (&target, stirred.as_deref()));
+        let met = met(surface, exemptions, motion, (&target, stirred.as_deref()));
         if met.is_empty() {
             kept.zoned = zones.count();
             return kept;
@@ -137,7 +137,7 @@ pub fn keep_apart(
         *d -= drift;
     }
     let before = motion.moves.to_vec();
-    kept.cut = bound_moves(surface, knots, motion.x, motion.moves);
+    kept.cut = truncate_moves(surface, exemptions, motion.x, motion.moves);
     let moved = motion.moves.iter_mut().zip(motion.velocities.iter_mut());
     for ((d, v), before) in moved.zip(&before) {
         if d != before {
@@ -158,7 +158,7 @@ fn ends(x: &[Vec3], moves: &[Vec3]) -> Vec<Vec3> {
 /// one of these.
 fn met(
     surface: &ClothSurface,
-    knots: Knots,
+    exemptions: &ContactExemptions,
     motion: &Motions,
     (target, stirred): (&[Vec3], Option<&[bool]>),
 ) -> Vec<(Meeting, f64)> {
@@ -172,14 +172,14 @@ fn met(
             .fold(0.0, f64::max)
             .sqrt()
     };
-    let sieve = Sieve::together(x, target, REACH_OF_WAYS);
-    let mut found = surface.sifted(Near::Listed, Some(&sieve), |pair, _, found| {
+    let filter = SeparationFilter::together(x, target, REACH_OF_WAYS);
+    let mut found = surface.filtered(Near::Listed, Some(&filter), |pair, _, found| {
         let is_stirred = |flags: &[bool]| pair.vertices().iter().any(|&v| flags[v as usize]);
         if !stirred.is_none_or(is_stirred) {
             return;
         }
         if let Some(meeting) = meeting(pair, x, way(pair))
-            && !knots.lets_through(pair)
+            && !exemptions.exempts_impact(pair)
             && let Some(time) = meeting.time(x, moves)
         {
             found.push((meeting, time));
@@ -228,10 +228,10 @@ fn push(meeting: &Meeting, time: f64, motion: &mut Motions) -> bool {
 }
 
 /// Shortens `moves` so that no two features of the cloth meet on the way; pairs that
-/// `knots` lets through are left alone. Returns the number of vertices held back.
-pub fn bound_moves(
+/// are exempt are left alone. Returns the number of vertices held back.
+pub fn truncate_moves(
     surface: &mut ClothSurface,
-    knots: Knots,
+    exemptions: &ContactExemptions,
     x: &[Vec3],
     moves: &mut [Vec3],
 ) -> usize {
@@ -245,14 +245,14 @@ pub fn bound_moves(
         REACH_OF_WAYS,
         clearance,
     );
-    bound_pairs(surface, &near, knots, x, moves)
+    truncate_pairs(surface, &near, exemptions, x, moves)
 }
 
-/// [`bound_moves`] for pairs of clusters that hold all that may meet.
-fn bound_pairs(
+/// [`truncate_moves`] for pairs of leaves that hold all features which may meet.
+fn truncate_pairs(
     surface: &ClothSurface,
     near: &[[u32; 2]],
-    knots: Knots,
+    exemptions: &ContactExemptions,
     x: &[Vec3],
     moves: &mut [Vec3],
 ) -> usize {
@@ -267,7 +267,7 @@ fn bound_pairs(
         long(0..first) + long(first..4)
     };
     let mut meetings = surface.features(near, |pair, _, found| {
-        found.extend(meeting(pair, x, way(pair)).filter(|_| !knots.lets_through(pair)));
+        found.extend(meeting(pair, x, way(pair)).filter(|_| !exemptions.exempts_impact(pair)));
     });
     let mut held = vec![false; x.len()];
     let mut round = 0;

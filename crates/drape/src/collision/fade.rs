@@ -80,7 +80,7 @@ mod tests {
             let state = State::at_rest(&model, place(share).positions);
             workspace.contacts.refresh(&model, &state, &state.positions);
             let mut force = vec![Vec3::zeros(); state.positions.len()];
-            for contact in &workspace.contacts.cloth.active {
+            for contact in workspace.contacts.cloth.all() {
                 let (_, gradient, _) = contact.law.evaluate(&contact.plane, contact.plane.point);
                 for (v, w) in contact.vertices.into_iter().zip(contact.weights) {
                     force[v as usize] -= gradient * w;
@@ -130,7 +130,7 @@ mod tests {
         let state = State::at_rest(&model, mesh.positions);
         let mut workspace = Workspace::default();
         workspace.contacts.refresh(&model, &state, &state.positions);
-        let active = workspace.contacts.cloth.active.iter();
+        let active = workspace.contacts.cloth.all();
         let edges = active.filter(|c| matches!(c.pair, Some(FeaturePair::EdgeEdge(_))));
         let forces = edges.map(|c| c.law.evaluate(&c.plane, c.plane.point).1.norm());
         forces.fold(0.0, f64::max)

@@ -1,72 +1,27 @@
-//! Cloths worn one over another: which lies outside, what has come to the wrong side, and its way
-//! out. The outside of a cloth is the side that its triangles face; of two cloths in order the outer
-//! one lies on the outside of the inner one.
+//! Cloths worn one over another: which vertices are on the wrong side of a layer, which edges cross
+//! one, and in which direction they come out. The outside of a cloth is the side that its triangles
+//! face; of two cloths in order the outer one lies on the outside of the inner one.
 
-use super::feature_pair::FeaturePair;
+use super::intersections::EdgeFaceIntersection;
 use super::layer_order::{BETWEEN_LAYERS, layer_order};
 use super::surface::ClothSurface;
-use super::tangle::Piercing;
+use crate::PairPolicies;
 use rayon::prelude::*;
 use std::cmp::Ordering;
+use std::collections::{BTreeMap, BTreeSet};
 use toile_geometry::{ClosestPoint, SurfaceTree, TriangleMesh, Vec3, closest_on_face};
-
-/// Vertices that pairs of features are let through at, because they are led to where they belong.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Knots<'a> {
-    /// At a crossing of cloth that is in no order.
-    pub tangled: &'a [bool],
-    /// At a crossing of two layers, or on the wrong side of one.
-    pub astray: &'a [bool],
-    /// Round a crossing that stays; empty where none does.
-    pub loose: &'a [bool],
-    /// Layer of each vertex; empty where all are of one.
-    pub layer: &'a [u16],
-}
-
-/// Whether any vertex of a feature has a flag.
-fn any(flags: &[bool], feature: &[u32]) -> bool {
-    (feature.iter()).any(|&v| flags.get(v as usize).is_some_and(|&flag| flag))
-}
-
-impl Knots<'_> {
-    /// Whether two features are let through each other: in one layer where both have a tangled
-    /// vertex or both a loose one, between layers where either has one that is astray.
-    pub fn lets_through(&self, pair: FeaturePair) -> bool {
-        let vertices = pair.vertices();
-        let (first, second) = vertices.split_at(pair.first());
-        if layer_order(self.layer, first[0], second[0]) == Ordering::Equal {
-            let both = |flags| any(flags, first) && any(flags, second);
-            both(self.tangled) || both(self.loose)
-        } else {
-            any(self.astray, &vertices)
-        }
-    }
-
-    /// Whether two features take no contact with each other.
-    pub fn lets_go(&self, pair: FeaturePair) -> bool {
-        let vertices = pair.vertices();
-        let ordered = layer_order(self.layer, vertices[0], vertices[pair.first()]);
-        let flags = match ordered {
-            Ordering::Equal => self.tangled,
-            _ => self.astray,
-        };
-        let (first, second) = vertices.split_at(pair.first());
-        let loose = ordered == Ordering::Equal && any(self.loose, first) && any(self.loose, second);
-        any(flags, &vertices) || loose
-    }
-}
 
 /// A vertex of an outer cloth on the inside of an inner one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stray {
+pub struct LayerViolation {
     /// The vertex.
     pub vertex: u32,
     /// The face of the inner cloth nearest to it.
     pub face: [u32; 3],
     /// Weights of the nearest point on it.
     pub weights: [f64; 3],
-    /// Unit direction from the vertex to that point: out.
-    pub way: Vec3,
+    /// Unit direction from the vertex to that point, which lies outwards.
+    pub direction: Vec3,
     /// Distance to it [m].
     pub depth: f64,
 }
@@ -82,54 +37,117 @@ pub fn layers_of(surface: &ClothSurface) -> Vec<u16> {
 
 /// Every vertex on the inside of a layer that it belongs outside of, no farther from it than `reach`
 /// [m], in order of layers and vertices. A vertex nearest to the border of a cloth is on no side of it.
-pub fn strays(surface: &ClothSurface, x: &[Vec3], reach: f64) -> Vec<Stray> {
+/// Objects that ignore each other are in no order.
+pub fn layer_violations(
+    surface: &ClothSurface,
+    policies: &PairPolicies,
+    x: &[Vec3],
+    reach: f64,
+) -> Vec<LayerViolation> {
     let layers = layers_of(surface);
     let mut found = Vec::new();
     for &inner in layers.iter().rev().skip(1).rev() {
-        strays_from(surface, inner, x, reach, &mut found);
+        match policies.ignored().is_empty() {
+            true => layer_violations_of(surface, inner, x, reach, &mut found),
+            false => found.extend(violations_between_objects(
+                surface,
+                policies,
+                inner,
+                (x, reach),
+            )),
+        }
     }
     found
 }
 
-/// [`strays`] from one layer.
-pub fn strays_from(
+/// [`layer_violations`] of one inner layer, whatever the policies, added to those found.
+pub fn layer_violations_of(
     surface: &ClothSurface,
     inner: u16,
     x: &[Vec3],
     reach: f64,
-    found: &mut Vec<Stray>,
+    found: &mut Vec<LayerViolation>,
 ) {
-    let of_inner = |t: &&[u32; 3]| t.iter().all(|&v| surface.layer[v as usize] == inner);
-    let triangles: Vec<[u32; 3]> = surface.triangles.iter().filter(of_inner).copied().collect();
-    if triangles.is_empty() {
-        return;
+    let faces = faces_of(surface, inner).collect();
+    let is_outer = |v: usize| is_outside(surface, inner, v);
+    found.extend(vertices_inside(surface, faces, is_outer, x, reach));
+}
+
+/// [`layer_violations`] of one inner layer under policies: objects that ignore the same others are searched
+/// for together, against the faces that they do not ignore.
+fn violations_between_objects(
+    surface: &ClothSurface,
+    policies: &PairPolicies,
+    inner: u16,
+    (x, reach): (&[Vec3], f64),
+) -> Vec<LayerViolation> {
+    let object_of = |v: usize| policies.object_of(&[v as u32]);
+    let outer = (0..x.len()).filter(|&v| is_outside(surface, inner, v));
+    let objects: BTreeSet<Option<u16>> = outer.map(object_of).collect();
+    let mut alike: BTreeMap<Vec<u16>, Vec<Option<u16>>> = BTreeMap::new();
+    for object in objects {
+        let ignored = object.map_or_else(Vec::new, |object| policies.ignored_by(object));
+        alike.entry(ignored).or_default().push(object);
+    }
+    let mut found = Vec::new();
+    for (ignored, objects) in alike {
+        let meets = |face: &[u32; 3]| {
+            let object = policies.object_of(face);
+            object.is_none_or(|object| ignored.binary_search(&object).is_err())
+        };
+        let faces = faces_of(surface, inner).filter(meets).collect();
+        let is_outer = |v: usize| is_outside(surface, inner, v) && objects.contains(&object_of(v));
+        found.extend(vertices_inside(surface, faces, is_outer, x, reach));
+    }
+    found.sort_by_key(|violation| violation.vertex);
+    found
+}
+
+/// The faces of a layer.
+fn faces_of(surface: &ClothSurface, layer: u16) -> impl Iterator<Item = [u32; 3]> {
+    let is_of = move |face: &[u32; 3]| face.iter().all(|&v| surface.layer[v as usize] == layer);
+    surface.triangles.iter().copied().filter(is_of)
+}
+
+/// Whether a vertex belongs outside of a layer.
+fn is_outside(surface: &ClothSurface, inner: u16, v: usize) -> bool {
+    let layer = surface.layer[v];
+    layer > inner && layer != BETWEEN_LAYERS
+}
+
+/// Outer vertices on the inside of some faces, no farther from them than `reach` [m], in order.
+fn vertices_inside(
+    surface: &ClothSurface,
+    faces: Vec<[u32; 3]>,
+    is_outer: impl Fn(usize) -> bool + Sync,
+    x: &[Vec3],
+    reach: f64,
+) -> Vec<LayerViolation> {
+    if faces.is_empty() {
+        return Vec::new();
     }
     let tree = SurfaceTree::new(TriangleMesh {
         positions: x.to_vec(),
-        triangles,
+        triangles: faces,
     });
-    let outside = |v: usize| {
-        let layer = surface.layer[v];
-        layer > inner && layer != BETWEEN_LAYERS
-    };
     let each = (0..x.len()).into_par_iter().with_min_len(64);
-    let astray: Vec<Option<Stray>> = each
+    let violations: Vec<Option<LayerViolation>> = each
         .map(|v| {
-            let closest = outside(v).then(|| tree.closest_point(x[v], reach))??;
+            let closest = is_outer(v).then(|| tree.closest_point(x[v], reach))??;
             let face = tree.mesh().triangles[closest.triangle as usize];
             if closest.signed_distance >= 0.0 || on_border(surface, face, &closest) {
                 return None;
             }
-            Some(Stray {
+            Some(LayerViolation {
                 vertex: v as u32,
                 face,
                 weights: closest.weights,
-                way: closest.normal,
+                direction: closest.normal,
                 depth: -closest.signed_distance,
             })
         })
         .collect();
-    found.extend(astray.into_iter().flatten());
+    violations.into_iter().flatten().collect()
 }
 
 /// Whether the closest point lies on an edge that has cloth on one side only.
@@ -148,15 +166,25 @@ fn on_border(surface: &ClothSurface, face: [u32; 3], closest: &ClosestPoint) -> 
     }
 }
 
-/// The ways out of crossings of two layers, by their order: an edge of the outer one is moved out
-/// along the normal of the face it pierces, and a face of the outer one out along that of the edge.
-pub fn ways_out(surface: &ClothSurface, crossings: &[[u32; 2]], x: &[Vec3]) -> Vec<Piercing> {
+/// The directions out of crossings of two layers, by their order: an edge of the outer one is moved out
+/// along the normal of the face it crosses, and a face of the outer one out along that of the edge.
+pub fn layer_crossings(
+    surface: &ClothSurface,
+    crossings: &[[u32; 2]],
+    x: &[Vec3],
+) -> Vec<EdgeFaceIntersection> {
     let each = crossings.iter();
-    each.filter_map(|&[e, t]| way_out(surface, e as usize, t as usize, x))
+    each.filter_map(|&[e, t]| outwards(surface, e as usize, t as usize, x))
         .collect()
 }
 
-fn way_out(surface: &ClothSurface, e: usize, t: usize, x: &[Vec3]) -> Option<Piercing> {
+/// The direction out of a crossing of two layers; none between features in no order.
+fn outwards(
+    surface: &ClothSurface,
+    e: usize,
+    t: usize,
+    x: &[Vec3],
+) -> Option<EdgeFaceIntersection> {
     let [a, b] = surface.edges[e];
     let face = surface.triangles[t];
     let (start, end) = (x[a as usize], x[b as usize]);
@@ -167,7 +195,7 @@ fn way_out(surface: &ClothSurface, e: usize, t: usize, x: &[Vec3]) -> Option<Pie
         true => 0.5,
         false => (above / (above - below)).clamp(0.0, 1.0),
     };
-    let way = match layer_order(&surface.layer, a, face[0]) {
+    let direction = match layer_order(&surface.layer, a, face[0]) {
         Ordering::Equal => return None,
         Ordering::Greater => normal,
         Ordering::Less => {
@@ -179,10 +207,10 @@ fn way_out(surface: &ClothSurface, e: usize, t: usize, x: &[Vec3]) -> Option<Pie
         }
     };
     let w = closest_on_face(start + (end - start) * s, corners);
-    Some(Piercing {
+    Some(EdgeFaceIntersection {
         vertices: [a, b, face[0], face[1], face[2]],
         weights: [1.0 - s, s, -w[0], -w[1], -w[2]],
-        way,
+        direction,
     })
 }
 
@@ -194,6 +222,7 @@ fn normal_of([a, b, c]: [Vec3; 3]) -> Vec3 {
 mod tests {
     use super::super::trajectories::LinearTrajectories;
     use super::*;
+    use crate::BETWEEN_OBJECTS;
 
     /// Two squares of two triangles, the second `height` [m] above the first; normals point up.
     fn squares(height: f64) -> (ClothSurface, Vec<Vec3>) {
@@ -211,23 +240,44 @@ mod tests {
         (surface, mesh.positions)
     }
 
+    fn violations(surface: &ClothSurface, x: &[Vec3], reach: f64) -> Vec<LayerViolation> {
+        layer_violations(surface, &PairPolicies::default(), x, reach)
+    }
+
     #[test]
-    fn what_lies_beneath_the_inner_layer_is_astray() {
+    fn cloth_that_ignores_the_inner_layer_does_not_violate_the_order() {
+        let (surface, x) = squares(-0.1);
+        let all = violations(&surface, &x, 0.5);
+        let found = |ignored: &[[u16; 2]]| {
+            // The last vertex of the upper square hangs in several objects.
+            let objects = vec![0, 0, 0, 0, 1, 1, 2, BETWEEN_OBJECTS];
+            let policies = PairPolicies::new(objects, ignored.to_vec(), []);
+            layer_violations(&surface, &policies, &x, 0.5)
+        };
+        assert_eq!(found(&[[1, 2]]), all, "none ignores the inner one");
+        assert_eq!(found(&[[0, 1]]), all[2..]);
+        assert_eq!(found(&[[0, 2]]), [all[0], all[1], all[3]]);
+        assert_eq!(found(&[[0, 1], [0, 2]]), all[3..]);
+    }
+
+    #[test]
+    fn cloth_beneath_the_inner_layer_violates_the_order() {
         let (surface, x) = squares(0.1);
-        assert!(strays(&surface, &x, 0.5).is_empty());
+        assert!(violations(&surface, &x, 0.5).is_empty());
         let (mut surface, x) = squares(-0.1);
-        let found = strays(&surface, &x, 0.5);
+        let found = violations(&surface, &x, 0.5);
         assert_eq!(found.len(), 4);
-        for stray in &found {
-            assert!(stray.vertex >= 4 && stray.face.iter().all(|&v| v < 4));
-            assert!((stray.way - Vec3::y()).norm() < 1e-12 && (stray.depth - 0.1).abs() < 1e-12);
+        for violation in &found {
+            assert!(violation.vertex >= 4 && violation.face.iter().all(|&v| v < 4));
+            assert!((violation.direction - Vec3::y()).norm() < 1e-12);
+            assert!((violation.depth - 0.1).abs() < 1e-12);
         }
-        assert!(strays(&surface, &x, 0.05).is_empty(), "out of reach");
+        assert!(violations(&surface, &x, 0.05).is_empty(), "out of reach");
         // The other order, and none.
         surface.layer = vec![3, 3, 3, 3, 2, 2, 2, 2];
-        assert!(strays(&surface, &x, 0.5).is_empty());
+        assert!(violations(&surface, &x, 0.5).is_empty());
         surface.layer = vec![2; 8];
-        assert!(strays(&surface, &x, 0.5).is_empty());
+        assert!(violations(&surface, &x, 0.5).is_empty());
     }
 
     #[test]
@@ -236,7 +286,7 @@ mod tests {
         for p in &mut x[4..] {
             p.x += 2.0;
         }
-        assert!(strays(&surface, &x, 5.0).is_empty());
+        assert!(violations(&surface, &x, 5.0).is_empty());
     }
 
     #[test]
@@ -244,13 +294,13 @@ mod tests {
         let (mut surface, mut x) = squares(0.1);
         x[4].y = -0.1;
         let near = surface.near(LinearTrajectories::still(&x), 0.0);
-        let crossed = super::super::tangle::crossings(&surface, &near, &x);
-        let found = ways_out(&surface, &crossed, &x);
+        let crossed = super::super::intersections::crossings(&surface, &near, &x);
+        let found = layer_crossings(&surface, &crossed, &x);
         assert!(!found.is_empty() && found.len() == crossed.len());
-        for piercing in &found {
-            let upwards = if piercing.vertices[0] >= 4 { 1.0 } else { -1.0 };
-            assert!(piercing.way.y * upwards > 0.5, "{piercing:?}");
-            assert!(piercing.weights.iter().sum::<f64>().abs() < 1e-12);
+        for crossing in &found {
+            let upwards = if crossing.vertices[0] >= 4 { 1.0 } else { -1.0 };
+            assert!(crossing.direction.y * upwards > 0.5, "{crossing:?}");
+            assert!(crossing.weights.iter().sum::<f64>().abs() < 1e-12);
         }
     }
 
@@ -261,34 +311,5 @@ mod tests {
         assert_eq!(layer_order(&layer, 1, 0), Ordering::Greater);
         assert_eq!(layer_order(&layer, 1, 2), Ordering::Equal);
         assert_eq!(layer_order(&[], 0, 1), Ordering::Equal);
-        let pair = FeaturePair::EdgeEdge([0, 0, 1, 1]);
-        let (tangled, astray) = ([true, true, true], [false, true, false]);
-        let knots = Knots {
-            tangled: &tangled,
-            astray: &astray,
-            loose: &[],
-            layer: &layer,
-        };
-        assert!(knots.lets_through(pair) && knots.lets_go(pair));
-        let alone = Knots {
-            astray: &[false; 3],
-            ..knots
-        };
-        assert!(!alone.lets_through(pair) && !alone.lets_go(pair));
-        let same = Knots {
-            layer: &[],
-            ..alone
-        };
-        assert!(same.lets_through(pair));
-        // Round a crossing both have to be loose.
-        for (loose, free) in [([true, true, false], true), ([true, false, true], false)] {
-            let knots = Knots {
-                tangled: &[],
-                loose: &loose,
-                layer: &[],
-                ..alone
-            };
-            assert_eq!([knots.lets_through(pair), knots.lets_go(pair)], [free; 2]);
-        }
     }
 }

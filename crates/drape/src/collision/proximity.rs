@@ -2,7 +2,7 @@
 
 use super::nearness::{Nearness, is_far, passes_by};
 use super::reach::Reach;
-use super::sieve::Sieve;
+use super::separation_filter::SeparationFilter;
 use super::surface::{ClothSurface, Near};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
@@ -23,8 +23,8 @@ pub fn nearnesses<'a>(
         let [a, b, c] = surface.triangles[t as usize].map(|v| x[v as usize]);
         (b - a).cross(&(c - a))
     };
-    let sieve = Sieve::still(x, reach.most);
-    let mut found = surface.sifted(near, Some(&sieve), |pair, owners, found| {
+    let filter = SeparationFilter::still(x, reach.most);
+    let mut found = surface.filtered(near, Some(&filter), |pair, owners, found| {
         let p = pair.vertices().map(|v| x[v as usize]);
         if is_far(pair, &p, reach.most) || passes_by(pair, &p) {
             return;

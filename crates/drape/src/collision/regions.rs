@@ -32,19 +32,19 @@ pub struct Searched<N> {
     pub notes: Vec<N>,
 }
 
-/// What decides which regions are left out.
+/// Decides which regions a search prunes.
 pub trait PruningRule: Sync {
-    /// Is told what was left out.
+    /// Notes of the regions pruned.
     type Notes: Default + Send;
     /// Whether a region's two nodes are far apart.
     fn apart(&self, notes: &mut Self::Notes, region: &Region) -> bool;
     /// With which margin a region is to be looked at closely; nothing where it is not.
     fn level(&self, region: &Region) -> Option<usize>;
-    /// Is told of a region that keeps clear of itself.
+    /// Notes a region that keeps clear of itself.
     fn clear(&self, notes: &mut Self::Notes, region: &Region, level: usize);
 }
 
-/// Leaves out what is clear for some ways once.
+/// Prunes regions that are clear on some trajectories, for one search.
 struct Once<'a> {
     tree: &'a BoxTree,
     moves: Option<Moves>,
@@ -80,8 +80,8 @@ impl Regions {
         }
     }
 
-    /// Pairs of clusters whose boxes meet, without those of regions that keep clear of themselves on
-    /// the way.
+    /// Pairs of leaves whose boxes overlap, without those of regions that keep clear of themselves on
+    /// their trajectories.
     pub fn near(
         &mut self,
         cloth: &SurfaceView,
@@ -89,30 +89,30 @@ impl Regions {
         clearance: Clearance,
     ) -> Searched<()> {
         let root: Vec<Region> = cloth.tree.root().map(Region::Own).into_iter().collect();
-        let leave = Once {
+        let rule = Once {
             tree: cloth.tree,
             moves: Moves::of(ways, cloth),
             clearance,
         };
-        self.search(cloth, (ways.from, &root), clearance, &leave)
+        self.search(cloth, (ways.from, &root), clearance, &rule)
     }
 
-    /// Looks into some regions at some places [m], those left out that `leave` says.
+    /// Searches some regions at some positions [m], but for those that `rule` prunes.
     pub fn search<L: PruningRule>(
         &mut self,
         cloth: &SurfaceView,
         (x, regions): (&[Vec3], &[Region]),
         clearance: Clearance,
-        leave: &L,
+        rule: &L,
     ) -> Searched<L::Notes> {
         self.curvature
             .keep(cloth.room.iter().map(|room| ROOM * room), clearance);
         let level = |region: &Region| match region.count() < LEAST {
             true => None,
-            false => leave.level(region),
+            false => rule.level(region),
         };
         let ask = |notes: &mut Notes<L::Notes>, region: &Region| {
-            if leave.apart(&mut notes.own, region) {
+            if rule.apart(&mut notes.own, region) {
                 return true;
             }
             let level = level(region);
@@ -127,7 +127,7 @@ impl Regions {
             let curvature = &self.curvature;
             let regions: Vec<Region> = asked.iter().map(|(region, _)| *region).collect();
             let tell = |notes: &mut Notes<L::Notes>, region: &Region| {
-                if leave.apart(&mut notes.own, region) {
+                if rule.apart(&mut notes.own, region) {
                     return true;
                 }
                 let Some(level) = level(region) else {
@@ -136,7 +136,7 @@ impl Regions {
                 notes.told += 1;
                 let clear = curvature.is_clear(cloth.edges, x, region, level);
                 if clear {
-                    leave.clear(&mut notes.own, region, level);
+                    rule.clear(&mut notes.own, region, level);
                 }
                 clear
             };

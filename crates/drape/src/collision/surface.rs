@@ -1,14 +1,14 @@
 //! The cloth as collision sees it: its triangles, edges and vertices, each feature in the care of
-//! one triangle, so that a pair of features is looked at once (Curtis, Tamstorf and Manocha 2008).
+//! one triangle, so that a pair of features is tested once (Curtis, Tamstorf and Manocha 2008).
 
 use super::boxes::{Bounds, BoxTree, Region};
-use super::clusters::{Clusters, Corners, Hits};
+use super::bvtt_front::BvttFront;
 use super::curvature::Clearance;
 use super::feature_pair::FeaturePair;
-use super::front::Front;
+use super::leaf_aabbs::{Corners, Hits, LeafAabbs};
 use super::reach::Reach;
 use super::regions::Regions;
-use super::sieve::{Looked, Sieve};
+use super::separation_filter::{Candidates, SeparationFilter};
 use super::surface_view::{ROOM, SurfaceView};
 use super::trajectories::LinearTrajectories;
 use crate::{Model, merge_map};
@@ -16,24 +16,24 @@ use pulp::Arch;
 use rayon::prelude::*;
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// Where features are looked for: in what the last search found, until the next one of any kind.
+/// Where near features are taken from: valid until the next search of any kind.
 #[derive(Clone, Copy, Debug)]
 pub enum Near<'a> {
-    /// In pairs of clusters that a search found.
-    Clusters(&'a [[u32; 2]]),
-    /// In what the last look lists.
+    /// From pairs of leaves that a search found.
+    Leaves(&'a [[u32; 2]]),
+    /// From the lists of the last look.
     Listed,
 }
 
 impl<'a> From<&'a Vec<[u32; 2]>> for Near<'a> {
     fn from(pairs: &'a Vec<[u32; 2]>) -> Self {
-        Self::Clusters(pairs)
+        Self::Leaves(pairs)
     }
 }
 
 impl<'a> From<&'a [[u32; 2]]> for Near<'a> {
     fn from(pairs: &'a [[u32; 2]]) -> Self {
-        Self::Clusters(pairs)
+        Self::Leaves(pairs)
     }
 }
 
@@ -62,23 +62,24 @@ pub struct ClothSurface {
     vertex_owners: Vec<u32>,
     /// The triangle that cares for each edge.
     edge_owners: Vec<u32>,
-    clusters: Clusters,
+    leaves: LeafAabbs,
     tree: BoxTree,
-    /// The corners of each cluster's triangles, cluster after cluster; where those of each begin, and the end.
-    cluster_vertices: [Vec<u32>; 2],
+    /// The corners of each leaf's triangles, leaf after leaf; where those of each begin, and the end.
+    leaf_vertices: [Vec<u32>; 2],
     regions: Regions,
-    front: Front,
+    front: BvttFront,
     opened: [usize; 2],
 }
 
-/// The same between features of triangles that share a vertex and face alike: in a triangle with angles of
-/// 20 degrees and more a corner is a third of an edge from the side opposite.
+/// Share of the shortest edge above which no distance is kept between features of triangles that share a vertex
+/// and face alike: in a triangle with angles of 20 degrees and more a corner is a third of an edge from the side
+/// opposite.
 const NEIGHBOURS: f64 = 0.1;
 
 /// No triangle.
 const NONE: u32 = u32::MAX;
 
-/// Pairs of clusters that one core looks into at once.
+/// Pairs of leaves that one task tests.
 const AT_ONCE: usize = 32;
 
 impl ClothSurface {
@@ -147,7 +148,7 @@ impl ClothSurface {
             edges: &surface.edges,
             triangles: &surface.triangles,
         };
-        surface.clusters = Clusters::new(&surface.tree, owners, corners);
+        surface.leaves = LeafAabbs::new(&surface.tree, owners, corners);
         let [mut vertices, mut starts] = [Vec::new(), vec![0]];
         for leaf in 0..surface.tree.leaves() {
             let items = surface.tree.items(leaf).iter();
@@ -157,7 +158,7 @@ impl ClothSurface {
             vertices.extend(own);
             starts.push(vertices.len() as u32);
         }
-        surface.cluster_vertices = [vertices, starts];
+        surface.leaf_vertices = [vertices, starts];
         surface.regions = Regions::new(&surface.cloth(), &surface.edge_triangles);
         surface
     }
@@ -178,15 +179,15 @@ impl ClothSurface {
     fn cloth(&self) -> SurfaceView<'_> {
         SurfaceView {
             tree: &self.tree,
-            leaf_vertices: self.cluster_vertices.each_ref().map(|list| &list[..]),
+            leaf_vertices: self.leaf_vertices.each_ref().map(|list| &list[..]),
             triangles: &self.triangles,
             edges: &self.edges,
             room: &self.room,
         }
     }
 
-    /// Pairs of clusters that come within `reach` [m] of each other on the way of the cloth, and clusters
-    /// with themselves; more than those, but never fewer.
+    /// Pairs of leaves that come within `reach` [m] of each other on the trajectories, and leaves with
+    /// themselves; more than those, but never fewer.
     pub fn near(&mut self, ways: LinearTrajectories, reach: f64) -> Vec<[u32; 2]> {
         self.refit(ways, reach);
         let root: Vec<Region> = self.tree.root().map(Region::Own).into_iter().collect();
@@ -235,8 +236,8 @@ impl ClothSurface {
         marks: Option<&[bool]>,
     ) {
         let mut front = std::mem::take(&mut self.front);
-        let (expired, asked) = front.expired(&self.cloth(), (&ways, reach), clearance);
-        let (x, [vertices, starts]) = (ways.from, &self.cluster_vertices);
+        let (expired, query) = front.expired(&self.cloth(), (&ways, reach), clearance);
+        let (x, [vertices, starts]) = (ways.from, &self.leaf_vertices);
         if !expired.is_empty() {
             self.tree.refit(|leaf| {
                 let own = &vertices[starts[leaf] as usize..starts[leaf + 1] as usize];
@@ -244,15 +245,15 @@ impl ClothSurface {
             });
         }
         let mut regions = std::mem::take(&mut self.regions);
-        let mut clusters = std::mem::take(&mut self.clusters);
+        let mut leaves = std::mem::take(&mut self.leaves);
         let (cloth, mut opened) = (self.cloth(), [0; 2]);
         if !expired.is_empty() {
-            let fitted = (&mut regions, &mut clusters);
-            opened = front.search(&cloth, fitted, x, (&expired, &asked));
+            let fitted = (&mut regions, &mut leaves);
+            opened = front.search(&cloth, fitted, x, (&expired, &query));
         }
-        front.fit(&cloth, &mut clusters, (&ways, &asked), marks);
+        front.fit(&cloth, &mut leaves, (&ways, &query), marks);
         self.opened = opened;
-        (self.regions, self.clusters) = (regions, clusters);
+        (self.regions, self.leaves) = (regions, leaves);
         self.front = front;
     }
 
@@ -266,41 +267,41 @@ impl ClothSurface {
             edges: &self.edges,
             triangles: &self.triangles,
         };
-        self.clusters.fit(&ways, corners, 0.5 * reach);
-        let clusters = &self.clusters;
-        self.tree.refit(|leaf| clusters.bounds(leaf));
+        self.leaves.fit(&ways, corners, 0.5 * reach);
+        let leaves = &self.leaves;
+        self.tree.refit(|leaf| leaves.bounds(leaf));
     }
 
     /// Collects what `each` makes of pairs of features that are near, in an order that does
     /// not depend on threads: all that come as near each other as was asked for when they
-    /// were looked for, and more; those that share a vertex left out. `each` is given the triangles
+    /// were searched for, and more; those that share a vertex left out. `each` is given the triangles
     /// that care for the two as well.
     pub fn features<'a, T: Clone + Send + Sync>(
         &self,
         near: impl Into<Near<'a>>,
         each: impl Fn(FeaturePair, [u32; 2], &mut Vec<T>) + Sync,
     ) -> Vec<T> {
-        self.sifted(near, None, each)
+        self.filtered(near, None, each)
     }
 
-    /// [`Self::features`] without those that a sieve tells apart.
-    pub fn sifted<'a, T: Clone + Send + Sync>(
+    /// [`Self::features`] without those that a filter separates.
+    pub fn filtered<'a, T: Clone + Send + Sync>(
         &self,
         near: impl Into<Near<'a>>,
-        sieve: Option<&Sieve>,
+        filter: Option<&SeparationFilter>,
         each: impl Fn(FeaturePair, [u32; 2], &mut Vec<T>) + Sync,
     ) -> Vec<T> {
         let cloth = self.cloth();
-        let of_hits = |looked: &mut Looked, found: &mut Vec<T>| {
-            if let Some(sieve) = sieve {
-                looked.sift(sieve, &cloth);
+        let of_hits = |candidates: &mut Candidates, found: &mut Vec<T>| {
+            if let Some(filter) = filter {
+                candidates.discard(filter, &cloth);
             }
-            for &[v, t] in &looked.hits.vertex_face {
+            for &[v, t] in &candidates.hits.vertex_face {
                 if let Some(pair) = cloth.vertex_face([v, t]) {
                     each(pair, [self.vertex_owners[v as usize], t], found);
                 }
             }
-            for &[e, f] in &looked.hits.edge_edge {
+            for &[e, f] in &candidates.hits.edge_edge {
                 if let Some(pair) = cloth.edge_edge([e, f]) {
                     let owners = [e.min(f), e.max(f)].map(|e| self.edge_owners[e as usize]);
                     each(pair, owners, found);
@@ -308,9 +309,9 @@ impl ClothSurface {
             }
         };
         let hold = |pair, reach, hits: &mut Hits| {
-            (self.clusters).near_within(Arch::new(), pair, reach, hits);
+            (self.leaves).near_within(Arch::new(), pair, reach, hits);
         };
-        let reach = sieve.map_or(0.0, Sieve::reach);
+        let reach = filter.map_or(0.0, SeparationFilter::reach);
         self.collected((near.into(), reach), hold, of_hits)
     }
 
@@ -322,58 +323,61 @@ impl ClothSurface {
         crosses: impl Fn([u32; 2]) -> bool + Sync,
     ) -> Vec<[u32; 2]> {
         let cloth = self.cloth();
-        let of_hits = |looked: &mut Looked, found: &mut Vec<[u32; 2]>| {
-            let apart = (looked.hits.edge_face.iter()).filter(|hit| cloth.are_apart(**hit));
+        let of_hits = |candidates: &mut Candidates, found: &mut Vec<[u32; 2]>| {
+            let apart = (candidates.hits.edge_face.iter()).filter(|hit| cloth.are_apart(**hit));
             found.extend(apart.filter(|hit| crosses(**hit)));
         };
         let hold = |pair, _: f64, hits: &mut Hits| {
-            (self.clusters).crossing(Arch::new(), pair, hits);
+            (self.leaves).crossing(Arch::new(), pair, hits);
         };
         self.collected((near.into(), 0.0), hold, of_hits)
     }
 
-    /// Collects what `of_hits` makes of what is listed, and of what `hold` finds in pairs of clusters that are
-    /// not, with how much farther than their boxes say it is to look [m]. `reach` is how near features come that
-    /// count, but in parts of the last look, which say it themselves [m].
+    /// Collects what `of_hits` makes of listed features, and of those that `hold` finds in pairs of leaves without
+    /// a list, their boxes enlarged by its second argument [m]. Features count that come within `reach` [m], or in
+    /// pairs of leaves of the last look within the distance noted there.
     fn collected<T: Clone + Send + Sync>(
         &self,
         (near, reach): (Near, f64),
         hold: impl Fn([u32; 2], f64, &mut Hits) + Sync,
-        of_hits: impl Fn(&mut Looked, &mut Vec<T>) + Sync,
+        of_hits: impl Fn(&mut Candidates, &mut Vec<T>) + Sync,
     ) -> Vec<T> {
         let of_pairs =
-            |looked: &mut Looked, pairs: &mut dyn Iterator<Item = ([u32; 2], f64, f64)>| {
-                looked.clear();
+            |candidates: &mut Candidates, pairs: &mut dyn Iterator<Item = ([u32; 2], f64, f64)>| {
+                candidates.clear();
                 for (pair, wider, reach) in pairs {
-                    hold(pair, wider, &mut looked.hits);
-                    looked.come_within(reach);
+                    hold(pair, wider, &mut candidates.hits);
+                    candidates.come_within(reach);
                 }
                 let mut found = Vec::new();
-                of_hits(looked, &mut found);
+                of_hits(candidates, &mut found);
                 found
             };
-        let of_lists = |looked: &mut Looked, lists: Vec<Option<&Hits>>| {
-            looked.clear();
+        let of_lists = |candidates: &mut Candidates, lists: Vec<Option<&Hits>>| {
+            candidates.clear();
             let lists = lists.into_iter().flatten();
-            lists.for_each(|hits| looked.hits.append(hits));
-            looked.come_within(reach);
+            lists.for_each(|hits| candidates.hits.append(hits));
+            candidates.come_within(reach);
             let mut found = Vec::new();
-            of_hits(looked, &mut found);
+            of_hits(candidates, &mut found);
             found
         };
         let found: Vec<Vec<T>> = match near {
-            Near::Clusters(pairs) => (pairs.par_chunks(AT_ONCE))
-                .map_init(Looked::default, |looked, pairs| {
-                    of_pairs(looked, &mut pairs.iter().map(|&pair| (pair, 0.0, reach)))
+            Near::Leaves(pairs) => (pairs.par_chunks(AT_ONCE))
+                .map_init(Candidates::default, |candidates, pairs| {
+                    of_pairs(
+                        candidates,
+                        &mut pairs.iter().map(|&pair| (pair, 0.0, reach)),
+                    )
                 })
                 .collect(),
             Near::Listed => {
                 let lists = self.front.lists().chunks(AT_ONCE);
-                let listed = lists.map_init(Looked::default, of_lists);
+                let listed = lists.map_init(Candidates::default, of_lists);
                 let open = self.front.open().par_chunks(AT_ONCE);
-                let open = open.map_init(Looked::default, |looked, pairs| {
+                let open = open.map_init(Candidates::default, |candidates, pairs| {
                     of_pairs(
-                        looked,
+                        candidates,
                         &mut pairs.iter().map(|&(pair, reach)| (pair, reach, reach)),
                     )
                 });

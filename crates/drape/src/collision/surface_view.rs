@@ -1,8 +1,8 @@
 //! The surface of the cloth as searches see it.
 
 use super::boxes::BoxTree;
-use super::clusters::Corners;
 use super::feature_pair::FeaturePair;
+use super::leaf_aabbs::Corners;
 
 /// Share of the shortest edge nearby above which no distance is kept: neighbours are not contacts.
 pub const ROOM: f64 = 0.5;

@@ -141,12 +141,12 @@ impl Workspace {
 
     /// Shortens the direction where cloth would pass through cloth: vertex by vertex, or, where that
     /// would no longer lower the potential, as a whole.
-    pub(super) fn bound_moves(&mut self, system: &System, x: &[Vec3]) {
+    pub(super) fn truncate_by_contact(&mut self, system: &System, x: &[Vec3]) {
         if system.contact.cloth_offset <= 0.0 {
             return;
         }
         self.trial.clone_from(&self.direction);
-        let held = self.contacts.cloth.bound(system, x, &mut self.direction);
+        let held = (self.contacts).truncate_moves(system, x, &mut self.direction);
         // `gradient` holds its negative after the linear solve.
         if held == 0 || dot(&self.gradient, &self.direction) > 0.0 {
             return;

@@ -57,7 +57,8 @@ impl Workspace {
             let outside = (total - held.map(|g| g.norm_squared()).sum::<f64>()).max(0.0);
             let calm = (CALM_OUTSIDE * outside.sqrt()).max(CALM_ENOUGH * enough);
             let calm = calm / (regions.len() as f64).sqrt();
-            let touching = &self.contacts.cloth.active;
+            // Cloth in order has no pulls.
+            let touching = &self.contacts.cloth.contacts;
             let parts: Vec<Part> = regions
                 .par_iter()
                 .filter_map(|own| {
@@ -86,7 +87,7 @@ impl Workspace {
     ) -> bool {
         let ways = state.positions.iter().zip(&start).map(|(x, s)| x - s);
         let mut ways: Vec<Vec3> = ways.collect();
-        if self.contacts.cloth.bound(system, &start, &mut ways) == 0 {
+        if (self.contacts).truncate_moves(system, &start, &mut ways) == 0 {
             return true;
         }
         for ((x, s), d) in state.positions.iter_mut().zip(&start).zip(&ways) {
@@ -190,7 +191,7 @@ fn bring_to_rest(part: &mut Part, calm: f64) -> bool {
         workspace
             .contacts
             .refresh_surfaces(system, state, &state.positions);
-        workspace.contacts.cloth.active.clone_from(touching);
+        workspace.contacts.cloth.contacts.clone_from(touching);
         if !workspace.iterate(system, state, &inertia, &settings, &mut report) {
             break;
         }

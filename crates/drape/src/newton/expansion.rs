@@ -50,7 +50,7 @@ impl Workspace {
             gradient,
             products: vectors.iter().map(times).collect(),
             surface: self.contacts.active.clone(),
-            cloth: self.contacts.cloth.active.clone(),
+            cloth: self.contacts.cloth.all().copied().collect(),
         }
     }
 }

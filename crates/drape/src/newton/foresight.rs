@@ -42,7 +42,7 @@ impl Contacts {
             let (at, by) = (sample.place(x), sample.place(step));
             see(&mut contact.plane, &contact.law, at, by);
         }
-        for contact in &mut self.cloth.active {
+        for contact in self.cloth.all_mut() {
             let (at, by) = (contact.between(x), contact.between(step));
             see(&mut contact.plane, &contact.law, at, by);
         }
@@ -60,7 +60,7 @@ impl Contacts {
                 }
             }
         }
-        for contact in &self.cloth.active {
+        for contact in self.cloth.all() {
             let pull = contact.law.pull_down(&contact.plane, contact.between(x));
             let Some(pull) = pull else { continue };
             for (v, w) in contact.vertices.into_iter().zip(contact.weights) {

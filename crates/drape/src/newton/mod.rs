@@ -158,8 +158,8 @@ impl Workspace {
 
     /// Forgets which pairs of cloth were near, and the places they took in the matrix.
     pub(crate) fn forget_pairs(&mut self) {
-        self.contacts.cloth.forget();
-        if !self.contacts.cloth.active.is_empty() {
+        self.contacts.forget_cloth();
+        if !self.contacts.cloth.is_empty() {
             self.direct = None;
         }
     }
@@ -254,7 +254,7 @@ impl Workspace {
         self.turn_gradient();
         self.find_direction(system, &state.positions, inertia, settings, report);
         self.limit_moves(settings.longest_move);
-        self.bound_moves(system, &state.positions);
+        self.truncate_by_contact(system, &state.positions);
         report.fraction = self.line_search(system, &state.positions, inertia);
         report.sound = report.fraction > 0.0;
         if report.sound {
@@ -302,7 +302,7 @@ impl Workspace {
             let place = contact.point.place(x);
             energy += contact.law.energy(&contact.plane, place);
         }
-        for contact in &self.contacts.cloth.active {
+        for contact in self.contacts.cloth.all() {
             energy += contact.law.energy(&contact.plane, contact.between(x));
         }
         energy + self.terms.energy(system, x)
@@ -346,7 +346,7 @@ impl Workspace {
                 self.gradient[v as usize] += gradient * w;
             }
         }
-        for contact in &self.contacts.cloth.active {
+        for contact in self.contacts.cloth.all() {
             let (_, gradient, _) = contact.law.evaluate(&contact.plane, contact.between(x));
             for (v, w) in contact.vertices.into_iter().zip(contact.weights) {
                 self.gradient[v as usize] += gradient * w;
@@ -407,7 +407,7 @@ impl Workspace {
     /// Adds the Hessian of contacts of cloth with cloth.
     fn couple(&mut self, x: &[Vec3]) {
         self.touching.clear();
-        for contact in &self.contacts.cloth.active {
+        for contact in self.contacts.cloth.all() {
             let (_, _, hessian) = contact.law.evaluate(&contact.plane, contact.between(x));
             if hessian == Matrix3::zeros() {
                 continue;

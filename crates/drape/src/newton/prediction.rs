@@ -72,7 +72,7 @@ impl Workspace {
             return None;
         }
         self.limit_moves(longest_move);
-        self.bound_moves(system, x);
+        self.truncate_by_contact(system, x);
         let share = self.line_search(system, x, &inertia);
         let positions = match share > 0.0 {
             true => self.trial.clone(),

@@ -137,6 +137,8 @@ struct Sample {
     force: f64,
     /// Whether a surface was put over it and it has not come out since.
     buried: bool,
+    /// Its object, where any object ignores a surface.
+    object: Option<u16>,
 }
 
 /// Below this slope of the distance no direction leads out.
@@ -202,6 +204,7 @@ impl Touch {
                     0.0
                 },
                 buried: buried.binary_search(&(number as u32)).is_ok(),
+                object: system.policies.object_of_sample(&sample.vertices),
             });
         }
     }
@@ -360,7 +363,11 @@ impl Sample {
     fn measure(&mut self, system: &System, place: Vec3) {
         let was_near = self.plane.is_some();
         (self.last, self.plane, self.clearance) = (place, None, FIELD_REACH);
-        for collider in system.colliders.iter() {
+        let policies = &system.policies;
+        for (k, collider) in system.colliders.iter().enumerate() {
+            if policies.ignores_solid(self.object, k) {
+                continue;
+            }
             // Far away the exact distance is enough, and spares sampling the smooth one there.
             if !was_near {
                 let exact = collider.surface.closest_point(place, FIELD_REACH);

@@ -1,7 +1,8 @@
 //! From a world to the system that is simulated.
 
-use super::{Kind, ObjectId, VertexMap, World};
+use super::{Kind, Object, ObjectId, VertexMap, World};
 use crate::merge::merged_layers;
+use crate::pair_policies::{BETWEEN_OBJECTS, PairPolicies};
 use crate::{Cloth, Collider, Control, DrapeError, Grip, System, SystemBuilder};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -74,6 +75,7 @@ impl World {
                 builder.keep_layers_off(&own, apart);
             }
         }
+        builder.policies = self.policies(map);
         let attachments = self.resolve_attachments(map);
         builder.control = Control {
             gravity: environment.gravity,
@@ -111,6 +113,41 @@ impl World {
             solids.push(collider);
         }
         solids
+    }
+
+    /// Which cloths pass through each other, and through which solids.
+    fn policies(&self, map: &VertexMap) -> PairPolicies {
+        if self.ignored.is_empty() {
+            return PairPolicies::default();
+        }
+        let mut owner: Vec<Option<u16>> = vec![None; map.count];
+        let cloths: Vec<ObjectId> = map.objects().collect();
+        for (number, &id) in (0..).zip(&cloths) {
+            for &vertex in map.vertices_of(id).unwrap_or(&[]) {
+                let owner = &mut owner[vertex as usize];
+                *owner = Some(match *owner {
+                    Some(other) if other != number => BETWEEN_OBJECTS,
+                    _ => number,
+                });
+            }
+        }
+        let is_solid = |object: &Object| object.kind != Kind::Deformable;
+        let solids = self.objects().filter(|(_, object)| is_solid(object));
+        let solids: Vec<ObjectId> = solids.map(|(id, _)| id).collect();
+        let cloth = |id: ObjectId| cloths.binary_search(&id).ok().map(|at| at as u16);
+        let solid = |id: ObjectId| solids.binary_search(&id).ok().map(|at| at as u32);
+        let between = self
+            .ignored
+            .iter()
+            .filter_map(|&[a, b]| Some([cloth(a)?, cloth(b)?]));
+        let through = self.ignored.iter().filter_map(|&[a, b]| {
+            let [own, other] = if cloth(a).is_some() { [a, b] } else { [b, a] };
+            Some((cloth(own)?, solid(other)?))
+        });
+        let owner = owner
+            .into_iter()
+            .map(|owner| owner.unwrap_or(BETWEEN_OBJECTS));
+        PairPolicies::new(owner.collect(), between, through)
     }
 
     /// The layer of each vertex of the cloths laid end to end; empty where all are of one.

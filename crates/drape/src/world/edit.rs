@@ -4,7 +4,7 @@ use super::attachment::{AttachmentId, ObjectAttachment};
 use super::object::{Kind, Layers, MeshVertex, Object, ObjectId};
 use super::present::Present;
 use super::transfer::StartingMotion;
-use super::{Environment, World};
+use super::{Environment, PairPolicy, World};
 use crate::{Carry, Cloth, DrapeError, Motion};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -37,6 +37,8 @@ pub enum WorldEdit {
     /// Puts another mesh of the same panels in the place of a cloth, with its layers. It takes over shape and
     /// velocity by place in the panels; its seams open, its pins, grips and attachments are removed.
     ReplaceMesh(ObjectId, Box<Cloth>, Layers),
+    /// Says whether two objects meet, or a cloth itself.
+    SetPolicy([ObjectId; 2], PairPolicy),
     /// Changes what acts on every object alike.
     SetEnvironment(Box<Environment>),
 }
@@ -118,6 +120,7 @@ impl World {
                 self.let_go(id);
                 self.attachments
                     .retain(|_, attachment| !attachment.names(id));
+                self.ignored.retain(|pair| !pair.contains(&id));
                 self.objects.remove(&id);
                 match was {
                     Kind::Deformable => Change::of_structure(),
@@ -170,6 +173,10 @@ impl World {
             WorldEdit::ReplaceMesh(id, cloth, layers) => {
                 self.replace_mesh(id, (*cloth, layers), before)?
             }
+            WorldEdit::SetPolicy(pair, policy) => {
+                self.set_policy(pair, policy)?;
+                Change::Furnishing
+            }
             WorldEdit::SetEnvironment(environment) => {
                 self.set_environment(*environment);
                 Change::Furnishing
@@ -182,6 +189,18 @@ impl World {
     fn let_go(&mut self, id: ObjectId) {
         self.merged
             .retain(|pair| pair.iter().all(|vertex| vertex.object != id));
+    }
+
+    fn set_policy(&mut self, [a, b]: [ObjectId; 2], policy: PairPolicy) -> Result<(), DrapeError> {
+        for id in [a, b] {
+            self.existing(id)?;
+        }
+        let pair = [a.min(b), a.max(b)];
+        match policy {
+            PairPolicy::Ignore => self.ignored.insert(pair),
+            PairPolicy::Meet => self.ignored.remove(&pair),
+        };
+        Ok(())
     }
 
     fn check_pairs(&self, pairs: &[[MeshVertex; 2]]) -> Result<(), DrapeError> {

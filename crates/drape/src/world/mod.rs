@@ -41,6 +41,16 @@ pub struct Environment {
     pub layers_apart: Option<f64>,
 }
 
+/// Whether two objects meet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PairPolicy {
+    /// They do.
+    #[default]
+    Meet,
+    /// They pass through each other.
+    Ignore,
+}
+
 /// Objects, attachments and environment: all that a system is compiled from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
@@ -51,6 +61,8 @@ pub struct World {
     attachments: BTreeMap<AttachmentId, ObjectAttachment>,
     /// Pairs of vertices that are one.
     merged: BTreeSet<[MeshVertex; 2]>,
+    /// Pairs of objects that do not meet, the smaller first.
+    ignored: BTreeSet<[ObjectId; 2]>,
     next_object: u32,
     next_attachment: u32,
 }
@@ -64,6 +76,7 @@ impl World {
             objects: BTreeMap::new(),
             attachments: BTreeMap::new(),
             merged: BTreeSet::new(),
+            ignored: BTreeSet::new(),
             next_object: 0,
             next_attachment: 0,
         }
@@ -187,6 +200,14 @@ impl World {
     /// Pairs of vertices that are one.
     pub fn merged(&self) -> impl Iterator<Item = [MeshVertex; 2]> + '_ {
         self.merged.iter().copied()
+    }
+
+    /// Whether two objects meet; whether a cloth meets itself where they are one.
+    pub fn policy(&self, [a, b]: [ObjectId; 2]) -> PairPolicy {
+        match self.ignored.contains(&[a.min(b), a.max(b)]) {
+            true => PairPolicy::Ignore,
+            false => PairPolicy::Meet,
+        }
     }
 
     /// The objects that are cloth, in order.

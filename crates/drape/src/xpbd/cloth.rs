@@ -2,7 +2,9 @@
 
 use super::contact::{ContactStencil, Touch};
 use super::{Xpbd, XpbdReport, middle};
-use crate::collision::{Ahead, ClothContact, ClothContacts, ImpactStats, Motions, Reach};
+use crate::collision::{
+    Ahead, ClothContact, ContactDetector, ContactSet, ImpactStats, Motions, Reach,
+};
 use crate::laws::contact::HARDER;
 use crate::{DrapeError, State, System};
 use rayon::prelude::*;
@@ -42,7 +44,8 @@ const FEWEST_CROSSED: u32 = 4;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ClothWatch {
     /// The contacts.
-    pub contacts: ClothContacts,
+    pub contacts: ContactSet,
+    detector: ContactDetector,
     /// For how long they are to serve yet [s]; none before the first look.
     serves: Option<f64>,
     /// Positions before the last substeps [m], and how far they went.
@@ -55,6 +58,12 @@ impl ClothWatch {
     /// Looks anew at the next step.
     pub fn forget(&mut self) {
         self.serves = None;
+    }
+
+    /// [`Self::forget`], and the search then depends on none before.
+    pub fn forget_all(&mut self) {
+        self.forget();
+        self.detector.forget();
     }
 
     /// Substeps before the next look, at the least.
@@ -83,7 +92,8 @@ impl ClothWatch {
                 least: (speed * longest + fall).clamp(LEAST_WAY, FARTHEST),
             }),
         };
-        self.contacts.find(system, state, &state.positions, &reach);
+        let (memory, x) = (&state.cloth, &state.positions);
+        (self.detector).detect(system, memory, x, &reach, &mut self.contacts);
         self.contacts.remember(state);
         let shifts = SHIFTS / self.shifting(&state.velocities);
         let least = f64::from(self.fewest()) * substep;
@@ -98,7 +108,11 @@ impl ClothWatch {
             let velocity: Vec3 = four.map(|(&v, w)| velocities[v as usize] * w).sum();
             velocity.norm()
         };
-        let contacts = self.contacts.active.par_iter().with_min_len(256);
+        let ContactSet {
+            contacts, recovery, ..
+        } = &self.contacts;
+        let contacts = contacts.par_iter().chain(&recovery.pulls);
+        let contacts = contacts.with_min_len(256);
         let pressed = contacts.filter(|contact| contact.plane.depth > 0.0);
         let mut speeds: Vec<f64> = pressed.map(speed).collect();
         let at = (SHIFTING * speeds.len() as f64) as usize;
@@ -124,8 +138,10 @@ impl ClothWatch {
             lightness: &self.lightness,
             span,
         };
-        let kept = self.contacts.keep_apart(system, &mut motion);
-        if kept != ImpactStats::default() {
+        let exemptions = &self.contacts.exemptions;
+        let impacts = (self.detector).resolve_impacts(system, exemptions, &mut motion);
+        self.contacts.tally.count_impacts(impacts);
+        if impacts != ImpactStats::default() {
             let ends = self.before.iter().zip(&self.moves);
             for (x, (from, way)) in state.positions.iter_mut().zip(ends) {
                 *x = from + way;
@@ -189,7 +205,7 @@ impl Xpbd {
             let least = f64::from(watch.fewest()) * span.substep;
             if watch.serves.is_none_or(|serves| serves < least) {
                 watch.look(system, state, span.substep);
-                self.touch_cloth(&watch.contacts.active, 2.0 * FARTHEST);
+                self.touch_cloth(&watch.contacts, 2.0 * FARTHEST);
             }
             let serves = watch.serves.map_or(0.0, |serves| serves / span.substep);
             let count = before_next(left, serves, watch.fewest());
@@ -207,7 +223,7 @@ impl Xpbd {
 
     /// Holds contacts of cloth with cloth from here on, in place of those held before: those that may give
     /// way to their hard depth before the next look, `way` [m] ahead, as two.
-    fn touch_cloth(&mut self, contacts: &[ClothContact], way: f64) {
+    fn touch_cloth(&mut self, contacts: &ContactSet, way: f64) {
         let slot_of = &self.order.slot_of;
         let slots = |contact: &ClothContact| contact.vertices.map(|v| slot_of[v as usize]);
         let stencil = |&(contact, is_hard): &(&ClothContact, bool), start: u32| {
@@ -229,7 +245,7 @@ impl Xpbd {
                 restitution: contact.restitution.map(|e| e as f32),
             }
         };
-        let each = contacts.iter().flat_map(|contact| {
+        let each = contacts.all().flat_map(|contact| {
             let hard = contact.plane.depth + way > contact.law.hard_from;
             std::iter::once((contact, false)).chain(hard.then_some((contact, true)))
         });
@@ -310,7 +326,7 @@ mod tests {
                     domains.iter().sum::<usize>() > 0 && cuts[0] > 0 && alone > 0,
                     "{domains:?} {cuts:?} {alone}"
                 );
-                let found = watch.contacts.active.len();
+                let found = watch.contacts.all().count();
                 let all = domains.iter().chain(&cuts).sum::<usize>() + alone;
                 assert!((found..=2 * found).contains(&all), "{all} of {found}");
                 state

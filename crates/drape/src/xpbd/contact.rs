@@ -121,7 +121,13 @@ impl Touch {
         let reach = crate::contact_settings::FIELD_REACH;
         let mut nearest: Option<(f64, Vec3)> = None;
         let mut drift = Vec3::zeros();
+        let policies = &solid.system.policies;
+        let sample = solid.samples.get(self.sample as usize);
+        let object = sample.and_then(|sample| policies.object_of_sample(&sample.vertices));
         for (k, collider) in solid.system.colliders.iter().enumerate() {
+            if policies.ignores_solid(object, k) {
+                continue;
+            }
             let poses = solid.poses.get(k).and_then(Option::as_ref);
             if let Some(found) = collider.distance(poses.map(|[_, to]| to), place)
                 && nearest.is_none_or(|(distance, _)| found.0 < distance)
@@ -209,6 +215,8 @@ fn aged(radius2: f32, travel: f32, near: bool) -> f32 {
 pub struct Solid<'a> {
     /// The model.
     pub system: &'a System,
+    /// The samples of the state.
+    pub samples: &'a [ContactSample],
     /// What the points' numbers are relative to [m].
     pub origin: Vec3,
     /// Where each collider that moves stands when the substep begins and when it ends; empty where

@@ -135,6 +135,7 @@ impl BuiltFor {
         self.model.has_cloth_of(model)
             && self.model.has_ties_of(model)
             && self.model.contact == model.contact
+            && Arc::ptr_eq(&self.model.policies, &model.policies)
             && self.model.colliders.is_empty() == model.colliders.is_empty()
             && Arc::ptr_eq(&self.samples, samples)
     }
@@ -434,6 +435,7 @@ impl Xpbd {
             sweep: SweepStep {
                 solid: Solid {
                     system,
+                    samples: &self.built_for.samples,
                     origin,
                     poses: &[],
                 },

@@ -3,7 +3,9 @@
 use crate::numbers::Numbers;
 use crate::record::Record;
 use crate::states::{self, Frozen};
-use toile_drape::collision::{ClothContacts, Reach, edge_edge_impact, vertex_face_impact};
+use toile_drape::collision::{
+    ContactDetector, ContactSet, Reach, edge_edge_impact, vertex_face_impact,
+};
 use toile_drape::laws::membrane::Curvature;
 use toile_drape::{Expansion, MethodKind, MethodSettings, Workspace};
 use toile_geometry::{SurfaceTree, Vec3};
@@ -124,13 +126,14 @@ fn note_moves(record: &mut Record, name: &str, (system, state): &Frozen) {
     if system.contact.cloth_offset <= 0.0 {
         return;
     }
-    let mut contacts = ClothContacts::default();
+    let (mut detector, mut contacts) = (ContactDetector::default(), ContactSet::default());
     let reach = Reach::all(2.0 * system.contact.cloth_offset);
-    contacts.find(system, state, &state.positions, &reach);
+    let (memory, x) = (&state.cloth, &state.positions);
+    detector.detect(system, memory, x, &reach, &mut contacts);
     let mut numbers = Numbers(5);
     let moves = state.positions.iter().map(|_| numbers.vector(MOVE));
     let mut moves: Vec<Vec3> = moves.collect();
-    let held = contacts.bound(system, &state.positions, &mut moves);
+    let held = detector.truncate_moves(system, &contacts.exemptions, x, &mut moves);
     record.numbers(&format!("{name}, vertices held back"), &[held as f64]);
     record.vectors(&format!("{name}, truncated moves"), &moves);
 }

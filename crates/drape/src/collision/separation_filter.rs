@@ -1,25 +1,25 @@
-//! Features that keep apart all the way, told from those that may not sixteen at a time, in single precision
-//! with its rounding taken off.
+//! Discards pairs of features that a direction separates along their whole trajectories, sixteen at a time, in
+//! single precision with its rounding allowed for.
 //!
-//! A direction n tells two features apart where every corner b_j of one lies beyond every corner a_i of the
+//! A direction n separates two features where every corner b_j of one lies beyond every corner a_i of the
 //! other along it. Corners that move straight do so all the way if they do at its beginning and its end:
 //! ```text
 //! min_j n . b_j - max_i n . a_i > (reach + error) |n|
 //! ```
-//! Any n will do, so it need not be known well: it is taken between the closest points where the ways begin.
-//! What is not told apart, numbers that are none among it, is left to be measured.
+//! Any n serves, so it need not be known well: it is taken between the closest points where the trajectories
+//! begin. Pairs that are not separated, those with a NaN among them, are left to be measured.
 
 use super::apart::{ROUNDING, edge_is_beyond, face_is_beyond, to_edge, to_face};
-use super::clusters::{Hits, origin};
+use super::leaf_aabbs::{Hits, origin};
 use super::surface_view::SurfaceView;
 use crate::lanes::{Corner, LANES, Point, Row, Triple, dot, gather, parts};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
-/// Which features are held against which.
+/// Which features a pair is of.
 #[derive(Clone, Copy, Debug)]
-enum Sifted<'a> {
+enum Filtered<'a> {
     /// Vertices against faces, whose corners these are.
     VertexFace(&'a [[u32; 3]]),
     /// Edges against edges, whose ends these are.
@@ -28,24 +28,24 @@ enum Sifted<'a> {
 
 /// Places of the cloth in single precision.
 #[derive(Clone, Debug)]
-pub struct Sieve {
+pub struct SeparationFilter {
     from: Vec<Point>,
-    /// Where the ways end; nothing where nothing moves.
+    /// Where the trajectories end; none where nothing moves.
     to: Option<Vec<Point>>,
-    /// How near features come that are left [m], unless something else is said of them.
+    /// Pairs that come within this are left [m], where their list says nothing else.
     reach: f64,
     /// Largest coordinate [m].
     farthest: f32,
 }
 
-impl Sieve {
-    /// For features within `reach` [m] of each other. Edges that pass by each other are sifted out as well: the
-    /// lines through them are nearest where one of the edges is not.
+impl SeparationFilter {
+    /// For features within `reach` [m] of each other. Also discards edges that pass by each other: the lines
+    /// through them are nearest beyond the end of one.
     pub fn still(x: &[Vec3], reach: f64) -> Self {
         Self::new(x, None, reach)
     }
 
-    /// For features that come within `reach` [m] on their way, all going at one pace.
+    /// For features that come within `reach` [m] on their trajectories, all at one pace.
     pub fn together(from: &[Vec3], to: &[Vec3], reach: f64) -> Self {
         Self::new(from, Some(to), reach)
     }
@@ -70,16 +70,15 @@ impl Sieve {
         }
     }
 
-    /// How near features come that are left [m].
+    /// Pairs that come within this are left [m].
     pub fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// Which of some features may come within so much of each other on their way [m], as bits for every sixteen
-    /// of them.
-    fn sift(&self, features: Sifted, hits: &[[u32; 2]], reach: &[f32], left: &mut Vec<u16>) {
-        Arch::new().dispatch(Sift {
-            sieve: self,
+    /// Which pairs may come within their reach [m], as bits for every sixteen of them.
+    fn filter(&self, features: Filtered, hits: &[[u32; 2]], reach: &[f32], left: &mut Vec<u16>) {
+        Arch::new().dispatch(Filter {
+            filter: self,
             features,
             hits,
             reach,
@@ -88,24 +87,24 @@ impl Sieve {
     }
 }
 
-/// What was found in some pairs of clusters.
+/// Candidate pairs of features found in some pairs of leaves.
 #[derive(Debug, Default)]
-pub struct Looked {
+pub struct Candidates {
     /// The features.
     pub hits: Hits,
-    /// How near each vertex and face, and each two edges, come that count [m].
+    /// Reach of each pair of a vertex and a face, and of each of two edges [m].
     reach: [Vec<f32>; 2],
     left: Vec<u16>,
 }
 
-impl Looked {
+impl Candidates {
     /// Empties it.
     pub fn clear(&mut self) {
         self.hits.clear();
         self.reach.iter_mut().for_each(Vec::clear);
     }
 
-    /// Takes note of how near those features come that count of which it is not noted yet [m].
+    /// Sets the reach of the pairs added since it was set last [m].
     pub fn come_within(&mut self, reach: f64) {
         let reach = (reach as f32).next_up();
         let hits = [&self.hits.vertex_face, &self.hits.edge_edge];
@@ -114,19 +113,19 @@ impl Looked {
         }
     }
 
-    /// Takes out what a sieve tells apart.
-    pub fn sift(&mut self, sieve: &Sieve, cloth: &SurfaceView) {
+    /// Discards the pairs that a filter separates.
+    pub fn discard(&mut self, filter: &SeparationFilter, cloth: &SurfaceView) {
         let [faces, edges] = &self.reach;
-        let features = Sifted::VertexFace(cloth.triangles);
-        sieve.sift(features, &self.hits.vertex_face, faces, &mut self.left);
+        let features = Filtered::VertexFace(cloth.triangles);
+        filter.filter(features, &self.hits.vertex_face, faces, &mut self.left);
         keep(&mut self.hits.vertex_face, &self.left);
-        let features = Sifted::EdgeEdge(cloth.edges);
-        sieve.sift(features, &self.hits.edge_edge, edges, &mut self.left);
+        let features = Filtered::EdgeEdge(cloth.edges);
+        filter.filter(features, &self.hits.edge_edge, edges, &mut self.left);
         keep(&mut self.hits.edge_edge, &self.left);
     }
 }
 
-/// Leaves the hits that are named.
+/// Keeps the hits whose bits are set.
 fn keep(hits: &mut Vec<[u32; 2]>, left: &[u16]) {
     let mut count = 0;
     for (block, &bits) in left.iter().enumerate() {
@@ -140,20 +139,21 @@ fn keep(hits: &mut Vec<[u32; 2]>, left: &[u16]) {
     hits.truncate(count);
 }
 
-struct Sift<'a> {
-    sieve: &'a Sieve,
-    features: Sifted<'a>,
+/// A filtering. A type of its own, to be compiled for the processor's vectors.
+struct Filter<'a> {
+    filter: &'a SeparationFilter,
+    features: Filtered<'a>,
     hits: &'a [[u32; 2]],
     reach: &'a [f32],
     left: &'a mut Vec<u16>,
 }
 
-impl WithSimd for Sift<'_> {
+impl WithSimd for Filter<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let rounding = ROUNDING * self.sieve.farthest;
+        let rounding = ROUNDING * self.filter.farthest;
         self.left.clear();
         for (hits, reach) in self.hits.chunks(LANES).zip(self.reach.chunks(LANES)) {
             let mut room = Row::splat(rounding);
@@ -162,17 +162,17 @@ impl WithSimd for Sift<'_> {
             }
             let mut apart = Row::splat(0.0);
             match self.features {
-                Sifted::VertexFace(triangles) => {
+                Filtered::VertexFace(triangles) => {
                     let corners = of_faces(triangles, hits);
                     for part in 0..parts::<S>() {
-                        let told = self.sieve.vertices_and_faces(simd, &corners, &room, part);
+                        let told = self.filter.vertices_and_faces(simd, &corners, &room, part);
                         apart.set_part::<S>(part, told);
                     }
                 }
-                Sifted::EdgeEdge(edges) => {
+                Filtered::EdgeEdge(edges) => {
                     let corners = of_edges(edges, hits);
                     for part in 0..parts::<S>() {
-                        let told = self.sieve.edges(simd, &corners, &room, part);
+                        let told = self.filter.edges(simd, &corners, &room, part);
                         apart.set_part::<S>(part, told);
                     }
                 }
@@ -234,14 +234,14 @@ fn place<F>([x, y, z, _]: [F; 4]) -> Triple<F> {
     [x, y, z]
 }
 
-/// One where told, else zero.
+/// One where a mask is set, else zero.
 #[inline(always)]
-fn flag<S: Simd>(simd: S, told: S::m32s) -> S::f32s {
-    simd.select_f32s(told, simd.splat_f32s(1.0), simd.splat_f32s(0.0))
+fn flag<S: Simd>(simd: S, mask: S::m32s) -> S::f32s {
+    simd.select_f32s(mask, simd.splat_f32s(1.0), simd.splat_f32s(0.0))
 }
 
-impl Sieve {
-    /// One where a vertex and a face keep apart.
+impl SeparationFilter {
+    /// One where a vertex and a face are separated.
     #[inline(always)]
     fn vertices_and_faces<S: Simd>(
         &self,
@@ -261,7 +261,7 @@ impl Sieve {
         flag(simd, apart)
     }
 
-    /// One where two edges keep apart, or pass by each other where nothing moves.
+    /// One where two edges are separated, or pass by each other where nothing moves.
     #[inline(always)]
     fn edges<S: Simd>(&self, simd: S, corners: &[Corner; 4], room: &Row, part: usize) -> S::f32s {
         let p = places(simd, &self.from, corners, part);
@@ -289,24 +289,24 @@ mod tests {
     const FACE: [[u32; 3]; 1] = [[1, 2, 3]];
     const EDGES: [[u32; 2]; 2] = [[0, 1], [2, 3]];
 
-    /// Whether a sieve leaves the features of four vertices, at any width of vectors.
-    fn leaves(sieve: &Sieve, edges: bool, reach: f64) -> bool {
+    /// Whether a filter leaves the features of four vertices, at any width of vectors.
+    fn leaves(filter: &SeparationFilter, edges: bool, reach: f64) -> bool {
         let (features, hit) = match edges {
-            true => (Sifted::EdgeEdge(&EDGES), [0, 1]),
-            false => (Sifted::VertexFace(&FACE), [0, 0]),
+            true => (Filtered::EdgeEdge(&EDGES), [0, 1]),
+            false => (Filtered::VertexFace(&FACE), [0, 0]),
         };
         let (hits, reach) = ([hit; 20], [reach as f32; 20]);
         let mut left = Vec::new();
-        sieve.sift(features, &hits, &reach, &mut left);
+        filter.filter(features, &hits, &reach, &mut left);
         let mut narrow = Vec::new();
-        let sift = Sift {
-            sieve,
+        let narrowed = Filter {
+            filter,
             features,
             hits: &hits,
             reach: &reach,
             left: &mut narrow,
         };
-        sift.with_simd(pulp::Scalar);
+        narrowed.with_simd(pulp::Scalar);
         for left in [&left, &narrow] {
             assert!(matches!(left[..], [0, 0] | [0xffff, 0xf]), "{left:x?}");
         }
@@ -359,11 +359,11 @@ mod tests {
                 .fold(f64::INFINITY, f64::min);
             for share in [0.5, 0.9, 1.000_001] {
                 let reach = share * least;
-                let sieve = match moving {
-                    true => Sieve::together(&from, &to, reach),
-                    false => Sieve::still(&from, reach),
+                let filter = match moving {
+                    true => SeparationFilter::together(&from, &to, reach),
+                    false => SeparationFilter::still(&from, reach),
                 };
-                let left = leaves(&sieve, edges, reach);
+                let left = leaves(&filter, edges, reach);
                 let counts =
                     moving || !edges || Nearness::measure(pair(edges), &from, reach).is_some();
                 assert!(
@@ -392,8 +392,8 @@ mod tests {
                 places
             };
             let [first, last] = [spoiled(&from, at), spoiled(&to, at.wrapping_sub(4))];
-            let sieve = Sieve::together(&first, &last, 1e-6);
-            assert!(leaves(&sieve, edges, 1e-6), "{k} {first:?} {last:?}");
+            let filter = SeparationFilter::together(&first, &last, 1e-6);
+            assert!(leaves(&filter, edges, 1e-6), "{k} {first:?} {last:?}");
         }
     }
 }

@@ -1,0 +1,220 @@
+//! Detection of contacts of cloth with cloth: the laws of contact with a surface, on the vector
+//! between two features in place of the point.
+
+use super::bound::{ImpactStats, resolve_impacts, truncate_moves};
+use super::cloth_contact::ClothContact;
+use super::contact_set::ContactSet;
+use super::curvature::Clearance;
+use super::entanglement::Entanglement;
+use super::exemptions::ContactExemptions;
+use super::fade::fade;
+use super::friction_memory;
+use super::memory::ClothMemory;
+use super::motions::Motions;
+use super::nearness::Nearness;
+use super::proximity::nearnesses;
+use super::reach::Reach;
+use super::surface::{ClothSurface, Near};
+use super::trajectories::LinearTrajectories;
+use crate::Model;
+use crate::laws::contact::{ContactLaw, ContactPlane};
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+use std::sync::Arc;
+use toile_geometry::Vec3;
+
+/// The search structures of contact of cloth with cloth. What is found is in a [`ContactSet`]; nothing
+/// found before but lists of near pairs, which are more than those in reach, stays here.
+#[derive(Clone, Debug, Default)]
+pub struct ContactDetector {
+    surface: ClothSurface,
+    /// The model the surface was made for.
+    made_for: Option<Model>,
+}
+
+/// Contacts are kept from this many offsets away, so that a step is stopped before it lands.
+const REACH_IN_OFFSETS: f64 = 2.0;
+
+/// Share of the offset that two cloths give way by before their contact is hard.
+const HARD_FROM: f64 = 0.75;
+
+/// How far the vertices of a region that a search left out may move against each other before it is
+/// searched again [m].
+const BEYOND: f64 = 1e-3;
+
+impl ContactDetector {
+    /// The clearance of regions that a search leaves out, for cloth that is kept `offset` [m] apart.
+    pub fn clearance(offset: f64) -> Clearance {
+        Clearance {
+            kept: offset,
+            beyond: BEYOND,
+        }
+    }
+
+    /// The surface of a model's cloth, made anew where it was of another's.
+    fn surface(&mut self, model: &Model) -> &mut ClothSurface {
+        let fits = |of: &Model| of.has_cloth_of(model) && Arc::ptr_eq(&of.layer, &model.layer);
+        if !self.made_for.as_ref().is_some_and(fits) {
+            self.surface = ClothSurface::new(model);
+            self.made_for = Some(model.clone());
+        }
+        &mut self.surface
+    }
+
+    /// Has the next detection search the whole surface, so that it does not depend on those before.
+    pub fn forget(&mut self) {
+        self.surface.forget();
+    }
+
+    /// Finds contacts within `reach` at positions `x`, crossings, and layers in disorder, and what follows from
+    /// them. `memory` is what the last step left. Replaces everything in `set` but the tally, to which it
+    /// adds.
+    pub fn detect(
+        &mut self,
+        model: &Model,
+        memory: &ClothMemory,
+        x: &[Vec3],
+        reach: &Reach,
+        set: &mut ContactSet,
+    ) {
+        set.contacts.clear();
+        set.recovery.clear();
+        set.exemptions.reset(model);
+        (set.crossings, set.violations, set.layer_reach) = (0, 0, None);
+        if model.contact.cloth_offset <= 0.0 {
+            return;
+        }
+        let clearance = Self::clearance(model.contact.cloth_offset);
+        self.surface(model)
+            .look(LinearTrajectories::still(x), reach, clearance);
+        let entangled = Entanglement::find(&self.surface, &model.policies, x, memory.stray_reach);
+        set.crossings = entangled.crossing_count();
+        set.violations = entangled.violations.len();
+        set.layer_reach = Some(entangled.layer_reach);
+        set.tally.count_look(set.crossings, set.violations);
+        (set.exemptions).mark(&self.surface, &entangled, &memory.crossed_for);
+        let exemptions = &set.exemptions;
+        let mut found = nearnesses(&self.surface, Near::Listed, x, reach);
+        found.retain(|near| {
+            let vertices = near.pair.vertices();
+            let fixed = vertices
+                .iter()
+                .all(|&v| model.prescribed.pinned[v as usize]);
+            !fixed && !exemptions.exempts_contact(near.pair)
+        });
+        let contacts = found.par_iter().with_min_len(256);
+        (set.contacts).par_extend(contacts.map(|near| self.contact(model, memory, x, near)));
+        (set.recovery).plan(&self.surface, model, &entangled, (x, &memory.drawn));
+    }
+
+    /// [`Self::detect`] within the usual reach. The stiffness of two edges fades in where their contact would
+    /// come and go at once.
+    pub fn refresh(
+        &mut self,
+        model: &Model,
+        memory: &ClothMemory,
+        x: &[Vec3],
+        set: &mut ContactSet,
+    ) {
+        let reach = Reach::all(REACH_IN_OFFSETS * model.contact.cloth_offset);
+        self.detect(model, memory, x, &reach, set);
+        for contact in &mut set.contacts {
+            let fade = fade(contact, x);
+            contact.law.normal *= fade;
+            contact.law.tangential *= fade;
+        }
+    }
+
+    fn contact(
+        &self,
+        model: &Model,
+        memory: &ClothMemory,
+        x: &[Vec3],
+        near: &Nearness,
+    ) -> ClothContact {
+        let vertices = near.pair.vertices();
+        let of = |values: &[f64]| {
+            let four = vertices.iter().zip(near.weights);
+            0.5 * four
+                .map(|(&v, w)| values[v as usize] * w.abs())
+                .sum::<f64>()
+        };
+        let offset = model.contact.cloth_offset;
+        let kept = self.surface.kept(near.pair, near.neighbours, offset);
+        // Each side's vertices see the other's faces: half the area each.
+        let normal = 0.5 * model.contact.stiffness * of(&self.surface.area);
+        let between = near.normal * near.distance;
+        let (anchor, force) = friction_memory::anchor(memory, near, x).unwrap_or((between, 0.0));
+        let friction = if model.contact.friction {
+            of(&self.surface.friction)
+        } else {
+            0.0
+        };
+        ClothContact {
+            vertices,
+            weights: near.weights,
+            plane: ContactPlane {
+                point: between,
+                depth: kept - near.distance,
+                gradient: near.normal,
+                normal: near.normal,
+                hollow: Matrix3::zeros(),
+                bulge: Matrix3::zeros(),
+                anchor,
+                lagged_normal_force: force,
+                returning: false,
+                landing: false,
+            },
+            law: ContactLaw {
+                normal,
+                // What presses harder than the soft contact can slips no farther before it slides.
+                tangential: 0.5 * normal.max(force / kept),
+                friction,
+                hard_from: HARD_FROM * kept,
+            },
+            restitution: self.restitution(vertices, near.weights),
+            pair: Some(near.pair),
+        }
+    }
+
+    /// The mean restitution, by weight, of those of the vertices that have one.
+    fn restitution(&self, vertices: [u32; 4], weights: [f64; 4]) -> Option<f64> {
+        let (mut sum, mut all) = (0.0, 0.0);
+        for (v, w) in vertices.into_iter().zip(weights) {
+            if let Some(e) = self.surface.restitution[v as usize] {
+                sum += e * w.abs();
+                all += w.abs();
+            }
+        }
+        (all > 0.0).then(|| sum / all)
+    }
+
+    /// Corrects a motion so that cloth does not pass through cloth, pairs that are exempt left alone.
+    pub fn resolve_impacts(
+        &mut self,
+        model: &Model,
+        exemptions: &ContactExemptions,
+        motion: &mut Motions,
+    ) -> ImpactStats {
+        if model.contact.cloth_offset <= 0.0 {
+            return ImpactStats::default();
+        }
+        let clearance = Self::clearance(model.contact.cloth_offset);
+        resolve_impacts(self.surface(model), exemptions, motion, clearance)
+    }
+
+    /// Shortens moves from `x` so that cloth does not pass through cloth, pairs that are exempt left alone;
+    /// returns the number of vertices held back.
+    pub fn truncate_moves(
+        &mut self,
+        model: &Model,
+        exemptions: &ContactExemptions,
+        x: &[Vec3],
+        moves: &mut [Vec3],
+    ) -> usize {
+        if model.contact.cloth_offset <= 0.0 {
+            return 0;
+        }
+        truncate_moves(self.surface(model), exemptions, x, moves)
+    }
+}

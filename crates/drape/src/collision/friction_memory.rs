@@ -1,0 +1,44 @@
+//! Friction of cloth on cloth from step to step: how far each contact has slid since it stuck.
+
+use super::cloth_contact::ClothContact;
+use super::memory::{ClothMemory, ContactFrictionState};
+use super::nearness::Nearness;
+use toile_geometry::Vec3;
+
+/// Where friction holds two features that pressed in the last step: the vector between them when they
+/// stuck [m], and the normal force then [N]. None where they did not press.
+pub(super) fn anchor(memory: &ClothMemory, near: &Nearness, x: &[Vec3]) -> Option<(Vec3, f64)> {
+    let at = memory
+        .held
+        .binary_search_by(|held| held.pair.cmp(&near.pair))
+        .ok()?;
+    let held = &memory.held[at];
+    let four = near.pair.vertices().into_iter().zip(near.weights);
+    let slid: Vec3 = four
+        .map(|(v, w)| (x[v as usize] - memory.places[v as usize]) * w)
+        .sum();
+    let between = near.normal * near.distance;
+    Some((between - held.slip - slid, held.force))
+}
+
+/// The friction of contacts that press at positions `x`, in order of their features.
+pub(super) fn after_step(contacts: &[ClothContact], x: &[Vec3]) -> Vec<ContactFrictionState> {
+    let mut held = Vec::new();
+    for contact in contacts {
+        let Some(pair) = contact.pair else { continue };
+        let between = contact.between(x);
+        let force = contact.law.normal_force(&contact.plane, between);
+        if force > 0.0 && contact.law.friction > 0.0 {
+            let anchor = contact.law.slide(&contact.plane, between, force);
+            let slip = between - anchor;
+            let n = contact.plane.normal;
+            held.push(ContactFrictionState {
+                pair,
+                slip: slip - n * slip.dot(&n),
+                force,
+            });
+        }
+    }
+    held.sort_unstable_by_key(|held| held.pair);
+    held
+}
