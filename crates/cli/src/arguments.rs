@@ -84,6 +84,11 @@ pub enum Task {
     /// Exit status 0 if every explicit method blows up at its limit and no method goes on with an
     /// impossible state in a hard case; 1 if not, naming each.
     Stability(StabilityTask),
+    /// Measure what is claimed of speed and accuracy, a table a claim (docs/ACCURACY.md).
+    ///
+    /// Laws, stability, speed against accuracy, garments, layers, contact, factorisation, meshes,
+    /// markers, drags: about ten minutes on two cores. Nothing is written without --write.
+    Accuracy(AccuracyTask),
     /// Time benchmarks on frozen scenes, each with one thread and with two (s).
     Bench(BenchTask),
 }
@@ -100,9 +105,6 @@ pub struct ChartTask {
     /// Folder to write into; it is made if need be.
     #[arg(long, value_name = "DIR", default_value = "out/chart")]
     pub out: PathBuf,
-    /// Also put the table of which method to use into this document, between its markers.
-    #[arg(long, value_name = "FILE", hide = true)]
-    pub into: Option<PathBuf>,
     /// Make the standard scenes anew in this folder instead.
     #[arg(long, value_name = "DIR", hide = true)]
     pub freeze: Option<PathBuf>,
@@ -117,9 +119,21 @@ pub struct StabilityTask {
     /// Folder to write into; it is made if need be.
     #[arg(long, value_name = "DIR", default_value = "out/stability")]
     pub out: PathBuf,
-    /// Also put the tables into this document, between its markers.
-    #[arg(long, value_name = "FILE", hide = true)]
-    pub into: Option<PathBuf>,
+}
+
+/// `toile accuracy`.
+#[derive(Debug, Args)]
+pub struct AccuracyTask {
+    /// Sections to measure or to list; `--list` names them. Default: all.
+    #[arg(value_name = "SECTION")]
+    pub sections: Vec<String>,
+    /// Put the sections into this document (Markdown), each between `<!-- SECTION -->` and
+    /// `<!-- /SECTION -->`, or at its end; charts go into the folder charts beside it.
+    #[arg(long, value_name = "FILE")]
+    pub write: Option<PathBuf>,
+    /// List the sections with their commands instead of measuring them.
+    #[arg(long, conflicts_with = "write")]
+    pub list: bool,
 }
 
 /// `toile bench`.

@@ -1,11 +1,12 @@
-//! Commands of the laboratory: laws, chart, stability, benchmarks.
+//! Commands of the laboratory: laws, chart, stability, page of accuracy, benchmarks.
 
-use crate::arguments::{BenchTask, ChartTask, StabilityTask, Validate};
+use crate::arguments::{AccuracyTask, BenchTask, ChartTask, StabilityTask, Validate};
 use crate::bar::Bar;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use toile_lab::{ChartPlan, Check, HardRun, LabError, Law, Limit, Outcome};
+use toile_lab::{ChartPlan, Check, HardRun, LabError, Law, Limit, Outcome, Section};
+use toile_session::Watcher;
 
 impl From<LabError> for Failure {
     fn from(error: LabError) -> Self {
@@ -23,6 +24,7 @@ pub fn validate(validate: &Validate, output: &Output) -> Result<Value, Failure> 
     }
     let checks = toile_lab::validate(&validate.laws, &mut Bar::new())?;
     output.say(toile_lab::table(&checks));
+    output.say(toile_lab::law_table(&checks));
     let failed = checks.iter().filter(|check| !check.passed()).count();
     let listed: Vec<Value> = checks
         .iter()
@@ -73,14 +75,6 @@ fn write_files(
     Ok(written)
 }
 
-/// Replaces a section of a document.
-fn write_section(document: Option<&Path>, name: &str, text: &str) -> Result<(), Failure> {
-    match document {
-        Some(path) => Ok(toile_lab::write_section(path, name, text)?),
-        None => Ok(()),
-    }
-}
-
 /// Speed against accuracy.
 pub fn chart(task: &ChartTask, output: &Output) -> Result<Value, Failure> {
     let mut bar = Bar::new();
@@ -98,7 +92,7 @@ pub fn chart(task: &ChartTask, output: &Output) -> Result<Value, Failure> {
     } else {
         ChartPlan::FULL
     };
-    toile_lab::ready_to_write(&task.out, task.into.as_deref())?;
+    toile_lab::ready_to_write(&task.out, None)?;
     let data = toile_lab::chart(&task.scenes, plan, &mut bar)?;
     let mut files = toile_lab::chart_files(&data)?;
     if !task.quick && task.scenes.is_empty() {
@@ -108,13 +102,12 @@ pub fn chart(task: &ChartTask, output: &Output) -> Result<Value, Failure> {
     let table = toile_lab::when_to_use(&data);
     output.say(&table);
     let written = write_files(&task.out, &files, output)?;
-    write_section(task.into.as_deref(), "chart", &table)?;
     Ok(json!({ "files": written, "chart": data }))
 }
 
 /// Where methods fail.
 pub fn stability(task: &StabilityTask, output: &Output) -> Result<Value, Failure> {
-    toile_lab::ready_to_write(&task.out, task.into.as_deref())?;
+    toile_lab::ready_to_write(&task.out, None)?;
     let mut bar = Bar::new();
     let cells = toile_lab::stability_map(&mut bar)?;
     let limits = toile_lab::limits(&mut bar)?;
@@ -124,7 +117,6 @@ pub fn stability(task: &StabilityTask, output: &Output) -> Result<Value, Failure
     output.say(&table);
     let files = toile_lab::stability_files(&cells, &limits, &hard)?;
     let written = write_files(&task.out, &files, output)?;
-    write_section(task.into.as_deref(), "stability", &table)?;
     let report = json!({ "files": written, "limits": limits, "hard_cases": hard });
     let broken = what_does_not_hold(&limits, &hard);
     if broken.is_empty() {
@@ -151,6 +143,56 @@ fn what_does_not_hold(limits: &[Limit], hard: &[HardRun]) -> Vec<String> {
             )
         });
     missed.chain(unsound).collect()
+}
+
+/// The page of accuracy.
+pub fn accuracy(task: &AccuracyTask, output: &Output) -> Result<Value, Failure> {
+    let chosen = toile_lab::sections_named(&task.sections)?;
+    if task.list {
+        return Ok(list_sections(&chosen, output));
+    }
+    if let Some(document) = &task.write {
+        toile_lab::ready_to_write(&toile_lab::charts_beside(document), Some(document))?;
+    }
+    let mut measured = Vec::new();
+    for (number, section) in chosen.iter().enumerate() {
+        let mut bar = Bar::new();
+        let place = format!("{}, {} of {}", section.name, number + 1, chosen.len());
+        let found = section.measure(&mut |stage: &str, share: f64, detail: &str| {
+            bar.progress(&place, share, &format!("{stage} {detail}"))
+        })?;
+        drop(bar);
+        output.say(format!("{}\n", found.text));
+        measured.push(found);
+    }
+    output.say(toile_lab::provenance());
+    let written = match &task.write {
+        Some(document) => toile_lab::write_page(document, &measured)?,
+        None => Vec::new(),
+    };
+    for path in &written {
+        output.say(format!("wrote {}", path.display()));
+    }
+    let listed = measured.iter().map(|found| {
+        json!({ "name": found.name, "text": found.text, "wall_s": found.wall_s, "cpu_s": found.cpu_s })
+    });
+    Ok(json!({
+        "sections": listed.collect::<Vec<_>>(),
+        "measured": toile_lab::provenance(),
+        "files": written,
+    }))
+}
+
+/// Names sections with the commands that measure the same.
+fn list_sections(sections: &[&Section], output: &Output) -> Value {
+    for section in sections {
+        output.say(format!("{:<10} {}", section.name, section.command));
+    }
+    let listed: Vec<Value> = sections
+        .iter()
+        .map(|section| json!({ "name": section.name, "title": section.title, "command": section.command }))
+        .collect();
+    json!({ "sections": listed })
 }
 
 /// Benchmarks.

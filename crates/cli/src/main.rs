@@ -62,6 +62,7 @@ fn run(task: Task, output: &Output) -> Result<serde_json::Value, Failure> {
         Task::Validate(validate) => lab_commands::validate(&validate, output),
         Task::Chart(chart) => lab_commands::chart(&chart, output),
         Task::Stability(stability) => lab_commands::stability(&stability, output),
+        Task::Accuracy(accuracy) => lab_commands::accuracy(&accuracy, output),
         Task::Bench(bench) => lab_commands::bench(&bench, output),
     }
 }

@@ -22,13 +22,15 @@ fn words(bytes: &[u8]) -> String {
 #[test]
 fn names_that_do_not_exist_exit_with_2_and_the_names_there_are_even_where_they_are_listed() {
     let folder = tempfile::tempdir().unwrap();
-    let cases: [(&[&str], &str); 6] = [
+    let cases: [(&[&str], &str); 8] = [
         (&["validate", "gravity"], "cantilever, resolution"),
         (&["validate", "gravity", "--list"], "cantilever, resolution"),
         (&["chart", "moon"], "cantilever, hang"),
         (&["bench", "moon"], "rest-"),
         (&["bench", "moon", "--list"], "--list"),
         (&["stability", "moon"], "moon"),
+        (&["accuracy", "moon"], "laws, stability"),
+        (&["accuracy", "moon", "--list"], "laws, stability"),
     ];
     for (arguments, named) in cases {
         let output = toile(folder.path(), arguments);
@@ -75,14 +77,46 @@ fn laws_that_are_met_exit_with_0_and_the_report_has_every_tolerance() {
 }
 
 #[test]
+fn a_section_of_the_page_of_accuracy_is_measured_and_written_and_the_rest_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("page.md");
+    let around = [
+        "# By hand\n\n<!-- meshes -->\n",
+        "\n<!-- /meshes -->\n\nBy hand too.\n",
+    ];
+    std::fs::write(&page, around.join("old")).unwrap();
+    let output = toile(folder.path(), &["accuracy", "meshes", "--write", "page.md"]);
+    assert_eq!(output.status.code(), Some(0), "{}", words(&output.stderr));
+    let text = std::fs::read_to_string(&page).unwrap();
+    let section = text.strip_prefix(around[0]).unwrap();
+    let section = section.strip_suffix(around[1]).unwrap();
+    assert!(section.starts_with("## Meshes\n\n"), "{section}");
+    for words in ["| T-shirt | ", "`toile mesh PATTERN", " threads, "] {
+        assert!(section.contains(words), "{words:?} in {section}");
+    }
+    assert!(
+        words(&output.stdout).contains(
+            section
+                .lines()
+                .last()
+                .unwrap()
+                .split(" Commit")
+                .next()
+                .unwrap()
+        )
+    );
+    // Nothing else is left beside it.
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
 fn a_place_that_cannot_be_written_is_refused_before_the_long_work() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("taken"), "kept").unwrap();
-    let cases: [&[&str]; 4] = [
+    let cases: [&[&str]; 3] = [
         &["stability", "--out", "taken"],
-        &["stability", "--into", "gone.md"],
         &["chart", "--out", "taken"],
-        &["chart", "--into", "gone.md"],
+        &["accuracy", "--write", "gone.md"],
     ];
     for arguments in cases {
         let start = std::time::Instant::now();

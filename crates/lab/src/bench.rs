@@ -2,10 +2,11 @@
 
 use crate::chart_contact::crossed;
 use crate::clock::Clock;
+use crate::factor::Lattice;
 use crate::scenes::card;
 use crate::square::{SIDES, Square};
+use crate::timed::Timed;
 use crate::{LabError, subdivided};
-use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use toile_drape::{
@@ -13,27 +14,6 @@ use toile_drape::{
     Stage, State, System,
 };
 use toile_session::Watcher;
-
-/// One benchmark at one number of threads.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Timed {
-    /// Its name.
-    pub name: String,
-    /// Threads it was given.
-    pub threads: usize,
-    /// Vertices of the cloth.
-    pub vertices: usize,
-    /// Wall time [s].
-    pub wall_s: f64,
-    /// Processor time of the process [s].
-    pub cpu_s: Option<f64>,
-    /// What else was counted: steps, residual, times of stages [s].
-    pub counted: BTreeMap<String, f64>,
-    /// A table of its own.
-    pub report: Option<String>,
-    /// Why it did not end.
-    pub failure: Option<String>,
-}
 
 /// What a benchmark does.
 #[derive(Clone, Copy)]
@@ -56,6 +36,8 @@ enum Work {
     Contact(usize),
     /// The square of so many vertices a side that falls on the ball, kept from passing through itself.
     Touching(u32),
+    /// Factorisation of a matrix of about so many vertices.
+    Factor(Lattice, usize),
     /// Points dragged in a large pattern and in those that ship, one thread.
     Drag,
 }
@@ -110,6 +92,12 @@ fn all() -> Vec<(String, Work)> {
     for side in [SIDES[1], SIDES[2]] {
         list.push((format!("sphere-{side}-touching"), Work::Touching(side)));
     }
+    for (name, lattice) in [("sheet", Lattice::Sheet), ("tube", Lattice::Tube)] {
+        for thousands in [10, 30, 100] {
+            let work = Work::Factor(lattice, 1000 * thousands);
+            list.push((format!("factor-{name}-{thousands}k"), work));
+        }
+    }
     list.push(("rest-shirt-1k".to_owned(), Work::Rest(0, 1e-2)));
     list.push(("rest-shirt-6k".to_owned(), Work::Rest(1, 1e-3)));
     list.push(("rest-shirt-22k".to_owned(), Work::Rest(2, 1e-3)));
@@ -128,6 +116,7 @@ fn is_long(name: &str, work: Work) -> bool {
     match work {
         Work::Square(_, side, kind) => side > SIDES[1] || kind != MethodKind::PatchVerlet,
         Work::DetectSheet(cells) => cells > 700,
+        Work::Factor(_, vertices) => vertices > 50_000,
         _ => matches!(name, "rest-shirt-22k" | "rest-shirt-90k"),
     }
 }
@@ -213,6 +202,9 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
         Work::DetectSheet(cells) => crate::detect::sheet(cells, &mut result)?,
         Work::DetectShirt(cuts) => crate::detect::shirt(cuts, &mut result)?,
         Work::Contact(cells) => crate::detect::cost(cells, &mut result)?,
+        Work::Factor(lattice, vertices) => {
+            crate::factor::factor((lattice, vertices), &mut result)?;
+        }
         Work::Drag => crate::drag::drag(&mut result)?,
         Work::Nest => crate::nest::nest(threads, &mut result)?,
         Work::NestQueries => crate::nest::queries(threads, &mut result)?,
@@ -382,10 +374,17 @@ pub fn bench_table(found: &[Timed]) -> String {
                 .map_or(String::new(), |f| format!("; {f}")),
         );
     }
-    for report in found.iter().filter_map(|t| t.report.as_ref()) {
-        let _ = write!(text, "\n{report}");
+    let reports = bench_report(found);
+    if reports.is_empty() {
+        return text;
     }
-    text
+    text + "\n" + &reports
+}
+
+/// The tables that benchmarks have of their own, as Markdown.
+pub fn bench_report(found: &[Timed]) -> String {
+    let reports: Vec<&str> = found.iter().filter_map(|t| t.report.as_deref()).collect();
+    reports.join("\n")
 }
 
 #[cfg(test)]

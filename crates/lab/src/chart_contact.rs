@@ -237,8 +237,14 @@ pub fn contact_table(found: &[Touched]) -> String {
         }
         _ => "failed".to_owned(),
     };
+    let mut without_end = Vec::new();
     for three in found.chunks(OFFSETS.len()) {
         let p = &three[0];
+        if three.iter().all(|p| p.failure.is_some()) {
+            let step = significant(1e3 * p.step, 2);
+            without_end.push(format!("{} by {} ({step} ms)", p.scene, p.method));
+            continue;
+        }
         let cells: Vec<String> = three.iter().map(cell).collect();
         let _ = writeln!(
             text,
@@ -248,6 +254,13 @@ pub fn contact_table(found: &[Touched]) -> String {
             p.method,
             significant(1e3 * p.step, 2),
             cells.join(" | ")
+        );
+    }
+    if !without_end.is_empty() {
+        let list = without_end.join(", ");
+        let _ = writeln!(
+            text,
+            "\nNo run of these came to its end; the reasons stand in the CSV: {list}."
         );
     }
     text
@@ -274,7 +287,20 @@ mod tests {
         let with = fell(&system);
         assert!(without.crossings > Some(10), "{without:?}");
         assert_eq!((with.crossings, with.pieces), (Some(0), 1), "{with:?}");
-        let text = contact_table(&[without.clone(), with.clone(), with]);
-        assert!(text.contains("| fall | "), "{text}");
+        let lost = Touched {
+            scene: "sphere",
+            failure: Some("not done".to_owned()),
+            ..with.clone()
+        };
+        let three = [without.clone(), with.clone(), with];
+        let text = contact_table(&[&three[..], &vec![lost; 3]].concat());
+        assert!(
+            text.contains("| fall | ") && !text.contains("| sphere"),
+            "{text}"
+        );
+        assert!(
+            text.contains("in the CSV: sphere by xpbd (17 ms).\n"),
+            "{text}"
+        );
     }
 }

@@ -7,7 +7,7 @@ use crate::{LabError, Resolved};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use toile_drape::MethodKind;
-use toile_interchange::{read_text, write_all_atomically, write_atomically};
+use toile_interchange::{read_text, write_all_atomically};
 use toile_picture::{Axis, Chart, Joined, Marker, Series, palette};
 
 /// A field of a CSV file.
@@ -265,7 +265,7 @@ pub fn when_to_use(data: &ChartData) -> String {
         let failed = own.iter().filter(|p| p.failure.is_some()).count();
         let _ = writeln!(text, " {failed} of {} |", own.len());
     }
-    text.push_str("\nTo rest (net force 1e-3 of the weight or less):\n\n| scene | vertices | fastest | processor ms | wall ms | distance to rest, mm |\n|---|---|---|---|---|---|\n");
+    text.push_str("\nTo rest, by the net force over the weight that was asked for:\n\n| scene | vertices | asked | fastest | processor ms | wall ms | distance to rest, mm |\n|---|---|---|---|---|---|---|\n");
     let mut meshes: Vec<&str> = data.rest.iter().map(|p| p.mesh.as_str()).collect();
     meshes.dedup();
     for mesh in meshes {
@@ -282,7 +282,7 @@ pub fn when_to_use(data: &ChartData) -> String {
         let _ = match good.min_by(|a, b| a.cost().total_cmp(&b.cost())) {
             Some(p) => writeln!(
                 text,
-                "| {} | {} | {} | {} | {} | {} |",
+                "| {} | {} | {asked:.0e} | {} | {} | {} | {} |",
                 p.scene,
                 p.vertices,
                 p.method,
@@ -292,7 +292,7 @@ pub fn when_to_use(data: &ChartData) -> String {
             ),
             None => writeln!(
                 text,
-                "| {} | {} | none | - | - | - |",
+                "| {} | {} | {asked:.0e} | none | - | - | - |",
                 own[0].scene, own[0].vertices
             ),
         };
@@ -358,17 +358,6 @@ pub fn ready_to_write(folder: &Path, document: Option<&Path>) -> Result<(), LabE
         Some(Err(error)) => Err(failed(error.to_string())),
         _ => Ok(()),
     }
-}
-
-/// Replaces a section of a document on the disk, see [`with_section`].
-///
-/// # Errors
-/// The document cannot be read or written.
-pub fn write_section(path: &Path, name: &str, section: &str) -> Result<(), LabError> {
-    let failed = |what: String| LabError::Files { what };
-    let text = read_text(path).map_err(|error| failed(error.to_string()))?;
-    write_atomically(path, with_section(&text, name, section).as_bytes())
-        .map_err(|error| failed(error.to_string()))
 }
 
 #[cfg(test)]

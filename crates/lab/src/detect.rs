@@ -2,10 +2,10 @@
 //! shirt, with regions left out by their curvature and with all looked into; and what contact adds to
 //! a frame of cloth that lies in folds.
 
-use crate::bench::Timed;
 use crate::chart_contact::fall;
 use crate::clock::Clock;
 use crate::scenes::card;
+use crate::timed::Timed;
 use crate::{LabError, MeshKind, rectangle, subdivided};
 use toile_drape::collision::{
     Clearance, ClothSurface, ContactDetector, LinearTrajectories, Near, Reach, crossings,
@@ -55,10 +55,11 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
         for _ in 0..LOOKS {
             pairs = find(&mut surface);
         }
-        let each = clock.wall() / LOOKS as f64;
-        result.wall_s += each * LOOKS as f64;
+        let spent = [clock.wall(), clock.spent()];
+        result.wall_s += spent[0];
         for (what, value) in [
-            ("ms", 1e3 * each),
+            ("ms", 1e3 * spent[0] / LOOKS as f64),
+            ("cpu_ms", 1e3 * spent[1] / LOOKS as f64),
             ("regions", surface.opened()[0] as f64),
             ("pairs", pairs as f64),
         ] {
@@ -83,15 +84,15 @@ const SETTLING_DRAG: f64 = 10.0;
 /// Turn of the worn shirt about the upright when it is set in motion [rad/s].
 const TURN: f64 = 2.0;
 
-/// Takes some frames of XPBD; what one takes [s], and the looks for contacts in it.
-fn frames(system: &System, state: &mut State, count: usize) -> Result<[f64; 2], LabError> {
+/// Takes some frames of XPBD; what one takes [s], the looks for contacts in it, and its processor time [s].
+fn frames(system: &System, state: &mut State, count: usize) -> Result<[f64; 3], LabError> {
     let mut method = MethodSettings::from(MethodKind::Xpbd).build();
     let clock = Clock::start();
     for _ in 0..count {
         method.advance(system, state, STEP)?;
     }
     let looks = method.cloth_tally().unwrap_or_default().looks;
-    Ok([clock.wall(), looks as f64].map(|sum| sum / count as f64))
+    Ok([clock.wall(), looks as f64, clock.spent()].map(|sum| sum / count as f64))
 }
 
 /// The worn shirt, its mesh divided so many times.
@@ -135,6 +136,7 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
         }
         for (what, value) in [
             ("ms", 1e3 * clock.wall() / LOOKS as f64),
+            ("cpu_ms", 1e3 * clock.spent() / LOOKS as f64),
             ("regions", surface.opened()[0] as f64),
             ("pairs", found[0] as f64),
             ("contacts", found[1] as f64),
@@ -158,8 +160,8 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
         let clock = Clock::start();
         let (mut with, mut without) = (start.clone(), start.clone());
         let free = system.with(|builder| builder.contact.cloth_offset = 0.0);
-        let [plain, _] = frames(&free, &mut without, FRAMES)?;
-        let [frame, looks] = frames(&system, &mut with, FRAMES)?;
+        let [plain, _, plain_cpu] = frames(&free, &mut without, FRAMES)?;
+        let [frame, looks, frame_cpu] = frames(&system, &mut with, FRAMES)?;
         // The same motion again, for what looking alone takes.
         let mut path = vec![start.positions.clone()];
         let mut method = MethodSettings {
@@ -175,7 +177,9 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
         result.wall_s += clock.wall();
         for (what, value) in [
             ("frame_without_ms", 1e3 * plain),
+            ("frame_without_cpu_ms", 1e3 * plain_cpu),
             ("frame_ms", 1e3 * frame),
+            ("frame_cpu_ms", 1e3 * frame_cpu),
             ("looks_a_frame", looks),
             ("look_ms", 1e3 * each[0]),
             ("look_regions", each[1]),

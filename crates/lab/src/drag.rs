@@ -3,9 +3,9 @@
 //! measurement. Checks wait until a drag ends, so they are no part of it; nor is drawing.
 
 use crate::LabError;
-use crate::bench::Timed;
 use crate::clock::Clock;
 use crate::drag_pattern::{POINTS, large_pattern};
+use crate::timed::Timed;
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -379,34 +379,28 @@ fn excesses(found: &Found) -> impl Iterator<Item = f64> {
     dragged.map(|one| one.spent.cpu / found.whole.part(one))
 }
 
+/// What stands over the table, and its first two lines.
 fn heading() -> String {
     let columns = [
-        ("pattern", 14),
-        ("points", 7),
-        ("panels", 7),
-        ("move", 8),
-        ("(most)", 9),
-        ("wall", 8),
-        ("values", 8),
-        ("draft", 7),
-        ("cut lines", 10),
-        ("all", 8),
-        ("wall", 8),
-        ("all/move", 9),
-        ("part", 6),
-        ("move/part", 10),
-        ("(most)", 9),
-        ("redraft", 8),
-        ("wall", 8),
+        "pattern",
+        "points",
+        "panels",
+        "a move, ms (most)",
+        "wall",
+        "all, ms: values + draft + cut lines",
+        "wall",
+        "all / move",
+        "what depends on the point, % of all",
+        "move / that (most)",
+        "after a measurement, ms",
+        "wall",
     ];
-    let mut text = "One pointer move of a drag beside evaluating all: ms of processor time and of the clock \
-                    (wall), medians over the points; (most): of one point. part: what depends on the point, \
-                    as a share of all; move/part: the move over that. redraft: after another measurement.\n"
-        .to_owned();
-    for (name, width) in columns {
-        let _ = write!(text, "{name:>width$}");
-    }
-    text + "\n"
+    format!(
+        "Processor time, and wall time where it says so: medians over the points, in brackets the most of one point.\n\n\
+         | {} |\n{}|\n",
+        columns.join(" | "),
+        "|---".repeat(columns.len())
+    )
 }
 
 fn line(text: &mut String, found: &Found) {
@@ -415,26 +409,27 @@ fn line(text: &mut String, found: &Found) {
     let whole = middle(&found.whole.all);
     let cuts = found.whole.cuts.iter().map(|times| middle(times).cpu);
     let redraft = middle(&found.redraft);
+    let depends = median(found.dragged.iter().map(|one| found.whole.part(one)));
     let _ = writeln!(
         text,
-        "{:>14}{:>7}{:>7}{:>8.3}{:>9}{:>8.3}{:>8.2}{:>7.2}{:>10.2}{:>8.2}{:>8.2}{:>9.1}{:>6.2}{:>10.2}{:>9}{:>8.2}{:>8.2}  {}",
+        "| {} | {} | {} | {:.3} ({:.3}) | {:.3} | {:.2}: {:.2} + {:.2} + {:.2} | {:.2} | {:.1} | {:.1} | {:.2} ({:.2}) | {:.2} ({}) | {:.2} |",
         found.name,
         found.points,
         found.panels,
         1e3 * one.cpu,
-        format!("({:.3})", 1e3 * most(moves.iter().map(|t| t.cpu))),
+        1e3 * most(moves.iter().map(|t| t.cpu)),
         1e3 * one.wall,
+        1e3 * whole.cpu,
         1e3 * middle(&found.whole.values).cpu,
         1e3 * middle(&found.whole.draft).cpu,
         1e3 * cuts.sum::<f64>(),
-        1e3 * whole.cpu,
         1e3 * whole.wall,
         whole.cpu / one.cpu,
-        median(found.dragged.iter().map(|one| found.whole.part(one))) / whole.cpu,
+        100.0 * depends / whole.cpu,
         median(excesses(found)),
-        format!("({:.2})", most(excesses(found))),
+        most(excesses(found)),
         1e3 * redraft.cpu,
+        found.measurement.replace('_', " "),
         1e3 * redraft.wall,
-        found.measurement,
     );
 }

@@ -1,8 +1,8 @@
 //! The marker benchmark: pieces of three shirts of different sizes, drawn by formulas.
 
 use crate::LabError;
-use crate::bench::Timed;
 use crate::clock::Clock;
+use crate::timed::Timed;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::AtomicBool;
 use toile_geometry::{Polygon, Vec2};

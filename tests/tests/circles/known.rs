@@ -53,10 +53,7 @@ pub const KNOWN: &[Known] = &[
     ),
     (
         "crates/lab/src",
-        &[
-            &["bench.rs", "detect.rs", "drag.rs", "nest.rs"],
-            &["chart.rs", "chart_contact.rs", "chart_report.rs"],
-        ],
+        &[&["chart.rs", "chart_contact.rs", "chart_report.rs"]],
     ),
     ("crates/measure/src", &[&["catalogue.rs", "further.rs"]]),
     (
