@@ -179,7 +179,8 @@ fn a_policy_that_is_taken_back_above_the_floor_is_forgotten() {
             }
             method.advance(&system, &mut state, STEP).unwrap();
             let lowest = heights(&state, &starts, 0)[0];
-            assert!(lowest > FLOORS[0], "{kind:?}, step {step}: {lowest}");
+            // The offset of 4 mm, less what the impact presses it in by.
+            assert!(lowest > FLOORS[0] + 3e-3, "{kind:?}, step {step}: {lowest}");
         }
     }
 }

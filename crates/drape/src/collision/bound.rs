@@ -17,38 +17,34 @@ use super::zones::Zones;
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
-/// Share of their distance that two features keep at the least in one move, and the most that this
-/// comes to [m]: what is farther apart need not be kept so.
+/// Least share of their distance that two features keep in one move, and the most that they have to keep [m].
 const KEPT: f64 = 0.2;
 const MOST_KEPT: f64 = 5e-4;
 
-/// Features nearer than this touch already: recovery, not the bound, sees to them [m].
+/// Features nearer than this touch already [m]: recovery parts them, not the truncation of moves.
 const TOUCHING: f64 = 1e-12;
 
-/// Below this distance [m] features keep nearly all of it: what presses for long without end would
-/// else come as near as numbers can tell, and pass.
+/// Below this distance [m] features keep the share `KEPT_AT_FLOOR` of it: pressed for long, they would else
+/// come nearer than rounding can tell, and pass.
 const FLOOR: f64 = 1e-4;
-
-/// The share they keep there.
 const KEPT_AT_FLOOR: f64 = 0.9;
 
-/// The same below a distance that more than two hundred looks under pressure lead to [m]: what is
-/// pressed for a minute without end still does not touch.
+/// Below this distance [m], which features come to in more than two hundred moves under pressure, they keep the
+/// share `KEPT_AT_LEAST` of it: cloth pressed for a minute still does not touch.
 const LEAST: f64 = 1e-7;
 const KEPT_AT_LEAST: f64 = 0.999;
 
-/// A move is cut to slightly less than the share that ends at the distance to be kept, so that
-/// rounding does not find it short the next time.
+/// Moves are cut to this share of the time of impact, so that rounding does not find the same impact again.
 const SHORT: f64 = 1.0 - 1e-6;
 
-/// Rounds of impulses, and what they aim at beyond the distance to be kept, as a share of it.
+/// Rounds of impulses, and how far they aim beyond the distance to be kept, as a share of it.
 const IMPULSE_ROUNDS: usize = 10;
 const BEYOND: f64 = 0.05;
 
-/// Rounds in which zones grow by what they meet.
+/// Rounds in which rigid zones grow by the features that they meet.
 const ZONE_ROUNDS: usize = 12;
 
-/// Rounds in which moves are shortened; those that meet even then are stopped.
+/// Rounds in which moves are shortened; features that meet even then are stopped.
 const ROUNDS: usize = 6;
 
 /// Two features that may meet, and the distance they must keep [m].
@@ -98,7 +94,7 @@ pub fn resolve_impacts(
         let ways = LinearTrajectories::together(motion.x, &target);
         surface.look_again(
             ways,
-            &Reach::all(REACH_OF_WAYS),
+            &Reach::all(IMPACT_REACH),
             clearance,
             stirred.as_deref(),
         );
@@ -115,7 +111,7 @@ pub fn resolve_impacts(
         }
         if round < IMPULSE_ROUNDS {
             for &(meeting, time) in &met {
-                kept.impulses += usize::from(push(&meeting, time, motion));
+                kept.impulses += usize::from(apply_impulse(&meeting, time, motion));
             }
             continue;
         }
@@ -172,7 +168,7 @@ fn met(
             .fold(0.0, f64::max)
             .sqrt()
     };
-    let filter = SeparationFilter::together(x, target, REACH_OF_WAYS);
+    let filter = SeparationFilter::together(x, target, IMPACT_REACH);
     let mut found = surface.filtered(Near::Listed, Some(&filter), |pair, _, found| {
         let is_stirred = |flags: &[bool]| pair.vertices().iter().any(|&v| flags[v as usize]);
         if !stirred.is_none_or(is_stirred) {
@@ -189,8 +185,8 @@ fn met(
     found
 }
 
-/// Takes back what brings two features together; whether there was anything.
-fn push(meeting: &Meeting, time: f64, motion: &mut Motions) -> bool {
+/// Applies the impulse that keeps two features apart at the end of the motion; returns whether one was needed.
+fn apply_impulse(meeting: &Meeting, time: f64, motion: &mut Motions) -> bool {
     let vertices = meeting.pair.vertices().map(|v| v as usize);
     let place = |share: f64| vertices.map(|v| motion.x[v] + motion.moves[v] * share);
     let then = place(time);
@@ -242,7 +238,7 @@ pub fn truncate_moves(
     };
     let near = surface.near_unless_clear(
         LinearTrajectories::each(x, &target),
-        REACH_OF_WAYS,
+        IMPACT_REACH,
         clearance,
     );
     truncate_pairs(surface, &near, exemptions, x, moves)
@@ -303,8 +299,8 @@ fn truncate_pairs(
     held.iter().filter(|&&h| h).count()
 }
 
-/// How near the ways of two features must come [m] to be looked at: all that is ever kept.
-const REACH_OF_WAYS: f64 = MOST_KEPT;
+/// How near the trajectories of two features must come for an impact [m]: the most that is ever kept.
+const IMPACT_REACH: f64 = MOST_KEPT;
 
 /// A pair that may meet when its features come nearer by up to `way` [m]: its distance is less.
 fn meeting(pair: FeaturePair, x: &[Vec3], way: f64) -> Option<Meeting> {
