@@ -296,8 +296,9 @@ impl SceneRun {
         self.is_edited = true;
         if edited.is_restructured {
             self.refinements = 0;
-            self.renew();
         }
+        // Solids and policies that were looked up may be others now.
+        self.renew();
         Ok(edited)
     }
 
