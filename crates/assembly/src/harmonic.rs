@@ -1,6 +1,8 @@
 //! Harmonic interpolation over a plane mesh: free vertices move as the given ones round them do.
 
 use crate::planar::Planar;
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
 use toile_geometry::Vec2;
 use toile_sparse::ScalarMatrix;
 use toile_sparse::factor::{Factor, Graph, NotPositive};
@@ -9,60 +11,126 @@ use toile_sparse::factor::{Factor, Graph, NotPositive};
 /// every free vertex is tied to given ones.
 const LEAST_WEIGHT: f64 = 1e-12;
 
-/// Displacements [m] of all vertices from those of the first ones, `given`: each free vertex moves
-/// by the mean of its neighbours, weighted by half the sum of the cotangents opposite the edge
-/// between them (Pinkall and Polthier 1993).
+/// Harmonic weights of the free vertices of one mesh, factorised: shapes of its outline are followed by one
+/// solution each.
+///
+/// Each free vertex moves by the mean of its neighbours, weighted by half the sum of the cotangents opposite
+/// the edge between them (Pinkall and Polthier 1993).
 ///
 /// The weights are those of the Delaunay triangulation of the same points and boundary (Bobenko and
 /// Springborn 2007): none is negative there, so the mean is a convex combination, and affine maps are
-/// reproduced whatever the triangles of the mesh. `triangles` are wound counter-clockwise.
-///
-/// # Errors
-/// Where the points give no finite weights.
-pub(crate) fn harmonic(
-    points: &[Vec2],
-    triangles: Vec<[usize; 3]>,
-    given: &[Vec2],
-) -> Result<Vec<Vec2>, NotPositive> {
-    let first = given.len();
-    let free = points.len() - first;
-    let mut all = given.to_vec();
-    all.resize(points.len(), Vec2::zeros());
-    if free == 0 {
-        return Ok(all);
-    }
-    let mut entries: Vec<(u32, u32, f64)> = Vec::new();
-    let mut pairs: Vec<[u32; 2]> = Vec::new();
-    let mut right = vec![0.0; 2 * free];
-    for ([a, b], weight) in weights(points, triangles) {
-        for (from, to) in [(a, b), (b, a)] {
-            let Some(row) = from.checked_sub(first) else {
-                continue;
-            };
-            entries.push((row as u32, row as u32, weight));
-            if let Some(column) = to.checked_sub(first) {
-                entries.push((row as u32, column as u32, -weight));
-                pairs.push([row as u32, column as u32]);
-            } else {
-                right[2 * row] += weight * given[to].x;
-                right[2 * row + 1] += weight * given[to].y;
+/// reproduced whatever the triangles of the mesh.
+pub(crate) struct HarmonicWeights {
+    /// How many of the first vertices are given.
+    given: usize,
+    free: usize,
+    /// Free vertex, given vertex and weight of each edge between such two.
+    border: Vec<(usize, usize, f64)>,
+    factor: Factor<1>,
+}
+
+impl HarmonicWeights {
+    /// Of a mesh whose first `given` vertices will be given; `triangles` are wound counter-clockwise.
+    ///
+    /// # Errors
+    /// Where the points give no finite weights.
+    pub fn new(
+        points: &[Vec2],
+        triangles: Vec<[usize; 3]>,
+        given: usize,
+    ) -> Result<Self, NotPositive> {
+        let free = points.len() - given;
+        let mut entries: Vec<(u32, u32, f64)> = Vec::new();
+        let mut pairs: Vec<[u32; 2]> = Vec::new();
+        let mut border = Vec::new();
+        let edges = match free {
+            0 => Vec::new(),
+            _ => weights(points, triangles),
+        };
+        for ([a, b], weight) in edges {
+            for (from, to) in [(a, b), (b, a)] {
+                let Some(row) = from.checked_sub(given) else {
+                    continue;
+                };
+                entries.push((row as u32, row as u32, weight));
+                if let Some(column) = to.checked_sub(given) {
+                    entries.push((row as u32, column as u32, -weight));
+                    pairs.push([row as u32, column as u32]);
+                } else {
+                    border.push((row, to, weight));
+                }
             }
         }
-    }
-    let matrix = ScalarMatrix::from_entries(free, &entries);
-    let places: Vec<_> = points[first..].iter().map(|p| p.push(0.0)).collect();
-    let mut factor: Factor<1> = Factor::new(Graph::from_pairs(free, pairs), &places);
-    factor.factorise(|row, _, out| {
-        for (out, &value) in out.iter_mut().zip(matrix.row_entries(row).1) {
-            *out = [[value]];
+        let matrix = ScalarMatrix::from_entries(free, &entries);
+        let places: Vec<_> = points[given..].iter().map(|p| p.push(0.0)).collect();
+        let mut factor: Factor<1> = Factor::new(Graph::from_pairs(free, pairs), &places);
+        if free > 0 {
+            factor.factorise(|row, _, out| {
+                for (out, &value) in out.iter_mut().zip(matrix.row_entries(row).1) {
+                    *out = [[value]];
+                }
+            })?;
         }
-    })?;
-    let mut solution = vec![0.0; 2 * free];
-    factor.solve_columns(2, &right, &mut solution);
-    for (place, pair) in all[first..].iter_mut().zip(solution.chunks_exact(2)) {
-        *place = Vec2::new(pair[0], pair[1]);
+        Ok(Self {
+            given,
+            free,
+            border,
+            factor,
+        })
     }
-    Ok(all)
+
+    /// Displacements [m] of all vertices from those of the given ones.
+    pub fn displacements(&mut self, given: &[Vec2]) -> Vec<Vec2> {
+        let mut all = given.to_vec();
+        if self.free == 0 {
+            return all;
+        }
+        let mut right = vec![0.0; 2 * self.free];
+        for &(row, to, weight) in &self.border {
+            right[2 * row] += weight * given[to].x;
+            right[2 * row + 1] += weight * given[to].y;
+        }
+        let mut solution = vec![0.0; 2 * self.free];
+        self.factor.solve_columns(2, &right, &mut solution);
+        all.extend(
+            solution
+                .chunks_exact(2)
+                .map(|pair| Vec2::new(pair[0], pair[1])),
+        );
+        all
+    }
+}
+
+/// The weights of one mesh, made when they are first asked for; copies of the mesh have them in common.
+#[derive(Clone, Default)]
+pub(crate) struct SharedWeights(Arc<Mutex<Option<HarmonicWeights>>>);
+
+impl fmt::Debug for SharedWeights {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SharedWeights").finish_non_exhaustive()
+    }
+}
+
+impl SharedWeights {
+    /// Displacements [m] of all vertices from those of the first ones, by the weights that `make` gives.
+    ///
+    /// # Errors
+    /// That of `make`.
+    pub fn displacements(
+        &self,
+        given: &[Vec2],
+        make: impl FnOnce() -> Result<HarmonicWeights, NotPositive>,
+    ) -> Result<Vec<Vec2>, NotPositive> {
+        // Weights are put in whole, so that a panic elsewhere leaves none that is half made.
+        let mut shared = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut weights = match shared.take().filter(|had| had.given == given.len()) {
+            Some(weights) => weights,
+            None => make()?,
+        };
+        let all = weights.displacements(given);
+        *shared = Some(weights);
+        Ok(all)
+    }
 }
 
 /// The edges of the Delaunay triangulation with their weights, each once, in order.
@@ -98,6 +166,21 @@ fn weights(points: &[Vec2], triangles: Vec<[usize; 3]>) -> Vec<([usize; 2], f64)
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn harmonic(
+        points: &[Vec2],
+        triangles: Vec<[usize; 3]>,
+        given: &[Vec2],
+    ) -> Result<Vec<Vec2>, NotPositive> {
+        let mut weights = HarmonicWeights::new(points, triangles, given.len())?;
+        let first = weights.displacements(given);
+        assert_eq!(
+            first,
+            weights.displacements(given),
+            "the same weights again"
+        );
+        Ok(first)
+    }
 
     /// A ring of points on a circle, one boundary, with free points inside; the triangles are those
     /// of a fan of strips that are far from Delaunay.

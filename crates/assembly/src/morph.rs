@@ -4,7 +4,7 @@ use crate::boundary::Boundary;
 use crate::chain::{Nodes, match_seams};
 use crate::creases::left_out_note;
 use crate::edges::EdgeTable;
-use crate::harmonic::harmonic;
+use crate::harmonic::HarmonicWeights;
 use crate::mesh::stitches;
 use crate::quality::smallest_angle;
 use crate::sampling::Sampling;
@@ -46,7 +46,8 @@ pub enum MorphError {
 /// was meshed: the result depends on that mesh and on `draft`, not on edits in between, and a piece
 /// that gets its shape back gets its points back, to the bit.
 ///
-/// Cost: one factorisation for each piece whose outline or internal lines moved.
+/// Cost: one solution for each piece whose outline or internal lines moved, and one factorisation when the first
+/// copy of its mesh does so.
 ///
 /// # Errors
 /// [`MorphError::NeedsRemesh`] where pieces were added, removed or put in another order; edges or
@@ -273,7 +274,8 @@ impl PieceMesh {
         let way: Vec<Vec2> = (given.iter().zip(&source.points))
             .map(|(new, old)| new - old)
             .collect();
-        let Ok(way) = harmonic(&source.points, self.counter_clockwise(), &way) else {
+        let weights = || HarmonicWeights::new(&source.points, self.counter_clockwise(), count);
+        let Ok(way) = source.weights.displacements(&way, weights) else {
             return false;
         };
         // Those that are given exactly, the others by their displacement.

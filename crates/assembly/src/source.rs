@@ -2,6 +2,7 @@
 
 use crate::creases::{Creases, LinePlace};
 use crate::edges::contours;
+use crate::harmonic::SharedWeights;
 use crate::sampling::Sampling;
 use std::ops::Range;
 use toile_geometry::{Curve, Vec2};
@@ -37,6 +38,8 @@ pub(crate) struct MeshSource {
     pub line_places: Vec<LinePlace>,
     /// Points of internal lines that the mesh does not follow.
     pub left_out: usize,
+    /// How the free vertices follow the others.
+    pub weights: SharedWeights,
 }
 
 /// The edges of a piece, with the number of the loop each is of.
@@ -71,6 +74,7 @@ impl MeshSource {
             lines: piece.internal_lines.clone(),
             line_places: creases.places,
             left_out: creases.left_out,
+            weights: SharedWeights::default(),
         }
     }
 

@@ -311,15 +311,21 @@ impl SceneRun {
         }
         let mesh = system.mesh(&state.positions);
         let mut found: Vec<u32> = Vec::new();
-        for collider in system.colliders.iter() {
+        for (number, collider) in system.colliders.iter().enumerate() {
             let pose = collider.pose(state.time);
+            let meets = |&t: &u32| {
+                let object = system
+                    .policies
+                    .object_of_sample(&mesh.triangles[t as usize]);
+                !system.policies.ignores_solid(object, number)
+            };
             let clear = |&v: &u32| {
                 let place = state.positions[v as usize];
                 let off = 0.5 * system.contact.offset;
                 collider.exact_distance(pose.as_ref(), place) > off
             };
             let pairs = collider.crossings(state.time, &mesh);
-            let crossing = pairs.iter().map(|pair| pair[0]);
+            let crossing = pairs.iter().map(|pair| pair[0]).filter(meets);
             found.extend(crossing.filter(|&t| mesh.triangles[t as usize].iter().all(clear)));
         }
         found.sort_unstable();

@@ -165,21 +165,26 @@ fn a_draped_tube_goes_along_with_its_ball_and_falls_when_its_seams_are_opened() 
     let ids: Vec<(ObjectId, Kind)> = (simulation.world().objects())
         .map(|(id, object)| (id, object.kind))
         .collect();
-    let of = |kind| ids.iter().find(|(_, k)| *k == kind).unwrap().0;
+    let of = |kind| {
+        ids.iter()
+            .find(|(_, k)| *k == kind)
+            .expect("both are there")
+            .0
+    };
     let (ball, tube) = (of(Kind::Static), of(Kind::Deformable));
-    let mut run = SceneRun::of_simulation(simulation, settings).unwrap();
+    let mut run = SceneRun::of_simulation(simulation, settings).expect("sound");
     let height = |run: &SceneRun| {
         let places = &run.state.positions;
         places.iter().map(|p| p.y).sum::<f64>() / places.len() as f64
     };
     // Another step may come between, so the ball starts later.
     run.edit(WorldEdit::SetMotion(ball, rising(start + 0.1)))
-        .unwrap();
+        .expect("sound");
     run.edit(WorldEdit::ChangeKind(ball, Kind::Animated))
-        .unwrap();
+        .expect("sound");
     let before = height(&run);
     for _ in 0..60 {
-        run.advance().unwrap();
+        run.advance().expect("sound");
     }
     let lifted = height(&run) - before;
     assert!((lifted - 0.1).abs() < 0.02, "it was lifted by {lifted} m");
@@ -188,11 +193,11 @@ fn a_draped_tube_goes_along_with_its_ball_and_falls_when_its_seams_are_opened() 
     let pairs: Vec<[MeshVertex; 2]> = run.world().merged().collect();
     let (count, seams) = (run.state.positions.len(), pairs.len());
     assert!(pairs.iter().flatten().all(|vertex| vertex.object == tube));
-    run.edit(WorldEdit::Open(pairs)).unwrap();
+    run.edit(WorldEdit::Open(pairs)).expect("sound");
     assert_eq!(run.state.positions.len(), count + seams);
     let before = height(&run);
     for _ in 0..40 {
-        run.advance().unwrap();
+        run.advance().expect("sound");
     }
     let fallen = before - height(&run);
     assert!(fallen > 0.3, "it fell by {fallen} m");

@@ -52,7 +52,7 @@ impl Present<'_> {
             gripped[grip.vertex as usize] = true;
         }
         let mut held = gripped.clone();
-        for pin in self.world.pins(&self.map) {
+        for pin in self.world.pins(self.map) {
             held[pin as usize] = true;
         }
         (held, gripped)
