@@ -154,6 +154,7 @@ pub fn accuracy(task: &AccuracyTask, output: &Output) -> Result<Value, Failure> 
     if let Some(document) = &task.write {
         toile_lab::ready_to_write(&toile_lab::charts_beside(document), Some(document))?;
     }
+    let provenance = toile_lab::provenance();
     let mut measured = Vec::new();
     for (number, section) in chosen.iter().enumerate() {
         let mut bar = Bar::new();
@@ -165,9 +166,9 @@ pub fn accuracy(task: &AccuracyTask, output: &Output) -> Result<Value, Failure> 
         output.say(format!("{}\n", found.text));
         measured.push(found);
     }
-    output.say(toile_lab::provenance());
+    output.say(&provenance);
     let written = match &task.write {
-        Some(document) => toile_lab::write_page(document, &measured)?,
+        Some(document) => toile_lab::write_page(document, &measured, &provenance)?,
         None => Vec::new(),
     };
     for path in &written {
@@ -178,7 +179,7 @@ pub fn accuracy(task: &AccuracyTask, output: &Output) -> Result<Value, Failure> 
     });
     Ok(json!({
         "sections": listed.collect::<Vec<_>>(),
-        "measured": toile_lab::provenance(),
+        "measured": provenance,
         "files": written,
     }))
 }

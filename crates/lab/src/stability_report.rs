@@ -125,18 +125,22 @@ pub fn stability_files(
 /// The limits and the hard cases as Markdown.
 pub fn stability_table(limits: &[Limit], hard: &[HardRun]) -> String {
     let mut text = String::from(
-        "| method | stiffness, N/m | limit / w, s | blows up at, s | ratio |\n|---|---|---|---|---|\n",
+        "| method | stiffness: limit / w, s; where it blows up, in units of that |\n|---|---|\n",
     );
-    for limit in limits {
-        let _ = writeln!(
-            text,
-            "| {} | {:.0e} | {:.3e} | {:.3e} | {:.3} |",
-            limit.method,
-            limit.stiffness,
-            limit.theory,
-            limit.measured,
-            limit.measured / limit.theory
-        );
+    let mut methods: Vec<&str> = limits.iter().map(|limit| limit.method).collect();
+    methods.sort_unstable();
+    methods.dedup();
+    for method in methods {
+        let own = limits.iter().filter(|limit| limit.method == method);
+        let each = own.map(|limit| {
+            let ratio = limit.measured / limit.theory;
+            format!(
+                "{:.0e} N/m: {:.3e}; {ratio:.3}",
+                limit.stiffness, limit.theory
+            )
+        });
+        let each: Vec<String> = each.collect();
+        let _ = writeln!(text, "| {method} | {} |", each.join(", "));
     }
     let mut cases: Vec<&str> = hard.iter().map(|run| run.case).collect();
     cases.dedup();

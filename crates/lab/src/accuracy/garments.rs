@@ -122,7 +122,10 @@ pub(super) fn one_by_one(watcher: &mut dyn Watcher) -> Result<Content, LabError>
                     name.clone(),
                     report.count("/vertices"),
                     report.residual(),
-                    report.scaled("/seam_gap_max_m", 1e3, 2),
+                    match report.report["steps"]["sewing"].as_u64() {
+                        Some(0) => "no seam".to_owned(),
+                        _ => report.scaled("/seam_gap_max_m", 1e3, 2),
+                    },
                     report.stretch("strain_p99"),
                     report.stretch("strain_max"),
                     format!(

@@ -79,8 +79,8 @@ pub static SECTIONS: [Section; 10] = [
         title: "Methods: where they fail",
         claim: "An explicit method blows up at the step that its stability limit gives, the limit over the largest frequency w of the cloth at rest. In a hard case \
                 a method either keeps a possible state or stops with an error that names stage and vertex; *unsound* is one that goes on with an impossible \
-                state ([how it is told](methods/lab.md#stability)). The map is drawn at every step and stiffness.\n\n\
-                ![stability](charts/stability.svg)",
+                state ([how it is told](methods/lab.md#stability)). The map at every step and \
+                stiffness: [stability.svg](charts/stability.svg).",
         command: "toile stability",
         measure: stability,
     },
@@ -90,8 +90,7 @@ pub static SECTIONS: [Section; 10] = [
         claim: "For each scene the run that took the least processor time within an error, in ms a simulated second. The error is the root of the mean squared \
                 distance of all vertices to the converged end of the motion ([how](methods/lab.md#speed-against-accuracy)). Two steps on coarse meshes, \
                 0.4 s of processor time a run; `toile chart` without `--quick` takes all steps and meshes. In brackets: iterations a step at the most. \
-                Charts and CSV files: [charts/](charts/).\n\n\
-                ![hang](charts/motion-hang-a.svg)",
+                Charts and CSV files: [charts/](charts/).",
         command: "toile chart --quick",
         measure: speed_against_accuracy,
     },
@@ -189,11 +188,11 @@ impl Section {
         Ok(Measured {
             name: self.name,
             text: format!(
-                "## {}\n\n{}\n\n{}\n\n`{}`. Measured in {wall_s:.0} s, {cpu_s:.0} s of processor time.",
+                "## {}\n\n{} `{}`: {wall_s:.0} s, {cpu_s:.0} s of processor time.\n\n{}",
                 self.title,
                 self.claim,
+                self.command,
                 content.tables.trim(),
-                self.command
             ),
             charts: content.charts,
             wall_s,
@@ -206,7 +205,7 @@ impl Section {
 const HEAD: &str = "measured";
 
 /// A document with the sections measured in place of its own. Where all were measured, its head
-/// says where and of what (`provenance`); else each of those measured says so itself.
+/// says where and of what ([`provenance`]); else each of those measured says so itself.
 pub fn page(document: &str, measured: &[Measured], provenance: &str) -> String {
     let whole = measured.len() == SECTIONS.len();
     let mut page = match whole {
@@ -216,7 +215,7 @@ pub fn page(document: &str, measured: &[Measured], provenance: &str) -> String {
     for section in measured {
         let text = match whole {
             true => section.text.clone(),
-            false => format!("{} {provenance}", section.text),
+            false => format!("{}\n\n{provenance}", section.text),
         };
         page = with_section(&page, section.name, &text);
     }
@@ -229,11 +228,15 @@ pub fn charts_beside(document: &Path) -> PathBuf {
 }
 
 /// Writes the sections measured into a document, see [`page`], and their charts into the folder
-/// `charts` beside it. Files written.
+/// `charts` beside it. `provenance` is to be taken before they are measured. Files written.
 ///
 /// # Errors
 /// The document cannot be read, or a file cannot be written.
-pub fn write_page(document: &Path, measured: &[Measured]) -> Result<Vec<PathBuf>, LabError> {
+pub fn write_page(
+    document: &Path,
+    measured: &[Measured],
+    provenance: &str,
+) -> Result<Vec<PathBuf>, LabError> {
     let failed = |what: String| LabError::Files { what };
     let text = read_text(document).map_err(|error| failed(error.to_string()))?;
     let charts: Vec<(String, String)> = measured
@@ -244,7 +247,7 @@ pub fn write_page(document: &Path, measured: &[Measured]) -> Result<Vec<PathBuf>
         true => Vec::new(),
         false => write_files(&charts_beside(document), &charts)?,
     };
-    let page = page(&text, measured, &provenance());
+    let page = page(&text, measured, provenance);
     write_atomically(document, page.as_bytes()).map_err(|error| failed(error.to_string()))?;
     written.push(document.to_owned());
     Ok(written)
@@ -319,7 +322,7 @@ mod tests {
     #[test]
     fn one_section_is_replaced_with_its_own_provenance_and_the_rest_stays() {
         let written = page(DOCUMENT, &[found("laws")], "Commit `abc`.");
-        let expected = DOCUMENT.replace("old laws", "## laws\n\nnew Commit `abc`.");
+        let expected = DOCUMENT.replace("old laws", "## laws\n\nnew\n\nCommit `abc`.");
         assert_eq!(written, expected);
     }
 

@@ -4,7 +4,8 @@ use std::path::Path;
 use std::process::Command;
 
 /// The commit that the program was built from, as `git rev-parse --short HEAD` names it in the
-/// folder of its sources, and whether files were changed since. None without git or sources.
+/// folder of its sources, and whether files other than documents were changed since. None without
+/// git or sources.
 fn commit() -> Option<(String, bool)> {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR"));
     let git = |arguments: &[&str]| {
@@ -14,7 +15,14 @@ fn commit() -> Option<(String, bool)> {
         Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
     };
     let name = git(&["rev-parse", "--short", "HEAD"])?;
-    let changes = git(&["status", "--porcelain", "--untracked-files=no"])?;
+    let changes = git(&[
+        "status",
+        "--porcelain",
+        "--untracked-files=no",
+        "--",
+        ":/",
+        ":(top,exclude)docs",
+    ])?;
     Some((name, !changes.is_empty()))
 }
 
