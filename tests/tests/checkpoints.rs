@@ -363,7 +363,7 @@ fn a_damaged_file_is_refused_with_place_and_remedy() {
     let run = GarmentRun::new(setup()).unwrap();
     let text = write_checkpoint(&run.checkpoint().unwrap()).unwrap();
     let cut = &text[..text.len() / 2];
-    let newer = text.replacen("\"version\":1", "\"version\":2", 1);
+    let newer = text.replacen("\"version\":2", "\"version\":3", 1);
     let digit = text.rfind(|c: char| c.is_ascii_digit()).unwrap();
     let mut changed = text.clone();
     let other = if &text[digit..=digit] == "7" {
@@ -377,11 +377,11 @@ fn a_damaged_file_is_refused_with_place_and_remedy() {
         ("", "line 1: this is no checkpoint"),
         ("{}", "line 1: this is no checkpoint"),
         (
-            "{\"format\":\"toile-marker\",\"version\":1}\n{}",
+            "{\"format\":\"toile-marker\",\"version\":2}\n{}",
             "line 1: this is no checkpoint",
         ),
         (&head[..head.len() - 3], "line 1: "),
-        (&newer, "version: it is 2; only version 1 is known"),
+        (&newer, "version: it is 3; only version 2 is known"),
         (head, "line 2: it was cut short or changed"),
         (cut, "line 2: it was cut short or changed"),
         (&changed, "line 2: it was cut short or changed"),

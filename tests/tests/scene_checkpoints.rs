@@ -143,7 +143,7 @@ fn a_new_process_goes_on_to_the_same_bytes() {
             check(&mut run, &scene);
         }
         assert!(run.world().merged().count() > 0, "nothing was merged");
-        assert!(run.cloth_tally().unwrap().looks > 0);
+        assert!(kind != MethodKind::Xpbd || run.cloth_tally().unwrap().looks > 0);
     }
 }
 

@@ -125,13 +125,15 @@ fn state_names(world: &World) -> Result<Vec<(Vec<ObjectId>, String)>, FormatErro
         }
         let each: Vec<&str> = of_group.iter().map(|o| o.name.as_str()).collect();
         let whole = each.join("+");
-        let name = file_name(&whole);
+        let files: Vec<String> = each.iter().map(|name| file_name(name)).collect();
+        let name = files.join("+");
         let same = |(_, known): &&(_, String)| known.to_lowercase() == name.to_lowercase();
         if let Some((other, _)) = names.iter().find(same) {
             let other: Vec<&str> = other.iter().map(|id| objects[id].name.as_str()).collect();
             let other = other.join("+");
+            let index = objects.keys().position(|id| *id == group[0]).unwrap_or(0);
             return Err(FormatError::new(
-                format!("object {whole:?}"),
+                format!("objects[{index}]"),
                 format!("{whole:?} and {other:?} would be written to one file"),
                 "give one of them another name",
             ));

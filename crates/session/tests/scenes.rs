@@ -62,7 +62,7 @@ fn names_of_one_file_and_endless_frames_are_refused() {
 }
 
 #[test]
-fn objects_that_were_sewn_together_are_named_as_two_files() {
+fn objects_that_are_sewn_together_are_written_as_one_surface() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("cloth.obj"), OBJ).unwrap();
     let text = r#"{ "duration": 0.05, "gravity": [0, 0, 0], "objects": [
@@ -72,14 +72,22 @@ fn objects_that_were_sewn_together_are_named_as_two_files() {
         "elastics": [ { "from": ["left", 0], "to": ["right", 0], "stiffness": 1, "merge_within": 0.002 } ] }"#;
     let path = folder.path().join("scene.json");
     std::fs::write(&path, text).unwrap();
-    let outcome = run_scene(&path, &folder.path().join("out"), &mut Silent).unwrap();
+    let out = folder.path().join("out");
+    let outcome = run_scene(&path, &out, &mut Silent).unwrap();
     assert_eq!(outcome.report["vertices"], 5);
-    let warnings = outcome.report["warnings"].to_string();
-    let words = r#"\"left\" and \"right\" were sewn together"#;
-    assert!(
-        warnings.contains(words) && warnings.contains("two files"),
-        "{warnings}"
-    );
+    assert!(!out.join("left.obj").exists() && !out.join("right.obj").exists());
+    let written = std::fs::read_to_string(out.join("left+right.obj")).unwrap();
+    let lines = |start: &str| {
+        written
+            .lines()
+            .filter(|line| line.starts_with(start))
+            .count()
+    };
+    assert_eq!([lines("v "), lines("f ")], [5, 2], "{written}");
+    for name in ["left", "right"] {
+        let named = |line: &str| line.starts_with("g ") && line.ends_with(name);
+        assert!(written.lines().any(named), "{written}");
+    }
 }
 
 /// A square of `cells` cells a side in OBJ, its vertices placed by `place` from 0 to 1.
