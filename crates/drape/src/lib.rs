@@ -1,8 +1,9 @@
 //! Simulation of cloth: scene, model, state, materials, laws, contact, elastics, merging, and the
 //! drape to rest. Knows nothing of patterns, bodies, files or windows.
 //!
-//! Four lifetimes: [`Model`] is constant, [`State`] is a complete checkpoint, contacts are
-//! recomputed, [`Workspace`] is private memory sized once.
+//! Five lifetimes: [`Model`] is constant, [`Control`] may change every step, [`State`] is all that changes as a
+//! simulation runs, contacts are recomputed, [`Workspace`] is private memory sized once. A [`World`] is what a model
+//! is compiled from.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod bending_structure;

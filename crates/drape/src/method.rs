@@ -17,9 +17,10 @@ pub struct StepReport {
 /// A time integrator or equilibrium solver.
 ///
 /// It owns its workspace; everything it must remember from step to step to go on is in the
-/// [`State`], so that a saved state continues bit for bit with a fresh method. Only `xpbd` with contact of
-/// cloth with cloth keeps where its search ended, and with it which pairs far from pressing it leaves out,
-/// and `implicit-midpoint` the energy that its run can have come by, which it refuses to exceed tenfold.
+/// [`State`], so that a saved state continues bit for bit with a fresh method. There are two exceptions. With
+/// contact of cloth with cloth `xpbd` stores the front of its last search, which decides which distant pairs the next
+/// search skips. `implicit-midpoint` stores the energy that its run can have at most, and refuses a step that
+/// exceeds ten times as much.
 pub trait Method: Send {
     /// Advances the state by `step` [s]. Equilibrium methods take one iteration; their time does
     /// not run and `step` is ignored.

@@ -1,4 +1,4 @@
-//! The state: what changes as a simulation runs; a complete checkpoint.
+//! The state: all that changes as a simulation runs and is needed to go on.
 
 use crate::collision::ClothMemory;
 use crate::{ContactSample, DrapeError, InternalStrain, Memory, Model};

@@ -1,4 +1,4 @@
-//! What a setup is told by: whether a checkpoint is of it.
+//! Digests of a garment's setup: a checkpoint is resumed with the setup it was saved of, and with no other.
 
 use super::{GarmentLevel, GarmentSetup};
 use crate::DrapeError;
