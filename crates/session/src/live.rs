@@ -149,8 +149,8 @@ impl LiveRun {
     /// edit before. An edit that still waits is replaced. Hands stay on the cloth unless it is meshed
     /// anew. A garment that stands still goes on.
     ///
-    /// What comes to rest then is no [`LiveRun::result`]: it hangs as its way was, and a drape of the
-    /// pattern does not, bit by bit.
+    /// A garment that comes to rest after an edit is no [`LiveRun::result`]: friction and folds remember the shapes
+    /// before, so it hangs a little otherwise than a drape of the pattern from the start.
     pub fn edit(&self, mut edit: GarmentEdit) {
         let mut orders = lock(&self.shared.orders);
         if let Some(replaced) = orders.edit.take() {

@@ -1,4 +1,4 @@
-//! The one ground state.
+//! The project: all that is edited, saved and undone; the rest is derived from it.
 
 use crate::choice::sample_of;
 use crate::open::open_pattern;
