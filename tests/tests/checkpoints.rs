@@ -280,10 +280,10 @@ fn a_new_process_goes_on_to_the_same_bytes() {
     check("settling on the coarse mesh", &mut run, task(4));
     advance_to(&mut run, within(Stage::Swinging, 1, 0));
     let hand = hand(&run, 40);
-    run.system.control.attachments = [hand].into_iter().collect();
+    run.control_mut().attachments = [hand].into_iter().collect();
     check("swinging on the fine mesh, held", &mut run, task(7));
     advance_to(&mut run, within(Stage::Settling, 1, 1));
-    run.system.control.attachments = Default::default();
+    run.control_mut().attachments = Default::default();
     check("settling", &mut run, task(19));
     assert!(run.cloth_tally().looks > 0 && !run.state.cloth.held.is_empty());
     advance_to(&mut run, within(Stage::Finished, 1, 1));

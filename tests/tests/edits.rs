@@ -69,7 +69,7 @@ fn dragged(count: usize) -> Vec<Vec3> {
             }
         });
         let hands: Attachments = hands.collect();
-        run.system.control.attachments = hands;
+        run.control_mut().attachments = hands;
         run.advance().unwrap();
         assert_eq!(run.structures(), structures);
     }

@@ -21,6 +21,9 @@ pub struct Cloth {
     pub materials: Vec<Material>,
 }
 
+/// Largest number of a panel: many objects with panels can be laid end to end.
+const MOST_PANEL: u32 = 1 << 24;
+
 impl Cloth {
     /// A cloth whose rest shape is the mesh itself: every triangle keeps its own size and shape,
     /// and lies flat at rest, a panel of its own. The warp runs along the mesh's first axis, projected.
@@ -63,6 +66,25 @@ impl Cloth {
             materials: vec![material],
             rest,
         })
+    }
+
+    /// What of its lists does not fit its triangles, in words; nothing where all do.
+    pub(crate) fn defect(&self) -> Option<String> {
+        let count = self.triangles.len();
+        let lists = [
+            ("rest shapes", self.rest.len()),
+            ("materials", self.material.len()),
+            ("panels", self.panel.len()),
+        ];
+        if let Some((what, given)) = lists.iter().find(|(_, given)| *given != count) {
+            return Some(format!("{given} {what} are given for {count} triangles"));
+        }
+        let materials = self.materials.len();
+        if let Some(m) = (self.material.iter()).find(|&&m| usize::from(m) >= materials) {
+            return Some(format!("there is no material {m}"));
+        }
+        let far = self.panel.iter().find(|&&panel| panel > MOST_PANEL)?;
+        Some(format!("panel {far} is out of range"))
     }
 
     /// The surface as it lies now.

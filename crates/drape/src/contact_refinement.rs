@@ -1,7 +1,7 @@
 //! Contact tested more finely where cloth went on crossing a solid surface.
 
 use crate::contact_settings::MOST_EXTRA;
-use crate::{ContactSample, Memory, Model, State};
+use crate::{ContactSample, Model, State};
 use std::sync::Arc;
 
 /// How much farther a triangle is kept each time it is found crossing again [m]: a quarter of the
@@ -43,9 +43,7 @@ impl State {
             }
         }));
         self.samples = Arc::new(samples);
-        if let Memory::Rest(_) | Memory::Relaxation(_) = self.memory {
-            self.memory = Memory::Nothing;
-        }
+        self.begin_rest_anew();
     }
 }
 

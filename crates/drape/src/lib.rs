@@ -19,6 +19,7 @@ mod contacts;
 mod control;
 mod digest;
 mod elastic;
+mod environment;
 mod equilibrium;
 mod error;
 mod exact;
@@ -67,6 +68,7 @@ pub use contact_settings::{ContactSettings, MOST_OFFSET};
 pub use contacts::{Contact, Contacts};
 pub use control::{Attachment, Attachments, Control, FrameAttachment};
 pub use elastic::{Elastic, ElasticCouplings, ElasticEnd};
+pub use environment::{Damping, Environment};
 pub use equilibrium::{Equilibrium, Prediction};
 pub use error::DrapeError;
 pub use fabrics::{FabricSources, LIBRARY, LibraryFabric};
@@ -89,9 +91,7 @@ pub use newton::{Expansion, Inertia, LinearSolver, NewtonReport, NewtonSettings,
 pub use pair_policies::{BETWEEN_OBJECTS, PairPolicies};
 pub use pseudo_transient::{PseudoTransientContinuation, RestSettings};
 pub use rest_data::RestData;
-pub use scene::{
-    Damping, MOST_LAYER, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject,
-};
+pub use scene::{MOST_LAYER, ObjectKind, Scene, SceneElastic, SceneEnd, SceneGrip, SceneObject};
 pub use scene_run::{SceneCheckpoint, SceneRun, Surface, TimeSettings};
 pub use sew::{SewRun, SewSettings};
 pub use state::State;
@@ -100,7 +100,7 @@ pub use system::{System, SystemBuilder};
 pub use toile_sparse::PcgLimits;
 pub use topology::Topology;
 pub use world::{
-    AttachmentEnd, AttachmentId, Edited, Environment, Kind, Layers, MeshVertex, Object,
-    ObjectAttachment, ObjectId, PairPolicy, Simulation, VertexGrip, VertexMap, World, WorldEdit,
+    AttachmentEnd, AttachmentId, Edited, Kind, Layers, MeshVertex, Object, ObjectAttachment,
+    ObjectId, PairPolicy, Simulation, VertexGrip, VertexMap, World, WorldEdit,
 };
 pub use xpbd::{ConstraintCount, Xpbd, XpbdReport, XpbdSettings};

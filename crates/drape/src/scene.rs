@@ -1,17 +1,8 @@
 //! The scene: every object of a simulation in one form, whatever file it came from.
 
-use crate::{Air, Cloth, DrapeError, Material, MethodSettings, Motion};
+use crate::environment::check_number;
+use crate::{Air, Cloth, Damping, DrapeError, Environment, Material, MethodSettings, Motion};
 use toile_geometry::{TriangleMesh, Vec3};
-
-/// Rayleigh damping (Rayleigh 1877): forces -(mass M + stiffness K) v. The stiffness part acts on
-/// strain rates of membrane and bending, so that no rigid motion feels it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Damping {
-    /// In proportion to mass [1/s].
-    pub mass: f64,
-    /// In proportion to stiffness, beside each material's own [s].
-    pub stiffness: f64,
-}
 
 /// Objects, elastics, gravity and air: one simulation.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,27 +145,8 @@ impl Scene {
         for (field, value, least) in [
             ("duration", self.duration, 0.0),
             ("step", self.step, f64::MIN_POSITIVE),
-            ("air drag", self.air.drag, 0.0),
-            ("air density", self.air.density, 0.0),
-            ("drag coefficient of the air across", self.air.normal, 0.0),
-            (
-                "drag coefficient of the air along",
-                self.air.tangential,
-                0.0,
-            ),
-            ("mass damping", self.damping.mass, 0.0),
-            ("stiffness damping", self.damping.stiffness, 0.0),
-            ("contact offset", self.contact.offset, 0.0),
-            ("contact stiffness", self.contact.stiffness, 0.0),
-            ("cloth offset", self.contact.cloth_offset, 0.0),
         ] {
-            if !value.is_finite() || value < least {
-                return refuse(
-                    field.to_owned(),
-                    format!("{value} is out of range"),
-                    "give a finite number above zero",
-                );
-            }
+            check_number(field, value, least)?;
         }
         if self.duration / self.step > MOST_STEPS {
             return refuse(
@@ -192,27 +164,7 @@ impl Scene {
                 "give a number of seconds above zero",
             );
         }
-        if !self.gravity.iter().all(|x| x.is_finite()) {
-            return refuse(
-                "gravity".to_owned(),
-                "it is not finite".to_owned(),
-                "give three finite numbers in m/s2",
-            );
-        }
-        if !self.air.wind.iter().all(|x| x.is_finite()) {
-            return refuse(
-                "wind".to_owned(),
-                "it is not finite".to_owned(),
-                "give three finite numbers in m/s",
-            );
-        }
-        if self.air.wind != Vec3::zeros() && self.air.density == 0.0 {
-            return refuse(
-                "wind".to_owned(),
-                "air of density 0 carries none".to_owned(),
-                "give the air a density, 1.204 kg/m3 at sea level, or leave the wind out",
-            );
-        }
+        self.environment().check()?;
         self.check_objects()?;
         self.check_distances()?;
         self.check_layers()?;
@@ -247,6 +199,17 @@ impl Scene {
             }
         }
         Ok(())
+    }
+
+    /// What acts on every object alike.
+    pub(crate) fn environment(&self) -> Environment {
+        Environment {
+            gravity: self.gravity,
+            air: self.air,
+            damping: self.damping,
+            contact: self.contact,
+            layers_apart: None,
+        }
     }
 
     /// The materials that an object's cloth is made of; none for a solid.

@@ -10,7 +10,7 @@ use crate::world::{Edited, MeshVertex, ObjectId, Simulation, Solids, World, Worl
 use crate::{Control, DrapeError, Elastic, MethodKind, MethodSettings, Scene, State, Workspace};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::ops::{Deref, DerefMut, Range};
+use std::ops::{Deref, Range};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 /// How long a scene is stepped and how.
@@ -73,13 +73,17 @@ impl Deref for SceneRun {
     }
 }
 
-impl DerefMut for SceneRun {
-    fn deref_mut(&mut self) -> &mut Simulation {
-        &mut self.simulation
-    }
-}
-
 impl SceneRun {
+    /// What acts in the next steps beside the world's own: hands on the cloth, for instance. An edit takes it back.
+    pub fn control_mut(&mut self) -> &mut Control {
+        &mut self.simulation.system.control
+    }
+
+    /// The state, to be changed between two steps.
+    pub fn state_mut(&mut self) -> &mut State {
+        &mut self.simulation.state
+    }
+
     /// Of a scene.
     ///
     /// # Errors
@@ -144,7 +148,8 @@ impl SceneRun {
         world.merge(checkpoint.merged);
         let simulation = Simulation::laid_out(world, checkpoint.layout, Solids::new());
         run.simulation = simulation.map_err(|error| refuse("layout", error.to_string()))?;
-        run.go_on_from(checkpoint.state, checkpoint.control)?;
+        run.simulation
+            .go_on_from(checkpoint.state, checkpoint.control)?;
         run.steps = checkpoint.steps;
         run.split_steps = checkpoint.split_steps;
         run.refinements = checkpoint.refinements;

@@ -79,6 +79,13 @@ impl State {
         }
     }
 
+    /// Lets a way to rest begin anew: the forces are others than those it remembers.
+    pub(crate) fn begin_rest_anew(&mut self) {
+        if let Memory::Rest(_) | Memory::Relaxation(_) = self.memory {
+            self.memory = Memory::Nothing;
+        }
+    }
+
     /// Makes room for contact samples that were added.
     pub fn follow_samples(&mut self) {
         self.anchors.resize(self.samples.len(), None);

@@ -119,7 +119,7 @@ fn sheets_that_meet_part_with_a_share_of_their_speed_and_keep_momentum() {
         meeting.duration = 0.1;
         meeting.contact.cloth_offset = 2e-3;
         let mut run = SceneRun::new(&meeting).unwrap();
-        for (k, v) in run.state.velocities.iter_mut().enumerate() {
+        for (k, v) in run.state_mut().velocities.iter_mut().enumerate() {
             *v = Vec3::y() * if k < 25 { 0.25 } else { -0.75 };
         }
         while !run.finished() {

@@ -237,7 +237,7 @@ impl HandledRun {
                 law: HAND,
             });
         }
-        self.run.system.control.attachments = attachments.into_iter().collect();
+        self.run.control_mut().attachments = attachments.into_iter().collect();
         Ok(())
     }
 

@@ -113,6 +113,9 @@ fn check_frames(scene: &Scene) -> Result<(), FormatError> {
     }
 }
 
+/// Bytes of a file's name beyond which a surface of many objects is named by its first and how many others.
+const LONGEST_NAME: usize = 160;
+
 /// Names of the files of the surfaces that move, each with the objects that are sewn together in it or are to
 /// be; two of one name are refused.
 fn state_names(world: &World) -> Result<Vec<(Vec<ObjectId>, String)>, FormatError> {
@@ -126,7 +129,10 @@ fn state_names(world: &World) -> Result<Vec<(Vec<ObjectId>, String)>, FormatErro
         let each: Vec<&str> = of_group.iter().map(|o| o.name.as_str()).collect();
         let whole = each.join("+");
         let files: Vec<String> = each.iter().map(|name| file_name(name)).collect();
-        let name = files.join("+");
+        let mut name = files.join("+");
+        if name.len() > LONGEST_NAME {
+            name = format!("{}+{}", files[0], files.len() - 1);
+        }
         let same = |(_, known): &&(_, String)| known.to_lowercase() == name.to_lowercase();
         if let Some((other, _)) = names.iter().find(same) {
             let other: Vec<&str> = other.iter().map(|id| objects[id].name.as_str()).collect();

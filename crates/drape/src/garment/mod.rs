@@ -16,10 +16,10 @@ use crate::collision::{ClothMemory, Tally};
 use crate::kinetic_damping::{KineticDamping, SwingWorkspace};
 use crate::measure::{Measures, measure};
 use crate::world::{MeetingPlace, ObjectId, Simulation, WorldEdit};
-use crate::{DrapeError, Equilibrium, SewRun, State, System, Workspace};
+use crate::{Control, DrapeError, Equilibrium, SewRun, State, System, Workspace};
 use setup::GarmentWorld;
 use stage::{Attempts, Settling, StageState, Swinging};
-use std::ops::{Deref, DerefMut};
+use std::ops::Deref;
 use toile_geometry::Vec2;
 
 /// How far a garment is.
@@ -86,13 +86,17 @@ impl Deref for GarmentRun {
     }
 }
 
-impl DerefMut for GarmentRun {
-    fn deref_mut(&mut self) -> &mut Simulation {
-        &mut self.simulation
-    }
-}
-
 impl GarmentRun {
+    /// What acts in the next steps beside the world's own: hands on the cloth, for instance. An edit takes it back.
+    pub fn control_mut(&mut self) -> &mut Control {
+        &mut self.simulation.system.control
+    }
+
+    /// The state, to be changed between two steps.
+    pub fn state_mut(&mut self) -> &mut State {
+        &mut self.simulation.state
+    }
+
     /// Prepares the first step.
     ///
     /// # Errors
@@ -377,7 +381,7 @@ impl GarmentRun {
         };
         self.steps[1] += settling.continuation.steps();
         let attempts = settling.attempts;
-        self.state.cloth = ClothMemory::default();
+        self.simulation.state.cloth = ClothMemory::default();
         self.stage = self.swinging(attempts);
         let cloth = &mut self.workspace.contacts.cloth;
         self.tally = self.tally.then(std::mem::take(&mut cloth.tally));

@@ -1,8 +1,9 @@
 //! What a garment's drape is made from, and the world that it is.
 
-use crate::world::{Environment, Layers, MeshVertex, Object, ObjectId, Solids, World};
+use crate::world::{Layers, MeshVertex, Object, ObjectId, Solids, World};
 use crate::{
-    Air, Cloth, Collider, ContactSettings, Damping, DrapeError, RestSettings, SewSettings,
+    Air, Cloth, Collider, ContactSettings, Damping, DrapeError, Environment, RestSettings,
+    SewSettings,
 };
 use std::sync::Arc;
 use toile_geometry::{SurfaceTree, Vec3};

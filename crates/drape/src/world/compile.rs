@@ -43,6 +43,14 @@ impl World {
         places: Vec<Vec3>,
         solids: &mut Solids,
     ) -> Result<System, DrapeError> {
+        let materials: usize = (self.cloths().map(|(_, cloth)| cloth.materials.len())).sum();
+        if materials > usize::from(u16::MAX) {
+            return Err(DrapeError::Scene {
+                place: "objects".to_owned(),
+                what: format!("they have {materials} materials"),
+                remedy: "make cloths of one material one object".to_owned(),
+            });
+        }
         let merged = self.merged_cloth(map, places);
         if merged.triangles.is_empty() {
             return Err(DrapeError::Scene {

@@ -1,11 +1,11 @@
 //! Edits of a world: each is checked, gives another world, and says what of the system is made anew.
 
-use super::attachment::{AttachmentId, ObjectAttachment};
+use super::attachment::{AttachmentEnd, AttachmentId, ObjectAttachment};
 use super::object::{Kind, Layers, MeshVertex, Object, ObjectId};
 use super::present::Present;
 use super::transfer::StartingMotion;
-use super::{Environment, PairPolicy, World};
-use crate::{Carry, Cloth, DrapeError, Motion};
+use super::{PairPolicy, VertexMap, World};
+use crate::{Carry, Cloth, DrapeError, Environment, Motion};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_geometry::{Vec2, Vec3};
@@ -20,7 +20,7 @@ pub enum WorldEdit {
     /// Lets another rule move an object. What becomes solid stays as it lies, its seams open; what becomes cloth
     /// starts where it stands, without velocity.
     ChangeKind(ObjectId, Kind),
-    /// Gives an object a motion for while it is animated; it starts from where the mesh lay when it was added.
+    /// Gives an object a motion for while it is animated: it is then where the motion takes its mesh.
     SetMotion(ObjectId, Motion),
     /// Adds an attachment.
     Attach(ObjectAttachment),
@@ -50,7 +50,7 @@ pub struct Edited {
     pub object: Option<ObjectId>,
     /// The attachment that was added.
     pub attachment: Option<AttachmentId>,
-    /// Whether the merged cloth has other vertices or triangles than before.
+    /// Whether the structure was made anew, so that vertices and triangles may have other numbers.
     pub is_restructured: bool,
 }
 
@@ -60,8 +60,8 @@ pub(super) enum Change {
     Structure(BTreeMap<ObjectId, StartingMotion>),
     /// Rest shapes alone.
     Shapes,
-    /// What holds and moves the cloth, what it meets and what acts on it.
-    Furnishing,
+    /// Pins, led vertices, attachments, solids and loads: the cloth keeps its structure.
+    BoundaryConditions,
 }
 
 impl Change {
@@ -80,8 +80,8 @@ impl Change {
                 Self::Structure(starting)
             }
             (Self::Shapes, Self::Shapes) => Self::Shapes,
-            (Self::Furnishing, Self::Furnishing) => Self::Furnishing,
-            (Self::Shapes, Self::Furnishing) | (Self::Furnishing, Self::Shapes) => {
+            (Self::BoundaryConditions, Self::BoundaryConditions) => Self::BoundaryConditions,
+            (Self::Shapes, Self::BoundaryConditions) | (Self::BoundaryConditions, Self::Shapes) => {
                 Self::of_structure()
             }
         }
@@ -112,7 +112,7 @@ impl World {
                 edited.object = Some(self.insert(*object));
                 match is_cloth {
                     true => Change::of_structure(),
-                    false => Change::Furnishing,
+                    false => Change::BoundaryConditions,
                 }
             }
             WorldEdit::Remove(id) => {
@@ -124,7 +124,7 @@ impl World {
                 self.objects.remove(&id);
                 match was {
                     Kind::Deformable => Change::of_structure(),
-                    _ => Change::Furnishing,
+                    _ => Change::BoundaryConditions,
                 }
             }
             WorldEdit::ChangeKind(id, kind) => self.change_kind(id, kind, before)?,
@@ -132,15 +132,15 @@ impl World {
                 let object = self.existing_mut(id)?;
                 object.motion = Some(Arc::new(motion));
                 object.check()?;
-                Change::Furnishing
+                Change::BoundaryConditions
             }
             WorldEdit::Attach(attachment) => {
                 self.check_attachment(&attachment)?;
                 edited.attachment = Some(self.attach(attachment));
-                Change::Furnishing
+                Change::BoundaryConditions
             }
             WorldEdit::Detach(id) => match self.attachments.remove(&id) {
-                Some(_) => Change::Furnishing,
+                Some(_) => Change::BoundaryConditions,
                 None => {
                     return Err(DrapeError::Scene {
                         place: format!("attachment {}", id.0),
@@ -157,14 +157,14 @@ impl World {
             }
             WorldEdit::Open(pairs) => {
                 self.check_pairs(&pairs)?;
-                self.open(pairs)?;
+                self.open(pairs, before.map)?;
                 Change::of_structure()
             }
             WorldEdit::Pin(id, pins) => {
                 let object = self.existing_mut(id)?;
                 object.pins = pins;
                 object.check()?;
-                Change::Furnishing
+                Change::BoundaryConditions
             }
             WorldEdit::Reshape(id, rest) => {
                 self.reshape(id, rest)?;
@@ -175,11 +175,17 @@ impl World {
             }
             WorldEdit::SetPolicy(pair, policy) => {
                 self.set_policy(pair, policy)?;
-                Change::Furnishing
+                Change::BoundaryConditions
             }
             WorldEdit::SetEnvironment(environment) => {
+                let had = self.environment().damping.stiffness;
+                let is_same = had == environment.damping.stiffness;
                 self.set_environment(*environment);
-                Change::Furnishing
+                match is_same {
+                    true => Change::BoundaryConditions,
+                    // It is a property of the materials.
+                    false => Change::of_structure(),
+                }
             }
         };
         Ok((edited, change))
@@ -214,25 +220,34 @@ impl World {
         Ok(())
     }
 
-    fn open(&mut self, pairs: Vec<[MeshVertex; 2]>) -> Result<(), DrapeError> {
-        for pair in pairs.into_iter().map(MeshVertex::pair) {
-            if !self.merged.remove(&pair) {
-                let [a, b] = pair.map(|vertex| vertex.vertex);
+    fn open(&mut self, pairs: Vec<[MeshVertex; 2]>, before: &VertexMap) -> Result<(), DrapeError> {
+        let said = |pair: [MeshVertex; 2], what: &str| {
+            let [a, b] = pair.map(|vertex| vertex.vertex);
+            format!("its vertex {a} is {what} vertex {b} there")
+        };
+        let pairs: Vec<_> = pairs.into_iter().map(MeshVertex::pair).collect();
+        for pair in &pairs {
+            if !self.merged.remove(pair) {
                 let object = self.existing(pair[0].object)?;
-                let what = format!("its vertex {a} is not merged with vertex {b} there");
+                let what = said(*pair, "not merged with");
                 return Err(object.refuse(&what, "open pairs as they were merged"));
             }
-            let between = |attachment: &ObjectAttachment, world: &Self| {
-                world.cloth_ends(attachment).map(MeshVertex::pair) == Some(pair)
-            };
-            let held: Vec<AttachmentId> = (self.attachments.iter())
-                .filter(|(_, attachment)| between(attachment, self))
-                .map(|(&id, _)| id)
-                .collect();
-            for id in held {
-                if let Some(attachment) = self.attachments.get_mut(&id) {
-                    attachment.merge_within = None;
-                }
+        }
+        let after = VertexMap::new(self);
+        let are_one = |map: &VertexMap, [a, b]: [MeshVertex; 2]| map.vertex(a) == map.vertex(b);
+        if let Some(&pair) = pairs.iter().find(|&&pair| are_one(&after, pair)) {
+            let object = self.existing(pair[0].object)?;
+            let what = said(pair, "still one, by way of others, with");
+            return Err(object.refuse(&what, "open these pairs, too"));
+        }
+        // What was taken apart is not merged again at once.
+        let opened = self.attachments.iter().filter(|(_, attachment)| {
+            let ends = self.cloth_ends(attachment);
+            ends.is_some_and(|ends| are_one(before, ends) && !are_one(&after, ends))
+        });
+        for id in opened.map(|(&id, _)| id).collect::<Vec<_>>() {
+            if let Some(attachment) = self.attachments.get_mut(&id) {
+                attachment.merge_within = None;
             }
         }
         Ok(())
@@ -245,29 +260,54 @@ impl World {
         before: &Present,
     ) -> Result<Change, DrapeError> {
         let was = self.existing(id)?.kind;
-        let lies = before.mesh_of(id);
         if kind == was {
-            return Ok(Change::Furnishing);
+            return Ok(Change::BoundaryConditions);
+        }
+        let lies = before.mesh_of(id);
+        let time = before.state.time;
+        if kind == Kind::Deformable && self.attachments.values().any(|a| a.has_frame_of(id)) {
+            let object = self.existing(id)?;
+            let remedy = "remove what is attached to points of it, or attach it to vertices";
+            return Err(object.refuse("cloth has no frame to be attached to", remedy));
         }
         let object = self.existing_mut(id)?;
+        let moves = |kind: Kind| object.motion.as_ref().filter(|_| kind == Kind::Animated);
+        let [old_pose, new_pose] = [was, kind].map(|kind| moves(kind).map(|m| m.pose(time)));
+        let place = |point: Vec3| old_pose.as_ref().map_or(point, |pose| pose.apply(point));
+        let home = |place: Vec3| new_pose.as_ref().map_or(place, |pose| pose.undo(place));
         object.kind = kind;
         let mut starting = BTreeMap::new();
-        if kind == Kind::Deformable {
-            object.ensure_cloth()?;
-            let places = lies.map_or_else(Vec::new, |mesh| mesh.positions);
-            let velocities = vec![Vec3::zeros(); places.len()];
-            starting.insert(id, StartingMotion { places, velocities });
-        } else if let Some(mesh) = lies {
-            // The rest shape of what has been cloth outlives that it is solid.
+        if let Some(mut mesh) = lies {
+            if kind == Kind::Deformable {
+                let places = mesh.positions.clone();
+                let velocities = vec![Vec3::zeros(); places.len()];
+                starting.insert(id, StartingMotion { places, velocities });
+                // Led vertices go on from where they lie.
+                for grip in &object.grips {
+                    let pose = grip.motion.pose(time);
+                    for &v in &grip.vertices {
+                        if let Some(at) = mesh.positions.get_mut(v as usize) {
+                            *at = pose.undo(*at);
+                        }
+                    }
+                }
+            }
+            mesh.positions.iter_mut().for_each(|p| *p = home(*p));
             object.mesh = Arc::new(mesh);
         }
+        if kind == Kind::Deformable {
+            object.ensure_cloth()?;
+        }
         object.check()?;
+        for attachment in self.attachments.values_mut() {
+            attachment.move_frames(id, |point| home(place(point)));
+        }
         if was == Kind::Deformable {
             self.let_go(id);
         }
         Ok(match [was, kind].contains(&Kind::Deformable) {
             true => Change::Structure(starting),
-            false => Change::Furnishing,
+            false => Change::BoundaryConditions,
         })
     }
 
@@ -278,11 +318,11 @@ impl World {
             let what = format!("{} rest shapes are given for {count} triangles", rest.len());
             return Err(object.refuse(&what, "give one for each"));
         }
-        let Some(cloth) = &mut object.cloth else {
-            return Err(object.refuse("it is no cloth", "make it deformable first"));
-        };
-        Arc::make_mut(cloth).rest = rest;
-        Ok(())
+        match &mut object.cloth {
+            Some(cloth) if object.kind == Kind::Deformable => Arc::make_mut(cloth).rest = rest,
+            _ => return Err(object.refuse("it is no cloth", "make it deformable first")),
+        }
+        object.check()
     }
 
     fn replace_mesh(
@@ -292,12 +332,22 @@ impl World {
         before: &Present,
     ) -> Result<Change, DrapeError> {
         let object = self.existing_mut(id)?;
-        let Some(old) = object.deformable_cloth() else {
+        let old = object.deformable_cloth();
+        let Some(old) = old.filter(|old| !old.triangles.is_empty()) else {
             return Err(object.refuse("it is no cloth", "make it deformable first"));
         };
-        let carry = Carry::new(old, &cloth)?;
+        let replaced = Object {
+            layers,
+            mesh: Arc::new(cloth.mesh()),
+            cloth: Some(Arc::new(cloth)),
+            pins: Vec::new(),
+            grips: Vec::new(),
+            ..object.clone()
+        };
+        replaced.check()?;
         let mut starting = BTreeMap::new();
-        if let Some(lies) = before.merged_surface_of(id) {
+        if let (Some(cloth), Some(lies)) = (&replaced.cloth, before.merged_surface_of(id)) {
+            let carry = Carry::new(old, cloth)?;
             let velocities = &before.state.velocities;
             starting.insert(
                 id,
@@ -307,12 +357,7 @@ impl World {
                 },
             );
         }
-        object.layers = layers;
-        object.mesh = Arc::new(cloth.mesh());
-        object.cloth = Some(Arc::new(cloth));
-        object.pins.clear();
-        object.grips.clear();
-        object.check()?;
+        *object = replaced;
         self.let_go(id);
         self.attachments
             .retain(|_, attachment| !attachment.names(id));
@@ -321,9 +366,25 @@ impl World {
 }
 
 impl ObjectAttachment {
+    /// Whether it ends at a point in the frame of an object.
+    fn has_frame_of(&self, id: ObjectId) -> bool {
+        let of = |end: &AttachmentEnd| matches!(end, AttachmentEnd::Frame { object, .. } if *object == id);
+        self.ends.iter().any(of)
+    }
+
+    /// Changes the points in the frame of an object at which it ends.
+    fn move_frames(&mut self, id: ObjectId, change: impl Fn(Vec3) -> Vec3) {
+        for end in &mut self.ends {
+            if let AttachmentEnd::Frame { object, point } = end
+                && *object == id
+            {
+                *point = change(*point);
+            }
+        }
+    }
+
     /// Whether an object is at one of its ends.
     fn names(&self, id: ObjectId) -> bool {
-        use super::AttachmentEnd;
         self.ends.iter().any(|end| match end {
             AttachmentEnd::Vertex(vertex) => vertex.object == id,
             AttachmentEnd::Frame { object, .. } => *object == id,

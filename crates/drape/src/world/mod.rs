@@ -20,26 +20,9 @@ pub(crate) use transfer::MeetingPlace;
 pub use vertex_map::VertexMap;
 
 use crate::scene::{SceneEnd, SceneObject};
-use crate::{Air, Cloth, ContactSettings, Damping, DrapeError, Scene};
+use crate::{Cloth, DrapeError, Environment, Scene};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-use toile_geometry::Vec3;
-
-/// What acts on every object alike.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Environment {
-    /// Acceleration of gravity [m/s2].
-    pub gravity: Vec3,
-    /// The air.
-    pub air: Air,
-    /// Damping of everything alike.
-    pub damping: Damping,
-    /// How cloth meets surfaces, and itself.
-    pub contact: ContactSettings,
-    /// Where layers pass through each other, the distance [m] that each is kept farther from solids than the
-    /// one below it; none where they keep their order.
-    pub layers_apart: Option<f64>,
-}
 
 /// Whether two objects meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -88,16 +71,7 @@ impl World {
     /// Whatever [`Scene::check`] refuses.
     pub fn of_scene(scene: &Scene) -> Result<Self, DrapeError> {
         scene.check()?;
-        let mut world = Self::new(
-            "scene",
-            Environment {
-                gravity: scene.gravity,
-                air: scene.air,
-                damping: scene.damping,
-                contact: scene.contact,
-                layers_apart: None,
-            },
-        );
+        let mut world = Self::new("scene", scene.environment());
         for (index, object) in scene.objects.iter().enumerate() {
             let grips = scene.grips.iter().filter(|grip| grip.object == index);
             let grips = grips.map(|grip| VertexGrip {
@@ -151,6 +125,29 @@ impl World {
     pub(crate) fn merge(&mut self, pairs: impl IntoIterator<Item = [MeshVertex; 2]>) {
         let pairs = pairs.into_iter().map(MeshVertex::pair);
         self.merged.extend(pairs);
+    }
+
+    /// Refuses a world whose cloth cannot meet what it should.
+    fn check(&self) -> Result<(), DrapeError> {
+        self.environment.check()?;
+        let contact = self.environment.contact;
+        let cloths = self.objects().map(|(_, object)| object);
+        let cloths: Vec<&Object> = cloths.filter(|o| o.kind == Kind::Deformable).collect();
+        for object in &cloths {
+            let materials = object.cloth.iter().flat_map(|cloth| &cloth.materials);
+            let own = contact.for_cloth(materials);
+            own.check_reach(&format!("thickness of \"{}\"", object.name))?;
+        }
+        let first = cloths.first().map(|object| &object.layers);
+        let other = cloths.iter().find(|object| Some(&object.layers) != first);
+        let passes = contact.cloth_offset <= 0.0 && self.environment.layers_apart.is_none();
+        match other.filter(|_| passes) {
+            None => Ok(()),
+            Some(object) => {
+                let what = "cloth passes through cloth, so layers have no order";
+                Err(object.refuse(what, "keep cloth off cloth, or put it in one layer"))
+            }
+        }
     }
 
     /// What acts on every object alike.

@@ -43,7 +43,7 @@ pub enum Kind {
 pub struct VertexGrip {
     /// The vertices of its mesh.
     pub vertices: Vec<u32>,
-    /// The motion; it starts from where the mesh lay when it was added.
+    /// The motion, of which each vertex starts at its place in the mesh.
     pub motion: Arc<Motion>,
 }
 
@@ -74,7 +74,8 @@ pub struct Object {
     pub name: String,
     /// What moves it.
     pub kind: Kind,
-    /// Its surface as it was added, or where it stood when it became solid [m].
+    /// Its surface where it stands; while it is animated, before its motion [m]. Of a cloth, where it lay when it
+    /// became one.
     pub mesh: Arc<TriangleMesh>,
     /// Rest shape of its triangles and what they are made of, with places from which it starts [m]; made from
     /// the mesh and the material when it first becomes deformable.
@@ -201,6 +202,15 @@ impl Object {
                 if cloth.triangles != self.mesh.triangles || cloth.positions.len() != count {
                     let remedy = "give cloth and surface the same triangles";
                     return Err(self.refuse("its cloth is of another mesh", remedy));
+                }
+                if let Some(what) = cloth.defect() {
+                    return Err(self.refuse(&what, "give each triangle its own"));
+                }
+                if let Layers::Each(layers) = &self.layers
+                    && layers.len() != count
+                {
+                    let what = format!("{} layers are given for {count} vertices", layers.len());
+                    return Err(self.refuse(&what, "give one for each, or one for all"));
                 }
                 let most = (0..count).map(|v| self.layers.of(v)).max().unwrap_or(0);
                 if most > MOST_LAYER {

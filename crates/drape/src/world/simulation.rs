@@ -99,7 +99,8 @@ impl Simulation {
     }
 
     /// Changes the world and goes on from its present state: what an edit does not touch keeps its numbers to the
-    /// bit. Vertices that become one meet at their centre of mass with their common momentum.
+    /// bit. Vertices that become one meet at their centre of mass with their common momentum. The control becomes the
+    /// world's: hands and winds that were put into it from outside are given again.
     ///
     /// # Errors
     /// What does not fit, by name; world and state are then as they were.
@@ -127,6 +128,7 @@ impl Simulation {
                 None => made_anew,
             });
         }
+        world.check()?;
         match change {
             None => {}
             Some(Change::Structure(starting)) => {
@@ -134,9 +136,17 @@ impl Simulation {
                 edited.is_restructured = true;
             }
             Some(Change::Shapes) => edited.is_restructured = self.reshape(world)?,
-            Some(Change::Furnishing) => {
+            Some(Change::BoundaryConditions) => {
                 self.system = world.furnish(&self.map, self.system.edit(), &mut self.solids);
                 self.world = world;
+                self.state.begin_rest_anew();
+                let (held, gripped) = self.present().held();
+                let velocities = self.state.velocities.iter_mut();
+                for (velocity, (held, gripped)) in velocities.zip(held.into_iter().zip(gripped)) {
+                    if held && !gripped {
+                        *velocity = Vec3::zeros();
+                    }
+                }
             }
         }
         Ok(edited)

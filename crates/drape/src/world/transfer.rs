@@ -160,7 +160,7 @@ impl Transfer {
             normal_forces: samples.normal_forces,
             cloth,
             settled: match old.settled.len() == former.topology.triangles.len() {
-                true => self.internal_strain(&old.settled),
+                true => self.internal_strain(&old.settled, [former, model]),
                 false => Vec::new(),
             },
             time: old.time,
@@ -191,13 +191,21 @@ impl Transfer {
                 *vertex = self.successors[*vertex as usize]?;
             }
             let distinct = (0..4).all(|k| !vertices[..k].contains(&vertices[k]));
-            distinct.then_some(ContactFrictionState {
-                pair: match one.pair {
-                    FeaturePair::VertexFace(_) => FeaturePair::VertexFace(vertices),
-                    FeaturePair::EdgeEdge(_) => FeaturePair::EdgeEdge(vertices),
-                },
-                ..*one
-            })
+            let mut slip = one.slip;
+            let pair = match one.pair {
+                FeaturePair::VertexFace(_) => FeaturePair::VertexFace(vertices),
+                // Ends of edges and edges are in order; the gap of exchanged edges has the other sign.
+                FeaturePair::EdgeEdge([..]) => {
+                    let [a, b, c, d] = vertices;
+                    let [first, second] = [[a.min(b), a.max(b)], [c.min(d), c.max(d)]];
+                    if second < first {
+                        slip = -slip;
+                    }
+                    let [[a, b], [c, d]] = [first.min(second), first.max(second)];
+                    FeaturePair::EdgeEdge([a, b, c, d])
+                }
+            };
+            distinct.then_some(ContactFrictionState { pair, slip, ..*one })
         });
         let mut carried: Vec<ContactFrictionState> = carried.collect();
         carried.sort_by_key(|one| one.pair);
@@ -230,11 +238,16 @@ impl Transfer {
         self.origins.iter().map(one).collect()
     }
 
-    fn internal_strain(&self, settled: &[InternalStrain]) -> Vec<InternalStrain> {
-        let one = |former: &Option<u32>| {
-            former.map_or_else(InternalStrain::default, |t| settled[t as usize])
+    fn internal_strain(
+        &self,
+        settled: &[InternalStrain],
+        models: [&Model; 2],
+    ) -> Vec<InternalStrain> {
+        let one = |(new, former): (usize, &Option<u32>)| {
+            let kept = former.filter(|&old| has_same_diagonal(models, [old, new as u32]));
+            kept.map_or_else(InternalStrain::default, |t| settled[t as usize])
         };
-        self.triangles.iter().map(one).collect()
+        self.triangles.iter().enumerate().map(one).collect()
     }
 
     fn memory(&self, memory: &Memory, mass: &[f64], samples: &[Option<u32>]) -> Memory {
@@ -309,19 +322,14 @@ impl Transfer {
         for (new, old) in self.triangles.iter().enumerate() {
             successors.extend(old.map(|old| (old, new as u32)));
         }
-        // The same corners in the same order, unless another diagonal was exchanged.
-        let is_same = |old: u32, new: u32| {
-            let exchanged = |model: &Model, t: u32| {
-                model.topology.triangles[t as usize] != model.surface_triangles()[t as usize]
-            };
-            exchanged(former, old) == exchanged(model, new)
-        };
         for (index, sample) in old.samples.iter().enumerate() {
             let Some(triangle) = sample.triangle else {
                 continue;
             };
             let successor = successors.get(&triangle).copied();
-            let Some(new) = successor.filter(|&new| is_same(triangle, new)) else {
+            let Some(new) =
+                successor.filter(|&new| has_same_diagonal([former, model], [triangle, new]))
+            else {
                 continue;
             };
             carried.successors[index] = Some(carried.all.len() as u32);
@@ -335,6 +343,16 @@ impl Transfer {
             carried.normal_forces.push(old.normal_forces[index]);
         }
     }
+}
+
+/// Whether a triangle has the same corners in two models, merged vertices taken for one: its cap was exchanged in both
+/// or in neither.
+fn has_same_diagonal(models: [&Model; 2], triangles: [u32; 2]) -> bool {
+    let [old, new] = [0, 1].map(|k| {
+        let (model, t) = (models[k], triangles[k] as usize);
+        model.topology.triangles[t] != model.surface_triangles()[t]
+    });
+    old == new
 }
 
 /// Contact samples of the new structure, with what is remembered of them.

@@ -116,7 +116,7 @@ pub fn run(hard: HardScene) -> (SceneRun, Outcome) {
     let mut first = 0;
     for (object, velocity) in hard.velocities.iter().enumerate() {
         let count = hard.scene.objects[object].mesh.positions.len();
-        run.state.velocities[first..first + count].fill(*velocity);
+        run.state_mut().velocities[first..first + count].fill(*velocity);
         first += count;
     }
     let mass: f64 = run.system.rest.mass.iter().sum();
