@@ -118,9 +118,9 @@ fn box_corners(positions: &[Vec3]) -> [Vec3; 8] {
     [0, 1, 2, 3, 4, 5, 6, 7].map(|k| Vec3::new(of(0, k), of(1, k), of(2, k)))
 }
 
-/// A pinned vertex that is led along a motion.
+/// A vertex whose motion is prescribed: it is pinned, and led along a motion.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grip {
+pub struct PrescribedVertex {
     /// The vertex.
     pub vertex: u32,
     /// Where it was loaded [m].

@@ -36,9 +36,10 @@ pub struct Material {
     pub bend_viscosity: f64,
     /// Rayleigh damping: viscosity in proportion to stiffness [s].
     pub stiffness_damping: f64,
-    /// Share of a stretch and of a fold that is kept when held for long, 0 to below 1.
-    pub kept: [f64; 2],
-    /// Time in which the kept share settles [s].
+    /// Relaxed fraction p of the stress of stretch and of bending: held for long, stress falls to 1 - p of its
+    /// first value, and let go the cloth keeps p of the strain; 0 to below 1.
+    pub relaxed_fraction: [f64; 2],
+    /// Time tau over which the internal strain follows the strain [s].
     pub relaxation_time: f64,
     /// Coulomb friction coefficient: against solid surfaces it acts alone, between two cloths the mean of both.
     pub friction: f64,
@@ -67,7 +68,7 @@ impl Default for Material {
             viscosity: 0.0,
             bend_viscosity: 0.0,
             stiffness_damping: 0.0,
-            kept: [0.0; 2],
+            relaxed_fraction: [0.0; 2],
             relaxation_time: 10.0,
             friction: 0.4,
             restitution: None,
@@ -161,7 +162,7 @@ impl Material {
 
     /// Whether stretch or folds are kept.
     pub(crate) fn keeps_strain(&self) -> bool {
-        self.kept.iter().any(|&share| share > 0.0)
+        self.relaxed_fraction.iter().any(|&share| share > 0.0)
     }
 
     /// Checks every number.
@@ -200,8 +201,8 @@ impl Material {
             not_negative("viscosity [N s/m]", self.viscosity),
             not_negative("bending viscosity [N m s]", self.bend_viscosity),
             not_negative("stiffness damping [s]", self.stiffness_damping),
-            ratio("kept share of stretch", self.kept[0]),
-            ratio("kept share of folds", self.kept[1]),
+            ratio("kept share of stretch", self.relaxed_fraction[0]),
+            ratio("kept share of folds", self.relaxed_fraction[1]),
             positive("relaxation time [s]", self.relaxation_time),
             not_negative("friction", self.friction),
             (
@@ -239,7 +240,7 @@ mod tests {
             |m| m.hardening[0] = f64::NAN,
             |m| m.strain_limit[0] = f64::NAN,
             |m| m.strain_limit[1] = 0.0,
-            |m| m.kept[1] = 1.0,
+            |m| m.relaxed_fraction[1] = 1.0,
             |m| m.relaxation_time = f64::INFINITY,
             |m| m.viscosity = -1.0,
             |m| m.bend_poisson = f64::NAN,

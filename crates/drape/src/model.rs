@@ -1,7 +1,7 @@
 //! The model: everything about a simulation that does not change while it runs.
 
 use crate::ContactSettings;
-use crate::collider::{Collider, Grip};
+use crate::collider::{Collider, PrescribedVertex};
 use crate::elastic::ElasticCouplings;
 use crate::materials::Materials;
 use crate::pair_policies::PairPolicies;
@@ -18,7 +18,7 @@ pub struct Prescribed {
     /// Whether each vertex is held: it is no unknown.
     pub pinned: Vec<bool>,
     /// Held vertices that are led; only XPBD leads them.
-    pub grips: Vec<Grip>,
+    pub led: Vec<PrescribedVertex>,
 }
 
 /// The parts of a model. A cache holds a clone of the parts it was made from and is valid while the

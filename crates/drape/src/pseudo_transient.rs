@@ -142,7 +142,7 @@ impl PseudoTransientContinuation {
         workspace: &mut Workspace,
     ) -> Result<(), DrapeError> {
         let start = state.clone();
-        workspace.terms.hold_still(system, state);
+        workspace.increment.begin_static(system, state);
         loop {
             let h = self.memory.pseudo_step;
             let weight: Vec<f64> = system.rest.mass.iter().map(|m| m / (h * h)).collect();

@@ -192,7 +192,7 @@ impl Bending {
             .iter()
             .any(|m| m.is_viscous()[1])
             .then(|| sum(Material::viscous_bend));
-        let kept = materials.list.iter().any(|m| m.kept[1] > 0.0);
+        let kept = materials.list.iter().any(|m| m.relaxed_fraction[1] > 0.0);
         Self {
             elastic,
             stencils: if kept || viscous.is_some() {

@@ -23,8 +23,8 @@ pub struct State {
     pub normal_forces: Vec<f64>,
     /// What contact of cloth with cloth remembers.
     pub cloth: ClothMemory,
-    /// What each triangle has settled into; empty unless a cloth keeps strain.
-    pub settled: Vec<InternalStrain>,
+    /// Internal strain of each triangle's standard linear solid; empty unless a material relaxes.
+    pub internal_strain: Vec<InternalStrain>,
     /// Simulated time [s].
     pub time: f64,
     /// What the method remembers.
@@ -47,7 +47,7 @@ impl Clone for State {
             anchors,
             normal_forces,
             cloth,
-            settled,
+            internal_strain,
             time,
             memory,
         } = from;
@@ -57,7 +57,7 @@ impl Clone for State {
         self.anchors.clone_from(anchors);
         self.normal_forces.clone_from(normal_forces);
         self.cloth.clone_from(cloth);
-        self.settled.clone_from(settled);
+        self.internal_strain.clone_from(internal_strain);
         self.time = *time;
         self.memory.clone_from(memory);
     }
@@ -73,7 +73,7 @@ impl State {
             anchors: vec![None; model.rest.samples.len()],
             normal_forces: vec![0.0; model.rest.samples.len()],
             cloth: ClothMemory::default(),
-            settled: Vec::new(),
+            internal_strain: Vec::new(),
             time: 0.0,
             memory: Memory::Nothing,
         }
@@ -122,7 +122,10 @@ impl State {
             ),
             ("cloth.drawn", drawn.all(is_vertex)),
             ("cloth.crossed_for", is_full(cloth.crossed_for.len(), count)),
-            ("settled", is_full(self.settled.len(), triangles)),
+            (
+                "internal strain",
+                is_full(self.internal_strain.len(), triangles),
+            ),
         ];
         if let Some((field, _)) = fits.iter().find(|(_, fits)| !fits) {
             return Err(DrapeError::Scene {

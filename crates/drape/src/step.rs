@@ -125,7 +125,7 @@ fn implicit_euler(
         weight: &weight,
         target: &target,
     };
-    workspace.terms.hold(system, state, 1.0 / h);
+    workspace.increment.begin_step(system, state, 1.0 / h);
     let report = workspace.solve(system, state, &inertia, &settings.newton);
     for ((v, x), old) in state
         .velocities

@@ -2,7 +2,7 @@
 
 use crate::bending_structure::BendingStructure;
 use crate::caps::{exchange_again, without_caps};
-use crate::collider::{Collider, Grip};
+use crate::collider::{Collider, PrescribedVertex};
 use crate::control::{Attachment, Control};
 use crate::elastic::{Elastic, ElasticCouplings, ElasticEnd};
 use crate::laws::elastic::ElasticLaw;
@@ -48,7 +48,7 @@ impl System {
     pub fn edit(&self) -> SystemBuilder {
         SystemBuilder {
             pinned: self.prescribed.pinned.clone(),
-            grips: self.prescribed.grips.clone(),
+            led: self.prescribed.led.clone(),
             elastics: self.elastics().collect(),
             colliders: self.colliders.to_vec(),
             contact: self.contact,
@@ -185,7 +185,7 @@ pub struct SystemBuilder {
     /// Vertices that do not move; those on no triangle from the start.
     pub pinned: Vec<bool>,
     /// Pinned vertices that are led; only XPBD leads them.
-    pub grips: Vec<Grip>,
+    pub led: Vec<PrescribedVertex>,
     /// Attachment forces.
     pub elastics: Vec<Elastic>,
     /// Solid surfaces.
@@ -227,7 +227,7 @@ impl SystemBuilder {
         let rest = RestData::new(object, &topology, &cloth.rest, &materials)?;
         let mut builder = Self {
             pinned: vec![true; cloth.positions.len()],
-            grips: Vec::new(),
+            led: Vec::new(),
             elastics: Vec::new(),
             colliders: Vec::new(),
             contact: ContactSettings::default(),
@@ -292,7 +292,7 @@ impl SystemBuilder {
         let couplings = ElasticCouplings::new(self.pinned.len(), between);
         let prescribed = Prescribed {
             pinned: self.pinned,
-            grips: self.grips,
+            led: self.led,
         };
         let from = self.from.as_ref();
         let parts = ModelParts {

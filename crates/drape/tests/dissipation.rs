@@ -100,7 +100,7 @@ fn stretch(cloth: &Cloth, x: &[Vec3]) -> f64 {
 #[test]
 fn a_stretched_strip_keeps_its_share_and_lets_go_of_the_rest() {
     let material = Material {
-        kept: [0.4, 0.0],
+        relaxed_fraction: [0.4, 0.0],
         relaxation_time: 0.5,
         poisson: 0.0,
         ..Material::default()
@@ -115,7 +115,7 @@ fn a_stretched_strip_keeps_its_share_and_lets_go_of_the_rest() {
     run(&system, &mut state, MethodKind::ImplicitEuler, 0.01, 1.0);
     let held = 1.02f64.powi(2) / 2.0 - 0.5;
     let settled = held * (1.0 - (-1.0f64 / 0.5).exp());
-    for triangle in &state.settled {
+    for triangle in &state.internal_strain {
         assert!((triangle.stretch[0] - settled).abs() < 1e-12);
     }
     // Let go: at rest at once with 0.4 of what settled, as rest does not run in time.
@@ -161,7 +161,7 @@ fn a_fold_that_was_held_keeps_its_share() {
 
 fn kept_fold(kind: Kind) -> f64 {
     let material = Material {
-        kept: [0.0, 0.5],
+        relaxed_fraction: [0.0, 0.5],
         relaxation_time: 0.1,
         poisson: 0.0,
         ..Material::default()

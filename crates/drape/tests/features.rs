@@ -146,8 +146,8 @@ fn cases(feature: Feature) -> Vec<[Scene; 2]> {
             matter(|m| m.bend_viscosity = 1e-7),
         ],
         Feature::KeptStrain => vec![
-            matter(|m| (m.kept, m.relaxation_time) = ([0.5, 0.0], 0.01)),
-            matter(|m| (m.kept, m.relaxation_time) = ([0.0, 0.5], 0.01)),
+            matter(|m| (m.relaxed_fraction, m.relaxation_time) = ([0.5, 0.0], 0.01)),
+            matter(|m| (m.relaxed_fraction, m.relaxation_time) = ([0.0, 0.5], 0.01)),
         ],
         Feature::Hardening => vec![matter(|m| m.hardening = [100.0; 2])],
         Feature::StrainLimit => vec![matter(|m| m.strain_limit = [0.08; 2])],

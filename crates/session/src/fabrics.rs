@@ -159,7 +159,7 @@ fn of_material(name: &str, material: &Material) -> Result<Fabric, &'static str> 
             hardening: material.hardening,
             viscosity: material.viscosity,
             bend_viscosity: material.bend_viscosity,
-            kept: material.kept,
+            kept: material.relaxed_fraction,
             relaxation_time: material.relaxation_time,
         },
     })
@@ -184,7 +184,7 @@ pub(crate) fn cloth_material(fabric: &Fabric) -> Material {
         hardening,
         viscosity: own.viscosity,
         bend_viscosity: own.bend_viscosity,
-        kept: own.kept,
+        relaxed_fraction: own.kept,
         relaxation_time: own.relaxation_time,
         ..Material::default()
     }
@@ -240,7 +240,10 @@ mod tests {
         assert!(notes.is_empty() && choice.name() == "ponte");
         let fabric = choice.fabric(&pattern).unwrap();
         let material = cloth_material(&fabric);
-        assert_eq!((material.viscosity, material.kept), (0.02, [0.0, 0.2]));
+        assert_eq!(
+            (material.viscosity, material.relaxed_fraction),
+            (0.02, [0.0, 0.2])
+        );
         std::fs::write(&path, text(r#", "restitution": 0.5"#)).unwrap();
         let error = chosen(&pattern, asked).unwrap_err().to_string();
         assert!(

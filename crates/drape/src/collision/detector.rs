@@ -7,9 +7,9 @@ use super::contact_set::ContactSet;
 use super::curvature::Clearance;
 use super::entanglement::Entanglement;
 use super::exemptions::ContactExemptions;
-use super::fade::fade;
 use super::friction_memory;
 use super::memory::ClothMemory;
+use super::mollifier::edge_mollifier;
 use super::motions::Motions;
 use super::nearness::Nearness;
 use super::proximity::nearnesses;
@@ -119,9 +119,9 @@ impl ContactDetector {
         let reach = Reach::all(REACH_IN_OFFSETS * model.contact.cloth_offset);
         self.detect(model, memory, x, &reach, set);
         for contact in &mut set.contacts {
-            let fade = fade(contact, x);
-            contact.law.normal *= fade;
-            contact.law.tangential *= fade;
+            let factor = edge_mollifier(contact, x);
+            contact.law.normal *= factor;
+            contact.law.tangential *= factor;
         }
     }
 

@@ -1,10 +1,10 @@
-//! What bending does beyond the quadratic energy of [`super::bending`]: kept folds and viscosity.
+//! Bending beyond the quadratic energy of [`super::bending`]: internal strain (folds that stay) and viscosity.
 //!
 //! Both act on the curvatures measured along the triangle's normal, s_c = n . kappa_c, so that a
 //! rigid turn costs nothing:
 //! E = -q . s + 1/2 (s - s_0) . V (s - s_0),
-//! with q = A D r the moment of the kept curvature r (A/2 |kappa - r n|^2_D less what the quadratic
-//! energy has and a constant), V = A N / h of the viscous matrix N over a step h, and s_0 the
+//! with q = A D r the moment of the relaxed fraction of the internal curvature, r = p v (A/2 |kappa - r n|^2_D
+//! less the quadratic energy and a constant), V = A N / h of the viscous matrix N over a step h, and s_0 the
 //! curvature when the step began.
 
 use nalgebra::{Matrix3, Vector3};
@@ -13,8 +13,8 @@ use toile_geometry::Vec3;
 /// The fold terms of one triangle during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoldTerm {
-    /// q [N m2].
-    pub kept: Vector3<f64>,
+    /// Moment q of the internal curvature [N m2].
+    pub internal_moment: Vector3<f64>,
     /// s_0 [1/m].
     pub start: Vector3<f64>,
     /// V [N m3].
@@ -35,7 +35,7 @@ impl FoldTerm {
     /// Energy [J] at curvatures along the normal.
     pub fn energy(&self, s: Vector3<f64>) -> f64 {
         let change = s - self.start;
-        -self.kept.dot(&s) + 0.5 * change.dot(&(self.viscous * change))
+        -self.internal_moment.dot(&s) + 0.5 * change.dot(&(self.viscous * change))
     }
 
     /// Slope of the energy by the three curvature vectors, and by the corners through the normal
@@ -48,7 +48,7 @@ impl FoldTerm {
         }
         let n = normal / size;
         let s = along_normal(n, curvature);
-        let slope = self.viscous * (s - self.start) - self.kept;
+        let slope = self.viscous * (s - self.start) - self.internal_moment;
         let by_curvature = [0, 1, 2].map(|c| n * slope[c]);
         // d(n.k) = dN.(k - n (n.k)) / |N|, and dN/dx_i . p = p x e_i with e_i the edge opposite.
         let k = curvature[0] * slope[0] + curvature[1] * slope[1] + curvature[2] * slope[2];
@@ -76,7 +76,7 @@ mod tests {
         ) {
             prop_assume!(area_normal(corners).norm() > 0.1);
             let term = FoldTerm {
-                kept: Vector3::new(0.3, -0.1, 0.7),
+                internal_moment: Vector3::new(0.3, -0.1, 0.7),
                 start: Vector3::new(1.0, 0.2, -0.4),
                 viscous: Matrix3::new(2.0, 0.1, 0.3, 0.1, 1.0, 0.0, 0.3, 0.0, 3.0),
             };
@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn a_collapsed_triangle_feels_nothing() {
         let term = FoldTerm {
-            kept: Vector3::repeat(1.0),
+            internal_moment: Vector3::repeat(1.0),
             start: Vector3::zeros(),
             viscous: Matrix3::identity(),
         };

@@ -54,7 +54,7 @@ impl EnergyWatch {
             target: &state.positions,
         };
         workspace.fit(system);
-        workspace.terms.hold_still(system, state);
+        workspace.increment.begin_static(system, state);
         workspace.contacts.refresh(system, state, &state.positions);
         let gravity: f64 = state
             .positions

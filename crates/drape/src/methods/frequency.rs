@@ -86,7 +86,7 @@ impl FrequencySearch {
         workspace: &mut Workspace,
         iterations: usize,
     ) -> Fastest {
-        workspace.terms.hold_still(system, state);
+        workspace.increment.begin_static(system, state);
         self.search(system, state, workspace, iterations)
     }
 
@@ -108,10 +108,10 @@ impl FrequencySearch {
             && (system.materials.have_viscous_stretch() || system.rest.viscous_bending.is_some())
         {
             // K + w C has the eigenvalue w^2 + 2 xi w^2 for the same vibration.
-            workspace.terms.hold(system, state, w);
+            workspace.increment.begin_step(system, state, w);
             let damped = self.search(system, state, workspace, QUICK).frequency;
             ratio = (damped * damped - still.frequency * still.frequency).max(0.0) / (2.0 * w * w);
-            workspace.terms.hold_still(system, state);
+            workspace.increment.begin_static(system, state);
         }
         let shortened = (1.0 + ratio * ratio).sqrt() - ratio;
         (limit / w * shortened, still.vertex)

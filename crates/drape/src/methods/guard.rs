@@ -1,7 +1,7 @@
 //! The guard round every method: bad states are refused, failed steps undone, results checked.
 
+use crate::incremental_potential::relax;
 use crate::method::{Method, StepReport};
-use crate::step_terms::relax;
 use crate::{DrapeError, State, System};
 
 /// A method whose steps either end finite or leave the state as it was.

@@ -208,9 +208,9 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             limits: self.limits,
         };
         let rate = 1.0 / R::reach(h);
-        self.workspace.terms.hold(system, state, rate);
+        self.workspace.increment.begin_step(system, state, rate);
         let report = self.solver.lower(&problem, state, &mut self.workspace);
-        self.workspace.terms.hold_still(system, state);
+        self.workspace.increment.begin_static(system, state);
         R::finish(&self.before, state, h);
         if let Some(vertex) = state.first_not_finite().or_else(|| runaway(state)) {
             return Err(Failure::Runaway(vertex));

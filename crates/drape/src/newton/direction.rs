@@ -90,7 +90,7 @@ impl Workspace {
         };
         let hessian = Hessian {
             system,
-            bending: self.terms.bending(system),
+            bending: self.increment.bending(system),
             blocks: &self.blocks,
             secants: &self.secants,
             touching: &self.touching,
@@ -120,7 +120,7 @@ impl Workspace {
         };
         let hessian = Hessian {
             system,
-            bending: self.terms.bending(system),
+            bending: self.increment.bending(system),
             blocks: &self.blocks,
             secants: &self.secants,
             touching: &self.touching,

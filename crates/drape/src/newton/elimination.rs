@@ -4,12 +4,12 @@
 //!
 //! Near rest cloth buckles in one spot after the other, and a spot that buckles takes Newton's
 //! method several steps, each a factorisation of the whole matrix cut short by a line search over
-//! all the cloth. Here they are steps of a part, and other spots do not wait for them.
+//! all the cloth. Here they are steps of a submodel, and the cloth elsewhere does not wait for them.
 
 use super::{Inertia, LinearSolver, NewtonReport, NewtonSettings, Workspace};
 use crate::laws::membrane::Curvature;
 use crate::merge::merge_map;
-use crate::part::Part;
+use crate::submodel::SubModel;
 use crate::{PcgLimits, State, System};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -39,7 +39,7 @@ impl Workspace {
     /// alone: what draws it out is found anew after every move. Returns whether anything moved;
     /// contacts are then to be found anew.
     pub(crate) fn eliminate(&mut self, system: &System, state: &mut State, enough: f64) -> bool {
-        if !self.terms.are_of_stretch() || !self.contacts.cloth.is_in_order() {
+        if !self.increment.are_of_stretch() || !self.contacts.cloth.is_in_order() {
             return false;
         }
         let start = state.positions.clone();
@@ -59,18 +59,18 @@ impl Workspace {
             let calm = calm / (regions.len() as f64).sqrt();
             // Cloth in order has no pulls.
             let touching = &self.contacts.cloth.contacts;
-            let parts: Vec<Part> = regions
+            let submodels: Vec<SubModel> = regions
                 .par_iter()
                 .filter_map(|own| {
-                    let mut part = Part::new(system, state, touching, own);
-                    bring_to_rest(&mut part, calm).then_some(part)
+                    let mut submodel = SubModel::new(system, state, touching, own);
+                    bring_to_rest(&mut submodel, calm).then_some(submodel)
                 })
                 .collect();
-            if parts.is_empty() {
+            if submodels.is_empty() {
                 break;
             }
             moved = true;
-            for (v, place) in parts.iter().flat_map(Part::places) {
+            for (v, place) in submodels.iter().flat_map(SubModel::places) {
                 state.positions[v as usize] = place;
             }
         }
@@ -157,18 +157,18 @@ impl Workspace {
     }
 }
 
-/// Lowers the potential of a part until its net force is `calm` [N] or a small share of the first.
+/// Lowers the potential of a submodel until its net force is `calm` [N] or a small share of the first.
 /// Contacts of cloth with cloth stay as they were found. Returns whether anything moved.
-fn bring_to_rest(part: &mut Part, calm: f64) -> bool {
-    let Part {
+fn bring_to_rest(submodel: &mut SubModel, calm: f64) -> bool {
+    let SubModel {
         system,
         state,
         touching,
         ..
-    } = part;
+    } = submodel;
     let mut workspace = Workspace::default();
     workspace.fit(system);
-    workspace.terms.hold_still(system, state);
+    workspace.increment.begin_static(system, state);
     let start = state.positions.clone();
     let inertia = Inertia {
         weight: &vec![0.0; system.vertex_count()],

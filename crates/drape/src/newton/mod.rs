@@ -20,8 +20,8 @@ pub(crate) use prediction::FirstOrder;
 use crate::collision::Couplings;
 use crate::contacts::Contacts;
 use crate::hessian::{Direct, Hessian};
+use crate::incremental_potential::{IncrementalPotential, add_forces_of_motion};
 use crate::laws::membrane::Curvature;
-use crate::step_terms::{StepTerms, add_forces_of_motion};
 use crate::{Model, State, System};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -108,7 +108,7 @@ impl NewtonReport {
 #[derive(Default)]
 pub struct Workspace {
     pub(crate) contacts: Contacts,
-    pub(crate) terms: StepTerms,
+    pub(crate) increment: IncrementalPotential,
     pub(crate) gradient: Vec<Vec3>,
     pub(crate) direction: Vec<Vec3>,
     pub(crate) trial: Vec<Vec3>,
@@ -183,7 +183,7 @@ impl Workspace {
     /// Contact and friction (inside its cone) are part of it.
     pub fn net_force(&mut self, system: &System, state: &State) -> &[Vec3] {
         self.fit(system);
-        self.terms.hold_still(system, state);
+        self.increment.begin_static(system, state);
         self.contacts.refresh(system, state, &state.positions);
         self.fill_gradient(system, &state.positions, None);
         for g in &mut self.gradient {
@@ -275,7 +275,7 @@ impl Workspace {
                 let mut energy = 0.0;
                 for (k, corners) in triangles.iter().enumerate() {
                     let t = chunk * CHUNK + k;
-                    let law = self.terms.law(system, t);
+                    let law = self.increment.law(system, t);
                     energy += system.rest.elements[t].energy(&law, corners.map(|v| x[v as usize]));
                 }
                 energy
@@ -305,12 +305,12 @@ impl Workspace {
         for contact in self.contacts.cloth.all() {
             energy += contact.law.energy(&contact.plane, contact.between(x));
         }
-        energy + self.terms.energy(system, x)
+        energy + self.increment.energy(system, x)
     }
 
     /// Gradient of the potential at `x`; zero at pins.
     pub(crate) fn fill_gradient(&mut self, system: &System, x: &[Vec3], inertia: Option<&Inertia>) {
-        let terms = &self.terms;
+        let terms = &self.increment;
         let each = self.corner_gradients.par_iter_mut().enumerate();
         each.with_min_len(CHUNK).for_each(|(t, out)| {
             let corners = system.topology.triangles[t].map(|v| x[v as usize]);
@@ -352,7 +352,7 @@ impl Workspace {
                 self.gradient[v as usize] += gradient * w;
             }
         }
-        self.terms.add_gradient(system, x, &mut self.gradient);
+        self.increment.add_gradient(system, x, &mut self.gradient);
         for (g, &pinned) in self.gradient.iter_mut().zip(&system.prescribed.pinned) {
             if pinned {
                 *g = Vec3::zeros();
@@ -369,7 +369,7 @@ impl Workspace {
         inertia: &Inertia,
         curvature: Curvature,
     ) {
-        let terms = &self.terms;
+        let terms = &self.increment;
         let each = self.elements.par_iter_mut().enumerate();
         each.with_min_len(CHUNK).for_each(|(t, out)| {
             let corners = system.topology.triangles[t].map(|v| x[v as usize]);
@@ -430,7 +430,7 @@ impl Workspace {
     pub(crate) fn hessian<'a>(&'a self, system: &'a System) -> Hessian<'a> {
         Hessian {
             system,
-            bending: self.terms.bending(system),
+            bending: self.increment.bending(system),
             blocks: &self.blocks,
             secants: &self.secants,
             touching: &self.touching,

@@ -39,7 +39,7 @@ impl Workspace {
         longest_move: f64,
     ) -> Option<FirstOrder> {
         self.fit(system);
-        self.terms.hold_still(system, state);
+        self.increment.begin_static(system, state);
         let x = &state.positions;
         self.contacts.refresh(system, state, x);
         self.fill_gradient(system, x, None);

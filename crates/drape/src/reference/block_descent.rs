@@ -105,7 +105,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
         x: &[Vec3],
         v: usize,
     ) -> (Vec3, Matrix3<f64>) {
-        let (system, terms) = (problem.system, &workspace.terms);
+        let (system, terms) = (problem.system, &workspace.increment);
         let weight = problem.inertia.weight[v];
         let bending = terms.bending(system);
         let mut gradient = bending.row_times(v, x) - system.control.gravity * system.rest.mass[v]
@@ -155,7 +155,7 @@ impl<const CHEBYSHEV: bool> BlockDescent<CHEBYSHEV> {
         if plain && !system.control.air.acts() {
             return;
         }
-        let (terms, x) = (&workspace.terms, &self.before);
+        let (terms, x) = (&workspace.increment, &self.before);
         let (held, elastic) = (terms.bending(system), &system.rest.bending);
         self.lagged
             .extend((0..x.len()).map(|v| elastic.row_times(v, x) - held.row_times(v, x)));

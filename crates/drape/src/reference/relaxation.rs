@@ -78,7 +78,7 @@ impl Relaxation {
             target: &state.positions,
         };
         workspace.fit(system);
-        workspace.terms.hold_still(system, state);
+        workspace.increment.begin_static(system, state);
         workspace.contacts.refresh(system, state, &state.positions);
         workspace.fill_gradient(system, &state.positions, Some(&inertia));
         workspace.fill_hessian(system, &state.positions, &inertia, Curvature::CONVEX);

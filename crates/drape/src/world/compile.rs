@@ -3,7 +3,7 @@
 use super::{Kind, Object, ObjectId, VertexMap, World};
 use crate::merge::merged_layers;
 use crate::pair_policies::{BETWEEN_OBJECTS, PairPolicies};
-use crate::{Cloth, Collider, Control, DrapeError, Grip, System, SystemBuilder};
+use crate::{Cloth, Collider, Control, DrapeError, PrescribedVertex, System, SystemBuilder};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
@@ -94,8 +94,8 @@ impl World {
         };
         builder.elastics = attachments.elastics;
         builder.release();
-        builder.grips = self.grips(map);
-        let pins = self.pins(map).chain(builder.grips.iter().map(|g| g.vertex));
+        builder.led = self.led(map);
+        let pins = self.pins(map).chain(builder.led.iter().map(|g| g.vertex));
         for vertex in pins.collect::<Vec<_>>() {
             builder.pinned[vertex as usize] = true;
         }
@@ -183,21 +183,21 @@ impl World {
         })
     }
 
-    fn grips(&self, map: &VertexMap) -> Vec<Grip> {
-        let mut grips = Vec::new();
+    fn led(&self, map: &VertexMap) -> Vec<PrescribedVertex> {
+        let mut led = Vec::new();
         for id in map.objects() {
             let (Some(object), Some(own)) = (self.object(id), map.vertices_of(id)) else {
                 continue;
             };
             for grip in &object.grips {
-                grips.extend(grip.vertices.iter().map(|&v| Grip {
+                led.extend(grip.vertices.iter().map(|&v| PrescribedVertex {
                     vertex: own[v as usize],
                     home: object.mesh.positions[v as usize],
                     motion: grip.motion.clone(),
                 }));
             }
         }
-        grips
+        led
     }
 }
 

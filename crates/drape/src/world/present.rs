@@ -48,7 +48,7 @@ impl Present<'_> {
     /// Which merged vertices pins or grips hold, and which of them grips.
     pub fn held(&self) -> (Vec<bool>, Vec<bool>) {
         let mut gripped = vec![false; self.state.positions.len()];
-        for grip in &self.system.prescribed.grips {
+        for grip in &self.system.prescribed.led {
             gripped[grip.vertex as usize] = true;
         }
         let mut held = gripped.clone();

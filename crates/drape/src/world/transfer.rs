@@ -159,8 +159,8 @@ impl Transfer {
             anchors: samples.anchors,
             normal_forces: samples.normal_forces,
             cloth,
-            settled: match old.settled.len() == former.topology.triangles.len() {
-                true => self.internal_strain(&old.settled, [former, model]),
+            internal_strain: match old.internal_strain.len() == former.topology.triangles.len() {
+                true => self.internal_strain(&old.internal_strain, [former, model]),
                 false => Vec::new(),
             },
             time: old.time,
@@ -238,14 +238,10 @@ impl Transfer {
         self.origins.iter().map(one).collect()
     }
 
-    fn internal_strain(
-        &self,
-        settled: &[InternalStrain],
-        models: [&Model; 2],
-    ) -> Vec<InternalStrain> {
+    fn internal_strain(&self, old: &[InternalStrain], models: [&Model; 2]) -> Vec<InternalStrain> {
         let one = |(new, former): (usize, &Option<u32>)| {
             let kept = former.filter(|&old| has_same_diagonal(models, [old, new as u32]));
-            kept.map_or_else(InternalStrain::default, |t| settled[t as usize])
+            kept.map_or_else(InternalStrain::default, |t| old[t as usize])
         };
         self.triangles.iter().enumerate().map(one).collect()
     }

@@ -5,7 +5,7 @@
 //! one before, whatever speed that move would give. Contacts that share a point are gone through
 //! together, each by impulses along its normal that never pull.
 
-use super::contact::{ContactStencil, NO_SAMPLE, Touch};
+use super::contact::{ContactConstraint, ContactStencil, NO_SAMPLE};
 use super::particles::Particles;
 use crate::ContactSample;
 use crate::lanes::{LANES, Point};
@@ -24,7 +24,7 @@ struct Hit {
     /// Sum of a^2 / m [1/kg].
     yielding: f32,
     /// Speed of the surface along the normal [m/s].
-    drift: f32,
+    surface_speed: f32,
     /// Impulse so far [N s].
     impulse: f32,
     /// Share of the speed that comes back, where it is said.
@@ -34,31 +34,33 @@ struct Hit {
 }
 
 impl Hit {
-    /// From what a contact did, drift and impulse still times the substep.
+    /// From what a contact did, speed of the surface and impulse still times the substep.
     fn new(
         particles: &Particles,
         (slots, weights): ([u32; 4], [f32; 4]),
-        touch: &Touch,
+        contact: &ContactConstraint,
         share: Option<f32>,
     ) -> Option<Self> {
         let each = slots.iter().zip(weights);
         let yielding: f32 = each
             .map(|(&slot, a)| a * a * particles.start[slot as usize][3])
             .sum();
-        (touch.push > 0.0 && yielding > 0.0).then(|| Self {
+        (contact.lambda_normal > 0.0 && yielding > 0.0).then(|| Self {
             slots,
             weights,
-            normal: touch.normal,
+            normal: contact.normal,
             yielding,
-            drift: (0..3).map(|k| touch.normal[k] * touch.drift[k]).sum(),
-            impulse: touch.push,
+            surface_speed: (0..3)
+                .map(|k| contact.normal[k] * contact.surface_displacement[k])
+                .sum(),
+            impulse: contact.lambda_normal,
             share,
             leaving: 0.0,
         })
     }
 
     fn speed(&self, velocity: &[Point]) -> f32 {
-        let mut speed = -self.drift;
+        let mut speed = -self.surface_speed;
         for (&slot, a) in self.slots.iter().zip(self.weights) {
             let v = velocity[slot as usize];
             speed += a * (0..3).map(|k| self.normal[k] * v[k]).sum::<f32>();
@@ -95,28 +97,28 @@ pub fn bounce<'a>(
     step: BounceStep,
 ) {
     let mut hits = Vec::new();
-    for (block, touches) in particles.touch.iter().enumerate() {
-        for lane in touches.pressed() {
-            let touch = touches.get(lane);
+    for (block, contacts) in particles.contacts.iter().enumerate() {
+        for lane in contacts.pressed() {
+            let contact = contacts.get(lane);
             let slot = (block * LANES + lane) as u32;
             let one = ([slot; 4], [1.0, 0.0, 0.0, 0.0]);
             hits.extend(Hit::new(
                 particles,
                 one,
-                &touch,
-                restitution(samples, &touch),
+                &contact,
+                restitution(samples, &contact),
             ));
         }
     }
     let each = stencils.flat_map(|(first, run)| run.iter().map(move |stencil| (first, stencil)));
-    for (first, stencil) in each.filter(|(_, stencil)| stencil.touch.push > 0.0) {
-        let share = match stencil.touch.sample {
+    for (first, stencil) in each.filter(|(_, stencil)| stencil.constraint.lambda_normal > 0.0) {
+        let share = match stencil.constraint.sample {
             NO_SAMPLE => stencil.restitution,
-            _ => restitution(samples, &stencil.touch),
+            _ => restitution(samples, &stencil.constraint),
         };
         let slots = stencil.vertices.map(|v| v + first as u32);
         let four = (slots, stencil.weights);
-        hits.extend(Hit::new(particles, four, &stencil.touch, share));
+        hits.extend(Hit::new(particles, four, &stencil.constraint, share));
     }
     let Particles {
         start,
@@ -126,7 +128,7 @@ pub fn bounce<'a>(
     } = particles;
     without.clone_from(velocity);
     for hit in &mut hits {
-        hit.drift /= step.step;
+        hit.surface_speed /= step.step;
         hit.impulse /= step.step;
         hit.push(-hit.impulse, start, without);
     }
@@ -153,7 +155,7 @@ pub fn bounce<'a>(
     }
 }
 
-fn restitution(samples: &[ContactSample], touch: &Touch) -> Option<f32> {
-    let sample = samples.get(touch.sample as usize)?;
+fn restitution(samples: &[ContactSample], contact: &ContactConstraint) -> Option<f32> {
+    let sample = samples.get(contact.sample as usize)?;
     sample.restitution.map(|e| e as f32)
 }

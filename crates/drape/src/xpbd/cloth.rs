@@ -1,6 +1,6 @@
 //! Contact of cloth with cloth in substeps: found once in a few of them, kept as planes meanwhile.
 
-use super::contact::{ContactStencil, Touch};
+use super::contact::{ContactConstraint, ContactStencil};
 use super::{Xpbd, XpbdReport, middle};
 use crate::collision::{
     Ahead, ClothContact, ContactDetector, ContactSet, ImpactStats, Motions, Reach,
@@ -161,7 +161,7 @@ fn fastest(system: &System, state: &State, soon: f64) -> f64 {
             let [from, to] = times.map(|time| collider.pose(time));
             Some(collider.travel(&from?, &to?) / span)
         });
-        let of_grips = system.prescribed.grips.iter().map(move |grip| {
+        let of_grips = system.prescribed.led.iter().map(move |grip| {
             let to = grip.motion.pose(times[1]).apply(grip.home);
             (to - state.positions[grip.vertex as usize]).norm() / span
         });
@@ -197,7 +197,7 @@ impl Xpbd {
             watch.forget();
         }
         let origin = middle(&state.positions);
-        self.forget_surfaces();
+        self.invalidate_surfaces();
         let mut left = span.count;
         let mut report = XpbdReport::default();
         let mut pieces = 1;
@@ -205,7 +205,7 @@ impl Xpbd {
             let least = f64::from(watch.fewest()) * span.substep;
             if watch.serves.is_none_or(|serves| serves < least) {
                 watch.look(system, state, span.substep);
-                self.touch_cloth(&watch.contacts, 2.0 * FARTHEST);
+                self.set_cloth_contacts(&watch.contacts, 2.0 * FARTHEST);
             }
             let serves = watch.serves.map_or(0.0, |serves| serves / span.substep);
             let count = before_next(left, serves, watch.fewest());
@@ -223,8 +223,8 @@ impl Xpbd {
 
     /// Holds contacts of cloth with cloth from here on, in place of those held before: those that may give
     /// way to their hard depth before the next look, `way` [m] ahead, as two.
-    fn touch_cloth(&mut self, contacts: &ContactSet, way: f64) {
-        let slot_of = &self.order.slot_of;
+    fn set_cloth_contacts(&mut self, contacts: &ContactSet, way: f64) {
+        let slot_of = &self.partition.slot_of;
         let slots = |contact: &ClothContact| contact.vertices.map(|v| slot_of[v as usize]);
         let stencil = |&(contact, is_hard): &(&ClothContact, bool), start: u32| {
             let (plane, law) = (&contact.plane, &contact.law);
@@ -235,12 +235,12 @@ impl Xpbd {
             ContactStencil {
                 vertices: slots(contact).map(|slot| slot - start),
                 weights: contact.weights.map(|w| w as f32),
-                touch: Touch {
+                constraint: ContactConstraint {
                     normal: [0, 1, 2].map(|k| plane.normal[k] as f32),
                     level: (depth + plane.normal.dot(&plane.point)) as f32,
-                    softness: (1.0 / stiffness).min(1e30) as f32,
+                    compliance: (1.0 / stiffness).min(1e30) as f32,
                     friction: law.friction as f32,
-                    ..Touch::none()
+                    ..ContactConstraint::none()
                 },
                 restitution: contact.restitution.map(|e| e as f32),
             }
@@ -250,8 +250,12 @@ impl Xpbd {
             std::iter::once((contact, false)).chain(hard.then_some((contact, true)))
         });
         let each: Vec<(&ClothContact, bool)> = each.collect();
-        self.regions
-            .hold_cloth(&self.order, &each, |(contact, _)| slots(contact), stencil);
+        self.regions.set_cloth_contacts(
+            &self.partition,
+            &each,
+            |(contact, _)| slots(contact),
+            stencil,
+        );
     }
 }
 
@@ -321,7 +325,7 @@ mod tests {
                 let regions = &solver.regions;
                 let domains: Vec<usize> = regions.domains.iter().map(held).collect();
                 let cuts: Vec<usize> = regions.cuts.iter().map(held).collect();
-                let alone = held(&regions.rest);
+                let alone = held(&regions.global);
                 assert!(
                     domains.iter().sum::<usize>() > 0 && cuts[0] > 0 && alone > 0,
                     "{domains:?} {cuts:?} {alone}"

@@ -64,7 +64,7 @@ impl Divide for Bound<'_> {
         let (now, now_) = self.now.split_at_mut(slots);
         let (free, free_) = self.free.split_at(slots);
         let (velocity, velocity_) = self.velocity.split_at_mut(slots);
-        let (touch, touch_) = self.touch.split_at_mut(slots / LANES);
+        let (contacts, contacts_) = self.contacts.split_at_mut(slots / LANES);
         (
             Self {
                 start,
@@ -72,7 +72,7 @@ impl Divide for Bound<'_> {
                 now,
                 free,
                 velocity,
-                touch,
+                contacts,
             },
             Self {
                 start: start_,
@@ -80,7 +80,7 @@ impl Divide for Bound<'_> {
                 now: now_,
                 free: free_,
                 velocity: velocity_,
-                touch: touch_,
+                contacts: contacts_,
             },
         )
     }

@@ -21,16 +21,18 @@
 // Lanes and axes are gone through by index, so that loops unroll into vectors.
 #![allow(clippy::needless_range_loop)]
 
+mod attachment_constraint;
 mod bending;
 mod bounce;
 mod cloth;
 mod contact;
+mod contact_block;
 mod domains;
 mod membrane;
-mod order;
 mod particles;
 mod region;
 mod run;
+mod vertex_partition;
 
 use crate::collision::Tally;
 use crate::lanes::LANES;
@@ -39,14 +41,14 @@ use crate::{ContactSample, DrapeError, Model, State, System};
 use bending::{BendingForce, Filter};
 use bounce::BounceStep;
 pub(crate) use cloth::{ClothWatch, Span};
-use contact::{ContactStep, Solid, Touch};
+use contact::{ContactConstraint, ContactStep, Solid};
 use membrane::{LawRow, inverse_mass};
-use order::Order;
 use particles::{MotionStep, Particles};
 use region::{Regions, SweepStep};
 use run::Run;
 use std::sync::Arc;
 use toile_geometry::Vec3;
+use vertex_partition::VertexPartition;
 
 /// How constraints are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,7 +100,7 @@ const STEP_HALVINGS: u32 = 6;
 /// XPBD on one model: its constraints in the order they are solved in, and private memory.
 pub struct Xpbd {
     settings: XpbdSettings,
-    order: Order,
+    partition: VertexPartition,
     regions: Regions,
     particles: Particles,
     bending: BendingForce,
@@ -111,7 +113,7 @@ pub struct Xpbd {
     kappa: f64,
     built_for: BuiltFor,
     domain_starts: Vec<usize>,
-    settle_starts: Vec<usize>,
+    contact_starts: Vec<usize>,
     cut_starts: Vec<usize>,
     /// How often constraints were built.
     builds: usize,
@@ -163,18 +165,19 @@ impl Xpbd {
         samples: &Arc<Vec<ContactSample>>,
         settings: XpbdSettings,
     ) -> Self {
-        let order = Order::new(system);
-        let mut regions = Regions::new(&order);
-        regions.add_membranes(system, &order);
-        regions.add_ties(system, &order);
-        let mut particles = Particles::new(order.len());
+        let partition = VertexPartition::new(system);
+        let mut regions = Regions::new(&partition);
+        regions.add_membranes(system, &partition);
+        regions.add_elastics(system, &partition);
+        let mut particles = Particles::new(partition.len());
         if !system.colliders.is_empty() {
-            regions.add_samples(system, samples, &order);
+            regions.add_samples(system, samples, &partition);
             for (index, sample) in samples.iter().enumerate() {
                 if sample.triangle.is_none() {
-                    let slot = order.slot_of[sample.vertices[0] as usize];
+                    let slot = partition.slot_of[sample.vertices[0] as usize];
                     let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
-                    particles.touch[block].set(lane, &Touch::of_sample(system, (index, sample)));
+                    particles.contacts[block]
+                        .set(lane, &ContactConstraint::of_sample(system, (index, sample)));
                 }
             }
         }
@@ -182,17 +185,17 @@ impl Xpbd {
             settings,
             regions,
             particles,
-            bending: BendingForce::new(system, &order.vertex_of, &order.slot_of),
+            bending: BendingForce::new(system, &partition.vertex_of, &partition.slot_of),
             has_bending_constraints: false,
             filter: None,
             laws: system.materials.laws.iter().map(LawRow::new).collect(),
             step: f64::NAN,
             kappa: f64::NAN,
             built_for: BuiltFor::new(system, samples),
-            domain_starts: order.domain_starts(),
-            settle_starts: order.settle_starts(),
-            cut_starts: order.cut_starts(),
-            order,
+            domain_starts: partition.domain_starts(),
+            contact_starts: partition.contact_starts(),
+            cut_starts: partition.cut_starts(),
+            partition,
             builds: 1,
         }
     }
@@ -212,7 +215,7 @@ impl Xpbd {
             } else {
                 bending
             },
-            elastics: self.regions.tie_count(),
+            elastics: self.regions.elastic_count(),
             contacts: self.built_for.samples.len(),
         }
     }
@@ -237,7 +240,7 @@ impl Xpbd {
             drag,
         };
         let origin = middle(&state.positions);
-        self.forget_surfaces();
+        self.invalidate_surfaces();
         self.advance_about(system, state, origin, &span)
     }
 
@@ -263,7 +266,7 @@ impl Xpbd {
         for halvings in 0..=STEP_HALVINGS {
             let pieces = 1u32 << halvings;
             if halvings > 0 {
-                self.forget_surfaces();
+                self.invalidate_surfaces();
             }
             self.load(system, state, origin);
             self.lead(system, state, substep * f64::from(count));
@@ -302,19 +305,19 @@ impl Xpbd {
     }
 
     /// Looks up surfaces anew.
-    fn forget_surfaces(&mut self) {
-        for touch in &mut self.particles.touch {
-            touch.forget();
+    fn invalidate_surfaces(&mut self) {
+        for contact in &mut self.particles.contacts {
+            contact.invalidate();
         }
         for region in self.regions.all_mut() {
-            region.forget_surfaces();
+            region.invalidate_surfaces();
         }
     }
 
     /// Reads a state.
     fn load(&mut self, system: &System, state: &State, origin: Vec3) {
         let particles = &mut self.particles;
-        for (slot, vertex) in self.order.vertex_of.iter().enumerate() {
+        for (slot, vertex) in self.partition.vertex_of.iter().enumerate() {
             let Some(v) = *vertex else {
                 continue;
             };
@@ -337,7 +340,8 @@ impl Xpbd {
         for moves in &mut particles.bend {
             moves.fill([0.0; 4]);
         }
-        self.regions.hold_attachments(system, &self.order, origin);
+        self.regions
+            .set_attachments(system, &self.partition, origin);
         let iterated = self.settings.iterations > 1;
         for region in self.regions.all_mut() {
             region.begin(iterated);
@@ -347,14 +351,14 @@ impl Xpbd {
     /// Gives pinned vertices that are led the velocity that takes them where they have to be after
     /// `span` [s].
     fn lead(&mut self, system: &System, state: &State, span: f64) {
-        for grip in &system.prescribed.grips {
+        for grip in &system.prescribed.led {
             let v = grip.vertex as usize;
             if !system.prescribed.pinned[v] {
                 continue;
             }
             let there = grip.motion.pose(state.time + span).apply(grip.home);
             let velocity = (there - state.positions[v]) / span;
-            let slot = self.order.slot_of[v] as usize;
+            let slot = self.partition.slot_of[v] as usize;
             for k in 0..3 {
                 self.particles.velocity[slot][k] = velocity[k] as f32;
             }
@@ -365,7 +369,7 @@ impl Xpbd {
     fn store(&self, system: &System, state: &mut State, origin: Vec3) -> XpbdReport {
         let particles = &self.particles;
         let mut fastest = 0f64;
-        for (slot, vertex) in self.order.vertex_of.iter().enumerate() {
+        for (slot, vertex) in self.partition.vertex_of.iter().enumerate() {
             let Some(v) = *vertex else {
                 continue;
             };
@@ -387,19 +391,19 @@ impl Xpbd {
             fastest = fastest.max(wide(velocity).norm_squared());
         }
         let kappa = self.kappa;
-        let vertices = particles.touch.iter();
+        let vertices = particles.contacts.iter();
         let vertices = vertices.flat_map(|block| (0..LANES).map(|lane| block.get(lane)));
         let within = self.regions.all().flat_map(|r| &r.contacts);
-        for touch in vertices.chain(within.map(|c| c.touch)) {
-            let at = touch.sample as usize;
-            if touch.sample == contact::NO_SAMPLE {
+        for contact in vertices.chain(within.map(|c| c.constraint)) {
+            let at = contact.sample as usize;
+            if contact.sample == contact::NO_SAMPLE {
                 continue;
             }
-            state.normal_forces[at] = kappa * f64::from(touch.push);
-            state.anchors[at] = (touch.push > 0.0).then(|| {
+            state.normal_forces[at] = kappa * f64::from(contact.lambda_normal);
+            state.anchors[at] = (contact.lambda_normal > 0.0).then(|| {
                 let stiffness = 0.5 * system.contact.stiffness * state.samples[at].area;
-                let rub = Vec3::from(touch.rub.map(f64::from)) * kappa;
-                state.samples[at].place(&state.positions) + rub / stiffness
+                let lambda_tangent = Vec3::from(contact.lambda_tangent.map(f64::from)) * kappa;
+                state.samples[at].place(&state.positions) + lambda_tangent / stiffness
             });
         }
         XpbdReport {
@@ -414,7 +418,7 @@ impl Xpbd {
         let particles = &self.particles;
         let bad = |p: &[f32; 4]| !(p[0] + p[1] + p[2]).is_finite();
         (particles.start.iter().zip(&particles.velocity))
-            .zip(&self.order.vertex_of)
+            .zip(&self.partition.vertex_of)
             .filter(|((x, v), _)| bad(x) || bad(v))
             .find_map(|(_, vertex)| vertex.map(|v| v as usize))
     }
@@ -456,12 +460,12 @@ impl Xpbd {
             iterations: self.settings.iterations.max(1),
             samples: &self.built_for.samples,
             domain_starts: &self.domain_starts,
-            settle_starts: &self.settle_starts,
+            contact_starts: &self.contact_starts,
             cut_starts: &self.cut_starts,
             arch: pulp::Arch::new(),
         };
         let (regions, particles) = (&mut self.regions, &mut self.particles);
-        let meets = run.sweep.solid.stands() && self.settle_starts.len() > 2;
+        let meets = run.sweep.solid.has_surfaces() && self.contact_starts.len() > 2;
         if self.domain_starts.len() <= 2 && !meets {
             run.substeps(regions, particles, count);
         } else {
@@ -481,7 +485,7 @@ impl Xpbd {
             };
         }
         if self.filter.is_none() && !self.has_bending_constraints {
-            self.regions.add_bending(system, &self.order);
+            self.regions.add_bending(system, &self.partition);
             self.has_bending_constraints = true;
             self.kappa = f64::NAN;
             for region in self.regions.all_mut() {

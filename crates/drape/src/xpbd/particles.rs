@@ -1,7 +1,8 @@
 //! The points: where they go by themselves, and what the constraints did to their velocities.
 
 use super::bending::{BendingForce, Filter};
-use super::contact::{ContactStep, Solid, TouchBlock, press};
+use super::contact::{ContactStep, Solid};
+use super::contact_block::{ContactBlock, solve_block};
 use crate::lanes::{LANES, Point, load, parts, store};
 use pulp::bytemuck::cast_slice;
 use pulp::{Simd, WithSimd};
@@ -28,7 +29,7 @@ pub struct Particles {
     /// Velocities without what contacts did in the substep [m/s]; only where cloth bounces.
     pub without: Vec<Point>,
     /// Contact of each vertex with the surfaces, sixteen a block.
-    pub touch: Vec<TouchBlock>,
+    pub contacts: Vec<ContactBlock>,
     /// h^2 W K x [m].
     pub pull: Vec<Point>,
     /// How far bending moves them in the substep, by the present stage of its filter and the last
@@ -50,7 +51,7 @@ impl Particles {
             bend: [points.clone(), points.clone()],
             velocity: points,
             without: Vec::new(),
-            touch: vec![TouchBlock::none(); count / LANES],
+            contacts: vec![ContactBlock::none(); count / LANES],
         }
     }
 }
@@ -286,7 +287,7 @@ pub struct Bound<'a> {
     /// As in [`Particles`].
     pub velocity: &'a mut [Point],
     /// As in [`Particles`].
-    pub touch: &'a mut [TouchBlock],
+    pub contacts: &'a mut [ContactBlock],
 }
 
 /// The end of an iteration on a domain: vertices are kept outside the surfaces; after the last one
@@ -316,13 +317,13 @@ impl WithSimd for Settle<'_, '_> {
         for b in 0..now.len() {
             if let Some(solid) = &self.solid {
                 for part in 0..parts::<S>() {
-                    let touch = &mut self.fields.touch[b];
+                    let contact = &mut self.fields.contacts[b];
                     let now = &mut now[b];
-                    if touch.is_stale(simd, now, part) {
+                    if contact.is_stale(simd, now, part) {
                         let first = part * S::F32_LANES;
-                        touch.look(solid, now, first..first + S::F32_LANES);
+                        contact.query_surfaces(solid, now, first..first + S::F32_LANES);
                     }
-                    press(simd, touch, now, &start[b], self.contact, part);
+                    solve_block(simd, contact, now, &start[b], self.contact, part);
                 }
             }
             if let Some(step) = self.finish {

@@ -1,27 +1,26 @@
 //! A region: the constraints that one core solves in one go, on one slice of the points.
 
+use super::attachment_constraint::{AttachmentConstraint, AttachmentEnd, solve_attachments};
 use super::bending::{self, BendingBatch, Stencil};
-use super::contact::{
-    ContactStencil, ContactStep, Solid, Tie, TieEnd, Touch, solve_stencils, solve_ties,
-};
+use super::contact::{ContactConstraint, ContactStencil, ContactStep, Solid, solve_stencils};
 use super::membrane::{self, LawRow, MembraneBatch};
-use super::order::{Order, Place, batches};
+use super::vertex_partition::{Partition, VertexPartition, batches};
 use crate::lanes::{LANES, Point, Row};
 use crate::{ContactSample, Model, System};
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 use toile_geometry::Vec3;
 
-/// Constraints of one place, indices being relative to its first slot.
+/// The constraints of one partition; indices of vertices count from its first slot.
 #[derive(Clone, Debug, Default)]
 pub struct Region {
     membrane: Vec<MembraneBatch>,
     membrane_sums: Vec<membrane::Sums>,
     bending: Vec<BendingBatch>,
     bending_sums: Vec<bending::Sums>,
-    ties: Vec<Tie>,
-    attachments: Vec<Tie>,
-    /// Which of the attachments end on moving solids: their numbers, and those in the control.
+    elastics: Vec<AttachmentConstraint>,
+    attachments: Vec<AttachmentConstraint>,
+    /// Attachments that end on moving solids: index among the attachments, index among the control's frames.
     frames: Vec<[u32; 2]>,
     /// Contacts of points within triangles with surfaces.
     pub contacts: Vec<ContactStencil>,
@@ -36,26 +35,26 @@ pub struct Regions {
     pub domains: Vec<Region>,
     /// One for each cut between two domains.
     pub cuts: Vec<Region>,
-    /// What is solved alone.
-    pub rest: Region,
+    /// Constraints between vertices far apart in memory, solved last by one core.
+    pub global: Region,
 }
 
 impl Regions {
-    /// Empty regions for an order.
-    pub fn new(order: &Order) -> Self {
-        let count = order.domains();
+    /// Empty regions for the partitions of the vertices.
+    pub fn new(numbering: &VertexPartition) -> Self {
+        let count = numbering.domains();
         Self {
             domains: vec![Region::default(); count],
             cuts: vec![Region::default(); count - 1],
-            rest: Region::default(),
+            global: Region::default(),
         }
     }
 
-    fn at(&mut self, place: Place) -> &mut Region {
-        match place {
-            Place::Domain(d) => &mut self.domains[d],
-            Place::Cut(d) => &mut self.cuts[d],
-            Place::Rest => &mut self.rest,
+    fn at(&mut self, partition: Partition) -> &mut Region {
+        match partition {
+            Partition::Domain(d) => &mut self.domains[d],
+            Partition::Cut(d) => &mut self.cuts[d],
+            Partition::Global => &mut self.global,
         }
     }
 
@@ -63,11 +62,11 @@ impl Regions {
     pub fn all_mut(&mut self) -> impl Iterator<Item = &mut Region> {
         (self.domains.iter_mut())
             .chain(self.cuts.iter_mut())
-            .chain(std::iter::once(&mut self.rest))
+            .chain(std::iter::once(&mut self.global))
     }
 
     /// Adds the membrane of every triangle that has a vertex to move.
-    pub fn add_membranes(&mut self, system: &System, order: &Order) {
+    pub fn add_membranes(&mut self, system: &System, numbering: &VertexPartition) {
         let moves = |t: &u32| {
             let corners = system.topology.triangles[*t as usize];
             corners
@@ -78,10 +77,10 @@ impl Regions {
             .filter(moves)
             .collect();
         let corners = |&t: &u32| &system.topology.triangles[t as usize][..];
-        for (place, members) in by_place(order, &triangles, corners) {
-            let start = order.start(place) as u32;
-            let local = |v: u32| order.slot_of[v as usize] - start;
-            let region = self.at(place);
+        for (partition, members) in by_partition(numbering, &triangles, corners) {
+            let start = numbering.start(partition) as u32;
+            let local = |v: u32| numbering.slot_of[v as usize] - start;
+            let region = self.at(partition);
             for batch in batches(
                 members.len(),
                 LANES,
@@ -97,7 +96,7 @@ impl Regions {
     }
 
     /// Adds bending as constraints.
-    pub fn add_bending(&mut self, system: &System, order: &Order) {
+    pub fn add_bending(&mut self, system: &System, numbering: &VertexPartition) {
         let mut stencils = bending::stencils(system);
         stencils.retain(|s| {
             s.vertices
@@ -107,10 +106,10 @@ impl Regions {
         fn vertices(member: &Stencil) -> &[u32] {
             &member.vertices
         }
-        for (place, members) in by_place(order, &stencils, vertices) {
-            let start = order.start(place) as u32;
-            let local = |v: u32| order.slot_of[v as usize] - start;
-            let region = self.at(place);
+        for (partition, members) in by_partition(numbering, &stencils, vertices) {
+            let start = numbering.start(partition) as u32;
+            let local = |v: u32| numbering.slot_of[v as usize] - start;
+            let region = self.at(partition);
             for batch in batches(
                 members.len(),
                 LANES,
@@ -126,22 +125,24 @@ impl Regions {
     }
 
     /// Adds elastics between vertices.
-    pub fn add_ties(&mut self, model: &Model, order: &Order) {
+    pub fn add_elastics(&mut self, model: &Model, numbering: &VertexPartition) {
         for &(ends, law) in &model.couplings.all {
             let moves = ends.iter().any(|&v| !model.prescribed.pinned[v as usize]);
             if law.stiffness <= 0.0 || !moves || ends[0] == ends[1] {
                 continue;
             }
-            let place = order.place(&ends);
-            let start = order.start(place) as u32;
-            let [from, to] = ends.map(|v| order.slot_of[v as usize] - start);
-            let end = TieEnd::Point(to);
-            self.at(place).ties.push(Tie::new(from, end, &law));
+            let partition = numbering.partition_of(&ends);
+            let start = numbering.start(partition) as u32;
+            let [from, to] = ends.map(|v| numbering.slot_of[v as usize] - start);
+            let end = AttachmentEnd::Vertex(to);
+            self.at(partition)
+                .elastics
+                .push(AttachmentConstraint::new(from, end, &law));
         }
     }
 
-    /// Holds attachments to places in place of those held before; numbers are relative to `origin` [m].
-    pub fn hold_attachments(&mut self, system: &System, order: &Order, origin: Vec3) {
+    /// Replaces the attachments by those of the control; coordinates are relative to `origin` [m].
+    pub fn set_attachments(&mut self, system: &System, numbering: &VertexPartition, origin: Vec3) {
         for region in self.all_mut() {
             region.attachments.clear();
             region.frames.clear();
@@ -150,77 +151,85 @@ impl Regions {
             if one.law.stiffness <= 0.0 || system.prescribed.pinned[one.vertex as usize] {
                 continue;
             }
-            let place = order.place(&[one.vertex]);
-            let slot = order.slot_of[one.vertex as usize] - order.start(place) as u32;
+            let partition = numbering.partition_of(&[one.vertex]);
+            let slot = numbering.slot_of[one.vertex as usize] - numbering.start(partition) as u32;
             let to = one.place - origin;
-            let end = TieEnd::Place([0, 1, 2].map(|k| to[k] as f32));
-            let attachments = &mut self.at(place).attachments;
-            attachments.push(Tie::new(slot, end, &one.law));
+            let end = AttachmentEnd::Fixed([0, 1, 2].map(|k| to[k] as f32));
+            let attachments = &mut self.at(partition).attachments;
+            attachments.push(AttachmentConstraint::new(slot, end, &one.law));
         }
         for (number, one) in (0..).zip(&system.control.frames) {
             if one.law.stiffness <= 0.0 || system.prescribed.pinned[one.vertex as usize] {
                 continue;
             }
-            let place = order.place(&[one.vertex]);
-            let slot = order.slot_of[one.vertex as usize] - order.start(place) as u32;
-            let region = self.at(place);
-            let tie = Tie::new(slot, TieEnd::Place([0.0; 3]), &one.law);
+            let partition = numbering.partition_of(&[one.vertex]);
+            let slot = numbering.slot_of[one.vertex as usize] - numbering.start(partition) as u32;
+            let region = self.at(partition);
+            let constraint =
+                AttachmentConstraint::new(slot, AttachmentEnd::Fixed([0.0; 3]), &one.law);
             region
                 .frames
                 .push([region.attachments.len() as u32, number]);
-            region.attachments.push(tie);
+            region.attachments.push(constraint);
         }
     }
 
     /// Moves the ends of attachments that lie on moving solids to where these stand at a time [s].
     pub fn move_frames(&mut self, system: &System, origin: Vec3, time: f64) {
         for region in self.all_mut() {
-            for &[tie, frame] in &region.frames {
+            for &[constraint, frame] in &region.frames {
                 let to = system.control.frames[frame as usize].place(time) - origin;
-                let end = TieEnd::Place([0, 1, 2].map(|k| to[k] as f32));
-                region.attachments[tie as usize].to = end;
+                let end = AttachmentEnd::Fixed([0, 1, 2].map(|k| to[k] as f32));
+                region.attachments[constraint as usize].to = end;
             }
         }
     }
 
     /// Adds the contact samples that lie within triangles.
-    pub fn add_samples(&mut self, system: &System, samples: &[ContactSample], order: &Order) {
+    pub fn add_samples(
+        &mut self,
+        system: &System,
+        samples: &[ContactSample],
+        numbering: &VertexPartition,
+    ) {
         for (index, sample) in samples.iter().enumerate() {
             if sample.triangle.is_none() {
                 continue;
             }
-            let place = order.place(&sample.vertices);
-            let start = order.start(place) as u32;
-            let [a, b, c] = sample.vertices.map(|v| order.slot_of[v as usize] - start);
+            let partition = numbering.partition_of(&sample.vertices);
+            let start = numbering.start(partition) as u32;
+            let [a, b, c] = sample
+                .vertices
+                .map(|v| numbering.slot_of[v as usize] - start);
             let [p, q, r] = sample.weights.map(|x| x as f32);
-            self.at(place).contacts.push(ContactStencil {
+            self.at(partition).contacts.push(ContactStencil {
                 vertices: [a, b, c, 0],
                 weights: [p, q, r, 0.0],
-                touch: Touch::of_sample(system, (index, sample)),
+                constraint: ContactConstraint::of_sample(system, (index, sample)),
                 restitution: None,
             });
         }
     }
 
-    /// Holds contacts of cloth with cloth in place of those held before: `stencil` makes one of each, its
-    /// vertices being slots counted from the one that is given.
-    pub fn hold_cloth<T: Sync>(
+    /// Replaces the contacts of cloth with cloth: `stencil` makes each one from an element of `all` and the first
+    /// slot of its partition, from which the indices of its vertices count.
+    pub fn set_cloth_contacts<T: Sync>(
         &mut self,
-        order: &Order,
+        numbering: &VertexPartition,
         all: &[T],
         slots: impl Fn(&T) -> [u32; 4] + Sync,
         stencil: impl Fn(&T, u32) -> ContactStencil + Sync,
     ) {
-        let place = |one: &T| order.place_of_slots(slots(one));
-        let places: Vec<Place> = all.par_iter().with_min_len(512).map(place).collect();
-        let mut members: Vec<Vec<&T>> = order.places().map(|_| Vec::new()).collect();
-        for (one, place) in all.iter().zip(&places) {
-            members[order.number(*place)].push(one);
+        let partition = |one: &T| numbering.partition_of_slots(slots(one));
+        let partitions: Vec<Partition> = all.par_iter().with_min_len(512).map(partition).collect();
+        let mut members: Vec<Vec<&T>> = numbering.partitions().map(|_| Vec::new()).collect();
+        for (one, partition) in all.iter().zip(&partitions) {
+            members[numbering.index_of(*partition)].push(one);
         }
-        for (place, members) in order.places().zip(&members) {
-            let start = order.start(place) as u32;
+        for (partition, members) in numbering.partitions().zip(&members) {
+            let start = numbering.start(partition) as u32;
             let made = members.par_iter().with_min_len(256);
-            let held = &mut self.at(place).cloth;
+            let held = &mut self.at(partition).cloth;
             made.map(|one| stencil(one, start)).collect_into_vec(held);
         }
     }
@@ -229,7 +238,7 @@ impl Regions {
     pub fn all(&self) -> impl Iterator<Item = &Region> {
         (self.domains.iter())
             .chain(&self.cuts)
-            .chain(std::iter::once(&self.rest))
+            .chain(std::iter::once(&self.global))
     }
 
     /// Membrane constraints and bending constraints.
@@ -247,32 +256,36 @@ impl Regions {
     }
 
     /// Elastics.
-    pub fn tie_count(&self) -> usize {
-        (self.all().map(|r| r.ties.len() + r.attachments.len())).sum()
+    pub fn elastic_count(&self) -> usize {
+        (self.all().map(|r| r.elastics.len() + r.attachments.len())).sum()
     }
 }
 
-/// Sorts constraints by where they are solved.
-fn by_place<'a, T>(
-    order: &Order,
+/// Sorts constraints by the partition that solves them.
+fn by_partition<'a, T>(
+    numbering: &VertexPartition,
     all: &'a [T],
     vertices: impl Fn(&'a T) -> &'a [u32],
-) -> Vec<(Place, Vec<&'a T>)> {
-    let places = order.places().map(|place| (place, Vec::new()));
-    let mut places: Vec<(Place, Vec<&T>)> = places.collect();
+) -> Vec<(Partition, Vec<&'a T>)> {
+    let partitions = numbering
+        .partitions()
+        .map(|partition| (partition, Vec::new()));
+    let mut partitions: Vec<(Partition, Vec<&T>)> = partitions.collect();
     for member in all {
-        let place = order.place(vertices(member));
-        places[order.number(place)].1.push(member);
+        let partition = numbering.partition_of(vertices(member));
+        partitions[numbering.index_of(partition)].1.push(member);
     }
     // Neighbours in memory come one after the other.
-    for (_, members) in &mut places {
+    for (_, members) in &mut partitions {
         let first = |member: &&'a T| {
-            let slots = vertices(member).iter().map(|&v| order.slot_of[v as usize]);
+            let slots = vertices(member)
+                .iter()
+                .map(|&v| numbering.slot_of[v as usize]);
             slots.min().unwrap_or(0)
         };
         members.sort_by_key(first);
     }
-    places
+    partitions
 }
 
 /// What the constraints of a substep share.
@@ -310,30 +323,30 @@ impl Region {
         }
     }
 
-    /// Looks up surfaces anew.
-    pub fn forget_surfaces(&mut self) {
+    /// Lets the surfaces be queried again before the next use.
+    pub fn invalidate_surfaces(&mut self) {
         for contact in &mut self.contacts {
-            contact.touch.forget();
+            contact.constraint.invalidate();
         }
     }
 
-    /// Forces start from zero.
+    /// Multipliers start from zero.
     fn clear(&mut self) {
         self.membrane_sums.fill([Row::splat(0.0); 3]);
         self.bending_sums.fill([[Row::splat(0.0); 3]; 3]);
-        for tie in self.ties.iter_mut().chain(&mut self.attachments) {
-            tie.sum = [0.0; 3];
+        for constraint in self.elastics.iter_mut().chain(&mut self.attachments) {
+            constraint.lambda = [0.0; 3];
         }
         for contact in self.contacts.iter_mut().chain(&mut self.cloth) {
-            contact.touch.push = 0.0;
-            contact.touch.rub = [0.0; 3];
+            contact.constraint.lambda_normal = 0.0;
+            contact.constraint.lambda_tangent = [0.0; 3];
         }
     }
 
-    /// Surfaces move by up to `travel` [m] in the substep that begins.
-    fn age(&mut self, travel: f32) {
+    /// Takes into account that surfaces move by up to `travel` [m] in the substep that begins.
+    fn expect_motion(&mut self, travel: f32) {
         for contact in &mut self.contacts {
-            contact.touch.age(travel);
+            contact.constraint.expect_motion(travel);
         }
     }
 
@@ -342,13 +355,13 @@ impl Region {
         if let Some(travel) = step.begins {
             self.clear();
             if travel > 0.0 {
-                self.age(travel);
+                self.expect_motion(travel);
             }
         }
         for contact in &mut self.contacts {
             let point = contact.point(points);
-            if contact.touch.is_stale(point) {
-                contact.touch.look(&step.solid, point);
+            if contact.constraint.is_stale(point) {
+                contact.constraint.query_surface(&step.solid, point);
             }
         }
         pulp::Arch::new().dispatch(Sweep {
@@ -356,8 +369,8 @@ impl Region {
             step,
             points,
         });
-        solve_ties(&mut self.ties, points, step.contact.kappa);
-        solve_ties(&mut self.attachments, points, step.contact.kappa);
+        solve_attachments(&mut self.elastics, points, step.contact.kappa);
+        solve_attachments(&mut self.attachments, points, step.contact.kappa);
         solve_stencils(&mut self.contacts, points, starts, &step.contact);
         solve_stencils(&mut self.cloth, points, starts, &step.contact);
     }

@@ -27,12 +27,12 @@ pub struct Run<'a> {
     pub time: f64,
     /// Sweeps a substep.
     pub iterations: u32,
-    /// The contact samples that touches are of.
+    /// The contact samples of the state.
     pub samples: &'a [ContactSample],
     /// First slots of the domains, and the end.
     pub domain_starts: &'a [usize],
     /// First slots of what meets surfaces by itself, and the end.
-    pub settle_starts: &'a [usize],
+    pub contact_starts: &'a [usize],
     /// First slots of the ranges about cuts, and the end.
     pub cut_starts: &'a [usize],
     /// The processor's vectors.
@@ -58,11 +58,11 @@ impl Run<'_> {
                 },
                 ..self.sweep
             };
-            if sweep.solid.stands() {
-                for touch in &mut particles.touch {
-                    touch.clear();
+            if sweep.solid.has_surfaces() {
+                for contact in &mut particles.contacts {
+                    contact.clear();
                     if travel > 0.0 {
-                        touch.age(travel);
+                        contact.expect_motion(travel);
                     }
                 }
             }
@@ -75,15 +75,15 @@ impl Run<'_> {
                 self.domains(regions, particles, &sweep, iteration == 0);
                 self.cuts(regions, particles, &sweep);
                 let Particles { start, now, .. } = &mut *particles;
-                regions.rest.sweep(&sweep, now, start);
-                self.settle(particles, &sweep, iteration + 1 == self.iterations);
+                regions.global.sweep(&sweep, now, start);
+                self.solve_contacts(particles, &sweep, iteration + 1 == self.iterations);
             }
             if let Some(step) = self.bounces {
                 let domains = self.domain_starts.iter().zip(&regions.domains);
                 let cuts = self.cut_starts.iter().zip(&regions.cuts);
                 let runs = domains
                     .chain(cuts)
-                    .chain(std::iter::once((&0, &regions.rest)))
+                    .chain(std::iter::once((&0, &regions.global)))
                     .flat_map(|(&first, region)| {
                         [&region.contacts, &region.cloth].map(|run| (first, &run[..]))
                     });
@@ -233,14 +233,14 @@ impl Run<'_> {
     }
 
     /// Contacts of vertices and, at the end of the substep, velocities.
-    fn settle(&self, particles: &mut Particles, sweep: &SweepStep, last: bool) {
+    fn solve_contacts(&self, particles: &mut Particles, sweep: &SweepStep, last: bool) {
         let Particles {
             start,
             ahead,
             now,
             free,
             velocity,
-            touch,
+            contacts,
             ..
         } = particles;
         let all = Bound {
@@ -249,16 +249,16 @@ impl Run<'_> {
             now,
             free,
             velocity,
-            touch,
+            contacts,
         };
-        let starts = match sweep.solid.stands() {
-            true => self.settle_starts,
+        let starts = match sweep.solid.has_surfaces() {
+            true => self.contact_starts,
             false => self.domain_starts,
         };
         for_domains(starts, 0, all, &|_, mut fields| {
             self.arch.dispatch(Settle {
                 fields: &mut fields,
-                solid: sweep.solid.stands().then_some(sweep.solid),
+                solid: sweep.solid.has_surfaces().then_some(sweep.solid),
                 contact: &sweep.contact,
                 finish: last.then_some(&self.motion),
             });

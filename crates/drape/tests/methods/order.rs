@@ -86,7 +86,7 @@ fn dissipative() -> (System, State) {
     let material = Material {
         viscosity: 0.05,
         bend_viscosity: 2e-6,
-        kept: [0.3, 0.3],
+        relaxed_fraction: [0.3, 0.3],
         relaxation_time: 0.05,
         ..plain.materials.list[0].clone()
     };

@@ -145,7 +145,7 @@ fn note_step(record: &mut Record, name: &str, (system, state): &Frozen) {
     method.advance(system, &mut state, 1.0 / 120.0).unwrap();
     record.vectors(&format!("{name}, places after a step"), &state.positions);
     let settled = state
-        .settled
+        .internal_strain
         .iter()
         .flat_map(|kept| kept.stretch.into_iter().chain(kept.curvature));
     record.list(&format!("{name}, strain that was kept"), settled);

@@ -192,7 +192,7 @@ pub fn laws() -> Vec<(&'static str, Frozen)> {
         of(
             "strain is kept",
             Material {
-                kept: [0.3, 0.5],
+                relaxed_fraction: [0.3, 0.5],
                 relaxation_time: 0.2,
                 ..plain.clone()
             },

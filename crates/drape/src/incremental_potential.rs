@@ -1,14 +1,15 @@
-//! What a step holds fixed: viscosity, kept strain, air. One place for every method.
+//! The incremental potential of a step (Ortiz and Stainier 1999): viscosity, internal strain and air, linearised
+//! or frozen at the state in which the step begins. Every method takes these terms from here.
 //!
 //! Implicit methods add the terms to the potential they lower (viscosity as the dissipation
 //! potential eta / (2 h) |E - E_n|^2 over the step, so that the Hessian stays symmetric); explicit
-//! ones add the same forces at their velocities. While nothing moves (`hold_still`) only kept strain
-//! and the push of the wind are left.
+//! ones add the same forces at their velocities ([`add_forces_of_motion`]). In statics
+//! ([`IncrementalPotential::begin_static`]) only internal strain and the steady force of the wind are left.
 //!
-//! Kept strain is a standard linear solid: S = C (E - p v) with v' = (E - v) / tau, p the kept share
-//! and tau the relaxation time. Stress held for long falls to 1 - p of its first value; let go, the
-//! cloth keeps p of the strain and recovers over tau / (1 - p). The same for curvature. During a step
-//! v stands; after it v is moved exactly for the strain reached ([`relax`]).
+//! Internal strain is that of a standard linear solid: S = C (E - p v) with v' = (E - v) / tau, p the relaxed
+//! fraction and tau the relaxation time. Stress held for long falls to 1 - p of its first value; let go, the
+//! cloth keeps p of the strain and recovers over tau / (1 - p). The same holds for curvature. v is constant
+//! during a step; at its end it is integrated exactly for the strain reached ([`relax`]).
 
 use crate::laws::bending::BendingStencil;
 use crate::laws::fold::{FoldTerm, along_normal, area_normal};
@@ -20,17 +21,17 @@ use rayon::prelude::*;
 use toile_geometry::Vec3;
 use toile_sparse::ScalarMatrix;
 
-/// A membrane law during a step: shifted by kept strain, with viscosity.
+/// A membrane law during a step: measured from the internal strain, with viscosity.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct HeldLaw<'a> {
+pub(crate) struct IncrementalLaw<'a> {
     law: &'a MembraneLaw,
     term: Option<&'a StretchTerm>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct StretchTerm {
-    /// Strain without stress.
-    kept: [f64; 3],
+    /// Internal strain times the relaxed fraction: the strain without elastic stress.
+    internal: [f64; 3],
     /// Strain when the step began.
     start: [f64; 3],
     /// Viscous matrix over the step: uu, vv, uu-vv, gamma-gamma [N/m].
@@ -49,13 +50,15 @@ fn viscous_stress([uu, vv, uv, gg]: [f64; 4], d: [f64; 3]) -> [f64; 3] {
     [uu * d[0] + uv * d[1], vv * d[1] + uv * d[0], gg * d[2]]
 }
 
-impl StrainLaw for HeldLaw<'_> {
+impl StrainLaw for IncrementalLaw<'_> {
     #[inline]
     fn stress(&self, strain: [f64; 3]) -> ([f64; 3], f64) {
         let Some(term) = self.term else {
             return self.law.stress(strain);
         };
-        let (elastic, energy) = self.law.stress([0, 1, 2].map(|k| strain[k] - term.kept[k]));
+        let (elastic, energy) = self
+            .law
+            .stress([0, 1, 2].map(|k| strain[k] - term.internal[k]));
         let (viscous, loss) = term.viscous_stress(strain);
         ([0, 1, 2].map(|k| elastic[k] + viscous[k]), energy + loss)
     }
@@ -65,7 +68,9 @@ impl StrainLaw for HeldLaw<'_> {
         let Some(term) = self.term else {
             return self.law.slope(strain);
         };
-        let mut slope = self.law.slope([0, 1, 2].map(|k| strain[k] - term.kept[k]));
+        let mut slope = self
+            .law
+            .slope([0, 1, 2].map(|k| strain[k] - term.internal[k]));
         for (s, v) in slope.iter_mut().zip(term.viscous) {
             *s += v;
         }
@@ -90,9 +95,9 @@ struct AirTerm {
     hessian: Matrix3<f64>,
 }
 
-/// The terms of a step; empty for a plain cloth in still air.
+/// The terms of a step; empty for an elastic cloth without viscosity in still air.
 #[derive(Default)]
-pub(crate) struct StepTerms {
+pub(crate) struct IncrementalPotential {
     stretch: Vec<StretchTerm>,
     fold: Vec<FoldTerm>,
     air: Vec<AirTerm>,
@@ -132,14 +137,14 @@ fn strain(system: &System, t: usize, x: &[Vec3]) -> [f64; 3] {
     green_strain(system.rest.elements[t].tangents(corners(system, t, x)))
 }
 
-impl StepTerms {
-    /// Holds a state while nothing moves.
-    pub fn hold_still(&mut self, system: &System, state: &State) {
-        self.hold(system, state, 0.0);
+impl IncrementalPotential {
+    /// Sets the terms of a problem of statics.
+    pub fn begin_static(&mut self, system: &System, state: &State) {
+        self.begin_step(system, state, 0.0);
     }
 
-    /// Holds the start of a step; `rate` is 1/h [1/s].
-    pub fn hold(&mut self, system: &System, state: &State, rate: f64) {
+    /// Sets the terms of a step that begins in a state; `rate` is 1/h [1/s], 0 in statics.
+    pub fn begin_step(&mut self, system: &System, state: &State, rate: f64) {
         let x = &state.positions;
         let count = system.topology.triangles.len();
         self.stretch.clear();
@@ -147,27 +152,30 @@ impl StepTerms {
         self.air.clear();
         self.bending = None;
         let moving = rate > 0.0;
-        let settled = |t: usize| state.settled.get(t).copied().unwrap_or_default();
-        let keeps = !state.settled.is_empty();
-        if keeps || moving && system.materials.have_viscous_stretch() {
+        let internal = |t: usize| state.internal_strain.get(t).copied().unwrap_or_default();
+        let relaxes = !state.internal_strain.is_empty();
+        if relaxes || moving && system.materials.have_viscous_stretch() {
             self.stretch.extend((0..count).map(|t| {
                 let material = system.materials.of(t);
-                let settled = settled(t).stretch;
                 StretchTerm {
-                    kept: settled.map(|v| v * material.kept[0]),
+                    internal: internal(t)
+                        .stretch
+                        .map(|v| v * material.relaxed_fraction[0]),
                     start: strain(system, t, x),
                     viscous: material.viscous_stretch().map(|v| v * rate),
                 }
             }));
         }
         let flows = moving && system.rest.viscous_bending.is_some();
-        if !system.rest.stencils.is_empty() && (keeps || flows) {
+        if !system.rest.stencils.is_empty() && (relaxes || flows) {
             self.fold.extend((0..count).map(|t| {
                 let material = system.materials.of(t);
                 let (stencil, area) = (&system.rest.stencils[t], system.rest.elements[t].area);
-                let kept = Vector3::from(settled(t).curvature) * material.kept[1];
+                let curvature = Vector3::from(internal(t).curvature) * material.relaxed_fraction[1];
                 FoldTerm {
-                    kept: stencil.stiffness(material.bending_matrix()) * kept * area,
+                    internal_moment: stencil.stiffness(material.bending_matrix())
+                        * curvature
+                        * area,
                     start: curvature_along_normal(system, t, x),
                     viscous: stencil.stiffness(material.viscous_bend()) * (area * rate),
                 }
@@ -199,15 +207,15 @@ impl StepTerms {
         }
     }
 
-    /// Whether all of them belong to the stretch of a triangle.
+    /// Whether no term but those of stretch is set.
     pub fn are_of_stretch(&self) -> bool {
         self.fold.is_empty() && self.air.is_empty() && self.bending.is_none()
     }
 
     /// The law of a triangle's membrane during the step.
     #[inline]
-    pub fn law<'a>(&'a self, system: &'a System, t: usize) -> HeldLaw<'a> {
-        HeldLaw {
+    pub fn law<'a>(&'a self, system: &'a System, t: usize) -> IncrementalLaw<'a> {
+        IncrementalLaw {
             law: system.materials.law(t),
             term: self.stretch.get(t),
         }
@@ -308,7 +316,7 @@ fn add_fold(system: &System, t: usize, term: &FoldTerm, x: &[Vec3], gradient: &m
 }
 
 /// Adds the forces that depend on velocity, for explicit methods: viscosity and the change that
-/// motion makes to the push of the air [N].
+/// motion makes to the force of the air [N].
 pub(crate) fn add_forces_of_motion(system: &System, state: &State, force: &mut [Vec3]) {
     let (x, v) = (&state.positions, &state.velocities);
     let viscous = system.materials.have_viscous_stretch();
@@ -354,34 +362,34 @@ pub(crate) fn add_forces_of_motion(system: &System, state: &State, force: &mut [
     }
 }
 
-/// Moves what the cloth has settled into towards the strain it has, over `h` [s]:
+/// Integrates the internal strain over `h` [s], the strain being constant:
 /// v <- E + (v - E) exp(-h / tau).
 pub(crate) fn relax(system: &System, state: &mut State, h: f64) {
     if !system.materials.keep_strain() {
         return;
     }
     state
-        .settled
+        .internal_strain
         .resize(system.topology.triangles.len(), InternalStrain::default());
     let x = &state.positions;
     state
-        .settled
+        .internal_strain
         .par_chunks_mut(CHUNK)
         .enumerate()
-        .for_each(|(chunk, settled)| {
-            for (k, settled) in settled.iter_mut().enumerate() {
+        .for_each(|(chunk, internal)| {
+            for (k, internal) in internal.iter_mut().enumerate() {
                 let t = chunk * CHUNK + k;
                 let material = system.materials.of(t);
                 let share = -(-h / material.relaxation_time).exp_m1();
-                if material.kept[0] > 0.0 {
+                if material.relaxed_fraction[0] > 0.0 {
                     let now = strain(system, t, x);
-                    for (v, e) in settled.stretch.iter_mut().zip(now) {
+                    for (v, e) in internal.stretch.iter_mut().zip(now) {
                         *v += (e - *v) * share;
                     }
                 }
-                if material.kept[1] > 0.0 {
+                if material.relaxed_fraction[1] > 0.0 {
                     let now = curvature_along_normal(system, t, x);
-                    for (v, e) in settled.curvature.iter_mut().zip(now.iter()) {
+                    for (v, e) in internal.curvature.iter_mut().zip(now.iter()) {
                         *v += (e - *v) * share;
                     }
                 }

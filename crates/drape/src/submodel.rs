@@ -1,4 +1,4 @@
-//! A submodel whose rim is pinned: a region that nonlinear elimination brings to rest by itself.
+//! A region of the cloth as a model of its own, its rim pinned: nonlinear elimination brings it to rest by itself.
 
 use crate::collision::ClothContact;
 use crate::laws::elastic::ElasticLaw;
@@ -12,20 +12,20 @@ use toile_geometry::Vec3;
 use toile_sparse::ScalarMatrix;
 
 /// Some vertices of a model, free to move, and those they are coupled with, pinned.
-pub struct Part {
-    /// The part as a model of its own: its potential is the whole's but for a constant.
+pub struct SubModel {
+    /// The region as a model of its own: its potential is the whole's but for a constant.
     pub system: System,
     /// Its state.
     pub state: State,
-    /// Contacts of cloth with cloth at its own vertices, as found on the whole: the part itself looks
-    /// for none.
+    /// Contacts of cloth with cloth at its own vertices, as found on the whole: none are detected in the
+    /// submodel.
     pub touching: Vec<ClothContact>,
     /// Vertices of the whole, own ones first.
     vertices: Vec<u32>,
     own: usize,
 }
 
-/// Numbers of vertices in a part; those of the rim are given as they come up.
+/// Numbers of vertices in the submodel: its own first, then those of the rim as they are met.
 struct Numbers {
     numbers: BTreeMap<u32, u32>,
     vertices: Vec<u32>,
@@ -48,7 +48,7 @@ impl Numbers {
         })
     }
 
-    /// Whether any of some vertices with a weight is the part's own.
+    /// Whether any of some vertices with a weight is the submodel's own.
     fn moves(&self, vertices: &[u32], weights: &[f64]) -> bool {
         let own = |v: &u32| self.numbers.get(v).is_some_and(|&n| n < self.own as u32);
         vertices
@@ -115,7 +115,7 @@ impl Numbers {
     }
 
     /// Contact samples on own vertices, with their numbers in the whole; `triangles` are those of
-    /// the part, ascending.
+    /// the submodel, ascending.
     fn samples(&mut self, all: &[ContactSample], triangles: &[u32]) -> Vec<(usize, ContactSample)> {
         let mut samples = Vec::new();
         for (at, sample) in all.iter().enumerate() {
@@ -133,9 +133,9 @@ impl Numbers {
     }
 }
 
-impl Part {
-    /// The part of some free vertices; `contacts` are those of cloth with cloth. Folds that are
-    /// viscous or kept, and moving air, are left out.
+impl SubModel {
+    /// The submodel of some free vertices; `contacts` are those of cloth with cloth. Viscosity and internal strain
+    /// of bending, and moving air, are left out: see where [`crate::newton::elimination`] refuses them.
     pub fn new(system: &System, state: &State, contacts: &[ClothContact], own: &[u32]) -> Self {
         let corners = (own.iter()).flat_map(|&v| system.topology.corners_of(v as usize));
         let mut used: Vec<u32> = corners.map(|corner| corner / 3).collect();
@@ -162,9 +162,12 @@ impl Part {
             normal_forces: (samples.iter())
                 .map(|&(at, _)| state.normal_forces[at])
                 .collect(),
-            settled: match state.settled.is_empty() {
+            internal_strain: match state.internal_strain.is_empty() {
                 true => Vec::new(),
-                false => used.iter().map(|&t| state.settled[t as usize]).collect(),
+                false => used
+                    .iter()
+                    .map(|&t| state.internal_strain[t as usize])
+                    .collect(),
             },
             time: state.time,
             positions: taken(&vertices, &state.positions),
@@ -186,14 +189,14 @@ impl Part {
             taken(&used, &system.materials.of_triangle),
         );
         let layout = taken(&vertices, &system.topology.layout);
-        let part = System {
+        let submodel = System {
             model: Model::of(ModelParts {
                 topology: Arc::new(Topology::new(layout, triangles)),
                 rest: Arc::new(rest),
                 materials: Arc::new(materials),
                 prescribed: Arc::new(Prescribed {
                     pinned,
-                    grips: Vec::new(),
+                    led: Vec::new(),
                 }),
                 couplings: Arc::new(ElasticCouplings::new(count, couplings)),
                 colliders: system.colliders.clone(),
@@ -213,7 +216,7 @@ impl Part {
             },
         };
         Self {
-            system: part,
+            system: submodel,
             state,
             touching,
             own: own.len(),
@@ -271,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_has_the_forces_and_the_energy_of_the_whole() {
+    fn a_submodel_has_the_forces_and_the_energy_of_the_whole() {
         let mesh = sheets();
         let cloth = Cloth::from_mesh("sheets", &mesh, Material::default()).unwrap();
         let mut builder = SystemBuilder::new("sheets", &cloth).unwrap();
@@ -295,18 +298,24 @@ mod tests {
 
         let mut whole = Workspace::default();
         let forces = whole.net_force(&system, &state).to_vec();
-        let part = Part::new(&system, &state, &whole.contacts.cloth.contacts, &own);
-        assert!(!part.touching.is_empty() && part.system.elastic_count() == 3);
+        let submodel = SubModel::new(&system, &state, &whole.contacts.cloth.contacts, &own);
+        assert!(!submodel.touching.is_empty() && submodel.system.elastic_count() == 3);
         let mut alone = Workspace::default();
-        alone.fit(&part.system);
-        alone.terms.hold_still(&part.system, &part.state);
-        alone.contacts.cloth.contacts.clone_from(&part.touching);
-        let places = &part.state.positions;
-        (alone.contacts).refresh_surfaces(&part.system, &part.state, places);
+        alone.fit(&submodel.system);
+        alone
+            .increment
+            .begin_static(&submodel.system, &submodel.state);
+        alone.contacts.cloth.contacts.clone_from(&submodel.touching);
+        let places = &submodel.state.positions;
+        (alone.contacts).refresh_surfaces(&submodel.system, &submodel.state, places);
         assert!(alone.contacts.active.iter().any(|c| c.plane.depth > 0.0));
-        let triangles = part.state.samples.iter().filter(|s| s.triangle.is_some());
+        let triangles = submodel
+            .state
+            .samples
+            .iter()
+            .filter(|s| s.triangle.is_some());
         assert_eq!(triangles.count(), 4);
-        alone.fill_gradient(&part.system, places, None);
+        alone.fill_gradient(&submodel.system, places, None);
         let largest = forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
         for (k, &v) in own.iter().enumerate() {
             let off = (alone.gradient[k] + forces[v as usize]).norm();
@@ -320,7 +329,7 @@ mod tests {
 
         // Its vertices moved: the same change of the potential.
         let moved = |v: u32| 1e-3 * Vec3::new(0.0, f64::from(v % 5) - 2.0, f64::from(v % 3) - 1.0);
-        let mut there = [state.positions.clone(), part.state.positions.clone()];
+        let mut there = [state.positions.clone(), submodel.state.positions.clone()];
         for (k, &v) in own.iter().enumerate() {
             there[0][v as usize] += moved(v);
             there[1][k] += moved(v);
@@ -333,7 +342,7 @@ mod tests {
             workspace.potential(system, to, &inertia) - workspace.potential(system, from, &inertia)
         };
         let expected = change(&whole, &system, &state.positions, &there[0]);
-        let got = change(&alone, &part.system, places, &there[1]);
+        let got = change(&alone, &submodel.system, places, &there[1]);
         assert!(expected.abs() > 1e-5);
         assert!(
             (got - expected).abs() < 1e-11 * expected.abs(),

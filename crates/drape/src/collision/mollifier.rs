@@ -1,37 +1,40 @@
-//! Contact of two edges that comes and goes without a jump of its force.
+//! The edge-edge mollifier: contact of two edges begins and ends without a jump of its force.
 
 use super::cloth_contact::ClothContact;
 use super::feature_pair::FeaturePair;
 use toile_geometry::Vec3;
 
-/// The sine of the angle between two edges from which on they push with all their stiffness, and
-/// how far from the ends of both, over their lengths; no farther than the distance that is kept, or two
-/// corners would have next to nothing between them that the faces there are still too far off to push.
-const CROSSWISE: f64 = 0.1;
-const INSIDE: f64 = 0.25;
+/// Least sine of the angle between two edges at which their contact has its full stiffness.
+const FULL_SINE: f64 = 0.1;
 
-/// Share of the stiffness with which two edges push, 1 for other contacts. The closest points of
-/// edges that lie along each other run from end to end by less than a micrometre of motion, and
-/// past an end the faces there push instead: without fading the force would jump, and a way to
-/// rest that meets such a jump goes round for ever. Parallel edges fade as in Li et al. 2020,
-/// section 5.
-pub(super) fn fade(contact: &ClothContact, x: &[Vec3]) -> f64 {
+/// Least distance of the closest points from the ends of their edges, as a share of an edge's length, at which
+/// the contact has its full stiffness. The distance is cut to the offset between cloths: near two corners
+/// whose faces are not in contact yet, the edges alone carry the force.
+const FULL_SHARE: f64 = 0.25;
+
+/// Factor of the stiffness of a contact: 0 to 1 for two edges, 1 for a vertex and a face.
+///
+/// The closest points of almost parallel edges run from one end to the other over less than a micrometre of
+/// motion, and past an end a vertex and a face take the force over. Without the factor the force would jump
+/// there, and a method that seeks equilibrium would go back and forth across the jump without end. For
+/// parallel edges the factor has the form of Li et al. 2020, section 5; it also falls to 0 towards the ends.
+pub(super) fn edge_mollifier(contact: &ClothContact, x: &[Vec3]) -> f64 {
     let Some(FeaturePair::EdgeEdge(ends)) = contact.pair else {
         return 1.0;
     };
     let [a, b, c, d] = ends.map(|v| x[v as usize]);
     let (first, second) = (b - a, d - c);
     let lengths = first.norm_squared() * second.norm_squared();
-    let sine = first.cross(&second).norm_squared() / (lengths * CROSSWISE * CROSSWISE);
+    let sine = first.cross(&second).norm_squared() / (lengths * FULL_SINE * FULL_SINE);
     let across = if sine < 1.0 { sine * (2.0 - sine) } else { 1.0 };
-    let kept = (contact.plane.depth + contact.plane.point.norm()).max(0.0);
-    let inside = |edge: &Vec3, w: [f64; 2]| {
+    let offset = (contact.plane.depth + contact.plane.point.norm()).max(0.0);
+    let along = |edge: &Vec3, w: [f64; 2]| {
         let length = edge.norm();
-        let far = kept.min(INSIDE * length);
+        let far = offset.min(FULL_SHARE * length);
         (length * w[0].abs().min(w[1].abs()) / far).min(1.0)
     };
     let [p, q, r, s] = contact.weights;
-    across * inside(&first, [p, q]) * inside(&second, [r, s])
+    across * along(&first, [p, q]) * along(&second, [r, s])
 }
 
 #[cfg(test)]

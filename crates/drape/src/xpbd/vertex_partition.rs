@@ -1,10 +1,11 @@
-//! The order of vertices in memory, and the fixed regions that cores share.
+//! The order of vertices in memory, cut into partitions whose constraints several cores solve at once.
 //!
-//! Vertices are sorted so that neighbours lie close (reverse Cuthill-McKee), and the row is cut
-//! into domains. A constraint that lies within a domain is solved with it; one that straddles a cut
-//! is solved in a second round, over ranges shifted by half a domain; what fits neither (an
-//! elastic across the garment) comes last, alone. Two rounds are two barriers whatever the number
-//! of colours, and ranges are slices that two threads may hold at once.
+//! Vertices are sorted so that neighbours lie close (reverse Cuthill-McKee), and the sorted list is cut
+//! into domains. A constraint between vertices of one domain is solved with that domain. A constraint
+//! across the cut between two domains is solved in a second round, over ranges shifted by half a domain.
+//! A constraint that fits neither, such as an elastic across the garment, belongs to the global
+//! partition, which one core solves last. A sweep therefore has two barriers however many colours the
+//! constraints would need, and each core works on a slice of the vertices of its own.
 
 use crate::System;
 use crate::lanes::LANES;
@@ -17,7 +18,7 @@ const MOST_DOMAINS: usize = 64;
 
 /// Slots of the vertices and cuts of the domains.
 #[derive(Clone, Debug, Default)]
-pub struct Order {
+pub struct VertexPartition {
     /// Slot of each vertex.
     pub slot_of: Vec<u32>,
     /// Vertex in each slot; none in the slot that begins each half domain, where a point stands
@@ -27,41 +28,41 @@ pub struct Order {
     pub halves: Vec<usize>,
 }
 
-/// Where a constraint is solved.
+/// The partition that solves a constraint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// Within a domain.
+pub enum Partition {
+    /// All its vertices lie in one domain.
     Domain(usize),
-    /// Across the cut after a domain.
+    /// Its vertices lie on both sides of the cut after a domain, at most half a domain away.
     Cut(usize),
-    /// Alone.
-    Rest,
+    /// Its vertices lie farther apart; solved last, by one core.
+    Global,
 }
 
-impl Order {
+impl VertexPartition {
     /// Sorts and cuts the vertices of a model.
     pub fn new(system: &System) -> Self {
         let sorted = cuthill_mckee(system);
         let count = sorted.len();
         let domains = (count / DOMAIN).clamp(1, MOST_DOMAINS);
         let halves = 2 * domains;
-        let mut order = Self {
+        let mut partition = Self {
             slot_of: vec![0; count],
             ..Self::default()
         };
         for half in 0..halves {
-            order.halves.push(order.vertex_of.len());
-            order.vertex_of.push(None);
+            partition.halves.push(partition.vertex_of.len());
+            partition.vertex_of.push(None);
             for &v in &sorted[half * count / halves..(half + 1) * count / halves] {
-                order.slot_of[v as usize] = order.vertex_of.len() as u32;
-                order.vertex_of.push(Some(v));
+                partition.slot_of[v as usize] = partition.vertex_of.len() as u32;
+                partition.vertex_of.push(Some(v));
             }
             // Halves are whole blocks of lanes.
-            let padded = order.vertex_of.len().next_multiple_of(LANES);
-            order.vertex_of.resize(padded, None);
+            let padded = partition.vertex_of.len().next_multiple_of(LANES);
+            partition.vertex_of.resize(padded, None);
         }
-        order.halves.push(order.vertex_of.len());
-        order
+        partition.halves.push(partition.vertex_of.len());
+        partition
     }
 
     /// Number of domains.
@@ -79,9 +80,9 @@ impl Order {
         self.halves.iter().copied().step_by(2).collect()
     }
 
-    /// First slot of each part of the vertices that meets surfaces by itself, and the end: halves of domains,
-    /// but all together where there are few.
-    pub fn settle_starts(&self) -> Vec<usize> {
+    /// First slot of each range of vertices whose contacts with solids one task solves, and the end: halves of
+    /// domains, or all vertices in one range where there are few.
+    pub fn contact_starts(&self) -> Vec<usize> {
         match self.len() < DOMAIN {
             true => self.domain_starts(),
             false => self.halves.clone(),
@@ -96,59 +97,59 @@ impl Order {
         self.halves.iter().copied().skip(1).step_by(2).collect()
     }
 
-    /// Where a constraint on some vertices is solved.
-    pub fn place(&self, vertices: &[u32]) -> Place {
+    /// The partition that solves a constraint on some vertices.
+    pub fn partition_of(&self, vertices: &[u32]) -> Partition {
         let slots = vertices.iter().map(|&v| self.slot_of[v as usize]);
         match (slots.clone().min(), slots.max()) {
-            (Some(low), Some(high)) => self.place_between(low as usize, high as usize),
-            _ => Place::Rest,
+            (Some(low), Some(high)) => self.partition_between(low as usize, high as usize),
+            _ => Partition::Global,
         }
     }
 
-    /// The same by slots.
-    pub fn place_of_slots(&self, slots: [u32; 4]) -> Place {
+    /// The partition that solves a constraint on the vertices in some slots.
+    pub fn partition_of_slots(&self, slots: [u32; 4]) -> Partition {
         let [low, high] = [slots.iter().min(), slots.iter().max()];
         let slot = |end: Option<&u32>| end.map_or(0, |&slot| slot as usize);
-        self.place_between(slot(low), slot(high))
+        self.partition_between(slot(low), slot(high))
     }
 
-    /// Where a constraint on slots of which these are the lowest and the highest is solved.
-    fn place_between(&self, low: usize, high: usize) -> Place {
+    /// The partition that solves a constraint whose lowest and highest slots are given.
+    fn partition_between(&self, low: usize, high: usize) -> Partition {
         let half = |slot: usize| self.halves.partition_point(|&start| start <= slot) - 1;
         let (low, high) = (half(low), half(high));
         if low / 2 == high / 2 {
-            Place::Domain(low / 2)
+            Partition::Domain(low / 2)
         } else if low % 2 == 1 && high == low + 1 {
-            Place::Cut(low / 2)
+            Partition::Cut(low / 2)
         } else {
-            Place::Rest
+            Partition::Global
         }
     }
 
-    /// All places, in their order.
-    pub fn places(&self) -> impl Iterator<Item = Place> + use<> {
+    /// All partitions in the order in which they are solved.
+    pub fn partitions(&self) -> impl Iterator<Item = Partition> + use<> {
         let count = self.domains();
         (0..count)
-            .map(Place::Domain)
-            .chain((0..count - 1).map(Place::Cut))
-            .chain(std::iter::once(Place::Rest))
+            .map(Partition::Domain)
+            .chain((0..count - 1).map(Partition::Cut))
+            .chain(std::iter::once(Partition::Global))
     }
 
-    /// The number of a place in that order.
-    pub fn number(&self, place: Place) -> usize {
-        match place {
-            Place::Domain(d) => d,
-            Place::Cut(d) => self.domains() + d,
-            Place::Rest => 2 * self.domains() - 1,
+    /// The index of a partition in that order.
+    pub fn index_of(&self, partition: Partition) -> usize {
+        match partition {
+            Partition::Domain(d) => d,
+            Partition::Cut(d) => self.domains() + d,
+            Partition::Global => 2 * self.domains() - 1,
         }
     }
 
-    /// First slot of the range where constraints of a place are solved.
-    pub fn start(&self, place: Place) -> usize {
-        match place {
-            Place::Domain(d) => self.halves[2 * d],
-            Place::Cut(d) => self.halves[2 * d + 1],
-            Place::Rest => 0,
+    /// First slot of the range of vertices that the constraints of a partition move.
+    pub fn start(&self, partition: Partition) -> usize {
+        match partition {
+            Partition::Domain(d) => self.halves[2 * d],
+            Partition::Cut(d) => self.halves[2 * d + 1],
+            Partition::Global => 0,
         }
     }
 }

@@ -1,0 +1,226 @@
+//! Contacts of sixteen vertices with solids, solved side by side in vector registers.
+
+use super::contact::{ContactConstraint, ContactStep, NO_SAMPLE, Solid, radius2_after_motion};
+use crate::lanes::{LANES, Point, Row, add_scaled, dot, load, store, sub};
+use pulp::Simd;
+
+/// The contacts of sixteen vertices side by side; rows as in [`ContactConstraint`].
+#[derive(Clone, Debug)]
+pub struct ContactBlock {
+    normal: [Row; 3],
+    level: Row,
+    place: [Row; 3],
+    radius2: Row,
+    compliance: Row,
+    friction: Row,
+    offset: Row,
+    lambda_normal: Row,
+    lambda_tangent: [Row; 3],
+    surface_displacement: [Row; 3],
+    sample: [u32; LANES],
+}
+
+impl ContactBlock {
+    /// Contacts with no surface.
+    pub fn none() -> Self {
+        let zero = Row::splat(0.0);
+        let mut block = Self {
+            normal: [zero; 3],
+            level: zero,
+            place: [zero; 3],
+            radius2: zero,
+            compliance: zero,
+            friction: zero,
+            offset: zero,
+            lambda_normal: zero,
+            lambda_tangent: [zero; 3],
+            surface_displacement: [zero; 3],
+            sample: [NO_SAMPLE; LANES],
+        };
+        for lane in 0..LANES {
+            block.set(lane, &ContactConstraint::none());
+        }
+        block
+    }
+
+    /// The contact of a lane.
+    pub fn get(&self, lane: usize) -> ContactConstraint {
+        let three = |rows: &[Row; 3]| rows.map(|row| row.0[lane]);
+        ContactConstraint {
+            normal: three(&self.normal),
+            level: self.level.0[lane],
+            place: three(&self.place),
+            radius2: self.radius2.0[lane],
+            compliance: self.compliance.0[lane],
+            friction: self.friction.0[lane],
+            offset: self.offset.0[lane],
+            sample: self.sample[lane],
+            lambda_normal: self.lambda_normal.0[lane],
+            lambda_tangent: three(&self.lambda_tangent),
+            surface_displacement: three(&self.surface_displacement),
+        }
+    }
+
+    /// Lanes whose contacts pressed in the substep.
+    pub fn pressed(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..LANES).filter(|&lane| self.lambda_normal.0[lane] > 0.0)
+    }
+
+    /// Sets the contact of a lane.
+    pub fn set(&mut self, lane: usize, contact: &ContactConstraint) {
+        for k in 0..3 {
+            self.normal[k].0[lane] = contact.normal[k];
+            self.place[k].0[lane] = contact.place[k];
+            self.lambda_tangent[k].0[lane] = contact.lambda_tangent[k];
+            self.surface_displacement[k].0[lane] = contact.surface_displacement[k];
+        }
+        self.level.0[lane] = contact.level;
+        self.radius2.0[lane] = contact.radius2;
+        self.compliance.0[lane] = contact.compliance;
+        self.friction.0[lane] = contact.friction;
+        self.offset.0[lane] = contact.offset;
+        self.sample[lane] = contact.sample;
+        self.lambda_normal.0[lane] = contact.lambda_normal;
+    }
+
+    /// [`ContactConstraint::invalidate`] for all lanes.
+    pub fn invalidate(&mut self) {
+        for (radius2, &sample) in self.radius2.0.iter_mut().zip(&self.sample) {
+            if sample != NO_SAMPLE {
+                *radius2 = -1.0;
+            }
+        }
+    }
+
+    /// [`ContactConstraint::expect_motion`] for all lanes.
+    pub fn expect_motion(&mut self, travel: f32) {
+        for lane in 0..LANES {
+            if self.sample[lane] != NO_SAMPLE {
+                let near = self.normal.iter().any(|row| row.0[lane] != 0.0);
+                self.radius2.0[lane] = radius2_after_motion(self.radius2.0[lane], travel, near);
+            }
+        }
+    }
+
+    /// Multipliers start from zero.
+    pub fn clear(&mut self) {
+        self.lambda_normal = Row::splat(0.0);
+        self.lambda_tangent = [Row::splat(0.0); 3];
+    }
+
+    /// Whether the surface has to be queried again for one of the points of a part of the lanes.
+    #[inline(always)]
+    pub fn is_stale<S: Simd>(&self, simd: S, points: &[Point; LANES], part: usize) -> bool {
+        let [x, y, z, _] = load(simd, points, part);
+        let place = [
+            self.place[0].part::<S>(part),
+            self.place[1].part::<S>(part),
+            self.place[2].part::<S>(part),
+        ];
+        let d = sub(simd, [x, y, z], place);
+        let beyond = simd.sub_f32s(dot(simd, d, d), self.radius2.part::<S>(part));
+        simd.reduce_max_f32s(beyond) > 0.0
+    }
+
+    /// Queries the surfaces again for those of some lanes that need it.
+    #[inline(never)]
+    pub fn query_surfaces(
+        &mut self,
+        solid: &Solid,
+        points: &[Point; LANES],
+        lanes: std::ops::Range<usize>,
+    ) {
+        for lane in lanes {
+            let [x, y, z, _] = points[lane];
+            let mut contact = self.get(lane);
+            if contact.is_stale([x, y, z]) {
+                contact.query_surface(solid, [x, y, z]);
+                self.set(lane, &contact);
+            }
+        }
+    }
+}
+
+/// [`ContactConstraint::solve`] for one part of a block; moves the points.
+#[inline(always)]
+pub fn solve_block<S: Simd>(
+    simd: S,
+    contact: &mut ContactBlock,
+    points: &mut [Point; LANES],
+    starts: &[Point; LANES],
+    step: &ContactStep,
+    part: usize,
+) {
+    let [x, y, z, weight] = load(simd, points, part);
+    let [x0, y0, z0, _] = load(simd, starts, part);
+    let n = [
+        contact.normal[0].part::<S>(part),
+        contact.normal[1].part::<S>(part),
+        contact.normal[2].part::<S>(part),
+    ];
+    let zero = simd.splat_f32s(0.0);
+    let lambda_normal = contact.lambda_normal.part::<S>(part);
+    let depth = simd.sub_f32s(dot(simd, n, [x, y, z]), contact.level.part::<S>(part));
+    let touching = simd.or_m32s(
+        simd.less_than_f32s(depth, zero),
+        simd.less_than_f32s(zero, lambda_normal),
+    );
+    let active = simd.and_m32s(touching, simd.less_than_f32s(zero, weight));
+    let flag = simd.select_f32s(active, simd.splat_f32s(1.0), zero);
+    if simd.reduce_max_f32s(flag) == 0.0 {
+        return;
+    }
+    let surface_displacement = [
+        contact.surface_displacement[0].part::<S>(part),
+        contact.surface_displacement[1].part::<S>(part),
+        contact.surface_displacement[2].part::<S>(part),
+    ];
+    let moved = sub(
+        simd,
+        sub(simd, [x, y, z], [x0, y0, z0]),
+        surface_displacement,
+    );
+    let compliance = simd.mul_f32s(
+        contact.compliance.part::<S>(part),
+        simd.splat_f32s(step.kappa),
+    );
+    let per_weight = simd.div_f32s(simd.splat_f32s(1.0), weight);
+    let violation = simd.mul_add_e_f32s(compliance, lambda_normal, depth);
+    let change = simd.div_f32s(
+        simd.sub_f32s(zero, violation),
+        simd.add_f32s(weight, compliance),
+    );
+    let outward = dot(simd, n, moved);
+    let most = simd.sub_f32s(simd.splat_f32s(step.outward), outward);
+    let most = simd.mul_f32s(simd.max_f32s(most, zero), per_weight);
+    let change = simd.max_f32s(
+        simd.min_f32s(change, most),
+        simd.sub_f32s(zero, lambda_normal),
+    );
+    let change = simd.select_f32s(active, change, zero);
+    let lambda_normal = simd.add_f32s(lambda_normal, change);
+    contact.lambda_normal.set_part::<S>(part, lambda_normal);
+    let slip = add_scaled(simd, moved, n, simd.sub_f32s(zero, outward));
+    let lambda_tangent = [
+        contact.lambda_tangent[0].part::<S>(part),
+        contact.lambda_tangent[1].part::<S>(part),
+        contact.lambda_tangent[2].part::<S>(part),
+    ];
+    let free = add_scaled(simd, lambda_tangent, slip, simd.sub_f32s(zero, per_weight));
+    let length = simd.sqrt_f32s(dot(simd, free, free));
+    let limit = simd.mul_f32s(contact.friction.part::<S>(part), lambda_normal);
+    let share = simd.select_f32s(
+        simd.less_than_f32s(limit, length),
+        simd.div_f32s(limit, length),
+        simd.splat_f32s(1.0),
+    );
+    let mut out = [x, y, z];
+    for k in 0..3 {
+        let new = simd.mul_f32s(free[k], share);
+        let new = simd.select_f32s(active, new, lambda_tangent[k]);
+        contact.lambda_tangent[k].set_part::<S>(part, new);
+        let total = simd.mul_add_e_f32s(n[k], change, simd.sub_f32s(new, lambda_tangent[k]));
+        out[k] = simd.mul_add_e_f32s(weight, total, out[k]);
+    }
+    store(simd, points, part, [out[0], out[1], out[2], weight]);
+}
