@@ -73,8 +73,8 @@ fn assert_keeps_apart(
 ) {
     for &pair in rest {
         let distance = Nearness::distance(pair, x);
-        let kept = pair.vertices().map(|v| surface.most_kept(v));
-        let kept = kept.into_iter().fold(clearance.kept, f64::min);
+        let kept = pair.vertices().map(|v| surface.max_offset(v));
+        let kept = kept.into_iter().fold(clearance.offset, f64::min);
         assert!(distance >= kept, "{told}: {pair:?} at {distance}");
     }
     let [all, found] = [all, found].map(|near| crossings(surface, near, x));
@@ -84,16 +84,17 @@ fn assert_keeps_apart(
 #[test]
 fn what_is_left_out_keeps_its_distance_wherever_vertices_stray() {
     let clearance = Clearance {
-        kept: 2e-3,
-        beyond: 1e-3,
+        offset: 2e-3,
+        max_drift: 1e-3,
     };
     let (mut left_out, mut crossed) = (0, 0);
     for seed in 0..200 {
         let (flat, mut x) = waved(seed);
         let mut surface = ClothSurface::of_mesh(&flat);
         // Far enough that every pair that could come near in the time is among these.
-        let all = surface.near(LinearTrajectories::still(&x), 0.02);
-        let found = surface.near_unless_clear(LinearTrajectories::still(&x), 0.02, clearance);
+        let all = surface.near_leaves(LinearTrajectories::still(&x), 0.02);
+        let found =
+            surface.near_leaves_unless_clear(LinearTrajectories::still(&x), 0.02, clearance);
         assert_eq!(
             crossings(&surface, &all, &x),
             crossings(&surface, &found, &x),
@@ -126,8 +127,8 @@ fn what_is_left_out_keeps_its_distance_wherever_vertices_stray() {
 #[test]
 fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
     let clearance = Clearance {
-        kept: 1e-3,
-        beyond: 1e-4,
+        offset: 1e-3,
+        max_drift: 1e-4,
     };
     // Two plies that face the same way, 1 mm apart: every pair of the two must stay.
     let mut plies = sheet([12; 2], [1.0; 2], |u, v| Vec3::new(0.2 * u, 0.0, 0.2 * v));
@@ -139,8 +140,8 @@ fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
         .extend(upper.triangles.iter().map(|t| t.map(|v| v + count)));
     let mut surface = ClothSurface::of_mesh(&plies);
     let x = plies.positions.clone();
-    let all = surface.near(LinearTrajectories::still(&x), 2e-3);
-    let found = surface.near_unless_clear(LinearTrajectories::still(&x), 2e-3, clearance);
+    let all = surface.near_leaves(LinearTrajectories::still(&x), 2e-3);
+    let found = surface.near_leaves_unless_clear(LinearTrajectories::still(&x), 2e-3, clearance);
     let split = |near: &[[u32; 2]]| -> [BTreeSet<FeaturePair>; 2] {
         let across = |pair: &FeaturePair| {
             let v = pair.vertices();
@@ -166,8 +167,8 @@ fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
         all.filter(|pair| Nearness::distance(*pair, &x) < 5e-4 * 6.3)
             .collect::<Vec<_>>()
     };
-    let all = surface.near(LinearTrajectories::still(&x), 5e-3);
-    let found = surface.near_unless_clear(LinearTrajectories::still(&x), 5e-3, clearance);
+    let all = surface.near_leaves(LinearTrajectories::still(&x), 5e-3);
+    let found = surface.near_leaves_unless_clear(LinearTrajectories::still(&x), 5e-3, clearance);
     assert!(close(&all, &surface).len() > 100);
     assert_eq!(close(&all, &surface), close(&found, &surface));
 }
@@ -177,23 +178,23 @@ fn numbers_that_are_none_leave_nothing_out() {
     let mesh = sheet([8; 2], [1.0; 2], |u, v| Vec3::new(u, 0.0, v));
     for clearance in [
         Clearance {
-            kept: 0.0,
-            beyond: f64::NAN,
+            offset: 0.0,
+            max_drift: f64::NAN,
         },
         Clearance {
-            kept: 0.0,
-            beyond: f64::INFINITY,
+            offset: 0.0,
+            max_drift: f64::INFINITY,
         },
         Clearance {
-            kept: f64::INFINITY,
-            beyond: 0.0,
+            offset: f64::INFINITY,
+            max_drift: 0.0,
         },
     ] {
         let mut surface = ClothSurface::of_mesh(&mesh);
         let x = &mesh.positions;
-        let all = surface.near(LinearTrajectories::still(x), 0.01);
-        let found = surface.near_unless_clear(LinearTrajectories::still(x), 0.01, clearance);
-        match clearance.kept.is_finite() {
+        let all = surface.near_leaves(LinearTrajectories::still(x), 0.01);
+        let found = surface.near_leaves_unless_clear(LinearTrajectories::still(x), 0.01, clearance);
+        match clearance.offset.is_finite() {
             true => assert_eq!(all, found),
             // The room at a vertex is less than without end: here there is room for it.
             false => assert!(found.len() <= all.len()),
@@ -203,11 +204,11 @@ fn numbers_that_are_none_leave_nothing_out() {
     x[40] = Vec3::repeat(f64::NAN);
     let mut surface = ClothSurface::of_mesh(&mesh);
     let clearance = Clearance {
-        kept: 0.0,
-        beyond: 0.0,
+        offset: 0.0,
+        max_drift: 0.0,
     };
-    let found = surface.near_unless_clear(LinearTrajectories::still(&x), 0.01, clearance);
-    let all = surface.near(LinearTrajectories::still(&x), 0.01);
+    let found = surface.near_leaves_unless_clear(LinearTrajectories::still(&x), 0.01, clearance);
+    let all = surface.near_leaves(LinearTrajectories::still(&x), 0.01);
     assert!(found.len() <= all.len());
 }
 
@@ -219,17 +220,17 @@ fn a_smooth_sheet_costs_the_same_few_regions_however_fine() {
         });
         let mut surface = ClothSurface::of_mesh(&dome);
         let clearance = Clearance {
-            kept: 1e-4,
-            beyond: 1e-5,
+            offset: 1e-4,
+            max_drift: 1e-5,
         };
         let x = &dome.positions;
-        let found = surface.near_unless_clear(LinearTrajectories::still(x), 2e-4, clearance);
+        let found = surface.near_leaves_unless_clear(LinearTrajectories::still(x), 2e-4, clearance);
         assert!(
             found.is_empty(),
             "{} pairs of a sheet of {n} cells",
             found.len()
         );
-        surface.opened()[0]
+        surface.region_counts()[0]
     });
     assert!(looked.iter().all(|&count| count == looked[0]), "{looked:?}");
 }
@@ -237,8 +238,8 @@ fn a_smooth_sheet_costs_the_same_few_regions_however_fine() {
 #[test]
 fn what_was_found_serves_while_the_cloth_moves() {
     let clearance = Clearance {
-        kept: 2e-3,
-        beyond: 1e-3,
+        offset: 2e-3,
+        max_drift: 1e-3,
     };
     let reach = 0.01;
     let (mut left_out, mut listed, mut crossed, mut told, mut told_anew) = (0, 0, 0, 0, 0);
@@ -274,25 +275,25 @@ fn what_was_found_serves_while_the_cloth_moves() {
                 LinearTrajectories::together(&from, &to),
                 LinearTrajectories::still(&to),
             ] {
-                let all = fresh.near(ways, reach);
+                let all = fresh.near_leaves(ways, reach);
                 let all = features(&fresh, &all);
-                surface.look(ways, &Reach::all(reach), clearance);
-                told += surface.opened()[1];
+                surface.query(ways, &Reach::uniform(reach), clearance);
+                told += surface.region_counts()[1];
                 let found = surface.features(Near::Listed, |pair, _, all| all.push(pair));
                 let found: BTreeSet<FeaturePair> = found.into_iter().collect();
                 let crossing = crossings(&surface, Near::Listed, ways.from);
                 fresh.forget();
-                fresh.look(ways, &Reach::all(reach), clearance);
-                told_anew += fresh.opened()[1];
-                let exact = fresh.near(LinearTrajectories::still(ways.from), 0.0);
+                fresh.query(ways, &Reach::uniform(reach), clearance);
+                told_anew += fresh.region_counts()[1];
+                let exact = fresh.near_leaves(LinearTrajectories::still(ways.from), 0.0);
                 assert_eq!(crossing, crossings(&fresh, &exact, ways.from), "{told_of}");
                 crossed += crossing.len();
                 listed += found.len();
                 for &pair in all.difference(&found) {
                     left_out += 1;
                     for part in [0.0, 0.37, 1.0] {
-                        let kept = pair.vertices().map(|v| surface.most_kept(v));
-                        let kept = kept.into_iter().fold(clearance.kept, f64::min);
+                        let kept = pair.vertices().map(|v| surface.max_offset(v));
+                        let kept = kept.into_iter().fold(clearance.offset, f64::min);
                         let x = |v: usize| ways.from[v] + (ways.to[v] - ways.from[v]) * part;
                         let four = pair.vertices().map(|v| x(v as usize));
                         let pair = match pair {
@@ -318,21 +319,21 @@ fn what_was_found_serves_while_the_cloth_moves() {
 fn a_vertex_lost_on_the_way_leaves_no_region_out() {
     let mesh = sheet([16; 2], [1.0; 2], |u, v| Vec3::new(0.3 * u, 0.0, 0.3 * v));
     let clearance = Clearance {
-        kept: 1e-3,
-        beyond: 1e-3,
+        offset: 1e-3,
+        max_drift: 1e-3,
     };
     let mut surface = ClothSurface::of_mesh(&mesh);
     let x = &mesh.positions;
     assert!(
         surface
-            .near_unless_clear(LinearTrajectories::still(x), 0.01, clearance)
+            .near_leaves_unless_clear(LinearTrajectories::still(x), 0.01, clearance)
             .is_empty()
     );
     for lost in [f64::NAN, f64::INFINITY] {
         let mut to = x.clone();
         to[100] = Vec3::repeat(lost);
         let found =
-            surface.near_unless_clear(LinearTrajectories::together(x, &to), 0.01, clearance);
+            surface.near_leaves_unless_clear(LinearTrajectories::together(x, &to), 0.01, clearance);
         let pairs = features(&surface, &found).into_iter();
         let with = pairs.filter(|pair| pair.vertices().contains(&100)).count();
         assert!(with > 10, "{with} pairs at a vertex that is {lost}");

@@ -45,8 +45,8 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
     let mut surface = ClothSurface::of_mesh(&mesh);
     let edge = 1.0 / cells as f64;
     let clearance = Clearance {
-        kept: 0.1 * edge,
-        beyond: 0.1 * edge,
+        offset: 0.1 * edge,
+        max_drift: 0.1 * edge,
     };
     let x = &mesh.positions;
     let mut counted = |name: &str, find: &mut dyn FnMut(&mut ClothSurface) -> usize| {
@@ -60,18 +60,20 @@ pub(crate) fn sheet(cells: usize, result: &mut Timed) -> Result<(), LabError> {
         for (what, value) in [
             ("ms", 1e3 * spent[0] / LOOKS as f64),
             ("cpu_ms", 1e3 * spent[1] / LOOKS as f64),
-            ("regions", surface.opened()[0] as f64),
+            ("regions", surface.region_counts()[0] as f64),
             ("pairs", pairs as f64),
         ] {
             result.counted.insert(format!("{name}_{what}"), value);
         }
     };
     counted("all", &mut |surface| {
-        surface.near(LinearTrajectories::still(x), edge).len()
+        surface
+            .near_leaves(LinearTrajectories::still(x), edge)
+            .len()
     });
     counted("curved", &mut |surface| {
         surface
-            .near_unless_clear(LinearTrajectories::still(x), edge, clearance)
+            .near_leaves_unless_clear(LinearTrajectories::still(x), edge, clearance)
             .len()
     });
     Ok(())
@@ -131,13 +133,13 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
         let (clock, mut found) = (Clock::start(), [0; 3]);
         for _ in 0..LOOKS {
             let near = near(&mut surface);
-            let touching = nearnesses(&surface, &near, x, &Reach::all(REACH)).len();
+            let touching = nearnesses(&surface, &near, x, &Reach::uniform(REACH)).len();
             found = [near.len(), touching, crossings(&surface, &near, x).len()];
         }
         for (what, value) in [
             ("ms", 1e3 * clock.wall() / LOOKS as f64),
             ("cpu_ms", 1e3 * clock.spent() / LOOKS as f64),
-            ("regions", surface.opened()[0] as f64),
+            ("regions", surface.region_counts()[0] as f64),
             ("pairs", found[0] as f64),
             ("contacts", found[1] as f64),
             ("crossings", found[2] as f64),
@@ -146,10 +148,10 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
         }
     };
     look("all", &mut |surface| {
-        surface.near(LinearTrajectories::still(x), REACH)
+        surface.near_leaves(LinearTrajectories::still(x), REACH)
     });
     look("curved", &mut |surface| {
-        surface.near_unless_clear(LinearTrajectories::still(x), REACH, clearance)
+        surface.near_leaves_unless_clear(LinearTrajectories::still(x), REACH, clearance)
     });
     for (name, turn) in [("worn", 0.0), ("turning", TURN)] {
         let mut start = state.clone();
@@ -196,9 +198,9 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
 /// and looks at closely.
 fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>]) -> [f64; 3] {
     let clearance = ContactDetector::clearance(OFFSET);
-    let [of_ways, of_contacts] = [WAYS_REACH, REACH].map(Reach::all);
+    let [of_ways, of_contacts] = [WAYS_REACH, REACH].map(Reach::uniform);
     let mut opened = [0; 2];
-    surface.look(LinearTrajectories::still(&path[0]), &of_contacts, clearance);
+    surface.query(LinearTrajectories::still(&path[0]), &of_contacts, clearance);
     let clock = Clock::start();
     for ends in path.windows(2) {
         let still = LinearTrajectories::still(&ends[1]);
@@ -206,9 +208,9 @@ fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>]) -> [f64; 3] {
             (LinearTrajectories::together(&ends[0], &ends[1]), &of_ways),
             (still, &of_contacts),
         ] {
-            surface.look(ways, reach, clearance);
+            surface.query(ways, reach, clearance);
             std::hint::black_box(nearnesses(surface, Near::Listed, ways.from, reach));
-            let [regions, contours] = surface.opened();
+            let [regions, contours] = surface.region_counts();
             opened = [opened[0] + regions, opened[1] + contours];
         }
         std::hint::black_box(crossings(surface, Near::Listed, still.from));

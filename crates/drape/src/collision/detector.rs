@@ -1,20 +1,22 @@
 //! Detection of contacts of cloth with cloth: the laws of contact with a surface, on the vector
 //! between two features in place of the point.
 
-use super::bound::{ImpactStats, resolve_impacts, truncate_moves};
+use super::candidate_search::Near;
 use super::cloth_contact::ClothContact;
 use super::contact_set::ContactSet;
 use super::curvature::Clearance;
 use super::entanglement::Entanglement;
 use super::exemptions::ContactExemptions;
 use super::friction_memory;
+use super::impact_resolution::{ImpactStats, resolve_impacts};
 use super::memory::ClothMemory;
 use super::mollifier::edge_mollifier;
 use super::motions::Motions;
 use super::nearness::Nearness;
 use super::proximity::nearnesses;
 use super::reach::Reach;
-use super::surface::{ClothSurface, Near};
+use super::step_truncation::truncate_moves;
+use super::surface::ClothSurface;
 use super::trajectories::LinearTrajectories;
 use crate::Model;
 use crate::laws::contact::{ContactLaw, ContactPlane};
@@ -38,16 +40,16 @@ const REACH_IN_OFFSETS: f64 = 2.0;
 /// Share of the offset that two cloths give way by before their contact is hard.
 const HARD_FROM: f64 = 0.75;
 
-/// How far the vertices of a region that a search left out may move against each other before it is
-/// searched again [m].
-const BEYOND: f64 = 1e-3;
+/// Drift of a region's vertices from their common rigid motion after which it is given the curvature test again [m]. A
+/// smaller one has regions tested more often; with a larger one fewer regions pass.
+const MAX_DRIFT: f64 = 1e-3;
 
 impl ContactDetector {
-    /// The clearance of regions that a search leaves out, for cloth that is kept `offset` [m] apart.
+    /// Clearance of regions that a search leaves out, for cloth with this contact offset [m].
     pub fn clearance(offset: f64) -> Clearance {
         Clearance {
-            kept: offset,
-            beyond: BEYOND,
+            offset: offset,
+            max_drift: MAX_DRIFT,
         }
     }
 
@@ -86,7 +88,7 @@ impl ContactDetector {
         }
         let clearance = Self::clearance(model.contact.cloth_offset);
         self.surface(model)
-            .look(LinearTrajectories::still(x), reach, clearance);
+            .query(LinearTrajectories::still(x), reach, clearance);
         let entangled = Entanglement::find(&self.surface, &model.policies, x, memory.stray_reach);
         set.crossings = entangled.crossing_count();
         set.violations = entangled.violations.len();
@@ -116,7 +118,7 @@ impl ContactDetector {
         x: &[Vec3],
         set: &mut ContactSet,
     ) {
-        let reach = Reach::all(REACH_IN_OFFSETS * model.contact.cloth_offset);
+        let reach = Reach::uniform(REACH_IN_OFFSETS * model.contact.cloth_offset);
         self.detect(model, memory, x, &reach, set);
         for contact in &mut set.contacts {
             let factor = edge_mollifier(contact, x);
@@ -140,7 +142,9 @@ impl ContactDetector {
                 .sum::<f64>()
         };
         let offset = model.contact.cloth_offset;
-        let kept = self.surface.kept(near.pair, near.neighbours, offset);
+        let offset = self
+            .surface
+            .contact_offset(near.pair, near.neighbours, offset);
         // Each side's vertices see the other's faces: half the area each.
         let normal = 0.5 * model.contact.stiffness * of(&self.surface.area);
         let between = near.normal * near.distance;
@@ -155,7 +159,7 @@ impl ContactDetector {
             weights: near.weights,
             plane: ContactPlane {
                 point: between,
-                depth: kept - near.distance,
+                depth: offset - near.distance,
                 gradient: near.normal,
                 normal: near.normal,
                 hollow: Matrix3::zeros(),
@@ -168,9 +172,9 @@ impl ContactDetector {
             law: ContactLaw {
                 normal,
                 // What presses harder than the soft contact can slips no farther before it slides.
-                tangential: 0.5 * normal.max(force / kept),
+                tangential: 0.5 * normal.max(force / offset),
                 friction,
-                hard_from: HARD_FROM * kept,
+                hard_from: HARD_FROM * offset,
             },
             restitution: self.restitution(vertices, near.weights),
             pair: Some(near.pair),

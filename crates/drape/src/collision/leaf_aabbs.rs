@@ -1,7 +1,7 @@
 //! Boxes of the features in every leaf of the tree: those of two leaves are tested against each other
 //! sixteen at a time, in single precision rounded outwards.
 
-use super::boxes::{Bounds, BoxTree, CLUSTER};
+use super::boxes::{Bounds, BoxTree, MAX_LEAF_ITEMS};
 use super::trajectories::LinearTrajectories;
 use crate::lanes::LANES;
 use pulp::{Arch, NullaryFnOnce};
@@ -12,7 +12,7 @@ use toile_geometry::Vec3;
 const NONE: u32 = u32::MAX;
 
 // Each feature of a leaf, at most three edges a triangle, has a bit.
-const _: () = assert!(3 * CLUSTER <= u64::BITS as usize);
+const _: () = assert!(3 * MAX_LEAF_ITEMS <= u64::BITS as usize);
 
 /// A box along the axes [m].
 #[derive(Clone, Copy, Debug)]
@@ -514,9 +514,9 @@ mod tests {
                 block.set(lane, &aabb(*way));
             }
             let bits = block.overlapping(&aabb(ways[LANES]), 0.0);
-            let one = Bounds::round(&ways[LANES], 0.0);
+            let one = Bounds::of(&ways[LANES], 0.0);
             for (lane, way) in ways[..LANES].iter().enumerate() {
-                let meets = Bounds::round(way, 0.0).meets(&one);
+                let meets = Bounds::of(way, 0.0).meets(&one);
                 assert_eq!(bits >> lane & 1 == 1, meets);
                 met += usize::from(meets);
             }

@@ -1,6 +1,6 @@
 //! Counts over the looks of a run.
 
-use super::bound::ImpactStats;
+use super::impact_resolution::ImpactStats;
 use serde::{Deserialize, Serialize};
 
 /// What was found and done so far.

@@ -83,13 +83,13 @@ impl ClothWatch {
         let longest = soon.max(least);
         let fall = 0.5 * system.control.gravity.norm() * longest * longest;
         let reach = Reach {
-            most: kept + 2.0 * FARTHEST,
+            max: kept + 2.0 * FARTHEST,
             ahead: Some(Ahead {
                 velocities: &state.velocities,
-                kept,
+                offset: kept,
                 pinned: &system.prescribed.pinned,
                 time: longest,
-                least: (speed * longest + fall).clamp(LEAST_WAY, FARTHEST),
+                min_path: (speed * longest + fall).clamp(LEAST_WAY, FARTHEST),
             }),
         };
         let (memory, x) = (&state.cloth, &state.positions);

@@ -18,8 +18,8 @@ use toile_geometry::{TriangleMesh, Vec3};
 
 /// Nothing keeps clear by this.
 const NEVER_CLEAR: Clearance = Clearance {
-    kept: 0.0,
-    beyond: -1.0,
+    offset: 0.0,
+    max_drift: -1.0,
 };
 
 /// Pairs of features with a vertex of some that come within a distance [m] of each other, and how near.
@@ -43,7 +43,7 @@ fn within(
 #[test]
 fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
     let (reach, mut told, mut crossed, mut opened) = (4e-3, 0, 0, 0);
-    let looks = Reach::all(reach);
+    let looks = Reach::uniform(reach);
     for seed in 0..12 {
         let mesh = crumpled(seed, 12);
         let pairs = all_pairs(&mesh);
@@ -60,14 +60,14 @@ fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
             let both = mesh.positions.iter().zip(&goal);
             let x: Vec<Vec3> = both.map(|(a, b)| turned * (a + (b - a) * share)).collect();
             if step % 7 > 0 {
-                surface.look(
+                surface.query(
                     LinearTrajectories::together(&from, &x),
-                    &Reach::all(5e-4),
+                    &Reach::uniform(5e-4),
                     NEVER_CLEAR,
                 );
             }
-            surface.look(LinearTrajectories::still(&x), &looks, NEVER_CLEAR);
-            opened += surface.opened()[0];
+            surface.query(LinearTrajectories::still(&x), &looks, NEVER_CLEAR);
+            opened += surface.region_counts()[0];
             let found = within(&surface, &x, reach, None);
             let expected = pairs
                 .iter()
@@ -79,7 +79,7 @@ fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
             assert_eq!(found, expected, "state {seed}, step {step}");
             told += found.len();
             let crossing = crossings(&surface, Near::Listed, &x);
-            let near = fresh.near(LinearTrajectories::still(&x), 0.0);
+            let near = fresh.near_leaves(LinearTrajectories::still(&x), 0.0);
             let expected = crossings(&fresh, &near, &x);
             assert_eq!(crossing, expected, "state {seed}, step {step}");
             crossed += crossing.len();
@@ -101,9 +101,9 @@ fn a_look_for_what_goes_another_way_finds_all_that_meets_it() {
             .map(|p| p + Vec3::new(p.z, 0.0, -p.x) * 0.1)
             .collect();
         let mut surface = ClothSurface::of_mesh(&mesh);
-        surface.look(
+        surface.query(
             LinearTrajectories::together(x, &ends),
-            &Reach::all(reach),
+            &Reach::uniform(reach),
             NEVER_CLEAR,
         );
         // One round after another, as where impulses push on.
@@ -115,10 +115,10 @@ fn a_look_for_what_goes_another_way_finds_all_that_meets_it() {
                 ends[v] += Vec3::new(0.02, -0.01 * k as f64, 0.03);
             }
             let ways = LinearTrajectories::together(x, &ends);
-            let all = Reach::all(reach);
-            surface.look_again(ways, &all, NEVER_CLEAR, Some(&marks));
+            let all = Reach::uniform(reach);
+            surface.query_marked(ways, &all, NEVER_CLEAR, Some(&marks));
             let mut anew = ClothSurface::of_mesh(&mesh);
-            anew.look(ways, &all, NEVER_CLEAR);
+            anew.query(ways, &all, NEVER_CLEAR);
             for part in [0.0, 0.5, 1.0] {
                 let both = x.iter().zip(&ends);
                 let then: Vec<Vec3> = both.map(|(a, b)| a + (b - a) * part).collect();
@@ -147,15 +147,15 @@ fn a_look_ahead_lists_all_that_velocities_may_bring_near() {
             let ahead = Ahead {
                 velocities: &velocities,
                 pinned: &pinned,
-                kept: 2e-3,
+                offset: 2e-3,
                 time,
-                least: 5e-4,
+                min_path: 5e-4,
             };
             let reach = Reach {
-                most: 6e-3,
+                max: 6e-3,
                 ahead: Some(ahead),
             };
-            surface.look(LinearTrajectories::still(x), &reach, NEVER_CLEAR);
+            surface.query(LinearTrajectories::still(x), &reach, NEVER_CLEAR);
             let found = surface.features(Near::Listed, |pair, _, found| found.push(pair));
             let found: BTreeSet<FeaturePair> = found.into_iter().collect();
             for pair in all_pairs(&mesh) {
@@ -172,9 +172,9 @@ fn a_look_ahead_lists_all_that_velocities_may_bring_near() {
 #[test]
 fn a_vertex_lost_or_come_back_is_looked_for() {
     let mesh = crumpled(3, 12);
-    let all = Reach::all(4e-3);
+    let all = Reach::uniform(4e-3);
     let mut surface = ClothSurface::of_mesh(&mesh);
-    surface.look(
+    surface.query(
         LinearTrajectories::still(&mesh.positions),
         &all,
         NEVER_CLEAR,
@@ -183,7 +183,7 @@ fn a_vertex_lost_or_come_back_is_looked_for() {
     for lost in [f64::NAN, f64::INFINITY] {
         let mut x = mesh.positions.clone();
         x[80] = Vec3::repeat(lost);
-        surface.look(
+        surface.query(
             LinearTrajectories::together(&mesh.positions, &x),
             &all,
             NEVER_CLEAR,
@@ -193,8 +193,8 @@ fn a_vertex_lost_or_come_back_is_looked_for() {
         });
         let count = with.len();
         assert!(count > 100, "{count} pairs at a vertex that is {lost}");
-        surface.look(LinearTrajectories::still(&x), &all, NEVER_CLEAR);
-        surface.look(
+        surface.query(LinearTrajectories::still(&x), &all, NEVER_CLEAR);
+        surface.query(
             LinearTrajectories::still(&mesh.positions),
             &all,
             NEVER_CLEAR,
@@ -222,9 +222,13 @@ fn an_edge_through_a_face_that_is_a_line_but_for_rounding_is_found() {
         };
         let x = &mesh.positions;
         let mut surface = ClothSurface::of_mesh(&mesh);
-        let near = surface.near(LinearTrajectories::still(x), 0.0);
+        let near = surface.near_leaves(LinearTrajectories::still(x), 0.0);
         let expected = crossings(&surface, &near, x);
-        surface.look(LinearTrajectories::still(x), &Reach::all(1e-3), NEVER_CLEAR);
+        surface.query(
+            LinearTrajectories::still(x),
+            &Reach::uniform(1e-3),
+            NEVER_CLEAR,
+        );
         assert_eq!(crossings(&surface, Near::Listed, x), expected, "{seed}");
         crossed += expected.len();
     }
