@@ -1,5 +1,5 @@
-//! Regions left out because they cannot touch themselves: nothing that meets is missed, whatever the
-//! cloth does meanwhile, and smooth cloth costs next to nothing.
+//! Regions left out by the curvature test: no contact or crossing is missed while the cloth moves, and the search of
+//! smooth cloth costs next to nothing.
 
 #![allow(clippy::unwrap_used)]
 
@@ -39,14 +39,14 @@ fn waved(seed: u64) -> (TriangleMesh, Vec<Vec3>) {
         let (u, v) = (p.x / 0.32, p.z / 0.32);
         let base = match turns > 0.0 {
             true => {
-                // Rolled up, the ends over each other.
+                // A roll whose ends overlap.
                 let (angle, radius) = (turns * std::f64::consts::TAU * u, 0.05 + 0.006 * u);
                 Vec3::new(radius * angle.cos(), radius * angle.sin(), p.z)
             }
             false => *p,
         };
-        let way = |(way, [a, b, c]): &(Vec3, [f64; 3])| way * (a * u + b * v + c).sin();
-        base + waves.iter().map(way).sum::<Vec3>()
+        let wave = |(size, [a, b, c]): &(Vec3, [f64; 3])| size * (a * u + b * v + c).sin();
+        base + waves.iter().map(wave).sum::<Vec3>()
     });
     let places = places.collect();
     (flat, places)
@@ -57,32 +57,32 @@ fn features(surface: &ClothSurface, near: &[[u32; 2]]) -> BTreeSet<FeaturePair> 
     all.into_iter().collect()
 }
 
-/// Pairs of features among all that are not among those found.
+/// Pairs of features in the leaves `all` that are not in the leaves `found`.
 fn left_out_of(surface: &ClothSurface, [all, found]: [&[[u32; 2]]; 2]) -> Vec<FeaturePair> {
     let found = features(surface, found);
     features(surface, all).difference(&found).copied().collect()
 }
 
-/// Holds what was left out to its clearance at some places, and what was found to all crossings.
+/// Asserts that pairs left out keep their clearance at positions `x`, and that no crossing was left out.
 fn assert_keeps_apart(
     surface: &ClothSurface,
     [all, found]: [&[[u32; 2]]; 2],
-    rest: &[FeaturePair],
+    left_out: &[FeaturePair],
     (x, clearance): (&[Vec3], Clearance),
-    told: &str,
+    state: &str,
 ) {
-    for &pair in rest {
+    for &pair in left_out {
         let distance = Nearness::distance(pair, x);
-        let kept = pair.vertices().map(|v| surface.max_offset(v));
-        let kept = kept.into_iter().fold(clearance.offset, f64::min);
-        assert!(distance >= kept, "{told}: {pair:?} at {distance}");
+        let offsets = pair.vertices().map(|v| surface.max_offset(v));
+        let offset = offsets.into_iter().fold(clearance.offset, f64::min);
+        assert!(distance >= offset, "{state}: {pair:?} at {distance}");
     }
     let [all, found] = [all, found].map(|near| crossings(surface, near, x));
-    assert_eq!(all, found, "{told}");
+    assert_eq!(all, found, "{state}");
 }
 
 #[test]
-fn what_is_left_out_keeps_its_distance_wherever_vertices_stray() {
+fn pairs_left_out_keep_their_distance_within_the_drift() {
     let clearance = Clearance {
         offset: 2e-3,
         max_drift: 1e-3,
@@ -91,7 +91,7 @@ fn what_is_left_out_keeps_its_distance_wherever_vertices_stray() {
     for seed in 0..200 {
         let (flat, mut x) = waved(seed);
         let mut surface = ClothSurface::of_mesh(&flat);
-        // Far enough that every pair that could come near in the time is among these.
+        // A reach within which lies every pair that the drift can bring near.
         let all = surface.near_leaves(LinearTrajectories::still(&x), 0.02);
         let found =
             surface.near_leaves_unless_clear(LinearTrajectories::still(&x), 0.02, clearance);
@@ -101,19 +101,19 @@ fn what_is_left_out_keeps_its_distance_wherever_vertices_stray() {
             "state {seed}"
         );
         crossed += crossings(&surface, &all, &x).len();
-        let rest = left_out_of(&surface, [&all, &found]);
-        left_out += rest.len();
+        let pairs = left_out_of(&surface, [&all, &found]);
+        left_out += pairs.len();
         let mut numbers = Numbers(seed + 1000);
-        let drift = numbers.vector(0.1);
+        let shift = numbers.vector(0.1);
         for round in 0..4 {
-            let told = format!("state {seed}, round {round}");
-            assert_keeps_apart(&surface, [&all, &found], &rest, (&x, clearance), &told);
-            let strays = waved(seed).1;
-            x = strays
+            let state = format!("state {seed}, round {round}");
+            assert_keeps_apart(&surface, [&all, &found], &pairs, (&x, clearance), &state);
+            let start = waved(seed).1;
+            x = start
                 .iter()
                 .map(|p| {
-                    let way = numbers.vector(1.0);
-                    p + drift + way * (0.999e-3 / way.norm())
+                    let direction = numbers.vector(1.0);
+                    p + shift + direction * (0.999e-3 / direction.norm())
                 })
                 .collect();
         }
@@ -174,7 +174,7 @@ fn two_plies_a_slit_and_a_touching_corner_are_told_apart() {
 }
 
 #[test]
-fn numbers_that_are_none_leave_nothing_out() {
+fn a_clearance_or_position_that_is_not_finite_leaves_nothing_out() {
     let mesh = sheet([8; 2], [1.0; 2], |u, v| Vec3::new(u, 0.0, v));
     for clearance in [
         Clearance {
@@ -196,7 +196,7 @@ fn numbers_that_are_none_leave_nothing_out() {
         let found = surface.near_leaves_unless_clear(LinearTrajectories::still(x), 0.01, clearance);
         match clearance.offset.is_finite() {
             true => assert_eq!(all, found),
-            // The room at a vertex is less than without end: here there is room for it.
+            // The offset is limited by the shortest edge, and regions may pass.
             false => assert!(found.len() <= all.len()),
         }
     }
@@ -214,7 +214,7 @@ fn numbers_that_are_none_leave_nothing_out() {
 
 #[test]
 fn a_smooth_sheet_costs_the_same_few_regions_however_fine() {
-    let looked = [22, 71, 224, 708].map(|n| {
+    let opened = [22, 71, 224, 708].map(|n| {
         let dome = sheet([n; 2], [1.0; 2], |u, v| {
             Vec3::new(u, 0.1 * (3.0 * u).sin() * (3.0 * v).sin(), v)
         });
@@ -232,17 +232,17 @@ fn a_smooth_sheet_costs_the_same_few_regions_however_fine() {
         );
         surface.region_counts()[0]
     });
-    assert!(looked.iter().all(|&count| count == looked[0]), "{looked:?}");
+    assert!(opened.iter().all(|&count| count == opened[0]), "{opened:?}");
 }
 
 #[test]
-fn what_was_found_serves_while_the_cloth_moves() {
+fn queries_that_go_on_from_a_front_miss_nothing_while_the_cloth_moves() {
     let clearance = Clearance {
         offset: 2e-3,
         max_drift: 1e-3,
     };
     let reach = 0.01;
-    let (mut left_out, mut listed, mut crossed, mut told, mut told_anew) = (0, 0, 0, 0, 0);
+    let (mut left_out, mut listed, mut crossed, mut tested, mut tested_afresh) = (0, 0, 0, 0, 0);
     for seed in 0..60 {
         // From one crumpled state towards another, slowly or fast, the whole carried along, turned and shaken.
         let (flat, start) = waved(seed);
@@ -250,7 +250,7 @@ fn what_was_found_serves_while_the_cloth_moves() {
         let mut surface = ClothSurface::of_mesh(&flat);
         let mut fresh = ClothSurface::of_mesh(&flat);
         let mut numbers = Numbers(seed + 500);
-        let drift = numbers.vector(0.02);
+        let shift = numbers.vector(0.02);
         let turn = numbers.vector(0.05);
         let share = 0.02 * numbers.next().powi(4);
         let shake = if seed % 2 == 0 { 0.249e-3 } else { 2e-5 };
@@ -260,63 +260,74 @@ fn what_was_found_serves_while_the_cloth_moves() {
             let turned = nalgebra::Rotation3::from_scaled_axis(turn * k as f64);
             let both = start.iter().zip(&goal);
             both.map(|(a, b)| {
-                let way = shaken.vector(1.0);
-                turned * (a + (b - a) * share) + drift * k as f64 + way * (shake / way.norm())
+                let direction = shaken.vector(1.0);
+                let noise = direction * (shake / direction.norm());
+                turned * (a + (b - a) * share) + shift * k as f64 + noise
             })
             .collect()
         };
         let mut from = place(0);
         for step in 1..16 {
             let to = place(step);
-            // Now and then all is elsewhere at once.
+            // Once the whole cloth jumps.
             let leap = Vec3::repeat(if step == 9 { 0.4 } else { 0.0 });
-            let told_of = format!("state {seed}, step {step}");
-            for ways in [
+            let state = format!("state {seed}, step {step}");
+            for trajectories in [
                 LinearTrajectories::together(&from, &to),
                 LinearTrajectories::still(&to),
             ] {
-                let all = fresh.near_leaves(ways, reach);
+                let all = fresh.near_leaves(trajectories, reach);
                 let all = features(&fresh, &all);
-                surface.query(ways, &Reach::uniform(reach), clearance);
-                told += surface.region_counts()[1];
+                surface.query(trajectories, &Reach::uniform(reach), clearance);
+                tested += surface.region_counts()[1];
                 let found = surface.features(Near::Listed, |pair, _, all| all.push(pair));
                 let found: BTreeSet<FeaturePair> = found.into_iter().collect();
-                let crossing = crossings(&surface, Near::Listed, ways.from);
+                let crossing = crossings(&surface, Near::Listed, trajectories.from);
                 fresh.forget();
-                fresh.query(ways, &Reach::uniform(reach), clearance);
-                told_anew += fresh.region_counts()[1];
-                let exact = fresh.near_leaves(LinearTrajectories::still(ways.from), 0.0);
-                assert_eq!(crossing, crossings(&fresh, &exact, ways.from), "{told_of}");
+                fresh.query(trajectories, &Reach::uniform(reach), clearance);
+                tested_afresh += fresh.region_counts()[1];
+                let exact = fresh.near_leaves(LinearTrajectories::still(trajectories.from), 0.0);
+                assert_eq!(
+                    crossing,
+                    crossings(&fresh, &exact, trajectories.from),
+                    "{state}"
+                );
                 crossed += crossing.len();
                 listed += found.len();
                 for &pair in all.difference(&found) {
                     left_out += 1;
-                    for part in [0.0, 0.37, 1.0] {
-                        let kept = pair.vertices().map(|v| surface.max_offset(v));
-                        let kept = kept.into_iter().fold(clearance.offset, f64::min);
-                        let x = |v: usize| ways.from[v] + (ways.to[v] - ways.from[v]) * part;
+                    for time in [0.0, 0.37, 1.0] {
+                        let offsets = pair.vertices().map(|v| surface.max_offset(v));
+                        let offset = offsets.into_iter().fold(clearance.offset, f64::min);
+                        let x = |v: usize| {
+                            trajectories.from[v]
+                                + (trajectories.to[v] - trajectories.from[v]) * time
+                        };
                         let four = pair.vertices().map(|v| x(v as usize));
                         let pair = match pair {
                             FeaturePair::VertexFace(_) => FeaturePair::VertexFace([0, 1, 2, 3]),
                             FeaturePair::EdgeEdge(_) => FeaturePair::EdgeEdge([0, 1, 2, 3]),
                         };
                         let distance = Nearness::distance(pair, &four);
-                        assert!(distance >= kept, "{told_of}: {four:?} at {distance}");
+                        assert!(distance >= offset, "{state}: {four:?} at {distance}");
                     }
                 }
             }
-            // Impulses leave the cloth a little off the way it was looked for on.
+            // As after impulses, the cloth is a little off the trajectories of the query.
             from = (to.iter().map(|x| x + leap + numbers.vector(1e-4))).collect();
         }
     }
     assert!(left_out > 1_000_000, "{left_out}");
     assert!(listed > 1_000_000, "{listed}");
     assert!(crossed > 10_000, "{crossed}");
-    assert!(3 * told < 2 * told_anew, "{told} of {told_anew}");
+    assert!(
+        3 * tested < 2 * tested_afresh,
+        "{tested} of {tested_afresh}"
+    );
 }
 
 #[test]
-fn a_vertex_lost_on_the_way_leaves_no_region_out() {
+fn a_trajectory_that_is_not_finite_leaves_no_region_of_its_vertex_out() {
     let mesh = sheet([16; 2], [1.0; 2], |u, v| Vec3::new(0.3 * u, 0.0, 0.3 * v));
     let clearance = Clearance {
         offset: 1e-3,

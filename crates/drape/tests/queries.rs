@@ -1,4 +1,4 @@
-//! Looks that go on from what earlier ones found, against brute force and against looks that search all.
+//! Queries that go on from the front of earlier ones, against brute force and against queries that search everything.
 
 #[path = "support/crumpled.rs"]
 mod crumpled;
@@ -16,13 +16,14 @@ use toile_drape::collision::{
 };
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// Nothing keeps clear by this.
+/// A clearance by which no region passes the curvature test.
 const NEVER_CLEAR: Clearance = Clearance {
     offset: 0.0,
     max_drift: -1.0,
 };
 
-/// Pairs of features with a vertex of some that come within a distance [m] of each other, and how near.
+/// Pairs of features within a distance of each other [m], where vertices are marked only those with one of them; and
+/// their distance [m].
 fn within(
     surface: &ClothSurface,
     x: &[Vec3],
@@ -41,9 +42,9 @@ fn within(
 }
 
 #[test]
-fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
-    let (reach, mut told, mut crossed, mut opened) = (4e-3, 0, 0, 0);
-    let looks = Reach::uniform(reach);
+fn queries_find_the_pairs_of_brute_force_while_the_cloth_moves() {
+    let (reach, mut pair_count, mut crossed, mut opened) = (4e-3, 0, 0, 0);
+    let of_contacts = Reach::uniform(reach);
     for seed in 0..12 {
         let mesh = crumpled(seed, 12);
         let pairs = all_pairs(&mesh);
@@ -66,7 +67,7 @@ fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
                     NEVER_CLEAR,
                 );
             }
-            surface.query(LinearTrajectories::still(&x), &looks, NEVER_CLEAR);
+            surface.query(LinearTrajectories::still(&x), &of_contacts, NEVER_CLEAR);
             opened += surface.region_counts()[0];
             let found = within(&surface, &x, reach, None);
             let expected = pairs
@@ -77,7 +78,7 @@ fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
                 .collect();
             expected.sort_by_key(|found| found.0);
             assert_eq!(found, expected, "state {seed}, step {step}");
-            told += found.len();
+            pair_count += found.len();
             let crossing = crossings(&surface, Near::Listed, &x);
             let near = fresh.near_leaves(LinearTrajectories::still(&x), 0.0);
             let expected = crossings(&fresh, &near, &x);
@@ -86,13 +87,16 @@ fn a_look_lists_what_brute_force_finds_while_the_cloth_moves() {
             from = x;
         }
     }
-    assert!(told > 10_000 && crossed > 10_000, "{told} {crossed}");
-    assert!(opened < 20_000, "{opened} regions looked into");
+    assert!(
+        pair_count > 10_000 && crossed > 10_000,
+        "{pair_count} {crossed}"
+    );
+    assert!(opened < 20_000, "{opened} regions opened");
 }
 
 #[test]
-fn a_look_for_what_goes_another_way_finds_all_that_meets_it() {
-    let (reach, mut told) = (2e-3, 0);
+fn a_marked_query_finds_all_pairs_of_vertices_on_new_trajectories() {
+    let (reach, mut pair_count) = (2e-3, 0);
     for seed in 0..40 {
         let mesh = crumpled(seed, 16);
         let (x, count) = (&mesh.positions, mesh.positions.len());
@@ -106,7 +110,7 @@ fn a_look_for_what_goes_another_way_finds_all_that_meets_it() {
             &Reach::uniform(reach),
             NEVER_CLEAR,
         );
-        // One round after another, as where impulses push on.
+        // Round after round, as impulses change trajectories.
         for round in 0..3 {
             let mut marks = vec![false; count];
             for k in 0..3 {
@@ -114,35 +118,35 @@ fn a_look_for_what_goes_another_way_finds_all_that_meets_it() {
                 marks[v] = true;
                 ends[v] += Vec3::new(0.02, -0.01 * k as f64, 0.03);
             }
-            let ways = LinearTrajectories::together(x, &ends);
+            let trajectories = LinearTrajectories::together(x, &ends);
             let all = Reach::uniform(reach);
-            surface.query_marked(ways, &all, NEVER_CLEAR, Some(&marks));
+            surface.query_marked(trajectories, &all, NEVER_CLEAR, Some(&marks));
             let mut anew = ClothSurface::of_mesh(&mesh);
-            anew.query(ways, &all, NEVER_CLEAR);
-            for part in [0.0, 0.5, 1.0] {
+            anew.query(trajectories, &all, NEVER_CLEAR);
+            for time in [0.0, 0.5, 1.0] {
                 let both = x.iter().zip(&ends);
-                let then: Vec<Vec3> = both.map(|(a, b)| a + (b - a) * part).collect();
-                let found = within(&surface, &then, reach, Some(&marks));
-                let expected = within(&anew, &then, reach, Some(&marks));
+                let positions: Vec<Vec3> = both.map(|(a, b)| a + (b - a) * time).collect();
+                let found = within(&surface, &positions, reach, Some(&marks));
+                let expected = within(&anew, &positions, reach, Some(&marks));
                 assert_eq!(found, expected, "state {seed}");
-                told += found.len();
+                pair_count += found.len();
             }
         }
     }
-    assert!(told > 1_000, "{told}");
+    assert!(pair_count > 1_000, "{pair_count}");
 }
 
 #[test]
-fn a_look_ahead_lists_all_that_velocities_may_bring_near() {
-    let mut told = 0;
+fn a_query_with_velocities_finds_all_pairs_within_their_reach() {
+    let mut pair_count = 0;
     for seed in 0..20 {
         let mesh = crumpled(seed, 12);
         let (x, count) = (&mesh.positions, mesh.positions.len());
         let mut surface = ClothSurface::of_mesh(&mesh);
         let mut numbers = Numbers(seed + 5);
         for time in [0.0, 5e-3, 5e-3] {
-            let drift = numbers.vector(2.0);
-            let velocities: Vec<Vec3> = (0..count).map(|_| drift + numbers.vector(0.2)).collect();
+            let common = numbers.vector(2.0);
+            let velocities: Vec<Vec3> = (0..count).map(|_| common + numbers.vector(0.2)).collect();
             let pinned: Vec<bool> = (0..count).map(|_| numbers.next() < 0.05).collect();
             let ahead = Ahead {
                 velocities: &velocities,
@@ -161,16 +165,16 @@ fn a_look_ahead_lists_all_that_velocities_may_bring_near() {
             for pair in all_pairs(&mesh) {
                 if Nearness::distance(pair, x) <= reach.of(pair) {
                     assert!(found.contains(&pair), "state {seed}: {pair:?}");
-                    told += 1;
+                    pair_count += 1;
                 }
             }
         }
     }
-    assert!(told > 5_000, "{told}");
+    assert!(pair_count > 5_000, "{pair_count}");
 }
 
 #[test]
-fn a_vertex_lost_or_come_back_is_looked_for() {
+fn pairs_of_a_vertex_that_is_not_finite_remain_candidates() {
     let mesh = crumpled(3, 12);
     let all = Reach::uniform(4e-3);
     let mut surface = ClothSurface::of_mesh(&mesh);
@@ -214,8 +218,8 @@ fn an_edge_through_a_face_that_is_a_line_but_for_rounding_is_found() {
         let face = [from, from + side, from + side * (1.0 + numbers.next())];
         // Through a point of the line.
         let point = from + side * (2.0 * numbers.next());
-        let way = numbers.vector(0.02);
-        let [a, b] = [point - way, point + way];
+        let half_edge = numbers.vector(0.02);
+        let [a, b] = [point - half_edge, point + half_edge];
         let mesh = TriangleMesh {
             positions: vec![face[0], face[1], face[2], a, b, b + numbers.vector(0.02)],
             triangles: vec![[0, 1, 2], [3, 4, 5]],

@@ -98,8 +98,9 @@ fn neighbours_that_face_alike_touch_only_where_they_were_sewn_twisted() {
     );
     assert!(rungs[0].distance < 1e-4);
     let surface = ClothSurface::of_mesh(&twisted);
-    let [kept, others] = [true, false].map(|alike| surface.contact_offset(crossed, alike, 1.0));
-    assert!((others - 5.0 * kept).abs() < 1e-12 && kept > 1e-3);
+    let [of_neighbours, of_others] =
+        [true, false].map(|neighbours| surface.contact_offset(crossed, neighbours, 1.0));
+    assert!((of_others - 5.0 * of_neighbours).abs() < 1e-12 && of_neighbours > 1e-3);
     // Sheared until its triangles have angles of 20 degrees.
     for shear in [0.0, 0.7, 1.8] {
         let flat = sheet([6; 2], [1.0; 2], |u, v| {

@@ -1,5 +1,5 @@
-//! Detection of contacts of cloth with cloth: the laws of contact with a surface, on the vector
-//! between two features in place of the point.
+//! Detection of contacts of cloth with cloth. A contact has the laws of contact with a surface, applied to the vector
+//! between two features instead of the position of a point.
 
 use super::candidate_search::Near;
 use super::cloth_contact::ClothContact;
@@ -25,16 +25,16 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use toile_geometry::Vec3;
 
-/// The search structures of contact of cloth with cloth. What is found is in a [`ContactSet`]; nothing
-/// found before but lists of near pairs, which are more than those in reach, stays here.
+/// The search structures of contact of cloth with cloth. Results are in a [`ContactSet`]; of earlier detections only
+/// neighbour lists stay here, which hold more pairs than those within reach.
 #[derive(Clone, Debug, Default)]
 pub struct ContactDetector {
     surface: ClothSurface,
-    /// The model the surface was made for.
+    /// Model that the surface was made for.
     made_for: Option<Model>,
 }
 
-/// Contacts are kept from this many offsets away, so that a step is stopped before it lands.
+/// Reach of [`ContactDetector::refresh`], in contact offsets: a step meets the contact before it presses.
 const REACH_IN_OFFSETS: f64 = 2.0;
 
 /// Share of the offset that two cloths give way by before their contact is hard.
@@ -48,12 +48,12 @@ impl ContactDetector {
     /// Clearance of regions that a search leaves out, for cloth with this contact offset [m].
     pub fn clearance(offset: f64) -> Clearance {
         Clearance {
-            offset: offset,
+            offset,
             max_drift: MAX_DRIFT,
         }
     }
 
-    /// The surface of a model's cloth, made anew where it was of another's.
+    /// Surface of a model's cloth, rebuilt where the last one was of another model.
     fn surface(&mut self, model: &Model) -> &mut ClothSurface {
         let fits = |of: &Model| of.has_cloth_of(model) && Arc::ptr_eq(&of.layer, &model.layer);
         if !self.made_for.as_ref().is_some_and(fits) {
@@ -63,14 +63,14 @@ impl ContactDetector {
         &mut self.surface
     }
 
-    /// Has the next detection search the whole surface, so that it does not depend on those before.
+    /// Makes the next detection search the whole surface, so that it does not depend on earlier ones.
     pub fn forget(&mut self) {
         self.surface.forget();
     }
 
-    /// Finds contacts within `reach` at positions `x`, crossings, and layers in disorder, and what follows from
-    /// them. `memory` is what the last step left. Replaces everything in `set` but the tally, to which it
-    /// adds.
+    /// Finds contacts within `reach` at positions `x`, crossings and layer violations, and from these the exempt pairs
+    /// and the recovery pulls. `memory` is that of the last step. Replaces everything in `set` but the tally, to
+    /// which it adds.
     pub fn detect(
         &mut self,
         model: &Model,
@@ -109,8 +109,8 @@ impl ContactDetector {
         (set.recovery).plan(&self.surface, model, &entangled, (x, &memory.drawn));
     }
 
-    /// [`Self::detect`] within the usual reach. The stiffness of two edges fades in where their contact would
-    /// come and go at once.
+    /// [`Self::detect`] within two offsets, with the stiffness of edge-edge contacts multiplied by their mollifier, so
+    /// that the force does not jump where such a contact appears or vanishes.
     pub fn refresh(
         &mut self,
         model: &Model,
@@ -145,7 +145,7 @@ impl ContactDetector {
         let offset = self
             .surface
             .contact_offset(near.pair, near.neighbours, offset);
-        // Each side's vertices see the other's faces: half the area each.
+        // Vertices of either side make contacts with faces of the other, each with half of the area.
         let normal = 0.5 * model.contact.stiffness * of(&self.surface.area);
         let between = near.normal * near.distance;
         let (anchor, force) = friction_memory::anchor(memory, near, x).unwrap_or((between, 0.0));
@@ -171,7 +171,7 @@ impl ContactDetector {
             },
             law: ContactLaw {
                 normal,
-                // What presses harder than the soft contact can slips no farther before it slides.
+                // A contact that presses harder than its soft law allows sticks over the same length.
                 tangential: 0.5 * normal.max(force / offset),
                 friction,
                 hard_from: HARD_FROM * offset,
