@@ -280,6 +280,7 @@ fn documents_name_places_that_are_there() {
     let mut pages = files_below(&root().join("docs/methods"), ".md");
     let architecture = root().join("docs/ARCHITECTURE.md");
     pages.push(architecture.clone());
+    pages.push(root().join("docs/FILES.md"));
     let mut complaints = Vec::new();
     for page in &pages {
         let text = fs::read_to_string(page).expect("readable");

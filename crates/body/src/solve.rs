@@ -28,7 +28,7 @@ pub(crate) struct Solved {
     pub(crate) mesh: TriangleMesh,
 }
 
-/// Rounds from one leap to where unknowns tend to the next.
+/// Every so many rounds the unknowns are extrapolated to the limit they tend to.
 const LEAP: usize = 8;
 /// Rounds in which posture and form are still corrected, where a bust's form pulls at everything
 /// else and where not; most bodies need 8 to 15.

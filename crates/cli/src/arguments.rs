@@ -70,8 +70,7 @@ pub enum Task {
     Run(Run),
     /// Hold the simulation against physical laws: expected, measured, error, pass (SI units).
     ///
-    /// Exit status 0 if every check is met, 1 if any is not: three fabrics lie outside the bands
-    /// published for their drape, so that all laws together end with 1 (docs/methods/laws.md).
+    /// Exit status 0 if every check is met, 1 if any is not; docs/methods/laws.md names those that are not.
     Validate(Validate),
     /// Chart speed against accuracy: every method at several steps on standard scenes.
     ///

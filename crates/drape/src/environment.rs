@@ -36,7 +36,7 @@ pub(crate) fn check_number(field: &str, value: f64, least: f64) -> Result<(), Dr
         false => Err(DrapeError::Scene {
             place: field.to_owned(),
             what: format!("{value} is out of range"),
-            remedy: "give a finite number above zero".to_owned(),
+            remedy: format!("give a finite number of {least} or more"),
         }),
     }
 }

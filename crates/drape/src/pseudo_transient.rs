@@ -50,10 +50,10 @@ pub struct PseudoTransientContinuation {
 
 /// Steps without a new low of the residual before a cycle is suspected.
 const PATIENCE: usize = 60;
-/// Steps with the matrix of a Newton step after it at the most, and at which share of the net force that is
-/// enough they end.
+/// Most chord steps after a Newton step: steps with the factor of its matrix.
 const CHORDS: usize = 24;
-const CALM: f64 = 0.5;
+/// Chord steps end when the net force is below this share of the one at which the garment is at rest.
+const CHORD_END: f64 = 0.5;
 /// First pseudo time step [s]: a drop of 4 mm under gravity.
 const FIRST_STEP: f64 = 0.02;
 /// The same where a swing has brought the cloth near rest.
@@ -168,7 +168,7 @@ impl PseudoTransientContinuation {
                 let enough = self.settings.residual * weight_norm(system);
                 let limits = ChordLimits {
                     steps: CHORDS,
-                    tolerance: CALM * enough,
+                    tolerance: CHORD_END * enough,
                     longest_move: self.settings.longest_move,
                 };
                 workspace.follow_on(system, state, &inertia, limits);

@@ -21,9 +21,10 @@ pub struct RestData {
     pub(crate) bending: ScalarMatrix,
     /// Viscous matrix of bending, where any cloth has one: the pattern of `bending`.
     pub(crate) viscous_bending: Option<ScalarMatrix>,
-    /// Curvatures of each triangle; empty unless folds are viscous or kept.
+    /// How the curvature of each triangle follows from its vertices; empty unless bending has viscosity or internal
+    /// strain.
     pub(crate) stencils: Vec<BendingStencil>,
-    /// The same of a topology that keeps its structure of bending; else empty.
+    /// The same stencils where the topology holds its structure of bending; else empty.
     pub(crate) curvatures: Stencils,
     /// Mass of each vertex [kg].
     pub mass: Vec<f64>,

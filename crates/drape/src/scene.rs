@@ -50,7 +50,7 @@ impl Default for Scene {
     }
 }
 
-/// What moves an object.
+/// What moves an object of a scene file, with its data; in a running world [`crate::world::Kind`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum ObjectKind {
     /// Nothing: cloth collides with it.

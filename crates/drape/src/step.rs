@@ -2,11 +2,7 @@
 //! the size; if that goes on failing it is an error, never a result. The method `implicit-euler` of scenes is
 //! in `methods/implicit.rs`.
 
-use crate::laws::membrane::Curvature;
-use crate::{
-    DrapeError, Inertia, LinearSolver, NewtonReport, NewtonSettings, PcgLimits, State, System,
-    Workspace,
-};
+use crate::{DrapeError, Inertia, NewtonReport, NewtonSettings, State, System, Workspace};
 use toile_geometry::Vec3;
 
 /// How a step in time is taken.
@@ -20,27 +16,6 @@ pub struct StepSettings {
     pub speed_limit: f64,
     /// Newton iterations, tolerance, longest move, linear solver.
     pub newton: NewtonSettings,
-}
-
-impl Default for StepSettings {
-    /// 1/120 s, no drag, Newton to 1e-8 N.
-    fn default() -> Self {
-        Self {
-            step: 1.0 / 120.0,
-            drag: 0.0,
-            speed_limit: 100.0,
-            newton: NewtonSettings {
-                iterations: 8,
-                tolerance: 1e-8,
-                longest_move: 0.05,
-                curvature: Curvature::CONVEX,
-                linear: LinearSolver::Iterative(PcgLimits {
-                    tolerance: 1e-6,
-                    iterations: 1000,
-                }),
-            },
-        }
-    }
 }
 
 /// Halvings of a step before it is an error: a thousandth of the step asked for.

@@ -7,8 +7,8 @@ use sheets::{cloth, sheet};
 use std::sync::Arc;
 use toile_drape::{
     Collider, DrapeError, Elastic, ElasticEnd, Inertia, LinearSolver, Material, MethodKind,
-    NewtonSettings, PcgLimits, PseudoTransientContinuation, RestSettings, State, StepSettings,
-    System, Workspace, Xpbd, XpbdSettings, laws::elastic::ElasticLaw,
+    NewtonSettings, PcgLimits, PseudoTransientContinuation, RestSettings, State, System, Workspace,
+    Xpbd, XpbdSettings, laws::elastic::ElasticLaw, laws::membrane::Curvature,
 };
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
@@ -127,7 +127,7 @@ fn iterated_to_the_end_it_is_implicit_euler() {
             tolerance: 1e-10,
             iterations: 2000,
         }),
-        ..StepSettings::default().newton
+        curvature: Curvature::CONVEX,
     };
     let target = reference.positions.clone();
     let inertia = Inertia {

@@ -40,6 +40,8 @@ pub struct Topology {
     pub edges: Vec<[u32; 2]>,
     /// Triangles on each edge, in ascending order.
     pub edge_triangles: Vec<Vec<u32>>,
+    /// The three edges of each triangle, the k-th from its corner k to the next.
+    pub triangle_edges: Vec<[u32; 3]>,
 }
 
 impl Topology {
@@ -177,13 +179,17 @@ impl TriangleMesh {
     pub fn topology(&self) -> Topology {
         let mut uses: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * self.triangles.len());
         for (t, &[a, b, c]) in self.triangles.iter().enumerate() {
-            for [p, q] in [[a, b], [b, c], [c, a]] {
-                uses.push(([p.min(q), p.max(q)], t as u32));
+            for (k, [p, q]) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
+                uses.push(([p.min(q), p.max(q)], (3 * t + k) as u32));
             }
         }
         uses.sort_unstable();
-        let mut topology = Topology::default();
-        for (edge, triangle) in uses {
+        let mut topology = Topology {
+            triangle_edges: vec![[0; 3]; self.triangles.len()],
+            ..Topology::default()
+        };
+        for (edge, side) in uses {
+            let (triangle, k) = (side / 3, side % 3);
             if topology.edges.last() == Some(&edge) {
                 if let Some(last) = topology.edge_triangles.last_mut() {
                     last.push(triangle);
@@ -192,6 +198,8 @@ impl TriangleMesh {
                 topology.edges.push(edge);
                 topology.edge_triangles.push(vec![triangle]);
             }
+            let index = topology.edges.len() as u32 - 1;
+            topology.triangle_edges[triangle as usize][k as usize] = index;
         }
         topology
     }

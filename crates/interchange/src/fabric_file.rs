@@ -42,7 +42,7 @@ pub fn read_fabric(text: &str) -> Result<FabricFile, FormatError> {
             let mut material = test.material;
             let mut notes = Vec::new();
             if let Some(kept) = test.kept_fold {
-                material.kept[1] = kept;
+                material.relaxed_fraction[1] = kept;
                 notes.push(format!(
                     "the hysteresis of bending (2HB) keeps {:.0} % of a fold",
                     kept * 100.0
@@ -96,7 +96,10 @@ mod tests {
             (0.3, 0.02)
         );
         assert_eq!(
-            (file.material.kept, file.material.relaxation_time),
+            (
+                file.material.relaxed_fraction,
+                file.material.relaxation_time
+            ),
             ([0.0, 0.2], 4.0)
         );
         assert_eq!(
@@ -104,7 +107,9 @@ mod tests {
             ["the field gloss is not known and was left out"]
         );
         let test = read_fabric("B,0.136\n2HB,0.062\nW,26.35\n").unwrap();
-        assert!(test.material.kept[1] > 0.08 && test.material.kept[0] == 0.0);
+        assert!(
+            test.material.relaxed_fraction[1] > 0.08 && test.material.relaxed_fraction[0] == 0.0
+        );
         assert_eq!(test.name, None);
     }
 

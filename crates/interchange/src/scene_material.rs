@@ -126,7 +126,7 @@ impl MaterialFile {
             viscosity: self.viscosity.unwrap_or(usual.viscosity),
             bend_viscosity: self.bend_viscosity.unwrap_or(usual.bend_viscosity),
             stiffness_damping: self.stiffness_damping.unwrap_or(usual.stiffness_damping),
-            kept: self.kept.unwrap_or(usual.kept),
+            relaxed_fraction: self.kept.unwrap_or(usual.relaxed_fraction),
             relaxation_time: self.relaxation_time.unwrap_or(usual.relaxation_time),
             friction: self.friction.unwrap_or(usual.friction),
             restitution: self.restitution.or(usual.restitution),

@@ -1,7 +1,7 @@
 //! A job made ready: every piece in every orientation, and what each pair may not do.
 //!
-//! Shapes are moved so that their boxes start at the origin. Moves are measured from the corner of
-//! the usable fabric.
+//! Shapes are moved so that their boxes start at the origin. Moves are measured from the corner of the usable
+//! fabric: selvedges and end margins lie outside of all that is searched.
 
 use crate::check::NestingError;
 use crate::marker::{Phase, turned};

@@ -181,7 +181,8 @@ impl Job<'_> {
         kept.into_iter().map(|(index, _)| index).collect()
     }
 
-    /// Defects lie where they lie.
+    /// Adds the defects of the strip as shapes that do not move: the search keeps the pieces clear of them by
+    /// `Job::gap`.
     pub(crate) fn add_defects(&mut self) {
         for (k, defect) in self.strip.defects.iter().enumerate() {
             let outline = defect.outline.oriented();

@@ -14,7 +14,7 @@ const SHORTEST: f64 = 1e-6;
 /// How closely curves are followed [m].
 const FLATNESS: f64 = 5e-5;
 /// Sides of a seam may differ by this without ease [m]: less than a stitch.
-const SEAM_TOLERANCE: f64 = 5e-4;
+pub const SEAM_TOLERANCE: f64 = 5e-4;
 /// An internal line may leave its panel by this [m].
 const LINE_TOLERANCE: f64 = 1e-5;
 /// Crossings of one piece that are reported.
@@ -211,10 +211,10 @@ fn check_fabric(fabric: &Fabric, diagnostics: &mut Vec<Diagnostic>) {
             "give zero or more, usually 0.3 to 0.5",
         );
     }
-    if !(fabric.poisson.is_finite() && (-0.9..=0.9).contains(&fabric.poisson)) {
+    if !(fabric.poisson.is_finite() && (0.0..=0.95).contains(&fabric.poisson)) {
         report(
             format!("its Poisson ratio is {}", fabric.poisson),
-            "give a number between -0.9 and 0.9, usually 0.2 to 0.3",
+            "give a number from 0 to 0.95, usually 0.2 to 0.3",
         );
     }
     if let Some(defect) = fabric.rheology.defect() {

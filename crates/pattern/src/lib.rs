@@ -19,7 +19,7 @@ mod stage;
 mod suggest;
 pub mod walk;
 
-pub use check::check_draft;
+pub use check::{SEAM_TOLERANCE, check_draft};
 pub use diagnostic::{Code, Diagnostic, Place, Severity};
 pub use document::*;
 pub use draft::*;

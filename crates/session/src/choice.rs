@@ -93,7 +93,7 @@ impl Quality {
     }
 
     /// Mean edge length of the mesh that is sewn and swings first [m]; none where that of
-    /// [`Self::edge_length`] is coarse enough.
+    /// [`Self::edge_length`] is coarse enough. A garment with a gathered seam goes without it.
     pub fn first_edge_length(self) -> Option<f64> {
         match self {
             Self::Preview | Self::Fit => None,

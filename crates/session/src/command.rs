@@ -127,24 +127,29 @@ impl Command {
         Self::Drape { inputs: Vec::new() }
     }
 
-    /// Whether it changes the project.
-    pub fn changes_project(&self) -> bool {
-        matches!(
-            self,
+    /// Where it writes a file or a folder, if it does.
+    pub(crate) fn output_mut(&mut self) -> Option<&mut PathBuf> {
+        match self {
+            Self::SavePattern { path } | Self::SaveBody { path } => Some(path),
+            Self::Export { dir } => Some(dir),
             Self::OpenPattern { .. }
-                | Self::NewPattern { .. }
-                | Self::RestorePattern { .. }
-                | Self::Edit { .. }
-                | Self::Undo
-                | Self::Redo
-                | Self::SetBody { .. }
-                | Self::EditBody { .. }
-                | Self::SetSize { .. }
-                | Self::SetFabric { .. }
-                | Self::SetWidth { .. }
-                | Self::SetQuality { .. }
-                | Self::SetLayers { .. }
-        )
+            | Self::NewPattern { .. }
+            | Self::RestorePattern { .. }
+            | Self::Edit { .. }
+            | Self::Undo
+            | Self::Redo
+            | Self::SetBody { .. }
+            | Self::EditBody { .. }
+            | Self::SetSize { .. }
+            | Self::SetFabric { .. }
+            | Self::SetWidth { .. }
+            | Self::SetQuality { .. }
+            | Self::SetLayers { .. }
+            | Self::Check
+            | Self::Nest
+            | Self::Assemble
+            | Self::Drape { .. } => None,
+        }
     }
 
     /// The stage its time is counted under.

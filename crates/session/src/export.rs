@@ -97,36 +97,31 @@ pub(crate) fn cannot(file: &'static str) -> impl Fn(FormatError) -> SessionError
 /// The journal as it is written beside what it made: places to write to are named by the file name
 /// alone, so that the journal does not depend on where it lies.
 pub(crate) fn portable(commands: &[Command]) -> Vec<Command> {
+    let mut commands = commands.to_vec();
+    for command in &mut commands {
+        let is_folder = matches!(command, Command::Export { .. });
+        if let Some(output) = command.output_mut() {
+            *output = match output.file_name() {
+                _ if is_folder => ".".into(),
+                Some(name) => name.into(),
+                None => continue,
+            };
+        }
+    }
     commands
-        .iter()
-        .map(|command| match command {
-            Command::Export { .. } => Command::Export { dir: ".".into() },
-            Command::SavePattern { path } => Command::SavePattern {
-                path: path.file_name().map_or_else(|| path.clone(), Into::into),
-            },
-            Command::SaveBody { path } => Command::SaveBody {
-                path: path.file_name().map_or_else(|| path.clone(), Into::into),
-            },
-            other => other.clone(),
-        })
-        .collect()
 }
 
 /// The commands with everything that is written going into one folder.
 pub(crate) fn redirected(commands: &[Command], folder: &Path) -> Vec<Command> {
-    portable(commands)
-        .into_iter()
-        .map(|command| match command {
-            Command::Export { .. } => Command::Export {
-                dir: folder.to_owned(),
-            },
-            Command::SavePattern { path } => Command::SavePattern {
-                path: folder.join(path),
-            },
-            Command::SaveBody { path } => Command::SaveBody {
-                path: folder.join(path),
-            },
-            other => other,
-        })
-        .collect()
+    let mut commands = portable(commands);
+    for command in &mut commands {
+        let is_folder = matches!(command, Command::Export { .. });
+        if let Some(output) = command.output_mut() {
+            *output = match is_folder {
+                true => folder.to_owned(),
+                false => folder.join(&*output),
+            };
+        }
+    }
+    commands
 }

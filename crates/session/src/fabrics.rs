@@ -101,15 +101,12 @@ pub(crate) fn open_fabric(path: &Path) -> Result<FabricFile, SessionError> {
     })
 }
 
-/// A fabric by name: one of the pattern's, else `jersey` or `poplin` as patterns begin with, else
-/// one of the library.
+/// A fabric by name: one of the pattern's, else one of the library.
 fn fabric_of(pattern: &Pattern, name: &str) -> Option<Fabric> {
     let own = pattern.fabrics.iter().find(|f| f.name == name);
-    match (own, name) {
-        (Some(own), _) => Some((**own).clone()),
-        (None, "jersey") => Some(Fabric::jersey(FabricId(0))),
-        (None, "poplin") => Some(Fabric::poplin(FabricId(0))),
-        (None, _) => {
+    match own {
+        Some(own) => Some((**own).clone()),
+        None => {
             let library = LibraryFabric::named(name)?;
             of_material(name, &library.material()).ok()
         }
@@ -126,7 +123,11 @@ fn fabric_names(pattern: &Pattern) -> Vec<&str> {
     names
 }
 
-/// A fabric of a material; the figure that a pattern's fabric cannot hold, if there is one.
+/// A fabric of a material.
+///
+/// # Errors
+/// The name of the first figure that a pattern's fabric has no place for. The list is kept by hand: a new figure
+/// of [`Material`] must be added to it or to the fabric.
 fn of_material(name: &str, material: &Material) -> Result<Fabric, &'static str> {
     let usual = Material::default();
     let beyond = [
@@ -168,7 +169,8 @@ fn of_material(name: &str, material: &Material) -> Result<Fabric, &'static str> 
 /// The material of a fabric.
 pub(crate) fn cloth_material(fabric: &Fabric) -> Material {
     let own = &fabric.rheology;
-    // A pattern that repeats the figures of a library fabric has the curve of its stretch too.
+    // A fabric that has the name and the stretch of one of the library and says no hardening of its own has that
+    // of the library: patterns older than hardening keep the cloth that they name.
     let library = LibraryFabric::named(&fabric.name).map(LibraryFabric::material);
     let hardening = library
         .filter(|material| material.stretch == fabric.stretch && own.hardening == [0.0; 2])
@@ -215,10 +217,7 @@ mod tests {
         assert!(fabric_of(&pattern, "unobtainium").is_none());
         for name in fabric_names(&pattern) {
             let fabric = fabric_of(&pattern, name).expect(name);
-            if let (Some(library), false) = (
-                LibraryFabric::named(name),
-                name == "jersey" || name == "poplin",
-            ) {
+            if let Some(library) = LibraryFabric::named(name) {
                 assert_eq!(cloth_material(&fabric), library.material());
             }
         }

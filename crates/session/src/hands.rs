@@ -141,7 +141,7 @@ impl HandledRun {
         let counted = job.setup.counted.clone();
         match change {
             RestChange::Nothing => {}
-            // What is drawn on the cloth may have changed, or a seam's allowance.
+            // Only lines drawn on the cloth or allowances changed: the rest shapes are the same.
             RestChange::Shapes if old.cloth.rest == new.cloth.rest => {}
             RestChange::Shapes => self.run.reshape(new.cloth.rest, counted)?,
             RestChange::Mesh => {

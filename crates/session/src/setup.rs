@@ -1,4 +1,5 @@
-//! The one function that turns draft, fabrics and mannequin into a drape.
+//! What a drape is set up from: draft, fabrics and mannequin. The coarser mesh of a fine quality is added in
+//! `derived.rs`.
 
 use crate::Quality;
 use crate::dressed::{DraftedPart, Dressed, GarmentPart, MeshedPart};
@@ -104,7 +105,7 @@ pub(crate) fn job(
 }
 
 /// Distance kept between cloth and cloth, in one layer and between two [m]: half of the distance kept from the
-/// body, so that layers fit between body and air.
+/// body (`ContactSettings::offset`, 4 mm), so that a layer fits between the body and the cloth outside it.
 const CLOTH_OFFSET: f64 = 2e-3;
 
 pub(crate) fn level(dressed: &Dressed) -> GarmentLevel {

@@ -12,15 +12,14 @@ use toile_geometry::{Bounds2, Vec2, closest_on_segment};
 use toile_pattern::plan::Affine;
 use toile_pattern::walk::{Contact, Joint, Smoothness, Stays, Walk, WalkedNotch};
 use toile_pattern::{
-    DisplayUnit, Draft, DraftSeam, EdgeId, Evaluation, PanelId, Pattern, Piece, SeamId, Want,
+    DisplayUnit, Draft, DraftSeam, EdgeId, Evaluation, PanelId, Pattern, Piece, SEAM_TOLERANCE,
+    SeamId, Want,
 };
 
 /// How far an arrow key goes [m].
 const STEP: f64 = 0.01;
 /// How near the pointer must come to the seam line to lead the walk [pixels].
 const REACH: f64 = 60.0;
-/// A step is told from this on [m]: what seams may differ by without ease.
-const STEP_TOLD: f64 = 5e-4;
 /// Length of the lines that show how edges go on across the seam [m].
 const LEAVING: f64 = 0.03;
 /// Length of a notch [m].
@@ -383,7 +382,7 @@ fn joint_words(joint: &Joint, (line, seam): (&str, &str)) -> String {
         Smoothness::Slight => format!("slight kink {turn}, a {way}"),
         Smoothness::Kink => format!("kink {turn}, a {way}"),
     };
-    let step = match joint.step.abs() > STEP_TOLD {
+    let step = match joint.step.abs() > SEAM_TOLERANCE {
         true => format!(", step {:.1} mm", 1e3 * joint.step.abs()),
         false => String::new(),
     };

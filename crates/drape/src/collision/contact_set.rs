@@ -63,7 +63,7 @@ impl ContactSet {
     pub fn remember(&self, state: &mut State) {
         state.cloth.drawn.clone_from(&self.recovery.directions);
         (state.cloth.crossed_for).clone_from(&self.exemptions.crossed_for);
-        state.cloth.stray_reach = self.layer_reach.or(state.cloth.stray_reach);
+        state.cloth.layer_reach = self.layer_reach.or(state.cloth.layer_reach);
     }
 
     /// Has a state remember, after a step, the friction of what presses, crossings and layers.

@@ -89,7 +89,7 @@ impl ContactDetector {
         let clearance = Self::clearance(model.contact.cloth_offset);
         self.surface(model)
             .query(LinearTrajectories::still(x), reach, clearance);
-        let entangled = Entanglement::find(&self.surface, &model.policies, x, memory.stray_reach);
+        let entangled = Entanglement::find(&self.surface, &model.policies, x, memory.layer_reach);
         set.crossings = entangled.crossing_count();
         set.violations = entangled.violations.len();
         set.layer_reach = Some(entangled.layer_reach);
@@ -171,7 +171,8 @@ impl ContactDetector {
             },
             law: ContactLaw {
                 normal,
-                // A contact that presses harder than its soft law allows sticks over the same length.
+                // It grows with the force: cloth pressed into the hard part of a contact slips no farther before it
+                // slides than cloth at the end of the soft part.
                 tangential: 0.5 * normal.max(force / offset),
                 friction,
                 hard_from: HARD_FROM * offset,

@@ -20,8 +20,8 @@ pub struct ContactExemptions {
     pub disordered: Vec<bool>,
     /// Vertices round a crossing that persists; empty where none does.
     pub loosened: Vec<bool>,
-    /// For how many detections each vertex has been at a crossing, those without subtracted; empty where
-    /// none is.
+    /// A count for each vertex, up by one in a detection that finds it at a crossing and down by one, not below
+    /// zero, in any other; empty where all are zero.
     pub crossed_for: Vec<u32>,
     /// Layer of each vertex; empty where all are of one.
     pub layer: Arc<Vec<u16>>,

@@ -24,23 +24,24 @@ pub struct ClothMemory {
     pub places: Vec<Vec3>,
     /// Contacts that pressed, in order of their features.
     pub held: Vec<ContactFrictionState>,
-    /// How far off vertices on the wrong side of a layer are looked for at the next look [m]: zero where
-    /// none can be, since layers that do not cross do not change sides; none before the first look.
-    pub stray_reach: Option<f64>,
-    /// Which way vertices at crossings were drawn, in order of the vertices.
+    /// Distance within which the next detection searches for vertices on the wrong side of a layer [m]: zero where
+    /// there can be none, since layers that do not cross do not change sides; none before the first detection.
+    pub layer_reach: Option<f64>,
+    /// Directions in which vertices at crossings were pulled, in order of the vertices.
     pub drawn: Vec<RecoveryDirection>,
-    /// For how many looks each vertex has been at a crossing, those without taken off; empty where none is.
+    /// A count for each vertex, up by one in a detection that finds it at a crossing and down by one, not below
+    /// zero, in any other; empty where all are zero.
     pub crossed_for: Vec<u32>,
 }
 
-/// Which way a vertex at a crossing was drawn.
+/// The direction in which a vertex at a crossing was pulled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecoveryDirection {
     /// The vertex.
     pub vertex: u32,
     /// Unit direction.
-    pub way: Vec3,
-    /// Looks since.
-    pub looks: u32,
+    pub direction: Vec3,
+    /// Detections since.
+    pub detections: u32,
 }

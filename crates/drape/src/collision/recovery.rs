@@ -54,27 +54,27 @@ impl Recovery {
     }
 }
 
-/// Detections after which the direction that a vertex was drawn in is forgotten, unless it was drawn in it
-/// again since.
+/// Detections after which the direction in which a vertex was pulled is forgotten, unless it was pulled in that
+/// direction again since.
 const MEMORY: u32 = 8;
 
 /// Directions whose sum over the vertices of a crossing is this long or less cancel.
 const CANCELLED: f64 = 0.1;
 
-/// Replaces the direction of each crossing that would turn back the vertices it moves by the mean direction
-/// that they were drawn in `before` (sorted by vertex), and returns the directions to be remembered. Without,
-/// two edges at one corner, of which now one crosses and now the other, draw the cloth to and fro for ever.
+/// Where the direction of a crossing is opposed to the mean direction in which its vertices were pulled `before`
+/// (sorted by vertex), replaces it by that mean; returns the directions to be remembered. Otherwise two edges at
+/// one corner that cross a face in turn would pull the cloth to and fro without end.
 fn keep_direction(
     crossings: &mut [EdgeFaceIntersection],
     before: &[RecoveryDirection],
 ) -> Vec<RecoveryDirection> {
-    let drawn = |v: &u32| {
-        let at = before.binary_search_by_key(v, |drawn| drawn.vertex);
+    let remembered = |v: &u32| {
+        let at = before.binary_search_by_key(v, |one| one.vertex);
         at.ok().map(|at| before[at])
     };
-    let older = |drawn: &RecoveryDirection| RecoveryDirection {
-        looks: drawn.looks + 1,
-        ..*drawn
+    let older = |one: &RecoveryDirection| RecoveryDirection {
+        detections: one.detections + 1,
+        ..*one
     };
     let mut after: Vec<RecoveryDirection> = Vec::new();
     for crossing in crossings {
@@ -85,27 +85,27 @@ fn keep_direction(
         let known = || {
             signed
                 .clone()
-                .filter_map(|(v, sign)| Some((drawn(&v)?, sign)))
+                .filter_map(|(v, sign)| Some((remembered(&v)?, sign)))
         };
-        let sum: Vec3 = known().map(|(drawn, sign)| drawn.way * sign).sum();
+        let sum: Vec3 = known().map(|(one, sign)| one.direction * sign).sum();
         let before = sum.try_normalize(CANCELLED);
-        let kept = before.filter(|direction| direction.dot(&crossing.direction) < 0.0);
-        let mut looks = 0;
-        if let Some(direction) = kept {
+        let opposed = before.filter(|direction| direction.dot(&crossing.direction) < 0.0);
+        let mut detections = 0;
+        if let Some(direction) = opposed {
             crossing.direction = direction;
-            looks = 1 + known().map(|(drawn, _)| drawn.looks).min().unwrap_or(0);
+            detections = 1 + known().map(|(one, _)| one.detections).min().unwrap_or(0);
         }
         after.extend(signed.map(|(vertex, sign)| RecoveryDirection {
             vertex,
-            way: crossing.direction * sign,
-            looks,
+            direction: crossing.direction * sign,
+            detections,
         }));
     }
     after.extend(before.iter().map(older));
-    after.retain(|drawn| drawn.looks <= MEMORY);
+    after.retain(|one| one.detections <= MEMORY);
     // The latest of a vertex; of one detection, that of its first crossing.
-    after.sort_by_key(|drawn| (drawn.vertex, drawn.looks));
-    after.dedup_by_key(|drawn| drawn.vertex);
+    after.sort_by_key(|one| (one.vertex, one.detections));
+    after.dedup_by_key(|one| one.vertex);
     after
 }
 

@@ -62,9 +62,9 @@ pub struct GarmentRun {
     forgot_contacts: bool,
 }
 
-/// Steps of a stage after which contacts are found anew, whatever was found before: what is kept from look to
-/// look changes which of several right answers is found, and is not saved. A round of the swing is a step; there
-/// one search of all in 40 costs less than 1 %.
+/// Steps of a stage after which contacts are searched anew from nothing. A search that goes on from the one before
+/// may find contacts in another order, and what it goes on from is in no checkpoint. In the swing a step is a
+/// round; one whole search in 40 costs less than 1 %.
 const SEWING_SPAN: usize = 8;
 const SWINGING_SPAN: usize = 40;
 const SETTLING_SPAN: usize = 8;
@@ -72,10 +72,11 @@ const SETTLING_SPAN: usize = 8;
 /// Rounds of finer contact testing before crossings of the body are left and reported.
 const MOST_REFINEMENTS: usize = 12;
 
-/// Swings of a level at the most: each begins anew where crossings that had ended one are undone.
+/// Most swings of a level. A swing that ended because cloth was tangled is taken again once the tangle is undone.
 const MOST_SWINGS: usize = 3;
 
-/// Residual below which crossings of the body are looked for next, as a share of the last.
+/// Crossings of the body are looked for again when the residual has fallen to this share of what it was the last
+/// time.
 const NEXT_LOOK: f64 = 0.1;
 
 impl Deref for GarmentRun {

@@ -43,7 +43,7 @@ pub(super) struct Swinging {
 #[serde(deny_unknown_fields)]
 pub(super) struct Settling {
     pub continuation: PseudoTransientContinuation,
-    /// Whether crossings of cloth ended the swing before the cloth was calm.
+    /// Whether the swing ended at crossings of cloth before the cloth was calm.
     pub cut_short: bool,
     pub attempts: Attempts,
 }

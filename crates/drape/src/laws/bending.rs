@@ -1,4 +1,4 @@
-//! Bending on a triangle mesh without unknowns beside the vertices.
+//! Bending on a triangle mesh whose only unknowns are the positions of its vertices.
 //!
 //! The curvature of a triangle is the mean of the second derivatives over it, turned by Gauss's
 //! theorem into a sum over its edges,
@@ -123,11 +123,8 @@ impl RestSheet<'_> {
     ) -> Result<Vec<BendingStencil>, IllConditioned> {
         let mut asked = vec![None; rings.len()];
         for &t in triangles {
-            let corners = self.triangles[t as usize];
-            for k in 0..3 {
-                if let Some(edge) = self.topology.edge(corners[k], corners[(k + 1) % 3]) {
-                    asked[edge] = rings[edge];
-                }
+            for edge in self.topology.triangle_edges[t as usize] {
+                asked[edge as usize] = rings[edge as usize];
             }
         }
         let estimate = |(edge, asked): (usize, Option<u8>)| {
@@ -170,8 +167,8 @@ impl RestSheet<'_> {
             let mixed = [n.x * t.x, 0.5 * (n.x * t.y + n.y * t.x), n.y * t.y];
             add(vertices[b], mixed, 1.0 / area);
             add(vertices[a], mixed, -1.0 / area);
-            let index = self.topology.edge(vertices[a], vertices[b]);
-            match index.and_then(|edge| across[edge].as_ref()) {
+            let index = self.topology.triangle_edges[triangle][k] as usize;
+            match &across[index] {
                 Some(estimate) => {
                     let sign = if estimate.first as usize == triangle {
                         1.0

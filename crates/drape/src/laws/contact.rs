@@ -18,9 +18,9 @@ pub struct ContactLaw {
     pub hard_from: f64,
 }
 
-/// How much stiffer a contact is that has given way to its hard depth. A contact of two cloths whose
-/// force is at its end when they touch gives way to anything that presses more; what then keeps them
-/// apart is only the bound on moves, and the way to rest stands still before it.
+/// Factor of the stiffness of a contact beyond its hard depth. A linear spring between two cloths has its
+/// largest force when they touch: a greater load would be stopped by the truncation of steps alone, and no
+/// method would come to rest there.
 pub const HARDER: f64 = 100.0;
 
 /// A point near a surface, and the surface as seen from there.

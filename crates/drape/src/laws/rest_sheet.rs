@@ -104,8 +104,8 @@ impl RestSheet<'_> {
 
     /// Which edge of a triangle an edge of the mesh is.
     fn edge_of(&self, triangle: u32, edge: usize) -> Option<usize> {
-        let vertices = self.triangles[triangle as usize];
-        (0..3).find(|&k| self.topology.edge(vertices[k], vertices[(k + 1) % 3]) == Some(edge))
+        let edges = self.topology.triangle_edges[triangle as usize];
+        edges.iter().position(|&other| other as usize == edge)
     }
 
     /// The derivative along `n` of the two triangles, each counted by its height over the edge:
@@ -148,10 +148,8 @@ impl RestSheet<'_> {
             let vertices = self.triangles[t as usize];
             for k in 0..3 {
                 let (a, b) = (vertices[k], vertices[(k + 1) % 3]);
-                let Some(edge) = self.topology.edge(a, b) else {
-                    continue;
-                };
-                let [first, second] = self.topology.edge_triangles[edge][..] else {
+                let edge = self.topology.triangle_edges[t as usize][k];
+                let [first, second] = self.topology.edge_triangles[edge as usize][..] else {
                     continue;
                 };
                 let other = if first == t { second } else { first };

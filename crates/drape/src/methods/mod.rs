@@ -39,7 +39,13 @@ impl MethodKind {
             Self::VertexBlockDescent => Some(BlockDescent::<false>::LIMITS.iterations),
             Self::ChebyshevBlockDescent => Some(BlockDescent::<true>::LIMITS.iterations),
             Self::Xpbd => Some(crate::XpbdSettings::default().iterations as usize),
-            _ => None,
+            Self::ForwardEuler
+            | Self::SymplecticEuler
+            | Self::VelocityVerlet
+            | Self::RungeKutta4
+            | Self::PatchVerlet
+            | Self::DynamicRelaxation
+            | Self::Rest => None,
         }
     }
 }

@@ -360,8 +360,8 @@ impl Workspace {
         }
     }
 
-    /// A positive semidefinite Hessian of the potential at `x`, but for the bending part, which is
-    /// constant and stays in the model.
+    /// The Hessian of the potential at `x` with a share of its destabilising curvature: positive semidefinite with
+    /// [`Curvature::CONVEX`], else perhaps indefinite. Bending is left out: it is constant and stays in the model.
     pub(crate) fn fill_hessian(
         &mut self,
         system: &System,

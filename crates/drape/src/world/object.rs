@@ -27,7 +27,7 @@ impl MeshVertex {
     }
 }
 
-/// What moves an object.
+/// What moves an object of a running world; of an object in a file, with its data, [`crate::ObjectKind`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Nothing: cloth collides with it.

@@ -149,7 +149,7 @@ impl Transfer {
             },
             held: self.friction(&old.cloth.held),
             // Layers may lie on the wrong side of what an edit has put there.
-            stray_reach: None,
+            layer_reach: None,
             drawn: self.recovery(&old.cloth.drawn),
             crossed_for: self.crossed_for(&old.cloth.crossed_for),
         };

@@ -199,11 +199,11 @@ fn measurements(dice: &mut Dice) -> Measurements {
 }
 
 fn fabric(dice: &mut Dice, id: FabricId, k: usize) -> Fabric {
-    let mut fabric = if dice.chance(50) {
-        Fabric::poplin(id)
-    } else {
-        Fabric::jersey(id)
-    };
+    let mut fabric = Fabric::poplin(id);
+    if dice.chance(50) {
+        fabric.stretch = [600.0, 450.0];
+        fabric.poisson = 0.3;
+    }
     fabric.name = format!("cloth {k}");
     fabric.nap = dice.chance(30);
     if dice.chance(20) {
