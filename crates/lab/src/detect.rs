@@ -1,5 +1,5 @@
-//! Cost of contact of cloth with itself: of finding contacts on a smooth sheet of any fineness, and on a worn shirt, with
-//! and without the curvature test; and of contact in a frame of cloth that lies in folds.
+//! Cost of contact of cloth with itself: of finding contacts on a smooth sheet of any fineness and on a worn shirt,
+//! with and without the curvature test, and of contact in a frame of cloth that lies in folds.
 
 use crate::chart_contact::fall;
 use crate::clock::Clock;
@@ -192,8 +192,8 @@ pub(crate) fn shirt(cuts: usize, result: &mut Timed) -> Result<(), LabError> {
     Ok(())
 }
 
-/// Finds contacts and crossings along a path. Returns the means over its queries: time [s], number of regions opened, and
-/// number of regions given the curvature test.
+/// Finds contacts and crossings at the positions of a path. Returns means over its steps: time [s], number of regions
+/// opened, and number of regions given the curvature test.
 fn follow(surface: &mut ClothSurface, path: &[Vec<Vec3>]) -> [f64; 3] {
     let clearance = ContactDetector::clearance(OFFSET);
     let [of_impacts, of_contacts] = [IMPACT_REACH, REACH].map(Reach::uniform);

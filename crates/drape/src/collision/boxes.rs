@@ -270,7 +270,7 @@ impl BoxTree {
         self.boxes = self.reduced(bounds, Bounds::join);
     }
 
-    /// Reduces a value of each leaf up the tree with `join`; returns the value of every node, in the order of the nodes.
+    /// Reduces a value of each leaf up the tree with `join`. Returns the value of every node, in the order of nodes.
     pub fn reduced<T: Clone + Send + Sync>(
         &self,
         value: impl Fn(usize) -> T + Sync,

@@ -93,7 +93,7 @@ impl ContactDetector {
         set.crossings = entangled.crossing_count();
         set.violations = entangled.violations.len();
         set.layer_reach = Some(entangled.layer_reach);
-        set.tally.count_look(set.crossings, set.violations);
+        set.tally.count_detection(set.crossings, set.violations);
         (set.exemptions).mark(&self.surface, &entangled, &memory.crossed_for);
         let exemptions = &set.exemptions;
         let mut found = nearnesses(&self.surface, Near::Listed, x, reach);

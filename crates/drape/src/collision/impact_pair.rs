@@ -1,4 +1,4 @@
-//! A pair of features that may collide in a motion, the gap that it must keep, and the time at which it comes to that gap.
+//! Pairs of features that may collide in a motion, the gap that each must keep, and the time of impact.
 
 use super::feature_pair::FeaturePair;
 use super::impact::{edge_edge_impact, vertex_face_impact};

@@ -441,8 +441,8 @@ impl LeafAabbs {
         }
     }
 
-    /// Adds to `hits` the pairs of a vertex and a face and of two edges, of two leaves or of one leaf given twice, whose
-    /// boxes come within a distance of each other [m].
+    /// Adds to `hits` the pairs of a vertex and a face and of two edges whose boxes come within a distance of each
+    /// other [m]. The features are those of two leaves, or of one leaf given twice.
     pub fn near_within(&self, arch: Arch, pair: [u32; 2], distance: f64, hits: &mut Hits) {
         self.test(arch, &NEAR, (pair, self.enlarged(distance)), hits);
     }
