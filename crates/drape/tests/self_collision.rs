@@ -112,7 +112,7 @@ fn neighbours_that_face_alike_touch_only_where_they_were_sewn_twisted() {
 }
 
 #[test]
-fn what_came_nearer_since_it_was_looked_at_is_still_kept_apart() {
+fn features_that_came_nearer_since_detection_do_not_pass() {
     let lower = sheet([3; 2], [1.0; 2], |u, v| Vec3::new(0.09 * u, 0.0, 0.09 * v));
     let upper = sheet([3; 2], [1.0; 2], |u, v| {
         Vec3::new(0.09 * u + 0.01, 0.3e-3, 0.09 * v + 0.007)

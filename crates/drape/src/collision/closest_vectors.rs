@@ -125,7 +125,7 @@ fn select<S: Simd>(
     ]
 }
 
-/// Vector from the closest point of the first edge to that of the second (Ericson 2005, section 5.1.9), approximate, and
+/// Approximate vector from the closest point of the first edge to that of the second (Ericson 2005, section 5.1.9), and
 /// whether the edges certainly pass by each other, which they do where the lines through them are nearest beyond the
 /// end of an edge. Let d be the error of a vector, l its length: a product of four vectors has the error 4 d l^3, the
 /// difference of two products 8 d l^3, and the difference of two of these 16 d l^3. `farthest` is the largest
