@@ -8,7 +8,9 @@
 //! inverted before the run (Macklin, Müller and Chentanez 2016, equation 18, for the block).
 
 use super::membrane::inverse_mass;
-use crate::lanes::{Corner, LANES, Point, Row, Triple, add_scaled, gather, parts, scatter, sub};
+use crate::lanes::{
+    Corner, LANES, Point, Row, Triple, add_scaled, gather, lane_groups, scatter, sub,
+};
 use crate::{Material, System};
 use nalgebra::Matrix3;
 use pulp::Simd;
@@ -78,7 +80,7 @@ impl BendingForce {
         slot: usize,
         points: &[Point],
         here: [S::f32s; 4],
-        part: usize,
+        lane_group: usize,
     ) -> Triple<S::f32s> {
         let [x, y, z, _] = here;
         let mut sum = [simd.splat_f32s(0.0); 3];
@@ -88,9 +90,9 @@ impl BendingForce {
             .iter()
             .zip(&self.values[entries])
         {
-            let there = gather(simd, points, column, part);
+            let there = gather(simd, points, column, lane_group);
             let d = sub(simd, [there[0], there[1], there[2]], [x, y, z]);
-            sum = add_scaled(simd, sum, d, value.part::<S>(part));
+            sum = add_scaled(simd, sum, d, value.lane_group::<S>(lane_group));
         }
         sum
     }
@@ -280,18 +282,18 @@ pub fn solve<S: Simd>(
     points: &mut [Point],
 ) {
     for (at, batch) in batches.iter().enumerate() {
-        for part in 0..parts::<S>() {
+        for lane_group in 0..lane_groups::<S>() {
             let sums = sums.as_mut().map(|sums| &mut sums[at]);
-            solve_part(simd, batch, part, sums, kappa, points);
+            solve_lane_group(simd, batch, lane_group, sums, kappa, points);
         }
     }
 }
 
 #[inline(always)]
-fn solve_part<S: Simd>(
+fn solve_lane_group<S: Simd>(
     simd: S,
     batch: &BendingBatch,
-    part: usize,
+    lane_group: usize,
     mut sums: Option<&mut Sums>,
     kappa: f32,
     points: &mut [Point],
@@ -301,28 +303,36 @@ fn solve_part<S: Simd>(
     };
     let zero = simd.splat_f32s(0.0);
     let mut curvature = [[zero; 3]; 3];
-    let [x, y, z, _] = gather(simd, points, first, part);
+    let [x, y, z, _] = gather(simd, points, first, lane_group);
     let origin = [x, y, z];
     for (corner, weights) in batch.corners.iter().zip(&batch.weights).skip(1) {
-        let [x, y, z, _] = gather(simd, points, corner, part);
+        let [x, y, z, _] = gather(simd, points, corner, lane_group);
         let d = sub(simd, [x, y, z], origin);
         for k in 0..3 {
-            curvature[k] = add_scaled(simd, curvature[k], d, weights[k].part::<S>(part));
+            curvature[k] = add_scaled(
+                simd,
+                curvature[k],
+                d,
+                weights[k].lane_group::<S>(lane_group),
+            );
         }
     }
     if let Some(sums) = &sums {
         for k in 0..3 {
-            let soft = simd.mul_f32s(batch.compliance[k].part::<S>(part), simd.splat_f32s(kappa));
-            let sum = triple::<S>(&sums[k], part);
+            let soft = simd.mul_f32s(
+                batch.compliance[k].lane_group::<S>(lane_group),
+                simd.splat_f32s(kappa),
+            );
+            let sum = triple::<S>(&sums[k], lane_group);
             curvature[k] = add_scaled(simd, curvature[k], sum, soft);
         }
     }
-    let t11 = batch.inverse[0].part::<S>(part);
-    let t22 = batch.inverse[1].part::<S>(part);
-    let t33 = batch.inverse[2].part::<S>(part);
-    let t12 = batch.inverse[3].part::<S>(part);
-    let t13 = batch.inverse[4].part::<S>(part);
-    let t23 = batch.inverse[5].part::<S>(part);
+    let t11 = batch.inverse[0].lane_group::<S>(lane_group);
+    let t22 = batch.inverse[1].lane_group::<S>(lane_group);
+    let t33 = batch.inverse[2].lane_group::<S>(lane_group);
+    let t12 = batch.inverse[3].lane_group::<S>(lane_group);
+    let t13 = batch.inverse[4].lane_group::<S>(lane_group);
+    let t23 = batch.inverse[5].lane_group::<S>(lane_group);
     let change = [
         mixed(simd, &curvature, [t11, t12, t13]),
         mixed(simd, &curvature, [t12, t22, t23]),
@@ -331,31 +341,31 @@ fn solve_part<S: Simd>(
     if let Some(sums) = &mut sums {
         for k in 0..3 {
             for axis in 0..3 {
-                let sum = simd.sub_f32s(sums[k][axis].part::<S>(part), change[k][axis]);
-                sums[k][axis].set_part::<S>(part, sum);
+                let sum = simd.sub_f32s(sums[k][axis].lane_group::<S>(lane_group), change[k][axis]);
+                sums[k][axis].set_lane_group::<S>(lane_group, sum);
             }
         }
     }
     for (corner, weights) in batch.corners.iter().zip(&batch.weights) {
-        let [x, y, z, w] = gather(simd, points, corner, part);
+        let [x, y, z, w] = gather(simd, points, corner, lane_group);
         let share = simd.sub_f32s(zero, w);
         let mut p = [x, y, z];
         for k in 0..3 {
-            let weight = simd.mul_f32s(share, weights[k].part::<S>(part));
+            let weight = simd.mul_f32s(share, weights[k].lane_group::<S>(lane_group));
             p = add_scaled(simd, p, change[k], weight);
         }
         let [x, y, z] = p;
-        scatter(simd, points, corner, part, [x, y, z, w]);
+        scatter(simd, points, corner, lane_group, [x, y, z, w]);
     }
 }
 
 /// Three rows of one part.
 #[inline(always)]
-fn triple<S: Simd>(rows: &Triple<Row>, part: usize) -> Triple<S::f32s> {
+fn triple<S: Simd>(rows: &Triple<Row>, lane_group: usize) -> Triple<S::f32s> {
     [
-        rows[0].part::<S>(part),
-        rows[1].part::<S>(part),
-        rows[2].part::<S>(part),
+        rows[0].lane_group::<S>(lane_group),
+        rows[1].lane_group::<S>(lane_group),
+        rows[2].lane_group::<S>(lane_group),
     ]
 }
 

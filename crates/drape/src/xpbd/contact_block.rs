@@ -110,15 +110,15 @@ impl ContactBlock {
 
     /// Whether the surface has to be queried again for one of the points of a part of the lanes.
     #[inline(always)]
-    pub fn is_stale<S: Simd>(&self, simd: S, points: &[Point; LANES], part: usize) -> bool {
-        let [x, y, z, _] = load(simd, points, part);
+    pub fn is_stale<S: Simd>(&self, simd: S, points: &[Point; LANES], lane_group: usize) -> bool {
+        let [x, y, z, _] = load(simd, points, lane_group);
         let place = [
-            self.place[0].part::<S>(part),
-            self.place[1].part::<S>(part),
-            self.place[2].part::<S>(part),
+            self.place[0].lane_group::<S>(lane_group),
+            self.place[1].lane_group::<S>(lane_group),
+            self.place[2].lane_group::<S>(lane_group),
         ];
         let d = sub(simd, [x, y, z], place);
-        let beyond = simd.sub_f32s(dot(simd, d, d), self.radius2.part::<S>(part));
+        let beyond = simd.sub_f32s(dot(simd, d, d), self.radius2.lane_group::<S>(lane_group));
         simd.reduce_max_f32s(beyond) > 0.0
     }
 
@@ -149,18 +149,21 @@ pub fn solve_block<S: Simd>(
     points: &mut [Point; LANES],
     starts: &[Point; LANES],
     step: &ContactStep,
-    part: usize,
+    lane_group: usize,
 ) {
-    let [x, y, z, weight] = load(simd, points, part);
-    let [x0, y0, z0, _] = load(simd, starts, part);
+    let [x, y, z, weight] = load(simd, points, lane_group);
+    let [x0, y0, z0, _] = load(simd, starts, lane_group);
     let n = [
-        contact.normal[0].part::<S>(part),
-        contact.normal[1].part::<S>(part),
-        contact.normal[2].part::<S>(part),
+        contact.normal[0].lane_group::<S>(lane_group),
+        contact.normal[1].lane_group::<S>(lane_group),
+        contact.normal[2].lane_group::<S>(lane_group),
     ];
     let zero = simd.splat_f32s(0.0);
-    let lambda_normal = contact.lambda_normal.part::<S>(part);
-    let depth = simd.sub_f32s(dot(simd, n, [x, y, z]), contact.level.part::<S>(part));
+    let lambda_normal = contact.lambda_normal.lane_group::<S>(lane_group);
+    let depth = simd.sub_f32s(
+        dot(simd, n, [x, y, z]),
+        contact.level.lane_group::<S>(lane_group),
+    );
     let touching = simd.or_m32s(
         simd.less_than_f32s(depth, zero),
         simd.less_than_f32s(zero, lambda_normal),
@@ -171,9 +174,9 @@ pub fn solve_block<S: Simd>(
         return;
     }
     let surface_displacement = [
-        contact.surface_displacement[0].part::<S>(part),
-        contact.surface_displacement[1].part::<S>(part),
-        contact.surface_displacement[2].part::<S>(part),
+        contact.surface_displacement[0].lane_group::<S>(lane_group),
+        contact.surface_displacement[1].lane_group::<S>(lane_group),
+        contact.surface_displacement[2].lane_group::<S>(lane_group),
     ];
     let moved = sub(
         simd,
@@ -181,7 +184,7 @@ pub fn solve_block<S: Simd>(
         surface_displacement,
     );
     let compliance = simd.mul_f32s(
-        contact.compliance.part::<S>(part),
+        contact.compliance.lane_group::<S>(lane_group),
         simd.splat_f32s(step.kappa),
     );
     let per_weight = simd.div_f32s(simd.splat_f32s(1.0), weight);
@@ -199,16 +202,18 @@ pub fn solve_block<S: Simd>(
     );
     let change = simd.select_f32s(active, change, zero);
     let lambda_normal = simd.add_f32s(lambda_normal, change);
-    contact.lambda_normal.set_part::<S>(part, lambda_normal);
+    contact
+        .lambda_normal
+        .set_lane_group::<S>(lane_group, lambda_normal);
     let slip = add_scaled(simd, moved, n, simd.sub_f32s(zero, outward));
     let lambda_tangent = [
-        contact.lambda_tangent[0].part::<S>(part),
-        contact.lambda_tangent[1].part::<S>(part),
-        contact.lambda_tangent[2].part::<S>(part),
+        contact.lambda_tangent[0].lane_group::<S>(lane_group),
+        contact.lambda_tangent[1].lane_group::<S>(lane_group),
+        contact.lambda_tangent[2].lane_group::<S>(lane_group),
     ];
     let free = add_scaled(simd, lambda_tangent, slip, simd.sub_f32s(zero, per_weight));
     let length = simd.sqrt_f32s(dot(simd, free, free));
-    let limit = simd.mul_f32s(contact.friction.part::<S>(part), lambda_normal);
+    let limit = simd.mul_f32s(contact.friction.lane_group::<S>(lane_group), lambda_normal);
     let share = simd.select_f32s(
         simd.less_than_f32s(limit, length),
         simd.div_f32s(limit, length),
@@ -218,9 +223,9 @@ pub fn solve_block<S: Simd>(
     for k in 0..3 {
         let new = simd.mul_f32s(free[k], share);
         let new = simd.select_f32s(active, new, lambda_tangent[k]);
-        contact.lambda_tangent[k].set_part::<S>(part, new);
+        contact.lambda_tangent[k].set_lane_group::<S>(lane_group, new);
         let total = simd.mul_add_e_f32s(n[k], change, simd.sub_f32s(new, lambda_tangent[k]));
         out[k] = simd.mul_add_e_f32s(weight, total, out[k]);
     }
-    store(simd, points, part, [out[0], out[1], out[2], weight]);
+    store(simd, points, lane_group, [out[0], out[1], out[2], weight]);
 }

@@ -17,7 +17,7 @@
 
 use crate::System;
 use crate::lanes::{
-    Corner, LANES, Point, Row, add_scaled, blend, dot, gather, parts, scatter, sub,
+    Corner, LANES, Point, Row, add_scaled, blend, dot, gather, lane_groups, scatter, sub,
 };
 use crate::laws::stretch::{MembraneLaw, StrainLaw};
 use pulp::Simd;
@@ -151,31 +151,37 @@ pub fn solve<S: Simd>(
 ) {
     for (at, batch) in batches.iter().enumerate() {
         let law = &laws[batch.law as usize];
-        for part in 0..parts::<S>() {
+        for lane_group in 0..lane_groups::<S>() {
             let sums = sums.as_mut().map(|sums| &mut sums[at]);
-            solve_part(simd, batch, part, sums, law, kappa, points);
+            solve_lane_group(simd, batch, lane_group, sums, law, kappa, points);
         }
     }
 }
 
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
-fn solve_part<S: Simd>(
+fn solve_lane_group<S: Simd>(
     simd: S,
     batch: &MembraneBatch,
-    part: usize,
+    lane_group: usize,
     sums: Option<&mut Sums>,
     law: &LawRow,
     kappa: f32,
     points: &mut [Point],
 ) {
-    let [x0, y0, z0, w0] = gather(simd, points, &batch.corners[0], part);
-    let [x1, y1, z1, w1] = gather(simd, points, &batch.corners[1], part);
-    let [x2, y2, z2, w2] = gather(simd, points, &batch.corners[2], part);
+    let [x0, y0, z0, w0] = gather(simd, points, &batch.corners[0], lane_group);
+    let [x1, y1, z1, w1] = gather(simd, points, &batch.corners[1], lane_group);
+    let [x2, y2, z2, w2] = gather(simd, points, &batch.corners[2], lane_group);
     let (p0, p1, p2) = ([x0, y0, z0], [x1, y1, z1], [x2, y2, z2]);
     let (d1, d2) = (sub(simd, p1, p0), sub(simd, p2, p0));
-    let [a1, a2] = [batch.warp[0].part::<S>(part), batch.warp[1].part::<S>(part)];
-    let [b1, b2] = [batch.weft[0].part::<S>(part), batch.weft[1].part::<S>(part)];
+    let [a1, a2] = [
+        batch.warp[0].lane_group::<S>(lane_group),
+        batch.warp[1].lane_group::<S>(lane_group),
+    ];
+    let [b1, b2] = [
+        batch.weft[0].lane_group::<S>(lane_group),
+        batch.weft[1].lane_group::<S>(lane_group),
+    ];
     let fu = blend(simd, d1, a1, d2, a2);
     let fv = blend(simd, d1, b1, d2, b2);
     let (uu, vv, uv) = (dot(simd, fu, fu), dot(simd, fv, fv), dot(simd, fu, fv));
@@ -186,7 +192,10 @@ fn solve_part<S: Simd>(
         uv,
     ];
     let (target, compliance) = linearise(simd, law, strain);
-    let softness = simd.mul_f32s(batch.softness.part::<S>(part), simd.splat_f32s(kappa));
+    let softness = simd.mul_f32s(
+        batch.softness.lane_group::<S>(lane_group),
+        simd.splat_f32s(kappa),
+    );
     let soft = [
         simd.mul_f32s(softness, compliance[0]),
         simd.mul_f32s(softness, compliance[1]),
@@ -194,17 +203,17 @@ fn solve_part<S: Simd>(
         simd.mul_f32s(softness, compliance[3]),
     ];
     let products = [
-        batch.products[0].part::<S>(part),
-        batch.products[1].part::<S>(part),
-        batch.products[2].part::<S>(part),
+        batch.products[0].lane_group::<S>(lane_group),
+        batch.products[1].lane_group::<S>(lane_group),
+        batch.products[2].lane_group::<S>(lane_group),
     ];
     let matrix = system(simd, products, [uu, vv, uv], soft);
     let mut residual = target;
     if let Some(sums) = &sums {
         let [l0, l1, l2] = [
-            sums[0].part::<S>(part),
-            sums[1].part::<S>(part),
-            sums[2].part::<S>(part),
+            sums[0].lane_group::<S>(lane_group),
+            sums[1].lane_group::<S>(lane_group),
+            sums[2].lane_group::<S>(lane_group),
         ];
         residual[0] = simd.mul_add_e_f32s(soft[0], l0, residual[0]);
         residual[0] = simd.mul_add_e_f32s(soft[2], l1, residual[0]);
@@ -215,14 +224,14 @@ fn solve_part<S: Simd>(
     let z = solve_system(simd, matrix, residual);
     if let Some(sums) = sums {
         for k in 0..3 {
-            let sum = simd.sub_f32s(sums[k].part::<S>(part), z[k]);
-            sums[k].set_part::<S>(part, sum);
+            let sum = simd.sub_f32s(sums[k].lane_group::<S>(lane_group), z[k]);
+            sums[k].set_lane_group::<S>(lane_group, sum);
         }
     }
     // dx_i = -w_i sigma (a_i (f_u z_0 + f_v z_2) + b_i (f_v z_1 + f_u z_2)).
     let by_u = blend(simd, fu, z[0], fv, z[2]);
     let by_v = blend(simd, fv, z[1], fu, z[2]);
-    let scale = batch.scale.part::<S>(part);
+    let scale = batch.scale.lane_group::<S>(lane_group);
     let zero = simd.splat_f32s(0.0);
     let a0 = simd.sub_f32s(simd.sub_f32s(zero, a1), a2);
     let b0 = simd.sub_f32s(simd.sub_f32s(zero, b1), b2);
@@ -232,7 +241,7 @@ fn solve_part<S: Simd>(
         let share = simd.sub_f32s(zero, simd.mul_f32s(w, scale));
         let p = add_scaled(simd, p, by_u, simd.mul_f32s(share, a));
         let [x, y, z] = add_scaled(simd, p, by_v, simd.mul_f32s(share, b));
-        scatter(simd, points, &batch.corners[k], part, [x, y, z, w]);
+        scatter(simd, points, &batch.corners[k], lane_group, [x, y, z, w]);
     }
 }
 
@@ -263,7 +272,7 @@ fn curve_of<S: Simd>(
     let _ = simd;
     let mut rows = [Row::splat(0.0); 3];
     for (row, strain) in rows.iter_mut().zip(strain) {
-        row.set_part::<S>(0, strain);
+        row.set_lane_group::<S>(0, strain);
     }
     let mut target = [Row::splat(0.0); 3];
     let mut compliance = [Row::splat(0.0); 4];
@@ -293,8 +302,8 @@ fn curve_of<S: Simd>(
         }
     }
     (
-        target.map(|row| row.part::<S>(0)),
-        compliance.map(|row| row.part::<S>(0)),
+        target.map(|row| row.lane_group::<S>(0)),
+        compliance.map(|row| row.lane_group::<S>(0)),
     )
 }
 

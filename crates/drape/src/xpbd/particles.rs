@@ -3,7 +3,7 @@
 use super::bending::{BendingForce, Filter};
 use super::contact::{ContactStep, Solid};
 use super::contact_block::{ContactBlock, solve_block};
-use crate::lanes::{LANES, Point, load, parts, store};
+use crate::lanes::{LANES, Point, lane_groups, load, store};
 use pulp::bytemuck::cast_slice;
 use pulp::{Simd, WithSimd};
 
@@ -121,27 +121,29 @@ impl WithSimd for Predict<'_, '_> {
         let (low, _) = self.fields.low.as_chunks_mut::<LANES>();
         let (velocity, _) = self.fields.velocity.as_chunks_mut::<LANES>();
         for b in 0..now.len() {
-            for part in 0..parts::<S>() {
+            for lane_group in 0..lane_groups::<S>() {
                 let block = [&mut now[b], &mut free[b], &mut low[b], &mut velocity[b]];
-                self.step.predict(simd, &starts[first + b], block, part, {
-                    let slot = LANES * (first + b);
-                    match self.bend {
-                        Bend::None => [simd.splat_f32s(0.0); 3],
-                        Bend::Force(force, ahead) => {
-                            let (places, _) = ahead.as_chunks::<LANES>();
-                            let here = load(simd, &places[first + b], part);
-                            let sum = force.times(simd, slot, ahead, here, part);
-                            let scale = simd.mul_f32s(here[3], simd.splat_f32s(-self.step.step));
-                            scaled(simd, sum, scale)
+                self.step
+                    .predict(simd, &starts[first + b], block, lane_group, {
+                        let slot = LANES * (first + b);
+                        match self.bend {
+                            Bend::None => [simd.splat_f32s(0.0); 3],
+                            Bend::Force(force, ahead) => {
+                                let (places, _) = ahead.as_chunks::<LANES>();
+                                let here = load(simd, &places[first + b], lane_group);
+                                let sum = force.times(simd, slot, ahead, here, lane_group);
+                                let scale =
+                                    simd.mul_f32s(here[3], simd.splat_f32s(-self.step.step));
+                                scaled(simd, sum, scale)
+                            }
+                            Bend::Moves(moves, factor) => {
+                                let (moves, _) = moves.as_chunks::<LANES>();
+                                let [x, y, z, _] = load(simd, &moves[first + b], lane_group);
+                                let factor = simd.splat_f32s(factor / self.step.step);
+                                scaled(simd, [x, y, z], factor)
+                            }
                         }
-                        Bend::Moves(moves, factor) => {
-                            let (moves, _) = moves.as_chunks::<LANES>();
-                            let [x, y, z, _] = load(simd, &moves[first + b], part);
-                            let factor = simd.splat_f32s(factor / self.step.step);
-                            scaled(simd, [x, y, z], factor)
-                        }
-                    }
-                });
+                    });
             }
         }
     }
@@ -164,17 +166,17 @@ impl MotionStep {
         simd: S,
         start: &[Point; LANES],
         block: [&mut [Point; LANES]; 4],
-        part: usize,
+        lane_group: usize,
         gain: [S::f32s; 3],
     ) {
         let [now, free, low, velocity] = block;
         let (h, kept) = (simd.splat_f32s(self.step), simd.splat_f32s(self.kept));
         let zero = simd.splat_f32s(0.0);
-        let here = load(simd, start, part);
+        let here = load(simd, start, lane_group);
         let weight = here[3];
         let moves = simd.less_than_f32s(zero, weight);
-        let mut speed = load(simd, velocity, part);
-        let mut rest = load(simd, low, part);
+        let mut speed = load(simd, velocity, lane_group);
+        let mut rest = load(simd, low, lane_group);
         let mut there = here;
         for k in 0..3 {
             let fall = simd.splat_f32s(self.step * self.gravity[k]);
@@ -189,10 +191,10 @@ impl MotionStep {
             speed[k] = v;
             there[k] = sum;
         }
-        store(simd, now, part, there);
-        store(simd, free, part, there);
-        store(simd, low, part, rest);
-        store(simd, velocity, part, speed);
+        store(simd, now, lane_group, there);
+        store(simd, free, lane_group, there);
+        store(simd, low, lane_group, rest);
+        store(simd, velocity, lane_group, speed);
     }
 }
 
@@ -235,22 +237,22 @@ impl WithSimd for RunStage<'_, '_> {
         let zero = simd.splat_f32s(0.0);
         for b in 0..pull.len() {
             let slot = LANES * (first + b);
-            for part in 0..parts::<S>() {
-                let here = load(simd, &places[first + b], part);
+            for lane_group in 0..lane_groups::<S>() {
+                let here = load(simd, &places[first + b], lane_group);
                 let scale = simd.mul_f32s(here[3], simd.splat_f32s(self.step2));
                 let new = match self.last {
                     None => {
-                        let sum = self.force.times(simd, slot, self.ahead, here, part);
+                        let sum = self.force.times(simd, slot, self.ahead, here, lane_group);
                         let [x, y, z] = scaled(simd, sum, scale);
-                        store(simd, &mut pull[b], part, [x, y, z, zero]);
+                        store(simd, &mut pull[b], lane_group, [x, y, z, zero]);
                         scaled(simd, [x, y, z], simd.sub_f32s(zero, kappa))
                     }
                     Some(last) => {
                         let (lasts, _) = last.as_chunks::<LANES>();
-                        let moved = load(simd, &lasts[first + b], part);
-                        let before = load(simd, &moves[b], part);
-                        let pulled = load(simd, &pull[b], part);
-                        let sum = self.force.times(simd, slot, last, moved, part);
+                        let moved = load(simd, &lasts[first + b], lane_group);
+                        let before = load(simd, &moves[b], lane_group);
+                        let pulled = load(simd, &pull[b], lane_group);
+                        let sum = self.force.times(simd, slot, last, moved, lane_group);
                         let mut new = [zero; 3];
                         for k in 0..3 {
                             let all = simd.mul_add_e_f32s(sum[k], scale, pulled[k]);
@@ -261,7 +263,12 @@ impl WithSimd for RunStage<'_, '_> {
                         new
                     }
                 };
-                store(simd, &mut moves[b], part, [new[0], new[1], new[2], zero]);
+                store(
+                    simd,
+                    &mut moves[b],
+                    lane_group,
+                    [new[0], new[1], new[2], zero],
+                );
             }
         }
     }
@@ -316,14 +323,14 @@ impl WithSimd for Settle<'_, '_> {
         let (velocity, _) = self.fields.velocity.as_chunks_mut::<LANES>();
         for b in 0..now.len() {
             if let Some(solid) = &self.solid {
-                for part in 0..parts::<S>() {
+                for lane_group in 0..lane_groups::<S>() {
                     let contact = &mut self.fields.contacts[b];
                     let now = &mut now[b];
-                    if contact.is_stale(simd, now, part) {
-                        let first = part * S::F32_LANES;
+                    if contact.is_stale(simd, now, lane_group) {
+                        let first = lane_group * S::F32_LANES;
                         contact.query_surfaces(solid, now, first..first + S::F32_LANES);
                     }
-                    solve_block(simd, contact, now, &start[b], self.contact, part);
+                    solve_block(simd, contact, now, &start[b], self.contact, lane_group);
                 }
             }
             if let Some(step) = self.finish {
@@ -383,7 +390,7 @@ impl MotionStep {
                 *v = [f32::NAN; 4];
             } else if speed2 > most2 {
                 let share = self.speed_limit / speed2.sqrt();
-                *v = v.map(|part| part * share);
+                *v = v.map(|component| component * share);
             }
         }
     }
