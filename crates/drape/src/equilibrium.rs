@@ -31,7 +31,7 @@ impl Prediction {
 
     /// Energy above the new rest as the step measures it [J]: half the square of Newton's decrement.
     pub fn energy(&self) -> f64 {
-        self.step.promised
+        self.step.predicted_decrease
     }
 
     /// Share of the step that contact, the longest move and the potential let it take, 0..=1.
@@ -58,7 +58,7 @@ impl Equilibrium {
 
     /// How often the structure of its matrix was worked out.
     pub fn structures(&self) -> usize {
-        self.workspace.structures()
+        self.workspace.symbolic_factorisations()
     }
 
     /// Net force over weight after the last step.

@@ -229,7 +229,7 @@ impl GarmentRun {
     /// How often the structure of what is solved was worked out for the present stage: once a stage, and for
     /// every other model.
     pub fn structures(&self) -> usize {
-        self.swing_workspace.builds() + self.workspace.structures()
+        self.swing_workspace.builds() + self.workspace.symbolic_factorisations()
     }
 
     /// What went less than well, in plain words.

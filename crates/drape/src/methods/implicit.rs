@@ -216,7 +216,7 @@ impl<R: TimeRule, S: Solver> Implicit<R, S> {
             return Err(Failure::Runaway(vertex));
         }
         let reached = report.gradient <= self.limits.tolerance.max(REACHED * weight_norm(system));
-        if !report.sound || S::CONVERGES && !reached {
+        if !report.succeeded || S::CONVERGES && !reached {
             return Err(Failure::Stuck);
         }
         let workspace = &mut self.workspace;

@@ -130,7 +130,7 @@ impl Solver for OneSolve {
             },
             iterations: 1000,
         });
-        workspace.turn_gradient();
+        workspace.negate_gradient();
         let linear_iterations = workspace.solve_linear(system, linear);
         for (x, d) in state.positions.iter_mut().zip(&workspace.direction) {
             *x += d;
@@ -140,7 +140,7 @@ impl Solver for OneSolve {
             linear_iterations,
             gradient,
             fraction: 1.0,
-            sound: gradient.is_finite(),
+            succeeded: gradient.is_finite(),
             ..NewtonReport::default()
         }
     }

@@ -264,7 +264,7 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
         self.start(problem, state, workspace);
         let longest = problem.longest_move(LONGEST_MOVE);
         let mut report = NewtonReport {
-            sound: true,
+            succeeded: true,
             fraction: 1.0,
             ..NewtonReport::default()
         };
@@ -308,7 +308,7 @@ impl<const CHEBYSHEV: bool> Solver for BlockDescent<CHEBYSHEV> {
         workspace.contacts.refresh(system, state, &state.positions);
         let before = workspace.potential(system, &first, &problem.inertia);
         let after = workspace.potential(system, &state.positions, &problem.inertia);
-        report.sound = after <= before + 1e-12 * before.abs().max(1.0);
+        report.succeeded = after <= before + 1e-12 * before.abs().max(1.0);
         report
     }
 }

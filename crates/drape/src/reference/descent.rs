@@ -29,18 +29,18 @@ pub fn descend(
     mut iterate: impl FnMut(&mut State, &mut Workspace, usize) -> f64,
 ) -> NewtonReport {
     let mut report = NewtonReport {
-        sound: true,
+        succeeded: true,
         ..NewtonReport::default()
     };
     while report.iterations < problem.limits.iterations {
         report.gradient = slope(problem, state, workspace);
-        report.sound = report.gradient.is_finite();
-        if report.gradient <= problem.limits.tolerance || !report.sound {
+        report.succeeded = report.gradient.is_finite();
+        if report.gradient <= problem.limits.tolerance || !report.succeeded {
             break;
         }
         report.fraction = iterate(state, workspace, report.iterations);
         if report.fraction == 0.0 {
-            report.sound = report.iterations > 0;
+            report.succeeded = report.iterations > 0;
             break;
         }
         report.iterations += 1;
