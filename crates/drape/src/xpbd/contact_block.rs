@@ -4,12 +4,12 @@ use super::contact::{ContactConstraint, ContactStep, NO_SAMPLE, Solid, radius2_a
 use crate::lanes::{LANES, Point, Row, add_scaled, dot, load, store, sub};
 use pulp::Simd;
 
-/// The contacts of sixteen vertices side by side; rows as in [`ContactConstraint`].
+/// The contacts of sixteen vertices, a lane each; fields as in [`ContactConstraint`].
 #[derive(Clone, Debug)]
 pub struct ContactBlock {
     normal: [Row; 3],
     level: Row,
-    place: [Row; 3],
+    queried_at: [Row; 3],
     radius2: Row,
     compliance: Row,
     friction: Row,
@@ -27,7 +27,7 @@ impl ContactBlock {
         let mut block = Self {
             normal: [zero; 3],
             level: zero,
-            place: [zero; 3],
+            queried_at: [zero; 3],
             radius2: zero,
             compliance: zero,
             friction: zero,
@@ -49,7 +49,7 @@ impl ContactBlock {
         ContactConstraint {
             normal: three(&self.normal),
             level: self.level.0[lane],
-            place: three(&self.place),
+            queried_at: three(&self.queried_at),
             radius2: self.radius2.0[lane],
             compliance: self.compliance.0[lane],
             friction: self.friction.0[lane],
@@ -61,8 +61,8 @@ impl ContactBlock {
         }
     }
 
-    /// Lanes whose contacts pressed in the substep.
-    pub fn pressed(&self) -> impl Iterator<Item = usize> + '_ {
+    /// Lanes whose contacts have a normal multiplier in the substep.
+    pub fn loaded(&self) -> impl Iterator<Item = usize> + '_ {
         (0..LANES).filter(|&lane| self.lambda_normal.0[lane] > 0.0)
     }
 
@@ -70,7 +70,7 @@ impl ContactBlock {
     pub fn set(&mut self, lane: usize, contact: &ContactConstraint) {
         for k in 0..3 {
             self.normal[k].0[lane] = contact.normal[k];
-            self.place[k].0[lane] = contact.place[k];
+            self.queried_at[k].0[lane] = contact.queried_at[k];
             self.lambda_tangent[k].0[lane] = contact.lambda_tangent[k];
             self.surface_displacement[k].0[lane] = contact.surface_displacement[k];
         }
@@ -102,27 +102,27 @@ impl ContactBlock {
         }
     }
 
-    /// Multipliers start from zero.
+    /// Sets the multipliers to zero.
     pub fn clear(&mut self) {
         self.lambda_normal = Row::splat(0.0);
         self.lambda_tangent = [Row::splat(0.0); 3];
     }
 
-    /// Whether the surface has to be queried again for one of the points of a part of the lanes.
+    /// Whether the surface has to be queried again for one of the points of a lane group.
     #[inline(always)]
     pub fn is_stale<S: Simd>(&self, simd: S, points: &[Point; LANES], lane_group: usize) -> bool {
         let [x, y, z, _] = load(simd, points, lane_group);
-        let place = [
-            self.place[0].lane_group::<S>(lane_group),
-            self.place[1].lane_group::<S>(lane_group),
-            self.place[2].lane_group::<S>(lane_group),
+        let queried_at = [
+            self.queried_at[0].lane_group::<S>(lane_group),
+            self.queried_at[1].lane_group::<S>(lane_group),
+            self.queried_at[2].lane_group::<S>(lane_group),
         ];
-        let d = sub(simd, [x, y, z], place);
+        let d = sub(simd, [x, y, z], queried_at);
         let beyond = simd.sub_f32s(dot(simd, d, d), self.radius2.lane_group::<S>(lane_group));
         simd.reduce_max_f32s(beyond) > 0.0
     }
 
-    /// Queries the surfaces again for those of some lanes that need it.
+    /// Queries the surfaces again for the lanes of a range whose planes are stale.
     #[inline(never)]
     pub fn query_surfaces(
         &mut self,
@@ -141,7 +141,7 @@ impl ContactBlock {
     }
 }
 
-/// [`ContactConstraint::solve`] for one part of a block; moves the points.
+/// [`ContactConstraint::solve`] for one lane group of a block; moves the points.
 #[inline(always)]
 pub fn solve_block<S: Simd>(
     simd: S,
@@ -194,10 +194,10 @@ pub fn solve_block<S: Simd>(
         simd.add_f32s(weight, compliance),
     );
     let outward = dot(simd, n, moved);
-    let most = simd.sub_f32s(simd.splat_f32s(step.outward), outward);
-    let most = simd.mul_f32s(simd.max_f32s(most, zero), per_weight);
+    let limit = simd.sub_f32s(simd.splat_f32s(step.outward), outward);
+    let limit = simd.mul_f32s(simd.max_f32s(limit, zero), per_weight);
     let change = simd.max_f32s(
-        simd.min_f32s(change, most),
+        simd.min_f32s(change, limit),
         simd.sub_f32s(zero, lambda_normal),
     );
     let change = simd.select_f32s(active, change, zero);
