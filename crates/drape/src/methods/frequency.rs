@@ -75,8 +75,8 @@ pub fn damped_contact_frequency(system: &System, samples: &[ContactSample]) -> f
 }
 
 impl FrequencySearch {
-    /// Searches with a fixed start and at most `iterations` products with K; the result is a
-    /// lower bound that is within a few per mille after 30.
+    /// Lanczos iteration about a state without viscosity, with a fixed start vector and at most `iterations` products
+    /// with K. The frequency is a lower bound, within a few per mille after 30.
     pub fn run(
         &mut self,
         system: &System,

@@ -118,7 +118,7 @@ impl Relaxation {
             self.update_masses(system, state, &mut masses);
             run.masses = masses;
         }
-        // No substep: iterations have no time, and contact has no dashpot.
+        // Iterations are not steps in time: with h = 0 the push on buried cloth is not limited.
         let force = forces_and_update_friction(system, state, &mut self.workspace, 0.0);
         run.iterations += 1;
         run.residual = dot(force, force).sqrt() / weight_norm(system);
