@@ -46,7 +46,11 @@ fn run(make: &Make, work: &[Command], output: &Output) -> Result<Value, Failure>
         "{}, size {}, {:.0} cm tall",
         names.join(" + "),
         project.size_name().unwrap_or("as drawn"),
-        project.wearer().get("height").unwrap_or_default() * 100.0,
+        project
+            .body_measurements()
+            .get("height")
+            .unwrap_or_default()
+            * 100.0,
     ));
     output.tell(&events);
     Ok(outcome(&events, &make.out))

@@ -1,5 +1,4 @@
-//! Bodies of one's own: mannequin files as the wearer's body, their primitives edited, and figures
-//! brought to proportions.
+//! Bodies of the user's own: mannequin files, edits of their primitives, and figures brought to proportions.
 
 use crate::open::{open_measurements, read_input};
 use crate::tools::open_mannequin;
@@ -68,7 +67,7 @@ pub(crate) fn description_of(project: &Project) -> Description {
         BodyChoice::Shaped { description, .. } => (**description).clone(),
         _ => Description {
             figure: project.figure(),
-            measurements: project.wearer(),
+            measurements: project.body_measurements(),
             primitives: Vec::new(),
             frame: None,
             rigging: Default::default(),

@@ -1,4 +1,4 @@
-//! Events: what happened, for whoever asked.
+//! Events: what a command did, for whoever gave it.
 
 use std::path::PathBuf;
 use toile_marker::Nested;

@@ -1,4 +1,4 @@
-//! Patterns and measurements from files: the format is seen from the content.
+//! Opens patterns, markers and measurements; the format is recognised from the content.
 
 use crate::SessionError;
 use std::path::{Path, PathBuf};

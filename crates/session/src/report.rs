@@ -4,7 +4,7 @@ use crate::Project;
 use crate::choice::figure_name;
 use crate::crossings::Tangles;
 use crate::drape::Drape;
-use crate::dressed::DraftedPart;
+use crate::outfit::DraftedPart;
 use serde::Serialize;
 use toile_marker::Laying;
 use toile_pattern::{Draft, DraftSpan};
@@ -222,7 +222,7 @@ impl Report {
             size: project.size_name().map(str::to_owned),
             fabric: fabric_names(project, parts),
             body: figure_name(project.figure()),
-            body_height_m: project.wearer().get("height"),
+            body_height_m: project.body_measurements().get("height"),
             area_m2: 1e-4 * pieces.iter().map(|p| p.area_cm2).sum::<f64>(),
             pieces,
             seams,

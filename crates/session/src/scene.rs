@@ -5,7 +5,7 @@ use crate::export::{cannot, file_name};
 use crate::open::read_input;
 use crate::scene_builder::Builder;
 use crate::timing::Timing;
-use crate::watcher::tell;
+use crate::watcher::report_progress;
 use crate::{SessionError, Watcher};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -78,7 +78,7 @@ pub fn run_scene(
         }
         run.advance()?;
         crossings.follow(&run);
-        tell(
+        report_progress(
             watcher,
             "simulating",
             run.share(),

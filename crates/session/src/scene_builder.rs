@@ -5,7 +5,7 @@ use crate::choice::figure_named;
 use crate::derived::Derived;
 use crate::fabrics::open_fabric;
 use crate::open::read_input;
-use crate::watcher::tell;
+use crate::watcher::report_progress;
 use crate::{BodyChoice, Command, Project, Quality, Session, SessionError, Watcher};
 use std::path::Path;
 use toile_drape::{
@@ -272,7 +272,7 @@ impl Builder<'_> {
         let mut run = GarmentRun::new(setup)?;
         while run.progress().stage == Stage::Sewing {
             let progress = run.advance()?;
-            tell(
+            report_progress(
                 watcher,
                 "sewing",
                 0.0,

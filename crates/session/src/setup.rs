@@ -1,10 +1,10 @@
-//! What a drape is set up from: draft, fabrics and mannequin. The coarser mesh of a fine quality is added in
-//! `derived.rs`.
+//! The setup of a drape, made from draft, fabrics and mannequin. `derived.rs` adds the coarser mesh of a fine
+//! quality.
 
 use crate::Quality;
-use crate::dressed::{DraftedPart, Dressed, GarmentPart, MeshedPart};
 use crate::fabrics::cloth_material;
 use crate::mannequin_source::MannequinSource;
+use crate::outfit::{DraftedPart, GarmentPart, MeshedPart, Outfit};
 use std::sync::Arc;
 use toile_assembly::{Garment, Levels, Limb, Wearer};
 use toile_body::{Mannequin, Part};
@@ -15,7 +15,7 @@ use toile_pattern::{BodyPart, Draft, PieceId};
 /// Acceleration of gravity [m/s2].
 pub(crate) const GRAVITY: f64 = 9.81;
 
-/// A garment ready to be sewn and draped, and what is needed to map the result back to panels.
+/// A garment ready to be sewn and draped, with the map from the result back to panels.
 #[derive(Clone)]
 pub struct GarmentJob {
     /// The session's revision it was made from.
@@ -56,11 +56,11 @@ pub struct JobPanel {
 
 /// Builds the drape of a garment that was meshed and placed.
 pub(crate) fn job(
-    dressed: &Dressed,
+    outfit: &Outfit,
     (body, skin): (MannequinSource, Arc<SurfaceTree>),
     quality: Quality,
 ) -> GarmentJob {
-    let (draft, garment) = (&*dressed.draft, dressed.garment.clone());
+    let (draft, garment) = (&*outfit.draft, outfit.garment.clone());
     let panels = garment
         .panels
         .iter()
@@ -74,7 +74,7 @@ pub(crate) fn job(
         })
         .collect();
     let setup = GarmentSetup {
-        levels: vec![level(dressed)],
+        levels: vec![level(outfit)],
         counted: counted(draft, &garment, 2.0 * quality.edge_length()),
         colliders: vec![skin],
         contact: ContactSettings {
@@ -94,12 +94,12 @@ pub(crate) fn job(
         setup,
         garment,
         panels: Arc::new(panels),
-        parts: dressed.parts.clone(),
+        parts: outfit.parts.clone(),
         origin: Arc::new(JobOrigin {
             body,
             quality,
-            drafted: dressed.meshed.iter().map(|m| m.part.clone()).collect(),
-            meshed: dressed.meshed.clone(),
+            drafted: outfit.meshed.iter().map(|m| m.part.clone()).collect(),
+            meshed: outfit.meshed.clone(),
         }),
     }
 }
@@ -108,17 +108,17 @@ pub(crate) fn job(
 /// body (`ContactSettings::offset`, 4 mm), so that a layer fits between the body and the cloth outside it.
 const CLOTH_OFFSET: f64 = 2e-3;
 
-pub(crate) fn level(dressed: &Dressed) -> GarmentLevel {
-    let garment = &dressed.garment;
-    let first = dressed.parts.first().map(|part| part.layer);
+pub(crate) fn level(outfit: &Outfit) -> GarmentLevel {
+    let garment = &outfit.garment;
+    let first = outfit.parts.first().map(|part| part.layer);
     let mut layer = Vec::new();
-    if dressed.parts.iter().any(|part| Some(part.layer) != first) {
-        for part in dressed.parts.iter() {
+    if outfit.parts.iter().any(|part| Some(part.layer) != first) {
+        for part in outfit.parts.iter() {
             layer.resize(part.vertices.end, part.layer);
         }
     }
     GarmentLevel {
-        cloth: cloth(&dressed.draft, garment),
+        cloth: cloth(&outfit.draft, garment),
         stitches: garment.stitches.iter().map(|s| s.vertices).collect(),
         layer,
     }
@@ -186,8 +186,8 @@ fn body_part(part: Part) -> BodyPart {
     }
 }
 
-/// What placement needs to know of a mannequin.
-pub(crate) fn wearer(mannequin: &Mannequin) -> Wearer<'_> {
+/// A mannequin as the placement of panels takes it.
+pub(crate) fn placement_body(mannequin: &Mannequin) -> Wearer<'_> {
     let levels = mannequin.levels();
     Wearer {
         skin: mannequin.skin_tree(),

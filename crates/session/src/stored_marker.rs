@@ -1,8 +1,8 @@
 //! A marker of a pattern file: searched for and stored in the file, or written as it is stored.
 
 use crate::export::File;
-use crate::laying::watched;
 use crate::markers::there_are;
+use crate::watched_search::watched;
 use crate::{
     Command, MarkerFormat, Nested, PatternFormat, Session, SessionError, Silent, Watcher,
     open_pattern,

@@ -1,9 +1,9 @@
 //! What each rule of the trade costs: the same garments laid with and without it, with the same
 //! number of evaluations.
 
-use crate::laying::lay_watched;
-use crate::marking::drafts_of;
-use crate::watcher::Part;
+use crate::nest_patterns::drafts_of;
+use crate::watched_search::lay_watched;
+use crate::watcher::ProgressShare;
 use crate::{Budget, GivenFlaw, Nap, NestOptions, SessionError, Spread, Watcher};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -149,7 +149,7 @@ pub fn study_rules(
         }
         Ok::<_, SessionError>(found.mean(seeds as f64))
     };
-    let base = try_rule(&|_| {}, &mut Part::new(watcher, 0.0, 0.06))?;
+    let base = try_rule(&|_| {}, &mut ProgressShare::new(watcher, 0.0, 0.06))?;
     let area = base.area;
     // Pieces that lie nowhere take no fabric: then there is nothing to compare.
     let efficiency = |found: &Found| match found.unplaced {
@@ -170,7 +170,7 @@ pub fn study_rules(
     let count = rules.len() as f64;
     for (k, (words, change)) in rules.iter().enumerate() {
         let share = |k: f64| 0.06 + 0.94 * k / count;
-        let mut part = Part::new(watcher, share(k as f64), share(k as f64 + 1.0));
+        let mut part = ProgressShare::new(watcher, share(k as f64), share(k as f64 + 1.0));
         match try_rule(change, &mut part) {
             Ok(found) => rows.push(row(words, &found)),
             Err(SessionError::Cancelled) => return Err(SessionError::Cancelled),

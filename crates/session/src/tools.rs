@@ -374,7 +374,9 @@ pub fn make_body(
         )));
     }
     let mannequin = match source {
-        BodySource::Wearer(project) => Mannequin::new(&project.wearer(), project.figure())?,
+        BodySource::Wearer(project) => {
+            Mannequin::new(&project.body_measurements(), project.figure())?
+        }
         BodySource::Described(description) => Mannequin::from_description(description)?,
     };
     let motion = moment.map(|m| m.motion_for(&mannequin)).transpose()?;

@@ -226,7 +226,11 @@ fn bodies_and_sizes_decide_the_measurements() {
     let (mut session, folder) = opened();
     let waist = |session: &Session| {
         let project = session.project();
-        [project.wearer(), project.drafted_to().measurements].map(|t| t.get("waist").unwrap())
+        [
+            project.body_measurements(),
+            project.drafted_to().measurements,
+        ]
+        .map(|t| t.get("waist").unwrap())
     };
     assert_eq!(session.project().figure(), Figure::Woman);
     assert_eq!(waist(&session), [0.84, 0.84]);

@@ -80,6 +80,6 @@ pub const KNOWN: &[Known] = &[
     ("crates/picture/src", &[&["image.rs", "ink.rs"]]),
     (
         "crates/session/src",
-        &[&["drape.rs", "dressed.rs", "hands.rs", "setup.rs"]],
+        &[&["drape.rs", "interactive_run.rs", "outfit.rs", "setup.rs"]],
     ),
 ];

@@ -38,7 +38,7 @@ impl ToileApp {
         }
         let project = self.session.project();
         let same = self.body_of.as_ref().is_some_and(|(of, _)| {
-            of.figure() == project.figure() && of.wearer() == project.wearer()
+            of.figure() == project.figure() && of.body_measurements() == project.body_measurements()
         });
         self.body_of = Some((project.clone(), self.revision));
         if !same {

@@ -5,8 +5,8 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use toile_session::{
-    Event, GarmentEdit, GarmentJob, LiveFrame, LiveRun, Project, RestChange, Session, SessionError,
-    Stage, Standstill,
+    CannotFollow, Event, GarmentEdit, GarmentJob, LiveFrame, LiveRun, Project, RestChange, Session,
+    SessionError, Stage,
 };
 
 /// What is being made.
@@ -14,7 +14,7 @@ use toile_session::{
 pub struct Making {
     body: Option<Receiver<Made<Result<(), SessionError>>>>,
     garment: Option<Receiver<Made<Result<GarmentJob, SessionError>>>>,
-    edit: Option<Receiver<Made<Result<GarmentEdit, Standstill>>>>,
+    edit: Option<Receiver<Made<Result<GarmentEdit, CannotFollow>>>>,
     run: Option<LiveRun>,
     last: Option<Moment>,
     /// The garment as it is to hang, by the edit that was given last.

@@ -1,10 +1,10 @@
-//! Markers of several patterns and sizes, and of published nesting instances.
+//! Markers of several patterns and sizes laid together, and solutions of published nesting instances.
 
 use crate::export::{cannot, file_name};
-use crate::laying::lay_watched;
 use crate::open::read_input;
 use crate::tools::{project_of, sound_draft};
-use crate::watcher::tell;
+use crate::watched_search::lay_watched;
+use crate::watcher::report_progress;
 use crate::{NestOptions, Nested, SessionError, Watcher};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -179,7 +179,7 @@ pub fn nest_instance(
             true => format!("length {:.1}", progress.length / scale),
             false => "making ready".to_owned(),
         };
-        if tell(watcher, "laying out", progress.done, &detail).is_err() {
+        if report_progress(watcher, "laying out", progress.done, &detail).is_err() {
             cancel.store(true, Ordering::Relaxed);
         }
     };

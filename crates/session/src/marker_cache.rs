@@ -1,4 +1,4 @@
-//! Drafts and pieces of the document's markers, kept while nothing they were made from changes.
+//! A cache of the drafts and pieces of the document's markers.
 
 use crate::{Project, SessionError};
 use std::collections::HashMap;
@@ -15,22 +15,22 @@ struct SizeDraft {
     draft: Arc<Draft>,
 }
 
-/// The pieces of a marker, and what they were made from.
+/// The pieces of a marker, with the drafts and sizes they were made from.
 #[derive(Clone)]
-struct KeptPieces {
+struct CachedPieces {
     drafts: Vec<Arc<Draft>>,
     sizes: Vec<Arc<Size>>,
     pieces: Arc<MarkerPieces>,
 }
 
-/// Drafts and pieces of markers, kept while what they were made from stays the same.
+/// Drafts and pieces of markers; each entry is valid while its sources are the same.
 #[derive(Clone, Default)]
-pub(crate) struct KeptMarkers {
+pub(crate) struct MarkerCache {
     drafts: HashMap<Option<SizeId>, SizeDraft>,
-    pieces: HashMap<MarkerId, KeptPieces>,
+    pieces: HashMap<MarkerId, CachedPieces>,
 }
 
-impl KeptMarkers {
+impl MarkerCache {
     /// A pattern drafted to a size. The draft before stays where the new one is the same.
     fn draft(&mut self, project: &Project, size: Option<SizeId>) -> &SizeDraft {
         let pattern = &project.pattern;
@@ -75,7 +75,7 @@ impl KeptMarkers {
             return Ok(kept.pieces.clone());
         }
         let pieces = Arc::new(MarkerPieces::new(pattern, marker, &drafts)?);
-        let kept = KeptPieces {
+        let kept = CachedPieces {
             drafts: drafts.into_iter().map(|(_, draft)| draft).collect(),
             sizes: named,
             pieces: pieces.clone(),

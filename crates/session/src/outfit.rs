@@ -1,5 +1,5 @@
-//! Several garments worn at once: each is drafted and meshed by itself, then all are one garment of
-//! several parts, each in its layer.
+//! The garments worn together: each is drafted and meshed by itself, then all become one garment of several
+//! parts, each in its layer.
 
 use crate::drape::Drape;
 use crate::fabrics::FabricChoice;
@@ -119,7 +119,7 @@ pub(crate) struct MeshedPart {
 }
 
 /// The garments worn as one: its draft, its mesh, and the parts it is made of.
-pub(crate) struct Dressed {
+pub(crate) struct Outfit {
     pub draft: Arc<Draft>,
     pub garment: Arc<Garment>,
     pub parts: Arc<Vec<GarmentPart>>,
@@ -127,7 +127,7 @@ pub(crate) struct Dressed {
     pub meshed: Arc<Vec<MeshedPart>>,
 }
 
-impl Dressed {
+impl Outfit {
     /// Puts parts together, in their order; there is at least one. Where there are several, pieces and
     /// seams are named after their garment.
     pub fn new(meshed: Vec<MeshedPart>) -> Self {

@@ -1,4 +1,4 @@
-//! A `marker.json` judged as it stands, after a hand has changed it.
+//! Checks a `marker.json` as it stands, also after somebody edited it.
 
 use crate::SessionError;
 use crate::export::cannot;

@@ -1,4 +1,4 @@
-//! A garment's run with hands on the cloth: inputs stamped with the step they apply to.
+//! A garment's run with vertices dragged by the user; each input carries the number of its step.
 
 use crate::rest_change::RestChange;
 use crate::{GarmentJob, SessionError};
@@ -88,8 +88,8 @@ impl LiveInput {
     }
 }
 
-/// A garment being sewn and draped while inputs come.
-pub(crate) struct HandledRun {
+/// A garment being sewn and draped, with inputs applied at their steps.
+pub(crate) struct InteractiveRun {
     job: GarmentJob,
     run: GarmentRun,
     /// From the mesh of a level to the garment's.
@@ -103,7 +103,7 @@ pub(crate) struct HandledRun {
     steps: u64,
 }
 
-impl HandledRun {
+impl InteractiveRun {
     /// Prepares the first step.
     pub fn new(job: GarmentJob) -> Result<Self, DrapeError> {
         Ok(Self {

@@ -1,21 +1,22 @@
-//! Searches for markers while a watcher looks on.
+//! Runs a marker search that reports progress to a watcher and can be stopped by it.
 
-use crate::watcher::tell;
+use crate::watcher::report_progress;
 use crate::{NestOptions, SessionError, Watcher};
 use toile_marker::{Follow, Garments, Laying, Standing, lay};
 
-/// Does what is to be followed, with a watcher that is told and may stop it.
+/// Runs `work` with progress reported to the watcher, which may stop it.
 pub(crate) fn watched<T>(watcher: &mut dyn Watcher, work: impl FnOnce(&mut Follow<'_>) -> T) -> T {
     let stop = watcher.stop_flag().unwrap_or_default();
-    let mut told =
-        |standing: &Standing| tell(watcher, "laying out", standing.done, &standing.words()).is_ok();
+    let mut told = |standing: &Standing| {
+        report_progress(watcher, "laying out", standing.done, &standing.words()).is_ok()
+    };
     work(&mut Follow {
         told: &mut told,
         stop,
     })
 }
 
-/// Lays garments, followed by a watcher.
+/// Makes markers of garments, with progress reported to the watcher.
 pub(crate) fn lay_watched(
     garments: &[Garments<'_>],
     options: &NestOptions,
