@@ -1,4 +1,4 @@
-//! Flaws measured on the fabric laid open, where they lie once it is spread.
+//! Flaws of the fabric: measured on it laid open, mapped to where they lie once it is spread.
 
 use crate::MarkerError;
 use toile_geometry::{Bounds2, Polygon, Vec2};

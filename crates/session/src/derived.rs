@@ -15,7 +15,7 @@ use toile_assembly::{AssemblyOptions, assemble};
 use toile_body::{BodyError, Mannequin};
 use toile_geometry::SurfaceTree;
 use toile_interchange::FormatError;
-use toile_marker::{Garments, Laying};
+use toile_marker::{FinishedMarker, Garments};
 use toile_pattern::{Diagnostic, Draft, Evaluation, Panel, Pattern, Size, SizeId, Wearer};
 
 /// A mannequin with its source.
@@ -70,7 +70,7 @@ pub(crate) struct Derived {
     diagnostics: Option<Arc<Vec<Diagnostic>>>,
     mannequin: Option<CachedMannequin>,
     /// The markers, if they were made.
-    pub layings: Option<Arc<Vec<Laying>>>,
+    pub finished_markers: Option<Arc<Vec<FinishedMarker>>>,
     /// Drafts and pieces of the document's markers.
     pub markers: MarkerCache,
     /// The garments worn, drafted.
@@ -93,7 +93,8 @@ impl Derived {
         if !same_draft {
             self.diagnostics = None;
             let old = self.draft.take();
-            let makes = self.layings.is_some() || self.outfit.is_some() || self.drape.is_some();
+            let makes =
+                self.finished_markers.is_some() || self.outfit.is_some() || self.drape.is_some();
             if let Some(old) = old.filter(|_| makes && same_choices)
                 && has_same_panels(&before.pattern, &after.pattern)
                 && *self.draft(after) == *old
@@ -107,7 +108,7 @@ impl Derived {
             self.parts = None;
         }
         if !same_parts || before.width != after.width {
-            self.layings = None;
+            self.finished_markers = None;
         }
         if !same_parts || before.quality != after.quality {
             self.outfit = None;
@@ -122,7 +123,7 @@ impl Derived {
         self.draft = self.draft.take().or(other.draft);
         self.diagnostics = self.diagnostics.take().or(other.diagnostics);
         self.mannequin = other.mannequin.or(self.mannequin.take());
-        self.layings = self.layings.take().or(other.layings);
+        self.finished_markers = self.finished_markers.take().or(other.finished_markers);
         self.parts = self.parts.take().or(other.parts);
         if self.outfit.is_none() {
             self.outfit = other.outfit;
@@ -238,13 +239,13 @@ impl Derived {
     }
 
     /// The markers.
-    pub fn layings(
+    pub fn finished_markers(
         &mut self,
         project: &Project,
         watcher: &mut dyn Watcher,
-    ) -> Result<Arc<Vec<Laying>>, SessionError> {
-        if let Some(layings) = &self.layings {
-            return Ok(layings.clone());
+    ) -> Result<Arc<Vec<FinishedMarker>>, SessionError> {
+        if let Some(finished_markers) = &self.finished_markers {
+            return Ok(finished_markers.clone());
         }
         let parts = self.sound_parts(project)?;
         let options = NestOptions {
@@ -259,9 +260,9 @@ impl Derived {
             label: several.then_some(&*part.name),
         });
         let garments: Vec<Garments<'_>> = each.collect();
-        let layings = Arc::new(lay_watched(&garments, &options, watcher)?);
-        self.layings = Some(layings.clone());
-        Ok(layings)
+        let finished_markers = Arc::new(lay_watched(&garments, &options, watcher)?);
+        self.finished_markers = Some(finished_markers.clone());
+        Ok(finished_markers)
     }
 
     /// The meshed and placed pieces of every garment worn.

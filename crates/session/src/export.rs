@@ -20,7 +20,7 @@ pub(crate) fn files(
     derived: &mut Derived,
     watcher: &mut dyn Watcher,
 ) -> Result<Vec<File>, SessionError> {
-    if derived.layings.is_none() && derived.drape.is_none() {
+    if derived.finished_markers.is_none() && derived.drape.is_none() {
         return Err(SessionError::Nothing {
             action: "export",
             hint: "lay the pieces out or drape the garment first",
@@ -31,11 +31,11 @@ pub(crate) fn files(
     let found = parts.iter().flat_map(|part| part.diagnostics.iter());
     report.add_warnings(found.map(ToString::to_string));
     let mut files = Vec::new();
-    if let Some(layings) = &derived.layings {
+    if let Some(finished_markers) = &derived.finished_markers {
         report_progress(watcher, "writing", 0.0, "marker")?;
         let formats = [MarkerFormat::Svg, MarkerFormat::Json];
-        marker_files((&worn_name(&parts), &formats), layings, &mut files)?;
-        report.add_markers(layings);
+        marker_files((&worn_name(&parts), &formats), finished_markers, &mut files)?;
+        report.add_markers(finished_markers);
     }
     if let Some(drape) = derived.drape.clone() {
         garment_files(&drape, &mut files)?;

@@ -90,8 +90,9 @@ pub use toile_interchange::{
     Lines, MarkerSettings, Paper, SizeChoice, Tile, Wanted, write_atomically,
 };
 pub use toile_marker::{
-    Follow, Found, GivenFlaw, LaidMarker, LaidPiece, MarkerError, MarkerFormat, MarkerState,
-    NestOptions, Nested, PieceOutside, PieceOverlap, Standing, Start, WaitingPiece,
+    DocumentMarker, Found, GivenFlaw, LaidPiece, MarkerError, MarkerFormat, MarkerState,
+    MarkerSummary, NestOptions, PieceOutside, PieceOverlap, SearchProgress, SearchWatcher, Start,
+    WaitingPiece,
 };
 pub use toile_nesting::{Budget, Nap, Pose, Search, Side, Strip};
 pub use toile_pattern::Spread;

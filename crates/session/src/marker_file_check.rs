@@ -5,16 +5,16 @@ use crate::export::cannot;
 use crate::open::open_marker;
 use std::path::{Path, PathBuf};
 use toile_interchange::{read_text, write_all_atomically, write_marker_svg};
-use toile_marker::{Nested, judge_file};
+use toile_marker::{MarkerSummary, judge_file};
 
-/// What was found in a marker.
+/// The result of a check of a marker file.
 #[derive(Clone, Debug)]
 pub struct JudgedMarker {
-    /// The marker in a few numbers.
-    pub nested: Nested,
-    /// What is wrong, in words; nothing if it can be cut.
+    /// The main numbers of the marker.
+    pub summary: MarkerSummary,
+    /// Faults in words; empty if the marker can be cut.
     pub faults: Vec<String>,
-    /// The drawing with what is cut twice in red, if a folder was given.
+    /// The drawing with overlaps in red, if a folder was given.
     pub files: Vec<PathBuf>,
 }
 
@@ -28,9 +28,9 @@ pub fn is_marker_file(path: &Path) -> bool {
 }
 
 /// Judges a `marker.json` by its own outlines: overlaps, gaps, margins, nap of each garment, print,
-/// flaws. What only
-/// the pattern knows (tilt allowed, folds, pairs, locks) is not judged. With a folder, writes
-/// `marker-judged.svg`, where what is cut twice is red.
+/// flaws. Rules that only
+/// the pattern knows (tilt allowed, folds, pairs, locks) are not judged. With a folder, writes
+/// `marker-judged.svg`, where overlaps are red.
 ///
 /// # Errors
 /// The file cannot be read or is no marker; the drawing cannot be written.
@@ -44,7 +44,7 @@ pub fn judge_marker_file(path: &Path, folder: Option<&Path>) -> Result<JudgedMar
         files.push(folder.join("marker-judged.svg"));
     }
     Ok(JudgedMarker {
-        nested: judged.nested,
+        summary: judged.summary,
         faults: judged.faults,
         files,
     })

@@ -5,7 +5,7 @@ use crate::open::read_input;
 use crate::tools::{project_of, sound_draft};
 use crate::watched_search::lay_watched;
 use crate::watcher::report_progress;
-use crate::{NestOptions, Nested, SessionError, Watcher};
+use crate::{MarkerSummary, NestOptions, SessionError, Watcher};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -105,19 +105,23 @@ pub fn nest_patterns(
     patterns: &[PathBuf],
     options: &NestOptions,
     (folder, watcher): (&Path, &mut dyn Watcher),
-) -> Result<(Vec<Nested>, Vec<PathBuf>), SessionError> {
+) -> Result<(Vec<MarkerSummary>, Vec<PathBuf>), SessionError> {
     let (drafts, names) = drafts_of(patterns, options)?;
     let garments: Vec<Garments<'_>> = drafts.iter().map(|d| d.garments()).collect();
-    let layings = lay_watched(&garments, options, watcher)?;
+    let finished_markers = lay_watched(&garments, options, watcher)?;
     let mut files = Vec::new();
-    let lost = marker_files((&names.join(" + "), &options.formats), &layings, &mut files)?;
+    let lost = marker_files(
+        (&names.join(" + "), &options.formats),
+        &finished_markers,
+        &mut files,
+    )?;
     write_all_atomically(folder, &files)?;
     let paths = files.iter().map(|(name, _)| folder.join(name)).collect();
-    let mut nested: Vec<Nested> = layings.iter().map(|l| l.summary()).collect();
-    for (nested, lost) in nested.iter_mut().zip(lost) {
-        nested.notes.extend(lost);
+    let mut summary: Vec<MarkerSummary> = finished_markers.iter().map(|l| l.summary()).collect();
+    for (summary, lost) in summary.iter_mut().zip(lost) {
+        summary.notes.extend(lost);
     }
-    Ok((nested, paths))
+    Ok((summary, paths))
 }
 
 /// Reads a file of marker settings.
@@ -148,7 +152,7 @@ pub fn nest_instance(
     path: &Path,
     options: &NestOptions,
     (folder, watcher): (&Path, &mut dyn Watcher),
-) -> Result<(Nested, Vec<String>, PathBuf), SessionError> {
+) -> Result<(MarkerSummary, Vec<String>, PathBuf), SessionError> {
     let started = std::time::Instant::now();
     let mut instance = read_jagua(&read_text(path)?).map_err(|error| SessionError::Format {
         path: path.to_owned(),
@@ -203,7 +207,7 @@ pub fn nest_instance(
     let name = file_name(&instance.name);
     let file = (format!("{name}.json"), text.into_bytes());
     write_all_atomically(folder, std::slice::from_ref(&file))?;
-    let nested = Nested {
+    let summary = MarkerSummary {
         fabric: instance.name.clone(),
         pieces: marker.placements.len(),
         unplaced: marker.unplaced.len(),
@@ -213,7 +217,7 @@ pub fn nest_instance(
         efficiency: marker.efficiency,
         utilisation: marker.utilisation,
         sound: verdict.is_sound(),
-        ..Nested::default()
+        ..MarkerSummary::default()
     };
-    Ok((nested, instance.notes, folder.join(file.0)))
+    Ok((summary, instance.notes, folder.join(file.0)))
 }

@@ -303,16 +303,22 @@ impl Session {
     }
 
     fn nest(&mut self, watcher: &mut dyn Watcher) -> Outcome {
-        let layings = self.derived.layings(&self.project, watcher)?;
+        let finished_markers = self.derived.finished_markers(&self.project, watcher)?;
         let mut events = Vec::new();
-        for laying in layings.iter() {
-            events.push(Event::Nested(laying.summary()));
-            events.extend(laying.marker.unplaced.iter().map(|unplaced| Event::Warned {
-                message: format!(
-                    "piece {:?}: {}",
-                    laying.items[unplaced.item].name, unplaced.reason
-                ),
-            }));
+        for finished in finished_markers.iter() {
+            events.push(Event::Nested(finished.summary()));
+            events.extend(
+                finished
+                    .marker
+                    .unplaced
+                    .iter()
+                    .map(|unplaced| Event::Warned {
+                        message: format!(
+                            "piece {:?}: {}",
+                            finished.items[unplaced.item].name, unplaced.reason
+                        ),
+                    }),
+            );
         }
         Ok(events)
     }

@@ -8,7 +8,7 @@ use crate::{Budget, GivenFlaw, Nap, NestOptions, SessionError, Spread, Watcher};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toile_interchange::{ANY_NAME, Metres, PieceSettings};
-use toile_marker::{Garments, Laying};
+use toile_marker::{FinishedMarker, Garments};
 use toile_nesting::Fold;
 use toile_pattern::Pattern;
 
@@ -143,8 +143,8 @@ pub fn study_rules(
             let mut own = options.clone();
             change(&mut own);
             own.seed = options.seed.wrapping_add(seed);
-            for laying in lay_watched(&garments, &own, watcher)? {
-                found.add(&laying);
+            for finished in lay_watched(&garments, &own, watcher)? {
+                found.add(&finished);
             }
         }
         Ok::<_, SessionError>(found.mean(seeds as f64))
@@ -202,19 +202,19 @@ struct Found {
 }
 
 impl Found {
-    fn add(&mut self, laying: &Laying) {
-        let nested = laying.summary();
-        let layers = match laying.strip.fold {
+    fn add(&mut self, finished: &FinishedMarker) {
+        let summary = finished.summary();
+        let layers = match finished.strip.fold {
             Fold::Open => 1.0,
             Fold::Lower | Fold::Both => 2.0,
         };
-        self.fabric += nested.length;
-        self.area += laying.cut_area();
-        let own = self.fabrics.entry(nested.fabric).or_default();
-        own[0] = own[0].max(nested.length);
-        own[1] = own[1].max(nested.width * layers);
-        self.fabric_area += nested.length * nested.width * layers;
-        self.unplaced += nested.unplaced;
+        self.fabric += summary.length;
+        self.area += finished.cut_area();
+        let own = self.fabrics.entry(summary.fabric).or_default();
+        own[0] = own[0].max(summary.length);
+        own[1] = own[1].max(summary.width * layers);
+        self.fabric_area += summary.length * summary.width * layers;
+        self.unplaced += summary.unplaced;
     }
 
     fn mean(self, seeds: f64) -> Self {

@@ -2,16 +2,19 @@
 
 use crate::watcher::report_progress;
 use crate::{NestOptions, SessionError, Watcher};
-use toile_marker::{Follow, Garments, Laying, Standing, lay};
+use toile_marker::{FinishedMarker, Garments, SearchProgress, SearchWatcher, lay};
 
 /// Runs `work` with progress reported to the watcher, which may stop it.
-pub(crate) fn watched<T>(watcher: &mut dyn Watcher, work: impl FnOnce(&mut Follow<'_>) -> T) -> T {
+pub(crate) fn watched<T>(
+    watcher: &mut dyn Watcher,
+    work: impl FnOnce(&mut SearchWatcher<'_>) -> T,
+) -> T {
     let stop = watcher.stop_flag().unwrap_or_default();
-    let mut told = |standing: &Standing| {
-        report_progress(watcher, "laying out", standing.done, &standing.words()).is_ok()
+    let mut report = |progress: &SearchProgress| {
+        report_progress(watcher, "laying out", progress.done, &progress.words()).is_ok()
     };
-    work(&mut Follow {
-        told: &mut told,
+    work(&mut SearchWatcher {
+        report: &mut report,
         stop,
     })
 }
@@ -21,7 +24,7 @@ pub(crate) fn lay_watched(
     garments: &[Garments<'_>],
     options: &NestOptions,
     watcher: &mut dyn Watcher,
-) -> Result<Vec<Laying>, SessionError> {
-    let layings = watched(watcher, |follow| lay(garments, options, follow))?;
-    Ok(layings)
+) -> Result<Vec<FinishedMarker>, SessionError> {
+    let finished_markers = watched(watcher, |follow| lay(garments, options, follow))?;
+    Ok(finished_markers)
 }

@@ -10,7 +10,7 @@ use crate::views::marker::{MarkerAction, MarkerView};
 use egui::{ComboBox, DragValue, RichText, Ui};
 use toile_pattern::plan;
 use toile_pattern::{Edit, EditError, Marker, MarkerId, OrderedSize, PiecePlacement, SizeId, Want};
-use toile_session::{Follow, FoundMarker, Search, SessionError, Start, Watcher};
+use toile_session::{FoundMarker, Search, SearchWatcher, SessionError, Start, Watcher};
 
 /// Width of the field of its name [pixels].
 const NAME_WIDTH: f32 = 110.0;
@@ -406,25 +406,25 @@ impl ToileApp {
         self.searching = Some(Searching {
             job: Job::start(move |follower| {
                 let stop = follower.stop_flag().ok_or(SessionError::Cancelled)?;
-                let mut told = |standing: &toile_session::Standing| {
-                    let mut words = match standing.length {
+                let mut report = |progress: &toile_session::SearchProgress| {
+                    let mut words = match progress.length {
                         Some(length) => {
                             format!("{} of fabric", number::show(length, Want::Length, unit))
                         }
-                        None => standing.words(),
+                        None => progress.words(),
                     };
-                    if let Some(efficiency) = standing.efficiency {
+                    if let Some(efficiency) = progress.efficiency {
                         words = format!("{words}, {:.1} %", 100.0 * efficiency);
                     }
-                    if let Some(cost) = standing.cost {
+                    if let Some(cost) = progress.cost {
                         words = format!("{words}, {cost:.2}");
                     }
                     follower
-                        .progress("searching", standing.done, &words)
+                        .progress("searching", progress.done, &words)
                         .is_continue()
                 };
-                let mut follow = Follow {
-                    told: &mut told,
+                let mut follow = SearchWatcher {
+                    report: &mut report,
                     stop,
                 };
                 search.run(how, &mut follow)

@@ -1,8 +1,8 @@
-//! A marker of a document with its pieces where they lie: shown, checked, searched for, written.
+//! A marker of the document with its pieces where they lie: quick check, search, files.
 
-use crate::follow::{Follow, Standing};
 use crate::ordered::MarkerPieces;
-use crate::{Laying, MarkerError, Nested};
+use crate::progress::{SearchProgress, SearchWatcher};
+use crate::{FinishedMarker, MarkerError, MarkerSummary};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use toile_cut::CutPiece;
@@ -11,10 +11,10 @@ use toile_nesting::{Locked, Pose, Search, Side, Strip, Unplaced, clashes};
 use toile_pattern::{Marker, OrderedPiece, PiecePlacement};
 
 /// A marker of a document with its pieces where they lie.
-pub struct LaidMarker {
+pub struct DocumentMarker {
     marker: Arc<Marker>,
     pieces: Arc<MarkerPieces>,
-    /// What lies where; pieces that wait are listed as unplaced.
+    /// The placements; pieces that wait are listed as unplaced.
     laid: toile_nesting::Marker,
     /// The placement of the document that each of these is.
     sources: Vec<usize>,
@@ -52,7 +52,7 @@ pub struct WaitingPiece<'a> {
 pub struct PieceOverlap {
     /// The pieces.
     pub pieces: [OrderedPiece; 2],
-    /// What is cut twice, in the plane of the fabric [m].
+    /// Where they overlap, in the plane of the fabric [m].
     pub region: Vec<Polygon>,
 }
 
@@ -67,7 +67,7 @@ pub struct PieceOutside {
     pub by: f64,
 }
 
-/// What keeps a marker from being cut as it lies, and what it comes to.
+/// The state of a marker: its overlaps, pieces off the fabric, length, efficiency and cost.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MarkerState {
     /// Pairs of pieces that overlap.
@@ -89,10 +89,10 @@ pub struct MarkerState {
     pub cost: Option<f64>,
 }
 
-/// What a search begins with.
+/// The layout that a search starts from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Start {
-    /// Nothing but what is locked.
+    /// Only the locked pieces.
     #[default]
     Anew,
     /// What lies on the marker: pieces that wait are added, overlaps taken apart. Where all lies
@@ -100,16 +100,16 @@ pub enum Start {
     AsItLies,
 }
 
-/// What a search found.
+/// The result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// Where the pieces lie, for `plan::place_marker`.
     pub placements: Vec<PiecePlacement>,
     /// The marker in a few numbers.
-    pub nested: Nested,
+    pub summary: MarkerSummary,
 }
 
-impl LaidMarker {
+impl DocumentMarker {
     /// A marker with its pieces.
     pub fn new(marker: Arc<Marker>, pieces: Arc<MarkerPieces>) -> Self {
         let mut laid = toile_nesting::Marker::default();
@@ -195,7 +195,7 @@ impl LaidMarker {
         &self.suspended
     }
 
-    /// What the cutter must know of the pieces.
+    /// Notes for the cutter.
     pub fn notes(&self) -> &[String] {
         &self.pieces.job.notes
     }
@@ -228,8 +228,8 @@ impl LaidMarker {
     }
 
     /// The marker as it lies, judged by all rules, to be drawn and written.
-    pub fn laying(&self) -> Laying {
-        self.pieces.laying(self.laid.clone())
+    pub fn finished(&self) -> FinishedMarker {
+        self.pieces.finished(self.laid.clone())
     }
 
     /// Lays the pieces in little length. Locked pieces stay where they are.
@@ -240,7 +240,7 @@ impl LaidMarker {
     pub fn search(
         &self,
         (start, search): (Start, Search),
-        follow: &mut Follow<'_>,
+        follow: &mut SearchWatcher<'_>,
     ) -> Result<Found, MarkerError> {
         let mut items = self.pieces.job.items.clone();
         let placed = self.laid.placements.iter().zip(&self.sources);
@@ -260,12 +260,12 @@ impl LaidMarker {
         let from = goes_on.then_some(&self.laid);
         let flag = follow.stop.clone();
         let mut stopped = false;
-        let mut told = |standing: Standing| {
-            stopped |= !(follow.told)(&standing);
+        let mut report = |progress: SearchProgress| {
+            stopped |= !(follow.report)(&progress);
             !stopped
         };
         let job = &self.pieces.job;
-        let made = job.made((&items, from), search, (&flag, &mut told))?;
+        let made = job.made((&items, from), search, (&flag, &mut report))?;
         let key = |k: usize, copy: u32| self.pieces.keys[k][copy as usize];
         let placements = made.placements.iter().map(|placement| {
             let piece = key(placement.item, placement.copy);
@@ -279,11 +279,14 @@ impl LaidMarker {
             }
         });
         let placements = placements.collect();
-        let mut nested = self.pieces.laying(made).summary();
+        let mut summary = self.pieces.finished(made).summary();
         if stopped || flag.load(Ordering::Relaxed) {
             let note = "stopped early: the best so far";
-            nested.notes.push(note.to_owned());
+            summary.notes.push(note.to_owned());
         }
-        Ok(Found { placements, nested })
+        Ok(Found {
+            placements,
+            summary,
+        })
     }
 }

@@ -1,6 +1,6 @@
-//! A marker file judged as it stands, after a hand has changed it.
+//! Checks a marker file as it stands, also after somebody edited it.
 
-use crate::Nested;
+use crate::MarkerSummary;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI};
 use toile_cut::CutPiece;
@@ -16,14 +16,14 @@ const ROUNDING: f64 = 3e-6;
 /// not run along it.
 const MOST_TILT: f64 = FRAC_PI_4;
 
-/// What was found in a marker.
+/// The result of a check of a marker file.
 #[derive(Clone, Debug)]
 pub struct Judged {
     /// The marker in a few numbers.
-    pub nested: Nested,
-    /// What is wrong, in words; nothing if it can be cut.
+    pub summary: MarkerSummary,
+    /// Faults in words; empty if the marker can be cut.
     pub faults: Vec<String>,
-    /// The marker with what is cut twice.
+    /// The marker as a drawing, with the regions where pieces overlap.
     pub drawing: MarkerDrawing,
 }
 
@@ -56,7 +56,7 @@ pub fn judge_file(file: &MarkerFile) -> Judged {
         .filter(|o| total_area(&o.1) > ROUNDING * ROUNDING)
         .flat_map(|o| o.1.iter().cloned())
         .collect();
-    let nested = Nested {
+    let summary = MarkerSummary {
         fabric: file.name.clone(),
         roll: file.roll.clone(),
         pieces: file.pieces.len(),
@@ -68,10 +68,10 @@ pub fn judge_file(file: &MarkerFile) -> Judged {
         efficiency: marker.efficiency,
         utilisation: marker.utilisation,
         sound: faults.is_empty(),
-        ..Nested::default()
+        ..MarkerSummary::default()
     };
     Judged {
-        nested,
+        summary,
         faults,
         drawing: drawing_of(file, (items, overlaps), &marker),
     }

@@ -1,8 +1,8 @@
-//! A marker in a few numbers.
+//! The summary of a marker: length, cost, efficiency, faults.
 
-/// A marker in a few numbers.
+/// The main numbers of a marker.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Nested {
+pub struct MarkerSummary {
     /// Name of the fabric.
     pub fabric: String,
     /// The roll it is cut from, if there are several.
@@ -23,13 +23,13 @@ pub struct Nested {
     pub yardage: f64,
     /// Its price, if a metre's is known.
     pub cost: Option<f64>,
-    /// What the price is in.
+    /// Currency of the price.
     pub currency: String,
     /// Area of the pieces over width times length between the end margins, 0..=1.
     pub efficiency: f64,
     /// Area of the pieces over width times length, 0..=1.
     pub utilisation: f64,
-    /// What the cutter must know.
+    /// Notes for the cutter.
     pub notes: Vec<String>,
     /// Whether the referee found no overlap and nothing outside the fabric.
     pub sound: bool,

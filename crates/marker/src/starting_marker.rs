@@ -1,4 +1,4 @@
-//! Going on from markers made before: where their pieces lie, and which of them stay there.
+//! Starts a search from an existing marker: reads its places and locks.
 
 use crate::MarkerError;
 use toile_interchange::MarkerFile;

@@ -1,6 +1,6 @@
-//! A marker made, and what is told, drawn and written of it.
+//! A finished marker with its verdict, and the summary, drawing and file made of it.
 
-use crate::Nested;
+use crate::MarkerSummary;
 use std::sync::Arc;
 use toile_cut::CutPiece;
 use toile_interchange::{
@@ -10,32 +10,32 @@ use toile_nesting::{Item, Marker, Strip, Verdict};
 
 /// A marker made, with everything a drawing of it needs.
 #[derive(Clone, Debug)]
-pub struct Laying {
+pub struct FinishedMarker {
     /// Name of the fabric.
     pub fabric: String,
     /// Pieces by their cut outline.
     pub items: Vec<Item>,
-    /// What is drawn on them, in the order of the items.
+    /// Their drawings, in the order of the items.
     pub pieces: Vec<Arc<CutPiece>>,
     /// The fabric.
     pub strip: Strip,
-    /// What lies where.
+    /// The placements.
     pub marker: Marker,
-    /// What the referee says of it.
+    /// The verdict of the referee.
     pub verdict: Verdict,
     /// Copies that lie on no marker of this fabric, by the items and copies of the whole fabric.
     pub missing: Vec<MarkerFileUnplaced>,
     /// On a roll: of each item, its index among those of the whole fabric, and its copies there.
     pub sources: Option<Vec<(usize, Vec<u32>)>>,
-    /// What else is known.
+    /// Roll, plies, price and notes.
     pub facts: MarkerFacts,
 }
 
-impl Laying {
+impl FinishedMarker {
     /// A few numbers.
-    pub fn summary(&self) -> Nested {
+    pub fn summary(&self) -> MarkerSummary {
         let yardage = self.marker.length * f64::from(self.facts.plies);
-        Nested {
+        MarkerSummary {
             fabric: self.fabric.clone(),
             roll: self.facts.roll.clone(),
             pieces: self.marker.placements.len(),
@@ -54,7 +54,7 @@ impl Laying {
         }
     }
 
-    /// What keeps it from being cut, in words.
+    /// Faults that keep it from being cut, in words.
     pub fn faults(&self) -> Vec<String> {
         let name = |k: usize| {
             let laid = &self.marker.placements[k];

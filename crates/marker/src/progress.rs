@@ -1,11 +1,11 @@
-//! How the outside follows and stops a search.
+//! Progress of a search, and how to stop it.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// How far a search is.
+/// Progress of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Standing {
+pub struct SearchProgress {
     /// Part of the work done, 0..=1.
     pub done: f64,
     /// Length of the best marker so far [m]; nothing before the first.
@@ -16,8 +16,8 @@ pub struct Standing {
     pub cost: Option<f64>,
 }
 
-impl Standing {
-    /// The same in words.
+impl SearchProgress {
+    /// The progress in words.
     pub fn words(&self) -> String {
         match self.length {
             Some(length) => format!("{:.0} mm of fabric", length * 1e3),
@@ -26,10 +26,10 @@ impl Standing {
     }
 }
 
-/// How the outside follows and stops a search.
-pub struct Follow<'a> {
-    /// Told again and again how far the search is; answers whether to go on.
-    pub told: &'a mut dyn FnMut(&Standing) -> bool,
-    /// Set from anywhere when the search is to stop.
+/// Receives the progress of a search, and may stop it.
+pub struct SearchWatcher<'a> {
+    /// Called repeatedly with the progress; returns whether to go on.
+    pub report: &'a mut dyn FnMut(&SearchProgress) -> bool,
+    /// A flag that any thread may set to stop the search.
     pub stop: Arc<AtomicBool>,
 }
