@@ -38,7 +38,7 @@ fn nest_options(nest: &Nest) -> Result<NestOptions, Failure> {
         nap: nest.nap.map(Into::into),
         tilt: nest.tilt.map(f64::to_radians),
         repeat: nest.repeat,
-        defects: nest.defect.clone(),
+        flaws: nest.defect.clone(),
         spread: nest.spread.map(Into::into),
         plies: nest.plies,
         price_per_metre: price(nest.price)?,

@@ -273,7 +273,7 @@ fn left_out(items: &[Item], strip: &Strip) -> Vec<&'static str> {
         ("end margins", strip.end_margin > 0.0),
         ("the length at hand", strip.max_length.is_some()),
         ("the print", strip.stripes.is_some()),
-        ("flaws", !strip.defects.is_empty()),
+        ("flaws", !strip.flaws.is_empty()),
         ("folds", any(&|i| i.fold_edge.is_some())),
         ("locked pieces", any(&|i| !i.locked.is_empty())),
         ("holes", any(&|i| !i.outline.holes.is_empty())),

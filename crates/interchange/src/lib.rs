@@ -62,7 +62,7 @@ pub use jagua::{JaguaInstance, is_jagua_instance, read_jagua, write_jagua, write
 pub use mannequin_json::{read_mannequin, write_mannequin};
 pub use marker_drawing::{MarkerDrawing, MarkerFacts, MarkerPiece};
 pub use marker_json::{
-    MarkerDefect, MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, MarkerFold,
+    MarkerFabric, MarkerFile, MarkerFilePiece, MarkerFileUnplaced, MarkerFlaw, MarkerFold,
     MarkerMatch, MarkerPrint, read_marker_json, write_marker_json,
 };
 pub use marker_plot::{write_marker_dxf, write_marker_hpgl, write_marker_pdf};

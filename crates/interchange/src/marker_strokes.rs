@@ -214,8 +214,8 @@ impl Strokes {
                 }
             }
         }
-        for defect in &strip.defects {
-            self.rings(Layer::Flaw, &defect.outline);
+        for flaw in &strip.flaws {
+            self.rings(Layer::Flaw, &flaw.outline);
         }
     }
 

@@ -107,7 +107,7 @@ fn items_of(file: &MarkerFile) -> Vec<Item> {
             },
             gap: piece.gap,
             bundles: vec![piece.garment],
-            over_defects: piece.over_flaws,
+            over_flaws: piece.over_flaws,
             match_point: piece.on_print.map(|p| p.match_point()),
             ..Item::new(piece.name.clone(), outline)
         }

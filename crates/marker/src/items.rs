@@ -184,7 +184,7 @@ fn item_of(to_cut: &PieceToCut, print: bool, options: &NestOptions) -> Item {
         quantity: to_cut.bundles.len() as u32,
         bundles: to_cut.bundles.clone(),
         gap: settings.gap.unwrap_or_default().0,
-        over_defects: settings.over_flaws.unwrap_or(false),
+        over_flaws: settings.over_flaws.unwrap_or(false),
         match_point: print.then_some(MatchPoint {
             point: hem,
             phase: Phase::At(Vec2::zeros()),

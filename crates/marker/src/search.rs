@@ -35,7 +35,7 @@ pub fn lay(
     }
     check_fabric_names(&groups, options)?;
     let names: Vec<&str> = groups.iter().map(|group| group.0.as_str()).collect();
-    check_given(&options.defects, &names)?;
+    check_given(&options.flaws, &names)?;
     let fabrics = || garments.iter().flat_map(|g| &g.draft.fabrics);
     check_names(&options.from, &options.locked)?;
     // Everything is refused before anything is searched for.

@@ -80,7 +80,7 @@ fn rules(patterns: &[&Pattern], base: &Found) -> Vec<Rule> {
         }),
         rule("three flaws of 50 mm, 5 mm kept from them", move |o| {
             for (name, [length, width]) in &fabrics {
-                o.defects.extend([1.0, 2.0, 3.0].map(|k| GivenFlaw {
+                o.flaws.extend([1.0, 2.0, 3.0].map(|k| GivenFlaw {
                     fabric: Some(name.clone()),
                     place: [length * k / 4.0, width * k / 4.0, 0.06, 0.06],
                 }));

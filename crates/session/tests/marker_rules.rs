@@ -87,14 +87,14 @@ fn fabric_at_hand_is_shared_by_the_plies() {
 fn flaws_are_measured_on_the_open_fabric() {
     let mut options = options();
     options.spread = Some(Spread::Folded);
-    options.defects = vec![GivenFlaw::at([0.2, 1.2, 0.05, 0.05])];
+    options.flaws = vec![GivenFlaw::at([0.2, 1.2, 0.05, 0.05])];
     let made = nest(&["t-shirt"], &options).unwrap();
-    let flaw = &made.marker("marker.json").fabric.defects[0].outline;
+    let flaw = &made.marker("marker.json").fabric.flaws[0].outline;
     let low = flaw.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
     assert!((low - 0.4).abs() < 1e-9, "{flaw:?}");
     assert!(faults(&made, "marker.json").is_empty());
     options.spread = None;
-    options.defects = vec![GivenFlaw::at([0.0, 2.0, 0.05, 0.05])];
+    options.flaws = vec![GivenFlaw::at([0.0, 2.0, 0.05, 0.05])];
     let words = refused(&["t-shirt"], &options);
     assert!(
         words.contains("flaw 1 of fabric \"jersey\" reaches"),
@@ -195,7 +195,7 @@ fn our_own_markers_are_sound_to_the_check() {
     };
     let over = NestOptions {
         settings: settings(r#""pieces": { "*": { "over_flaws": true } }"#),
-        defects: vec![GivenFlaw::at([0.2, 0.4, 0.1, 0.1])],
+        flaws: vec![GivenFlaw::at([0.2, 0.4, 0.1, 0.1])],
         ..options()
     };
     let print = NestOptions {
@@ -356,22 +356,22 @@ fn a_flaw_lies_on_one_fabric_and_one_roll() {
            "pieces": { "sleeve": { "fabric": "lining" } }"#,
     );
     let flaw = GivenFlaw::at([0.2, 1.45, 0.03, 0.03]);
-    options.defects = vec![flaw.clone()];
+    options.flaws = vec![flaw.clone()];
     let words = refused(&["t-shirt"], &options);
     assert!(words.contains("several: jersey, lining"), "{words}");
     let on = |fabric: &str| GivenFlaw {
         fabric: Some(fabric.to_owned()),
         ..flaw.clone()
     };
-    options.defects = vec![on("lining")];
+    options.flaws = vec![on("lining")];
     let words = refused(&["t-shirt"], &options);
     assert!(words.contains("flaw 1 of fabric \"lining\""), "{words}");
-    options.defects = vec![on("denim")];
+    options.flaws = vec![on("denim")];
     let words = refused(&["t-shirt"], &options);
     assert!(words.contains("jersey, lining"), "{words}");
-    options.defects = vec![on("jersey")];
+    options.flaws = vec![on("jersey")];
     let made = nest(&["t-shirt"], &options).unwrap();
-    let flaws = |name: &str| made.marker(name).fabric.defects.len();
+    let flaws = |name: &str| made.marker(name).fabric.flaws.len();
     assert_eq!((flaws("marker.json"), flaws("marker-2.json")), (1, 0));
     options.rolls = vec![(2.0, None), (3.0, None)];
     let words = refused(&["t-shirt"], &options);

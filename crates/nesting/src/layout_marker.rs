@@ -1,4 +1,4 @@
-//! Markers from layouts, and layouts from markers to go on from.
+//! Turns a layout into a marker, and a marker into a layout to start from.
 
 use crate::explore::Island;
 use crate::job::Job;
@@ -7,14 +7,14 @@ use crate::separate::{Limit, Outcome, Patience};
 use crate::{Marker, Placement, Unplaced};
 use std::f64::consts::TAU;
 
-/// Patience with a layout given that is not sound.
+/// Patience with a start layout that is not sound.
 const REPAIR: Patience = Patience {
     rounds: 60,
     strikes: 3,
 };
-/// By how much the strip grows where a layout given cannot be taken apart.
+/// Factor by which the strip grows where the overlaps of a start layout cannot be removed.
 const LONGER: f64 = 1.02;
-/// What a metre from the start costs a piece that is missing \[m\].
+/// Cost of a metre of distance from the start of the strip, for a missing piece \[m\].
 const BIAS: f64 = 0.02;
 /// Tries before a first layout is made anew.
 const TRIES: usize = 20;
@@ -67,8 +67,7 @@ fn between(a: f64, b: f64) -> f64 {
     apart.min(TAU - apart)
 }
 
-/// The layout of a marker: what is laid there and can be laid, in the nearest orientation allowed.
-/// It may overlap or reach beyond the strip.
+/// The layout of a marker: its pieces that can be laid, in the nearest orientation allowed. It may overlap or reach beyond the strip.
 pub(crate) fn layout_of(job: &Job<'_>, marker: &Marker) -> Layout {
     let mut layout = Layout::new(job, 0.0);
     for placement in &marker.placements {
@@ -106,13 +105,13 @@ pub(crate) fn layout_of(job: &Job<'_>, marker: &Marker) -> Layout {
         layout.put(job, piece, shape, at - job.corner());
         layout.set_phase(job, piece);
     }
-    layout.obey_locks(job);
+    layout.apply_locks(job);
     layout
 }
 
 impl Island<'_> {
-    /// Takes up a layout given: as it is if it is sound, else repaired on a strip as long, or
-    /// longer where that fails; anew if nothing helps.
+    /// Starts from a layout: as it is if it is sound, else repaired on a strip of the same length, or a
+    /// longer one where that fails; from a new first layout if all repairs fail.
     pub fn start_from(&mut self, given: &Layout, limit: &Limit<'_>) {
         let job = self.separator.job;
         let longest = job.longest().min(job.ample());
@@ -134,7 +133,7 @@ impl Island<'_> {
         self.start(limit);
     }
 
-    /// Loads a layout given, brought onto a strip, with what is missing laid where it overlaps
+    /// Loads a layout moved onto a strip of a length \[m\], with the missing pieces laid where they overlap
     /// least.
     fn load_given(&mut self, given: &Layout, length: f64) {
         let job = self.separator.job;
@@ -145,7 +144,7 @@ impl Island<'_> {
         let mut missing = Vec::new();
         for piece in (0..layout.at.len()).filter(movable) {
             let shape = layout.shape[piece];
-            let place = layout.settle(job, piece, shape, layout.at[piece]);
+            let place = layout.nearest_allowed(job, piece, shape, layout.at[piece]);
             let allowed = layout.present[piece] && layout.allows(job, piece, shape);
             match place.filter(|_| allowed) {
                 Some(at) => layout.at[piece] = at,

@@ -1,10 +1,10 @@
-//! Numbers that look random and are the same on every run.
+//! A seeded pseudo-random generator.
 
-/// A sequence of numbers from a seed (Steele, Lea and Flood 2014, SplitMix64).
+/// The generator SplitMix64 (Steele, Lea and Flood 2014) with its state.
 #[derive(Clone, Debug)]
-pub(crate) struct Sequence(pub u64);
+pub(crate) struct SplitMix64(pub u64);
 
-impl Sequence {
+impl SplitMix64 {
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
