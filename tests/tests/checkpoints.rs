@@ -381,7 +381,7 @@ fn a_damaged_file_is_refused_with_place_and_remedy() {
             "line 1: this is no checkpoint",
         ),
         (&head[..head.len() - 3], "line 1: "),
-        (&newer, "version: it is 3; only version 2 is known"),
+        (&newer, "version: it is 4; only version 3 is known"),
         (head, "line 2: it was cut short or changed"),
         (cut, "line 2: it was cut short or changed"),
         (&changed, "line 2: it was cut short or changed"),

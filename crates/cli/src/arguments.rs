@@ -165,6 +165,13 @@ pub struct Run {
     /// Folder to write into; it is made if need be.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+    /// Save the run every so many simulated seconds to checkpoint.json in that folder, to go on from it after an
+    /// interruption; where cloth meets cloth it is saved at whole seconds, and where a seam closes.
+    #[arg(long, value_name = "S")]
+    pub checkpoint: Option<f64>,
+    /// Go on from checkpoint.json in that folder: the results are those of a run without interruption.
+    #[arg(long)]
+    pub resume: bool,
 }
 
 /// How finely to mesh and drape.

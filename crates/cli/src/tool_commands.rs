@@ -9,9 +9,10 @@ use std::sync::Arc;
 use toile_geometry::Duration;
 use toile_measure::Origin;
 use toile_session::{
-    BodyChoice, BodyReport, BodySource, Description, Figure, Fit, Moment, Project, SizeChoice,
-    convert as convert_file, edit_body, figure_named, fit_mesh, make_body, measure_mesh,
-    mesh_panels, open_body_edits, open_mannequin, open_measurements, run_scene, stretch_body,
+    BodyChoice, BodyReport, BodySource, Description, Figure, Fit, Moment, Project, RunOptions,
+    SizeChoice, convert as convert_file, edit_body, figure_named, fit_mesh, make_body,
+    measure_mesh, mesh_panels, open_body_edits, open_mannequin, open_measurements, run_scene,
+    stretch_body,
 };
 
 /// A pattern in another format.
@@ -302,7 +303,11 @@ fn rounded(value: f64) -> f64 {
 
 /// Simulates a scene.
 pub fn run(run: &Run, output: &Output) -> Result<Value, Failure> {
-    let outcome = run_scene(&run.scene, &run.out, &mut Bar::new())
+    let options = RunOptions {
+        checkpoint_step: run.checkpoint,
+        resume: run.resume,
+    };
+    let outcome = run_scene(&run.scene, &run.out, &options, &mut Bar::new())
         .map_err(|error| Failure::from(error).about(&run.scene))?;
     let report = &outcome.report;
     for warning in report["warnings"].as_array().into_iter().flatten() {

@@ -40,10 +40,10 @@ impl FrameAttachment {
     }
 }
 
-/// Attachments in the order of their vertices.
+/// Attachments in the order of their vertices. Copies share the list.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(from = "Vec<Attachment>")]
-pub struct Attachments(Vec<Attachment>);
+#[serde(from = "Vec<Attachment>", into = "Vec<Attachment>")]
+pub struct Attachments(Arc<[Attachment]>);
 
 impl Attachments {
     /// Those at a vertex, with the first one's number.
@@ -55,6 +55,11 @@ impl Attachments {
         let behind = &self.0[first..];
         let count = behind.partition_point(|one| one.vertex as usize == vertex);
         (first, &behind[..count])
+    }
+
+    /// Whether these are the very same attachments, not only equal ones.
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
     }
 
     /// All of them.
@@ -69,11 +74,17 @@ impl From<Vec<Attachment>> for Attachments {
     }
 }
 
+impl From<Attachments> for Vec<Attachment> {
+    fn from(attachments: Attachments) -> Self {
+        attachments.0.to_vec()
+    }
+}
+
 impl FromIterator<Attachment> for Attachments {
     fn from_iter<I: IntoIterator<Item = Attachment>>(all: I) -> Self {
         let mut all: Vec<Attachment> = all.into_iter().collect();
         all.sort_by_key(|one| one.vertex);
-        Self(all)
+        Self(all.into())
     }
 }
 

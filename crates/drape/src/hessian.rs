@@ -187,7 +187,7 @@ impl Direct {
 
     /// Whether it is over the free vertices of a model with the same triangles.
     pub fn is_of(&self, model: &Model) -> bool {
-        self.model.has_structure_of(model) && self.model.has_ties_of(model)
+        self.model.has_structure_of(model) && self.model.has_couplings_of(model)
     }
 
     /// Whether the structure is that of a model where some vertices of cloths touch.

@@ -5,8 +5,8 @@ use crate::{State, System, Workspace};
 use rayon::prelude::*;
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// Measures of one state. Crossings are counted as they are, also those of objects that ignore each other
-/// ([`PairPolicies`](crate::PairPolicies)).
+/// Measures of one state. Crossings and depths of objects that ignore each other ([`PairPolicies`](crate::PairPolicies))
+/// do not count.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measures {
     /// Norm of the net forces over the norm of the weights, over free vertices; contact and
@@ -116,12 +116,20 @@ pub fn measure(
     }
     let mesh = system.mesh(x);
     let mut on_body = Vec::new();
-    for collider in system.colliders.iter() {
-        on_body.extend(collider.crossings(state.time, &mesh));
+    let policies = &system.policies;
+    let feels = |vertices: &[u32], collider: usize| {
+        !policies.ignores_solid(policies.object_of_sample(vertices), collider)
+    };
+    for (number, collider) in system.colliders.iter().enumerate() {
+        let pairs = collider.crossings(state.time, &mesh);
+        let met = |pair: &[u32; 2]| feels(&mesh.triangles[pair[0] as usize], number);
+        on_body.extend(pairs.into_iter().filter(met));
         let pose = collider.pose(state.time);
         let depths: Vec<f64> = x
             .par_iter()
-            .map(|&p| -collider.exact_distance(pose.as_ref(), p))
+            .enumerate()
+            .filter(|&(v, _)| feels(&[v as u32], number))
+            .map(|(_, &p)| -collider.exact_distance(pose.as_ref(), p))
             .collect();
         measures.penetration_max = depths
             .iter()
@@ -130,10 +138,22 @@ pub fn measure(
     }
     measures.body_intersections = on_body.len();
     let tree = SurfaceTree::new(mesh);
-    let own = tree.self_intersections();
+    let own = self_intersections(system, &tree);
     measures.self_intersections = own.len();
     measures.layers = by_layer(system, tree.mesh(), &on_body, &own);
     measures
+}
+
+/// Pairs of cloth triangles that intersect and share no vertex, exactly, but for those of objects that ignore each
+/// other.
+pub(crate) fn self_intersections(system: &System, cloth: &SurfaceTree) -> Vec<[u32; 2]> {
+    let mut pairs = cloth.self_intersections();
+    let triangles = &cloth.mesh().triangles;
+    pairs.retain(|pair| {
+        let [a, b] = pair.map(|t| triangles[t as usize]);
+        !system.policies.ignores(&a, &b)
+    });
+    pairs
 }
 
 /// What was found, by layer; a triangle between layers counts with the innermost of its corners.

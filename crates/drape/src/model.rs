@@ -99,8 +99,8 @@ impl ModelParts {
             && (self.topology.bending.is_some() || Arc::ptr_eq(&self.rest, &other.rest))
     }
 
-    /// Whether another model has the very same vertices held and the same elastics between vertices.
-    pub(crate) fn has_ties_of(&self, other: &Self) -> bool {
+    /// Whether another model has the very same prescribed vertices and the same elastics between vertices.
+    pub(crate) fn has_couplings_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.prescribed, &other.prescribed)
             && Arc::ptr_eq(&self.couplings, &other.couplings)
     }

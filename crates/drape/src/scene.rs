@@ -29,6 +29,8 @@ pub struct Scene {
     pub elastics: Vec<SceneElastic>,
     /// Vertices of cloth that are led along motions.
     pub grips: Vec<SceneGrip>,
+    /// Pairs of objects, by their index, that pass through each other; a cloth with itself passes through itself.
+    pub ignored: Vec<[usize; 2]>,
 }
 
 impl Default for Scene {
@@ -46,6 +48,7 @@ impl Default for Scene {
             objects: Vec::new(),
             elastics: Vec::new(),
             grips: Vec::new(),
+            ignored: Vec::new(),
         }
     }
 }
@@ -169,6 +172,7 @@ impl Scene {
         self.check_distances()?;
         self.check_layers()?;
         self.check_motions()?;
+        self.check_ignored()?;
         for (index, elastic) in self.elastics.iter().enumerate() {
             let place = format!("elastics[{index}]");
             if !(elastic.stiffness.is_finite() && elastic.stiffness >= 0.0) {
@@ -196,6 +200,32 @@ impl Scene {
                         );
                     }
                 }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_ignored(&self) -> Result<(), DrapeError> {
+        for (index, &pair) in self.ignored.iter().enumerate() {
+            let refuse = |what: String, remedy: &str| {
+                Err(DrapeError::Scene {
+                    place: format!("ignored pair {index}"),
+                    what,
+                    remedy: remedy.to_owned(),
+                })
+            };
+            let mut is_cloth = false;
+            for number in pair {
+                let Some(object) = self.objects.get(number) else {
+                    let what = format!("there is no object {number}");
+                    return refuse(what, "name an object of the scene");
+                };
+                is_cloth |= matches!(object.kind, ObjectKind::Deformable { .. });
+            }
+            if !is_cloth {
+                let [a, b] = pair.map(|number| &self.objects[number].name);
+                let what = format!("\"{a}\" and \"{b}\" are solids, which never meet");
+                return refuse(what, "name a cloth and what it passes through");
             }
         }
         Ok(())

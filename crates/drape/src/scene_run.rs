@@ -3,7 +3,7 @@
 
 use crate::collision::Tally;
 use crate::digest::Digest;
-use crate::measure::{Measures, measure};
+use crate::measure::{Measures, measure, self_intersections};
 use crate::method::Method;
 use crate::methods::whole_energy;
 use crate::world::{Edited, MeshVertex, ObjectId, Simulation, Solids, World, WorldEdit};
@@ -402,10 +402,11 @@ impl SceneRun {
         whole_energy(system, state, &mut self.workspace)
     }
 
-    /// Pairs of cloth triangles that intersect and share no vertex, exactly.
+    /// Pairs of cloth triangles that intersect and share no vertex, exactly, but for those of objects that ignore
+    /// each other.
     pub fn crossings(&self) -> usize {
         let mesh = self.system.mesh(&self.state.positions);
-        SurfaceTree::new(mesh).self_intersections().len()
+        self_intersections(&self.system, &SurfaceTree::new(mesh)).len()
     }
 
     /// Net force over weight of a state measured, where that says how far from rest it is.

@@ -151,6 +151,9 @@ pub struct CollisionFile {
     /// Distance kept between the middles of two cloths [m]; none or 0 lets cloth pass through cloth.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cloth_offset: Option<f64>,
+    /// Pairs of names of objects that pass through each other; a cloth with itself passes through itself.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ignore: Vec<[String; 2]>,
     #[serde(flatten)]
     unknown: Unknown,
 }

@@ -25,18 +25,28 @@ const STEPS_TO_REST: usize = 8;
 impl Crossings {
     /// Counts before the first step.
     pub fn new(run: &SceneRun) -> Self {
-        let settings = run.settings();
         let count = run.crossings();
+        Self::resumed(run, [count; 3])
+    }
+
+    /// Goes on from the counts of a run that was saved: before its first step, most at one count, at the last.
+    pub fn resumed(run: &SceneRun, [start, most, end]: [usize; 3]) -> Self {
+        let settings = run.settings();
         let steps = (settings.duration / settings.step / COUNTS).ceil().max(1.0);
         Self {
-            start: count,
-            most: count,
-            end: count,
+            start,
+            most,
+            end,
             every: match settings.method.kind.is_equilibrium() {
                 true => STEPS_TO_REST,
                 false => steps as usize,
             },
         }
+    }
+
+    /// Before the first step, most at one count, at the last one.
+    pub fn counts(&self) -> [usize; 3] {
+        [self.start, self.most, self.end]
     }
 
     /// Counts after a step when it is time, and after the last.

@@ -4,6 +4,7 @@ use crate::crossings::{Crossings, Tangles};
 use crate::export::{cannot, file_name};
 use crate::open::read_input;
 use crate::scene_builder::Builder;
+use crate::scene_checkpoint::{CheckpointTimes, RunOptions, SavedRun};
 use crate::timing::Timing;
 use crate::watcher::report_progress;
 use crate::{SessionError, Watcher};
@@ -28,13 +29,16 @@ pub struct SceneOutcome {
 /// Frames a scene may save: beyond this the frame step is surely a mistake.
 const MOST_FRAMES: f64 = 100_000.0;
 
-/// Runs a scene file and writes its frames, its last state and a report into a folder.
+/// Runs a scene file and writes its frames, its last state and a report into a folder. A run that goes on from a
+/// checkpoint writes the bytes that one without interruption does, at any number of threads.
 ///
 /// # Errors
-/// The scene or a file it names cannot be read, the simulation fails, or a file cannot be written.
+/// The scene, a file it names or the checkpoint cannot be read, the simulation fails, a file cannot be written, or a
+/// checkpoint is asked of a method that has none.
 pub fn run_scene(
     path: &Path,
     folder: &Path,
+    options: &RunOptions,
     watcher: &mut dyn Watcher,
 ) -> Result<SceneOutcome, SessionError> {
     let mut timing = Timing::default();
@@ -60,15 +64,26 @@ pub fn run_scene(
     let start = Instant::now();
     let frame_step = scene.frame_step;
     check_frames(&scene).map_err(wrong)?;
-    let mut run = SceneRun::new(&scene)?;
+    let saved = options.resume.then(|| SavedRun::read(folder)).transpose()?;
+    let (mut run, mut crossings, mut frame) = match saved {
+        Some(saved) => {
+            let run = SceneRun::resume(&scene, saved.run)?;
+            let crossings = Crossings::resumed(&run, saved.crossings);
+            (run, crossings, saved.frames)
+        }
+        None => {
+            let run = SceneRun::new(&scene)?;
+            let crossings = Crossings::new(&run);
+            (run, crossings, 0)
+        }
+    };
     let names = state_names(run.world()).map_err(wrong)?;
-    let mut crossings = Crossings::new(&run);
+    let mut checkpoints = CheckpointTimes::new(options, &run, &scene)?;
     let mut written: Vec<PathBuf> = Vec::new();
     let mut write = |files: &[(String, Vec<u8>)]| {
         written.extend(files.iter().map(|(name, _)| folder.join(name)));
         write_all_atomically(folder, files)
     };
-    let mut frame = 0usize;
     while !run.finished() {
         if let Some(step) = frame_step
             && run.state.time + 1e-9 >= frame as f64 * step
@@ -78,6 +93,14 @@ pub fn run_scene(
         }
         run.advance()?;
         crossings.follow(&run);
+        if let Some(checkpoint) = checkpoints.due(&run, &scene)? {
+            let saved = SavedRun {
+                frames: frame,
+                crossings: crossings.counts(),
+                run: checkpoint,
+            };
+            saved.write(folder)?;
+        }
         report_progress(
             watcher,
             "simulating",

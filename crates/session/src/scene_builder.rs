@@ -68,6 +68,12 @@ impl Builder<'_> {
                 merge_within: elastic.merge_within,
             });
         }
+        let mut ignored = Vec::new();
+        for (index, names) in file.collision.ignore.iter().enumerate() {
+            let place = format!("collision.ignore[{index}]");
+            let number = |name: &String| self.number(name, &place, &objects);
+            ignored.push([number(&names[0])?, number(&names[1])?]);
+        }
         Ok(Scene {
             gravity: Vec3::from(file.gravity),
             air: file.air.air(),
@@ -80,6 +86,21 @@ impl Builder<'_> {
             objects,
             elastics,
             grips,
+            ignored,
+        })
+    }
+
+    /// The index of the object of a name.
+    fn number(
+        &self,
+        name: &str,
+        place: &str,
+        objects: &[SceneObject],
+    ) -> Result<usize, SessionError> {
+        let found = objects.iter().position(|object| object.name == name);
+        found.ok_or_else(|| {
+            let what = format!("there is no object \"{name}\"");
+            self.wrong(place.to_owned(), what, "name an object of the scene")
         })
     }
 
@@ -92,17 +113,7 @@ impl Builder<'_> {
         match end {
             EndFile::Point(point) => Ok(SceneEnd::Point(Vec3::from(*point))),
             EndFile::Vertex(name, vertex) => {
-                let object = objects
-                    .iter()
-                    .position(|o| o.name == *name)
-                    .ok_or_else(|| {
-                        let what = format!("there is no object \"{name}\"");
-                        self.wrong(
-                            format!("elastics[{index}]"),
-                            what,
-                            "name an object of the scene",
-                        )
-                    })?;
+                let object = self.number(name, &format!("elastics[{index}]"), objects)?;
                 Ok(SceneEnd::Vertex {
                     object,
                     vertex: *vertex,

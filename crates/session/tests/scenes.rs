@@ -1,9 +1,10 @@
 //! Scenes: frames are on disk as they come, and every object has a file of its own.
 #![allow(clippy::unwrap_used)]
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
-use toile_session::{SessionError, Silent, run_scene};
+use toile_session::{RunOptions, SessionError, Silent, run_scene};
 
 const OBJ: &str = "v 0 1 0\nv 0.1 1 0\nv 0 1 0.1\nf 1 2 3\n";
 
@@ -31,7 +32,7 @@ fn frames_of_a_run_that_was_stopped_are_kept() {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
-    let stopped = run_scene(&path, &out, &mut watcher);
+    let stopped = run_scene(&path, &out, &RunOptions::default(), &mut watcher);
     assert!(matches!(stopped, Err(SessionError::Cancelled)));
     for frame in 0..3 {
         for name in ["one", "two"] {
@@ -39,7 +40,7 @@ fn frames_of_a_run_that_was_stopped_are_kept() {
             assert!(out.join(&file).is_file(), "{file}");
         }
     }
-    let outcome = run_scene(&path, &out, &mut Silent).unwrap();
+    let outcome = run_scene(&path, &out, &RunOptions::default(), &mut Silent).unwrap();
     assert!(outcome.files.iter().all(|file| file.is_file()));
     assert!(outcome.files.len() >= 2 * 5 + 2 + 2, "{:?}", outcome.files);
 }
@@ -54,7 +55,7 @@ fn names_of_one_file_and_endless_frames_are_refused() {
     ] {
         let path = scene(folder.path(), names, step);
         let out = folder.path().join("out");
-        let error = run_scene(&path, &out, &mut Silent).unwrap_err();
+        let error = run_scene(&path, &out, &RunOptions::default(), &mut Silent).unwrap_err();
         assert!(error.is_bad_input(), "{error}");
         assert!(error.to_string().contains(place), "{error}");
         assert!(!out.exists());
@@ -73,7 +74,7 @@ fn objects_that_are_sewn_together_are_written_as_one_surface() {
     let path = folder.path().join("scene.json");
     std::fs::write(&path, text).unwrap();
     let out = folder.path().join("out");
-    let outcome = run_scene(&path, &out, &mut Silent).unwrap();
+    let outcome = run_scene(&path, &out, &RunOptions::default(), &mut Silent).unwrap();
     assert_eq!(outcome.report["vertices"], 5);
     assert!(!out.join("left.obj").exists() && !out.join("right.obj").exists());
     let written = std::fs::read_to_string(out.join("left+right.obj")).unwrap();
@@ -132,9 +133,14 @@ fn a_run_that_ends_tangled_says_so_with_numbers_and_remedy() {
         );
         write("scene.json", text);
         let path = folder.path().join("scene.json");
-        run_scene(&path, &folder.path().join("out"), &mut Silent)
-            .unwrap()
-            .report
+        run_scene(
+            &path,
+            &folder.path().join("out"),
+            &RunOptions::default(),
+            &mut Silent,
+        )
+        .unwrap()
+        .report
     };
     let tangled = |report: &serde_json::Value| -> Vec<String> {
         let warnings = report["warnings"].as_array().unwrap().iter();
@@ -177,10 +183,131 @@ fn no_residual_is_told_of_a_method_that_balances_other_forces() {
     for (method, told) in [("xpbd", false), ("implicit-euler", true), ("rest", true)] {
         let method = format!(r#"{{ "method": {{ "name": "{method}" }}, "#);
         std::fs::write(&path, text.replacen('{', &method, 1)).unwrap();
-        let report = run_scene(&path, &folder.path().join("out"), &mut Silent)
-            .unwrap()
-            .report;
+        let report = run_scene(
+            &path,
+            &folder.path().join("out"),
+            &RunOptions::default(),
+            &mut Silent,
+        )
+        .unwrap()
+        .report;
         assert_eq!(report["residual"].is_number(), told, "{method}");
         assert_eq!(report["residual"].is_null(), !told, "{method}");
+    }
+}
+
+/// Every file of a folder with its bytes, but for times of this machine and checkpoints.
+fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let files = std::fs::read_dir(folder).unwrap().map(|file| {
+        let path = file.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        (name, std::fs::read(path).unwrap())
+    });
+    files
+        .filter(|(name, _)| name != "timing.json" && name != "checkpoint.json")
+        .collect()
+}
+
+#[test]
+fn an_interrupted_run_goes_on_from_its_checkpoint_to_the_same_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = scene(folder.path(), ["one", "two"], 0.02);
+    let [whole, broken] = ["whole", "broken"].map(|name| folder.path().join(name));
+    run_scene(&path, &whole, &RunOptions::default(), &mut Silent).unwrap();
+    let mut options = RunOptions {
+        checkpoint_step: Some(0.03),
+        resume: false,
+    };
+    let mut watcher = |_: &str, share: f64, _: &str| match share > 0.7 {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
+    let stopped = run_scene(&path, &broken, &options, &mut watcher);
+    assert!(matches!(stopped, Err(SessionError::Cancelled)));
+    assert!(broken.join("checkpoint.json").is_file());
+    assert!(!broken.join("report.json").exists());
+    options.resume = true;
+    let mut first = None;
+    let mut watcher = |_: &str, share: f64, _: &str| {
+        first.get_or_insert(share);
+        ControlFlow::Continue(())
+    };
+    run_scene(&path, &broken, &options, &mut watcher).unwrap();
+    assert!(first.unwrap() > 0.6, "it began anew: {first:?}");
+    assert_eq!(results(&whole), results(&broken));
+
+    // What it cannot go on from is refused by its place.
+    let refused = |path: &Path, out: &Path, options: &RunOptions, place: &str| {
+        let error = run_scene(path, out, options, &mut Silent).unwrap_err();
+        assert!(error.to_string().contains(place), "{error}");
+    };
+    refused(&path, &whole, &options, "checkpoint.json");
+    let other = scene(folder.path(), ["one", "three"], 0.02);
+    refused(&other, &broken, &options, "saved of another scene");
+    let endless = RunOptions {
+        checkpoint_step: Some(0.0),
+        resume: false,
+    };
+    refused(
+        &other,
+        &whole,
+        &endless,
+        "the time between checkpoints is 0",
+    );
+    let text = std::fs::read_to_string(&other).unwrap();
+    let text = text.replacen('{', r#"{ "method": { "name": "rest" },"#, 1);
+    std::fs::write(&other, text).unwrap();
+    let saved = RunOptions {
+        checkpoint_step: Some(1.0),
+        resume: false,
+    };
+    refused(&other, &whole, &saved, "a run by \"rest\" has none");
+}
+
+#[test]
+fn a_cloth_falls_through_what_it_ignores() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("cloth.obj"),
+        OBJ.replace("1 0", "0.02 0").replace("1 0.1", "0.02 0.1"),
+    )
+    .unwrap();
+    let plate = "v -1 0 -1\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nf 1 2 3\nf 1 3 4\n";
+    std::fs::write(folder.path().join("plate.obj"), plate).unwrap();
+    let path = folder.path().join("scene.json");
+    let write = |ignore: &str| {
+        let text = format!(
+            r#"{{ "duration": 0.2, "collision": {{ "ignore": {ignore} }}, "objects": [
+                {{ "name": "plate", "kind": "static", "mesh": "plate.obj" }},
+                {{ "name": "cloth", "kind": "deformable", "mesh": "cloth.obj" }} ] }}"#
+        );
+        std::fs::write(&path, text).unwrap();
+    };
+    let out = folder.path().join("out");
+    let run = || run_scene(&path, &out, &RunOptions::default(), &mut Silent);
+    let height = || {
+        let report = run().unwrap().report;
+        let text = std::fs::read_to_string(out.join("cloth.obj")).unwrap();
+        let vertex = text.lines().find(|line| line.starts_with("v ")).unwrap();
+        let y = vertex.split(' ').nth(2).unwrap().parse::<f64>().unwrap();
+        (y, report["body_penetration_max_m"].as_f64().unwrap())
+    };
+    write("[]");
+    let (lies, _) = height();
+    assert!((lies - 0.004).abs() < 1e-3, "{lies}");
+    write(r#"[["cloth", "plate"]]"#);
+    let (fell, depth) = height();
+    assert!(fell < -0.1, "{fell}");
+    assert!(depth <= 0.0, "what is ignored does not count: {depth}");
+    for (ignore, said) in [
+        (
+            r#"[["cloth", "pole"]]"#,
+            "collision.ignore[0]: there is no object \"pole\"",
+        ),
+        (r#"[["plate", "plate"]]"#, "are solids, which never meet"),
+    ] {
+        write(ignore);
+        let error = run().unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
     }
 }

@@ -44,11 +44,10 @@ pub struct Sheet {
     saved: Saved,
 }
 
-/// What a sheet was made from.
+/// The model and the attachments that a sheet was made from.
 struct Key {
     model: Model,
     attachments: Attachments,
-    contact: f64,
 }
 
 #[derive(Default)]
@@ -98,7 +97,6 @@ impl Sheet {
             key: Key {
                 model: system.model.clone(),
                 attachments: system.control.attachments.clone(),
-                contact: damped_contact_frequency(system, &system.rest.samples),
             },
             patches,
             home,
@@ -113,7 +111,7 @@ impl Sheet {
             &State::at_rest(system, system.topology.layout.clone()),
         );
         let inner = limits::frequency_at_rest(system, sheet.stretch());
-        sheet.frequency = inner.hypot(sheet.key.contact);
+        sheet.frequency = inner.hypot(damped_contact_frequency(system, &system.rest.samples));
         sheet
     }
 
@@ -121,9 +119,10 @@ impl Sheet {
     pub fn fits(&self, system: &System) -> bool {
         let key = &self.key;
         key.model.has_cloth_of(system)
-            && key.model.has_ties_of(system)
-            && key.attachments == system.control.attachments
-            && key.contact == damped_contact_frequency(system, &system.rest.samples)
+            && key.model.has_couplings_of(system)
+            && key.model.contact == system.contact
+            && key.model.colliders.is_empty() == system.colliders.is_empty()
+            && key.attachments.is(&system.control.attachments)
     }
 
     /// Takes over a state.

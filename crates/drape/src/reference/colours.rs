@@ -14,7 +14,7 @@ pub struct Colours {
 impl Colours {
     /// Makes the colours those of a model; false when they already were.
     pub fn fit(&mut self, system: &System) -> bool {
-        let fits = |of: &Model| of.has_cloth_of(system) && of.has_ties_of(system);
+        let fits = |of: &Model| of.has_cloth_of(system) && of.has_couplings_of(system);
         if self.made_for.as_ref().is_some_and(fits) {
             return false;
         }

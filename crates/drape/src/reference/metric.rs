@@ -42,8 +42,8 @@ impl Key {
     fn fits(&self, system: &System, weight: f64) -> bool {
         self.weight == weight
             && self.model.has_cloth_of(system)
-            && self.model.has_ties_of(system)
-            && self.attachments == system.control.attachments
+            && self.model.has_couplings_of(system)
+            && self.attachments.is(&system.control.attachments)
     }
 }
 

@@ -83,6 +83,10 @@ impl World {
                 ..Object::of_scene(object)?
             });
         }
+        for pair in &scene.ignored {
+            let [a, b] = pair.map(SceneObject::id);
+            world.ignored.insert([a.min(b), a.max(b)]);
+        }
         for elastic in &scene.elastics {
             let ends = [elastic.from, elastic.to].map(|end| match end {
                 SceneEnd::Point(place) => AttachmentEnd::Point(place),

@@ -135,7 +135,7 @@ impl BuiltFor {
 
     fn fits(&self, model: &Model, samples: &Arc<Vec<ContactSample>>) -> bool {
         self.model.has_cloth_of(model)
-            && self.model.has_ties_of(model)
+            && self.model.has_couplings_of(model)
             && self.model.contact == model.contact
             && Arc::ptr_eq(&self.model.policies, &model.policies)
             && self.model.colliders.is_empty() == model.colliders.is_empty()

@@ -1,0 +1,113 @@
+//! The checkpoint file from which an interrupted run of a scene is resumed.
+
+use crate::SessionError;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use toile_drape::{DrapeError, Scene, SceneCheckpoint, SceneRun};
+use toile_interchange::{
+    CheckpointFormat, read_checkpoint, read_text, write_atomically, write_checkpoint,
+};
+
+/// How a scene is run beside what its file says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RunOptions {
+    /// Simulated time between two checkpoints [s]; none saves none.
+    pub checkpoint_step: Option<f64>,
+    /// Goes on from the checkpoint in the folder of the results.
+    pub resume: bool,
+}
+
+/// A run of a scene between two steps, with the counts of its report so far.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SavedRun {
+    /// Frames written.
+    pub frames: usize,
+    /// Crossings of cloth with cloth counted before the first step, most at one count, and at the last.
+    pub crossings: [usize; 3],
+    /// The run.
+    pub run: SceneCheckpoint,
+}
+
+impl CheckpointFormat for SavedRun {
+    const FORMAT: &'static str = "toile-run-checkpoint";
+}
+
+impl SavedRun {
+    /// Its file in the folder of the results.
+    pub fn path(folder: &Path) -> PathBuf {
+        folder.join("checkpoint.json")
+    }
+
+    /// Reads the one in the folder of the results.
+    ///
+    /// # Errors
+    /// There is none, or it cannot be read.
+    pub fn read(folder: &Path) -> Result<Self, SessionError> {
+        let path = Self::path(folder);
+        let text = read_text(&path)?;
+        read_checkpoint(&text).map_err(|error| SessionError::Format { path, error })
+    }
+
+    /// Writes it into the folder of the results.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), SessionError> {
+        let text = write_checkpoint(self).map_err(|error| SessionError::Write {
+            file: "checkpoint.json",
+            error,
+        })?;
+        Ok(write_atomically(&Self::path(folder), text.as_bytes())?)
+    }
+}
+
+/// When a run saves its next checkpoint.
+pub(crate) struct CheckpointTimes {
+    step: Option<f64>,
+    next: f64,
+}
+
+impl CheckpointTimes {
+    /// Checkpoints at a step [s] of simulated time, counted from where the run stands.
+    ///
+    /// # Errors
+    /// A step that is no time; a method of which no checkpoint can be taken.
+    pub fn new(options: &RunOptions, run: &SceneRun, scene: &Scene) -> Result<Self, SessionError> {
+        if let Some(step) = options.checkpoint_step {
+            if !(step.is_finite() && step > 0.0) {
+                return Err(SessionError::Number {
+                    what: "the time between checkpoints",
+                    value: step,
+                    hint: "give a number of simulated seconds above zero",
+                });
+            }
+            run.checkpoint(scene)?;
+        }
+        Ok(Self {
+            step: options.checkpoint_step,
+            next: run.state.time + options.checkpoint_step.unwrap_or_default(),
+        })
+    }
+
+    /// The checkpoint to be saved now, where it is time for one and the run can be saved.
+    ///
+    /// # Errors
+    /// The run cannot be saved at all.
+    pub fn due(
+        &mut self,
+        run: &SceneRun,
+        scene: &Scene,
+    ) -> Result<Option<SceneCheckpoint>, DrapeError> {
+        let Some(step) = self.step else {
+            return Ok(None);
+        };
+        if run.state.time + 1e-9 < self.next || run.steps_to_checkpoint() > 0 || run.finished() {
+            return Ok(None);
+        }
+        while self.next <= run.state.time + 1e-9 {
+            self.next += step;
+        }
+        run.checkpoint(scene).map(Some)
+    }
+}
