@@ -1,4 +1,4 @@
-//! Stretches of the seam line whose own cut line is missing, and slits that are shut.
+//! Finds lengths of the seam line that got no cut line of their own, and slits that are shut.
 
 use crate::allowance::Cloth;
 use crate::corner::STRAIGHT;
@@ -7,15 +7,15 @@ use crate::trace::{Sides, Traced};
 use crate::{CutRing, Finding};
 use toile_geometry::{Polygon, Vec2, point_segment_distance};
 
-/// Shorter stretches are nobody's concern, and come of flattening at bends of tight curves \[m\].
+/// Shorter spans are ignored: they come from flattening at bends of tight curves \[m\].
 const SHORTEST: f64 = 1e-4;
-/// Shorter gaps between stretches are rounding \[m\].
+/// Shorter gaps between spans are rounding \[m\].
 const ROUNDING: f64 = 1e-7;
 /// A slit counts as shut where the cut line is this many widths from its end: an inner corner of
 /// 60 degrees between equal allowances.
 const SLIT_DEPTH: f64 = 2.0;
 
-/// A stretch of one edge without a cut line of its own.
+/// A span of one edge without a cut line of its own.
 #[derive(Clone, Copy, Debug)]
 struct Gap {
     edge: usize,
@@ -28,7 +28,7 @@ struct Gap {
 }
 
 /// The findings about a ring whose cloth was cut to these rings.
-pub(crate) fn stretches(
+pub(crate) fn uncovered_findings(
     ring: &Ring,
     cloth: &Cloth,
     covered: &[Vec<[f64; 2]>],
@@ -52,7 +52,7 @@ pub(crate) fn stretches(
     findings
 }
 
-/// Adds a stretch to those before it, as one with the last if it continues that.
+/// Adds a span, joined with the last one if it continues it.
 fn add(gaps: &mut Vec<Gap>, gap: Gap) {
     match gaps.last_mut() {
         Some(last)
@@ -83,7 +83,7 @@ pub(crate) fn covered(ring: &Ring, sides: &Sides, traced: &[Traced]) -> Vec<Vec<
     covered
 }
 
-/// What sorted shares leave of a chord [m].
+/// The spans of a chord [m] that sorted shares leave uncovered.
 fn uncovered(covered: &[[f64; 2]], length: f64) -> Vec<[f64; 2]> {
     let mut left = Vec::new();
     let mut at = 0.0;
@@ -98,17 +98,13 @@ fn uncovered(covered: &[[f64; 2]], length: f64) -> Vec<[f64; 2]> {
 
 fn finding(ring: &Ring, cloth: &Cloth, gap: &Gap) -> Finding {
     let edge = ring.index(gap.edge);
-    let mut stretch = [gap.from, gap.to].map(|at| ring.given_place(gap.edge, at));
+    let mut span = [gap.from, gap.to].map(|at| ring.given_place(gap.edge, at));
     if ring.reversed {
-        stretch.reverse();
+        span.reverse();
     }
     if !gap.swallowed {
         let least = gap.least;
-        return Finding::Narrow {
-            edge,
-            stretch,
-            least,
-        };
+        return Finding::Narrow { edge, span, least };
     }
     let overlaps = |edge: usize, leg: usize| is_inner(ring, edge) || cloth.is_leg[leg];
     let (before, after) = (ring.before(gap.edge), ring.after(gap.edge));
@@ -117,7 +113,7 @@ fn finding(ring: &Ring, cloth: &Cloth, gap: &Gap) -> Finding {
     let ends = gap.to > length - SHORTEST && overlaps(after, after);
     Finding::Swallowed {
         edge,
-        stretch,
+        span,
         inner_corner: starts || ends,
     }
 }
@@ -128,7 +124,7 @@ fn is_inner(ring: &Ring, edge: usize) -> bool {
     before.perp(&ring.edges[edge].ends[0]) < -STRAIGHT
 }
 
-/// The seam line and what was cut outside it.
+/// The seam line with the cut line outside it.
 struct Piece<'a> {
     ring: &'a Ring,
     cut: Polygon,
@@ -170,7 +166,7 @@ impl<'a> Piece<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// A stretch of a chord [m], divided where its own cut line would cross the border.
+    /// A span of a chord [m], divided where its own cut line would cross the border.
     fn divided(&self, k: usize, [from, to]: [f64; 2]) -> Vec<f64> {
         let chord = &self.ring.chords[k];
         let width = self.ring.edges[chord.edge].width;
@@ -222,7 +218,7 @@ impl<'a> Piece<'a> {
     }
 }
 
-/// Slits: runs of swallowed stretches, over corners too, that reach far from the cut line.
+/// Slits: runs of swallowed spans, over corners too, that reach far from the cut line.
 fn slits(piece: &Piece, gaps: &[Gap]) -> Vec<Finding> {
     let ring = piece.ring;
     let swallowed: Vec<&Gap> = gaps.iter().filter(|gap| gap.swallowed).collect();
