@@ -6,7 +6,7 @@ use crate::fabrics::cloth_material;
 use crate::mannequin_source::MannequinSource;
 use crate::outfit::{DraftedPart, GarmentPart, MeshedPart, Outfit};
 use std::sync::Arc;
-use toile_assembly::{Garment, Levels, Limb, Wearer};
+use toile_assembly::{Garment, Levels, Limb, PlacementBody};
 use toile_body::{Mannequin, Part};
 use toile_drape::{Cloth, ContactSettings, GarmentLevel, GarmentSetup, RestSettings, SewSettings};
 use toile_geometry::{SurfaceTree, Vec2, Vec3};
@@ -187,9 +187,9 @@ fn body_part(part: Part) -> BodyPart {
 }
 
 /// A mannequin as the placement of panels takes it.
-pub(crate) fn placement_body(mannequin: &Mannequin) -> Wearer<'_> {
+pub(crate) fn placement_body(mannequin: &Mannequin) -> PlacementBody<'_> {
     let levels = mannequin.levels();
-    Wearer {
+    PlacementBody {
         skin: mannequin.skin_tree(),
         limbs: mannequin
             .parts()

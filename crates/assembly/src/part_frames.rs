@@ -1,6 +1,6 @@
-//! The frame round each body part, and which points of the skin belong to which part.
+//! A coordinate frame for each body part, and the skin vertices that belong to it.
 
-use crate::Wearer;
+use crate::PlacementBody;
 use crate::outline_curve::OutlineCurve;
 use toile_geometry::{Vec2, Vec3};
 use toile_pattern::{BodyPart, Facing};
@@ -26,20 +26,20 @@ pub(crate) struct PartFrame {
     facings: [Vec3; 4],
 }
 
-/// The axis of a part, or a stand-in where the wearer has none.
-fn axis(wearer: &Wearer, part: BodyPart) -> (Vec3, Vec3) {
-    let axis = wearer.limbs.iter().find(|l| l.part == part);
+/// The axis of a part, or a stand-in where the body has none.
+fn axis(body: &PlacementBody, part: BodyPart) -> (Vec3, Vec3) {
+    let axis = body.limbs.iter().find(|l| l.part == part);
     let ends = axis.and_then(|l| Some((*l.axis.first()?, *l.axis.last()?)));
     ends.unwrap_or((
-        Vec3::new(0.0, wearer.levels.crotch, 0.0),
-        Vec3::new(0.0, wearer.levels.neck, 0.0),
+        Vec3::new(0.0, body.levels.crotch, 0.0),
+        Vec3::new(0.0, body.levels.neck, 0.0),
     ))
 }
 
 impl PartFrame {
-    /// The frame of a part of a wearer.
-    pub fn new(wearer: &Wearer, part: BodyPart) -> Self {
-        let (root, tip) = axis(wearer, part);
+    /// The frame of a part of a body.
+    pub fn new(body: &PlacementBody, part: BodyPart) -> Self {
+        let (root, tip) = axis(body, part);
         let side = match part {
             BodyPart::LeftArm => 1.0,
             BodyPart::RightArm => -1.0,
@@ -136,15 +136,14 @@ fn polyline_distance(p: Vec3, line: &[Vec3]) -> f64 {
 
 /// For each vertex of the skin, the part it belongs to: the one whose axis is nearest in
 /// multiples of its usual radius.
-pub(crate) fn label_skin(wearer: &Wearer) -> Vec<BodyPart> {
-    wearer
-        .skin
+pub(crate) fn label_skin(body: &PlacementBody) -> Vec<BodyPart> {
+    body.skin
         .mesh()
         .positions
         .iter()
         .map(|&p| {
             let mut best = (f64::INFINITY, BodyPart::Trunk);
-            for limb in &wearer.limbs {
+            for limb in &body.limbs {
                 let distance = polyline_distance(p, &limb.axis) / usual_radius(limb.part);
                 if distance < best.0 {
                     best = (distance, limb.part);

@@ -1,11 +1,11 @@
-//! What placement needs to know of a body: its surface, and axes of its parts.
+//! The body as placement takes it: surface, axes of its parts, levels.
 
 use toile_geometry::{SurfaceTree, Vec3};
 use toile_pattern::BodyPart;
 
 /// The body a garment is placed on. The body's own crate is not known here: the session fills
 /// this in from a mannequin or from any closed mesh.
-pub struct Wearer<'a> {
+pub struct PlacementBody<'a> {
     /// The closed skin, outward.
     pub skin: &'a SurfaceTree,
     /// Axes of the body's parts, all six in the order of [`BodyPart`].

@@ -1,5 +1,5 @@
-//! Seams as pairs of chains, and the points both sides must share: corners, ends of spans and
-//! notches, matched across each seam until nothing changes.
+//! Points that both sides of a seam must share: corners, ends of spans and notches, matched across each seam
+//! until nothing changes.
 
 use crate::edges::EdgeTable;
 use crate::{AssemblyError, Diagnostic};
@@ -24,9 +24,9 @@ pub(crate) struct Node {
     pub fraction: f64,
 }
 
-/// A stretch of an edge walked by a chain.
+/// A span of an edge in a chain.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stretch {
+pub(crate) struct EdgeSpan {
     pub edge: usize,
     pub from: f64,
     pub to: f64,
@@ -35,12 +35,12 @@ pub(crate) struct Stretch {
     end: f64,
 }
 
-/// A place on a chain where vertices are: one node, or two where stretches join.
+/// A place on a chain where vertices are: one node, or two where spans join.
 #[derive(Clone, Debug)]
 pub(crate) struct Station {
     /// Fraction of the chain's length.
     pub place: f64,
-    /// Stretch and node that name the station for good.
+    /// Span and node that name the station for good.
     key: (usize, usize),
     /// All nodes there.
     pub nodes: Vec<usize>,
@@ -48,10 +48,10 @@ pub(crate) struct Station {
 
 /// A seam's chains and the stations matched so far.
 #[derive(Clone, Debug)]
-pub(crate) struct Sewing {
+pub(crate) struct SeamChains {
     /// Index into the draft's seams.
     pub seam: usize,
-    pub sides: [Vec<Stretch>; 2],
+    pub sides: [Vec<EdgeSpan>; 2],
     /// Length of each chain [m].
     pub lengths: [f64; 2],
     pairs: Vec<[(usize, usize); 2]>,
@@ -98,7 +98,7 @@ fn seam_error(seam: &DraftSeam, reason: String, remedy: &str) -> AssemblyError {
 /// Seams between the chosen pieces and the nodes of all edges.
 pub(crate) struct Matching {
     pub nodes: Nodes,
-    pub sewings: Vec<Sewing>,
+    pub sewings: Vec<SeamChains>,
     pub diagnostics: Vec<Diagnostic>,
 }
 
@@ -141,7 +141,7 @@ impl Matching {
         (index, seam): (usize, &DraftSeam),
         spacing: f64,
     ) -> Result<(), AssemblyError> {
-        let mut sides: [Vec<Stretch>; 2] = Default::default();
+        let mut sides: [Vec<EdgeSpan>; 2] = Default::default();
         let mut lengths = [0.0; 2];
         for (side, spans) in seam.sides.iter().enumerate() {
             for span in spans {
@@ -165,7 +165,7 @@ impl Matching {
                 }
                 let start = lengths[side];
                 lengths[side] += (to - from).abs() * length;
-                sides[side].push(Stretch {
+                sides[side].push(EdgeSpan {
                     edge,
                     from,
                     to,
@@ -182,7 +182,7 @@ impl Matching {
             }
             as_shares(&mut sides[side], lengths[side]);
         }
-        self.sewings.push(Sewing {
+        self.sewings.push(SeamChains {
             seam: index,
             sides,
             lengths,
@@ -264,12 +264,12 @@ impl Matching {
 }
 
 /// Turns lengths along a chain into shares of its whole length.
-fn as_shares(stretches: &mut [Stretch], total: f64) {
-    for stretch in stretches.iter_mut() {
+fn as_shares(spans: &mut [EdgeSpan], total: f64) {
+    for stretch in spans.iter_mut() {
         stretch.start /= total;
         stretch.end /= total;
     }
-    if let Some(last) = stretches.last_mut() {
+    if let Some(last) = spans.last_mut() {
         last.end = 1.0;
     }
 }
@@ -352,7 +352,7 @@ fn least_distance(curve: &Curve, point: Vec2) -> f64 {
     (point - point.sup(&low).inf(&high)).norm() - rounding
 }
 
-impl Stretch {
+impl EdgeSpan {
     fn place_of(&self, fraction: f64) -> f64 {
         self.start + (self.end - self.start) * (fraction - self.from) / (self.to - self.from)
     }
@@ -362,7 +362,7 @@ impl Stretch {
     }
 }
 
-impl Sewing {
+impl SeamChains {
     /// Stations of one side in walking order.
     pub fn stations(&self, nodes: &Nodes, side: usize) -> Vec<Station> {
         let mut stations: Vec<Station> = Vec::new();
@@ -475,12 +475,12 @@ impl Sewing {
     }
 
     fn new_station(&self, nodes: &mut Nodes, side: usize, place: f64) -> (usize, usize) {
-        let stretches = &self.sides[side];
-        let index = stretches
+        let spans = &self.sides[side];
+        let index = spans
             .iter()
             .position(|s| place < s.end)
-            .unwrap_or(stretches.len() - 1);
-        let stretch = &stretches[index];
+            .unwrap_or(spans.len() - 1);
+        let stretch = &spans[index];
         (
             index,
             nodes.insert(stretch.edge, stretch.fraction_at(place)),
