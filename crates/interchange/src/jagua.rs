@@ -23,7 +23,7 @@ pub struct JaguaInstance {
     pub items: Vec<Item>,
     /// The strip \[m\].
     pub strip: Strip,
-    /// What was assumed.
+    /// Notes on assumptions.
     pub notes: Vec<String>,
     ids: Vec<Value>,
     document: Map<String, Value>,
@@ -262,7 +262,7 @@ pub fn write_jagua_instance(
     Ok((format!("{instance}\n"), left_out(items, strip)))
 }
 
-/// What of a job an instance does not say.
+/// The parts of a job that an instance cannot express.
 fn left_out(items: &[Item], strip: &Strip) -> Vec<&'static str> {
     let any = |has: &dyn Fn(&Item) -> bool| items.iter().any(has);
     let all = [

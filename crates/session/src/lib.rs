@@ -89,7 +89,7 @@ pub use toile_body::{Description, Figure, Fit, PrimitiveEdit, ProportionBox, Sca
 pub use toile_cut::{CutList, CutListPiece, CutPiece, Drawing, Shrinkage, Stroke, StrokeKind};
 pub use toile_drape::Stage;
 pub use toile_interchange::{
-    Lines, MarkerSettings, Paper, SizeChoice, Tile, Wanted, write_atomically,
+    ExpectedKind, Lines, MarkerSettings, Paper, SizeChoice, Tile, write_atomically,
 };
 pub use toile_marker::{
     DocumentMarker, Found, GivenFlaw, LaidPiece, MarkerError, MarkerFormat, MarkerState,

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use toile_interchange::{
-    MarkerSettings, Wanted, is_jagua_instance, read_jagua, read_marker_settings, read_text,
+    ExpectedKind, MarkerSettings, is_jagua_instance, read_jagua, read_marker_settings, read_text,
     write_all_atomically, write_jagua,
 };
 use toile_marker::{Garments, MarkerError, marker_files};
@@ -129,7 +129,7 @@ pub fn nest_patterns(
 /// # Errors
 /// The file cannot be read, or is not what it should be.
 pub fn open_marker_settings(path: &Path) -> Result<MarkerSettings, SessionError> {
-    read_marker_settings(&read_input(path, Wanted::MarkerSettings)?).map_err(|error| {
+    read_marker_settings(&read_input(path, ExpectedKind::MarkerSettings)?).map_err(|error| {
         SessionError::Format {
             path: path.to_owned(),
             error,

@@ -14,7 +14,7 @@ use toile_drape::{
 };
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_interchange::{
-    EndFile, FormatError, MaterialFile, ObjectFile, SceneFile, Wanted, read_obj,
+    EndFile, ExpectedKind, FormatError, MaterialFile, ObjectFile, SceneFile, read_obj,
 };
 /// Turns a scene file into a scene.
 pub(crate) struct Builder<'a> {
@@ -233,7 +233,7 @@ impl Builder<'_> {
 
     fn obj(&self, name: &str) -> Result<TriangleMesh, SessionError> {
         let path = self.base.join(name);
-        let text = read_input(&path, Wanted::Mesh)?;
+        let text = read_input(&path, ExpectedKind::Mesh)?;
         let mesh =
             read_obj(text.as_bytes()).map_err(|error| SessionError::Format { path, error })?;
         Ok(mesh.into_triangle_mesh())

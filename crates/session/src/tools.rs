@@ -13,7 +13,7 @@ use toile_body::{
 };
 use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{
-    FileError, FormatError, ObjGroup, ObjMesh, Wanted, read_bvh, read_mannequin, read_obj,
+    ExpectedKind, FileError, FormatError, ObjGroup, ObjMesh, read_bvh, read_mannequin, read_obj,
     read_x3d, write_atomically, write_body_glb, write_garmentcode, write_mannequin,
     write_measurements, write_obj, write_pattern,
 };
@@ -199,7 +199,7 @@ impl Moment {
         }
         let path = Path::new(&self.motion);
         let ending = path.extension().map(|end| end.to_ascii_lowercase());
-        let text = read_input(path, Wanted::Motion)?;
+        let text = read_input(path, ExpectedKind::Motion)?;
         let read = match ending.as_ref().and_then(|end| end.to_str()) {
             Some("wrl" | "vrml" | "x3d" | "x3dv") => read_x3d(&text, skeleton),
             _ => read_bvh(&text, skeleton).map(|motion| (motion, Vec::new())),
@@ -228,13 +228,13 @@ fn open_scan(mesh: &Path, landmarks: Option<&Path>) -> Result<Scan, SessionError
         error,
     };
     let bytes = std::fs::read(mesh).map_err(|error| FileError::from_io("read", mesh, &error))?;
-    Wanted::Mesh
+    ExpectedKind::Mesh
         .check(&bytes)
         .map_err(|error| at(mesh, error))?;
     let read = read_obj(&bytes).map_err(|error| at(mesh, error))?;
     let given = match landmarks {
         None => ScanLandmarks::default(),
-        Some(path) => serde_json::from_str(&read_input(path, Wanted::SmallJson)?).map_err(|error| {
+        Some(path) => serde_json::from_str(&read_input(path, ExpectedKind::SmallJson)?).map_err(|error| {
             let remedy = "give heights such as \"waist\": 1.05 and points such as \"nape\": [0, 1.4, -0.05] in metres";
             at(path, FormatError::new("the landmarks", error.to_string(), remedy))
         })?,
@@ -293,9 +293,11 @@ pub fn fit_mesh(
 /// # Errors
 /// The file cannot be read.
 pub fn open_mannequin(path: &Path) -> Result<Description, SessionError> {
-    read_mannequin(&read_input(path, Wanted::Mannequin)?).map_err(|error| SessionError::Format {
-        path: path.to_owned(),
-        error,
+    read_mannequin(&read_input(path, ExpectedKind::Mannequin)?).map_err(|error| {
+        SessionError::Format {
+            path: path.to_owned(),
+            error,
+        }
     })
 }
 

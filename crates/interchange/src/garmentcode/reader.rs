@@ -16,12 +16,12 @@ const GATHER_RATIO: f64 = 1.05;
 /// cosine of the angle between them being less than this.
 const TWIST_COSINE: f64 = -0.7;
 
-/// What came out of a file.
+/// The result of reading a file.
 #[derive(Clone, Debug)]
 pub struct GarmentCodeReading {
     /// The pattern.
     pub pattern: Pattern,
-    /// What was left out or assumed, with its place in the file.
+    /// Notes on parts that were left out or assumed, with their places in the file.
     pub notes: Vec<FormatError>,
 }
 

@@ -1,4 +1,4 @@
-//! Tables of body measurements as GarmentCode writes them.
+//! Tables of body measurements of GarmentCode (YAML).
 
 use crate::FormatError;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
