@@ -8,8 +8,8 @@ use std::path::Path;
 use std::sync::Arc;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_body::{
-    BodyError, Conflict, Description, Figure, Fit, Gap, Mannequin, Motion, ProportionBox, Scaling,
-    Scan, ScanLandmarks, Skeleton,
+    BodyError, Conflict, Description, Deviation, Figure, Fit, Mannequin, Motion, ProportionBox,
+    Scaling, Scan, ScanLandmarks, Skeleton,
 };
 use toile_geometry::{Bounds2, TriangleMesh, Vec2, Vec3};
 use toile_interchange::{
@@ -146,7 +146,7 @@ pub fn mesh_panels(
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyReport {
     /// What was asked for, then what was predicted.
-    pub rows: Vec<Gap>,
+    pub rows: Vec<Deviation>,
     /// What was asked for and no tape takes from a standing body.
     pub untaken: Vec<String>,
     /// What was asked for and contradicts itself.

@@ -1,15 +1,15 @@
-//! What was asked for and what the skin has.
+//! Measurements asked for beside those taken from the finished skin.
 
 use crate::Mannequin;
 use crate::conflict::Conflict;
 use crate::girths::Girth;
-use crate::taken::Taken;
+use crate::measured::TapedSkin;
 use crate::tape::Skinned;
 use toile_measure::{Origin, UnitKind, definition};
 
-/// One measurement: asked for or predicted, and got on the skin by our own tape.
+/// One measurement as asked for or predicted, and as taken from the skin by our own tape.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gap {
+pub struct Deviation {
     /// The measurement's name.
     pub name: &'static str,
     /// Asked for or predicted [m] or [rad].
@@ -20,9 +20,9 @@ pub struct Gap {
     pub origin: Origin,
 }
 
-impl Gap {
-    /// Got less asked [m] or [rad].
-    pub fn gap(&self) -> f64 {
+impl Deviation {
+    /// Value taken from the skin minus value asked for [m] or [rad].
+    pub fn deviation(&self) -> f64 {
         self.got - self.asked
     }
 
@@ -37,16 +37,16 @@ impl Gap {
     }
 }
 
-/// Largest gap of a length [m] over stature before it is named: a millimetre of an adult.
+/// Largest deviation of a length [m] over stature before it is reported: a millimetre of an adult.
 const NAMED: f64 = 5.7e-4;
 
 impl Mannequin {
     /// Calls a function with the tape on the finished skin.
-    pub(crate) fn with_tape<T>(&self, use_it: impl FnOnce(&Taken) -> T) -> T {
-        let skinned = Skinned::finished(self.skin(), &self.cast.skin.parts);
-        use_it(&Taken::new(
+    pub(crate) fn with_tape<T>(&self, use_it: impl FnOnce(&TapedSkin) -> T) -> T {
+        let skinned = Skinned::finished(self.skin(), &self.template_body.skin.parts);
+        use_it(&TapedSkin::new(
             &skinned,
-            (&self.cast.marks, self.cast.skin.armpit),
+            (&self.template_body.marks, self.template_body.skin.armpit),
             (&self.levels, &self.warp),
             &self.crotch,
         ))
@@ -62,7 +62,7 @@ impl Mannequin {
     /// Every measurement the body was made from, as asked or predicted and as the finished skin
     /// has it: first what was asked for. Girths are the convex hull of a section: level round
     /// trunk and legs, across arms and neck. Lengths over the body lie tight on it.
-    pub fn measure(&self) -> Vec<Gap> {
+    pub fn measure(&self) -> Vec<Deviation> {
         self.with_tape(|tape| {
             let mut rows = Vec::new();
             for origin in [Origin::Asked, Origin::Predicted] {
@@ -71,7 +71,7 @@ impl Mannequin {
                         continue;
                     };
                     if let Some(got) = tape.value(known.name) {
-                        rows.push(Gap {
+                        rows.push(Deviation {
                             name: known.name,
                             asked: measured.value,
                             got,
@@ -102,20 +102,20 @@ impl Mannequin {
         let height = self.request.get("height");
         for row in self.measure() {
             let beyond = match row.is_angle() {
-                true => row.gap().abs() > 0.02,
-                false => row.gap().abs() > NAMED * height,
+                true => row.deviation().abs() > 0.02,
+                false => row.deviation().abs() > NAMED * height,
             };
             let mut named = false;
             for conflict in &mut found {
                 if row.origin == Origin::Asked && conflict.names.contains(&row.name) {
-                    conflict.gap = conflict.gap.max(row.gap().abs());
+                    conflict.gap = conflict.gap.max(row.deviation().abs());
                     named = true;
                 }
             }
             if row.origin == Origin::Asked && beyond && !named {
                 found.push(Conflict {
                     names: vec![row.name],
-                    gap: row.gap().abs(),
+                    gap: row.deviation().abs(),
                     why: "the body that meets the others best does not have it: measure it anew, \
                           or those beside it",
                 });

@@ -1,4 +1,4 @@
-//! Where the levels and landmarks of a template lie, found on its skin.
+//! Levels and landmarks of a template, found on its skin.
 
 use crate::rings::TemplateSkin;
 use crate::tape::{OnEdge, Skinned, extent, girth, ridge};
@@ -11,7 +11,7 @@ pub(crate) type Plane = [Vec3; 3];
 
 /// Levels [m], distances from the shoulder joint along the arm [m] and places of a template.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Marks {
+pub(crate) struct TemplateMarks {
     /// Top of the head.
     pub(crate) crown: f64,
     pub(crate) armpit: f64,
@@ -76,7 +76,7 @@ pub(crate) const UNDERBUST: f64 = 0.042;
 /// Between which heights the calf is looked for, over the knee's.
 pub(crate) const CALF: [f64; 2] = [0.55, 0.9];
 
-impl Marks {
+impl TemplateMarks {
     pub(crate) fn of(template: &Template, skin: &TemplateSkin) -> Result<Self, BodyError> {
         let h = template.height;
         let skinned = Skinned::finished(&skin.mesh, &skin.parts);

@@ -1,30 +1,30 @@
-//! Every measurement as the tape finds it on a skin.
+//! Takes each measurement, by name, from a skin.
 
 use crate::Part;
 use crate::bands::Near;
 use crate::girths::Girth;
 use crate::levels::{Level, Levels, upright};
-use crate::marks::Marks;
 use crate::tape::{
     Skinned, along, breadth_at, extent, fall, half_length, hanging, outermost, stretched,
 };
+use crate::template_marks::TemplateMarks;
 use crate::warp::{Follow, Warp};
 use std::cell::{OnceCell, RefCell};
 use std::f64::consts::FRAC_PI_2;
 use std::rc::Rc;
 use toile_geometry::{Vec2, Vec3, closed_length, convex_hull};
 
-/// A skin with what is needed to find places on it.
-pub(crate) struct Taken<'a> {
+/// A skin with the levels, marks and caches that the tape needs to measure it.
+pub(crate) struct TapedSkin<'a> {
     pub(crate) skinned: &'a Skinned<'a>,
-    pub(crate) marks: &'a Marks,
+    pub(crate) marks: &'a TemplateMarks,
     pub(crate) levels: &'a Levels,
     pub(crate) warp: &'a Warp,
     /// Vertices in the middle of the crotch.
     pub(crate) crotch: &'a [u32],
-    /// Hulls that were taken before.
+    /// Cache of hulls.
     pub(crate) hulls: RefCell<[Option<Rc<[Vec2]>>; Girth::COUNT]>,
-    /// Lengths that were taken before.
+    /// Cache of lengths.
     known: RefCell<Vec<(String, Option<f64>)>>,
     around: OnceCell<Option<Around>>,
     bust: OnceCell<Option<Vec3>>,
@@ -61,11 +61,11 @@ fn part_of(hull: &[Vec2], side: f64, place: f64) -> f64 {
 
 const TORSO: &[Part] = &[Part::Trunk, Part::Head];
 
-impl<'a> Taken<'a> {
+impl<'a> TapedSkin<'a> {
     /// The tape on a skin of a cast template.
     pub(crate) fn new(
         skinned: &'a Skinned<'a>,
-        (marks, armpit): (&'a Marks, u32),
+        (marks, armpit): (&'a TemplateMarks, u32),
         (levels, warp): (&'a Levels, &'a Warp),
         crotch: &'a [u32],
     ) -> Self {
