@@ -1,4 +1,4 @@
-//! A sheet and the panel traced from it, drawn together: for importers and constructions.
+//! Builds a sheet and the panel traced from it together, for importers.
 
 use super::{
     Curve, CurveRule, Edge, Line, LineKind, Panel, Pattern, Point, PointRule, Sheet, Span,
@@ -6,9 +6,9 @@ use super::{
 use crate::{CurveId, EdgeId, FabricId, Ids, LineId, Mark, Name, PanelId, PointId, SheetId};
 use std::sync::Arc;
 
-/// A sheet and a panel in the making.
+/// A sheet and its panel while they are built.
 #[derive(Debug)]
-pub struct Drawing<'i> {
+pub struct PanelBuilder<'i> {
     ids: &'i mut Ids,
     /// The sheet.
     pub sheet: Sheet,
@@ -16,7 +16,7 @@ pub struct Drawing<'i> {
     pub panel: Panel,
 }
 
-impl<'i> Drawing<'i> {
+impl<'i> PanelBuilder<'i> {
     /// An empty sheet and panel of one name.
     pub fn new(ids: &'i mut Ids, name: &str, fabric: FabricId) -> Self {
         let sheet = Sheet {

@@ -1,19 +1,19 @@
-//! The stages a panel comes from: its own, and those of the panel it is a side of.
+//! The stages of a panel, including those of the panel it was split from.
 
 use super::{OperationKind, Panel, Pattern, Source};
 use crate::{Mark, Notch, NotchId, Operation, OperationId, PanelId, PartId, SheetId};
 use std::sync::Arc;
 
-/// The stages a panel comes from, in the order they are made.
+/// The stages that lead to a panel, in the order they are made.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct History {
+pub(crate) struct StageLineage {
     /// Each with the operation that makes it.
     stages: Vec<(PanelId, Option<OperationId>, Option<OperationId>)>,
     /// Which of them is the panel before its own operations.
     pub base: usize,
 }
 
-impl History {
+impl StageLineage {
     /// Panel and operation of a stage.
     pub fn stage(&self, step: usize) -> Option<(PanelId, Option<OperationId>)> {
         self.stages.get(step).map(|stage| (stage.0, stage.1))
@@ -89,16 +89,16 @@ impl Pattern {
         all.find(|operation| operation.id == id)
     }
 
-    pub(crate) fn history(&self, panel: &Panel) -> History {
-        let mut history = History::default();
+    pub(crate) fn stage_lineage(&self, panel: &Panel) -> StageLineage {
+        let mut found = StageLineage::default();
         let mut lineage = self.lineage(panel).into_iter().rev().peekable();
         while let Some(own) = lineage.next() {
             let split = match own.source {
                 Source::Side { split, .. } => Some(split),
                 Source::Traced(_) => None,
             };
-            history.base = history.stages.len();
-            history.stages.push((own.id, None, split));
+            found.base = found.stages.len();
+            found.stages.push((own.id, None, split));
             let until = lineage.peek().and_then(|side| match side.source {
                 Source::Side { split, .. } => Some(split),
                 Source::Traced(_) => None,
@@ -108,10 +108,10 @@ impl Pattern {
                     break;
                 }
                 let id = Some(operation.id);
-                history.stages.push((own.id, id, id));
+                found.stages.push((own.id, id, id));
             }
         }
-        history
+        found
     }
 
     /// Which step of a panel's history is the first that has every corner a mark is placed by;
@@ -119,7 +119,7 @@ impl Pattern {
     pub(crate) fn first_step(
         &self,
         panel: &Panel,
-        history: &History,
+        lineage: &StageLineage,
         mark: &Mark,
     ) -> Option<usize> {
         let at = match mark {
@@ -128,7 +128,7 @@ impl Pattern {
         };
         let makers = at.corners().into_iter().filter_map(|corner| corner.maker());
         makers
-            .map(|by| history.step_of(by))
+            .map(|by| lineage.step_of(by))
             .try_fold(0, |first, step| Some(first.max(step?)))
     }
 }

@@ -1,4 +1,4 @@
-//! Where the numbers of a document stand: paths that inspectors show and set numbers by.
+//! Addresses of numbers in the document, by which inspectors show and set them.
 
 use super::remap::Remap;
 use super::seam::SeamSide;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Where a number of the document stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum NumberPlace {
+pub enum NumberAddress {
     /// What a variable stands for.
     Variable(VariableId),
     /// A number of a point's rule.
@@ -123,7 +123,7 @@ pub(super) enum Slot<'e> {
     Optional(&'e mut Option<Number>),
 }
 
-impl NumberPlace {
+impl NumberAddress {
     /// What it is called beside its field.
     pub fn label(&self) -> &'static str {
         match self {
