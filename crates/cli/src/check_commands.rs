@@ -1,4 +1,4 @@
-//! `toile check`: faults of patterns and of markers.
+//! Runs `toile check`: faults of patterns and of markers.
 
 use crate::arguments::Check;
 use crate::bar::Bar;
@@ -92,7 +92,7 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
             })
         })
         .collect();
-    output.tell(&events);
+    output.print_events(&events);
     let errors = events
         .iter()
         .any(|e| matches!(e, Event::Checked { errors, .. } if *errors > 0));

@@ -1,4 +1,4 @@
-//! `toile nest`: pieces laid on fabric.
+//! Runs `toile nest`: pieces laid on fabric.
 
 use crate::bar::Bar;
 use crate::nest_arguments::Nest;
@@ -181,7 +181,7 @@ pub fn nest(nest: &Nest, output: &Output) -> Result<Value, Failure> {
         .collect();
     let report = json!({ "files": paths, "markers": listed });
     for summary in &summaries {
-        output.tell(&[Event::Nested(summary.clone())]);
+        output.print_events(&[Event::Nested(summary.clone())]);
         for note in &summary.notes {
             output.say(format!("note: {note}"));
         }
@@ -190,7 +190,7 @@ pub fn nest(nest: &Nest, output: &Output) -> Result<Value, Failure> {
         }
     }
     yardage(&summaries, output);
-    output.tell(&[Event::FilesWritten { paths }]);
+    output.print_events(&[Event::FilesWritten { paths }]);
     Ok(report)
 }
 

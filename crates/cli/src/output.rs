@@ -1,4 +1,4 @@
-//! Words for people, or one JSON report for programs.
+//! Output: words for people, or one JSON report for programs.
 
 use serde_json::{Value, json};
 use std::fmt::Display;
@@ -119,7 +119,7 @@ impl Output {
     }
 
     /// Tells what happened in plain words.
-    pub fn tell(&self, events: &[Event]) {
+    pub fn print_events(&self, events: &[Event]) {
         for event in events {
             match event {
                 Event::Warned { message } => self.warn(format!("note: {message}")),

@@ -52,7 +52,7 @@ fn run(make: &Make, work: &[Command], output: &Output) -> Result<Value, Failure>
             .unwrap_or_default()
             * 100.0,
     ));
-    output.tell(&events);
+    output.print_events(&events);
     Ok(outcome(&events, &make.out))
 }
 
@@ -98,7 +98,7 @@ pub fn replay(replay: &Replay, output: &Output) -> Result<Value, Failure> {
     let text = read_input(&replay.journal, ExpectedKind::Journal).map_err(about)?;
     let commands = read_journal(&text).map_err(about)?;
     let (_, events) = Session::replay(&commands, &replay.out, &mut Bar::new()).map_err(about)?;
-    output.tell(&events);
+    output.print_events(&events);
     Ok(outcome(&events, &replay.out))
 }
 

@@ -1,4 +1,4 @@
-//! Proportions and the five scaling parameters on the command line.
+//! Options that change a body: proportions and the five scaling parameters.
 
 use crate::output::Failure;
 use clap::Args;
@@ -8,7 +8,7 @@ use toile_session::{BodyStretch, Scaling, proportions_named, proportions_of_head
 /// A proportion box and five ratios, applied in this order to joints and ellipsoids of a fitted
 /// mannequin or of the figure's own.
 #[derive(Debug, Args)]
-pub struct Stretch {
+pub struct BodyOptions {
     /// Proportions to bring it to first, at the stature it has: a box of the table (woman, man,
     /// ideal-woman, ideal-man, loomis-1, loomis-3, loomis-5, loomis-10, loomis-15, draftsman-1,
     /// draftsman-8, draftsman-12, by age), or of a file of boxes (JSON, head lengths), as in
@@ -35,7 +35,7 @@ pub struct Stretch {
     pub low_lateral: Option<f64>,
 }
 
-impl Stretch {
+impl BodyOptions {
     /// What is asked for; none where nothing is.
     ///
     /// # Errors
