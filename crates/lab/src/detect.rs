@@ -1,6 +1,6 @@
-//! What finding contacts of cloth with itself costs: on a smooth sheet however fine, and on a worn
-//! shirt, with regions left out by their curvature and with all looked into; and what contact adds to
-//! a frame of cloth that lies in folds.
+//! Cost of detecting contacts of cloth with itself: on smooth sheets of any resolution and on a worn shirt,
+//! with and without leaving out regions by their curvature; and cost of contact in a frame of cloth that lies
+//! in folds.
 
 use crate::chart_contact::fall;
 use crate::clock::Clock;

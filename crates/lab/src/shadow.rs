@@ -1,4 +1,4 @@
-//! The shadow a cloth throws straight down: its area and the folds of its outline.
+//! The shadow that a cloth throws straight down: its area and the folds of its outline.
 
 use toile_geometry::{Polygon, Vec2, Vec3, total_area, wound_region};
 
